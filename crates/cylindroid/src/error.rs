@@ -1,0 +1,179 @@
+//! The one error of the library: every message names the culprit, the place and the way out.
+//!
+//! Degeneracy (a lost rank, an inverse that does not exist, a target out of reach) is never an
+//! error; it is a value in a report. Errors are for input that has no answer: a broken file, a
+//! wrong number of joints, a number that is not finite, a name nobody knows.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// Result of every fallible function of the library.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// What went wrong, where, and what to do about it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A model file cannot be understood.
+    #[error(transparent)]
+    File(Box<FileError>),
+
+    /// A file cannot be read or written.
+    #[error("cannot {action} {}: {message}", path.display())]
+    Io {
+        /// The path as given.
+        path: PathBuf,
+        /// What was tried: "read" or "write".
+        action: &'static str,
+        /// The words of the operating system.
+        message: String,
+    },
+
+    /// A name that the model or the library does not know.
+    #[error("no {what} named '{name}'{}", offer(similar))]
+    UnknownName {
+        /// The kind of thing: "frame", "joint", "catalogue model", ...
+        what: &'static str,
+        /// The name as given.
+        name: String,
+        /// The nearest valid names, best first; all of them where there are few.
+        similar: Vec<String>,
+    },
+
+    /// A vector or matrix of the wrong size.
+    #[error("{what} has {got} entries, expected {expected}{}", hint_text(hint))]
+    Dimension {
+        /// The argument.
+        what: String,
+        /// The size that fits.
+        expected: usize,
+        /// The size that was given.
+        got: usize,
+        /// What the entries are (joint names in order), or empty.
+        hint: String,
+    },
+
+    /// NaN or infinity where a number is needed.
+    #[error("{what} is not finite: {value}")]
+    NotFinite {
+        /// The argument, with the index or joint name where there is one.
+        what: String,
+        /// The offending value.
+        value: f64,
+    },
+
+    /// An argument outside its domain.
+    #[error("{option} = {value} cannot be used: {reason}")]
+    InvalidOption {
+        /// The argument or option.
+        option: &'static str,
+        /// Its value, printed.
+        value: String,
+        /// Why not, and what can be used instead.
+        reason: String,
+    },
+
+    /// A model that contradicts itself (from the builder; loaders add the place in the file).
+    #[error("model '{model}': {message}")]
+    Model {
+        /// Name of the mechanism.
+        model: String,
+        /// The joint, link or frame at fault (empty when it is the whole).
+        culprit: String,
+        /// What is wrong and what would be right.
+        message: String,
+    },
+}
+
+/// A place in a model file that cannot be understood.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{}:{line}:{column}: {message}", path.display())]
+pub struct FileError {
+    /// The format the file was read as: "URDF", "mechanism file", ...
+    pub format: &'static str,
+    /// The file.
+    pub path: PathBuf,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Byte range of the offending text in the file.
+    pub span: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do next (may be empty).
+    pub help: String,
+}
+
+impl Error {
+    /// An [`Error::UnknownName`] with the nearest of `known` names offered.
+    pub fn unknown<'a>(
+        what: &'static str,
+        name: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        Self::UnknownName { what, name: name.to_owned(), similar: nearest(name, known) }
+    }
+
+    /// Refuses the first entry of `values` that is NaN or infinite.
+    pub fn check_finite(what: &str, values: &[f64]) -> Result<()> {
+        match values.iter().position(|v| !v.is_finite()) {
+            None => Ok(()),
+            Some(i) => Err(Self::NotFinite { what: format!("{what}[{i}]"), value: values[i] }),
+        }
+    }
+
+    /// Refuses a size other than `expected`.
+    pub fn check_len(what: &str, expected: usize, got: usize) -> Result<()> {
+        if expected == got {
+            Ok(())
+        } else {
+            Err(Self::Dimension { what: what.to_owned(), expected, got, hint: String::new() })
+        }
+    }
+}
+
+/// The names of `known` nearest to `name`, best first: at most five, all when there are no more.
+fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+    let wanted = name.to_lowercase();
+    let mut ranked: Vec<(f64, &str)> = known
+        .into_iter()
+        .map(|candidate| {
+            let lower = candidate.to_lowercase();
+            let contains = lower.contains(&wanted) || wanted.contains(&lower);
+            let bonus = if contains && !lower.is_empty() && !wanted.is_empty() { 0.5 } else { 0.0 };
+            (strsim::jaro_winkler(&wanted, &lower) + bonus, candidate)
+        })
+        .collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
+    ranked.into_iter().take(5).map(|(_, n)| n.to_owned()).collect()
+}
+
+fn offer(similar: &[String]) -> String {
+    if similar.is_empty() {
+        String::new()
+    } else {
+        format!("; nearest: {}", similar.join(", "))
+    }
+}
+
+fn hint_text(hint: &str) -> String {
+    if hint.is_empty() { String::new() } else { format!(" ({hint})") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_name_offers_the_nearest_first() {
+        let error = Error::unknown("frame", "tool_0", ["base", "tool0", "wrist_3_link"]);
+        assert!(error.to_string().starts_with("no frame named 'tool_0'; nearest: tool0"));
+    }
+
+    #[test]
+    fn check_finite_names_the_entry() {
+        let error = Error::check_finite("q", &[0.0, f64::NAN]).unwrap_err();
+        assert_eq!(error.to_string(), "q[1] is not finite: NaN");
+    }
+}

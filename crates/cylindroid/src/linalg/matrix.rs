@@ -1,0 +1,203 @@
+//! A dense matrix of f64, column by column in memory: a column of a Jacobian is a twist.
+
+use std::fmt;
+use std::ops::{Index, IndexMut, Mul};
+
+/// A dense `rows x cols` matrix, stored by columns.
+#[derive(Clone, PartialEq, Default)]
+pub struct Matrix {
+    rows: usize,
+    cols: usize,
+    data: Vec<f64>,
+}
+
+impl Matrix {
+    /// The zero matrix.
+    #[must_use]
+    pub fn zeros(rows: usize, cols: usize) -> Self {
+        Self { rows, cols, data: vec![0.0; rows * cols] }
+    }
+
+    /// The identity of size `n`.
+    #[must_use]
+    pub fn identity(n: usize) -> Self {
+        Self::from_fn(n, n, |i, j| f64::from(u8::from(i == j)))
+    }
+
+    /// The matrix with the entries `f(row, column)`.
+    #[must_use]
+    pub fn from_fn(rows: usize, cols: usize, mut f: impl FnMut(usize, usize) -> f64) -> Self {
+        let mut m = Self::zeros(rows, cols);
+        for j in 0..cols {
+            for i in 0..rows {
+                m[(i, j)] = f(i, j);
+            }
+        }
+        m
+    }
+
+    /// The matrix with these rows; `None` when they are of different lengths.
+    #[must_use]
+    pub fn from_rows<R: AsRef<[f64]>>(rows: &[R]) -> Option<Self> {
+        let cols = rows.first().map_or(0, |r| r.as_ref().len());
+        rows.iter()
+            .all(|r| r.as_ref().len() == cols)
+            .then(|| Self::from_fn(rows.len(), cols, |i, j| rows[i].as_ref()[j]))
+    }
+
+    /// The diagonal matrix of these entries.
+    #[must_use]
+    pub fn diagonal(entries: &[f64]) -> Self {
+        Self::from_fn(entries.len(), entries.len(), |i, j| if i == j { entries[i] } else { 0.0 })
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns.
+    #[must_use]
+    pub fn cols(&self) -> usize {
+        self.cols
+    }
+
+    /// Column `j`.
+    #[must_use]
+    pub fn column(&self, j: usize) -> &[f64] {
+        &self.data[j * self.rows..(j + 1) * self.rows]
+    }
+
+    /// Column `j`, to be written.
+    pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.data[j * self.rows..(j + 1) * self.rows]
+    }
+
+    /// All entries, column by column.
+    #[must_use]
+    pub fn as_slice(&self) -> &[f64] {
+        &self.data
+    }
+
+    /// All entries, column by column, to be written.
+    pub fn as_mut_slice(&mut self) -> &mut [f64] {
+        &mut self.data
+    }
+
+    /// The rows, for printing and for JSON.
+    #[must_use]
+    pub fn to_rows(&self) -> Vec<Vec<f64>> {
+        (0..self.rows).map(|i| (0..self.cols).map(|j| self[(i, j)]).collect()).collect()
+    }
+
+    /// The transpose.
+    #[must_use]
+    pub fn transpose(&self) -> Self {
+        Self::from_fn(self.cols, self.rows, |i, j| self[(j, i)])
+    }
+
+    /// `self * x`; entries of `x` beyond the columns are ignored, missing ones count as zero.
+    #[must_use]
+    pub fn mul_vec(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.rows];
+        self.mul_vec_into(x, &mut y);
+        y
+    }
+
+    /// `y = self * x` without allocation.
+    pub fn mul_vec_into(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for (column, &xj) in self.data.chunks_exact(self.rows.max(1)).zip(x) {
+            for (yi, &a) in y.iter_mut().zip(column) {
+                *yi += a * xj;
+            }
+        }
+    }
+
+    /// `y = self^T * x` without allocation.
+    pub fn tr_mul_vec_into(&self, x: &[f64], y: &mut [f64]) {
+        for (column, yj) in self.data.chunks_exact(self.rows.max(1)).zip(y) {
+            *yj = column.iter().zip(x).map(|(a, b)| a * b).sum();
+        }
+    }
+
+    /// Square root of the sum of the squared entries.
+    #[must_use]
+    pub fn frobenius_norm(&self) -> f64 {
+        let largest = self.max_abs();
+        if largest == 0.0 || !largest.is_finite() {
+            return largest;
+        }
+        largest * self.data.iter().map(|a| (a / largest).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The largest absolute entry (NaN if any entry is NaN).
+    #[must_use]
+    pub fn max_abs(&self) -> f64 {
+        self.data.iter().fold(0.0, |m: f64, a| if a.is_nan() { f64::NAN } else { m.max(a.abs()) })
+    }
+
+    /// Largest absolute difference of two matrices of one shape (infinite for different shapes).
+    #[must_use]
+    pub fn max_difference(&self, other: &Self) -> f64 {
+        if (self.rows, self.cols) != (other.rows, other.cols) {
+            return f64::INFINITY;
+        }
+        Self {
+            rows: self.rows,
+            cols: self.cols,
+            data: self.data.iter().zip(&other.data).map(|(a, b)| a - b).collect(),
+        }
+        .max_abs()
+    }
+
+    /// True if no entry is NaN or infinite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.data.iter().all(|a| a.is_finite())
+    }
+}
+
+impl Index<(usize, usize)> for Matrix {
+    type Output = f64;
+
+    fn index(&self, (i, j): (usize, usize)) -> &f64 {
+        debug_assert!(i < self.rows);
+        &self.data[j * self.rows + i]
+    }
+}
+
+impl IndexMut<(usize, usize)> for Matrix {
+    fn index_mut(&mut self, (i, j): (usize, usize)) -> &mut f64 {
+        debug_assert!(i < self.rows);
+        &mut self.data[j * self.rows + i]
+    }
+}
+
+/// Matrix product.
+///
+/// # Panics
+/// If the inner sizes differ.
+impl Mul for &Matrix {
+    type Output = Matrix;
+
+    fn mul(self, other: &Matrix) -> Matrix {
+        assert_eq!(self.cols, other.rows, "matrix product of {self:?} and {other:?}");
+        let mut product = Matrix::zeros(self.rows, other.cols);
+        for j in 0..other.cols {
+            self.mul_vec_into(other.column(j), product.column_mut(j));
+        }
+        product
+    }
+}
+
+impl fmt::Debug for Matrix {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "Matrix {} x {}", self.rows, self.cols)?;
+        for row in self.to_rows() {
+            writeln!(f, "  {row:?}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,119 @@
+//! A positive definite metric and its Cholesky factor.
+//!
+//! Formula  |x|^2 = x^T M x = |L^T x|^2 with M = L L^T
+//! Shapes   M: n x n
+//! Fails    `Error::InvalidOption` when M is not square, not symmetric or not positive definite
+//! Checked  tests/it/inverse.rs::weighted_*
+
+use super::matrix::Matrix;
+use crate::error::{Error, Result};
+
+/// A positive definite quadratic form, held by its lower Cholesky factor L.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Metric {
+    l: Matrix,
+}
+
+impl Metric {
+    /// The metric of the positive weights `w`: `sum w_i x_i^2`.
+    ///
+    /// # Errors
+    /// A weight that is not finite and positive.
+    pub fn diagonal(name: &'static str, weights: &[f64]) -> Result<Self> {
+        for &w in weights {
+            if !(w.is_finite() && w > 0.0) {
+                return Err(Error::InvalidOption {
+                    option: name,
+                    value: w.to_string(),
+                    reason: "weights are finite and positive".to_owned(),
+                });
+            }
+        }
+        let roots: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
+        Ok(Self { l: Matrix::diagonal(&roots) })
+    }
+
+    /// The metric of the symmetric positive definite matrix `m`.
+    ///
+    /// # Errors
+    /// A matrix that is not square, finite, symmetric and positive definite.
+    pub fn new(name: &'static str, m: &Matrix) -> Result<Self> {
+        let refuse = |reason: &str| Error::InvalidOption {
+            option: name,
+            value: format!("{} x {} matrix", m.rows(), m.cols()),
+            reason: reason.to_owned(),
+        };
+        let n = m.rows();
+        if n != m.cols() || !m.is_finite() {
+            return Err(refuse("a metric is a square matrix of finite numbers"));
+        }
+        if m.max_difference(&m.transpose()) > 1e-9 * m.max_abs() {
+            return Err(refuse("a metric is symmetric; use (M + M^T) / 2"));
+        }
+        let mut l = Matrix::zeros(n, n);
+        for j in 0..n {
+            for i in j..n {
+                let sum: f64 = (0..j).map(|k| l[(i, k)] * l[(j, k)]).sum();
+                let rest = m[(i, j)] - sum;
+                if i == j {
+                    if !(rest > 0.0) {
+                        return Err(refuse("a metric is positive definite; add a small multiple \
+                                           of the identity if a direction costs nothing"));
+                    }
+                    l[(j, j)] = rest.sqrt();
+                } else {
+                    l[(i, j)] = rest / l[(j, j)];
+                }
+            }
+        }
+        Ok(Self { l })
+    }
+
+    /// Size n of the metric.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.l.rows()
+    }
+
+    /// True for the metric of a space of no dimension.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// `y <- L^T y`: to coordinates in which the metric is the identity.
+    pub fn whiten(&self, y: &mut [f64]) {
+        let n = self.len();
+        for i in 0..n {
+            y[i] = (i..n).map(|k| self.l[(k, i)] * y[k]).sum();
+        }
+    }
+
+    /// `y <- L^-T y`: back from coordinates in which the metric is the identity.
+    pub fn colour(&self, y: &mut [f64]) {
+        let n = self.len();
+        for i in (0..n).rev() {
+            let sum: f64 = (i + 1..n).map(|k| self.l[(k, i)] * y[k]).sum();
+            y[i] = (y[i] - sum) / self.l[(i, i)];
+        }
+    }
+
+    /// `a <- A L^-T` : the columns of A measured in whitened joint coordinates.
+    pub fn colour_columns(&self, a: &mut Matrix) {
+        // Row r of A L^-T solves L z = row^T.
+        let n = self.len();
+        for r in 0..a.rows() {
+            for i in 0..n {
+                let sum: f64 = (0..i).map(|k| self.l[(i, k)] * a[(r, k)]).sum();
+                a[(r, i)] = (a[(r, i)] - sum) / self.l[(i, i)];
+            }
+        }
+    }
+
+    /// `a <- L^T A`: the rows of A measured in whitened task coordinates.
+    pub fn whiten_rows(&self, a: &mut Matrix) {
+        for j in 0..a.cols() {
+            self.whiten(a.column_mut(j));
+        }
+    }
+}

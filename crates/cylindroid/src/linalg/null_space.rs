@@ -1,0 +1,90 @@
+//! The row space and the null space of a matrix, from its decomposition.
+//!
+//! Formula  P = V_r V_r^T projects on the row space, 1 - P on the null space ker A
+//! Shapes   A: m x n, V_r: n x r, vectors of n entries
+//! Why so   a projection needs only the r kept right vectors, which every decomposition has;
+//!          subtracting twice ("twice is enough", Kahan) makes A (1 - P) x zero to rounding
+//! Checked  tests/it/svd.rs::null_space_*
+
+use super::matrix::Matrix;
+use super::svd::Svd;
+
+/// The span of the first `rank` right singular vectors.
+#[derive(Debug, Clone, Copy)]
+pub struct RowSpace<'a> {
+    svd: &'a Svd,
+    rank: usize,
+}
+
+impl<'a> RowSpace<'a> {
+    /// The row space at machine precision: its complement is exactly ker A.
+    #[must_use]
+    pub fn exact(svd: &'a Svd) -> Self {
+        Self { svd, rank: svd.machine_rank().rank }
+    }
+
+    /// The span of the directions that an inverse retained.
+    #[must_use]
+    pub fn retained(svd: &'a Svd, rank: usize) -> Self {
+        Self { svd, rank: rank.min(svd.len()) }
+    }
+
+    /// Dimension of the row space.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.rank
+    }
+
+    /// `x <- (1 - V_r V_r^T) x`, without allocation.
+    pub fn project_out(&self, x: &mut [f64]) {
+        for _ in 0..2 {
+            for i in 0..self.rank {
+                let v = self.svd.v(i);
+                let along: f64 = v.iter().zip(x.iter()).map(|(a, b)| a * b).sum();
+                for (xj, vj) in x.iter_mut().zip(v) {
+                    *xj -= along * vj;
+                }
+            }
+        }
+    }
+
+    /// An orthonormal basis of the null space, one column each (n x (n - r)).
+    #[must_use]
+    pub fn complement_basis(&self) -> Matrix {
+        let n = self.svd.cols();
+        let mut basis = Matrix::zeros(n, n - self.rank);
+        // For a tall or square matrix V is complete: the dropped columns are the basis. A wide
+        // matrix has only min(m, n) columns in V: complete them from unit vectors.
+        let mut found = 0;
+        if self.svd.rows() >= n {
+            for i in self.rank..n {
+                basis.column_mut(found).copy_from_slice(self.svd.v(i));
+                found += 1;
+            }
+            return basis;
+        }
+        while found < n - self.rank {
+            let mut best = (0.0, vec![0.0; n]);
+            for unit in 0..n {
+                let mut x = vec![0.0; n];
+                x[unit] = 1.0;
+                for _ in 0..2 {
+                    self.project_out(&mut x);
+                    for l in 0..found {
+                        let b = basis.column(l);
+                        let along: f64 = b.iter().zip(&x).map(|(a, c)| a * c).sum();
+                        x.iter_mut().zip(b).for_each(|(xj, bj)| *xj -= along * bj);
+                    }
+                }
+                let norm = x.iter().map(|a| a * a).sum::<f64>().sqrt();
+                if norm > best.0 {
+                    x.iter_mut().for_each(|a| *a /= norm);
+                    best = (norm, x);
+                }
+            }
+            basis.column_mut(found).copy_from_slice(&best.1);
+            found += 1;
+        }
+        basis
+    }
+}

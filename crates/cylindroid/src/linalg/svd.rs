@@ -1,0 +1,357 @@
+//! Singular value decomposition by one-sided Jacobi rotations, warm-startable.
+//!
+//! Formula  A = U diag(s) V^T, s descending and not negative
+//! Shapes   A: m x n, U: m x k, V: n x k with k = min(m, n)
+//! Method   rotate the columns of B (= A, or A^T when A is wide) in pairs from the right until
+//!          all are orthogonal: B W = Q diag(s). A column of Q whose singular value is zero up
+//!          to rounding is left zero: it is not determined by A.
+//! Warm     `decompose_warm` starts from the W of the last call; for a slowly changing Jacobian
+//!          one or two sweeps remain. The result is exact either way.
+//! Why so   high relative accuracy also of small singular values, no failure on rank-deficient
+//!          input (the bidiagonal method of a well-known crate returns wrong values there), no
+//!          allocation, and 6 x n is where it is fastest. The alternative, a general library
+//!          SVD, took 2.4 to 4.1 us for 6 x 7.
+//! Source   Hestenes 1958; de Rijk 1989 (ordering); Maciejewski & Klein 1989 (warm start)
+//! Checked  tests/it/svd.rs
+
+use super::matrix::Matrix;
+use crate::tolerance::{JACOBI_ORTHOGONAL, MACHINE_RANK};
+
+/// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost finite.
+const MAX_SWEEPS: usize = 40;
+
+/// A singular value decomposition and the memory to compute the next one without allocation.
+#[derive(Debug, Clone)]
+pub struct Svd {
+    rows: usize,
+    cols: usize,
+    /// B W, columns of length max(m, n), later Q.
+    b: Matrix,
+    /// The accumulated rotations, k x k.
+    w: Matrix,
+    scratch: Vec<f64>,
+    sigma: Vec<f64>,
+    order: Vec<usize>,
+    warm: bool,
+    sweeps: usize,
+}
+
+/// A rank and how sure it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rank {
+    /// Number of singular values above the threshold.
+    pub rank: usize,
+    /// The absolute threshold used, in the unit of the singular values.
+    pub threshold: f64,
+    /// Smallest singular value kept over largest one dropped: infinite when nothing was dropped
+    /// or what was dropped is exactly zero; a gap near 1 means that the rank is a matter of taste.
+    pub gap: f64,
+}
+
+impl Svd {
+    /// Memory for decompositions of `m x n` matrices; holds the decomposition of zero.
+    #[must_use]
+    pub fn workspace(m: usize, n: usize) -> Self {
+        let (k, long) = (m.min(n), m.max(n));
+        Self {
+            rows: m,
+            cols: n,
+            b: Matrix::zeros(long, k),
+            w: Matrix::identity(k),
+            scratch: vec![0.0; k * k],
+            sigma: vec![0.0; k],
+            order: (0..k).collect(),
+            warm: false,
+            sweeps: 0,
+        }
+    }
+
+    /// The decomposition of `a`.
+    #[must_use]
+    pub fn of(a: &Matrix) -> Self {
+        let mut svd = Self::workspace(a.rows(), a.cols());
+        svd.decompose(a);
+        svd
+    }
+
+    /// Decomposes `a` from nothing. Non-finite entries give NaN singular values.
+    ///
+    /// # Panics
+    /// If `a` has not the shape of the workspace.
+    pub fn decompose(&mut self, a: &Matrix) {
+        self.warm = false;
+        self.decompose_warm(a);
+    }
+
+    /// Decomposes `a`, starting from the rotations of the last call.
+    ///
+    /// # Panics
+    /// If `a` has not the shape of the workspace.
+    pub fn decompose_warm(&mut self, a: &Matrix) {
+        assert_eq!((a.rows(), a.cols()), (self.rows, self.cols), "shape of the SVD workspace");
+        let k = self.sigma.len();
+        let largest = a.max_abs();
+        if largest == 0.0 || !largest.is_finite() {
+            self.sigma.fill(if largest == 0.0 { 0.0 } else { f64::NAN });
+            self.b.as_mut_slice().fill(0.0);
+            self.reset_rotations();
+            self.order.iter_mut().enumerate().for_each(|(i, o)| *o = i);
+            self.warm = false;
+            return;
+        }
+        // Scaled by a power of two, which is exact, so that squares neither overflow nor vanish.
+        let scale = power_of_two_below(largest);
+        if self.warm {
+            self.reorthonormalise();
+            self.load_times_w(a, 1.0 / scale);
+        } else {
+            self.reset_rotations();
+            self.load(a, 1.0 / scale);
+        }
+        self.sweeps = 0;
+        while self.sweeps < MAX_SWEEPS {
+            self.sweeps += 1;
+            if !self.sweep() {
+                break;
+            }
+        }
+        for j in 0..k {
+            self.sigma[j] = norm2(self.b.column(j)).sqrt();
+        }
+        self.order.sort_unstable_by(|&i, &j| {
+            self.sigma[j].total_cmp(&self.sigma[i]).then_with(|| i.cmp(&j))
+        });
+        for j in 0..k {
+            let s = self.sigma[j];
+            let inverse = if s > 0.0 { 1.0 / s } else { 0.0 };
+            self.b.column_mut(j).iter_mut().for_each(|x| *x *= inverse);
+            self.sigma[j] = s * scale;
+        }
+        self.warm = true;
+        debug_assert!(self.residual(a) < 1e-11, "SVD residual {} of {a:?}", self.residual(a));
+    }
+
+    /// Number of singular values, min(m, n).
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.sigma.len()
+    }
+
+    /// True for a matrix without rows or without columns.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.sigma.is_empty()
+    }
+
+    /// The `i`-th largest singular value.
+    #[must_use]
+    #[inline]
+    pub fn value(&self, i: usize) -> f64 {
+        self.sigma[self.order[i]]
+    }
+
+    /// The singular values, largest first.
+    pub fn values(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.order.iter().map(|&i| self.sigma[i])
+    }
+
+    /// Left singular vector of the `i`-th value (m entries).
+    #[must_use]
+    #[inline]
+    pub fn u(&self, i: usize) -> &[f64] {
+        let j = self.order[i];
+        if self.rows >= self.cols { self.b.column(j) } else { self.w.column(j) }
+    }
+
+    /// Right singular vector of the `i`-th value (n entries).
+    #[must_use]
+    #[inline]
+    pub fn v(&self, i: usize) -> &[f64] {
+        let j = self.order[i];
+        if self.rows >= self.cols { self.w.column(j) } else { self.b.column(j) }
+    }
+
+    /// Number of rows of the decomposed matrix.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns of the decomposed matrix.
+    #[must_use]
+    pub fn cols(&self) -> usize {
+        self.cols
+    }
+
+    /// Sweeps that the last decomposition took.
+    #[must_use]
+    pub fn sweeps(&self) -> usize {
+        self.sweeps
+    }
+
+    /// Rank at the relative threshold `eps` (values `s_i <= eps * s_1` do not count), never below
+    /// machine precision.
+    #[must_use]
+    pub fn rank(&self, eps: f64) -> Rank {
+        let k = self.len();
+        if k == 0 {
+            return Rank { rank: 0, threshold: 0.0, gap: f64::INFINITY };
+        }
+        let machine = MACHINE_RANK * self.rows.max(self.cols) as f64;
+        let threshold = eps.max(machine) * self.value(0);
+        let rank = self.values().take_while(|&s| s > threshold).count();
+        let gap = if rank == 0 || rank == k || self.value(rank) == 0.0 {
+            f64::INFINITY
+        } else {
+            self.value(rank - 1) / self.value(rank)
+        };
+        Rank { rank, threshold, gap }
+    }
+
+    /// Rank at machine precision.
+    #[must_use]
+    pub fn machine_rank(&self) -> Rank {
+        self.rank(0.0)
+    }
+
+    /// `|A - U S V^T| / |A|` in the Frobenius norm: zero up to rounding for every result.
+    #[must_use]
+    pub fn residual(&self, a: &Matrix) -> f64 {
+        let rebuilt = Matrix::from_fn(self.rows, self.cols, |i, j| {
+            (0..self.len()).map(|l| self.u(l)[i] * self.value(l) * self.v(l)[j]).sum()
+        });
+        let norm = a.frobenius_norm();
+        let difference = Matrix::from_fn(self.rows, self.cols, |i, j| a[(i, j)] - rebuilt[(i, j)]);
+        if norm == 0.0 { difference.frobenius_norm() } else { difference.frobenius_norm() / norm }
+    }
+
+    fn reset_rotations(&mut self) {
+        let k = self.sigma.len();
+        self.w.as_mut_slice().fill(0.0);
+        for i in 0..k {
+            self.w[(i, i)] = 1.0;
+        }
+    }
+
+    /// B = scaled A, transposed if A is wide.
+    fn load(&mut self, a: &Matrix, factor: f64) {
+        if self.rows >= self.cols {
+            for (b, x) in self.b.as_mut_slice().iter_mut().zip(a.as_slice()) {
+                *b = x * factor;
+            }
+        } else {
+            for i in 0..self.rows {
+                for (j, b) in self.b.column_mut(i).iter_mut().enumerate() {
+                    *b = a[(i, j)] * factor;
+                }
+            }
+        }
+    }
+
+    /// B = scaled A (or A^T) times W.
+    fn load_times_w(&mut self, a: &Matrix, factor: f64) {
+        let k = self.sigma.len();
+        for l in 0..k {
+            let w = self.w.column(l);
+            let b = self.b.column_mut(l);
+            if self.rows >= self.cols {
+                a.mul_vec_into(w, b);
+            } else {
+                a.tr_mul_vec_into(w, b);
+            }
+            b.iter_mut().for_each(|x| *x *= factor);
+        }
+    }
+
+    /// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2: keeps the drift of
+    /// many warm starts at rounding.
+    fn reorthonormalise(&mut self) {
+        let k = self.sigma.len();
+        for i in 0..k {
+            for j in 0..k {
+                let dot = dot(self.w.column(i), self.w.column(j));
+                self.scratch[j * k + i] = if i == j { 1.5 - 0.5 * dot } else { -0.5 * dot };
+            }
+        }
+        // Row by row in place: a row of W is used by its own product only.
+        for row in 0..k {
+            for j in 0..k {
+                let mut sum = 0.0;
+                for l in 0..k {
+                    sum += self.w[(row, l)] * self.scratch[j * k + l];
+                }
+                self.order[j] = j;
+                self.sigma[j] = sum;
+            }
+            for j in 0..k {
+                self.w[(row, j)] = self.sigma[j];
+            }
+        }
+    }
+
+    /// One sweep over all pairs; true if anything was rotated.
+    fn sweep(&mut self) -> bool {
+        let k = self.sigma.len();
+        let (long, short) = (self.b.rows(), k);
+        let mut rotated = false;
+        for i in 0..k {
+            for j in i + 1..k {
+                let (bi, bj) = two_columns(self.b.as_mut_slice(), long, i, j);
+                let (aa, bb, ab) = gram(bi, bj);
+                if !(ab * ab > JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL * aa * bb) {
+                    continue;
+                }
+                rotated = true;
+                let zeta = (bb - aa) / (2.0 * ab);
+                let t = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
+                let c = 1.0 / (1.0 + t * t).sqrt();
+                let s = c * t;
+                rotate(bi, bj, c, s);
+                let (wi, wj) = two_columns(self.w.as_mut_slice(), short, i, j);
+                rotate(wi, wj, c, s);
+            }
+        }
+        rotated
+    }
+}
+
+fn power_of_two_below(x: f64) -> f64 {
+    // The exponent bits alone; subnormal numbers use the smallest normal power.
+    f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
+}
+
+#[inline]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+#[inline]
+fn norm2(a: &[f64]) -> f64 {
+    dot(a, a)
+}
+
+#[inline]
+fn gram(a: &[f64], b: &[f64]) -> (f64, f64, f64) {
+    let (mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        aa += x * x;
+        bb += y * y;
+        ab += x * y;
+    }
+    (aa, bb, ab)
+}
+
+#[inline]
+fn rotate(a: &mut [f64], b: &mut [f64], c: f64, s: f64) {
+    for (x, y) in a.iter_mut().zip(b) {
+        let (p, q) = (*x, *y);
+        *x = c * p - s * q;
+        *y = s * p + c * q;
+    }
+}
+
+#[inline]
+fn two_columns(data: &mut [f64], rows: usize, i: usize, j: usize) -> (&mut [f64], &mut [f64]) {
+    let (head, tail) = data.split_at_mut(j * rows);
+    (&mut head[i * rows..(i + 1) * rows], &mut tail[..rows])
+}

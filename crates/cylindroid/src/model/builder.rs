@@ -1,0 +1,746 @@
+//! The builder: every check of a mechanism is here, whatever the file it came from.
+//!
+//! Links and joints are named in any order; `build` finds the root, orders the joints depth-first
+//! in the order given, resolves mimic joints, folds fixed joints away and measures the reach.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::joint::{Joint, JointKind, Limits, Mimic};
+use super::link::Link;
+use super::mechanism::{Coordinate, CoordinateKind, Data, Frame, FrameId, Mechanism};
+use super::node::{Motion, Node};
+use super::report::LoadReport;
+use crate::error::{Error, Result};
+use crate::spatial::{Pose, Rotation, Vec3};
+use crate::tolerance::ZERO_AXIS;
+
+/// Reach of a mechanism whose links have no length [m]: a wrist still needs a length scale.
+const LEAST_REACH: f64 = 1e-3;
+
+/// Collects links, joints and frames; [`Builder::build`] checks them all.
+#[derive(Debug, Clone)]
+pub struct Builder {
+    name: String,
+    links: Vec<Link>,
+    joints: Vec<JointSpec>,
+    frames: Vec<(String, String, Pose)>,
+    home: Option<Vec<f64>>,
+    tool: Option<String>,
+    report: LoadReport,
+}
+
+/// A joint as the builder takes it; links by name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointSpec {
+    /// Its name.
+    pub name: String,
+    /// Its kind.
+    pub kind: JointKind,
+    /// Name of the parent link.
+    pub parent: String,
+    /// Name of the child link.
+    pub child: String,
+    /// The joint frame at zero, seen from the parent link.
+    pub parent_from_joint: Pose,
+    /// The axis in the joint frame, any length.
+    pub axis: Vec3,
+    /// Its limits.
+    pub limits: Limits,
+    /// The joint it follows, if it does.
+    pub mimic: Option<Mimic>,
+    /// True if a motor drives it.
+    pub actuated: bool,
+}
+
+impl JointSpec {
+    /// A driven joint about (or along) z at the origin of the parent, without limits.
+    #[must_use]
+    pub fn new(name: &str, kind: JointKind, parent: &str, child: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+            parent: parent.to_owned(),
+            child: child.to_owned(),
+            parent_from_joint: Pose::IDENTITY,
+            axis: Vec3::Z,
+            limits: Limits::NONE,
+            mimic: None,
+            actuated: true,
+        }
+    }
+}
+
+impl Builder {
+    pub(super) fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            frames: Vec::new(),
+            home: None,
+            tool: None,
+            report: LoadReport { format: "builder", ..LoadReport::default() },
+        }
+    }
+
+    /// Adds a link.
+    pub fn link(&mut self, link: Link) -> &mut Self {
+        self.links.push(link);
+        self
+    }
+
+    /// Adds a joint; links that were not added before exist by being named.
+    pub fn joint(&mut self, joint: JointSpec) -> &mut Self {
+        self.joints.push(joint);
+        self
+    }
+
+    /// Adds a named frame on a link.
+    pub fn frame(&mut self, name: &str, link: &str, link_from_frame: Pose) -> &mut Self {
+        self.frames.push((name.to_owned(), link.to_owned(), link_from_frame));
+        self
+    }
+
+    /// Sets the home configuration.
+    pub fn home(&mut self, q: &[f64]) -> &mut Self {
+        self.home = Some(q.to_vec());
+        self
+    }
+
+    /// Names the frame that is driven when none is named.
+    pub fn tool(&mut self, frame: &str) -> &mut Self {
+        self.tool = Some(frame.to_owned());
+        self
+    }
+
+    /// The report that goes into the mechanism.
+    pub fn report(&mut self) -> &mut LoadReport {
+        &mut self.report
+    }
+
+    fn refuse<T>(&self, culprit: &str, message: impl Into<String>) -> Result<T> {
+        Err(Error::Model {
+            model: self.name.clone(),
+            culprit: culprit.to_owned(),
+            message: message.into(),
+        })
+    }
+
+    /// The mechanism.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for names given twice or unknown, a link with two parents, a cycle, more
+    /// than one root, an axis without direction, limits that contradict each other, a mimic joint
+    /// that follows itself, nothing, or a joint of several coordinates.
+    pub fn build(mut self) -> Result<Mechanism> {
+        let links = self.index_links()?;
+        self.check_joints(&links)?;
+        let order = self.depth_first(&links)?;
+        let mimics = self.resolve_mimics()?;
+
+        let mut assembly = Assembly::new(self.links.len());
+        let root = order.root;
+        assembly.place(root, 0, Pose::IDENTITY, 0.0);
+        for &j in &order.joints {
+            if !mimics.contains_key(&j) {
+                assembly.allocate(j, &self.joints[j]);
+            }
+        }
+        for &j in &order.joints {
+            let spec = &self.joints[j];
+            let source = mimics.get(&j).copied();
+            if let Some((of, multiplier, offset)) = source {
+                let c = assembly.ranges[&of].start;
+                let clash = assembly.count_mimic_limits(c, spec, multiplier, offset);
+                if clash {
+                    self.report.ignore(
+                        0,
+                        format!("limits of mimic joint '{}'", spec.name),
+                        "they leave no position to the joint it follows, whose own limits hold",
+                    );
+                }
+            }
+            assembly.connect(j, spec, links[&spec.parent], links[&spec.child], source);
+        }
+        self.finish(&links, &order, assembly)
+    }
+
+    /// Link names to indices, links named only by joints added.
+    fn index_links(&mut self) -> Result<BTreeMap<String, usize>> {
+        let mut links = BTreeMap::new();
+        for (i, link) in self.links.iter().enumerate() {
+            if link.name.is_empty() {
+                return self.refuse("", "a link has no name; give every link one");
+            }
+            if links.insert(link.name.clone(), i).is_some() {
+                return self.refuse(
+                    &link.name,
+                    format!("two links are named '{}'; rename one of them", link.name),
+                );
+            }
+        }
+        for joint in &self.joints {
+            for name in [&joint.parent, &joint.child] {
+                if name.is_empty() {
+                    return self.refuse(
+                        &joint.name,
+                        format!("joint '{}' does not name both of its links", joint.name),
+                    );
+                }
+                if !links.contains_key(name) {
+                    links.insert(name.clone(), self.links.len());
+                    self.links.push(Link::named(name));
+                }
+            }
+        }
+        if self.links.is_empty() {
+            return self.refuse("", "it has no links; a mechanism has at least one");
+        }
+        Ok(links)
+    }
+
+    fn check_joints(&self, links: &BTreeMap<String, usize>) -> Result<()> {
+        let mut names = BTreeMap::new();
+        let mut parent_joint: BTreeMap<usize, &str> = BTreeMap::new();
+        for joint in &self.joints {
+            let name = joint.name.as_str();
+            if name.is_empty() {
+                return self.refuse("", "a joint has no name; give every joint one");
+            }
+            if names.insert(name, ()).is_some() {
+                return self
+                    .refuse(name, format!("two joints are named '{name}'; rename one of them"));
+            }
+            if joint.parent == joint.child {
+                return self.refuse(
+                    name,
+                    format!("joint '{name}' connects link '{}' with itself", joint.parent),
+                );
+            }
+            if let Some(other) = parent_joint.insert(links[&joint.child], name) {
+                return self.refuse(
+                    name,
+                    format!(
+                        "link '{}' is the child of two joints, '{other}' and '{name}'; closed \
+                         loops cannot be driven by this version, keep one of the joints",
+                        joint.child
+                    ),
+                );
+            }
+            self.check_numbers(joint)?;
+        }
+        Ok(())
+    }
+
+    fn check_numbers(&self, joint: &JointSpec) -> Result<()> {
+        let name = joint.name.as_str();
+        if !joint.parent_from_joint.is_finite() {
+            return self.refuse(name, format!("the origin of joint '{name}' is not finite"));
+        }
+        let mut axes = vec![];
+        if !matches!(joint.kind, JointKind::Fixed | JointKind::Spherical | JointKind::Free) {
+            axes.push(joint.axis);
+        }
+        if let JointKind::Universal { second } = joint.kind {
+            axes.push(second);
+            if joint.axis.cross(second).norm() <= ZERO_AXIS {
+                return self.refuse(
+                    name,
+                    format!("the two axes of universal joint '{name}' are parallel"),
+                );
+            }
+        }
+        if axes.iter().any(|a| a.unit(ZERO_AXIS).is_none()) {
+            return self.refuse(
+                name,
+                format!("the axis of joint '{name}' has no direction; give a vector that is finite and not zero"),
+            );
+        }
+        if let JointKind::Helical { pitch } = joint.kind
+            && !pitch.is_finite()
+        {
+            return self.refuse(name, format!("the pitch of joint '{name}' is {pitch}"));
+        }
+        let l = &joint.limits;
+        if l.lower.is_nan() || l.upper.is_nan() || l.lower > l.upper {
+            return self.refuse(
+                name,
+                format!(
+                    "joint '{name}' has lower limit {} above its upper limit {}; exchange them",
+                    l.lower, l.upper
+                ),
+            );
+        }
+        for (what, value) in [
+            ("velocity", l.velocity),
+            ("acceleration", l.acceleration),
+            ("effort", l.effort),
+        ] {
+            if value.is_nan() || value < 0.0 {
+                return self.refuse(
+                    name,
+                    format!("joint '{name}' has {what} limit {value}; it must not be negative"),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    fn depth_first(&self, links: &BTreeMap<String, usize>) -> Result<Order> {
+        let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.links.len()];
+        let mut parent_joint = vec![None; self.links.len()];
+        for (j, joint) in self.joints.iter().enumerate() {
+            children[links[&joint.parent]].push(j);
+            parent_joint[links[&joint.child]] = Some(j);
+        }
+        let roots: Vec<usize> =
+            (0..self.links.len()).filter(|&l| parent_joint[l].is_none()).collect();
+        let root = match roots.as_slice() {
+            [] => return self.refuse_cycle(links, &parent_joint, 0),
+            [root] => *root,
+            several => {
+                let names: Vec<&str> =
+                    several.iter().map(|&l| self.links[l].name.as_str()).collect();
+                return self.refuse(
+                    names[1],
+                    format!(
+                        "it falls into {} parts: links {} have no parent joint; connect them or \
+                         remove all but one",
+                        names.len(),
+                        names.join(", ")
+                    ),
+                );
+            }
+        };
+        let mut joints = Vec::with_capacity(self.joints.len());
+        let mut visited = vec![false; self.links.len()];
+        let mut stack = vec![root];
+        while let Some(link) = stack.pop() {
+            visited[link] = true;
+            joints.extend(parent_joint[link]);
+            stack.extend(children[link].iter().rev().map(|&j| links[&self.joints[j].child]));
+        }
+        match visited.iter().position(|v| !v) {
+            None => Ok(Order { root, joints }),
+            Some(unreached) => self.refuse_cycle(links, &parent_joint, unreached),
+        }
+    }
+
+    /// Every link has a parent from here on: walk up until one comes back, and name the ring.
+    fn refuse_cycle(
+        &self,
+        links: &BTreeMap<String, usize>,
+        parent_joint: &[Option<usize>],
+        start: usize,
+    ) -> Result<Order> {
+        let mut path = vec![start];
+        let mut link = start;
+        while let Some(j) = parent_joint[link] {
+            link = links[&self.joints[j].parent];
+            if let Some(first) = path.iter().position(|&l| l == link) {
+                let mut names: Vec<&str> =
+                    path[first..].iter().rev().map(|&l| self.links[l].name.as_str()).collect();
+                names.push(names[0]);
+                let culprit = &self.joints[j].name;
+                return self.refuse(
+                    culprit,
+                    format!(
+                        "its links form a cycle without a root: {}; a tree has one link that is \
+                         no joint's child",
+                        names.join(" -> ")
+                    ),
+                );
+            }
+            path.push(link);
+        }
+        self.refuse(&self.links[start].name, "it is not connected to the root")
+    }
+
+    /// For every mimic joint the joint at the end of its chain, with the ratio and offset to it.
+    fn resolve_mimics(&self) -> Result<BTreeMap<usize, (usize, f64, f64)>> {
+        let mut resolved = BTreeMap::new();
+        for (index, joint) in self.joints.iter().enumerate() {
+            let Some(first) = &joint.mimic else { continue };
+            let name = joint.name.as_str();
+            let (mut multiplier, mut offset) = (1.0, 0.0);
+            let mut step = Some(first);
+            let mut source = 0;
+            let mut length = 0;
+            while let Some(mimic) = step {
+                if !(mimic.multiplier.is_finite() && mimic.offset.is_finite()) {
+                    return self.refuse(
+                        name,
+                        format!("the multiplier and offset of mimic joint '{name}' must be finite"),
+                    );
+                }
+                offset += multiplier * mimic.offset;
+                multiplier *= mimic.multiplier;
+                let Some(j) = self.joints.iter().position(|o| o.name == mimic.joint) else {
+                    let unknown = Error::unknown(
+                        "joint",
+                        &mimic.joint,
+                        self.joints.iter().map(|o| o.name.as_str()),
+                    );
+                    return self.refuse(name, format!("mimic joint '{name}' follows: {unknown}"));
+                };
+                source = j;
+                step = self.joints[j].mimic.as_ref();
+                length += 1;
+                if length > self.joints.len() {
+                    return self.refuse(
+                        name,
+                        format!("mimic joint '{name}' follows itself in a ring of mimic joints"),
+                    );
+                }
+            }
+            if joint.kind.dof() != 1 || self.joints[source].kind.dof() != 1 {
+                return self.refuse(
+                    name,
+                    format!(
+                        "mimic joint '{name}' ({}) follows '{}' ({}); both must have one coordinate",
+                        joint.kind.name(),
+                        self.joints[source].name,
+                        self.joints[source].kind.name()
+                    ),
+                );
+            }
+            resolved.insert(index, (source, multiplier, offset));
+        }
+        Ok(resolved)
+    }
+
+    fn finish(
+        self,
+        links: &BTreeMap<String, usize>,
+        order: &Order,
+        mut assembly: Assembly,
+    ) -> Result<Mechanism> {
+        let mut frames: Vec<Frame> = Vec::with_capacity(self.links.len() + self.frames.len());
+        for (link, l) in self.links.iter().enumerate() {
+            frames.push(assembly.frame(l.name.clone(), link, Pose::IDENTITY));
+        }
+        for (name, link, pose) in &self.frames {
+            let Some(&index) = links.get(link) else {
+                let unknown = Error::unknown("link", link, links.keys().map(String::as_str));
+                return self.refuse(name, format!("frame '{name}': {unknown}"));
+            };
+            if frames.iter().any(|f| f.name == *name) {
+                return self.refuse(
+                    name,
+                    format!("'{name}' names two frames (links are frames too); rename one"),
+                );
+            }
+            if !pose.is_finite() {
+                return self.refuse(name, format!("the pose of frame '{name}' is not finite"));
+            }
+            assembly.stretch(index, pose.translation.norm());
+            frames.push(assembly.frame(name.clone(), index, *pose));
+        }
+
+        let tool = match &self.tool {
+            None => default_tool(order, &self.joints, links),
+            Some(name) => match frames.iter().position(|f| f.name == *name) {
+                Some(i) => FrameId(i),
+                None => {
+                    let unknown =
+                        Error::unknown("frame", name, frames.iter().map(|f| f.name.as_str()));
+                    return self.refuse(name, format!("the tool: {unknown}"));
+                }
+            },
+        };
+
+        let n = assembly.coordinates.len();
+        let home = match &self.home {
+            None => assembly
+                .coordinates
+                .iter()
+                .map(|c| 0.0_f64.clamp(c.limits.lower, c.limits.upper))
+                .collect(),
+            Some(q) if q.len() == n && q.iter().all(|x| x.is_finite()) => q.clone(),
+            Some(q) => {
+                return self.refuse(
+                    "home",
+                    format!("home has {} entries, expected {n} finite numbers", q.len()),
+                );
+            }
+        };
+
+        let joints = order
+            .joints
+            .iter()
+            .map(|&j| {
+                let spec = &self.joints[j];
+                Joint {
+                    name: spec.name.clone(),
+                    kind: spec.kind,
+                    parent: links[&spec.parent],
+                    child: links[&spec.child],
+                    parent_from_joint: spec.parent_from_joint,
+                    axis: spec.axis.unit(ZERO_AXIS).unwrap_or(Vec3::Z),
+                    limits: spec.limits,
+                    mimic: spec.mimic.clone(),
+                    coordinates: assembly.ranges.get(&j).cloned().unwrap_or(0..0),
+                    actuated: spec.actuated && spec.mimic.is_none(),
+                }
+            })
+            .collect();
+        for c in &mut assembly.coordinates {
+            c.joint = order.joints.iter().position(|&j| j == c.joint).unwrap_or(0);
+        }
+        Ok(Mechanism {
+            data: Arc::new(Data {
+                name: self.name,
+                links: self.links,
+                joints,
+                frames,
+                coordinates: assembly.coordinates,
+                nodes: assembly.nodes,
+                home,
+                tool,
+                reach: assembly.reach.max(LEAST_REACH),
+                report: self.report,
+            }),
+        })
+    }
+}
+
+/// The frame that is driven when none is named: from the root along the only branch that moves to
+/// where none or several do (a hand with fingers), then to the last link fixed there. Where the
+/// root itself branches (humanoids, hands), the end of the branch with the most moving joints.
+fn default_tool(order: &Order, joints: &[JointSpec], links: &BTreeMap<String, usize>) -> FrameId {
+    let ends = |j: &usize| (links[&joints[*j].parent], links[&joints[*j].child]);
+    let moves = |j: &usize| joints[*j].kind.dof() > 0;
+    // Moving joints below each link, and above it.
+    let mut below: BTreeMap<usize, usize> = BTreeMap::new();
+    for j in order.joints.iter().rev() {
+        let (parent, child) = ends(j);
+        let subtree = below.get(&child).copied().unwrap_or(0) + usize::from(moves(j));
+        *below.entry(parent).or_default() += subtree;
+    }
+    let mut above: BTreeMap<usize, usize> = BTreeMap::new();
+    for j in &order.joints {
+        let (parent, child) = ends(j);
+        let depth = above.get(&parent).copied().unwrap_or(0) + usize::from(moves(j));
+        above.insert(child, depth);
+    }
+    let children = |link: usize| order.joints.iter().filter(move |j| ends(j).0 == link);
+    let carries = |j: &&usize| moves(j) || below.get(&ends(j).1).copied().unwrap_or(0) > 0;
+
+    let mut link = order.root;
+    let mut moved = false;
+    loop {
+        let mut branches = children(link).filter(carries);
+        let (Some(only), None) = (branches.next(), branches.next()) else { break };
+        moved |= moves(only);
+        link = ends(only).1;
+    }
+    if !moved {
+        let deepest = above.iter().max_by_key(|(link, depth)| (**depth, **link));
+        link = deepest.map_or(order.root, |(link, _)| *link);
+    }
+    while let Some(fixed) = children(link).filter(|j| !carries(j)).last() {
+        link = ends(fixed).1;
+    }
+    FrameId(link)
+}
+
+struct Order {
+    root: usize,
+    joints: Vec<usize>,
+}
+
+/// Where the links have got to while the nodes are written.
+struct Assembly {
+    nodes: Vec<Node>,
+    coordinates: Vec<Coordinate>,
+    /// Coordinates of each joint (index of the specification).
+    ranges: BTreeMap<usize, std::ops::Range<usize>>,
+    /// Slot and pose in the slot of each link, and the length of the way to it.
+    slots: Vec<(usize, Pose)>,
+    way: Vec<f64>,
+    reach: f64,
+}
+
+impl Assembly {
+    fn new(links: usize) -> Self {
+        Self {
+            nodes: Vec::new(),
+            coordinates: Vec::new(),
+            ranges: BTreeMap::new(),
+            slots: vec![(0, Pose::IDENTITY); links],
+            way: vec![0.0; links],
+            reach: 0.0,
+        }
+    }
+
+    fn place(&mut self, link: usize, slot: usize, slot_from_link: Pose, way: f64) {
+        self.slots[link] = (slot, slot_from_link);
+        self.way[link] = way;
+        self.reach = self.reach.max(way);
+    }
+
+    fn stretch(&mut self, link: usize, further: f64) {
+        self.reach = self.reach.max(self.way[link] + further);
+    }
+
+    fn frame(&self, name: String, link: usize, link_from_frame: Pose) -> Frame {
+        let (slot, slot_from_link) = self.slots[link];
+        Frame {
+            name,
+            link,
+            link_from_frame,
+            slot,
+            slot_from_frame: slot_from_link * link_from_frame,
+        }
+    }
+
+    fn allocate(&mut self, j: usize, spec: &JointSpec) {
+        use CoordinateKind::{Angle, Length, Position, RotationVector};
+        let start = self.coordinates.len();
+        let parts: &[(&str, CoordinateKind)] = match spec.kind {
+            JointKind::Fixed => &[],
+            JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
+                &[("", Angle)]
+            }
+            JointKind::Prismatic => &[("", Length)],
+            JointKind::Cylindrical => &[(".slide", Length), (".turn", Angle)],
+            JointKind::Universal { .. } => &[(".first", Angle), (".second", Angle)],
+            JointKind::Spherical => {
+                &[(".rx", RotationVector), (".ry", RotationVector), (".rz", RotationVector)]
+            }
+            JointKind::Planar => &[(".x", Length), (".y", Length), (".angle", Angle)],
+            JointKind::Free => &[
+                (".x", Position),
+                (".y", Position),
+                (".z", Position),
+                (".rx", RotationVector),
+                (".ry", RotationVector),
+                (".rz", RotationVector),
+            ],
+        };
+        for (suffix, kind) in parts {
+            self.coordinates.push(Coordinate {
+                name: format!("{}{suffix}", spec.name),
+                joint: j,
+                kind: *kind,
+                limits: spec.limits,
+            });
+        }
+        self.ranges.insert(j, start..self.coordinates.len());
+    }
+
+    /// Narrows the limits of coordinate `c` by those of a joint that follows it; true (and
+    /// nothing narrowed) if that would leave no position.
+    fn count_mimic_limits(
+        &mut self,
+        c: usize,
+        spec: &JointSpec,
+        multiplier: f64,
+        offset: f64,
+    ) -> bool {
+        if multiplier == 0.0 {
+            return false;
+        }
+        let own = &mut self.coordinates[c].limits;
+        let (a, b) =
+            ((spec.limits.lower - offset) / multiplier, (spec.limits.upper - offset) / multiplier);
+        let (lower, upper) = (own.lower.max(a.min(b)), own.upper.min(a.max(b)));
+        let clash = lower > upper;
+        if !clash {
+            own.lower = lower;
+            own.upper = upper;
+        }
+        own.velocity = own.velocity.min(spec.limits.velocity / multiplier.abs());
+        own.acceleration = own.acceleration.min(spec.limits.acceleration / multiplier.abs());
+        clash
+    }
+
+    fn connect(
+        &mut self,
+        j: usize,
+        spec: &JointSpec,
+        parent: usize,
+        child: usize,
+        mimic: Option<(usize, f64, f64)>,
+    ) {
+        let (slot, slot_from_parent) = self.slots[parent];
+        let base = slot_from_parent * spec.parent_from_joint;
+        let (of, multiplier, offset) = mimic.unwrap_or((j, 1.0, 0.0));
+        let range = self.ranges.get(&of).cloned().unwrap_or(0..0);
+        if mimic.is_some() {
+            self.ranges.insert(j, range.clone());
+        }
+        let mut chain = NodeChain {
+            nodes: &mut self.nodes,
+            slot,
+            pending: base,
+            next: range.start,
+            multiplier,
+            offset,
+        };
+        // Axes were checked to have a direction.
+        let z_to = |axis: Vec3| Rotation::z_to(axis).unwrap_or(Rotation::IDENTITY);
+        let axis = z_to(spec.axis);
+        match spec.kind {
+            JointKind::Fixed => {}
+            JointKind::Revolute | JointKind::Continuous => chain.push(axis, Motion::Revolute),
+            JointKind::Prismatic => chain.push(axis, Motion::Prismatic),
+            JointKind::Helical { pitch } => chain.push(axis, Motion::Helical(pitch)),
+            JointKind::Cylindrical => {
+                chain.push(axis, Motion::Prismatic);
+                chain.push(axis, Motion::Revolute);
+            }
+            JointKind::Universal { second } => {
+                chain.push(axis, Motion::Revolute);
+                chain.push(z_to(second), Motion::Revolute);
+            }
+            JointKind::Planar => {
+                chain.push(axis * z_to(Vec3::X), Motion::Prismatic);
+                chain.push(axis * z_to(Vec3::Y), Motion::Prismatic);
+                chain.push(axis, Motion::Revolute);
+            }
+            JointKind::Spherical => chain.push(Rotation::IDENTITY, Motion::Spherical),
+            JointKind::Free => chain.push(Rotation::IDENTITY, Motion::Free),
+        }
+        let (slot, slot_from_child) = (chain.slot, chain.pending);
+        let slide = match spec.kind {
+            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Planar => {
+                let most = spec.limits.lower.abs().max(spec.limits.upper.abs());
+                if most.is_finite() { most } else { 0.0 }
+            }
+            _ => 0.0,
+        };
+        let way = self.way[parent] + spec.parent_from_joint.translation.norm() + slide;
+        self.place(child, slot, slot_from_child, way);
+    }
+}
+
+/// Writes the nodes of one joint one after the other.
+struct NodeChain<'a> {
+    nodes: &'a mut Vec<Node>,
+    slot: usize,
+    /// The joint frame at zero, seen from the slot.
+    pending: Pose,
+    next: usize,
+    multiplier: f64,
+    offset: f64,
+}
+
+impl NodeChain<'_> {
+    /// Adds a node whose z axis is `joint_from_z * z` in the joint frame.
+    fn push(&mut self, joint_from_z: Rotation, motion: Motion) {
+        let turn = Pose::from_rotation(joint_from_z);
+        self.nodes.push(Node {
+            parent: self.slot,
+            placement: self.pending * turn,
+            motion,
+            coordinate: self.next,
+            multiplier: self.multiplier,
+            offset: self.offset,
+        });
+        self.next += motion.dof();
+        self.slot = self.nodes.len();
+        self.pending = turn.inverse();
+    }
+}

@@ -1,0 +1,88 @@
+//! Links, and what files say of their shape and mass (kept as data: kinematics does not use it).
+
+use std::path::PathBuf;
+
+use crate::spatial::{Mat3, Pose, Vec3};
+
+/// A rigid body of a mechanism.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Link {
+    /// Its name.
+    pub name: String,
+    /// What it looks like.
+    pub visuals: Vec<Visual>,
+    /// What it collides with.
+    pub collisions: Vec<Visual>,
+    /// Its mass, where the file gives one.
+    pub inertial: Option<Inertial>,
+}
+
+impl Link {
+    /// A link of which only the name is known.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        Self { name: name.to_owned(), ..Self::default() }
+    }
+}
+
+/// A shape fixed to a link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visual {
+    /// Its name, often empty.
+    pub name: String,
+    /// Where it sits on the link.
+    pub link_from_shape: Pose,
+    /// The shape.
+    pub geometry: Geometry,
+    /// Colour red, green, blue, alpha in [0, 1], where the file gives one.
+    pub rgba: Option<[f64; 4]>,
+}
+
+/// A shape.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Geometry {
+    /// A box with these edges [m].
+    Box {
+        /// Edges along x, y, z.
+        size: Vec3,
+    },
+    /// A cylinder along z, centred [m].
+    Cylinder {
+        /// Radius.
+        radius: f64,
+        /// Length along z.
+        length: f64,
+    },
+    /// A cylinder along z with half balls at its ends [m].
+    Capsule {
+        /// Radius.
+        radius: f64,
+        /// Length of the cylinder alone.
+        length: f64,
+    },
+    /// A ball [m].
+    Sphere {
+        /// Radius.
+        radius: f64,
+    },
+    /// A mesh in a file of its own.
+    Mesh {
+        /// The name as it stands in the model file (`package://...`).
+        uri: String,
+        /// The file, where it was found.
+        path: Option<PathBuf>,
+        /// Scale along x, y, z.
+        scale: Vec3,
+    },
+}
+
+/// Mass and moments of inertia of a link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertial {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Centre of mass, and the axes in which the inertia is given.
+    pub link_from_inertia: Pose,
+    /// Inertia about the centre of mass [kg m^2].
+    pub inertia: Mat3,
+}

@@ -1,0 +1,261 @@
+//! The mechanism: one immutable graph of links, joints and frames, cheap to clone and to share.
+
+use std::sync::Arc;
+
+use super::builder::Builder;
+use super::joint::{Joint, Limits};
+use super::link::Link;
+use super::node::{Motion, Node};
+use super::report::LoadReport;
+use crate::error::{Error, Result};
+use crate::spatial::{Pose, Rotation, Twist, Vec3, exp};
+
+/// A robot or mechanism. Immutable; a clone shares the data.
+#[derive(Debug, Clone)]
+pub struct Mechanism {
+    pub(super) data: Arc<Data>,
+}
+
+#[derive(Debug)]
+pub(super) struct Data {
+    pub(super) name: String,
+    pub(super) links: Vec<Link>,
+    pub(super) joints: Vec<Joint>,
+    pub(super) frames: Vec<Frame>,
+    pub(super) coordinates: Vec<Coordinate>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) home: Vec<f64>,
+    pub(super) tool: FrameId,
+    pub(super) reach: f64,
+    pub(super) report: LoadReport,
+}
+
+/// One entry of `q`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coordinate {
+    /// The joint's name; with a suffix (`.x`, `.slide`, `.rx`, ...) where the joint has several.
+    pub name: String,
+    /// Index of the joint.
+    pub joint: usize,
+    /// What the number is.
+    pub kind: CoordinateKind,
+    /// Its limits; those of mimic joints that follow it are counted in.
+    pub limits: Limits,
+}
+
+/// What a coordinate measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CoordinateKind {
+    /// Angle [rad].
+    Angle,
+    /// Length [m].
+    Length,
+    /// Component of a rotation vector [rad]; its rate is an angular velocity in child axes.
+    RotationVector,
+    /// Position of a free body [m]; its rate is a velocity in child axes.
+    Position,
+}
+
+impl CoordinateKind {
+    /// Its SI unit.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Angle | Self::RotationVector => "rad",
+            Self::Length | Self::Position => "m",
+        }
+    }
+}
+
+/// A named frame on a link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Its name; link frames have the name of the link.
+    pub name: String,
+    /// The link it is fixed to.
+    pub link: usize,
+    /// Where it sits on the link.
+    pub link_from_frame: Pose,
+    /// Slot of the moving frame that carries it (0: ground), and where it sits there.
+    pub(crate) slot: usize,
+    pub(crate) slot_from_frame: Pose,
+}
+
+/// Names a frame of one mechanism. From [`Mechanism::frame`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct FrameId(pub(crate) usize);
+
+impl Mechanism {
+    /// A builder for a mechanism of this name.
+    #[must_use]
+    pub fn builder(name: &str) -> Builder {
+        Builder::new(name)
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.data.name
+    }
+
+    /// Number of coordinates: entries of `q` and of the rates.
+    #[must_use]
+    pub fn n(&self) -> usize {
+        self.data.coordinates.len()
+    }
+
+    /// The coordinates, in the order of `q`.
+    #[must_use]
+    pub fn coordinates(&self) -> &[Coordinate] {
+        &self.data.coordinates
+    }
+
+    /// The links, root first.
+    #[must_use]
+    pub fn links(&self) -> &[Link] {
+        &self.data.links
+    }
+
+    /// The joints, parents before children.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.data.joints
+    }
+
+    /// The frames: those of the links first, then named ones.
+    #[must_use]
+    pub fn frames(&self) -> &[Frame] {
+        &self.data.frames
+    }
+
+    /// A frame by name.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] with the nearest names.
+    pub fn frame(&self, name: &str) -> Result<FrameId> {
+        self.data.frames.iter().position(|f| f.name == name).map(FrameId).ok_or_else(|| {
+            Error::unknown("frame", name, self.data.frames.iter().map(|f| f.name.as_str()))
+        })
+    }
+
+    /// The frame of an id.
+    #[must_use]
+    pub fn frame_of(&self, id: FrameId) -> &Frame {
+        &self.data.frames[id.0]
+    }
+
+    /// The frame that is driven when none is named: the file's tool, else the last leaf link.
+    #[must_use]
+    pub fn tool(&self) -> FrameId {
+        self.data.tool
+    }
+
+    /// The home configuration: the file's, else zero moved into the limits.
+    #[must_use]
+    pub fn home(&self) -> &[f64] {
+        &self.data.home
+    }
+
+    /// Characteristic length [m]: the longest way from the base to a frame along the links,
+    /// with sliding joints stretched (those without limits count nothing); at least 1 mm.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.data.reach
+    }
+
+    /// What was read and what was ignored.
+    #[must_use]
+    pub fn report(&self) -> &LoadReport {
+        &self.data.report
+    }
+
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.data.nodes
+    }
+
+    /// Refuses a `q` of the wrong size or with entries that are not finite, naming the joint.
+    ///
+    /// # Errors
+    /// [`Error::Dimension`], [`Error::NotFinite`].
+    pub fn check_q(&self, what: &str, q: &[f64]) -> Result<()> {
+        if q.len() != self.n() {
+            let names: Vec<&str> =
+                self.data.coordinates.iter().map(|c| c.name.as_str()).collect();
+            return Err(Error::Dimension {
+                what: what.to_owned(),
+                expected: self.n(),
+                got: q.len(),
+                hint: format!("in this order: {}", names.join(", ")),
+            });
+        }
+        match q.iter().position(|x| !x.is_finite()) {
+            None => Ok(()),
+            Some(i) => Err(Error::NotFinite {
+                what: format!("{what}[{i}] ({})", self.data.coordinates[i].name),
+                value: q[i],
+            }),
+        }
+    }
+
+    /// Coordinates that are outside their position limits.
+    pub fn outside_limits<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
+        self.data
+            .coordinates
+            .iter()
+            .zip(q)
+            .enumerate()
+            .filter(|(_, (c, x))| **x < c.limits.lower || **x > c.limits.upper)
+            .map(|(i, _)| i)
+    }
+
+    /// `q` moved by constant rates for `dt` seconds: `q + dt * rates`, with rotation vectors and
+    /// free bodies moved on their group.
+    ///
+    /// # Errors
+    /// Sizes and numbers as in [`Mechanism::check_q`].
+    pub fn integrate(&self, q: &[f64], rates: &[f64], dt: f64) -> Result<Vec<f64>> {
+        self.check_q("q", q)?;
+        self.check_q("rates", rates)?;
+        Error::check_finite("dt", &[dt])?;
+        let mut next = q.to_vec();
+        self.integrate_in_place(&mut next, rates, dt);
+        Ok(next)
+    }
+
+    /// [`Mechanism::integrate`] without checks and allocation.
+    pub(crate) fn integrate_in_place(&self, q: &mut [f64], rates: &[f64], dt: f64) {
+        for (i, coordinate) in self.data.coordinates.iter().enumerate() {
+            if matches!(coordinate.kind, CoordinateKind::Angle | CoordinateKind::Length) {
+                q[i] += rates[i] * dt;
+            }
+        }
+        for node in self.nodes() {
+            let c = node.coordinate;
+            match node.motion {
+                Motion::Revolute | Motion::Prismatic | Motion::Helical(_) => {}
+                Motion::Spherical => {
+                    let r = Rotation::exp(vec3(q, c)) * Rotation::exp(vec3(rates, c) * dt);
+                    put(q, c, r.renormalised().log());
+                }
+                Motion::Free => {
+                    let here = Pose {
+                        rotation: Rotation::exp(vec3(q, c + 3)),
+                        translation: vec3(q, c),
+                    };
+                    let twist = Twist { linear: vec3(rates, c), angular: vec3(rates, c + 3) };
+                    let next = here * exp(twist * dt);
+                    put(q, c, next.translation);
+                    put(q, c + 3, next.rotation.renormalised().log());
+                }
+            }
+        }
+    }
+}
+
+fn vec3(x: &[f64], i: usize) -> Vec3 {
+    Vec3::new(x[i], x[i + 1], x[i + 2])
+}
+
+fn put(x: &mut [f64], i: usize, v: Vec3) {
+    x[i..i + 3].copy_from_slice(&v.to_array());
+}

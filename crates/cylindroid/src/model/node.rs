@@ -1,0 +1,49 @@
+//! The form in which kinematics reads a mechanism: a list of moving frames, parents first.
+//!
+//! Every joint is written as one or more nodes that turn about or slide along their own z axis
+//! (or move freely); fixed joints and fixed links are folded into the placements.
+
+use crate::spatial::Pose;
+
+/// A moving frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Node {
+    /// Slot of the parent: 0 is the ground, node `i` is slot `i + 1`.
+    pub(crate) parent: usize,
+    /// The frame at zero, seen from the parent.
+    pub(crate) placement: Pose,
+    /// What it does.
+    pub(crate) motion: Motion,
+    /// Its first coordinate.
+    pub(crate) coordinate: usize,
+    /// Mimic ratio (1 for joints of their own).
+    pub(crate) multiplier: f64,
+    /// Mimic offset (0 for joints of their own).
+    pub(crate) offset: f64,
+}
+
+/// What a node does with its coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Motion {
+    /// Turns about z.
+    Revolute,
+    /// Slides along z.
+    Prismatic,
+    /// Turns about z and advances by the pitch [m/rad].
+    Helical(f64),
+    /// Rotation vector; rates are the angular velocity in its own axes.
+    Spherical,
+    /// Position and rotation vector; rates are the twist in its own axes.
+    Free,
+}
+
+impl Motion {
+    /// Number of coordinates.
+    pub(crate) const fn dof(self) -> usize {
+        match self {
+            Self::Revolute | Self::Prismatic | Self::Helical(_) => 1,
+            Self::Spherical => 3,
+            Self::Free => 6,
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Other ways to write a rotation: quaternion, roll-pitch-yaw, ZYZ Euler angles.
+//!
+//! Formula  rpy: R = Rz(yaw) Ry(pitch) Rx(roll), the URDF's fixed axes x, y, z
+//!          zyz: R = Rz(alpha) Ry(beta) Rz(gamma)
+//! Units    rad; pitch in [-pi/2, pi/2], beta in [0, pi]
+//! Valid    everywhere; at gimbal lock (|pitch| = pi/2, beta = 0 or pi) only a sum of two angles
+//!          is determined: the last one (roll, gamma) is set to zero
+//! Source   URDF specification; Siciliano et al. 2009, section 2.4
+//! Checked  tests/it/spatial.rs::angles_*
+
+use super::rotation::Rotation;
+use super::vec3::{Mat3, Vec3};
+use crate::error::{Error, Result};
+use crate::scalar::sin_cos;
+use crate::tolerance::ANGLE_SINGULAR;
+
+/// A unit quaternion `w + x i + y j + z k`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quaternion {
+    /// Real part.
+    pub w: f64,
+    /// First imaginary part.
+    pub x: f64,
+    /// Second imaginary part.
+    pub y: f64,
+    /// Third imaginary part.
+    pub z: f64,
+}
+
+/// Roll, pitch and yaw: about the fixed axes x, y, z in this order [rad].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rpy {
+    /// About the fixed x axis.
+    pub roll: f64,
+    /// About the fixed y axis.
+    pub pitch: f64,
+    /// About the fixed z axis.
+    pub yaw: f64,
+}
+
+/// ZYZ Euler angles: about z, the turned y, the turned z [rad].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Zyz {
+    /// First, about z.
+    pub alpha: f64,
+    /// Second, about the turned y.
+    pub beta: f64,
+    /// Third, about the turned z.
+    pub gamma: f64,
+}
+
+impl Quaternion {
+    /// The rotation of this quaternion, which may have any length but zero.
+    ///
+    /// # Errors
+    /// A quaternion that is zero or not finite.
+    pub fn rotation(self) -> Result<Rotation> {
+        let Self { w, x, y, z } = self;
+        let norm = w.hypot(x).hypot(y).hypot(z);
+        if !(norm > 0.0 && norm.is_finite()) {
+            return Err(Error::InvalidOption {
+                option: "quaternion",
+                value: format!("({w}, {x}, {y}, {z})"),
+                reason: "it must be finite and not zero".to_owned(),
+            });
+        }
+        let (w, x, y, z) = (w / norm, x / norm, y / norm, z / norm);
+        Ok(Rotation::assume(Mat3::from_rows([
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ])))
+    }
+
+    /// The quaternion of a rotation matrix, `w >= 0`; with `w = 0` the first imaginary part that
+    /// is not zero is positive.
+    pub(crate) fn of_matrix(m: Mat3) -> Self {
+        let [a, b, c] = m.cols;
+        // Four times the squared components; the largest is at least 1.
+        let squares = [
+            1.0 + a.x + b.y + c.z,
+            1.0 + a.x - b.y - c.z,
+            1.0 - a.x + b.y - c.z,
+            1.0 - a.x - b.y + c.z,
+        ];
+        let largest = (1..4).fold(0, |l, i| if squares[i] > squares[l] { i } else { l });
+        let (yz, zx, xy) = (b.z - c.y, c.x - a.z, a.y - b.x); // 4 w (x, y, z)
+        let (pyz, pzx, pxy) = (b.z + c.y, c.x + a.z, a.y + b.x); // 4 (yz, zx, xy)
+        let s = squares[largest];
+        let (w, x, y, z) = match largest {
+            0 => (s, yz, zx, xy),
+            1 => (yz, s, pxy, pzx),
+            2 => (zx, pxy, s, pyz),
+            _ => (xy, pzx, pyz, s),
+        };
+        let sign = [w, x, y, z].into_iter().find(|v| *v != 0.0).map_or(1.0, f64::signum);
+        let scale = sign / w.hypot(x).hypot(y).hypot(z);
+        Self { w: w * scale, x: x * scale, y: y * scale, z: z * scale }
+    }
+}
+
+impl Rpy {
+    /// The rotation of these angles.
+    #[must_use]
+    pub fn rotation(self) -> Rotation {
+        let ((sr, cr), (sp, cp), (sy, cy)) =
+            (sin_cos(self.roll), sin_cos(self.pitch), sin_cos(self.yaw));
+        Rotation::assume(Mat3::from_rows([
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]))
+    }
+
+    /// The angles of a rotation, pitch in [-pi/2, pi/2].
+    #[must_use]
+    pub fn of(rotation: Rotation) -> Self {
+        let m = rotation.matrix().to_rows();
+        let cos_pitch = m[0][0].hypot(m[1][0]);
+        let pitch = (-m[2][0]).atan2(cos_pitch);
+        if cos_pitch < ANGLE_SINGULAR {
+            return Self { roll: 0.0, pitch, yaw: (-m[0][1]).atan2(m[1][1]) };
+        }
+        Self { roll: m[2][1].atan2(m[2][2]), pitch, yaw: m[1][0].atan2(m[0][0]) }
+    }
+
+    /// `omega = E rates`: from (roll, pitch, yaw) rates to the angular velocity in the axes of
+    /// frame a of `a_from_b`. det E = cos(pitch).
+    #[must_use]
+    pub fn omega_from_rates(self) -> Mat3 {
+        let ((sp, cp), (sy, cy)) = (sin_cos(self.pitch), sin_cos(self.yaw));
+        Mat3::from_cols(Vec3::new(cy * cp, sy * cp, -sp), Vec3::new(-sy, cy, 0.0), Vec3::Z)
+    }
+}
+
+impl Zyz {
+    /// The rotation of these angles.
+    #[must_use]
+    pub fn rotation(self) -> Rotation {
+        let tilt = Rpy { roll: 0.0, pitch: self.beta, yaw: 0.0 }.rotation();
+        Rotation::about_z(self.alpha) * tilt * Rotation::about_z(self.gamma)
+    }
+
+    /// The angles of a rotation, beta in [0, pi].
+    #[must_use]
+    pub fn of(rotation: Rotation) -> Self {
+        let m = rotation.matrix().to_rows();
+        let sin_beta = m[0][2].hypot(m[1][2]);
+        let beta = sin_beta.atan2(m[2][2]);
+        if sin_beta < ANGLE_SINGULAR {
+            // alpha + gamma (beta = 0) or alpha - gamma (beta = pi) is all that is determined.
+            let sign = m[2][2].signum();
+            return Self { alpha: (sign * m[1][0]).atan2(sign * m[0][0]), beta, gamma: 0.0 };
+        }
+        Self { alpha: m[1][2].atan2(m[0][2]), beta, gamma: m[2][1].atan2(-m[2][0]) }
+    }
+
+    /// `omega = E rates`: from (alpha, beta, gamma) rates to the angular velocity in the axes of
+    /// frame a of `a_from_b`. det E = -sin(beta).
+    #[must_use]
+    pub fn omega_from_rates(self) -> Mat3 {
+        let ((sa, ca), (sb, cb)) = (sin_cos(self.alpha), sin_cos(self.beta));
+        Mat3::from_cols(Vec3::Z, Vec3::new(-sa, ca, 0.0), Vec3::new(ca * sb, sa * sb, cb))
+    }
+}

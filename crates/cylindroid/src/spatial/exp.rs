@@ -1,0 +1,92 @@
+//! Exponential and logarithm of rigid displacements, and the derivatives of both.
+//!
+//! Formula  exp([v; w]) = (exp(w), V v), V = 1 + b K + c K^2, K = skew(w)
+//!          d exp(x) = (D dx)^ exp(x), D = [V Q; 0 V], linear first
+//!          V^-1 = 1 - K/2 + d K^2; D^-1 = [V^-1, -V^-1 Q V^-1; 0, V^-1]
+//!          a..d, and the two coefficients of Q, in `series.rs`
+//! Units    v in m, w in rad
+//! Valid    exp everywhere; log on the whole group, |w| <= pi; D^-1 for |w| < 2 pi
+//! Source   Barfoot, State Estimation for Robotics, 2017, eq. 7.85, 7.86 (Q)
+//! Checked  tests/it/spatial.rs::exp_*, ::log_*, ::derivative_*
+
+use super::pose::Pose;
+use super::rotation::Rotation;
+use super::series::{cosc, cosc4, cotc, sinc3, sinc5};
+use super::twist::Twist;
+use super::vec3::{Mat3, Vec3};
+
+/// A linear map of twists of the form `[R Q; 0 R]`, linear first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivative6 {
+    /// The two equal diagonal blocks.
+    pub diagonal: Mat3,
+    /// The upper right block: linear from angular.
+    pub coupling: Mat3,
+}
+
+impl Derivative6 {
+    /// The image of a twist.
+    #[must_use]
+    pub fn apply(&self, t: Twist) -> Twist {
+        Twist {
+            linear: self.diagonal * t.linear + self.coupling * t.angular,
+            angular: self.diagonal * t.angular,
+        }
+    }
+}
+
+/// The displacement of the constant twist `x` held for one second.
+#[must_use]
+pub fn exp(x: Twist) -> Pose {
+    Pose {
+        rotation: Rotation::exp(x.angular),
+        translation: rotation_exp_derivative(x.angular) * x.linear,
+    }
+}
+
+/// The twist that makes this displacement in one second, rotating by at most pi.
+#[must_use]
+pub fn log(pose: Pose) -> Twist {
+    let angular = pose.rotation.log();
+    Twist { linear: rotation_log_derivative(angular) * pose.translation, angular }
+}
+
+/// V: `d exp(w) = skew(V dw) exp(w)`, the left derivative of the rotation by the vector `w`.
+#[must_use]
+pub fn rotation_exp_derivative(w: Vec3) -> Mat3 {
+    let t = w.norm();
+    let k = Mat3::skew(w);
+    Mat3::IDENTITY + k * cosc(t) + (k * k) * sinc3(t)
+}
+
+/// V^-1: the rate of the rotation vector for an angular velocity; |w| < 2 pi.
+#[must_use]
+pub fn rotation_log_derivative(w: Vec3) -> Mat3 {
+    let k = Mat3::skew(w);
+    Mat3::IDENTITY - k * 0.5 + (k * k) * cotc(w.norm())
+}
+
+/// D: `d exp(x) = (D dx)^ exp(x)`, in the axes and at the origin of frame a of `a_from_b`.
+#[must_use]
+pub fn exp_derivative(x: Twist) -> Derivative6 {
+    Derivative6 { diagonal: rotation_exp_derivative(x.angular), coupling: coupling(x) }
+}
+
+/// D^-1: the rate of `log` for a twist in the axes and at the origin of frame a; |w| < 2 pi.
+#[must_use]
+pub fn log_derivative(x: Twist) -> Derivative6 {
+    let inverse = rotation_log_derivative(x.angular);
+    Derivative6 { diagonal: inverse, coupling: inverse * coupling(x) * inverse * -1.0 }
+}
+
+/// Q of Barfoot's eq. 7.86.
+fn coupling(x: Twist) -> Mat3 {
+    let t = x.angular.norm();
+    let (p, r) = (Mat3::skew(x.angular), Mat3::skew(x.linear));
+    let (pr, rp) = (p * r, r * p);
+    let prp = pr * p;
+    r * 0.5
+        + (pr + rp + prp) * sinc3(t)
+        - (p * pr + rp * p - prp * 3.0) * cosc4(t)
+        - (prp * p + p * prp) * (0.5 * (cosc4(t) - 3.0 * sinc5(t)))
+}

@@ -1,0 +1,23 @@
+//! Poses, twists and wrenches as distinct types, and the maps between them.
+//!
+//! Power is the only product of a twist and a wrench. Twists move between frames by the adjoint,
+//! wrenches by the coadjoint, so that power is the same in every frame. `a_from_b` names the pose
+//! that takes coordinates in frame b to coordinates in frame a.
+
+mod angles;
+mod exp;
+mod pose;
+mod rotation;
+mod series;
+mod twist;
+mod vec3;
+
+pub use angles::{Quaternion, Rpy, Zyz};
+pub use exp::{
+    Derivative6, exp, exp_derivative, log, log_derivative, rotation_exp_derivative,
+    rotation_log_derivative,
+};
+pub use pose::Pose;
+pub use rotation::Rotation;
+pub use twist::{Twist, Wrench};
+pub use vec3::{Mat3, Vec3};

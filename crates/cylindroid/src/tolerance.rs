@@ -1,0 +1,51 @@
+//! Every threshold of the library, named, with its unit and where it comes from.
+//!
+//! Users meet thresholds as options with these values as defaults. Code never compares with a
+//! number of its own.
+
+/// Below this angle [rad] the coefficients of exp, log and their derivatives use Taylor series.
+///
+/// The series keep seven terms, so their truncation error at the switch is below 1e-17 relative.
+/// Above it the worst closed form, `(1 - t^2/2 - cos t) / t^4`, loses `eps / t^4 = 4e-15`, and
+/// multiplies a product of size `t^2 |v|`: at most 1e-15 |v| in the result.
+pub const SMALL_ANGLE: f64 = 0.5;
+
+/// A rotation read from numbers must be orthonormal to this (largest entry of `R^T R - 1`).
+/// Files print six digits.
+pub const ORTHONORMAL: f64 = 1e-5;
+
+/// A vector shorter than this [-] names no direction (axes in files are near unit length).
+pub const ZERO_AXIS: f64 = 1e-9;
+
+/// Rank at machine precision: singular values below `MACHINE_RANK * max(rows, cols) * s_1` are
+/// zero up to rounding. The factor 8 covers the error of forming the matrix itself.
+pub const MACHINE_RANK: f64 = 8.0 * f64::EPSILON;
+
+/// One-sided Jacobi stops when every pair of columns is orthogonal to this times their norms.
+pub const JACOBI_ORTHOGONAL: f64 = 4.0 * f64::EPSILON;
+
+/// Default relative threshold of the truncated inverse: `s_i <= eps * s_1` is cut [-].
+pub const TRUNCATION: f64 = 1e-3;
+
+/// Default damping [unit of the singular values, after scaling by the reach].
+pub const DAMPING: f64 = 0.02;
+
+/// Default onset of variable damping, relative to the largest singular value [-].
+pub const DAMPING_ONSET: f64 = 0.05;
+
+/// An analytical Jacobian is said not to exist when the sine that its rate map divides by is
+/// below this [-]: rates would be a million times the angular velocity.
+pub const ANGLE_SINGULAR: f64 = 1e-6;
+
+/// Default position tolerance of a Cartesian move [m].
+pub const POSITION: f64 = 1e-6;
+
+/// Default orientation tolerance of a Cartesian move [rad].
+pub const ORIENTATION: f64 = 1e-6;
+
+/// Share of a joint's range (or 1 where it has none) kept free at a position limit against
+/// rounding in the caller's `q + dt * rate` [-].
+pub const LIMIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// A joint nearer to its limit than this [rad or m] counts as standing at it in reports.
+pub const AT_LIMIT: f64 = 1e-6;
