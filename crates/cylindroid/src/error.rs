@@ -150,11 +150,7 @@ fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<Stri
 }
 
 fn offer(similar: &[String]) -> String {
-    if similar.is_empty() {
-        String::new()
-    } else {
-        format!("; nearest: {}", similar.join(", "))
-    }
+    if similar.is_empty() { String::new() } else { format!("; nearest: {}", similar.join(", ")) }
 }
 
 fn hint_text(hint: &str) -> String {

@@ -272,11 +272,9 @@ impl Builder {
                 ),
             );
         }
-        for (what, value) in [
-            ("velocity", l.velocity),
-            ("acceleration", l.acceleration),
-            ("effort", l.effort),
-        ] {
+        for (what, value) in
+            [("velocity", l.velocity), ("acceleration", l.acceleration), ("effort", l.effort)]
+        {
             if value.is_nan() || value < 0.0 {
                 return self.refuse(
                     name,

@@ -179,8 +179,7 @@ impl Mechanism {
     /// [`Error::Dimension`], [`Error::NotFinite`].
     pub fn check_q(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.n() {
-            let names: Vec<&str> =
-                self.data.coordinates.iter().map(|c| c.name.as_str()).collect();
+            let names: Vec<&str> = self.data.coordinates.iter().map(|c| c.name.as_str()).collect();
             return Err(Error::Dimension {
                 what: what.to_owned(),
                 expected: self.n(),
@@ -238,10 +237,8 @@ impl Mechanism {
                     put(q, c, r.renormalised().log());
                 }
                 Motion::Free => {
-                    let here = Pose {
-                        rotation: Rotation::exp(vec3(q, c + 3)),
-                        translation: vec3(q, c),
-                    };
+                    let here =
+                        Pose { rotation: Rotation::exp(vec3(q, c + 3)), translation: vec3(q, c) };
                     let twist = Twist { linear: vec3(rates, c), angular: vec3(rates, c + 3) };
                     let next = here * exp(twist * dt);
                     put(q, c, next.translation);

@@ -1,0 +1,213 @@
+//! Rates inside their bounds: the task is scaled first, then bent.
+//!
+//! Formula  scaled: the largest s in [0, 1] with J q' = s x and bounds kept, joints at a bound
+//!          taken out one by one while the rest can still do the task;
+//!          bent: joints that leave their bounds are held at them, the rest do what they can of
+//!          x - J_held q'_held
+//! Shapes   J: m x n, x: m, bounds: n
+//! Cost     at most 2 n decompositions of m x n; none when no bound is met
+//! Why so   scaling keeps the direction of the motion, which users of a straight path count on;
+//!          only when the direction is lost altogether is it better to move on a bent way than not
+//! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); bending as
+//!          in Baerlocher & Boulic 2004
+//! Checked  tests/it/servo.rs::saturation_*
+
+use super::limits::RateBounds;
+use crate::inverse::Method;
+use crate::linalg::{Matrix, Svd};
+
+/// Below this scale a direction counts as lost and the motion is bent [-].
+const LEAST_SCALE: f64 = 0.05;
+
+/// What became of the task.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Saturation {
+    /// The share of the task twist that is carried out; 1 when no limit bites.
+    pub scale: f64,
+    /// True if the direction could not be kept.
+    pub bent: bool,
+}
+
+/// Memory for the decompositions.
+#[derive(Debug, Clone)]
+pub(super) struct Saturator {
+    svd: Svd,
+    reduced: Matrix,
+    gains: Vec<f64>,
+    held: Vec<bool>,
+    held_rates: Vec<f64>,
+    particular: Vec<f64>,
+    direction: Vec<f64>,
+    rest: Vec<f64>,
+    best: Vec<f64>,
+}
+
+/// The task and how it is inverted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Problem<'a> {
+    pub(super) j: &'a Matrix,
+    pub(super) x: &'a [f64],
+    pub(super) method: &'a Method,
+    pub(super) bounds: &'a [RateBounds],
+}
+
+impl Saturator {
+    pub(super) fn new(m: usize, n: usize) -> Self {
+        Self {
+            svd: Svd::workspace(m, n),
+            reduced: Matrix::zeros(m, n),
+            gains: vec![0.0; m.min(n)],
+            held: vec![false; n],
+            held_rates: vec![0.0; n],
+            particular: vec![0.0; n],
+            direction: vec![0.0; n],
+            rest: vec![0.0; m],
+            best: vec![0.0; n],
+        }
+    }
+
+    /// Moves `rates` (primary plus `secondary`) into the bounds. `rates` comes in as the primary
+    /// motion that solves the task, without limits.
+    pub(super) fn apply(
+        &mut self,
+        problem: Problem<'_>,
+        secondary: &[f64],
+        rates: &mut [f64],
+    ) -> Saturation {
+        let bounds = problem.bounds;
+        // The secondary motion yields first.
+        if let Some((_, share)) = interval(rates, secondary, bounds) {
+            for ((rate, z), bound) in rates.iter_mut().zip(secondary).zip(bounds) {
+                *rate = bound.clamp(*rate + share * z);
+            }
+            return Saturation { scale: 1.0, bent: false };
+        }
+        let scale = self.scaled(problem);
+        if scale >= LEAST_SCALE {
+            rates.copy_from_slice(&self.best);
+            return Saturation { scale, bent: false };
+        }
+        self.bend(problem, rates);
+        Saturation { scale: 0.0, bent: true }
+    }
+
+    /// The largest feasible scale, with its rates in `best`; 0 if none.
+    fn scaled(&mut self, p: Problem<'_>) -> f64 {
+        let n = p.bounds.len();
+        self.held.fill(false);
+        self.held_rates.fill(0.0);
+        let mut best = 0.0;
+        for _ in 0..n {
+            let full = self.decompose_free(&p);
+            // rates(s) = particular + s direction
+            self.rest.fill(0.0);
+            p.j.mul_vec_into(&self.held_rates, &mut self.rest);
+            self.rest.iter_mut().for_each(|r| *r = -*r);
+            solve(&self.svd, p.method, &mut self.gains, &self.rest, &mut self.particular);
+            solve(&self.svd, p.method, &mut self.gains, p.x, &mut self.direction);
+            for (a, h) in self.particular.iter_mut().zip(&self.held_rates) {
+                *a += h;
+            }
+            if let Some((_, s)) = interval(&self.particular, &self.direction, p.bounds)
+                && s > best
+            {
+                best = s;
+                for ((b, a), d) in self.best.iter_mut().zip(&self.particular).zip(&self.direction) {
+                    *b = a + s * d;
+                }
+                for (b, bound) in self.best.iter_mut().zip(p.bounds) {
+                    *b = bound.clamp(*b); // rounding at the critical joint
+                }
+            }
+            if best >= 1.0 || !full {
+                break;
+            }
+            // Hold the joint that leaves its bounds by most at full scale.
+            let mut worst = (0.0, None);
+            for i in 0..n {
+                let rate = self.particular[i] + self.direction[i];
+                let excess = (rate - p.bounds[i].clamp(rate)).abs();
+                if !self.held[i] && excess > worst.0 {
+                    worst = (excess, Some((i, p.bounds[i].clamp(rate))));
+                }
+            }
+            let Some((i, rate)) = worst.1 else { break };
+            self.held[i] = true;
+            self.held_rates[i] = rate;
+        }
+        best
+    }
+
+    fn bend(&mut self, p: Problem<'_>, rates: &mut [f64]) {
+        let n = p.bounds.len();
+        self.held.fill(false);
+        self.held_rates.fill(0.0);
+        for _ in 0..=n {
+            self.decompose_free(&p);
+            self.rest.fill(0.0);
+            p.j.mul_vec_into(&self.held_rates, &mut self.rest);
+            for (r, x) in self.rest.iter_mut().zip(p.x) {
+                *r = x - *r;
+            }
+            solve(&self.svd, p.method, &mut self.gains, &self.rest, &mut self.direction);
+            let mut new = false;
+            for i in 0..n {
+                let rate = self.direction[i];
+                if !self.held[i] && !p.bounds[i].contains(rate) {
+                    self.held[i] = true;
+                    self.held_rates[i] = p.bounds[i].clamp(rate);
+                    new = true;
+                }
+            }
+            if !new {
+                break;
+            }
+        }
+        for i in 0..n {
+            let rate = if self.held[i] { self.held_rates[i] } else { self.direction[i] };
+            rates[i] = p.bounds[i].clamp(rate);
+        }
+    }
+
+    /// Decomposes J without the columns of held joints; false if it can no longer do every task.
+    fn decompose_free(&mut self, p: &Problem<'_>) -> bool {
+        self.reduced.as_mut_slice().copy_from_slice(p.j.as_slice());
+        for (i, held) in self.held.iter().enumerate() {
+            if *held {
+                self.reduced.column_mut(i).fill(0.0);
+            }
+        }
+        self.svd.decompose(&self.reduced);
+        p.method.gains(&self.svd, p.x, &mut self.gains);
+        self.gains.last().is_some_and(|g| *g > 0.0)
+    }
+}
+
+/// `out = V diag(gains) U^T x`
+pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], out: &mut [f64]) {
+    method.gains(svd, x, gains);
+    out.fill(0.0);
+    for (i, gain) in gains.iter().enumerate() {
+        let along: f64 = svd.u(i).iter().zip(x).map(|(u, x)| u * x).sum();
+        for (o, v) in out.iter_mut().zip(svd.v(i)) {
+            *o += gain * along * v;
+        }
+    }
+}
+
+/// The interval of s in [0, 1] for which `a + s b` keeps the bounds; `None` if empty.
+fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<(f64, f64)> {
+    let (mut least, mut most) = (0.0_f64, 1.0_f64);
+    for ((a, b), bound) in a.iter().zip(b).zip(bounds) {
+        if *b == 0.0 {
+            if !bound.contains(*a) {
+                return None;
+            }
+            continue;
+        }
+        let (s, t) = ((bound.lower - a) / b, (bound.upper - a) / b);
+        least = least.max(s.min(t));
+        most = most.min(s.max(t));
+    }
+    (least <= most).then_some((least, most))
+}
