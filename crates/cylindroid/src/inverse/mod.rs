@@ -168,8 +168,9 @@ impl Method {
         }
     }
 
-    /// The inverse of `j` (m x n) with its report. For selectively damped least squares, whose
-    /// gains depend on the motion, use [`selectively_damped`].
+    /// The inverse of `j` (m x n) with its report. The gains of selectively damped least squares
+    /// depend on the motion: here they hold for unit motions along every direction, see
+    /// [`selectively_damped`] for a given one.
     ///
     /// # Errors
     /// A matrix with NaN or infinity; numbers outside the method's domain.

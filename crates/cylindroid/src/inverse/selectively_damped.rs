@@ -19,7 +19,7 @@ pub(super) fn gains(svd: &Svd, max_rate: f64, task: &[f64], out: &mut [f64]) -> 
         *gain = if i < machine.rank { direction_gain(svd, i, max_rate, task) } else { 0.0 };
     }
     // The sum of the directions is held to the largest rate as well.
-    let along = |i: usize| dot(svd.u(i), task);
+    let along = |i: usize| along(svd, i, task);
     let mut largest = 0.0_f64;
     for j in 0..svd.cols() {
         let rate: f64 = (0..machine.rank).map(|i| out[i] * along(i) * svd.v(i)[j]).sum();
@@ -44,10 +44,14 @@ fn direction_gain(svd: &Svd, i: usize, max_rate: f64, task: &[f64]) -> f64 {
         .sum::<f64>()
         / s;
     let allowed = (1.0 / moved).min(1.0) * max_rate;
-    let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * (dot(svd.u(i), task) / s).abs();
+    let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * (along(svd, i, task) / s).abs();
     if largest > allowed { allowed / (largest * s) } else { 1.0 / s }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+/// The task along direction i; without a task, a unit motion along every direction.
+fn along(svd: &Svd, i: usize, task: &[f64]) -> f64 {
+    if task.is_empty() {
+        return 1.0;
+    }
+    svd.u(i).iter().zip(task).map(|(u, x)| u * x).sum()
 }

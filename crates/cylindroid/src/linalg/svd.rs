@@ -2,9 +2,10 @@
 //!
 //! Formula  A = U diag(s) V^T, s descending and not negative
 //! Shapes   A: m x n, U: m x k, V: n x k with k = min(m, n)
-//! Method   rotate the columns of B (= A, or A^T when A is wide) in pairs from the right until
-//!          all are orthogonal: B W = Q diag(s). A column of Q whose singular value is zero up
-//!          to rounding is left zero: it is not determined by A.
+//! Method   rotate the columns of B (= A when A is tall, else A^T) in pairs from the right until
+//!          all are orthogonal: B W = Q diag(s). W is always complete: for a Jacobian with
+//!          m <= n it is U, so that lost task directions are known also where s is exactly zero.
+//!          A column of Q whose singular value is exactly zero is zero: A does not determine it.
 //! Warm     `decompose_warm` starts from the W of the last call; for a slowly changing Jacobian
 //!          one or two sweeps remain. The result is exact either way.
 //! Why so   high relative accuracy also of small singular values, no failure on rank-deficient
@@ -160,7 +161,7 @@ impl Svd {
     #[inline]
     pub fn u(&self, i: usize) -> &[f64] {
         let j = self.order[i];
-        if self.rows >= self.cols { self.b.column(j) } else { self.w.column(j) }
+        if self.rows > self.cols { self.b.column(j) } else { self.w.column(j) }
     }
 
     /// Right singular vector of the `i`-th value (n entries).
@@ -168,7 +169,7 @@ impl Svd {
     #[inline]
     pub fn v(&self, i: usize) -> &[f64] {
         let j = self.order[i];
-        if self.rows >= self.cols { self.w.column(j) } else { self.b.column(j) }
+        if self.rows > self.cols { self.w.column(j) } else { self.b.column(j) }
     }
 
     /// Number of rows of the decomposed matrix.
@@ -235,7 +236,7 @@ impl Svd {
 
     /// B = scaled A, transposed if A is wide.
     fn load(&mut self, a: &Matrix, factor: f64) {
-        if self.rows >= self.cols {
+        if self.rows > self.cols {
             for (b, x) in self.b.as_mut_slice().iter_mut().zip(a.as_slice()) {
                 *b = x * factor;
             }
@@ -254,7 +255,7 @@ impl Svd {
         for l in 0..k {
             let w = self.w.column(l);
             let b = self.b.column_mut(l);
-            if self.rows >= self.cols {
+            if self.rows > self.cols {
                 a.mul_vec_into(w, b);
             } else {
                 a.tr_mul_vec_into(w, b);
