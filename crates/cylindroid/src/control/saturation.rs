@@ -2,22 +2,25 @@
 //!
 //! Formula  scaled: the largest s in [0, 1] with J q' = s x and bounds kept, joints at a bound
 //!          taken out one by one while the rest can still do the task;
-//!          bent: joints that leave their bounds are held at them, the rest do what they can of
-//!          x - J_held q'_held
+//!          bent: the bounded least-squares solution, min |J q' - x| with bounds kept
 //! Shapes   J: m x n, x: m, bounds: n
-//! Cost     at most 2 n decompositions of m x n; none when no bound is met
+//! Cost     at most 4 n decompositions of m x n; none when no bound is met
 //! Why so   scaling keeps the direction of the motion, which users of a straight path count on;
 //!          only when the direction is lost altogether is it better to move on a bent way than not
-//! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); bending as
-//!          in Baerlocher & Boulic 2004
+//! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
+//!          Parker 1995 (bounded-variable least squares)
 //! Checked  tests/it/servo.rs::saturation_*
 
 use super::limits::RateBounds;
-use crate::inverse::Method;
+use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, Svd};
 
 /// Below this scale a direction counts as lost and the motion is bent [-].
 const LEAST_SCALE: f64 = 0.05;
+
+/// A held joint is released when its pull is above this share of the largest possible one [-]:
+/// what is left of directions that the inverse cut must not release anything.
+const RELEASE: f64 = 1e-3;
 
 /// What became of the task.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,8 +100,14 @@ impl Saturator {
         self.held.fill(false);
         self.held_rates.fill(0.0);
         let mut best = 0.0;
-        for _ in 0..n {
-            let full = self.decompose_free(&p);
+        let mut possible = 0;
+        for round in 0..n {
+            let rank = self.decompose_free(&p);
+            if round == 0 {
+                possible = rank;
+            } else if rank < possible {
+                break; // the rest can no longer do the task
+            }
             // rates(s) = particular + s direction
             self.rest.fill(0.0);
             p.j.mul_vec_into(&self.held_rates, &mut self.rest);
@@ -119,7 +128,7 @@ impl Saturator {
                     *b = bound.clamp(*b); // rounding at the critical joint
                 }
             }
-            if best >= 1.0 || !full {
+            if best >= 1.0 {
                 break;
             }
             // Hold the joint that leaves its bounds by most at full scale.
@@ -138,39 +147,92 @@ impl Saturator {
         best
     }
 
+    /// Bounded least squares by an active set: hold what reaches a bound, release what would leave
+    /// it inwards, until neither happens.
     fn bend(&mut self, p: Problem<'_>, rates: &mut [f64]) {
         let n = p.bounds.len();
-        self.held.fill(false);
-        self.held_rates.fill(0.0);
-        for _ in 0..=n {
+        for (i, rate) in rates.iter_mut().enumerate() {
+            let clamped = p.bounds[i].clamp(*rate);
+            self.held[i] = clamped != *rate;
+            *rate = clamped;
+        }
+        for _ in 0..3 * n {
             self.decompose_free(&p);
-            self.rest.fill(0.0);
-            p.j.mul_vec_into(&self.held_rates, &mut self.rest);
-            for (r, x) in self.rest.iter_mut().zip(p.x) {
-                *r = x - *r;
-            }
+            self.load_residual(&p, rates, true);
             solve(&self.svd, p.method, &mut self.gains, &self.rest, &mut self.direction);
-            let mut new = false;
-            for i in 0..n {
-                let rate = self.direction[i];
-                if !self.held[i] && !p.bounds[i].contains(rate) {
-                    self.held[i] = true;
-                    self.held_rates[i] = p.bounds[i].clamp(rate);
-                    new = true;
-                }
+            if self.move_to_first_bound(p.bounds, rates) {
+                continue;
             }
-            if !new {
+            self.load_residual(&p, rates, false);
+            if !self.release_one(&p, rates) {
                 break;
             }
         }
-        for i in 0..n {
-            let rate = if self.held[i] { self.held_rates[i] } else { self.direction[i] };
-            rates[i] = p.bounds[i].clamp(rate);
+        for (rate, bound) in rates.iter_mut().zip(p.bounds) {
+            *rate = bound.clamp(*rate);
         }
     }
 
-    /// Decomposes J without the columns of held joints; false if it can no longer do every task.
-    fn decompose_free(&mut self, p: &Problem<'_>) -> bool {
+    /// `rest = x - J rates`, of the held joints alone or of all.
+    fn load_residual(&mut self, p: &Problem<'_>, rates: &[f64], held_alone: bool) {
+        self.rest.copy_from_slice(p.x);
+        for (j, rate) in rates.iter().enumerate() {
+            if self.held[j] || !held_alone {
+                for (r, a) in self.rest.iter_mut().zip(p.j.column(j)) {
+                    *r -= a * rate;
+                }
+            }
+        }
+    }
+
+    /// Moves the free joints towards `direction` until one reaches a bound and is held (true), or
+    /// all the way (false).
+    fn move_to_first_bound(&mut self, bounds: &[RateBounds], rates: &mut [f64]) -> bool {
+        let mut first = (1.0, None);
+        for (i, bound) in bounds.iter().enumerate() {
+            let way = self.direction[i] - rates[i];
+            if self.held[i] || bound.contains(self.direction[i]) {
+                continue;
+            }
+            let end = if way > 0.0 { bound.upper } else { bound.lower };
+            let share = ((end - rates[i]) / way).clamp(0.0, 1.0);
+            if share < first.0 || first.1.is_none() {
+                first = (share, Some((i, end)));
+            }
+        }
+        for (i, rate) in rates.iter_mut().enumerate() {
+            if !self.held[i] {
+                *rate += first.0 * (self.direction[i] - *rate);
+            }
+        }
+        let Some((i, end)) = first.1 else { return false };
+        rates[i] = end;
+        self.held[i] = true;
+        true
+    }
+
+    /// Frees the held joint that would lower the error most by leaving its bound inwards.
+    fn release_one(&mut self, p: &Problem<'_>, rates: &[f64]) -> bool {
+        let size = self.rest.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let least = RELEASE * self.svd.value(0) * size;
+        let mut best = (least, None);
+        for (i, bound) in p.bounds.iter().enumerate() {
+            if !self.held[i] || bound.lower == bound.upper {
+                continue;
+            }
+            let pull: f64 = p.j.column(i).iter().zip(&self.rest).map(|(a, r)| a * r).sum();
+            let inwards = if rates[i] >= bound.upper { -pull } else { pull };
+            if inwards > best.0 {
+                best = (inwards, Some(i));
+            }
+        }
+        let Some(i) = best.1 else { return false };
+        self.held[i] = false;
+        true
+    }
+
+    /// Decomposes J without the columns of held joints; the number of directions it can do.
+    fn decompose_free(&mut self, p: &Problem<'_>) -> usize {
         self.reduced.as_mut_slice().copy_from_slice(p.j.as_slice());
         for (i, held) in self.held.iter().enumerate() {
             if *held {
@@ -179,7 +241,8 @@ impl Saturator {
         }
         self.svd.decompose(&self.reduced);
         p.method.gains(&self.svd, p.x, &mut self.gains);
-        self.gains.last().is_some_and(|g| *g > 0.0)
+        let values = self.svd.values();
+        self.gains.iter().zip(values).filter(|(g, s)| is_kept(*g * s)).count()
     }
 }
 

@@ -6,7 +6,7 @@
 //!          then position, velocity and acceleration limits (`limits.rs`, `saturation.rs`)
 //! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
 //! Units    m, rad, s
-//! Valid    gain * dt < 2; any rank. No allocation; at most 2 n + 1 decompositions a step.
+//! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step.
 //! Fails    on numbers that are not finite, and then leaves the servo as it was
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo.rs, tests/allocation.rs

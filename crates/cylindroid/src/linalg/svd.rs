@@ -218,12 +218,20 @@ impl Svd {
     /// `|A - U S V^T| / |A|` in the Frobenius norm: zero up to rounding for every result.
     #[must_use]
     pub fn residual(&self, a: &Matrix) -> f64 {
-        let rebuilt = Matrix::from_fn(self.rows, self.cols, |i, j| {
-            (0..self.len()).map(|l| self.u(l)[i] * self.value(l) * self.v(l)[j]).sum()
-        });
-        let norm = a.frobenius_norm();
-        let difference = Matrix::from_fn(self.rows, self.cols, |i, j| a[(i, j)] - rebuilt[(i, j)]);
-        if norm == 0.0 { difference.frobenius_norm() } else { difference.frobenius_norm() / norm }
+        let largest = a.max_abs();
+        if largest == 0.0 {
+            return self.values().fold(0.0, f64::max);
+        }
+        let (mut difference, mut size) = (0.0, 0.0);
+        for i in 0..self.rows {
+            for j in 0..self.cols {
+                let rebuilt: f64 =
+                    (0..self.len()).map(|l| self.u(l)[i] * self.value(l) * self.v(l)[j]).sum();
+                difference += ((a[(i, j)] - rebuilt) / largest).powi(2);
+                size += (a[(i, j)] / largest).powi(2);
+            }
+        }
+        (difference / size).sqrt()
     }
 
     fn reset_rotations(&mut self) {

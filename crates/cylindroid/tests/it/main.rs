@@ -8,8 +8,8 @@
 )]
 
 mod inverse;
-//mod kinematics;
-//mod servo;
+mod kinematics;
+mod servo;
 mod spatial;
 mod support;
 mod svd;

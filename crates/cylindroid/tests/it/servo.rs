@@ -156,11 +156,13 @@ fn secondary_tasks_do_what_they_say() {
             o.tolerance = Tolerance { position: 1e-9, orientation: 1e-9 };
         });
         let mut q = start.clone();
-        for _ in 0..3000 {
+        for _ in 0..20_000 {
             let step = servo.step(&q, pose).unwrap();
             assert!(step.position_error < 1e-4, "the task was disturbed");
             servo.advance(&mut q);
         }
+        // At rest where the wish has no part left in the null space.
+        assert!(servo.rates().iter().all(|r| r.abs() < 5e-3), "{:?}", servo.rates());
         q
     };
     let distance = |a: &[f64], b: &[f64]| {
@@ -168,9 +170,9 @@ fn secondary_tasks_do_what_they_say() {
     };
     let posture = vec![0.0; 7];
     let q = after(Secondary::Posture { q: posture.clone(), gain: 1.0 });
-    assert!(distance(&q, &posture) < 0.9 * distance(&start, &posture));
+    assert!(distance(&q, &posture) < distance(&start, &posture) - 0.1);
     let q = after(Secondary::Centring { gain: 1.0 });
-    assert!(distance(&q, &[0.0; 7]) < 0.9 * distance(&start, &[0.0; 7]));
+    assert!(distance(&q, &[0.0; 7]) < distance(&start, &[0.0; 7]) - 0.1);
     let w = |q: &[f64]| {
         let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
         cylindroid::linalg::Svd::of(&j).values().product::<f64>()
