@@ -94,6 +94,20 @@ fn svd_6x7_cold(bencher: Bencher<'_, '_>) {
     });
 }
 
+#[divan::bench]
+fn svd_6x7_warm(bencher: Bencher<'_, '_>) {
+    let j = panda_jacobian();
+    let mut near = j.clone();
+    near[(0, 0)] += 1e-4;
+    let mut svd = Svd::workspace(6, 7);
+    let mut i = 0;
+    bencher.bench_local(|| {
+        i ^= 1;
+        svd.decompose_warm(black_box(if i == 0 { &j } else { &near }));
+        black_box(svd.value(0))
+    });
+}
+
 /// With the report, which allocates.
 #[divan::bench(args = Method::ALL.map(|m| m.name()))]
 fn inverse_6x7(bencher: Bencher<'_, '_>, name: &str) {

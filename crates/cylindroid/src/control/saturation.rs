@@ -11,7 +11,7 @@
 //!          Parker 1995 (bounded-variable least squares)
 //! Checked  tests/it/servo.rs::saturation_*
 
-use super::limits::RateBounds;
+use super::limits::{LimitKind, RateBounds};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, Svd};
 
@@ -79,14 +79,26 @@ impl Saturator {
     ) -> Saturation {
         let bounds = problem.bounds;
         // The secondary motion yields first.
-        if let Some((_, share)) = interval(rates, secondary, bounds) {
+        if let Some(span) = interval(rates, secondary, bounds) {
             for ((rate, z), bound) in rates.iter_mut().zip(secondary).zip(bounds) {
-                *rate = bound.clamp(*rate + share * z);
+                *rate = bound.clamp(*rate + span.most * z);
             }
             return Saturation { scale: 1.0, bent: false };
         }
-        let scale = self.scaled(problem);
-        if scale >= LEAST_SCALE {
+        // While joints gain speed the twist is scaled and grows from step to step; only lasting
+        // limits are worth another distribution of the motion over the joints.
+        self.particular.fill(0.0);
+        if let Some(span) = interval(&self.particular, rates, bounds)
+            && span.most > 0.0
+            && span.cause == LimitKind::Acceleration
+        {
+            for (rate, bound) in rates.iter_mut().zip(bounds) {
+                *rate = bound.clamp(*rate * span.most);
+            }
+            return Saturation { scale: span.most, bent: false };
+        }
+        let (scale, cause) = self.scaled(problem);
+        if scale >= LEAST_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
             rates.copy_from_slice(&self.best);
             return Saturation { scale, bent: false };
         }
@@ -94,12 +106,13 @@ impl Saturator {
         Saturation { scale: 0.0, bent: true }
     }
 
-    /// The largest feasible scale, with its rates in `best`; 0 if none.
-    fn scaled(&mut self, p: Problem<'_>) -> f64 {
+    /// The largest feasible scale, with its rates in `best`, and what limits it; 0 if none.
+    fn scaled(&mut self, p: Problem<'_>) -> (f64, LimitKind) {
         let n = p.bounds.len();
         self.held.fill(false);
         self.held_rates.fill(0.0);
         let mut best = 0.0;
+        let mut cause = LimitKind::Position;
         let mut possible = 0;
         for round in 0..n {
             let rank = self.decompose_free(&p);
@@ -117,10 +130,11 @@ impl Saturator {
             for (a, h) in self.particular.iter_mut().zip(&self.held_rates) {
                 *a += h;
             }
-            if let Some((_, s)) = interval(&self.particular, &self.direction, p.bounds)
-                && s > best
+            if let Some(span) = interval(&self.particular, &self.direction, p.bounds)
+                && span.most > best
             {
-                best = s;
+                let s = span.most;
+                (best, cause) = (s, span.cause);
                 for ((b, a), d) in self.best.iter_mut().zip(&self.particular).zip(&self.direction) {
                     *b = a + s * d;
                 }
@@ -144,7 +158,7 @@ impl Saturator {
             self.held[i] = true;
             self.held_rates[i] = rate;
         }
-        best
+        (best, cause)
     }
 
     /// Bounded least squares by an active set: hold what reaches a bound, release what would leave
@@ -258,9 +272,19 @@ pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], ou
     }
 }
 
-/// The interval of s in [0, 1] for which `a + s b` keeps the bounds; `None` if empty.
-fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<(f64, f64)> {
-    let (mut least, mut most) = (0.0_f64, 1.0_f64);
+/// Where `a + s b` keeps the bounds.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    /// The largest s in [0, 1].
+    most: f64,
+    /// The limit that sets it; velocity if none does.
+    cause: LimitKind,
+}
+
+/// The s in [0, 1] for which `a + s b` keeps the bounds; `None` if there are none.
+fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<Span> {
+    let mut least = 0.0_f64;
+    let mut span = Span { most: 1.0, cause: LimitKind::Velocity };
     for ((a, b), bound) in a.iter().zip(b).zip(bounds) {
         if *b == 0.0 {
             if !bound.contains(*a) {
@@ -268,9 +292,16 @@ fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<(f64, f64)> {
             }
             continue;
         }
-        let (s, t) = ((bound.lower - a) / b, (bound.upper - a) / b);
-        least = least.max(s.min(t));
-        most = most.min(s.max(t));
+        let (lower, upper) = ((bound.lower - a) / b, (bound.upper - a) / b);
+        let (enter, leave, cause) = if *b > 0.0 {
+            (lower, upper, bound.upper_cause)
+        } else {
+            (upper, lower, bound.lower_cause)
+        };
+        least = least.max(enter);
+        if leave < span.most {
+            span = Span { most: leave, cause };
+        }
     }
-    (least <= most).then_some((least, most))
+    (least <= span.most).then_some(span)
 }

@@ -395,6 +395,9 @@ impl Servo {
                 &mut self.wish,
             );
         }
+        if self.wish.iter().all(|w| *w == 0.0) {
+            return;
+        }
         for (w, c) in self.wish.iter_mut().zip(&self.columns) {
             *w /= c;
         }

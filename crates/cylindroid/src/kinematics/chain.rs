@@ -8,14 +8,13 @@ use super::jacobian::{Reference, Tip};
 use super::state::EndEffector;
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Motion, Node};
-use crate::spatial::{Pose, Vec3};
+use crate::spatial::{Padded, Pose, Vec3};
 
 /// The moving part of a mechanism from the ground to one end effector.
 #[derive(Debug, Clone)]
 pub struct Chain {
     nodes: Vec<Node>,
-    slots: Vec<Pose>,
-    slot_from_tool: Pose,
+    slots: Vec<Padded>,
     coordinates: Vec<usize>,
     local: Vec<f64>,
     world_from_tool: Pose,
@@ -27,6 +26,7 @@ impl Chain {
     pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
         let of = of.into();
         let frame = mechanism.frame_of(of.frame);
+        let slot_from_tool = frame.slot_from_frame * of.frame_from_tool;
         let mut path = Vec::new();
         let mut slot = frame.slot;
         while slot > 0 {
@@ -38,7 +38,7 @@ impl Chain {
             path.iter().flat_map(|n| n.coordinate..n.coordinate + n.motion.dof()).collect();
         coordinates.sort_unstable();
         coordinates.dedup();
-        let nodes: Vec<Node> = path
+        let mut nodes: Vec<Node> = path
             .into_iter()
             .enumerate()
             .map(|(i, node)| Node {
@@ -47,13 +47,22 @@ impl Chain {
                 ..node
             })
             .collect();
+        if !coordinates.is_empty() {
+            nodes.push(Node {
+                parent: nodes.len(),
+                placement: slot_from_tool.into(),
+                motion: Motion::Fixed,
+                coordinate: 0,
+                multiplier: 0.0,
+                offset: 0.0,
+            });
+        }
         let mut chain = Self {
-            slots: vec![Pose::IDENTITY; nodes.len() + 1],
+            slots: vec![Padded::IDENTITY; nodes.len() + 1],
             local: vec![0.0; coordinates.len()],
             nodes,
-            slot_from_tool: frame.slot_from_frame * of.frame_from_tool,
             coordinates,
-            world_from_tool: Pose::IDENTITY,
+            world_from_tool: slot_from_tool, // stays where nothing moves
         };
         chain.run();
         chain
@@ -121,23 +130,24 @@ impl Chain {
 
     /// Origin of the first moving joint in world; it does not depend on q [m].
     pub(crate) fn first_origin(&self) -> Vec3 {
-        self.nodes.first().map_or(self.world_from_tool.translation, |n| n.placement.translation)
+        self.nodes.first().map_or(self.world_from_tool.translation, |n| n.placement.translation())
     }
 
     /// The farthest that the tool can be from the origin of the first joint [m]: infinite where a
     /// joint slides without limits.
     pub(crate) fn length_after_first_joint(&self, mechanism: &Mechanism) -> f64 {
-        let fixed: f64 = self.nodes.iter().skip(1).map(|n| n.placement.translation.norm()).sum();
+        let fixed: f64 = self.nodes.iter().skip(1).map(|n| n.placement.translation().norm()).sum();
         let slides: f64 = self
             .nodes
             .iter()
+            .filter(|node| node.motion != Motion::Fixed)
             .map(|node| {
                 let limits = mechanism.coordinates()[self.coordinates[node.coordinate]].limits;
                 let ends =
                     [limits.lower, limits.upper].map(|q| (q * node.multiplier + node.offset).abs());
                 let most = ends[0].max(ends[1]);
                 match node.motion {
-                    Motion::Revolute | Motion::Spherical => 0.0,
+                    Motion::Fixed | Motion::Revolute | Motion::Spherical => 0.0,
                     Motion::Prismatic => most,
                     Motion::Helical(pitch) if pitch == 0.0 => 0.0,
                     Motion::Helical(pitch) => pitch.abs() * most,
@@ -145,12 +155,14 @@ impl Chain {
                 }
             })
             .sum();
-        fixed + slides + self.slot_from_tool.translation.norm()
+        fixed + slides
     }
 
     fn run(&mut self) {
         forward(&self.nodes, &self.local, &mut self.slots);
-        self.world_from_tool = self.slots[self.nodes.len()] * self.slot_from_tool;
+        if !self.nodes.is_empty() {
+            self.world_from_tool = self.slots[self.nodes.len()].pose();
+        }
     }
 
     fn tip(&self) -> Tip<'_> {

@@ -17,7 +17,7 @@
 
 use crate::linalg::Matrix;
 use crate::model::{Motion, Node};
-use crate::spatial::{Pose, Twist, Vec3};
+use crate::spatial::{Padded, Pose, Twist, Vec3};
 
 /// The point and the axes of a twist or a Jacobian, in the field's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -53,7 +53,7 @@ impl Reference {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tip<'a> {
     pub(crate) nodes: &'a [Node],
-    pub(crate) slots: &'a [Pose],
+    pub(crate) slots: &'a [Padded],
     pub(crate) slot: usize,
     pub(crate) world_from_tip: Pose,
 }
@@ -68,24 +68,25 @@ impl Tip<'_> {
         let mut depth = 0;
         while slot > 0 {
             let node = &self.nodes[slot - 1];
-            let here = self.slots[slot];
-            let axes = here.rotation.matrix().cols;
-            let arm = p - here.translation;
+            let here = &self.slots[slot];
+            let z = here.z_axis();
+            let arm = p - here.translation();
             let turn = |axis: Vec3| Twist { linear: axis.cross(arm), angular: axis };
             let slide = |axis: Vec3| Twist { linear: axis, angular: Vec3::ZERO };
             let c = node.coordinate;
             match node.motion {
-                Motion::Revolute => f(depth, c, turn(axes[2]) * node.multiplier),
-                Motion::Prismatic => f(depth, c, slide(axes[2]) * node.multiplier),
+                Motion::Fixed => {}
+                Motion::Revolute => f(depth, c, turn(z) * node.multiplier),
+                Motion::Prismatic => f(depth, c, slide(z) * node.multiplier),
                 Motion::Helical(pitch) => {
-                    f(depth, c, (turn(axes[2]) + slide(axes[2] * pitch)) * node.multiplier);
+                    f(depth, c, (turn(z) + slide(z * pitch)) * node.multiplier);
                 }
                 Motion::Spherical => {
-                    axes.iter().enumerate().for_each(|(k, &a)| f(depth, c + k, turn(a)));
+                    here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + k, turn(a)));
                 }
                 Motion::Free => {
-                    axes.iter().enumerate().for_each(|(k, &a)| f(depth, c + k, slide(a)));
-                    axes.iter().enumerate().for_each(|(k, &a)| f(depth, c + 3 + k, turn(a)));
+                    here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + k, slide(a)));
+                    here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + 3 + k, turn(a)));
                 }
             }
             slot = node.parent;

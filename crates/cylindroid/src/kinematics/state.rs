@@ -6,7 +6,7 @@ use super::jacobian::{Reference, Tip};
 use crate::error::Result;
 use crate::linalg::Matrix;
 use crate::model::{FrameId, Mechanism};
-use crate::spatial::{Pose, Twist};
+use crate::spatial::{Padded, Pose, Twist};
 
 /// A frame of a mechanism and a tool point fixed to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ impl From<FrameId> for EndEffector {
 pub struct State {
     mechanism: Mechanism,
     q: Vec<f64>,
-    slots: Vec<Pose>,
+    slots: Vec<Padded>,
 }
 
 impl Mechanism {
@@ -40,7 +40,7 @@ impl Mechanism {
         let mut state = State {
             mechanism: self.clone(),
             q: vec![0.0; self.n()],
-            slots: vec![Pose::IDENTITY; self.nodes().len() + 1],
+            slots: vec![Padded::IDENTITY; self.nodes().len() + 1],
         };
         state.set(q)?;
         Ok(state)
@@ -162,7 +162,9 @@ impl State {
             nodes: self.mechanism.nodes(),
             slots: &self.slots,
             slot: frame.slot,
-            world_from_tip: self.slots[frame.slot] * frame.slot_from_frame * of.frame_from_tool,
+            world_from_tip: self.slots[frame.slot].pose()
+                * frame.slot_from_frame
+                * of.frame_from_tool,
         }
     }
 }

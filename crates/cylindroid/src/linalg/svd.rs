@@ -21,6 +21,9 @@ use crate::tolerance::{JACOBI_ORTHOGONAL, MACHINE_RANK};
 /// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost finite.
 const MAX_SWEEPS: usize = 40;
 
+/// Warm starts between two repairs of W, whose columns drift by a rounding each time.
+const WARM_STARTS: usize = 8;
+
 /// A singular value decomposition and the memory to compute the next one without allocation.
 #[derive(Debug, Clone)]
 pub struct Svd {
@@ -33,7 +36,8 @@ pub struct Svd {
     scratch: Vec<f64>,
     sigma: Vec<f64>,
     order: Vec<usize>,
-    warm: bool,
+    /// Warm starts that are left before W is repaired; `None` before the first decomposition.
+    warm: Option<usize>,
     sweeps: usize,
 }
 
@@ -62,7 +66,7 @@ impl Svd {
             scratch: vec![0.0; k * k],
             sigma: vec![0.0; k],
             order: (0..k).collect(),
-            warm: false,
+            warm: None,
             sweeps: 0,
         }
     }
@@ -80,7 +84,7 @@ impl Svd {
     /// # Panics
     /// If `a` has not the shape of the workspace.
     pub fn decompose(&mut self, a: &Matrix) {
-        self.warm = false;
+        self.warm = None;
         self.decompose_warm(a);
     }
 
@@ -97,17 +101,24 @@ impl Svd {
             self.b.as_mut_slice().fill(0.0);
             self.reset_rotations();
             self.order.iter_mut().enumerate().for_each(|(i, o)| *o = i);
-            self.warm = false;
+            self.warm = None;
             return;
         }
         // Scaled by a power of two, which is exact, so that squares neither overflow nor vanish.
         let scale = power_of_two_below(largest);
-        if self.warm {
-            self.reorthonormalise();
-            self.load_times_w(a, 1.0 / scale);
-        } else {
-            self.reset_rotations();
-            self.load(a, 1.0 / scale);
+        match self.warm {
+            Some(left) => {
+                if left == 0 {
+                    self.reorthonormalise();
+                }
+                self.warm = Some(left.checked_sub(1).unwrap_or(WARM_STARTS));
+                self.load_times_w(a, 1.0 / scale);
+            }
+            None => {
+                self.warm = Some(WARM_STARTS);
+                self.reset_rotations();
+                self.load(a, 1.0 / scale);
+            }
         }
         self.sweeps = 0;
         while self.sweeps < MAX_SWEEPS {
@@ -128,7 +139,6 @@ impl Svd {
             self.b.column_mut(j).iter_mut().for_each(|x| *x *= inverse);
             self.sigma[j] = s * scale;
         }
-        self.warm = true;
         debug_assert!(self.residual(a) < 1e-11, "SVD residual {} of {a:?}", self.residual(a));
     }
 

@@ -731,7 +731,7 @@ impl NodeChain<'_> {
         let turn = Pose::from_rotation(joint_from_z);
         self.nodes.push(Node {
             parent: self.slot,
-            placement: self.pending * turn,
+            placement: (self.pending * turn).into(),
             motion,
             coordinate: self.next,
             multiplier: self.multiplier,

@@ -231,7 +231,7 @@ impl Mechanism {
         for node in self.nodes() {
             let c = node.coordinate;
             match node.motion {
-                Motion::Revolute | Motion::Prismatic | Motion::Helical(_) => {}
+                Motion::Fixed | Motion::Revolute | Motion::Prismatic | Motion::Helical(_) => {}
                 Motion::Spherical => {
                     let r = Rotation::exp(vec3(q, c)) * Rotation::exp(vec3(rates, c) * dt);
                     put(q, c, r.renormalised().log());

@@ -25,18 +25,29 @@ fn run_checked(robot: &Mechanism, servo: &mut Servo, q: &[f64], target: Pose) ->
     let fallback = servo.options().acceleration;
     let mut before = vec![0.0; robot.n()];
     servo.reset();
-    drive(servo, q, 30.0, |_| (Target::from(target), true), |sample| {
-        for (i, c) in robot.coordinates().iter().enumerate() {
-            let (l, q, rate) = (&c.limits, sample.q[i], sample.rates[i]);
-            let a = if l.acceleration.is_finite() { l.acceleration } else { fallback };
-            assert!(rate.is_finite() && q.is_finite(), "{} is not finite", c.name);
-            assert!(q >= l.lower && q <= l.upper, "{} left its limits: {q}", c.name);
-            assert!(rate.abs() <= l.velocity * (1.0 + 1e-12), "{}: rate {rate}", c.name);
-            let change = (rate - before[i]).abs();
-            assert!(change <= a * dt * (1.0 + 1e-9) + 1e-15, "{}: acceleration {}", c.name, change / dt);
-            before[i] = rate;
-        }
-    })
+    drive(
+        servo,
+        q,
+        30.0,
+        |_| (Target::from(target), true),
+        |sample| {
+            for (i, c) in robot.coordinates().iter().enumerate() {
+                let (l, q, rate) = (&c.limits, sample.q[i], sample.rates[i]);
+                let a = if l.acceleration.is_finite() { l.acceleration } else { fallback };
+                assert!(rate.is_finite() && q.is_finite(), "{} is not finite", c.name);
+                assert!(q >= l.lower && q <= l.upper, "{} left its limits: {q}", c.name);
+                assert!(rate.abs() <= l.velocity * (1.0 + 1e-12), "{}: rate {rate}", c.name);
+                let change = (rate - before[i]).abs();
+                assert!(
+                    change <= a * dt * (1.0 + 1e-9) + 1e-15,
+                    "{}: acceleration {}",
+                    c.name,
+                    change / dt
+                );
+                before[i] = rate;
+            }
+        },
+    )
     .unwrap()
 }
 
@@ -116,7 +127,9 @@ fn secondary_motion_stays_in_the_null_space() {
             servo.step_with(&q, state.pose(robot.tool()), &wanted).unwrap();
             let rates = servo.rates().to_vec();
             let size: f64 = rates.iter().map(|r| r * r).sum::<f64>().sqrt();
-            assert!(size > 0.0 || robot.coordinates().iter().any(|c| c.limits.acceleration.is_finite()));
+            assert!(
+                size > 0.0 || robot.coordinates().iter().any(|c| c.limits.acceleration.is_finite())
+            );
             let moved = j.mul_vec(&rates).iter().map(|v| v * v).sum::<f64>().sqrt();
             assert!(moved <= 1e-12 * j.frobenius_norm() * size.max(1e-3), "{moved} of {size}");
         }
@@ -165,9 +178,8 @@ fn secondary_tasks_do_what_they_say() {
         assert!(servo.rates().iter().all(|r| r.abs() < 5e-3), "{:?}", servo.rates());
         q
     };
-    let distance = |a: &[f64], b: &[f64]| {
-        a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
-    };
+    let distance =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt();
     let posture = vec![0.0; 7];
     let q = after(Secondary::Posture { q: posture.clone(), gain: 1.0 });
     assert!(distance(&q, &posture) < distance(&start, &posture) - 0.1);
@@ -250,7 +262,12 @@ fn saturation_uses_the_other_joints() {
         b.joint(JointSpec {
             parent_from_joint: Pose::from_translation(Vec3::X * f64::from(u8::from(i > 0))),
             limits: Limits { velocity: if i == 0 { 1e-3 } else { 3.0 }, ..Limits::NONE },
-            ..JointSpec::new(&format!("q{i}"), JointKind::Revolute, &format!("l{i}"), &format!("l{}", i + 1))
+            ..JointSpec::new(
+                &format!("q{i}"),
+                JointKind::Revolute,
+                &format!("l{i}"),
+                &format!("l{}", i + 1),
+            )
         });
     }
     b.frame("tip", "l4", Pose::from_translation(Vec3::X)).tool("tip");
@@ -282,7 +299,9 @@ fn speed_is_saturated_as_a_whole() {
     let mut servo = servo(&robot, |o| o.speed = Speed { linear: 0.05, angular: 0.1 });
     servo.step(robot.home(), target).unwrap();
     let twist = state.twist(servo.rates(), robot.tool(), Reference::LocalWorldAligned).unwrap();
-    assert!(twist.linear.norm() <= 0.05 * (1.0 + 1e-9) && twist.angular.norm() <= 0.1 * (1.0 + 1e-9));
+    assert!(
+        twist.linear.norm() <= 0.05 * (1.0 + 1e-9) && twist.angular.norm() <= 0.1 * (1.0 + 1e-9)
+    );
     let ratio = twist.linear.norm() / twist.angular.norm();
     let wanted = Vec3::new(-0.1, 0.2, 0.1).norm() / Vec3::new(0.2, 0.1, 0.0).norm();
     assert!((ratio - wanted).abs() < 1e-6 * wanted);
@@ -315,9 +334,15 @@ fn singular_poses_keep_rates_bounded() {
                     };
                     // Without any limits of its own, only the inverse bounds the rates.
                     let mut servo = servo(robot, |o| o.method = method);
-                    let outcome = drive(&mut servo, &q, 2.0, |_| (target.into(), true), |sample| {
-                        assert!(sample.rates.iter().all(|r| r.is_finite() && r.abs() < 30.0));
-                    });
+                    let outcome = drive(
+                        &mut servo,
+                        &q,
+                        2.0,
+                        |_| (target.into(), true),
+                        |sample| {
+                            assert!(sample.rates.iter().all(|r| r.is_finite() && r.abs() < 30.0));
+                        },
+                    );
                     outcome.unwrap();
                 }
             }
@@ -529,7 +554,9 @@ fn random_starts_to_random_targets() {
             } else {
                 let cause = match &outcome.stall {
                     None => "time ran out",
-                    Some(Stall::OutOfReach { .. }) => panic!("a reachable target, proved unreachable"),
+                    Some(Stall::OutOfReach { .. }) => {
+                        panic!("a reachable target, proved unreachable")
+                    }
                     Some(Stall::Limits { .. }) => "joint limits",
                     Some(Stall::Singular { .. }) => "singular",
                     Some(Stall::TooFewJoints { .. }) => "too few joints",
