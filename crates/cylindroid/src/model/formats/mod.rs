@@ -1,19 +1,46 @@
 //! File formats: each file here reads one format and writes nothing but a [`Builder`].
 //!
+//! The format is told by the extension and by what stands in the file: `.toml` is a mechanism
+//! file, everything that begins with `<` is XML and is told by its root element.
+//!
 //! [`Builder`]: super::Builder
+
+pub mod dh;
+mod place;
+pub mod toml;
+pub mod urdf;
 
 use std::path::Path;
 
-use super::Mechanism;
+use super::{Mechanism, catalogue};
 use crate::error::{Error, Result};
+
+/// Extensions by which a word is taken for a file that is not there, not for a misspelt name.
+const EXTENSIONS: [&str; 6] = ["urdf", "xml", "xacro", "sdf", "toml", "mjcf"];
 
 /// Loads a model: the name of a catalogue model, or the path of a file.
 ///
 /// # Errors
 /// A name that is neither, a file that cannot be read or understood.
+///
+/// # Examples
+/// ```
+/// let robot = cylindroid::load("panda")?;
+/// assert_eq!(robot.n(), 7);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 pub fn load(name_or_path: &str) -> Result<Mechanism> {
-    let _ = name_or_path;
-    Err(Error::check_len("unwritten", 0, 1).unwrap_err())
+    if catalogue::names().contains(&name_or_path) {
+        return catalogue::load(name_or_path);
+    }
+    let path = Path::new(name_or_path);
+    let looks_like_a_path = name_or_path.contains(['/', '\\'])
+        || extension(path).is_some_and(|e| EXTENSIONS.contains(&e.as_str()));
+    if looks_like_a_path || path.exists() {
+        return load_file(path);
+    }
+    let names = catalogue::names().iter().copied();
+    Err(Error::unknown("catalogue model or file", name_or_path, names))
 }
 
 /// Loads a model file, by its extension and content.
@@ -21,5 +48,26 @@ pub fn load(name_or_path: &str) -> Result<Mechanism> {
 /// # Errors
 /// As [`load`].
 pub fn load_file(path: &Path) -> Result<Mechanism> {
-    load(&path.to_string_lossy())
+    let bytes = std::fs::read(path).map_err(|e| Error::Io {
+        path: path.to_owned(),
+        action: "read",
+        message: e.to_string(),
+    })?;
+    // Old files hold names and comments in other encodings; the numbers are ASCII in all of them.
+    let text = String::from_utf8_lossy(&bytes);
+    let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
+    match extension(path).as_deref() {
+        Some("toml") => toml::parse(&text, path),
+        Some("urdf" | "xml" | "xacro" | "sdf" | "mjcf") => urdf::parse(&text, path),
+        _ if is_xml => urdf::parse(&text, path),
+        _ => Err(Error::InvalidOption {
+            option: "model file",
+            value: path.display().to_string(),
+            reason: "its format cannot be told; name a .urdf or .toml file".to_owned(),
+        }),
+    }
+}
+
+fn extension(path: &Path) -> Option<String> {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase())
 }

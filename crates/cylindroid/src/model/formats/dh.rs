@@ -1,0 +1,107 @@
+//! Denavit-Hartenberg arms: rows of four numbers to joints.
+//!
+//! Formula  standard  (i-1)_from_i = Rz(theta) Tz(d) Tx(a) Rx(alpha), joint i along z of i-1
+//!          modified  (i-1)_from_i = Rx(alpha) Tx(a) Rz(theta) Tz(d), joint i along z of i
+//!          q adds to theta (revolute) or to d (prismatic): the numbers of a row hold at q = 0
+//! Units    a, d in m; alpha, theta in rad
+//! Why so   a link's frame lies on the axis of its joint. In the standard convention a row's
+//!          Tx(a) Rx(alpha) is therefore part of the next joint's placement, and the frame after
+//!          the last row, the flange, is a link of its own; likewise in the modified convention
+//! Source   Denavit & Hartenberg 1955; Craig, Introduction to Robotics, 1986 (modified)
+//! Checked  tests/formats/dh.rs, against the product of the 4 x 4 matrices
+
+use crate::model::{JointKind, JointSpec, Limits};
+use crate::spatial::{Pose, Rotation, Rpy, Vec3};
+
+/// Which of the two conventions the rows follow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Convention {
+    /// Denavit & Hartenberg, Paul, Siciliano: joint i turns about z of frame i - 1.
+    Standard,
+    /// Craig, Khalil: joint i turns about z of frame i.
+    Modified,
+}
+
+/// One row of the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Name of the joint.
+    pub name: String,
+    /// Length along x [m].
+    pub a: f64,
+    /// Twist about x [rad].
+    pub alpha: f64,
+    /// Offset along z [m].
+    pub d: f64,
+    /// Angle about z [rad].
+    pub theta: f64,
+    /// True if q adds to d, false if it adds to theta.
+    pub prismatic: bool,
+    /// Limits of q.
+    pub limits: Limits,
+}
+
+/// A serial arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arm {
+    /// How to read the rows.
+    pub convention: Convention,
+    /// Rows from the base on.
+    pub rows: Vec<Row>,
+    /// Where frame 0 stands in the world; with `None` it is the world, and the root.
+    pub ground_from_base: Option<Pose>,
+    /// A last constant displacement: the flange in the frame of the last row.
+    pub last_from_flange: Pose,
+}
+
+/// The joints of an arm: links `base`, `link1`, ... and `flange`, with the root `ground` where the
+/// base stands elsewhere. Link i is fixed to the part that joint i moves and has its origin on
+/// that joint's axis; frame N of the table, moved by `last_from_flange`, is `flange`.
+#[must_use]
+pub fn joints(arm: &Arm) -> Vec<JointSpec> {
+    let mut joints = Vec::with_capacity(arm.rows.len() + 2);
+    if let Some(pose) = arm.ground_from_base {
+        joints.push(fixed("base", "ground", "base", pose));
+    }
+    let mut parent = "base".to_owned();
+    // What the rows so far leave between the last joint's frame and the next row.
+    let mut pending = Pose::IDENTITY;
+    for (i, row) in arm.rows.iter().enumerate() {
+        let child = format!("link{}", i + 1);
+        let along_x = along_x(row);
+        let along_z = Pose {
+            rotation: Rotation::about_z(row.theta),
+            translation: Vec3::new(0.0, 0.0, row.d),
+        };
+        let kind = if row.prismatic { JointKind::Prismatic } else { JointKind::Revolute };
+        let (placement, after) = match arm.convention {
+            Convention::Standard => (pending * along_z, along_x),
+            Convention::Modified => (pending * along_x * along_z, Pose::IDENTITY),
+        };
+        joints.push(JointSpec {
+            parent_from_joint: placement,
+            limits: row.limits,
+            ..JointSpec::new(&row.name, kind, &parent, &child)
+        });
+        pending = after;
+        parent = child;
+    }
+    joints.push(fixed("flange", &parent, "flange", pending * arm.last_from_flange));
+    joints
+}
+
+/// `Tx(a) Rx(alpha)`; both commute.
+fn along_x(row: &Row) -> Pose {
+    Pose {
+        rotation: Rpy { roll: row.alpha, ..Rpy::default() }.rotation(),
+        translation: Vec3::new(row.a, 0.0, 0.0),
+    }
+}
+
+fn fixed(name: &str, parent: &str, child: &str, pose: Pose) -> JointSpec {
+    JointSpec {
+        parent_from_joint: pose,
+        actuated: false,
+        ..JointSpec::new(name, JointKind::Fixed, parent, child)
+    }
+}

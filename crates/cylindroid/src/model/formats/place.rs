@@ -1,0 +1,181 @@
+//! Places in a model file: from byte ranges to errors with line and column, and notes that count
+//! what was not used.
+
+use std::ops::Range;
+use std::path::Path;
+
+use crate::error::{Error, FileError};
+use crate::model::LoadReport;
+
+/// The text of a model file, and how errors in it are written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) format: &'static str,
+    pub(super) path: &'a Path,
+    pub(super) text: &'a str,
+}
+
+impl Source<'_> {
+    /// An error at a byte range of the text.
+    pub(super) fn error(
+        &self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Error {
+        let start = self.clamp(span.start);
+        let end = self.clamp(span.end).max(start);
+        let (line, column) = self.line_column(start);
+        Error::File(Box::new(FileError {
+            format: self.format,
+            path: self.path.to_owned(),
+            line,
+            column,
+            span: start..end,
+            message: message.into(),
+            help: help.into(),
+        }))
+    }
+
+    /// Line of a byte offset, from 1.
+    pub(super) fn line(&self, offset: usize) -> usize {
+        self.line_column(self.clamp(offset)).0
+    }
+
+    /// The byte offset of a line and a column in characters, both from 1.
+    pub(super) fn offset(&self, line: usize, column: usize) -> usize {
+        let start: usize =
+            self.text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+        let rest = &self.text[start..];
+        let within = rest.char_indices().nth(column.saturating_sub(1)).map_or(rest.len(), |c| c.0);
+        start + within
+    }
+
+    fn line_column(&self, offset: usize) -> (usize, usize) {
+        let before = &self.text[..offset];
+        let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+        let line = before.bytes().filter(|b| *b == b'\n').count() + 1;
+        (line, before[line_start..].chars().count() + 1)
+    }
+
+    /// The offset, moved back to the start of a character inside the text.
+    fn clamp(&self, offset: usize) -> usize {
+        let mut offset = offset.min(self.text.len());
+        while !self.text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        offset
+    }
+}
+
+/// Characters of names listed in one note; the rest are counted only.
+const NAMES_SHOWN: usize = 60;
+
+/// What was not used, one note for each distinct thing.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    notes: Vec<Note>,
+}
+
+#[derive(Debug)]
+struct Note {
+    line: usize,
+    what: String,
+    why: &'static str,
+    count: usize,
+    names: Vec<String>,
+}
+
+impl Notes {
+    /// Notes `what`; `name` says whose it is (may be empty). The same `what` again is counted.
+    pub(super) fn add(
+        &mut self,
+        line: usize,
+        what: impl Into<String>,
+        why: &'static str,
+        name: &str,
+    ) {
+        let what = what.into();
+        let found = self.notes.iter().position(|n| n.what == what && n.why == why);
+        let index = found.unwrap_or_else(|| {
+            self.notes.push(Note { line, what, why, count: 0, names: Vec::new() });
+            self.notes.len() - 1
+        });
+        let note = &mut self.notes[index];
+        note.count += 1;
+        note.line = note.line.min(line);
+        if !name.is_empty() && !note.names.iter().any(|n| n == name) {
+            note.names.push(name.to_owned());
+        }
+    }
+
+    /// Writes the notes into a report, in the order of the file.
+    pub(super) fn write(mut self, report: &mut LoadReport) {
+        self.notes.sort_by_key(|n| n.line);
+        for note in self.notes {
+            let mut detail = Vec::new();
+            if note.count > 1 {
+                detail.push(format!("{} times", note.count));
+            }
+            if !note.names.is_empty() {
+                let mut names = note.names.iter();
+                let mut list = names.next().cloned().unwrap_or_default();
+                for name in names {
+                    if list.len() + name.len() > NAMES_SHOWN {
+                        list += ", ...";
+                        break;
+                    }
+                    list = format!("{list}, {name}");
+                }
+                detail.push(list);
+            }
+            let what = if detail.is_empty() {
+                note.what
+            } else {
+                format!("{} ({})", note.what, detail.join(": "))
+            };
+            report.ignore(note.line, what, note.why);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "<a>\n  <é x='1'/>\n</a>";
+
+    fn source() -> Source<'static> {
+        Source { format: "URDF", path: Path::new("a.urdf"), text: TEXT }
+    }
+
+    #[test]
+    fn columns_count_characters_and_offsets_come_back() {
+        let x = TEXT.find('x').unwrap();
+        let Error::File(e) = source().error(x..x + 1, "m", "h") else { panic!("not a file error") };
+        assert_eq!((e.line, e.column, e.span), (2, 6, x..x + 1));
+        assert_eq!(source().offset(2, 6), x);
+    }
+
+    #[test]
+    fn ranges_outside_the_text_or_inside_a_character_are_moved() {
+        let inside = TEXT.find('é').unwrap() + 1;
+        for span in [inside..inside, 1000..2000, 5..2] {
+            assert!(matches!(source().error(span, "m", ""), Error::File(_)));
+        }
+        assert_eq!(source().offset(99, 99), TEXT.len());
+    }
+
+    #[test]
+    fn notes_of_the_same_thing_are_one() {
+        let mut notes = Notes::default();
+        notes.add(7, "<dynamics>", "not used", "b");
+        notes.add(3, "<dynamics>", "not used", "a");
+        notes.add(5, "<gazebo>", "not used", "");
+        let mut report = LoadReport::default();
+        notes.write(&mut report);
+        assert_eq!(report.ignored.len(), 2);
+        assert_eq!(report.ignored[0].what, "<dynamics> (2 times: b, a)");
+        assert_eq!((report.ignored[0].line, report.ignored[1].line), (3, 5));
+    }
+}

@@ -1,0 +1,186 @@
+//! Joints of a URDF.
+//!
+//! Defaults  axis x; origin the parent's; of two position limits the missing one is 0. A revolute
+//!           or prismatic joint without any position limit moves without end (noted), and so does
+//!           one whose four limits are all 0, which exporters write for "not filled in". Speeds
+//!           and efforts that are 0 or missing are unlimited (noted).
+
+use roxmltree::Node;
+
+use super::xml::Reader;
+use crate::error::{Error, Result};
+use crate::model::{JointKind, JointSpec, Limits, Mimic};
+use crate::spatial::Vec3;
+use crate::tolerance::ZERO_AXIS;
+
+const TYPES: [&str; 6] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar"];
+
+impl Reader<'_> {
+    pub(super) fn joint(&mut self, node: Node<'_, '_>, links: &[&str]) -> Result<JointSpec> {
+        let name = self.required(node, "name")?;
+        let kind = self.joint_kind(node)?;
+        self.leftovers(
+            node,
+            &["name", "type"],
+            &["origin", "parent", "child", "axis", "limit", "mimic"],
+        );
+        let parent = self.end(node, "parent", links)?;
+        let child = self.end(node, "child", links)?;
+        let mut spec = JointSpec::new(name, kind, parent, child);
+        spec.parent_from_joint = self.origin(node)?;
+        // Exporters leave axes of zeros and empty limits on fixed joints; they mean nothing there.
+        if kind != JointKind::Fixed {
+            spec.axis = self.axis(node, kind)?;
+            spec.limits = self.limits(node, kind)?;
+            spec.mimic = self.mimic(node)?;
+        }
+        Ok(spec)
+    }
+
+    fn joint_kind(&self, node: Node<'_, '_>) -> Result<JointKind> {
+        Ok(match self.required(node, "type")?.trim() {
+            "revolute" => JointKind::Revolute,
+            "continuous" => JointKind::Continuous,
+            "prismatic" => JointKind::Prismatic,
+            "fixed" => JointKind::Fixed,
+            "floating" => JointKind::Free,
+            "planar" => JointKind::Planar,
+            "spherical" | "ball" => JointKind::Spherical,
+            other => {
+                let unknown = Error::unknown("joint type", other, TYPES);
+                return Err(self.refuse(node, "type", unknown.to_string()));
+            }
+        })
+    }
+
+    /// The link that `<parent>` or `<child>` names.
+    fn end<'d>(
+        &mut self,
+        joint: Node<'d, '_>,
+        which: &'static str,
+        links: &[&str],
+    ) -> Result<&'d str> {
+        let Some(node) = self.child(joint, which) else {
+            let name = joint.attribute("name").unwrap_or("");
+            return Err(self.source.error(
+                Self::tag(joint),
+                format!("joint '{name}' has no <{which}>"),
+                format!("add <{which} link=\"...\"/>"),
+            ));
+        };
+        self.leftovers(node, &["link"], &[]);
+        let link = self.required(node, "link")?;
+        if !links.contains(&link) {
+            let unknown = Error::unknown("link", link, links.iter().copied());
+            return Err(self.refuse(node, "link", unknown.to_string()));
+        }
+        Ok(link)
+    }
+
+    fn axis(&mut self, joint: Node<'_, '_>, kind: JointKind) -> Result<Vec3> {
+        let Some(node) = self.child(joint, "axis") else { return Ok(Vec3::X) };
+        self.leftovers(node, &["xyz"], &[]);
+        let axis = self.vector::<3>(node, "xyz")?.map_or(Vec3::X, Vec3::from_array);
+        let needed = !matches!(kind, JointKind::Free | JointKind::Spherical);
+        if needed && axis.unit(ZERO_AXIS).is_none() {
+            let name = joint.attribute("name").unwrap_or("");
+            return Err(self.source.error(
+                Self::value(node, "xyz"),
+                format!("the axis of joint '{name}' has no direction"),
+                "give a vector that is not zero; the URDF default is 1 0 0",
+            ));
+        }
+        Ok(axis)
+    }
+
+    fn limits(&mut self, joint: Node<'_, '_>, kind: JointKind) -> Result<Limits> {
+        let name = joint.attribute("name").unwrap_or("");
+        let bounded = matches!(kind, JointKind::Revolute | JointKind::Prismatic);
+        let mut limits = Limits::NONE;
+        let Some(node) = self.child(joint, "limit") else {
+            if bounded {
+                let why = "read as unlimited in position, speed and effort";
+                self.notes.add(self.line(joint), "<limit> missing", why, name);
+            }
+            return Ok(limits);
+        };
+        let line = self.line(node);
+        self.leftovers(node, &["lower", "upper", "velocity", "acceleration", "effort"], &[]);
+        let (lower, upper) = (self.bound(node, "lower")?, self.bound(node, "upper")?);
+        let velocity = self.largest(node, "velocity", name)?;
+        let effort = self.largest(node, "effort", name)?;
+        limits.acceleration = match self.bound(node, "acceleration")? {
+            Some(a) if a > 0.0 => a,
+            _ => f64::INFINITY,
+        };
+        if kind.dof() > 1 {
+            self.notes.add(line, "<limit>", "not used for joints of several coordinates", name);
+            return Ok(Limits::NONE);
+        }
+        limits.velocity = velocity;
+        limits.effort = effort;
+        let empty = [lower, upper].iter().all(|x| x.is_none_or(|x| x == 0.0))
+            && velocity == f64::INFINITY
+            && effort == f64::INFINITY;
+        match (lower, upper) {
+            (None, None) if bounded => {
+                let why = "read as unlimited in position";
+                self.notes.add(line, "<limit> without lower and upper", why, name);
+            }
+            (None, None) => {}
+            _ if !bounded => {
+                let why = "a continuous joint has none";
+                self.notes.add(line, "position limits of continuous joints", why, name);
+            }
+            _ if empty => {
+                let why = "they hold no positive number: taken as not filled in, so unlimited";
+                self.notes.add(line, "<limit> of zeros", why, name);
+            }
+            (lower, upper) => {
+                (limits.lower, limits.upper) = (lower.unwrap_or(0.0), upper.unwrap_or(0.0));
+            }
+        }
+        if limits.lower > limits.upper {
+            let (lower, upper) = (limits.lower, limits.upper);
+            let at = if node.has_attribute("lower") { "lower" } else { "upper" };
+            return Err(self.source.error(
+                Self::value(node, at),
+                format!("joint '{name}' has lower limit {lower} above its upper limit {upper}"),
+                "exchange them; a limit that is missing is 0",
+            ));
+        }
+        Ok(limits)
+    }
+
+    /// A largest speed or effort: unlimited where it is 0 or missing.
+    fn largest(
+        &mut self,
+        limit: Node<'_, '_>,
+        attribute: &'static str,
+        joint: &str,
+    ) -> Result<f64> {
+        match self.bound(limit, attribute)? {
+            Some(x) if x > 0.0 => Ok(x),
+            Some(x) if x < 0.0 => Err(self.refuse(
+                limit,
+                attribute,
+                format!("joint '{joint}' has {attribute} limit {x}; it must not be negative"),
+            )),
+            _ => {
+                let what = format!("{attribute} limit 0 or missing");
+                self.notes.add(self.line(limit), what, "read as unlimited", joint);
+                Ok(f64::INFINITY)
+            }
+        }
+    }
+
+    fn mimic(&mut self, joint: Node<'_, '_>) -> Result<Option<Mimic>> {
+        let Some(node) = self.child(joint, "mimic") else { return Ok(None) };
+        self.leftovers(node, &["joint", "multiplier", "offset"], &[]);
+        Ok(Some(Mimic {
+            joint: self.required(node, "joint")?.to_owned(),
+            multiplier: self.number(node, "multiplier")?.unwrap_or(1.0),
+            offset: self.number(node, "offset")?.unwrap_or(0.0),
+        }))
+    }
+}
