@@ -30,10 +30,12 @@ pub struct Svd {
     rows: usize,
     cols: usize,
     /// B W, columns of length max(m, n), later Q.
-    b: Matrix,
+    b: PaddedColumns,
     /// The accumulated rotations, k x k.
-    w: Matrix,
+    w: PaddedColumns,
     scratch: Vec<f64>,
+    /// The order of a sweep.
+    pairs: Vec<(usize, usize)>,
     sigma: Vec<f64>,
     order: Vec<usize>,
     /// Warm starts that are left before W is repaired; `None` before the first decomposition.
@@ -61,9 +63,10 @@ impl Svd {
         Self {
             rows: m,
             cols: n,
-            b: Matrix::zeros(long, k),
-            w: Matrix::identity(k),
+            b: PaddedColumns::zeros(long, k),
+            w: PaddedColumns::zeros(k, k),
             scratch: vec![0.0; k * k],
+            pairs: tournament(k),
             sigma: vec![0.0; k],
             order: (0..k).collect(),
             warm: None,
@@ -98,7 +101,7 @@ impl Svd {
         let largest = a.max_abs();
         if largest == 0.0 || !largest.is_finite() {
             self.sigma.fill(if largest == 0.0 { 0.0 } else { f64::NAN });
-            self.b.as_mut_slice().fill(0.0);
+            self.b.data.fill(0.0);
             self.reset_rotations();
             self.order.iter_mut().enumerate().for_each(|(i, o)| *o = i);
             self.warm = None;
@@ -128,7 +131,7 @@ impl Svd {
             }
         }
         for j in 0..k {
-            self.sigma[j] = norm2(self.b.column(j)).sqrt();
+            self.sigma[j] = dot(self.b.padded(j), self.b.padded(j)).sqrt();
         }
         self.order.sort_unstable_by(|&i, &j| {
             self.sigma[j].total_cmp(&self.sigma[i]).then_with(|| i.cmp(&j))
@@ -246,17 +249,19 @@ impl Svd {
 
     fn reset_rotations(&mut self) {
         let k = self.sigma.len();
-        self.w.as_mut_slice().fill(0.0);
+        self.w.data.fill(0.0);
         for i in 0..k {
-            self.w[(i, i)] = 1.0;
+            self.w.column_mut(i)[i] = 1.0;
         }
     }
 
     /// B = scaled A, transposed if A is wide.
     fn load(&mut self, a: &Matrix, factor: f64) {
         if self.rows > self.cols {
-            for (b, x) in self.b.as_mut_slice().iter_mut().zip(a.as_slice()) {
-                *b = x * factor;
+            for j in 0..self.cols {
+                for (b, x) in self.b.column_mut(j).iter_mut().zip(a.column(j)) {
+                    *b = x * factor;
+                }
             }
         } else {
             for i in 0..self.rows {
@@ -282,56 +287,111 @@ impl Svd {
         }
     }
 
-    /// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2: keeps the drift of
-    /// many warm starts at rounding.
+    /// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2.
     fn reorthonormalise(&mut self) {
         let k = self.sigma.len();
         for i in 0..k {
             for j in 0..k {
-                let dot = dot(self.w.column(i), self.w.column(j));
+                let dot = dot(self.w.padded(i), self.w.padded(j));
                 self.scratch[j * k + i] = if i == j { 1.5 - 0.5 * dot } else { -0.5 * dot };
             }
         }
         // Row by row in place: a row of W is used by its own product only.
         for row in 0..k {
             for j in 0..k {
-                let mut sum = 0.0;
-                for l in 0..k {
-                    sum += self.w[(row, l)] * self.scratch[j * k + l];
-                }
-                self.order[j] = j;
-                self.sigma[j] = sum;
+                self.sigma[j] =
+                    (0..k).map(|l| self.w.column(l)[row] * self.scratch[j * k + l]).sum();
             }
             for j in 0..k {
-                self.w[(row, j)] = self.sigma[j];
+                self.w.column_mut(j)[row] = self.sigma[j];
             }
         }
     }
 
-    /// One sweep over all pairs; true if anything was rotated.
+    /// One sweep over all pairs; true if anything was rotated. `sigma` holds the squared norms of
+    /// the columns meanwhile, measured at the start and kept up to date by the rotations.
     fn sweep(&mut self) -> bool {
         let k = self.sigma.len();
-        let (long, short) = (self.b.rows(), k);
+        for j in 0..k {
+            self.sigma[j] = dot(self.b.padded(j), self.b.padded(j));
+        }
         let mut rotated = false;
-        for i in 0..k {
-            for j in i + 1..k {
-                let (bi, bj) = two_columns(self.b.as_mut_slice(), long, i, j);
-                let (aa, bb, ab) = gram(bi, bj);
-                if !(ab * ab > JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL * aa * bb) {
-                    continue;
-                }
-                rotated = true;
-                let zeta = (bb - aa) / (2.0 * ab);
-                let t = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
-                let c = 1.0 / (1.0 + t * t).sqrt();
-                let s = c * t;
-                rotate(bi, bj, c, s);
-                let (wi, wj) = two_columns(self.w.as_mut_slice(), short, i, j);
-                rotate(wi, wj, c, s);
+        for &(i, j) in &self.pairs {
+            let (bi, bj) = self.b.pair(i, j);
+            let (aa, bb, ab) = (self.sigma[i], self.sigma[j], dot(bi, bj));
+            if !(ab * ab > JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL * aa * bb) {
+                continue;
             }
+            rotated = true;
+            let (difference, double) = (bb - aa, 2.0 * ab);
+            let h = (difference * difference + double * double).sqrt();
+            let t = double.copysign(double * difference) / (difference.abs() + h);
+            let c = 1.0 / (1.0 + t * t).sqrt();
+            let s = c * t;
+            rotate(bi, bj, c, s);
+            let (wi, wj) = self.w.pair(i, j);
+            rotate(wi, wj, c, s);
+            self.sigma[i] = (aa - t * ab).max(0.0);
+            self.sigma[j] = bb + t * ab;
         }
         rotated
     }
+}
+
+/// Columns padded with zeros to a multiple of four numbers, so that loops over them have no rest.
+#[derive(Debug, Clone)]
+struct PaddedColumns {
+    rows: usize,
+    stride: usize,
+    data: Vec<f64>,
+}
+
+impl PaddedColumns {
+    fn zeros(rows: usize, cols: usize) -> Self {
+        let stride = rows.next_multiple_of(LANES);
+        Self { rows, stride, data: vec![0.0; stride * cols] }
+    }
+
+    #[inline]
+    fn column(&self, j: usize) -> &[f64] {
+        &self.data[j * self.stride..j * self.stride + self.rows]
+    }
+
+    #[inline]
+    fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.data[j * self.stride..j * self.stride + self.rows]
+    }
+
+    #[inline]
+    fn padded(&self, j: usize) -> &[f64] {
+        &self.data[j * self.stride..(j + 1) * self.stride]
+    }
+
+    /// Two padded columns, i < j.
+    #[inline]
+    fn pair(&mut self, i: usize, j: usize) -> (&mut [f64], &mut [f64]) {
+        let (head, tail) = self.data.split_at_mut(j * self.stride);
+        (&mut head[i * self.stride..(i + 1) * self.stride], &mut tail[..self.stride])
+    }
+}
+
+const LANES: usize = 4;
+
+/// All pairs of k columns, ordered so that neighbours share no column: the processor works on
+/// several rotations at once, whose square roots would otherwise wait for each other.
+fn tournament(k: usize) -> Vec<(usize, usize)> {
+    let ring = (k + k % 2).saturating_sub(1);
+    let mut pairs = Vec::with_capacity(k * k / 2);
+    for round in 0..ring {
+        for i in 0..=ring / 2 {
+            let a = if i == 0 { ring } else { (round + i) % ring };
+            let b = (round + ring - i) % ring;
+            if a < k && b < k && a != b {
+                pairs.push((a.min(b), a.max(b)));
+            }
+        }
+    }
+    pairs
 }
 
 fn power_of_two_below(x: f64) -> f64 {
@@ -339,38 +399,42 @@ fn power_of_two_below(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
 }
 
+/// Scalar product of padded columns.
 #[inline]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-#[inline]
-fn norm2(a: &[f64]) -> f64 {
-    dot(a, a)
-}
-
-#[inline]
-fn gram(a: &[f64], b: &[f64]) -> (f64, f64, f64) {
-    let (mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0);
-    for (x, y) in a.iter().zip(b) {
-        aa += x * x;
-        bb += y * y;
-        ab += x * y;
+    let mut sum = [0.0; LANES];
+    for (x, y) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
+        for l in 0..LANES {
+            sum[l] += x[l] * y[l];
+        }
     }
-    (aa, bb, ab)
+    (sum[0] + sum[2]) + (sum[1] + sum[3])
 }
 
 #[inline]
 fn rotate(a: &mut [f64], b: &mut [f64], c: f64, s: f64) {
+    let (a, b) = (a.as_chunks_mut::<LANES>().0, b.as_chunks_mut::<LANES>().0);
     for (x, y) in a.iter_mut().zip(b) {
-        let (p, q) = (*x, *y);
-        *x = c * p - s * q;
-        *y = s * p + c * q;
+        for l in 0..LANES {
+            let (p, q) = (x[l], y[l]);
+            x[l] = c * p - s * q;
+            y[l] = s * p + c * q;
+        }
     }
 }
 
-#[inline]
-fn two_columns(data: &mut [f64], rows: usize, i: usize, j: usize) -> (&mut [f64], &mut [f64]) {
-    let (head, tail) = data.split_at_mut(j * rows);
-    (&mut head[i * rows..(i + 1) * rows], &mut tail[..rows])
+#[cfg(test)]
+mod tests {
+    use super::tournament;
+
+    #[test]
+    fn every_pair_once() {
+        for k in 0..12 {
+            let mut pairs = tournament(k);
+            assert!(pairs.iter().all(|(i, j)| i < j && *j < k));
+            pairs.sort_unstable();
+            pairs.dedup();
+            assert_eq!(pairs.len(), k * k.saturating_sub(1) / 2, "{k}");
+        }
+    }
 }
