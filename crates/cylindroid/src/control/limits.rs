@@ -16,7 +16,7 @@
 //! Checked  tests/it/servo.rs::limits_*, tests in this file
 
 use crate::model::Limits;
-use crate::tolerance::LIMIT_ROUNDING;
+use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
 
 /// The rates allowed in the next step, and which limit sets each end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,7 +113,19 @@ impl RateBounds {
         rate.max(self.lower).min(self.upper)
     }
 
-    /// True if the rate is allowed, up to a relative rounding of the interval.
+    /// The limit that a rate has run into, if any.
+    #[must_use]
+    pub fn met(&self, rate: f64) -> Option<LimitKind> {
+        if rate >= self.upper - LIMIT_MET * self.upper.abs() {
+            Some(self.upper_cause)
+        } else if rate <= self.lower + LIMIT_MET * self.lower.abs() {
+            Some(self.lower_cause)
+        } else {
+            None
+        }
+    }
+
+    /// True if the rate is allowed.
     #[must_use]
     pub fn contains(&self, rate: f64) -> bool {
         rate >= self.lower && rate <= self.upper

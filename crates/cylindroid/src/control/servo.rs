@@ -424,13 +424,7 @@ impl Servo {
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             self.rates[c] = rate * self.columns[i];
-            self.active[i] = if rate >= bound.upper {
-                Some(bound.upper_cause)
-            } else if rate <= bound.lower {
-                Some(bound.lower_cause)
-            } else {
-                None
-            };
+            self.active[i] = bound.met(rate);
             let (q, l) = (self.chain.q()[i], self.limits[i]);
             if q - l.lower < AT_LIMIT || l.upper - q < AT_LIMIT {
                 self.at_limit.push(c);

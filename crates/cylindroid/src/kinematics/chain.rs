@@ -149,7 +149,7 @@ impl Chain {
                 match node.motion {
                     Motion::Fixed | Motion::Revolute | Motion::Spherical => 0.0,
                     Motion::Prismatic => most,
-                    Motion::Helical(pitch) if pitch == 0.0 => 0.0,
+                    Motion::Helical(0.0) => 0.0, // not 0 times infinity
                     Motion::Helical(pitch) => pitch.abs() * most,
                     Motion::Free => f64::INFINITY,
                 }

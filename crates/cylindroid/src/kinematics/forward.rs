@@ -20,8 +20,8 @@ use crate::spatial::{Column, Columns, Padded, Pose, Rotation, Vec3};
 pub(crate) fn forward(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-        // SAFETY: the processor has both features, as just asked.
         #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
+        // SAFETY: the processor has both features, as just asked.
         unsafe {
             forward_avx2(nodes, q, slots);
         }

@@ -165,6 +165,7 @@ impl Svd {
     }
 
     /// The singular values, largest first.
+    #[must_use]
     pub fn values(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         self.order.iter().map(|&i| self.sigma[i])
     }

@@ -9,6 +9,7 @@
 
 mod inverse;
 mod kinematics;
+mod pinocchio;
 mod servo;
 mod spatial;
 mod support;

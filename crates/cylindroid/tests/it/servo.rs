@@ -189,7 +189,7 @@ fn secondary_tasks_do_what_they_say() {
         let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
         cylindroid::linalg::Svd::of(&j).values().product::<f64>()
     };
-    let q = after(Secondary::Manipulability { gain: 5.0 });
+    let q = after(Secondary::Manipulability { gain: 100.0 });
     assert!(w(&q) > 1.01 * w(&start), "{} from {}", w(&q), w(&start));
 }
 

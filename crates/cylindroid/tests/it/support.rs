@@ -6,10 +6,10 @@ use cylindroid::spatial::{Mat3, Pose, Rotation, Twist, Vec3};
 use cylindroid::{Matrix, Mechanism};
 
 /// SplitMix64: a generator that fits in a line and never changes.
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub fn next_u64(&mut self) -> u64 {
+    pub(crate) fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -18,43 +18,43 @@ impl Random {
     }
 
     /// In [lower, upper).
-    pub fn within(&mut self, lower: f64, upper: f64) -> f64 {
+    pub(crate) fn within(&mut self, lower: f64, upper: f64) -> f64 {
         lower + (upper - lower) * (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    pub fn vec3(&mut self, size: f64) -> Vec3 {
+    pub(crate) fn vec3(&mut self, size: f64) -> Vec3 {
         Vec3::new(self.within(-size, size), self.within(-size, size), self.within(-size, size))
     }
 
-    pub fn rotation(&mut self) -> Rotation {
+    pub(crate) fn rotation(&mut self) -> Rotation {
         Rotation::exp(self.vec3(3.0))
     }
 
-    pub fn pose(&mut self) -> Pose {
+    pub(crate) fn pose(&mut self) -> Pose {
         Pose { rotation: self.rotation(), translation: self.vec3(2.0) }
     }
 
-    pub fn twist(&mut self) -> Twist {
+    pub(crate) fn twist(&mut self) -> Twist {
         Twist { linear: self.vec3(1.0), angular: self.vec3(1.0) }
     }
 
-    pub fn vector(&mut self, n: usize) -> Vec<f64> {
+    pub(crate) fn vector(&mut self, n: usize) -> Vec<f64> {
         (0..n).map(|_| self.within(-1.0, 1.0)).collect()
     }
 
-    pub fn matrix(&mut self, m: usize, n: usize) -> Matrix {
+    pub(crate) fn matrix(&mut self, m: usize, n: usize) -> Matrix {
         Matrix::from_fn(m, n, |_, _| self.within(-1.0, 1.0))
     }
 
     /// A product of small integer matrices: exactly rank-deficient.
-    pub fn integer_product(&mut self, m: usize, n: usize, rank: usize) -> Matrix {
+    pub(crate) fn integer_product(&mut self, m: usize, n: usize, rank: usize) -> Matrix {
         let mut integers = |r, c| Matrix::from_fn(r, c, |_, _| (self.next_u64() % 7) as f64 - 3.0);
         let (a, b) = (integers(m, rank), integers(rank, n));
         &a * &b
     }
 
     /// Within the limits; within pi (or 1 m) where there are none.
-    pub fn q(&mut self, mechanism: &Mechanism) -> Vec<f64> {
+    pub(crate) fn q(&mut self, mechanism: &Mechanism) -> Vec<f64> {
         mechanism
             .coordinates()
             .iter()
@@ -67,7 +67,7 @@ impl Random {
 }
 
 #[track_caller]
-pub fn assert_close(what: &str, got: &[f64], expected: &[f64], tolerance: f64) {
+pub(crate) fn assert_close(what: &str, got: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(got.len(), expected.len(), "{what}: sizes differ");
     for (i, (g, e)) in got.iter().zip(expected).enumerate() {
         let difference = (g - e).abs();
@@ -79,21 +79,21 @@ pub fn assert_close(what: &str, got: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 #[track_caller]
-pub fn assert_matrix(what: &str, got: &Matrix, expected: &Matrix, tolerance: f64) {
+pub(crate) fn assert_matrix(what: &str, got: &Matrix, expected: &Matrix, tolerance: f64) {
     assert_eq!((got.rows(), got.cols()), (expected.rows(), expected.cols()), "{what}: shape");
     assert_close(what, got.as_slice(), expected.as_slice(), tolerance);
 }
 
-pub fn entries(m: Mat3) -> Vec<f64> {
+pub(crate) fn entries(m: Mat3) -> Vec<f64> {
     m.to_rows().as_flattened().to_vec()
 }
 
-pub fn pose_entries(p: Pose) -> Vec<f64> {
+pub(crate) fn pose_entries(p: Pose) -> Vec<f64> {
     p.to_matrix().as_flattened().to_vec()
 }
 
 /// A mechanism with one joint of every kind, a branch, a mimic joint and a fixed link.
-pub fn zoo() -> Mechanism {
+pub(crate) fn zoo() -> Mechanism {
     let mut random = Random(7);
     let mut b = Mechanism::builder("zoo");
     let kinds = [
@@ -127,7 +127,7 @@ pub fn zoo() -> Mechanism {
 }
 
 /// A planar arm of `n` joints about z, links of 1 m along x.
-pub fn planar(n: usize) -> Mechanism {
+pub(crate) fn planar(n: usize) -> Mechanism {
     let mut b = Mechanism::builder(&format!("{n}r"));
     for i in 0..n {
         b.joint(JointSpec {
