@@ -141,7 +141,8 @@ fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<Stri
         .map(|candidate| {
             let lower = candidate.to_lowercase();
             let contains = lower.contains(&wanted) || wanted.contains(&lower);
-            let bonus = if contains && !lower.is_empty() && !wanted.is_empty() { 0.5 } else { 0.0 };
+            // A name of one or two letters stands in half of all words by chance.
+            let bonus = if contains && lower.len().min(wanted.len()) > 2 { 0.5 } else { 0.0 };
             (strsim::jaro_winkler(&wanted, &lower) + bonus, candidate)
         })
         .collect();
