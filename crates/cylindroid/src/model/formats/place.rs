@@ -37,11 +37,6 @@ impl Source<'_> {
         }))
     }
 
-    /// Line of a byte offset, from 1.
-    pub(super) fn line(&self, offset: usize) -> usize {
-        self.line_column(self.clamp(offset)).0
-    }
-
     /// The byte offset of a line and a column in characters, both from 1.
     pub(super) fn offset(&self, line: usize, column: usize) -> usize {
         let start: usize =
@@ -79,7 +74,7 @@ pub(super) struct Notes {
 
 #[derive(Debug)]
 struct Note {
-    line: usize,
+    offset: usize,
     what: String,
     why: &'static str,
     count: usize,
@@ -87,10 +82,11 @@ struct Note {
 }
 
 impl Notes {
-    /// Notes `what`; `name` says whose it is (may be empty). The same `what` again is counted.
+    /// Notes `what` at a byte offset; `name` says whose it is (may be empty). The same `what`
+    /// again is counted.
     pub(super) fn add(
         &mut self,
-        line: usize,
+        offset: usize,
         what: impl Into<String>,
         why: &'static str,
         name: &str,
@@ -98,20 +94,20 @@ impl Notes {
         let what = what.into();
         let found = self.notes.iter().position(|n| n.what == what && n.why == why);
         let index = found.unwrap_or_else(|| {
-            self.notes.push(Note { line, what, why, count: 0, names: Vec::new() });
+            self.notes.push(Note { offset, what, why, count: 0, names: Vec::new() });
             self.notes.len() - 1
         });
         let note = &mut self.notes[index];
         note.count += 1;
-        note.line = note.line.min(line);
+        note.offset = note.offset.min(offset);
         if !name.is_empty() && !note.names.iter().any(|n| n == name) {
             note.names.push(name.to_owned());
         }
     }
 
     /// Writes the notes into a report, in the order of the file.
-    pub(super) fn write(mut self, report: &mut LoadReport) {
-        self.notes.sort_by_key(|n| n.line);
+    pub(super) fn write(mut self, source: &Source<'_>, report: &mut LoadReport) {
+        self.notes.sort_by_key(|n| n.offset);
         for note in self.notes {
             let mut detail = Vec::new();
             if note.count > 1 {
@@ -134,7 +130,8 @@ impl Notes {
             } else {
                 format!("{} ({})", note.what, detail.join(": "))
             };
-            report.ignore(note.line, what, note.why);
+            let (line, _) = source.line_column(source.clamp(note.offset));
+            report.ignore(line, what, note.why);
         }
     }
 }
@@ -169,13 +166,13 @@ mod tests {
     #[test]
     fn notes_of_the_same_thing_are_one() {
         let mut notes = Notes::default();
-        notes.add(7, "<dynamics>", "not used", "b");
-        notes.add(3, "<dynamics>", "not used", "a");
-        notes.add(5, "<gazebo>", "not used", "");
+        notes.add(20, "<dynamics>", "not used", "b");
+        notes.add(5, "<dynamics>", "not used", "a");
+        notes.add(0, "<gazebo>", "not used", "");
         let mut report = LoadReport::default();
-        notes.write(&mut report);
+        notes.write(&source(), &mut report);
         assert_eq!(report.ignored.len(), 2);
-        assert_eq!(report.ignored[0].what, "<dynamics> (2 times: b, a)");
-        assert_eq!((report.ignored[0].line, report.ignored[1].line), (3, 5));
+        assert_eq!(report.ignored[1].what, "<dynamics> (2 times: b, a)");
+        assert_eq!((report.ignored[0].line, report.ignored[1].line), (1, 2));
     }
 }

@@ -5,6 +5,8 @@
 //!           one whose four limits are all 0, which exporters write for "not filled in". Speeds
 //!           and efforts that are 0 or missing are unlimited (noted).
 
+use std::collections::BTreeSet;
+
 use roxmltree::Node;
 
 use super::xml::Reader;
@@ -16,7 +18,11 @@ use crate::tolerance::ZERO_AXIS;
 const TYPES: [&str; 6] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar"];
 
 impl Reader<'_> {
-    pub(super) fn joint(&mut self, node: Node<'_, '_>, links: &[&str]) -> Result<JointSpec> {
+    pub(super) fn joint(
+        &mut self,
+        node: Node<'_, '_>,
+        links: &BTreeSet<&str>,
+    ) -> Result<JointSpec> {
         let name = self.required(node, "name")?;
         let kind = self.joint_kind(node)?;
         self.leftovers(
@@ -33,6 +39,8 @@ impl Reader<'_> {
             spec.axis = self.axis(node, kind)?;
             spec.limits = self.limits(node, kind)?;
             spec.mimic = self.mimic(node)?;
+        } else if let Some(mimic) = self.child(node, "mimic") {
+            self.notes.add(mimic.range().start, "<mimic>", "a fixed joint follows nothing", name);
         }
         Ok(spec)
     }
@@ -58,7 +66,7 @@ impl Reader<'_> {
         &mut self,
         joint: Node<'d, '_>,
         which: &'static str,
-        links: &[&str],
+        links: &BTreeSet<&str>,
     ) -> Result<&'d str> {
         let Some(node) = self.child(joint, which) else {
             let name = joint.attribute("name").unwrap_or("");
@@ -70,7 +78,7 @@ impl Reader<'_> {
         };
         self.leftovers(node, &["link"], &[]);
         let link = self.required(node, "link")?;
-        if !links.contains(&link) {
+        if !links.contains(link) {
             let unknown = Error::unknown("link", link, links.iter().copied());
             return Err(self.refuse(node, "link", unknown.to_string()));
         }
@@ -100,11 +108,11 @@ impl Reader<'_> {
         let Some(node) = self.child(joint, "limit") else {
             if bounded {
                 let why = "read as unlimited in position, speed and effort";
-                self.notes.add(self.line(joint), "<limit> missing", why, name);
+                self.notes.add(joint.range().start, "<limit> missing", why, name);
             }
             return Ok(limits);
         };
-        let line = self.line(node);
+        let at = node.range().start;
         self.leftovers(node, &["lower", "upper", "velocity", "acceleration", "effort"], &[]);
         let (lower, upper) = (self.bound(node, "lower")?, self.bound(node, "upper")?);
         let velocity = self.largest(node, "velocity", name)?;
@@ -114,7 +122,7 @@ impl Reader<'_> {
             _ => f64::INFINITY,
         };
         if kind.dof() > 1 {
-            self.notes.add(line, "<limit>", "not used for joints of several coordinates", name);
+            self.notes.add(at, "<limit>", "not used for joints of several coordinates", name);
             return Ok(Limits::NONE);
         }
         limits.velocity = velocity;
@@ -125,16 +133,16 @@ impl Reader<'_> {
         match (lower, upper) {
             (None, None) if bounded => {
                 let why = "read as unlimited in position";
-                self.notes.add(line, "<limit> without lower and upper", why, name);
+                self.notes.add(at, "<limit> without lower and upper", why, name);
             }
             (None, None) => {}
             _ if !bounded => {
                 let why = "a continuous joint has none";
-                self.notes.add(line, "position limits of continuous joints", why, name);
+                self.notes.add(at, "position limits of continuous joints", why, name);
             }
             _ if empty => {
                 let why = "they hold no positive number: taken as not filled in, so unlimited";
-                self.notes.add(line, "<limit> of zeros", why, name);
+                self.notes.add(at, "<limit> of zeros", why, name);
             }
             (lower, upper) => {
                 (limits.lower, limits.upper) = (lower.unwrap_or(0.0), upper.unwrap_or(0.0));
@@ -142,9 +150,9 @@ impl Reader<'_> {
         }
         if limits.lower > limits.upper {
             let (lower, upper) = (limits.lower, limits.upper);
-            let at = if node.has_attribute("lower") { "lower" } else { "upper" };
+            let attribute = if node.has_attribute("lower") { "lower" } else { "upper" };
             return Err(self.source.error(
-                Self::value(node, at),
+                Self::value(node, attribute),
                 format!("joint '{name}' has lower limit {lower} above its upper limit {upper}"),
                 "exchange them; a limit that is missing is 0",
             ));
@@ -168,7 +176,7 @@ impl Reader<'_> {
             )),
             _ => {
                 let what = format!("{attribute} limit 0 or missing");
-                self.notes.add(self.line(limit), what, "read as unlimited", joint);
+                self.notes.add(limit.range().start, what, "read as unlimited", joint);
                 Ok(f64::INFINITY)
             }
         }

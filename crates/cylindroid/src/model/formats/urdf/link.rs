@@ -73,18 +73,18 @@ impl Reader<'_> {
             None => None,
         };
         let Some(mass) = mass else {
-            self.notes.add(self.line(node), "<inertial>", "it gives no mass", owner);
+            self.notes.add(node.range().start, "<inertial>", "it gives no mass", owner);
             return Ok(None);
         };
         let mut inertia = Mat3::ZERO;
         if let Some(child) = self.child(node, "inertia") {
-            let mut entry = |name| self.number(child, name).map(|x| x.unwrap_or(0.0));
+            let entry = |name| self.number(child, name).map(|x| x.unwrap_or(0.0));
             let (xx, yy, zz) = (entry("ixx")?, entry("iyy")?, entry("izz")?);
             let (xy, xz, yz) = (entry("ixy")?, entry("ixz")?, entry("iyz")?);
             inertia = Mat3::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
         } else {
             let why = "moments of inertia are missing and read as zero";
-            self.notes.add(self.line(node), "<inertia> missing", why, owner);
+            self.notes.add(node.range().start, "<inertia> missing", why, owner);
         }
         Ok(Some(Inertial { mass, link_from_inertia, inertia }))
     }
@@ -101,7 +101,7 @@ impl Reader<'_> {
         let Some(geometry) = self.geometry(node, packages)? else {
             let what = format!("<{}> without a shape", node.tag_name().name());
             let link = super::xml::owner(node);
-            self.notes.add(self.line(node), what, "there is nothing to draw", link);
+            self.notes.add(node.range().start, what, "there is nothing to draw", link);
             return Ok(None);
         };
         let rgba = match self.child(node, "material") {
@@ -113,7 +113,7 @@ impl Reader<'_> {
                 if rgba.is_none() {
                     let name = material.attribute("name").unwrap_or("");
                     let why = "it has no colour that can be read";
-                    self.notes.add(self.line(material), "<material>", why, name);
+                    self.notes.add(material.range().start, "<material>", why, name);
                 }
                 rgba
             }
@@ -153,7 +153,7 @@ impl Reader<'_> {
         if path.is_none() {
             let why = "mesh not found: looked in the folders above the file, ROS_PACKAGE_PATH \
                        and AMENT_PREFIX_PATH";
-            self.notes.add(self.line(node), "mesh", why, uri);
+            self.notes.add(node.range().start, "mesh", why, uri);
         }
         Ok(Some(Geometry::Mesh { uri: uri.to_owned(), path, scale }))
     }

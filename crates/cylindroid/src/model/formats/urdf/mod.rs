@@ -15,6 +15,7 @@ mod link;
 mod mesh;
 mod xml;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use roxmltree::{Document, Node, ParsingOptions};
@@ -71,14 +72,14 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
     let mut builder = Mechanism::builder(if name.is_empty() { &stem } else { name });
     if name.is_empty() {
         let why = "the robot has none; the name of the file is used";
-        reader.notes.add(reader.line(robot), "attribute 'name' of <robot> missing", why, "");
+        reader.notes.add(robot.range().start, "attribute 'name' of <robot> missing", why, "");
     }
     reader.leftovers(robot, &["name", "version"], &["link", "joint", "material"]);
 
     let materials = reader.materials(robot);
     let packages = Packages::of(path);
     let elements: Vec<_> = robot.children().filter(Node::is_element).collect();
-    let mut links = Vec::new();
+    let mut links = BTreeSet::new();
     for node in &elements {
         if reader.is(*node, "link") {
             builder.link(reader.link(*node, &materials, &packages)?);
@@ -93,7 +94,7 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
 
     let report = builder.report();
     report.format = "URDF";
-    std::mem::take(&mut reader.notes).write(report);
+    std::mem::take(&mut reader.notes).write(&reader.source, report);
     builder.build().map_err(|e| place(reader, robot, e))
 }
 
@@ -101,8 +102,8 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
 fn place(reader: &Reader<'_>, robot: Node<'_, '_>, error: Error) -> Error {
     let Error::Model { culprit, message, .. } = error else { return error };
     let named = |kind: &str| {
-        let all = robot.children().filter(|n| reader.is(*n, kind));
-        all.filter(|n| n.attribute("name") == Some(culprit.as_str())).next_back()
+        let wanted = Some(culprit.as_str());
+        robot.children().rfind(|n| reader.is(*n, kind) && n.attribute("name") == wanted)
     };
     let (first, second) =
         if message.contains("joint") { ("joint", "link") } else { ("link", "joint") };

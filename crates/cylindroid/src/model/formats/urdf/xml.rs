@@ -19,7 +19,7 @@ pub(super) struct Reader<'a> {
     pub(super) namespace: Option<&'a str>,
 }
 
-impl<'a> Reader<'a> {
+impl Reader<'_> {
     /// True for an element of this name in the namespace of the root.
     pub(super) fn is(&self, node: Node<'_, '_>, name: &str) -> bool {
         node.is_element()
@@ -27,14 +27,12 @@ impl<'a> Reader<'a> {
             && node.tag_name().namespace() == self.namespace
     }
 
-    pub(super) fn line(&self, node: Node<'_, '_>) -> usize {
-        self.source.line(node.range().start)
-    }
-
-    /// The byte range of `<name`.
+    /// The byte range of `<name`, prefix included.
     pub(super) fn tag(node: Node<'_, '_>) -> Range<usize> {
         let start = node.range().start;
-        start..start + 1 + node.tag_name().name().len()
+        let text = node.document().input_text().get(start..).unwrap_or("");
+        let length = text.find(|c: char| c.is_whitespace() || c == '/' || c == '>');
+        start..start + length.unwrap_or(text.len())
     }
 
     /// The byte range of an attribute's value; of the tag where there is no such attribute.
@@ -121,7 +119,7 @@ impl<'a> Reader<'a> {
         if let Some(second) = all.next() {
             let what = format!("second <{name}> in <{}>", node.tag_name().name());
             let owner = node.attribute("name").unwrap_or("");
-            self.notes.add(self.line(second), what, "the first one counts", owner);
+            self.notes.add(second.range().start, what, "the first one counts", owner);
         }
         Some(first)
     }
@@ -163,9 +161,8 @@ impl<'a> Reader<'a> {
         let owner = owner(node);
         for attribute in node.attributes() {
             if attribute.namespace().is_some() || !attributes.contains(&attribute.name()) {
-                let line = self.source.line(attribute.range().start);
                 let what = format!("attribute '{}' of <{tag}>", attribute.name());
-                self.notes.add(line, what, "not known to this reader", owner);
+                self.notes.add(attribute.range().start, what, "not known to this reader", owner);
             }
         }
         for child in node.children().filter(Node::is_element) {
@@ -173,7 +170,7 @@ impl<'a> Reader<'a> {
             let known = child.tag_name().namespace() == self.namespace && children.contains(&name);
             if !known {
                 let owner = if tag == "robot" { "" } else { owner };
-                self.notes.add(self.line(child), format!("<{name}>"), why_unused(name), owner);
+                self.notes.add(child.range().start, format!("<{name}>"), why_unused(name), owner);
             }
         }
     }

@@ -1,0 +1,55 @@
+//! The model loaders: what is read, what is noted, what is refused and where.
+
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests stop where tests do
+
+mod broken;
+mod catalogue;
+mod dh;
+mod fk;
+mod lax;
+mod load;
+mod mechanism_file;
+mod mutations;
+mod urdf;
+
+use std::path::Path;
+
+use cylindroid::model::formats;
+use cylindroid::{Error, FileError, Mechanism, Result};
+
+const ARM_URDF: &str = include_str!("../data/arm.urdf");
+const ARM_TOML: &str = include_str!("../data/arm.toml");
+
+fn read_urdf(text: &str) -> Result<Mechanism> {
+    formats::urdf::parse(text, Path::new("robots/test.urdf"))
+}
+
+fn read_toml(text: &str) -> Result<Mechanism> {
+    formats::toml::parse(text, Path::new("robots/test.toml"))
+}
+
+/// The file error of a refused text; its span must be the place it prints.
+#[track_caller]
+fn refused(text: &str, result: Result<Mechanism>) -> FileError {
+    match result {
+        Err(Error::File(error)) => {
+            let before = &text[..error.span.start];
+            assert_eq!(error.line, before.matches('\n').count() + 1, "{error}");
+            let column = before.rsplit('\n').next().unwrap().chars().count() + 1;
+            assert_eq!(error.column, column, "{error}");
+            *error
+        }
+        other => panic!("expected an error with a place, got {other:?}"),
+    }
+}
+
+/// The text that an error points at.
+fn pointed_at<'t>(text: &'t str, error: &FileError) -> &'t str {
+    &text[error.span.clone()]
+}
+
+/// The report, one line for each entry.
+fn report(m: &Mechanism) -> String {
+    let line = |i: &cylindroid::model::Ignored| format!("{}: {}: {}\n", i.line, i.what, i.why);
+    m.report().ignored.iter().map(line).collect()
+}

@@ -1,0 +1,57 @@
+//! Nothing that stands in a file makes the loaders panic.
+
+use crate::{ARM_TOML, ARM_URDF, read_toml, read_urdf};
+
+/// Every truncation of the text, and every byte replaced by bytes that mean something.
+fn feed(text: &str, read: impl Fn(&str)) {
+    let bytes = text.as_bytes();
+    for end in 0..=bytes.len() {
+        read(&String::from_utf8_lossy(&bytes[..end]));
+    }
+    let replacements = b"<>\"'=/ -0.9eE[]{}&;\n\0#\xff";
+    for i in 0..bytes.len() {
+        let mut mutated = bytes.to_vec();
+        mutated[i] = replacements[i % replacements.len()];
+        read(&String::from_utf8_lossy(&mutated));
+        mutated.remove(i);
+        read(&String::from_utf8_lossy(&mutated));
+        mutated.splice(i..i, *b"\xc3\xa9-1e999");
+        read(&String::from_utf8_lossy(&mutated));
+    }
+}
+
+#[test]
+fn mutated_urdfs_give_a_model_or_an_error() {
+    feed(ARM_URDF, |text| {
+        let _ = read_urdf(text).map_err(|e| e.to_string());
+    });
+}
+
+#[test]
+fn mutated_mechanism_files_give_a_model_or_an_error() {
+    feed(ARM_TOML, |text| {
+        let _ = read_toml(text).map_err(|e| e.to_string());
+    });
+    for name in cylindroid::catalogue::names() {
+        let path = format!("{}/src/model/catalogue/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).unwrap();
+        feed(&text[..text.len().min(1500)], |text| {
+            let _ = read_toml(text).map_err(|e| e.to_string());
+        });
+    }
+}
+
+#[test]
+fn deep_and_long_files_are_answered() {
+    let deep = format!("<robot>{}{}</robot>", "<a>".repeat(50_000), "</a>".repeat(50_000));
+    assert!(read_urdf(&deep).is_err());
+    let links: String = (0..5000).map(|i| format!("<link name='l{i}'/>")).collect();
+    let joints: String = (1..5000)
+        .map(|i| {
+            let parent = i - 1;
+            format!("<joint name='j{i}' type='revolute'><parent link='l{parent}'/><child link='l{i}'/></joint>")
+        })
+        .collect();
+    assert_eq!(read_urdf(&format!("<robot>{links}{joints}</robot>")).unwrap().n(), 4999);
+    assert!(read_toml(&format!("a = {}", "[".repeat(50_000))).is_err());
+}
