@@ -1,5 +1,6 @@
 //! Cartesian control: the servo loop, its limits, its secondary tasks, time laws and paths.
 
+mod detour;
 mod drive;
 mod limits;
 mod options;
@@ -8,6 +9,7 @@ mod secondary;
 mod servo;
 mod stall;
 
+pub use detour::{Detour, find_posture};
 pub use drive::{Outcome, Sample, drive};
 pub use limits::{LimitKind, Motion1, RateBounds};
 pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};

@@ -312,6 +312,26 @@ impl Servo {
         self.mechanism.integrate_in_place(q, &self.rates, self.options.dt);
     }
 
+    /// The coordinates that move the end effector: places in `q`, ascending.
+    #[must_use]
+    pub fn coordinates(&self) -> &[usize] {
+        self.chain.coordinates()
+    }
+
+    /// The same servo at rest, with position limits alone and another period and gain [1/s].
+    pub(super) fn unhurried(&self, dt: f64, gain: f64) -> Result<Self> {
+        let mut options = self.options.clone();
+        options.dt = dt;
+        options.gain = super::Gain { position: gain, orientation: gain };
+        options.speed = super::Speed { linear: f64::INFINITY, angular: f64::INFINITY };
+        let mut servo = Self::new(&self.mechanism, options)?;
+        for limits in &mut servo.limits {
+            limits.velocity = f64::INFINITY;
+            limits.acceleration = f64::INFINITY;
+        }
+        Ok(servo)
+    }
+
     fn check_input(&self, q: &[f64], target: &Target, wanted_rates: &[f64]) -> Result<()> {
         self.mechanism.check_q("q", q)?;
         if !wanted_rates.is_empty() {
