@@ -1,1 +1,38 @@
-fn main() {}
+//! The project's own tasks: `cargo xtask` lists them.
+#![allow(clippy::print_stdout)] // it talks to a person
+
+mod layers;
+mod models;
+mod steps;
+
+use anyhow::{Result, bail};
+
+const HELP: &str = "\
+cargo xtask <task>
+
+  test      sets up what tests need, then every check and test (this is the whole CI)
+  ci        the same
+  quick     formatting, layers, lints: what to run before a push
+  setup     fetches the robot files that tests read (from PyPI, once)
+  layers    checks that the library's modules import only those before them
+  vectors   regenerates the reference vectors from Pinocchio (needs Python and PyPI)
+  bench     runs the benchmarks of the kernels
+  figures   draws the figures of the README";
+
+fn main() -> Result<()> {
+    let task = std::env::args().nth(1);
+    match task.as_deref() {
+        Some("test" | "ci") => steps::test(),
+        Some("quick") => steps::quick(),
+        Some("setup") => models::fetch().map(|path| println!("robot files in {}", path.display())),
+        Some("layers") => layers::check(),
+        Some("vectors") => steps::vectors(),
+        Some("bench") => steps::bench(),
+        Some("figures") => steps::figures(),
+        None | Some("help" | "--help" | "-h") => {
+            println!("{HELP}");
+            Ok(())
+        }
+        Some(other) => bail!("no task '{other}'\n\n{HELP}"),
+    }
+}

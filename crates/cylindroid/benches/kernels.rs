@@ -1,1 +1,149 @@
-fn main() {}
+//! How long the parts of a control step take: `cargo bench -p cylindroid`.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use cylindroid::inverse::Method;
+use cylindroid::kinematics::Chain;
+use cylindroid::linalg::Svd;
+use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, catalogue};
+use divan::{Bencher, black_box};
+
+fn main() {
+    divan::main();
+}
+
+const ROBOTS: [&str; 3] = ["panda", "ur5e", "youbot"];
+
+fn robot(name: &str) -> Mechanism {
+    catalogue::load(name).unwrap()
+}
+
+/// Home and a pose near it, alternating so that nothing can be kept from call to call.
+fn poses(robot: &Mechanism) -> [Vec<f64>; 2] {
+    let home = robot.home().to_vec();
+    let near = home.iter().map(|x| x + 1e-3).collect();
+    [home, near]
+}
+
+#[divan::bench(args = ROBOTS)]
+fn forward_kinematics(bencher: Bencher<'_, '_>, name: &str) {
+    let robot = robot(name);
+    let mut chain = Chain::new(&robot, robot.tool());
+    let q = poses(&robot);
+    let mut i = 0;
+    bencher.bench_local(|| {
+        i ^= 1;
+        black_box(chain.set(black_box(&q[i])))
+    });
+}
+
+#[divan::bench(args = ROBOTS)]
+fn forward_kinematics_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
+    let robot = robot(name);
+    let mut chain = Chain::new(&robot, robot.tool());
+    let mut j = Matrix::zeros(6, chain.n());
+    let q = poses(&robot);
+    let mut i = 0;
+    bencher.bench_local(|| {
+        i ^= 1;
+        chain.set(black_box(&q[i]));
+        chain.jacobian_into(Reference::LocalWorldAligned, &mut j);
+        black_box(&j);
+    });
+}
+
+/// The whole tree through the checked interface.
+#[divan::bench(args = ROBOTS)]
+fn state_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
+    let robot = robot(name);
+    let mut state = robot.state(robot.home()).unwrap();
+    let mut j = Matrix::zeros(6, robot.n());
+    let q = poses(&robot);
+    let mut i = 0;
+    bencher.bench_local(|| {
+        i ^= 1;
+        state.set(black_box(&q[i])).unwrap();
+        state.jacobian_into(robot.tool(), Reference::LocalWorldAligned, &mut j);
+        black_box(&j);
+    });
+}
+
+#[divan::bench]
+fn hessian_panda(bencher: Bencher<'_, '_>) {
+    let robot = robot("panda");
+    let mut chain = Chain::new(&robot, robot.tool());
+    chain.set(robot.home());
+    let mut h = vec![Matrix::zeros(6, 7); 7];
+    bencher.bench_local(|| {
+        chain.hessian_into(Reference::LocalWorldAligned, &mut h);
+        black_box(&h);
+    });
+}
+
+fn panda_jacobian() -> Matrix {
+    let robot = robot("panda");
+    robot.state(robot.home()).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned)
+}
+
+#[divan::bench]
+fn svd_6x7_cold(bencher: Bencher<'_, '_>) {
+    let j = panda_jacobian();
+    let mut svd = Svd::workspace(6, 7);
+    bencher.bench_local(|| {
+        svd.decompose(black_box(&j));
+        black_box(svd.value(0))
+    });
+}
+
+#[divan::bench]
+fn svd_6x7_warm(bencher: Bencher<'_, '_>) {
+    let j = panda_jacobian();
+    let mut near = j.clone();
+    near[(0, 0)] += 1e-4;
+    let mut svd = Svd::workspace(6, 7);
+    let mut i = 0;
+    bencher.bench_local(|| {
+        i ^= 1;
+        svd.decompose_warm(black_box(if i == 0 { &j } else { &near }));
+        black_box(svd.value(0))
+    });
+}
+
+/// With the report, which allocates.
+#[divan::bench(args = Method::ALL.map(|m| m.name()))]
+fn inverse_6x7(bencher: Bencher<'_, '_>, name: &str) {
+    let j = panda_jacobian();
+    let method = Method::named(name).unwrap();
+    bencher.bench_local(|| black_box(method.inverse(black_box(&j)).unwrap()));
+}
+
+/// Kinematics, Jacobian, inverse, null space, limits: a whole step along a motion of 20 cm.
+#[divan::bench(args = Method::ALL.map(|m| m.name()))]
+fn servo_step_panda(bencher: Bencher<'_, '_>, name: &str) {
+    servo_step(bencher, "panda", name);
+}
+
+#[divan::bench(args = ["truncated"])]
+fn servo_step_ur5e(bencher: Bencher<'_, '_>, name: &str) {
+    servo_step(bencher, "ur5e", name);
+}
+
+fn servo_step(bencher: Bencher<'_, '_>, robot_name: &str, method: &str) {
+    let robot = robot(robot_name);
+    let options =
+        ServoOptions { method: Method::named(method).unwrap(), ..ServoOptions::new(&robot) };
+    let mut servo = Servo::new(&robot, options).unwrap();
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let target = |dz: f64| Pose {
+        translation: start.translation + cylindroid::Vec3::new(0.0, 0.1, dz),
+        ..start
+    };
+    let targets = [target(-0.1), target(0.1)];
+    let mut q = robot.home().to_vec();
+    let mut step = 0_usize;
+    bencher.bench_local(|| {
+        step += 1;
+        let done = servo.step(&q, targets[(step / 500) & 1]).unwrap();
+        servo.advance(&mut q);
+        black_box(done)
+    });
+}

@@ -107,10 +107,10 @@ pub struct FileError {
 
 impl Error {
     /// An [`Error::UnknownName`] with the nearest of `known` names offered.
-    pub fn unknown<'a>(
+    pub fn unknown(
         what: &'static str,
         name: &str,
-        known: impl IntoIterator<Item = &'a str>,
+        known: impl IntoIterator<Item: AsRef<str>>,
     ) -> Self {
         Self::UnknownName { what, name: name.to_owned(), similar: nearest(name, known) }
     }
@@ -134,28 +134,25 @@ impl Error {
 }
 
 /// The names of `known` nearest to `name`, best first: at most five, all when there are no more.
-fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+fn nearest(name: &str, known: impl IntoIterator<Item: AsRef<str>>) -> Vec<String> {
     let wanted = name.to_lowercase();
-    let mut ranked: Vec<(f64, &str)> = known
+    let mut ranked: Vec<(f64, String)> = known
         .into_iter()
         .map(|candidate| {
+            let candidate = candidate.as_ref();
             let lower = candidate.to_lowercase();
             let contains = lower.contains(&wanted) || wanted.contains(&lower);
             // A name of one or two letters stands in half of all words by chance.
             let bonus = if contains && lower.len().min(wanted.len()) > 2 { 0.5 } else { 0.0 };
-            (strsim::jaro_winkler(&wanted, &lower) + bonus, candidate)
+            (strsim::jaro_winkler(&wanted, &lower) + bonus, candidate.to_owned())
         })
         .collect();
-    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
-    ranked.into_iter().take(5).map(|(_, n)| n.to_owned()).collect()
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
+    ranked.into_iter().take(5).map(|(_, name)| name).collect()
 }
 
 fn offer(similar: &[String]) -> String {
-    if similar.is_empty() {
-        String::new()
-    } else {
-        format!("; nearest: {}", similar.join(", "))
-    }
+    if similar.is_empty() { String::new() } else { format!("; nearest: {}", similar.join(", ")) }
 }
 
 fn hint_text(hint: &str) -> String {

@@ -1,6 +1,18 @@
 //! `cylindroid` loads a robot or a mechanism, drives its end effector in Cartesian space, and
 //! tells what it can do, in numbers that do not change when the frame does.
 //!
+//! ```
+//! use cylindroid::{catalogue, Reference};
+//!
+//! let robot = catalogue::load("panda")?;
+//! let state = robot.state(robot.home())?;
+//! let world_from_tool = state.pose(robot.tool());
+//! let jacobian = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+//! assert_eq!((jacobian.rows(), jacobian.cols()), (6, 7));
+//! # assert!(world_from_tool.translation.x > 0.3);
+//! # Ok::<(), cylindroid::Error>(())
+//! ```
+//!
 //! Conventions, once for all: SI units and radians; twists and wrenches as vectors are linear
 //! first (`[v; w]`, `[f; m]`); `world_from_tool` names a pose; a Jacobian always names its
 //! [`Reference`]. The modules form one line, each imports only those before it:
@@ -8,14 +20,20 @@
 
 #![cfg_attr(test, allow(clippy::float_cmp_const))]
 
+pub mod control;
 pub mod error;
+pub mod inverse;
+pub mod kinematics;
 pub mod linalg;
 pub mod model;
 mod scalar;
 pub mod spatial;
 pub mod tolerance;
 
+pub use control::{Servo, ServoOptions};
 pub use error::{Error, FileError, Result};
+pub use inverse::{Inverse, Method};
+pub use kinematics::{EndEffector, Reference, State};
 pub use linalg::Matrix;
 pub use model::{FrameId, Mechanism, catalogue, load};
 pub use spatial::{Pose, Rotation, Twist, Vec3, Wrench};

@@ -49,3 +49,7 @@ pub const LIMIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A joint nearer to its limit than this [rad or m] counts as standing at it in reports.
 pub const AT_LIMIT: f64 = 1e-6;
+
+/// A rate this near to its bound, relative to the bound, has met it: scaling a motion to a bound
+/// leaves a rounding [-].
+pub const LIMIT_MET: f64 = 1e-12;

@@ -135,7 +135,8 @@ impl Matrix {
     /// The largest absolute entry (NaN if any entry is NaN).
     #[must_use]
     pub fn max_abs(&self) -> f64 {
-        self.data.iter().fold(0.0, |m: f64, a| if a.is_nan() { f64::NAN } else { m.max(a.abs()) })
+        // `f64::max` drops NaN, a comparison that fails keeps it.
+        self.data.iter().fold(0.0, |m: f64, a| if a.abs() <= m { m } else { a.abs() + 0.0 * m })
     }
 
     /// Largest absolute difference of two matrices of one shape (infinite for different shapes).

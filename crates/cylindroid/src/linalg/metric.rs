@@ -57,8 +57,10 @@ impl Metric {
                 let rest = m[(i, j)] - sum;
                 if i == j {
                     if !(rest > 0.0) {
-                        return Err(refuse("a metric is positive definite; add a small multiple \
-                                           of the identity if a direction costs nothing"));
+                        return Err(refuse(
+                            "a metric is positive definite; add a small multiple \
+                                           of the identity if a direction costs nothing",
+                        ));
                     }
                     l[(j, j)] = rest.sqrt();
                 } else {

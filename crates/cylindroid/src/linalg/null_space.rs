@@ -53,10 +53,10 @@ impl<'a> RowSpace<'a> {
     pub fn complement_basis(&self) -> Matrix {
         let n = self.svd.cols();
         let mut basis = Matrix::zeros(n, n - self.rank);
-        // For a tall or square matrix V is complete: the dropped columns are the basis. A wide
-        // matrix has only min(m, n) columns in V: complete them from unit vectors.
+        // For a tall matrix V is complete: the dropped columns are the basis. Otherwise complete
+        // the kept columns from unit vectors.
         let mut found = 0;
-        if self.svd.rows() >= n {
+        if self.svd.rows() > n {
             for i in self.rank..n {
                 basis.column_mut(found).copy_from_slice(self.svd.v(i));
                 found += 1;

@@ -2,9 +2,10 @@
 //!
 //! Formula  A = U diag(s) V^T, s descending and not negative
 //! Shapes   A: m x n, U: m x k, V: n x k with k = min(m, n)
-//! Method   rotate the columns of B (= A, or A^T when A is wide) in pairs from the right until
-//!          all are orthogonal: B W = Q diag(s). A column of Q whose singular value is zero up
-//!          to rounding is left zero: it is not determined by A.
+//! Method   rotate the columns of B (= A when A is tall, else A^T) in pairs from the right until
+//!          all are orthogonal: B W = Q diag(s). W is always complete: for a Jacobian with
+//!          m <= n it is U, so that lost task directions are known also where s is exactly zero.
+//!          A column of Q whose singular value is exactly zero is zero: A does not determine it.
 //! Warm     `decompose_warm` starts from the W of the last call; for a slowly changing Jacobian
 //!          one or two sweeps remain. The result is exact either way.
 //! Why so   high relative accuracy also of small singular values, no failure on rank-deficient
@@ -20,19 +21,25 @@ use crate::tolerance::{JACOBI_ORTHOGONAL, MACHINE_RANK};
 /// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost finite.
 const MAX_SWEEPS: usize = 40;
 
+/// Warm starts between two repairs of W, whose columns drift by a rounding each time.
+const WARM_STARTS: usize = 8;
+
 /// A singular value decomposition and the memory to compute the next one without allocation.
 #[derive(Debug, Clone)]
 pub struct Svd {
     rows: usize,
     cols: usize,
     /// B W, columns of length max(m, n), later Q.
-    b: Matrix,
+    b: PaddedColumns,
     /// The accumulated rotations, k x k.
-    w: Matrix,
+    w: PaddedColumns,
     scratch: Vec<f64>,
+    /// The order of a sweep.
+    pairs: Vec<(usize, usize)>,
     sigma: Vec<f64>,
     order: Vec<usize>,
-    warm: bool,
+    /// Warm starts that are left before W is repaired; `None` before the first decomposition.
+    warm: Option<usize>,
     sweeps: usize,
 }
 
@@ -56,12 +63,13 @@ impl Svd {
         Self {
             rows: m,
             cols: n,
-            b: Matrix::zeros(long, k),
-            w: Matrix::identity(k),
+            b: PaddedColumns::zeros(long, k),
+            w: PaddedColumns::zeros(k, k),
             scratch: vec![0.0; k * k],
+            pairs: tournament(k),
             sigma: vec![0.0; k],
             order: (0..k).collect(),
-            warm: false,
+            warm: None,
             sweeps: 0,
         }
     }
@@ -79,7 +87,7 @@ impl Svd {
     /// # Panics
     /// If `a` has not the shape of the workspace.
     pub fn decompose(&mut self, a: &Matrix) {
-        self.warm = false;
+        self.warm = None;
         self.decompose_warm(a);
     }
 
@@ -93,20 +101,27 @@ impl Svd {
         let largest = a.max_abs();
         if largest == 0.0 || !largest.is_finite() {
             self.sigma.fill(if largest == 0.0 { 0.0 } else { f64::NAN });
-            self.b.as_mut_slice().fill(0.0);
+            self.b.data.fill(0.0);
             self.reset_rotations();
             self.order.iter_mut().enumerate().for_each(|(i, o)| *o = i);
-            self.warm = false;
+            self.warm = None;
             return;
         }
         // Scaled by a power of two, which is exact, so that squares neither overflow nor vanish.
         let scale = power_of_two_below(largest);
-        if self.warm {
-            self.reorthonormalise();
-            self.load_times_w(a, 1.0 / scale);
-        } else {
-            self.reset_rotations();
-            self.load(a, 1.0 / scale);
+        match self.warm {
+            Some(left) => {
+                if left == 0 {
+                    self.reorthonormalise();
+                }
+                self.warm = Some(left.checked_sub(1).unwrap_or(WARM_STARTS));
+                self.load_times_w(a, 1.0 / scale);
+            }
+            None => {
+                self.warm = Some(WARM_STARTS);
+                self.reset_rotations();
+                self.load(a, 1.0 / scale);
+            }
         }
         self.sweeps = 0;
         while self.sweeps < MAX_SWEEPS {
@@ -116,7 +131,7 @@ impl Svd {
             }
         }
         for j in 0..k {
-            self.sigma[j] = norm2(self.b.column(j)).sqrt();
+            self.sigma[j] = dot(self.b.padded(j), self.b.padded(j)).sqrt();
         }
         self.order.sort_unstable_by(|&i, &j| {
             self.sigma[j].total_cmp(&self.sigma[i]).then_with(|| i.cmp(&j))
@@ -127,7 +142,6 @@ impl Svd {
             self.b.column_mut(j).iter_mut().for_each(|x| *x *= inverse);
             self.sigma[j] = s * scale;
         }
-        self.warm = true;
         debug_assert!(self.residual(a) < 1e-11, "SVD residual {} of {a:?}", self.residual(a));
     }
 
@@ -151,6 +165,7 @@ impl Svd {
     }
 
     /// The singular values, largest first.
+    #[must_use]
     pub fn values(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         self.order.iter().map(|&i| self.sigma[i])
     }
@@ -160,7 +175,7 @@ impl Svd {
     #[inline]
     pub fn u(&self, i: usize) -> &[f64] {
         let j = self.order[i];
-        if self.rows >= self.cols { self.b.column(j) } else { self.w.column(j) }
+        if self.rows > self.cols { self.b.column(j) } else { self.w.column(j) }
     }
 
     /// Right singular vector of the `i`-th value (n entries).
@@ -168,7 +183,7 @@ impl Svd {
     #[inline]
     pub fn v(&self, i: usize) -> &[f64] {
         let j = self.order[i];
-        if self.rows >= self.cols { self.w.column(j) } else { self.b.column(j) }
+        if self.rows > self.cols { self.w.column(j) } else { self.b.column(j) }
     }
 
     /// Number of rows of the decomposed matrix.
@@ -217,27 +232,37 @@ impl Svd {
     /// `|A - U S V^T| / |A|` in the Frobenius norm: zero up to rounding for every result.
     #[must_use]
     pub fn residual(&self, a: &Matrix) -> f64 {
-        let rebuilt = Matrix::from_fn(self.rows, self.cols, |i, j| {
-            (0..self.len()).map(|l| self.u(l)[i] * self.value(l) * self.v(l)[j]).sum()
-        });
-        let norm = a.frobenius_norm();
-        let difference = Matrix::from_fn(self.rows, self.cols, |i, j| a[(i, j)] - rebuilt[(i, j)]);
-        if norm == 0.0 { difference.frobenius_norm() } else { difference.frobenius_norm() / norm }
+        let largest = a.max_abs();
+        if largest == 0.0 {
+            return self.values().fold(0.0, f64::max);
+        }
+        let (mut difference, mut size) = (0.0, 0.0);
+        for i in 0..self.rows {
+            for j in 0..self.cols {
+                let rebuilt: f64 =
+                    (0..self.len()).map(|l| self.u(l)[i] * self.value(l) * self.v(l)[j]).sum();
+                difference += ((a[(i, j)] - rebuilt) / largest).powi(2);
+                size += (a[(i, j)] / largest).powi(2);
+            }
+        }
+        (difference / size).sqrt()
     }
 
     fn reset_rotations(&mut self) {
         let k = self.sigma.len();
-        self.w.as_mut_slice().fill(0.0);
+        self.w.data.fill(0.0);
         for i in 0..k {
-            self.w[(i, i)] = 1.0;
+            self.w.column_mut(i)[i] = 1.0;
         }
     }
 
     /// B = scaled A, transposed if A is wide.
     fn load(&mut self, a: &Matrix, factor: f64) {
-        if self.rows >= self.cols {
-            for (b, x) in self.b.as_mut_slice().iter_mut().zip(a.as_slice()) {
-                *b = x * factor;
+        if self.rows > self.cols {
+            for j in 0..self.cols {
+                for (b, x) in self.b.column_mut(j).iter_mut().zip(a.column(j)) {
+                    *b = x * factor;
+                }
             }
         } else {
             for i in 0..self.rows {
@@ -254,7 +279,7 @@ impl Svd {
         for l in 0..k {
             let w = self.w.column(l);
             let b = self.b.column_mut(l);
-            if self.rows >= self.cols {
+            if self.rows > self.cols {
                 a.mul_vec_into(w, b);
             } else {
                 a.tr_mul_vec_into(w, b);
@@ -263,56 +288,111 @@ impl Svd {
         }
     }
 
-    /// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2: keeps the drift of
-    /// many warm starts at rounding.
+    /// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2.
     fn reorthonormalise(&mut self) {
         let k = self.sigma.len();
         for i in 0..k {
             for j in 0..k {
-                let dot = dot(self.w.column(i), self.w.column(j));
+                let dot = dot(self.w.padded(i), self.w.padded(j));
                 self.scratch[j * k + i] = if i == j { 1.5 - 0.5 * dot } else { -0.5 * dot };
             }
         }
         // Row by row in place: a row of W is used by its own product only.
         for row in 0..k {
             for j in 0..k {
-                let mut sum = 0.0;
-                for l in 0..k {
-                    sum += self.w[(row, l)] * self.scratch[j * k + l];
-                }
-                self.order[j] = j;
-                self.sigma[j] = sum;
+                self.sigma[j] =
+                    (0..k).map(|l| self.w.column(l)[row] * self.scratch[j * k + l]).sum();
             }
             for j in 0..k {
-                self.w[(row, j)] = self.sigma[j];
+                self.w.column_mut(j)[row] = self.sigma[j];
             }
         }
     }
 
-    /// One sweep over all pairs; true if anything was rotated.
+    /// One sweep over all pairs; true if anything was rotated. `sigma` holds the squared norms of
+    /// the columns meanwhile, measured at the start and kept up to date by the rotations.
     fn sweep(&mut self) -> bool {
         let k = self.sigma.len();
-        let (long, short) = (self.b.rows(), k);
+        for j in 0..k {
+            self.sigma[j] = dot(self.b.padded(j), self.b.padded(j));
+        }
         let mut rotated = false;
-        for i in 0..k {
-            for j in i + 1..k {
-                let (bi, bj) = two_columns(self.b.as_mut_slice(), long, i, j);
-                let (aa, bb, ab) = gram(bi, bj);
-                if !(ab * ab > JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL * aa * bb) {
-                    continue;
-                }
-                rotated = true;
-                let zeta = (bb - aa) / (2.0 * ab);
-                let t = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
-                let c = 1.0 / (1.0 + t * t).sqrt();
-                let s = c * t;
-                rotate(bi, bj, c, s);
-                let (wi, wj) = two_columns(self.w.as_mut_slice(), short, i, j);
-                rotate(wi, wj, c, s);
+        for &(i, j) in &self.pairs {
+            let (bi, bj) = self.b.pair(i, j);
+            let (aa, bb, ab) = (self.sigma[i], self.sigma[j], dot(bi, bj));
+            if !(ab * ab > JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL * aa * bb) {
+                continue;
             }
+            rotated = true;
+            let (difference, double) = (bb - aa, 2.0 * ab);
+            let h = (difference * difference + double * double).sqrt();
+            let t = double.copysign(double * difference) / (difference.abs() + h);
+            let c = 1.0 / (1.0 + t * t).sqrt();
+            let s = c * t;
+            rotate(bi, bj, c, s);
+            let (wi, wj) = self.w.pair(i, j);
+            rotate(wi, wj, c, s);
+            self.sigma[i] = (aa - t * ab).max(0.0);
+            self.sigma[j] = bb + t * ab;
         }
         rotated
     }
+}
+
+/// Columns padded with zeros to a multiple of four numbers, so that loops over them have no rest.
+#[derive(Debug, Clone)]
+struct PaddedColumns {
+    rows: usize,
+    stride: usize,
+    data: Vec<f64>,
+}
+
+impl PaddedColumns {
+    fn zeros(rows: usize, cols: usize) -> Self {
+        let stride = rows.next_multiple_of(LANES);
+        Self { rows, stride, data: vec![0.0; stride * cols] }
+    }
+
+    #[inline]
+    fn column(&self, j: usize) -> &[f64] {
+        &self.data[j * self.stride..j * self.stride + self.rows]
+    }
+
+    #[inline]
+    fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.data[j * self.stride..j * self.stride + self.rows]
+    }
+
+    #[inline]
+    fn padded(&self, j: usize) -> &[f64] {
+        &self.data[j * self.stride..(j + 1) * self.stride]
+    }
+
+    /// Two padded columns, i < j.
+    #[inline]
+    fn pair(&mut self, i: usize, j: usize) -> (&mut [f64], &mut [f64]) {
+        let (head, tail) = self.data.split_at_mut(j * self.stride);
+        (&mut head[i * self.stride..(i + 1) * self.stride], &mut tail[..self.stride])
+    }
+}
+
+const LANES: usize = 4;
+
+/// All pairs of k columns, ordered so that neighbours share no column: the processor works on
+/// several rotations at once, whose square roots would otherwise wait for each other.
+fn tournament(k: usize) -> Vec<(usize, usize)> {
+    let ring = (k + k % 2).saturating_sub(1);
+    let mut pairs = Vec::with_capacity(k * k / 2);
+    for round in 0..ring {
+        for i in 0..=ring / 2 {
+            let a = if i == 0 { ring } else { (round + i) % ring };
+            let b = (round + ring - i) % ring;
+            if a < k && b < k && a != b {
+                pairs.push((a.min(b), a.max(b)));
+            }
+        }
+    }
+    pairs
 }
 
 fn power_of_two_below(x: f64) -> f64 {
@@ -320,38 +400,42 @@ fn power_of_two_below(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
 }
 
+/// Scalar product of padded columns.
 #[inline]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-#[inline]
-fn norm2(a: &[f64]) -> f64 {
-    dot(a, a)
-}
-
-#[inline]
-fn gram(a: &[f64], b: &[f64]) -> (f64, f64, f64) {
-    let (mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0);
-    for (x, y) in a.iter().zip(b) {
-        aa += x * x;
-        bb += y * y;
-        ab += x * y;
+    let mut sum = [0.0; LANES];
+    for (x, y) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
+        for l in 0..LANES {
+            sum[l] += x[l] * y[l];
+        }
     }
-    (aa, bb, ab)
+    (sum[0] + sum[2]) + (sum[1] + sum[3])
 }
 
 #[inline]
 fn rotate(a: &mut [f64], b: &mut [f64], c: f64, s: f64) {
+    let (a, b) = (a.as_chunks_mut::<LANES>().0, b.as_chunks_mut::<LANES>().0);
     for (x, y) in a.iter_mut().zip(b) {
-        let (p, q) = (*x, *y);
-        *x = c * p - s * q;
-        *y = s * p + c * q;
+        for l in 0..LANES {
+            let (p, q) = (x[l], y[l]);
+            x[l] = c * p - s * q;
+            y[l] = s * p + c * q;
+        }
     }
 }
 
-#[inline]
-fn two_columns(data: &mut [f64], rows: usize, i: usize, j: usize) -> (&mut [f64], &mut [f64]) {
-    let (head, tail) = data.split_at_mut(j * rows);
-    (&mut head[i * rows..(i + 1) * rows], &mut tail[..rows])
+#[cfg(test)]
+mod tests {
+    use super::tournament;
+
+    #[test]
+    fn every_pair_once() {
+        for k in 0..12 {
+            let mut pairs = tournament(k);
+            assert!(pairs.iter().all(|(i, j)| i < j && *j < k));
+            pairs.sort_unstable();
+            pairs.dedup();
+            assert_eq!(pairs.len(), k * k.saturating_sub(1) / 2, "{k}");
+        }
+    }
 }

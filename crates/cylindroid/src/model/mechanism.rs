@@ -179,8 +179,7 @@ impl Mechanism {
     /// [`Error::Dimension`], [`Error::NotFinite`].
     pub fn check_q(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.n() {
-            let names: Vec<&str> =
-                self.data.coordinates.iter().map(|c| c.name.as_str()).collect();
+            let names: Vec<&str> = self.data.coordinates.iter().map(|c| c.name.as_str()).collect();
             return Err(Error::Dimension {
                 what: what.to_owned(),
                 expected: self.n(),
@@ -232,16 +231,14 @@ impl Mechanism {
         for node in self.nodes() {
             let c = node.coordinate;
             match node.motion {
-                Motion::Revolute | Motion::Prismatic | Motion::Helical(_) => {}
+                Motion::Fixed | Motion::Revolute | Motion::Prismatic | Motion::Helical(_) => {}
                 Motion::Spherical => {
                     let r = Rotation::exp(vec3(q, c)) * Rotation::exp(vec3(rates, c) * dt);
                     put(q, c, r.renormalised().log());
                 }
                 Motion::Free => {
-                    let here = Pose {
-                        rotation: Rotation::exp(vec3(q, c + 3)),
-                        translation: vec3(q, c),
-                    };
+                    let here =
+                        Pose { rotation: Rotation::exp(vec3(q, c + 3)), translation: vec3(q, c) };
                     let twist = Twist { linear: vec3(rates, c), angular: vec3(rates, c + 3) };
                     let next = here * exp(twist * dt);
                     put(q, c, next.translation);

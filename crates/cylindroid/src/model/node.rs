@@ -3,7 +3,7 @@
 //! Every joint is written as one or more nodes that turn about or slide along their own z axis
 //! (or move freely); fixed joints and fixed links are folded into the placements.
 
-use crate::spatial::Pose;
+use crate::spatial::Padded;
 
 /// A moving frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,7 +11,7 @@ pub(crate) struct Node {
     /// Slot of the parent: 0 is the ground, node `i` is slot `i + 1`.
     pub(crate) parent: usize,
     /// The frame at zero, seen from the parent.
-    pub(crate) placement: Pose,
+    pub(crate) placement: Padded,
     /// What it does.
     pub(crate) motion: Motion,
     /// Its first coordinate.
@@ -25,6 +25,8 @@ pub(crate) struct Node {
 /// What a node does with its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Motion {
+    /// Nothing: the tool at the end of a chain. Its coordinate is not read for anything.
+    Fixed,
     /// Turns about z.
     Revolute,
     /// Slides along z.
@@ -41,6 +43,7 @@ impl Motion {
     /// Number of coordinates.
     pub(crate) const fn dof(self) -> usize {
         match self {
+            Self::Fixed => 0,
             Self::Revolute | Self::Prismatic | Self::Helical(_) => 1,
             Self::Spherical => 3,
             Self::Free => 6,

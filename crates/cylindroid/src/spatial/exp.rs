@@ -85,8 +85,7 @@ fn coupling(x: Twist) -> Mat3 {
     let (p, r) = (Mat3::skew(x.angular), Mat3::skew(x.linear));
     let (pr, rp) = (p * r, r * p);
     let prp = pr * p;
-    r * 0.5
-        + (pr + rp + prp) * sinc3(t)
+    r * 0.5 + (pr + rp + prp) * sinc3(t)
         - (p * pr + rp * p - prp * 3.0) * cosc4(t)
         - (prp * p + p * prp) * (0.5 * (cosc4(t) - 3.0 * sinc5(t)))
 }

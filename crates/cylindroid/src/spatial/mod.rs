@@ -6,6 +6,7 @@
 
 mod angles;
 mod exp;
+mod padded;
 mod pose;
 mod rotation;
 mod series;
@@ -17,6 +18,9 @@ pub use exp::{
     Derivative6, exp, exp_derivative, log, log_derivative, rotation_exp_derivative,
     rotation_log_derivative,
 };
+#[cfg(target_arch = "x86_64")]
+pub(crate) use padded::Register;
+pub(crate) use padded::{Column, Columns, Padded};
 pub use pose::Pose;
 pub use rotation::Rotation;
 pub use twist::{Twist, Wrench};

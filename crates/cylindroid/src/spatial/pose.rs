@@ -24,8 +24,7 @@ pub struct Pose {
 
 impl Pose {
     /// Frame b is frame a.
-    pub const IDENTITY: Self =
-        Self { rotation: Rotation::IDENTITY, translation: Vec3::ZERO };
+    pub const IDENTITY: Self = Self { rotation: Rotation::IDENTITY, translation: Vec3::ZERO };
 
     /// A pose without rotation.
     #[must_use]
@@ -53,8 +52,7 @@ impl Pose {
                 reason: "the last row of a pose is 0 0 0 1; is the matrix transposed?".to_owned(),
             });
         }
-        let rotation =
-            Mat3::from_rows([0, 1, 2].map(|i: usize| [m[i][0], m[i][1], m[i][2]]));
+        let rotation = Mat3::from_rows([0, 1, 2].map(|i: usize| [m[i][0], m[i][1], m[i][2]]));
         Ok(Self {
             rotation: Rotation::from_matrix(rotation)?,
             translation: Vec3::new(m[0][3], m[1][3], m[2][3]),
@@ -82,10 +80,7 @@ impl Pose {
     #[inline]
     pub fn adjoint(self, twist: Twist) -> Twist {
         let angular = self.rotation * twist.angular;
-        Twist {
-            linear: self.rotation * twist.linear + self.translation.cross(angular),
-            angular,
-        }
+        Twist { linear: self.rotation * twist.linear + self.translation.cross(angular), angular }
     }
 
     /// The coadjoint: a wrench in frame b, seen from frame a.

@@ -62,9 +62,7 @@ impl Rotation {
     #[must_use]
     pub fn about_z(angle: f64) -> Self {
         let (s, c) = sin_cos(angle);
-        Self {
-            matrix: Mat3::from_cols(Vec3::new(c, s, 0.0), Vec3::new(-s, c, 0.0), Vec3::Z),
-        }
+        Self { matrix: Mat3::from_cols(Vec3::new(c, s, 0.0), Vec3::new(-s, c, 0.0), Vec3::Z) }
     }
 
     /// A rotation that takes z to the direction of `axis`: exact for the six coordinate axes.

@@ -102,12 +102,9 @@ mod tests {
     #[test]
     fn both_sides_of_the_switch() {
         let below = SMALL_ANGLE * (1.0 - f64::EPSILON);
-        for (name, f) in [
-            ("sinc3", sinc3 as fn(f64) -> f64),
-            ("cotc", cotc),
-            ("cosc4", cosc4),
-            ("sinc5", sinc5),
-        ] {
+        for (name, f) in
+            [("sinc3", sinc3 as fn(f64) -> f64), ("cotc", cotc), ("cosc4", cosc4), ("sinc5", sinc5)]
+        {
             let (lo, hi) = (f(below), f(SMALL_ANGLE));
             let relative = ((lo - hi) / hi).abs();
             assert!(relative < 2e-13, "{name}: {lo} below, {hi} above, {relative:.1e} relative");

@@ -1,0 +1,85 @@
+//! Driving a servo against an ideal robot that does as it is told: what `move` does.
+
+use std::collections::BTreeSet;
+
+use super::limits::LimitKind;
+use super::servo::{Servo, Status, Step, Target};
+use super::stall::Stall;
+use crate::error::Result;
+
+/// One instant of a motion.
+#[derive(Debug)]
+pub struct Sample<'a> {
+    /// Time since the start [s].
+    pub time: f64,
+    /// The configuration before the step.
+    pub q: &'a [f64],
+    /// The rates commanded by the step [rad/s or m/s].
+    pub rates: &'a [f64],
+    /// What the step reported.
+    pub step: &'a Step,
+}
+
+/// How a motion ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// True if the target was reached.
+    pub reached: bool,
+    /// Why it stalled; `None` if it was reached or the time ran out.
+    pub stall: Option<Stall>,
+    /// The last configuration.
+    pub q: Vec<f64>,
+    /// What the last step reported.
+    pub last: Step,
+    /// Steps taken.
+    pub steps: usize,
+    /// Duration [s].
+    pub time: f64,
+    /// Smallest singular value ratio on the way.
+    pub min_singular_ratio: f64,
+    /// Limits that set a rate on the way: place in `q` and kind.
+    pub limits_hit: BTreeSet<(usize, LimitKind)>,
+}
+
+/// Steps `servo` from `q` until it reports the end, or for `duration` seconds. `target` gives the
+/// target at a time [s] and whether it is the final one, `observe` sees every step.
+///
+/// # Errors
+/// As [`Servo::step`].
+pub fn drive(
+    servo: &mut Servo,
+    q: &[f64],
+    duration: f64,
+    mut target: impl FnMut(f64) -> (Target, bool),
+    mut observe: impl FnMut(Sample<'_>),
+) -> Result<Outcome> {
+    let dt = servo.options().dt;
+    let mut q = q.to_vec();
+    let mut steps = 0_usize;
+    let mut min_singular_ratio = f64::INFINITY;
+    let mut limits_hit = BTreeSet::new();
+    loop {
+        let time = steps as f64 * dt;
+        let (now, is_final) = target(time);
+        let step = servo.step(&q, now)?;
+        min_singular_ratio = min_singular_ratio.min(step.singular_ratio);
+        limits_hit.extend(servo.active_limits());
+        observe(Sample { time, q: &q, rates: servo.rates(), step: &step });
+        let reached = is_final && step.status == Status::Reached;
+        let stalled = is_final && step.status == Status::Stalled;
+        if reached || stalled || time >= duration {
+            return Ok(Outcome {
+                reached,
+                stall: stalled.then(|| servo.stall()),
+                q,
+                last: step,
+                steps,
+                time,
+                min_singular_ratio,
+                limits_hit,
+            });
+        }
+        servo.advance(&mut q);
+        steps += 1;
+    }
+}

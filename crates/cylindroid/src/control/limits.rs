@@ -1,0 +1,206 @@
+//! The rates that a coordinate may take in the next step: position, velocity and acceleration
+//! limits as one interval.
+//!
+//! Formula  |v| <= V;  |v - v_before| <= A dt;  and v small enough that braking with A, step by
+//!          step, still stops before the position limit: room >= D(v), D the stopping distance of
+//!          the discrete motion v, v - A dt, v - 2 A dt, ...
+//! Stopping with x = v / (A dt), k = floor(x), f = x - k:
+//!          D / (A dt^2) = (k + 1) (k / 2 + f), inverted in closed form below
+//! Units    rad or m, s
+//! Valid    a joint that obeyed the interval in the last step has an interval that is not empty in
+//!          this one. A measured state that did not (a push, a start outside the limits) gets the
+//!          rate nearest to its last one that moves it no further out.
+//! Why so   clamping to (limit - q) / dt alone, as common servo code does, stops a joint at its
+//!          limit with any deceleration; the continuous formula sqrt(2 A room) overshoots by up to
+//!          A dt^2 / 8
+//! Checked  tests/it/servo.rs::limits_*, tests in this file
+
+use crate::model::Limits;
+use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
+
+/// The rates allowed in the next step, and which limit sets each end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RateBounds {
+    /// Smallest rate [rad/s or m/s].
+    pub lower: f64,
+    /// Largest rate [rad/s or m/s].
+    pub upper: f64,
+    /// What sets the smallest rate.
+    pub lower_cause: LimitKind,
+    /// What sets the largest rate.
+    pub upper_cause: LimitKind,
+}
+
+/// The kind of a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LimitKind {
+    /// Position: the joint is at its limit or brakes before it.
+    Position,
+    /// Velocity.
+    Velocity,
+    /// Acceleration.
+    Acceleration,
+}
+
+impl LimitKind {
+    /// Its name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+        }
+    }
+}
+
+/// A coordinate and the rate it was last given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion1 {
+    /// Position [rad or m].
+    pub position: f64,
+    /// Rate commanded in the last step [rad/s or m/s].
+    pub rate: f64,
+}
+
+impl RateBounds {
+    /// The interval for the next step of `dt` seconds.
+    #[must_use]
+    pub fn next(limits: &Limits, now: Motion1, dt: f64) -> Self {
+        let rounding = LIMIT_ROUNDING * (1.0 + now.position.abs());
+        let above = (limits.upper - now.position - rounding).max(0.0);
+        let below = (now.position - limits.lower - rounding).max(0.0);
+        let step = limits.acceleration * dt;
+        let brake_up = stopping_rate(above, limits.acceleration, dt);
+        let brake_down = -stopping_rate(below, limits.acceleration, dt);
+
+        let mut bounds = Self {
+            lower: -limits.velocity,
+            upper: limits.velocity,
+            lower_cause: LimitKind::Velocity,
+            upper_cause: LimitKind::Velocity,
+        };
+        if now.rate + step < bounds.upper {
+            (bounds.upper, bounds.upper_cause) = (now.rate + step, LimitKind::Acceleration);
+        }
+        if now.rate - step > bounds.lower {
+            (bounds.lower, bounds.lower_cause) = (now.rate - step, LimitKind::Acceleration);
+        }
+        // Positions last: they win where a measured state contradicts the other two.
+        if brake_up < bounds.upper {
+            (bounds.upper, bounds.upper_cause) = (brake_up, LimitKind::Position);
+            if bounds.lower > brake_up {
+                (bounds.lower, bounds.lower_cause) = (brake_up, LimitKind::Position);
+            }
+        }
+        if brake_down > bounds.lower {
+            (bounds.lower, bounds.lower_cause) = (brake_down, LimitKind::Position);
+            if bounds.upper < brake_down {
+                (bounds.upper, bounds.upper_cause) = (brake_down, LimitKind::Position);
+            }
+        }
+        if bounds.lower > bounds.upper {
+            // Velocity against acceleration after a push: slow down as fast as allowed.
+            let rate = if now.rate > 0.0 { bounds.lower } else { bounds.upper };
+            (bounds.lower, bounds.upper) = (rate, rate);
+        }
+        bounds
+    }
+
+    /// The nearest allowed rate.
+    #[must_use]
+    pub fn clamp(&self, rate: f64) -> f64 {
+        rate.max(self.lower).min(self.upper)
+    }
+
+    /// The limit that a rate has run into, if any.
+    #[must_use]
+    pub fn met(&self, rate: f64) -> Option<LimitKind> {
+        if rate >= self.upper - LIMIT_MET * self.upper.abs() {
+            Some(self.upper_cause)
+        } else if rate <= self.lower + LIMIT_MET * self.lower.abs() {
+            Some(self.lower_cause)
+        } else {
+            None
+        }
+    }
+
+    /// True if the rate is allowed.
+    #[must_use]
+    pub fn contains(&self, rate: f64) -> bool {
+        rate >= self.lower && rate <= self.upper
+    }
+}
+
+/// The largest rate from which steps of `dt` with deceleration `acceleration` stop within `room`.
+fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
+    if room == f64::INFINITY {
+        return f64::INFINITY;
+    }
+    if acceleration == f64::INFINITY {
+        return room / dt;
+    }
+    let unit = acceleration * dt * dt;
+    if unit == 0.0 {
+        return 0.0;
+    }
+    let scaled = room / unit;
+    let k = (0.5 * ((1.0 + 8.0 * scaled).sqrt() - 1.0)).floor();
+    let f = ((scaled - 0.5 * k * (k + 1.0)) / (k + 1.0)).clamp(0.0, 1.0);
+    (k + f) * acceleration * dt
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limits() -> Limits {
+        Limits { lower: -1.0, upper: 1.0, velocity: 2.0, acceleration: 10.0, effort: 1.0 }
+    }
+
+    /// A joint that always takes the largest rate stops at its limit without leaving any bound.
+    #[test]
+    fn full_speed_into_the_limit_stops_there() {
+        let (limits, dt) = (limits(), 0.003);
+        let mut now = Motion1 { position: -1.0, rate: 0.0 };
+        for _ in 0..2000 {
+            let bounds = RateBounds::next(&limits, now, dt);
+            assert!(bounds.lower <= bounds.upper, "{bounds:?} at {now:?}");
+            let rate = bounds.upper;
+            assert!((rate - now.rate).abs() <= limits.acceleration * dt * (1.0 + 1e-12));
+            assert!(rate.abs() <= limits.velocity);
+            now = Motion1 { position: now.position + rate * dt, rate };
+            assert!(now.position <= limits.upper, "{}", now.position);
+        }
+        assert!(limits.upper - now.position < 1e-9, "stops short: {}", now.position);
+    }
+
+    #[test]
+    fn the_stopping_rate_uses_all_the_room() {
+        for room in [1e-9, 1e-5, 0.01, 0.3, 5.0] {
+            let (a, dt) = (7.0, 0.002);
+            let mut v = stopping_rate(room, a, dt);
+            let mut way = 0.0;
+            while v > 0.0 {
+                way += v * dt;
+                v -= a * dt;
+            }
+            assert!((way - room).abs() < 1e-12 * (1.0 + room / 1e-3), "{way} of {room}");
+        }
+    }
+
+    #[test]
+    fn outside_a_limit_only_the_way_back_is_open() {
+        let now = Motion1 { position: 1.2, rate: 0.0 };
+        let bounds = RateBounds::next(&limits(), now, 0.01);
+        assert_eq!(bounds.upper, 0.0);
+        assert!(bounds.lower < 0.0);
+    }
+
+    #[test]
+    fn no_limits_no_bounds() {
+        let now = Motion1 { position: 3.0, rate: 1.0 };
+        let bounds = RateBounds::next(&Limits::NONE, now, 0.01);
+        assert_eq!((bounds.lower, bounds.upper), (f64::NEG_INFINITY, f64::INFINITY));
+    }
+}

@@ -1,0 +1,206 @@
+//! What a servo is told: frame, task, gains, limits, inverse.
+
+use super::secondary::Secondary;
+use crate::error::{Error, Result};
+use crate::inverse::Method;
+use crate::kinematics::{EndEffector, Reference};
+use crate::model::Mechanism;
+use crate::tolerance;
+
+/// Proportional gains [1/s].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gain {
+    /// Of the position error.
+    pub position: f64,
+    /// Of the orientation error.
+    pub orientation: f64,
+}
+
+/// Errors below which a target counts as reached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Of the position [m].
+    pub position: f64,
+    /// Of the orientation [rad].
+    pub orientation: f64,
+}
+
+/// Largest speeds of the end effector.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Speed {
+    /// Of the tool point [m/s].
+    pub linear: f64,
+    /// Of the tool [rad/s].
+    pub angular: f64,
+}
+
+/// The components of the end effector's motion that matter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Task {
+    /// Translation along x, y, z and rotation about x, y, z.
+    pub components: [bool; 6],
+    /// The axes of the components: `Local` (the tool's) or `LocalWorldAligned` (the world's).
+    pub axes: Reference,
+}
+
+impl Task {
+    /// Position and orientation.
+    pub const POSE: Self = Self { components: [true; 6], axes: Reference::LocalWorldAligned };
+    /// Position alone.
+    pub const POSITION: Self = Self {
+        components: [true, true, true, false, false, false],
+        axes: Reference::LocalWorldAligned,
+    };
+    /// Orientation alone.
+    pub const ORIENTATION: Self = Self {
+        components: [false, false, false, true, true, true],
+        axes: Reference::LocalWorldAligned,
+    };
+    /// Position and the direction of the tool's z axis: a task for five joints.
+    pub const POINTING: Self =
+        Self { components: [true, true, true, true, true, false], axes: Reference::Local };
+}
+
+/// Which motions the secondary tasks may use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Projector {
+    /// The null space of the Jacobian at machine precision: the task is never disturbed.
+    Exact,
+    /// The complement of the directions that the inverse retained: lets the secondary motion
+    /// through directions that were cut, and disturbs the task there.
+    Retained,
+}
+
+/// What a servo is told. Start from [`ServoOptions::new`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct ServoOptions {
+    /// The frame and tool point that is driven.
+    pub end_effector: EndEffector,
+    /// The components of its motion that matter.
+    pub task: Task,
+    /// Time between steps [s].
+    pub dt: f64,
+    /// Proportional gains; `gain * dt` must be below 2.
+    pub gain: Gain,
+    /// When the target counts as reached.
+    pub tolerance: Tolerance,
+    /// How the Jacobian is inverted; its numbers refer to linear rows divided by `length`.
+    pub method: Method,
+    /// Characteristic length that scales the linear rows [m].
+    pub length: f64,
+    /// A weight for each coordinate of the mechanism (large keeps it still); empty for none.
+    pub joint_weights: Vec<f64>,
+    /// Largest speeds of the end effector.
+    pub speed: Speed,
+    /// Acceleration limit of coordinates that have none of their own [rad/s^2 or m/s^2].
+    pub acceleration: f64,
+    /// Wishes for the joints, added up and projected on the null space.
+    pub secondary: Vec<Secondary>,
+    /// The null space that is meant.
+    pub projector: Projector,
+}
+
+impl ServoOptions {
+    /// The defaults for a mechanism: its tool, whole poses, 1 kHz, 5/s, the truncated inverse, the
+    /// reach as length.
+    #[must_use]
+    pub fn new(mechanism: &Mechanism) -> Self {
+        Self {
+            end_effector: mechanism.tool().into(),
+            task: Task::POSE,
+            dt: 1e-3,
+            gain: Gain { position: 5.0, orientation: 5.0 },
+            tolerance: Tolerance {
+                position: tolerance::POSITION,
+                orientation: tolerance::ORIENTATION,
+            },
+            method: Method::default(),
+            length: mechanism.reach(),
+            joint_weights: Vec::new(),
+            speed: Speed { linear: f64::INFINITY, angular: f64::INFINITY },
+            acceleration: f64::INFINITY,
+            secondary: Vec::new(),
+            projector: Projector::Exact,
+        }
+    }
+
+    /// Refuses numbers that make no controller.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] naming the option and its value.
+    pub fn check(&self, mechanism: &Mechanism) -> Result<()> {
+        positive("dt", self.dt)?;
+        positive("length", self.length)?;
+        for (option, gain) in
+            [("position gain", self.gain.position), ("orientation gain", self.gain.orientation)]
+        {
+            positive(option, gain)?;
+            if gain * self.dt >= 2.0 {
+                return Err(Error::InvalidOption {
+                    option,
+                    value: format!("{gain} 1/s with dt = {} s", self.dt),
+                    reason: format!(
+                        "gain * dt = {} must be below 2, or the error grows with every step; at \
+                         most 1 is free of overshoot: use a gain up to {}",
+                        gain * self.dt,
+                        1.0 / self.dt
+                    ),
+                });
+            }
+        }
+        for (option, value) in [
+            ("position tolerance", self.tolerance.position),
+            ("orientation tolerance", self.tolerance.orientation),
+            ("linear speed", self.speed.linear),
+            ("angular speed", self.speed.angular),
+            ("acceleration", self.acceleration),
+        ] {
+            // Infinity means "no limit" here.
+            if value.is_nan() || value <= 0.0 {
+                return Err(refuse(option, value));
+            }
+        }
+        if !self.task.components.contains(&true) {
+            return Err(Error::InvalidOption {
+                option: "task",
+                value: "no components".to_owned(),
+                reason: "name at least one of x, y, z, rx, ry, rz".to_owned(),
+            });
+        }
+        if self.task.axes == Reference::World {
+            return Err(Error::InvalidOption {
+                option: "task axes",
+                value: "world".to_owned(),
+                reason: "the error is taken at the tool; use local or local_world_aligned"
+                    .to_owned(),
+            });
+        }
+        if !self.joint_weights.is_empty() {
+            mechanism.check_q("joint weights", &self.joint_weights)?;
+            for &w in &self.joint_weights {
+                positive("joint weight", w)?;
+            }
+        }
+        for secondary in &self.secondary {
+            Error::check_finite("secondary gain", &[secondary.gain()])?;
+            match secondary {
+                Secondary::Posture { q, .. } => mechanism.check_q("posture", q)?,
+                Secondary::LimitAvoidance { margin, .. } => positive("margin", *margin)?,
+                Secondary::Centring { .. } | Secondary::Manipulability { .. } => {}
+            }
+        }
+        self.method.check()
+    }
+}
+
+fn positive(option: &'static str, value: f64) -> Result<()> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(refuse(option, value)) }
+}
+
+fn refuse(option: &'static str, value: f64) -> Error {
+    Error::InvalidOption {
+        option,
+        value: value.to_string(),
+        reason: "it must be positive".to_owned(),
+    }
+}

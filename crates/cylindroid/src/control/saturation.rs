@@ -1,0 +1,307 @@
+//! Rates inside their bounds: the task is scaled first, then bent.
+//!
+//! Formula  scaled: the largest s in [0, 1] with J q' = s x and bounds kept, joints at a bound
+//!          taken out one by one while the rest can still do the task;
+//!          bent: the bounded least-squares solution, min |J q' - x| with bounds kept
+//! Shapes   J: m x n, x: m, bounds: n
+//! Cost     at most 4 n decompositions of m x n; none when no bound is met
+//! Why so   scaling keeps the direction of the motion, which users of a straight path count on;
+//!          only when the direction is lost altogether is it better to move on a bent way than not
+//! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
+//!          Parker 1995 (bounded-variable least squares)
+//! Checked  tests/it/servo.rs::saturation_*
+
+use super::limits::{LimitKind, RateBounds};
+use crate::inverse::{Method, is_kept};
+use crate::linalg::{Matrix, Svd};
+
+/// Below this scale a direction counts as lost and the motion is bent [-].
+const LEAST_SCALE: f64 = 0.05;
+
+/// A held joint is released when its pull is above this share of the largest possible one [-]:
+/// what is left of directions that the inverse cut must not release anything.
+const RELEASE: f64 = 1e-3;
+
+/// What became of the task.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Saturation {
+    /// The share of the task twist that is carried out; 1 when no limit bites.
+    pub scale: f64,
+    /// True if the direction could not be kept.
+    pub bent: bool,
+}
+
+/// Memory for the decompositions.
+#[derive(Debug, Clone)]
+pub(super) struct Saturator {
+    svd: Svd,
+    reduced: Matrix,
+    gains: Vec<f64>,
+    held: Vec<bool>,
+    held_rates: Vec<f64>,
+    particular: Vec<f64>,
+    direction: Vec<f64>,
+    rest: Vec<f64>,
+    best: Vec<f64>,
+}
+
+/// The task and how it is inverted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Problem<'a> {
+    pub(super) j: &'a Matrix,
+    pub(super) x: &'a [f64],
+    pub(super) method: &'a Method,
+    pub(super) bounds: &'a [RateBounds],
+}
+
+impl Saturator {
+    pub(super) fn new(m: usize, n: usize) -> Self {
+        Self {
+            svd: Svd::workspace(m, n),
+            reduced: Matrix::zeros(m, n),
+            gains: vec![0.0; m.min(n)],
+            held: vec![false; n],
+            held_rates: vec![0.0; n],
+            particular: vec![0.0; n],
+            direction: vec![0.0; n],
+            rest: vec![0.0; m],
+            best: vec![0.0; n],
+        }
+    }
+
+    /// Moves `rates` (primary plus `secondary`) into the bounds. `rates` comes in as the primary
+    /// motion that solves the task, without limits.
+    pub(super) fn apply(
+        &mut self,
+        problem: Problem<'_>,
+        secondary: &[f64],
+        rates: &mut [f64],
+    ) -> Saturation {
+        let bounds = problem.bounds;
+        // The secondary motion yields first.
+        if let Some(span) = interval(rates, secondary, bounds) {
+            for ((rate, z), bound) in rates.iter_mut().zip(secondary).zip(bounds) {
+                *rate = bound.clamp(*rate + span.most * z);
+            }
+            return Saturation { scale: 1.0, bent: false };
+        }
+        // While joints gain speed the twist is scaled and grows from step to step; only lasting
+        // limits are worth another distribution of the motion over the joints.
+        self.particular.fill(0.0);
+        if let Some(span) = interval(&self.particular, rates, bounds)
+            && span.most > 0.0
+            && span.cause == LimitKind::Acceleration
+        {
+            for (rate, bound) in rates.iter_mut().zip(bounds) {
+                *rate = bound.clamp(*rate * span.most);
+            }
+            return Saturation { scale: span.most, bent: false };
+        }
+        let (scale, cause) = self.scaled(problem);
+        if scale >= LEAST_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
+            rates.copy_from_slice(&self.best);
+            return Saturation { scale, bent: false };
+        }
+        self.bend(problem, rates);
+        Saturation { scale: 0.0, bent: true }
+    }
+
+    /// The largest feasible scale, with its rates in `best`, and what limits it; 0 if none.
+    fn scaled(&mut self, p: Problem<'_>) -> (f64, LimitKind) {
+        let n = p.bounds.len();
+        self.held.fill(false);
+        self.held_rates.fill(0.0);
+        let mut best = 0.0;
+        let mut cause = LimitKind::Position;
+        let mut possible = 0;
+        for round in 0..n {
+            let rank = self.decompose_free(&p);
+            if round == 0 {
+                possible = rank;
+            } else if rank < possible {
+                break; // the rest can no longer do the task
+            }
+            // rates(s) = particular + s direction
+            self.rest.fill(0.0);
+            p.j.mul_vec_into(&self.held_rates, &mut self.rest);
+            self.rest.iter_mut().for_each(|r| *r = -*r);
+            solve(&self.svd, p.method, &mut self.gains, &self.rest, &mut self.particular);
+            solve(&self.svd, p.method, &mut self.gains, p.x, &mut self.direction);
+            for (a, h) in self.particular.iter_mut().zip(&self.held_rates) {
+                *a += h;
+            }
+            if let Some(span) = interval(&self.particular, &self.direction, p.bounds)
+                && span.most > best
+            {
+                let s = span.most;
+                (best, cause) = (s, span.cause);
+                for ((b, a), d) in self.best.iter_mut().zip(&self.particular).zip(&self.direction) {
+                    *b = a + s * d;
+                }
+                for (b, bound) in self.best.iter_mut().zip(p.bounds) {
+                    *b = bound.clamp(*b); // rounding at the critical joint
+                }
+            }
+            if best >= 1.0 {
+                break;
+            }
+            // Hold the joint that leaves its bounds by most at full scale.
+            let mut worst = (0.0, None);
+            for i in 0..n {
+                let rate = self.particular[i] + self.direction[i];
+                let excess = (rate - p.bounds[i].clamp(rate)).abs();
+                if !self.held[i] && excess > worst.0 {
+                    worst = (excess, Some((i, p.bounds[i].clamp(rate))));
+                }
+            }
+            let Some((i, rate)) = worst.1 else { break };
+            self.held[i] = true;
+            self.held_rates[i] = rate;
+        }
+        (best, cause)
+    }
+
+    /// Bounded least squares by an active set: hold what reaches a bound, release what would leave
+    /// it inwards, until neither happens.
+    fn bend(&mut self, p: Problem<'_>, rates: &mut [f64]) {
+        let n = p.bounds.len();
+        for (i, rate) in rates.iter_mut().enumerate() {
+            let clamped = p.bounds[i].clamp(*rate);
+            self.held[i] = clamped != *rate;
+            *rate = clamped;
+        }
+        for _ in 0..3 * n {
+            self.decompose_free(&p);
+            self.load_residual(&p, rates, true);
+            solve(&self.svd, p.method, &mut self.gains, &self.rest, &mut self.direction);
+            if self.move_to_first_bound(p.bounds, rates) {
+                continue;
+            }
+            self.load_residual(&p, rates, false);
+            if !self.release_one(&p, rates) {
+                break;
+            }
+        }
+        for (rate, bound) in rates.iter_mut().zip(p.bounds) {
+            *rate = bound.clamp(*rate);
+        }
+    }
+
+    /// `rest = x - J rates`, of the held joints alone or of all.
+    fn load_residual(&mut self, p: &Problem<'_>, rates: &[f64], held_alone: bool) {
+        self.rest.copy_from_slice(p.x);
+        for (j, rate) in rates.iter().enumerate() {
+            if self.held[j] || !held_alone {
+                for (r, a) in self.rest.iter_mut().zip(p.j.column(j)) {
+                    *r -= a * rate;
+                }
+            }
+        }
+    }
+
+    /// Moves the free joints towards `direction` until one reaches a bound and is held (true), or
+    /// all the way (false).
+    fn move_to_first_bound(&mut self, bounds: &[RateBounds], rates: &mut [f64]) -> bool {
+        let mut first = (1.0, None);
+        for (i, bound) in bounds.iter().enumerate() {
+            let way = self.direction[i] - rates[i];
+            if self.held[i] || bound.contains(self.direction[i]) {
+                continue;
+            }
+            let end = if way > 0.0 { bound.upper } else { bound.lower };
+            let share = ((end - rates[i]) / way).clamp(0.0, 1.0);
+            if share < first.0 || first.1.is_none() {
+                first = (share, Some((i, end)));
+            }
+        }
+        for (i, rate) in rates.iter_mut().enumerate() {
+            if !self.held[i] {
+                *rate += first.0 * (self.direction[i] - *rate);
+            }
+        }
+        let Some((i, end)) = first.1 else { return false };
+        rates[i] = end;
+        self.held[i] = true;
+        true
+    }
+
+    /// Frees the held joint that would lower the error most by leaving its bound inwards.
+    fn release_one(&mut self, p: &Problem<'_>, rates: &[f64]) -> bool {
+        let size = self.rest.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let least = RELEASE * self.svd.value(0) * size;
+        let mut best = (least, None);
+        for (i, bound) in p.bounds.iter().enumerate() {
+            if !self.held[i] || bound.lower == bound.upper {
+                continue;
+            }
+            let pull: f64 = p.j.column(i).iter().zip(&self.rest).map(|(a, r)| a * r).sum();
+            let inwards = if rates[i] >= bound.upper { -pull } else { pull };
+            if inwards > best.0 {
+                best = (inwards, Some(i));
+            }
+        }
+        let Some(i) = best.1 else { return false };
+        self.held[i] = false;
+        true
+    }
+
+    /// Decomposes J without the columns of held joints; the number of directions it can do.
+    fn decompose_free(&mut self, p: &Problem<'_>) -> usize {
+        self.reduced.as_mut_slice().copy_from_slice(p.j.as_slice());
+        for (i, held) in self.held.iter().enumerate() {
+            if *held {
+                self.reduced.column_mut(i).fill(0.0);
+            }
+        }
+        self.svd.decompose(&self.reduced);
+        p.method.gains(&self.svd, p.x, &mut self.gains);
+        let values = self.svd.values();
+        self.gains.iter().zip(values).filter(|(g, s)| is_kept(*g * s)).count()
+    }
+}
+
+/// `out = V diag(gains) U^T x`
+pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], out: &mut [f64]) {
+    method.gains(svd, x, gains);
+    out.fill(0.0);
+    for (i, gain) in gains.iter().enumerate() {
+        let along: f64 = svd.u(i).iter().zip(x).map(|(u, x)| u * x).sum();
+        for (o, v) in out.iter_mut().zip(svd.v(i)) {
+            *o += gain * along * v;
+        }
+    }
+}
+
+/// Where `a + s b` keeps the bounds.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    /// The largest s in [0, 1].
+    most: f64,
+    /// The limit that sets it; velocity if none does.
+    cause: LimitKind,
+}
+
+/// The s in [0, 1] for which `a + s b` keeps the bounds; `None` if there are none.
+fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<Span> {
+    let mut least = 0.0_f64;
+    let mut span = Span { most: 1.0, cause: LimitKind::Velocity };
+    for ((a, b), bound) in a.iter().zip(b).zip(bounds) {
+        if *b == 0.0 {
+            if !bound.contains(*a) {
+                return None;
+            }
+            continue;
+        }
+        let (lower, upper) = ((bound.lower - a) / b, (bound.upper - a) / b);
+        let (enter, leave, cause) = if *b > 0.0 {
+            (lower, upper, bound.upper_cause)
+        } else {
+            (upper, lower, bound.lower_cause)
+        };
+        least = least.max(enter);
+        if leave < span.most {
+            span = Span { most: leave, cause };
+        }
+    }
+    (least <= span.most).then_some(span)
+}

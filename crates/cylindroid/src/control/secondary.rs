@@ -1,0 +1,153 @@
+//! Secondary tasks: what the joints do where the end effector does not care.
+//!
+//! Formula  posture: k (q_0 - q); centring: the posture of the middle of the limits;
+//!          limit avoidance: k (1 - room / margin) away from a limit nearer than the margin;
+//!          manipulability: k dw/dq, w = s_1 ... s_m, dw/dq_k = w sum_i u_i^T (dJ/dq_k) v_i / s_i
+//! Units    gains in 1/s; for manipulability rad/s for each unit of dw/dq
+//! Shapes   rates of the n coordinates that move the end effector
+//! Valid    coordinates without limits (and rotation vectors) are left alone by centring and limit
+//!          avoidance; the gradient is zero where w is zero up to rounding
+//! Source   Liegeois 1977; Yoshikawa 1985; analytic gradient through the Hessian
+//! Checked  tests/it/servo.rs::secondary_*
+
+use crate::kinematics::{Chain, Reference};
+use crate::linalg::{Matrix, Svd};
+use crate::model::{CoordinateKind, Mechanism};
+
+/// A wish for the joints, followed as far as the end effector allows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Secondary {
+    /// Towards this configuration (all n coordinates of the mechanism).
+    Posture {
+        /// The configuration.
+        q: Vec<f64>,
+        /// Gain [1/s].
+        gain: f64,
+    },
+    /// Towards the middle of the limits.
+    Centring {
+        /// Gain [1/s].
+        gain: f64,
+    },
+    /// Away from limits that are near.
+    LimitAvoidance {
+        /// Rate at the limit [rad/s or m/s].
+        gain: f64,
+        /// Distance at which it sets in, as a share of the range [-].
+        margin: f64,
+    },
+    /// Towards larger manipulability of the task.
+    Manipulability {
+        /// Gain.
+        gain: f64,
+    },
+}
+
+/// Memory for the gradient of the manipulability, and the rows that the task keeps.
+#[derive(Debug, Clone)]
+pub(super) struct Gradient {
+    pub(super) hessian: Vec<Matrix>,
+}
+
+/// The task as the gradient needs it: which rows of the Jacobian, scaled how.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TaskRows<'a> {
+    pub(super) reference: Reference,
+    /// Row of the 6 x n Jacobian and its scale, for each row of the task.
+    pub(super) rows: &'a [(usize, f64)],
+    /// Scale of each column.
+    pub(super) columns: &'a [f64],
+}
+
+impl Secondary {
+    /// Adds the wanted rates of the chain's coordinates to `out`.
+    pub(super) fn add_rates(
+        &self,
+        mechanism: &Mechanism,
+        chain: &Chain,
+        svd: &Svd,
+        task: TaskRows<'_>,
+        gradient: &mut Gradient,
+        out: &mut [f64],
+    ) {
+        let coordinate = |i: usize| &mechanism.coordinates()[chain.coordinates()[i]];
+        let ordinary =
+            |i: usize| matches!(coordinate(i).kind, CoordinateKind::Angle | CoordinateKind::Length);
+        match self {
+            Self::Posture { q, gain } => {
+                for (i, rate) in out.iter_mut().enumerate() {
+                    *rate += gain * (q[chain.coordinates()[i]] - chain.q()[i]);
+                }
+            }
+            Self::Centring { gain } => {
+                for (i, rate) in out.iter_mut().enumerate() {
+                    let l = &coordinate(i).limits;
+                    let middle = 0.5 * (l.lower + l.upper);
+                    if middle.is_finite() && ordinary(i) {
+                        *rate += gain * (middle - chain.q()[i]);
+                    }
+                }
+            }
+            Self::LimitAvoidance { gain, margin } => {
+                for (i, rate) in out.iter_mut().enumerate() {
+                    let l = &coordinate(i).limits;
+                    let near = margin * (l.upper - l.lower);
+                    if !(near.is_finite() && near > 0.0 && ordinary(i)) {
+                        continue;
+                    }
+                    let q = chain.q()[i];
+                    let push = |room: f64| (1.0 - room / near).clamp(0.0, 1.0);
+                    *rate += gain * (push(q - l.lower) - push(l.upper - q));
+                }
+            }
+            Self::Manipulability { gain } => {
+                chain.hessian_into(task.reference, &mut gradient.hessian);
+                let rank = svd.machine_rank().rank;
+                if rank < svd.len() || rank == 0 {
+                    return;
+                }
+                let w: f64 = svd.values().product();
+                for (k, rate) in out.iter_mut().enumerate() {
+                    let h = &gradient.hessian[k];
+                    let mut sum = 0.0;
+                    for i in 0..rank {
+                        let (u, v) = (svd.u(i), svd.v(i));
+                        let mut along = 0.0;
+                        for (j, (vj, cj)) in v.iter().zip(task.columns).enumerate() {
+                            let column = h.column(j);
+                            let turned: f64 = u
+                                .iter()
+                                .zip(task.rows)
+                                .map(|(ui, (row, scale))| ui * scale * column[*row])
+                                .sum();
+                            along += vj * cj * turned;
+                        }
+                        sum += along / svd.value(i);
+                    }
+                    *rate += gain * w * sum;
+                }
+            }
+        }
+    }
+
+    /// The name of the task.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Posture { .. } => "posture",
+            Self::Centring { .. } => "centring",
+            Self::LimitAvoidance { .. } => "limit-avoidance",
+            Self::Manipulability { .. } => "manipulability",
+        }
+    }
+
+    /// The gain of the task.
+    pub(super) const fn gain(&self) -> f64 {
+        match self {
+            Self::Posture { gain, .. }
+            | Self::Centring { gain }
+            | Self::LimitAvoidance { gain, .. }
+            | Self::Manipulability { gain } => *gain,
+        }
+    }
+}

@@ -1,0 +1,444 @@
+//! The servo: one step from joint positions and a target pose to joint rates.
+//!
+//! Formula  x = gain * error + feed-forward, error = [p_d - p; log(R_d R^T)] (world axes), saturated
+//!          to the largest speeds; rates = J+ x + P z: J+ the chosen inverse of the task Jacobian
+//!          with linear rows divided by L, z the secondary wishes, P the null-space projector;
+//!          then position, velocity and acceleration limits (`limits.rs`, `saturation.rs`)
+//! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
+//! Units    m, rad, s
+//! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step.
+//! Fails    on numbers that are not finite, and then leaves the servo as it was
+//! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
+//! Checked  tests/it/servo.rs, tests/allocation.rs
+
+use super::limits::{LimitKind, Motion1, RateBounds};
+use super::options::{Projector, ServoOptions};
+use super::saturation::{Problem, Saturation, Saturator, solve};
+use super::secondary::{Gradient, TaskRows};
+use super::stall::{Evidence, Stall, Watch, classify};
+use crate::error::{Error, Result};
+use crate::kinematics::{Chain, Reference};
+use crate::linalg::{Matrix, RowSpace, Svd};
+use crate::model::{Limits, Mechanism};
+use crate::spatial::{Pose, Twist};
+use crate::tolerance::AT_LIMIT;
+
+/// A moving target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// `world_from_tool` as it should be.
+    pub pose: Pose,
+    /// The twist of the target, world axes, at the tool.
+    pub feed_forward: Twist,
+}
+
+impl From<Pose> for Target {
+    fn from(pose: Pose) -> Self {
+        Self { pose, feed_forward: Twist::ZERO }
+    }
+}
+
+/// Where a servo stands after a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// On its way.
+    Moving,
+    /// Both errors are within tolerance.
+    Reached,
+    /// The error no longer falls; [`Servo::stall`] says why.
+    Stalled,
+}
+
+/// What one step did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// Where the servo stands.
+    pub status: Status,
+    /// The pose of the tool before the step.
+    pub pose: Pose,
+    /// Distance to the target, of the components that matter [m].
+    pub position_error: f64,
+    /// Angle to the target, of the components that matter [rad].
+    pub orientation_error: f64,
+    /// Smallest singular value of the scaled task Jacobian over the largest.
+    pub singular_ratio: f64,
+    /// Directions realised by at least half.
+    pub rank: usize,
+    /// What the limits left of the task.
+    pub saturation: Saturation,
+}
+
+/// A Cartesian controller for one end effector.
+#[derive(Debug, Clone)]
+pub struct Servo {
+    mechanism: Mechanism,
+    options: ServoOptions,
+    chain: Chain,
+    /// Row of the Jacobian and its scale, for each task component.
+    rows: Vec<(usize, f64)>,
+    /// Scale of each column: 1 / sqrt(weight).
+    columns: Vec<f64>,
+    limits: Vec<Limits>,
+    /// Length of the chain after its first joint [m].
+    length: f64,
+
+    jacobian: Matrix,
+    task: Matrix,
+    svd: Svd,
+    gains: Vec<f64>,
+    x: Vec<f64>,
+    error: Vec<f64>,
+    primary: Vec<f64>,
+    wish: Vec<f64>,
+    bounds: Vec<RateBounds>,
+    saturator: Saturator,
+    gradient: Gradient,
+
+    rates: Vec<f64>,
+    active: Vec<Option<LimitKind>>,
+    at_limit: Vec<usize>,
+    watch: Watch,
+    last_target: Option<Pose>,
+    distance: f64,
+}
+
+impl Servo {
+    /// A servo at rest.
+    ///
+    /// # Errors
+    /// Options that make no controller; see [`ServoOptions::check`].
+    pub fn new(mechanism: &Mechanism, options: ServoOptions) -> Result<Self> {
+        options.check(mechanism)?;
+        let chain = Chain::new(mechanism, options.end_effector);
+        let rows: Vec<(usize, f64)> = (0..6)
+            .filter(|&i| options.task.components[i])
+            .map(|i| (i, if i < 3 { 1.0 / options.length } else { 1.0 }))
+            .collect();
+        let (m, n) = (rows.len(), chain.n());
+        if n == 0 {
+            return Err(Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: mechanism.frame_of(options.end_effector.frame).name.clone(),
+                message: format!(
+                    "no joint moves frame '{}'; name another frame",
+                    mechanism.frame_of(options.end_effector.frame).name
+                ),
+            });
+        }
+        let limits = chain
+            .coordinates()
+            .iter()
+            .map(|&c| {
+                let mut l = mechanism.coordinates()[c].limits;
+                if l.acceleration == f64::INFINITY {
+                    l.acceleration = options.acceleration;
+                }
+                l
+            })
+            .collect();
+        let columns = chain
+            .coordinates()
+            .iter()
+            .map(|&c| options.joint_weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt()))
+            .collect();
+        let hessian = if options
+            .secondary
+            .iter()
+            .any(|s| matches!(s, super::Secondary::Manipulability { .. }))
+        {
+            vec![Matrix::zeros(6, n); n]
+        } else {
+            Vec::new()
+        };
+        Ok(Self {
+            length: chain.length_after_first_joint(mechanism),
+            mechanism: mechanism.clone(),
+            options,
+            rows,
+            columns,
+            limits,
+            jacobian: Matrix::zeros(6, n),
+            task: Matrix::zeros(m, n),
+            svd: Svd::workspace(m, n),
+            gains: vec![0.0; m.min(n)],
+            x: vec![0.0; m],
+            error: vec![0.0; m],
+            primary: vec![0.0; n],
+            wish: vec![0.0; n],
+            bounds: vec![
+                RateBounds {
+                    lower: 0.0,
+                    upper: 0.0,
+                    lower_cause: LimitKind::Velocity,
+                    upper_cause: LimitKind::Velocity,
+                };
+                n
+            ],
+            saturator: Saturator::new(m, n),
+            gradient: Gradient { hessian },
+            rates: vec![0.0; mechanism.n()],
+            active: vec![None; n],
+            at_limit: Vec::with_capacity(n),
+            watch: Watch::new(),
+            last_target: None,
+            distance: 0.0,
+            chain,
+        })
+    }
+
+    /// One step: the rates to command from now until the next step are in [`Servo::rates`].
+    ///
+    /// # Errors
+    /// A `q` of the wrong size, or numbers that are not finite; the servo stays as it was.
+    pub fn step(&mut self, q: &[f64], target: impl Into<Target>) -> Result<Step> {
+        self.step_with(q, target, &[])
+    }
+
+    /// [`Servo::step`] with wanted joint rates of the caller (all n of them, or none), projected
+    /// on the null space like the secondary tasks: moving an elbow by hand.
+    ///
+    /// # Errors
+    /// As [`Servo::step`].
+    pub fn step_with(
+        &mut self,
+        q: &[f64],
+        target: impl Into<Target>,
+        wanted_rates: &[f64],
+    ) -> Result<Step> {
+        let target = target.into();
+        self.check_input(q, &target, wanted_rates)?;
+
+        let pose = self.chain.set(q);
+        let error = pose.error_to(target.pose);
+        let (position_error, orientation_error) = self.load_task(pose, error, &target);
+        let m = self.rows.len();
+
+        self.load_jacobian();
+        self.svd.decompose_warm(&self.task);
+        solve(&self.svd, &self.options.method, &mut self.gains, &self.x, &mut self.primary);
+        let rank = (0..self.svd.len())
+            .filter(|&i| crate::inverse::is_kept(self.gains[i] * self.svd.value(i)))
+            .count();
+        self.load_wish(wanted_rates, rank);
+
+        self.load_bounds(q);
+        let problem = Problem {
+            j: &self.task,
+            x: &self.x[..m],
+            method: &self.options.method,
+            bounds: &self.bounds,
+        };
+        let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
+        self.store_rates();
+
+        self.distance = (target.pose.translation - self.chain.first_origin()).norm();
+        if self.last_target != Some(target.pose) {
+            self.last_target = Some(target.pose);
+            self.watch = Watch::new();
+        }
+        let tolerance = self.options.tolerance;
+        let scaled = position_error / self.options.length + orientation_error;
+        let status =
+            if position_error <= tolerance.position && orientation_error <= tolerance.orientation {
+                Status::Reached
+            } else if self.watch.stalled(scaled, self.options.dt) {
+                Status::Stalled
+            } else {
+                Status::Moving
+            };
+        Ok(Step {
+            status,
+            pose,
+            position_error,
+            orientation_error,
+            singular_ratio: self.singular_ratio(),
+            rank,
+            saturation,
+        })
+    }
+
+    /// The rates of the last step, for all n coordinates [rad/s or m/s].
+    #[must_use]
+    pub fn rates(&self) -> &[f64] {
+        &self.rates
+    }
+
+    /// The limits that set a rate in the last step: place in `q` and kind.
+    pub fn active_limits(&self) -> impl Iterator<Item = (usize, LimitKind)> + '_ {
+        self.chain
+            .coordinates()
+            .iter()
+            .zip(&self.active)
+            .filter_map(|(&c, kind)| kind.map(|k| (c, k)))
+    }
+
+    /// Why the last step got no nearer to the target.
+    #[must_use]
+    pub fn stall(&self) -> Stall {
+        classify(&Evidence {
+            svd: &self.svd,
+            gains: &self.gains,
+            error: &self.error,
+            at_limit: &self.at_limit,
+            distance: self.distance,
+            length: self.length + self.offset_of_free_position(),
+        })
+    }
+
+    /// The options.
+    #[must_use]
+    pub fn options(&self) -> &ServoOptions {
+        &self.options
+    }
+
+    /// The mechanism.
+    #[must_use]
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// Forgets the last rates and target: the joints stand still.
+    pub fn reset(&mut self) {
+        self.rates.fill(0.0);
+        self.watch = Watch::new();
+        self.last_target = None;
+    }
+
+    /// Moves `q` by the rates of the last step, for simulation.
+    ///
+    /// # Panics
+    /// If `q` is shorter than the mechanism's.
+    pub fn advance(&self, q: &mut [f64]) {
+        self.mechanism.integrate_in_place(q, &self.rates, self.options.dt);
+    }
+
+    fn check_input(&self, q: &[f64], target: &Target, wanted_rates: &[f64]) -> Result<()> {
+        self.mechanism.check_q("q", q)?;
+        if !wanted_rates.is_empty() {
+            self.mechanism.check_q("wanted rates", wanted_rates)?;
+        }
+        let p = target.pose.translation.to_array();
+        Error::check_finite("target position", &p)?;
+        if !target.pose.is_finite() {
+            return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
+        }
+        Error::check_finite("feed-forward twist", &target.feed_forward.to_array())
+    }
+
+    /// Writes the commanded task twist and the error, both scaled; returns the two errors.
+    fn load_task(&mut self, pose: Pose, error: Twist, target: &Target) -> (f64, f64) {
+        let gain = self.options.gain;
+        let mut twist = Twist {
+            linear: error.linear * gain.position + target.feed_forward.linear,
+            angular: error.angular * gain.orientation + target.feed_forward.angular,
+        };
+        let mut error = error;
+        if self.options.task.axes == Reference::Local {
+            let r = pose.rotation.matrix();
+            let turn =
+                |t: Twist| Twist { linear: r.tr_mul(t.linear), angular: r.tr_mul(t.angular) };
+            twist = turn(twist);
+            error = turn(error);
+        }
+        let keep = |t: Twist| {
+            let mut v = t.to_array();
+            for (x, keep) in v.iter_mut().zip(self.options.task.components) {
+                *x *= f64::from(u8::from(keep));
+            }
+            Twist::from_array(v)
+        };
+        let (mut twist, error) = (keep(twist), keep(error));
+        // Saturated as a whole: the direction of the motion is kept.
+        let speed = self.options.speed;
+        let excess = (twist.linear.norm() / speed.linear).max(twist.angular.norm() / speed.angular);
+        if excess > 1.0 {
+            twist = twist * (1.0 / excess);
+        }
+        let (twist, scaled) = (twist.to_array(), error.to_array());
+        for (i, &(row, scale)) in self.rows.iter().enumerate() {
+            self.x[i] = twist[row] * scale;
+            self.error[i] = scaled[row] * scale;
+        }
+        (error.linear.norm(), error.angular.norm())
+    }
+
+    fn load_jacobian(&mut self) {
+        self.chain.jacobian_into(self.options.task.axes, &mut self.jacobian);
+        for (j, &weight) in self.columns.iter().enumerate() {
+            let column = self.jacobian.column(j);
+            for (t, &(row, scale)) in self.task.column_mut(j).iter_mut().zip(&self.rows) {
+                *t = column[row] * scale * weight;
+            }
+        }
+    }
+
+    /// Secondary wishes in weighted coordinates, projected on the null space.
+    fn load_wish(&mut self, wanted_rates: &[f64], rank: usize) {
+        self.wish.fill(0.0);
+        if !wanted_rates.is_empty() {
+            for (w, &c) in self.wish.iter_mut().zip(self.chain.coordinates()) {
+                *w = wanted_rates[c];
+            }
+        }
+        let rows = TaskRows {
+            reference: self.options.task.axes,
+            rows: &self.rows,
+            columns: &self.columns,
+        };
+        for secondary in &self.options.secondary {
+            secondary.add_rates(
+                &self.mechanism,
+                &self.chain,
+                &self.svd,
+                rows,
+                &mut self.gradient,
+                &mut self.wish,
+            );
+        }
+        if self.wish.iter().all(|w| *w == 0.0) {
+            return;
+        }
+        for (w, c) in self.wish.iter_mut().zip(&self.columns) {
+            *w /= c;
+        }
+        let space = match self.options.projector {
+            Projector::Exact => RowSpace::exact(&self.svd),
+            Projector::Retained => RowSpace::retained(&self.svd, rank),
+        };
+        space.project_out(&mut self.wish);
+    }
+
+    /// The bounds of the next rates, in weighted coordinates.
+    fn load_bounds(&mut self, q: &[f64]) {
+        for (i, &c) in self.chain.coordinates().iter().enumerate() {
+            let now = Motion1 { position: q[c], rate: self.rates[c] };
+            let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
+            bound.lower /= self.columns[i];
+            bound.upper /= self.columns[i];
+            self.bounds[i] = bound;
+        }
+    }
+
+    fn store_rates(&mut self) {
+        self.at_limit.clear();
+        for (i, &c) in self.chain.coordinates().iter().enumerate() {
+            let (rate, bound) = (self.primary[i], self.bounds[i]);
+            self.rates[c] = rate * self.columns[i];
+            self.active[i] = bound.met(rate);
+            let (q, l) = (self.chain.q()[i], self.limits[i]);
+            if q - l.lower < AT_LIMIT || l.upper - q < AT_LIMIT {
+                self.at_limit.push(c);
+            }
+        }
+    }
+
+    fn singular_ratio(&self) -> f64 {
+        let largest = self.svd.value(0);
+        if largest == 0.0 { 0.0 } else { self.svd.value(self.svd.len() - 1) / largest }
+    }
+
+    /// Distances say nothing where the task has not all of the position.
+    fn offset_of_free_position(&self) -> f64 {
+        if self.options.task.components[..3] == [true; 3] { 0.0 } else { f64::INFINITY }
+    }
+}

@@ -1,0 +1,125 @@
+//! When a servo gets no nearer to its target, and why.
+//!
+//! Formula  stalled when the error e = |dp| / L + |angle| has not fallen below (1 - share) of its
+//!          best within the window
+//! Causes   out of reach: the target is farther from the chain's first joint than the chain is
+//!          long (a proof); limits: the motion without limits would lower the error; too few joints:
+//!          the error is orthogonal to all the arm can do and nothing was cut; singular: the error
+//!          lies along directions that the inverse cut
+//! Units    m, rad, s
+//! Checked  tests/it/servo.rs::stall_*
+
+use crate::linalg::Svd;
+
+/// Window within which the error must fall [s], and by which share [-].
+const WINDOW: f64 = 1.0;
+const SHARE: f64 = 1e-3;
+/// Share of the squared error that must lie along realised directions for the motion to count as
+/// possible [-].
+const POSSIBLE: f64 = 1e-4;
+
+/// Why the end effector does not get nearer to its target.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stall {
+    /// The target cannot be reached by any posture: it is too far away.
+    OutOfReach {
+        /// Distance from the first joint to the target [m].
+        distance: f64,
+        /// Length of the stretched chain [m].
+        length: f64,
+    },
+    /// Joints stand at their position limits and the rest cannot do the task without them.
+    Limits {
+        /// Their places in `q`.
+        coordinates: Vec<usize>,
+    },
+    /// The remaining error lies along directions lost in a singular pose.
+    Singular {
+        /// Smallest singular value over the largest.
+        ratio: f64,
+        /// The remaining error as a unit vector in task space.
+        direction: Vec<f64>,
+    },
+    /// The arm has fewer independent motions than the task asks for; the error that remains is
+    /// outside of what it can do here.
+    TooFewJoints {
+        /// Independent motions of the arm here.
+        rank: usize,
+        /// Components of the task.
+        task: usize,
+        /// The remaining error as a unit vector in task space.
+        direction: Vec<f64>,
+    },
+    /// None of these: the inverse is damped so much, or the limits so tight, that progress is
+    /// slower than the window.
+    Slow,
+}
+
+/// Watches the error.
+#[derive(Debug, Clone)]
+pub(super) struct Watch {
+    best: f64,
+    since: f64,
+}
+
+impl Watch {
+    pub(super) const fn new() -> Self {
+        Self { best: f64::INFINITY, since: 0.0 }
+    }
+
+    /// Notes the error of a step of `dt` seconds; true if stalled.
+    pub(super) fn stalled(&mut self, error: f64, dt: f64) -> bool {
+        if error < self.best * (1.0 - SHARE) {
+            *self = Self { best: error, since: 0.0 };
+            return false;
+        }
+        self.since += dt;
+        self.since > WINDOW
+    }
+}
+
+/// What the classification looks at.
+#[derive(Debug)]
+pub(super) struct Evidence<'a> {
+    pub(super) svd: &'a Svd,
+    /// Gains of the inverse along each direction.
+    pub(super) gains: &'a [f64],
+    /// The remaining error in scaled task coordinates.
+    pub(super) error: &'a [f64],
+    /// Coordinates whose position limit sets their rate.
+    pub(super) at_limit: &'a [usize],
+    pub(super) distance: f64,
+    pub(super) length: f64,
+}
+
+pub(super) fn classify(e: &Evidence<'_>) -> Stall {
+    if e.distance > e.length * (1.0 + 1e-12) {
+        return Stall::OutOfReach { distance: e.distance, length: e.length };
+    }
+    let total: f64 = e.error.iter().map(|x| x * x).sum();
+    let norm = total.sqrt().max(f64::MIN_POSITIVE);
+    let mut realised = 0.0;
+    for i in 0..e.svd.len() {
+        let along: f64 = e.svd.u(i).iter().zip(e.error).map(|(u, x)| u * x).sum();
+        realised += (e.gains[i] * e.svd.value(i)).min(1.0) * along * along;
+    }
+    if realised > POSSIBLE * total {
+        return if e.at_limit.is_empty() {
+            Stall::Slow
+        } else {
+            Stall::Limits { coordinates: e.at_limit.to_vec() }
+        };
+    }
+    let direction = e.error.iter().map(|x| x / norm).collect();
+    let rank = e.svd.machine_rank().rank;
+    let cut = e.gains.iter().zip(e.svd.values()).any(|(g, s)| g * s < 0.5);
+    if !cut && rank < e.error.len() {
+        return Stall::TooFewJoints { rank, task: e.error.len(), direction };
+    }
+    let ratio = if e.svd.is_empty() || e.svd.value(0) == 0.0 {
+        0.0
+    } else {
+        e.svd.value(e.svd.len() - 1) / e.svd.value(0)
+    };
+    Stall::Singular { ratio, direction }
+}

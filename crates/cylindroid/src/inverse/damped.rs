@@ -1,0 +1,24 @@
+//! Damped least squares: a constant damping in every direction.
+//!
+//! Formula  J^T (J J^T + l^2 1)^-1, gain_i = s_i / (s_i^2 + l^2)
+//! Shapes   m x n -> n x m          Units  l in the unit of the singular values
+//! Valid    any rank, l > 0; |rates| <= |v| / (2 l)
+//! Why so   the simplest inverse without a jump; its price is an error everywhere, which a closed
+//!          loop removes
+//! Source   Nakamura & Hanafusa 1986; Wampler 1986
+//! Checked  tests/it/inverse.rs::damped_*
+
+use crate::linalg::Svd;
+
+pub(super) fn gains(svd: &Svd, damping: f64, out: &mut [f64]) -> f64 {
+    for (gain, s) in out.iter_mut().zip(svd.values()) {
+        *gain = damp(s, damping * damping);
+    }
+    damping
+}
+
+/// `s / (s^2 + l^2)`, zero at s = 0 also without damping.
+#[inline]
+pub(super) fn damp(s: f64, damping_squared: f64) -> f64 {
+    if s == 0.0 { 0.0 } else { s / (s * s + damping_squared) }
+}

@@ -1,0 +1,96 @@
+//! The report that comes with every inverse.
+
+use super::{Method, Weights};
+use crate::error::{Error, Result};
+use crate::linalg::{Matrix, Svd};
+
+/// An inverse and what was done to get it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inverse {
+    /// The inverse, n x m: rates = matrix * task.
+    pub matrix: Matrix,
+    /// The singular values of the (weighted) Jacobian, largest first.
+    pub singular_values: Vec<f64>,
+    /// Number of directions of which at least one half is realised.
+    pub rank: usize,
+    /// Singular value of the last of these over that of the next: near 1 the rank is a matter of
+    /// taste, infinite when nothing that is not zero was dropped.
+    pub gap: f64,
+    /// The singular value below which a direction counts as dropped.
+    pub threshold: f64,
+    /// The directions that were dropped, with what is left of them.
+    pub dropped: Vec<Dropped>,
+    /// False where the method has no inverse for this Jacobian.
+    pub exists: bool,
+}
+
+/// A task direction that the inverse gives up, wholly or by more than half.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dropped {
+    /// Its singular value.
+    pub singular_value: f64,
+    /// Unit vector in the (weighted) task space, m entries (zero in a tall matrix where the
+    /// singular value is exactly zero: its direction is not determined).
+    pub direction: Vec<f64>,
+    /// The share of a motion along it that is realised, in [0, 1/2).
+    pub realised: f64,
+}
+
+impl Inverse {
+    pub(super) fn compute(
+        method: Method,
+        j: &Matrix,
+        task: &[f64],
+        weights: &Weights,
+    ) -> Result<Self> {
+        method.check()?;
+        if !j.is_finite() {
+            let i = j.as_slice().iter().position(|x| !x.is_finite()).unwrap_or(0);
+            return Err(Error::NotFinite {
+                what: format!("matrix entry ({}, {})", i % j.rows(), i / j.rows()),
+                value: j.as_slice()[i],
+            });
+        }
+        let svd = Svd::of(&weights.apply(j)?);
+        let mut gains = vec![0.0; svd.len()];
+        let threshold = method.gains(&svd, task, &mut gains);
+        let share = |i: usize| gains[i] * svd.value(i);
+        let rank = (0..svd.len()).filter(|&i| is_kept(share(i))).count();
+        let dropped = (0..svd.len())
+            .filter(|&i| !is_kept(share(i)))
+            .map(|i| Dropped {
+                singular_value: svd.value(i),
+                direction: svd.u(i).to_vec(),
+                realised: share(i),
+            })
+            .collect();
+        let next = if rank < svd.len() { svd.value(rank) } else { 0.0 };
+        Ok(Self {
+            matrix: weights.unapply(assemble(&svd, &gains)),
+            singular_values: svd.values().collect(),
+            rank,
+            gap: if rank == 0 || next == 0.0 { f64::INFINITY } else { svd.value(rank - 1) / next },
+            threshold,
+            dropped,
+            exists: true,
+        })
+    }
+}
+
+/// A direction counts as kept when at least half of a motion along it is realised.
+pub(crate) fn is_kept(share: f64) -> bool {
+    share >= 0.5
+}
+
+/// `V diag(gains) U^T`.
+pub(crate) fn assemble(svd: &Svd, gains: &[f64]) -> Matrix {
+    let mut matrix = Matrix::zeros(svd.cols(), svd.rows());
+    for (i, gain) in gains.iter().enumerate() {
+        for (j, u) in svd.u(i).iter().enumerate() {
+            for (x, v) in matrix.column_mut(j).iter_mut().zip(svd.v(i)) {
+                *x += gain * u * v;
+            }
+        }
+    }
+    matrix
+}

@@ -1,0 +1,176 @@
+//! The joints that move one end effector: forward kinematics and Jacobian in one pass.
+//!
+//! What a control loop needs of a mechanism, and nothing else: a humanoid's arm costs what an arm
+//! costs. Nothing here allocates after construction.
+
+use super::forward::forward;
+use super::jacobian::{Reference, Tip};
+use super::state::EndEffector;
+use crate::linalg::Matrix;
+use crate::model::{Mechanism, Motion, Node};
+use crate::spatial::{Padded, Pose, Vec3};
+
+/// The moving part of a mechanism from the ground to one end effector.
+#[derive(Debug, Clone)]
+pub struct Chain {
+    nodes: Vec<Node>,
+    slots: Vec<Padded>,
+    coordinates: Vec<usize>,
+    local: Vec<f64>,
+    world_from_tool: Pose,
+}
+
+impl Chain {
+    /// The chain to an end effector, at q = 0 of its coordinates.
+    #[must_use]
+    pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
+        let of = of.into();
+        let frame = mechanism.frame_of(of.frame);
+        let slot_from_tool = frame.slot_from_frame * of.frame_from_tool;
+        let mut path = Vec::new();
+        let mut slot = frame.slot;
+        while slot > 0 {
+            path.push(mechanism.nodes()[slot - 1]);
+            slot = mechanism.nodes()[slot - 1].parent;
+        }
+        path.reverse();
+        let mut coordinates: Vec<usize> =
+            path.iter().flat_map(|n| n.coordinate..n.coordinate + n.motion.dof()).collect();
+        coordinates.sort_unstable();
+        coordinates.dedup();
+        let mut nodes: Vec<Node> = path
+            .into_iter()
+            .enumerate()
+            .map(|(i, node)| Node {
+                parent: i,
+                coordinate: coordinates.partition_point(|&c| c < node.coordinate),
+                ..node
+            })
+            .collect();
+        if !coordinates.is_empty() {
+            nodes.push(Node {
+                parent: nodes.len(),
+                placement: slot_from_tool.into(),
+                motion: Motion::Fixed,
+                coordinate: 0,
+                multiplier: 0.0,
+                offset: 0.0,
+            });
+        }
+        let mut chain = Self {
+            slots: vec![Padded::IDENTITY; nodes.len() + 1],
+            local: vec![0.0; coordinates.len()],
+            nodes,
+            coordinates,
+            world_from_tool: slot_from_tool, // stays where nothing moves
+        };
+        chain.run();
+        chain
+    }
+
+    /// Number of coordinates that move the end effector.
+    #[must_use]
+    pub fn n(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// Their places in the mechanism's `q`, ascending.
+    #[must_use]
+    pub fn coordinates(&self) -> &[usize] {
+        &self.coordinates
+    }
+
+    /// Moves to the mechanism's configuration `q` (all n entries of it) and gives
+    /// `world_from_tool`.
+    ///
+    /// # Panics
+    /// If `q` is shorter than the mechanism's.
+    #[inline]
+    pub fn set(&mut self, q: &[f64]) -> Pose {
+        for (x, &c) in self.local.iter_mut().zip(&self.coordinates) {
+            *x = q[c];
+        }
+        self.run();
+        self.world_from_tool
+    }
+
+    /// The coordinates of this chain at the last [`Chain::set`].
+    #[must_use]
+    pub fn q(&self) -> &[f64] {
+        &self.local
+    }
+
+    /// `world_from_tool` at the last [`Chain::set`].
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.world_from_tool
+    }
+
+    /// The Jacobian for this chain's coordinates at the last [`Chain::set`], into `out` (6 x n).
+    ///
+    /// # Panics
+    /// If `out` is not 6 x n.
+    #[inline]
+    pub fn jacobian_into(&self, reference: Reference, out: &mut Matrix) {
+        assert_eq!((out.rows(), out.cols()), (6, self.n()), "shape of the Jacobian");
+        self.tip().jacobian_into(reference, out);
+    }
+
+    /// The Hessian for this chain's coordinates, into `out` (n matrices of 6 x n).
+    ///
+    /// # Panics
+    /// If `out` has not these sizes.
+    pub fn hessian_into(&self, reference: Reference, out: &mut [Matrix]) {
+        assert!(
+            out.len() == self.n() && out.iter().all(|m| (m.rows(), m.cols()) == (6, self.n())),
+            "shape of the Hessian"
+        );
+        self.tip().hessian_into(reference, out);
+    }
+
+    /// Origin of the first moving joint in world; it does not depend on q [m].
+    pub(crate) fn first_origin(&self) -> Vec3 {
+        self.nodes.first().map_or(self.world_from_tool.translation, |n| n.placement.translation())
+    }
+
+    /// The farthest that the tool can be from the origin of the first joint [m]: infinite where a
+    /// joint slides without limits.
+    pub(crate) fn length_after_first_joint(&self, mechanism: &Mechanism) -> f64 {
+        let fixed: f64 = self.nodes.iter().skip(1).map(|n| n.placement.translation().norm()).sum();
+        let slides: f64 = self
+            .nodes
+            .iter()
+            .filter(|node| node.motion != Motion::Fixed)
+            .map(|node| {
+                let limits = mechanism.coordinates()[self.coordinates[node.coordinate]].limits;
+                let ends =
+                    [limits.lower, limits.upper].map(|q| (q * node.multiplier + node.offset).abs());
+                let most = ends[0].max(ends[1]);
+                match node.motion {
+                    Motion::Fixed | Motion::Revolute | Motion::Spherical => 0.0,
+                    Motion::Prismatic => most,
+                    Motion::Helical(0.0) => 0.0, // not 0 times infinity
+                    Motion::Helical(pitch) => pitch.abs() * most,
+                    Motion::Free => f64::INFINITY,
+                }
+            })
+            .sum();
+        fixed + slides
+    }
+
+    fn run(&mut self) {
+        forward(&self.nodes, &self.local, &mut self.slots);
+        if !self.nodes.is_empty() {
+            self.world_from_tool = self.slots[self.nodes.len()].pose();
+        }
+    }
+
+    fn tip(&self) -> Tip<'_> {
+        Tip {
+            nodes: &self.nodes,
+            slots: &self.slots,
+            slot: self.nodes.len(),
+            world_from_tip: self.world_from_tool,
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! The kinematic Hessian: the derivative of the Jacobian for each coordinate.
+//!
+//! Formula  dJ_i/dq_k = ad(J_k) J_i where joint k carries joint i (or is i), else 0, in world;
+//!          the other references as in `jacobian.rs`
+//! Shapes   n matrices of 6 x n: `hessian[k]` is dJ/dq_k
+//! Units    those of J for each unit of q_k
+//! Valid    spherical and free joints: derivative along their unit rates (child axes)
+//! Source   Haviland & Corke 2020 (arXiv 2010.08686), in screw form
+//! Checked  tests/it/kinematics.rs::hessian_*; the sum of `hessian[k] * rates[k]` is dJ/dt
+
+use super::jacobian::{Moving, Reference, Tip, add};
+use crate::linalg::Matrix;
+use crate::spatial::{Twist, Vec3};
+
+impl Tip<'_> {
+    /// Writes dJ/dq_k into `out[k]` (n matrices of 6 x n).
+    pub(crate) fn hessian_into(&self, reference: Reference, out: &mut [Matrix]) {
+        out.iter_mut().for_each(|m| m.as_mut_slice().fill(0.0));
+        self.for_each_column(Vec3::ZERO, |depth_k, k, moving| {
+            let frame = Moving { tip: self.world_from_tip, twist: moving };
+            self.for_each_column(Vec3::ZERO, |depth_i, i, column| {
+                let rate = if depth_k >= depth_i { moving.bracket(column) } else { Twist::ZERO };
+                add(out[k].column_mut(i), frame.seen(reference, column, rate));
+            });
+        });
+    }
+}

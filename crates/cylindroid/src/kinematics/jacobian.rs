@@ -1,0 +1,184 @@
+//! The Jacobian of a frame, built by velocity conversion, and its derivative in time.
+//!
+//! Formula  twist of the frame = J * rates. Joint j moves its own frame by a constant twist S_j
+//!          (turn about z, slide along z, both); column j is S_j converted to the reference:
+//!          the turn gives [z x (p - t); z], the slide [z; 0], a helix [z x (p - t) + h z; z],
+//!          z and t the joint's axis and origin in world, p the reference point
+//!          dJ/dt: J_i(world) is carried by its body, so dJ_i = ad(V_i) J_i with V_i the twist of
+//!          that body; moving the point p adds w_i x dp/dt; the local frame adds -ad(V_tool) J_i
+//! Shapes   6 x n, linear rows first
+//! Units    m/s and rad/s for each unit of rate
+//! Frame    [`Reference`] names point and axes
+//! Why so   one pass from the tip to the root, only over the joints that move the frame; a mimic
+//!          joint adds its multiplier times its column to the joint it follows
+//! Source   velocity conversion matrices of Cartesian control (columns 6 and 3 of V_j)
+//! Checked  tests/it/pinocchio.rs, tests/it/kinematics.rs::jacobian_is_assembled_by_conversion,
+//!          ::jacobian_dot_*
+
+use crate::linalg::Matrix;
+use crate::model::{Motion, Node};
+use crate::spatial::{Padded, Pose, Twist, Vec3};
+
+/// The point and the axes of a twist or a Jacobian, in the field's words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Reference {
+    /// Point: the frame's origin. Axes: the frame's.
+    Local,
+    /// Point: the world's origin (of the moving body, extended). Axes: the world's.
+    World,
+    /// Point: the frame's origin. Axes: the world's.
+    LocalWorldAligned,
+}
+
+impl Reference {
+    /// All of them, with the names used in files and on the command line.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("local", Self::Local),
+        ("world", Self::World),
+        ("local_world_aligned", Self::LocalWorldAligned),
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Local => "local",
+            Self::World => "world",
+            Self::LocalWorldAligned => "local_world_aligned",
+        }
+    }
+}
+
+/// A frame at the end of a tree of nodes whose poses are known.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tip<'a> {
+    pub(crate) nodes: &'a [Node],
+    pub(crate) slots: &'a [Padded],
+    pub(crate) slot: usize,
+    pub(crate) world_from_tip: Pose,
+}
+
+impl Tip<'_> {
+    /// Calls `f(depth, coordinate, twist)` for each unit coordinate rate that moves the tip, from
+    /// the tip to the root; the twist in world axes at the point `p`. Coordinates of one node
+    /// share a depth; a larger depth is nearer the root.
+    #[inline]
+    pub(crate) fn for_each_column(&self, p: Vec3, mut f: impl FnMut(usize, usize, Twist)) {
+        let mut slot = self.slot;
+        let mut depth = 0;
+        while slot > 0 {
+            let node = &self.nodes[slot - 1];
+            let here = &self.slots[slot];
+            let z = here.z_axis();
+            let arm = p - here.translation();
+            let turn = |axis: Vec3| Twist { linear: axis.cross(arm), angular: axis };
+            let slide = |axis: Vec3| Twist { linear: axis, angular: Vec3::ZERO };
+            let c = node.coordinate;
+            match node.motion {
+                Motion::Fixed => {}
+                Motion::Revolute => f(depth, c, turn(z) * node.multiplier),
+                Motion::Prismatic => f(depth, c, slide(z) * node.multiplier),
+                Motion::Helical(pitch) => {
+                    f(depth, c, (turn(z) + slide(z * pitch)) * node.multiplier);
+                }
+                Motion::Spherical => {
+                    here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + k, turn(a)));
+                }
+                Motion::Free => {
+                    here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + k, slide(a)));
+                    here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + 3 + k, turn(a)));
+                }
+            }
+            slot = node.parent;
+            depth += 1;
+        }
+    }
+
+    /// The Jacobian, into `out` (6 x n).
+    #[inline]
+    pub(crate) fn jacobian_into(&self, reference: Reference, out: &mut Matrix) {
+        out.as_mut_slice().fill(0.0);
+        let p = match reference {
+            Reference::World => Vec3::ZERO,
+            Reference::Local | Reference::LocalWorldAligned => self.world_from_tip.translation,
+        };
+        let rotation = self.world_from_tip.rotation.matrix();
+        if reference == Reference::Local {
+            self.for_each_column(p, |_, c, t| {
+                let local = Twist {
+                    linear: rotation.tr_mul(t.linear),
+                    angular: rotation.tr_mul(t.angular),
+                };
+                add(out.column_mut(c), local);
+            });
+        } else {
+            self.for_each_column(p, |_, c, t| add(out.column_mut(c), t));
+        }
+    }
+
+    /// The twist of the tip for these rates, in world axes at the world's origin.
+    pub(crate) fn world_twist(&self, rates: &[f64]) -> Twist {
+        let mut twist = Twist::ZERO;
+        self.for_each_column(Vec3::ZERO, |_, c, t| twist = twist + t * rates[c]);
+        twist
+    }
+
+    /// The derivative of the Jacobian in time while the coordinates move with `rates`.
+    pub(crate) fn jacobian_dot_into(&self, rates: &[f64], reference: Reference, out: &mut Matrix) {
+        out.as_mut_slice().fill(0.0);
+        let tip_twist = self.world_twist(rates);
+        let frame = Moving { tip: self.world_from_tip, twist: tip_twist };
+        // The twist of the body that carries the current column: the tip's, less what the joints
+        // nearer the tip add.
+        let mut carrier = tip_twist;
+        let mut at = (0, Twist::ZERO);
+        self.for_each_column(Vec3::ZERO, |depth, c, column| {
+            if depth != at.0 {
+                carrier = carrier - at.1;
+                at = (depth, Twist::ZERO);
+            }
+            at.1 = at.1 + column * rates[c];
+            let rate = carrier.bracket(column);
+            add(out.column_mut(c), frame.seen(reference, column, rate));
+        });
+    }
+}
+
+/// A frame that moves: changes the reference of a column and of its rate together.
+pub(crate) struct Moving {
+    pub(crate) tip: Pose,
+    /// World axes, world origin.
+    pub(crate) twist: Twist,
+}
+
+impl Moving {
+    /// The rate of `column` seen in `reference`; `column` and its rate in world axes at the
+    /// world's origin.
+    #[inline]
+    pub(crate) fn seen(&self, reference: Reference, column: Twist, rate: Twist) -> Twist {
+        let p = self.tip.translation;
+        match reference {
+            Reference::World => rate,
+            Reference::LocalWorldAligned => {
+                let dp = self.twist.at_point(p).linear;
+                let moved = rate.at_point(p);
+                Twist { linear: moved.linear + column.angular.cross(dp), ..moved }
+            }
+            Reference::Local => {
+                let relative = (rate - self.twist.bracket(column)).at_point(p);
+                let rotation = self.tip.rotation.matrix();
+                Twist {
+                    linear: rotation.tr_mul(relative.linear),
+                    angular: rotation.tr_mul(relative.angular),
+                }
+            }
+        }
+    }
+}
+
+#[inline]
+pub(crate) fn add(column: &mut [f64], t: Twist) {
+    for (x, y) in column.iter_mut().zip(t.to_array()) {
+        *x += y;
+    }
+}

@@ -1,0 +1,18 @@
+//! Forward kinematics, Jacobians in three frames, their derivatives.
+//!
+//! [`State`] is all frames of a mechanism at one `q`; that it exists proves that forward kinematics
+//! ran. [`Chain`] is the short way for a control loop: only the joints that move one end effector.
+
+mod analytical;
+mod chain;
+mod conversion;
+mod forward;
+mod hessian;
+mod jacobian;
+mod state;
+
+pub use analytical::{AnalyticalJacobian, OrientationRates};
+pub use chain::Chain;
+pub use conversion::velocity_conversion;
+pub use jacobian::Reference;
+pub use state::{EndEffector, State};

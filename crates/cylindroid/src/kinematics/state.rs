@@ -1,0 +1,170 @@
+//! A mechanism at one configuration.
+
+use super::analytical::{AnalyticalJacobian, OrientationRates, analytical};
+use super::forward::forward;
+use super::jacobian::{Reference, Tip};
+use crate::error::Result;
+use crate::linalg::Matrix;
+use crate::model::{FrameId, Mechanism};
+use crate::spatial::{Padded, Pose, Twist};
+
+/// A frame of a mechanism and a tool point fixed to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndEffector {
+    /// The frame.
+    pub frame: FrameId,
+    /// The tool, seen from the frame.
+    pub frame_from_tool: Pose,
+}
+
+impl From<FrameId> for EndEffector {
+    fn from(frame: FrameId) -> Self {
+        Self { frame, frame_from_tool: Pose::IDENTITY }
+    }
+}
+
+/// All frames of a mechanism at one `q`: that it exists proves that forward kinematics ran.
+#[derive(Debug, Clone)]
+pub struct State {
+    mechanism: Mechanism,
+    q: Vec<f64>,
+    slots: Vec<Padded>,
+}
+
+impl Mechanism {
+    /// The mechanism at `q`.
+    ///
+    /// # Errors
+    /// A `q` of the wrong size or with an entry that is not finite.
+    pub fn state(&self, q: &[f64]) -> Result<State> {
+        let mut state = State {
+            mechanism: self.clone(),
+            q: vec![0.0; self.n()],
+            slots: vec![Padded::IDENTITY; self.nodes().len() + 1],
+        };
+        state.set(q)?;
+        Ok(state)
+    }
+}
+
+impl State {
+    /// Moves to another `q`, without allocation; on an error the state stays as it was.
+    ///
+    /// # Errors
+    /// A `q` of the wrong size or with an entry that is not finite.
+    pub fn set(&mut self, q: &[f64]) -> Result<()> {
+        self.mechanism.check_q("q", q)?;
+        self.q.copy_from_slice(q);
+        forward(self.mechanism.nodes(), &self.q, &mut self.slots);
+        Ok(())
+    }
+
+    /// The configuration.
+    #[must_use]
+    pub fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// The mechanism.
+    #[must_use]
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// `world_from_tool`.
+    #[must_use]
+    pub fn pose(&self, of: impl Into<EndEffector>) -> Pose {
+        self.tip(of.into()).world_from_tip
+    }
+
+    /// The Jacobian, 6 x n: twist of the tool = J * rates.
+    #[must_use]
+    pub fn jacobian(&self, of: impl Into<EndEffector>, reference: Reference) -> Matrix {
+        let mut out = Matrix::zeros(6, self.mechanism.n());
+        self.tip(of.into()).jacobian_into(reference, &mut out);
+        out
+    }
+
+    /// [`State::jacobian`] without allocation.
+    ///
+    /// # Panics
+    /// If `out` is not 6 x n.
+    pub fn jacobian_into(
+        &self,
+        of: impl Into<EndEffector>,
+        reference: Reference,
+        out: &mut Matrix,
+    ) {
+        assert_eq!((out.rows(), out.cols()), (6, self.mechanism.n()), "shape of the Jacobian");
+        self.tip(of.into()).jacobian_into(reference, out);
+    }
+
+    /// The derivative of the Jacobian in time while the coordinates move with `rates`, 6 x n.
+    ///
+    /// # Errors
+    /// Rates of the wrong size or not finite.
+    pub fn jacobian_dot(
+        &self,
+        rates: &[f64],
+        of: impl Into<EndEffector>,
+        reference: Reference,
+    ) -> Result<Matrix> {
+        self.mechanism.check_q("rates", rates)?;
+        let mut out = Matrix::zeros(6, self.mechanism.n());
+        self.tip(of.into()).jacobian_dot_into(rates, reference, &mut out);
+        Ok(out)
+    }
+
+    /// The Hessian: entry k is the derivative of the Jacobian by coordinate k (6 x n each).
+    #[must_use]
+    pub fn hessian(&self, of: impl Into<EndEffector>, reference: Reference) -> Vec<Matrix> {
+        let n = self.mechanism.n();
+        let mut out = vec![Matrix::zeros(6, n); n];
+        self.tip(of.into()).hessian_into(reference, &mut out);
+        out
+    }
+
+    /// The Jacobian of position and of angles that describe the orientation.
+    #[must_use]
+    pub fn analytical_jacobian(
+        &self,
+        of: impl Into<EndEffector>,
+        rates: OrientationRates,
+    ) -> AnalyticalJacobian {
+        let of = of.into();
+        analytical(self.pose(of), &self.jacobian(of, Reference::LocalWorldAligned), rates)
+    }
+
+    /// The twist of the tool while the coordinates move with `rates`.
+    ///
+    /// # Errors
+    /// Rates of the wrong size or not finite.
+    pub fn twist(
+        &self,
+        rates: &[f64],
+        of: impl Into<EndEffector>,
+        reference: Reference,
+    ) -> Result<Twist> {
+        self.mechanism.check_q("rates", rates)?;
+        let tip = self.tip(of.into());
+        let world = tip.world_twist(rates);
+        let pose = tip.world_from_tip;
+        Ok(match reference {
+            Reference::World => world,
+            Reference::LocalWorldAligned => world.at_point(pose.translation),
+            Reference::Local => pose.inverse().adjoint(world),
+        })
+    }
+
+    pub(crate) fn tip(&self, of: EndEffector) -> Tip<'_> {
+        let frame = self.mechanism.frame_of(of.frame);
+        Tip {
+            nodes: self.mechanism.nodes(),
+            slots: &self.slots,
+            slot: frame.slot,
+            world_from_tip: self.slots[frame.slot].pose()
+                * frame.slot_from_frame
+                * of.frame_from_tool,
+        }
+    }
+}

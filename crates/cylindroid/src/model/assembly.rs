@@ -1,0 +1,249 @@
+//! Where the links have got to: joints become nodes, coordinates and frames.
+
+use std::collections::BTreeMap;
+
+use super::builder::Order;
+use super::joint::JointKind;
+use super::mechanism::{Coordinate, CoordinateKind, Frame, FrameId};
+use super::node::{Motion, Node};
+use super::spec::JointSpec;
+use crate::spatial::{Pose, Rotation, Vec3};
+
+/// Where the links have got to while the nodes are written.
+pub(super) struct Assembly {
+    pub(super) nodes: Vec<Node>,
+    pub(super) coordinates: Vec<Coordinate>,
+    /// Coordinates of each joint (index of the specification).
+    pub(super) ranges: BTreeMap<usize, std::ops::Range<usize>>,
+    /// Slot and pose in the slot of each link, and the length of the way to it.
+    slots: Vec<(usize, Pose)>,
+    way: Vec<f64>,
+    pub(super) reach: f64,
+}
+
+impl Assembly {
+    pub(super) fn new(links: usize) -> Self {
+        Self {
+            nodes: Vec::new(),
+            coordinates: Vec::new(),
+            ranges: BTreeMap::new(),
+            slots: vec![(0, Pose::IDENTITY); links],
+            way: vec![0.0; links],
+            reach: 0.0,
+        }
+    }
+
+    pub(super) fn place(&mut self, link: usize, slot: usize, slot_from_link: Pose, way: f64) {
+        self.slots[link] = (slot, slot_from_link);
+        self.way[link] = way;
+        self.reach = self.reach.max(way);
+    }
+
+    pub(super) fn stretch(&mut self, link: usize, further: f64) {
+        self.reach = self.reach.max(self.way[link] + further);
+    }
+
+    pub(super) fn frame(&self, name: String, link: usize, link_from_frame: Pose) -> Frame {
+        let (slot, slot_from_link) = self.slots[link];
+        Frame {
+            name,
+            link,
+            link_from_frame,
+            slot,
+            slot_from_frame: slot_from_link * link_from_frame,
+        }
+    }
+
+    pub(super) fn allocate(&mut self, j: usize, spec: &JointSpec) {
+        use CoordinateKind::{Angle, Length, Position, RotationVector};
+        let start = self.coordinates.len();
+        let parts: &[(&str, CoordinateKind)] = match spec.kind {
+            JointKind::Fixed => &[],
+            JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
+                &[("", Angle)]
+            }
+            JointKind::Prismatic => &[("", Length)],
+            JointKind::Cylindrical => &[(".slide", Length), (".turn", Angle)],
+            JointKind::Universal { .. } => &[(".first", Angle), (".second", Angle)],
+            JointKind::Spherical => {
+                &[(".rx", RotationVector), (".ry", RotationVector), (".rz", RotationVector)]
+            }
+            JointKind::Planar => &[(".x", Length), (".y", Length), (".angle", Angle)],
+            JointKind::Free => &[
+                (".x", Position),
+                (".y", Position),
+                (".z", Position),
+                (".rx", RotationVector),
+                (".ry", RotationVector),
+                (".rz", RotationVector),
+            ],
+        };
+        for (suffix, kind) in parts {
+            self.coordinates.push(Coordinate {
+                name: format!("{}{suffix}", spec.name),
+                joint: j,
+                kind: *kind,
+                limits: spec.limits,
+            });
+        }
+        self.ranges.insert(j, start..self.coordinates.len());
+    }
+
+    /// Narrows the limits of coordinate `c` by those of a joint that follows it; true (and
+    /// nothing narrowed) if that would leave no position.
+    pub(super) fn count_mimic_limits(
+        &mut self,
+        c: usize,
+        spec: &JointSpec,
+        multiplier: f64,
+        offset: f64,
+    ) -> bool {
+        if multiplier == 0.0 {
+            return false;
+        }
+        let own = &mut self.coordinates[c].limits;
+        let (a, b) =
+            ((spec.limits.lower - offset) / multiplier, (spec.limits.upper - offset) / multiplier);
+        let (lower, upper) = (own.lower.max(a.min(b)), own.upper.min(a.max(b)));
+        let clash = lower > upper;
+        if !clash {
+            own.lower = lower;
+            own.upper = upper;
+        }
+        own.velocity = own.velocity.min(spec.limits.velocity / multiplier.abs());
+        own.acceleration = own.acceleration.min(spec.limits.acceleration / multiplier.abs());
+        clash
+    }
+
+    pub(super) fn connect(
+        &mut self,
+        j: usize,
+        spec: &JointSpec,
+        parent: usize,
+        child: usize,
+        mimic: Option<(usize, f64, f64)>,
+    ) {
+        let (slot, slot_from_parent) = self.slots[parent];
+        let base = slot_from_parent * spec.parent_from_joint;
+        let (of, multiplier, offset) = mimic.unwrap_or((j, 1.0, 0.0));
+        let range = self.ranges.get(&of).cloned().unwrap_or(0..0);
+        if mimic.is_some() {
+            self.ranges.insert(j, range.clone());
+        }
+        let mut chain = NodeChain {
+            nodes: &mut self.nodes,
+            slot,
+            pending: base,
+            next: range.start,
+            multiplier,
+            offset,
+        };
+        // Axes were checked to have a direction.
+        let z_to = |axis: Vec3| Rotation::z_to(axis).unwrap_or(Rotation::IDENTITY);
+        let axis = z_to(spec.axis);
+        match spec.kind {
+            JointKind::Fixed => {}
+            JointKind::Revolute | JointKind::Continuous => chain.push(axis, Motion::Revolute),
+            JointKind::Prismatic => chain.push(axis, Motion::Prismatic),
+            JointKind::Helical { pitch } => chain.push(axis, Motion::Helical(pitch)),
+            JointKind::Cylindrical => {
+                chain.push(axis, Motion::Prismatic);
+                chain.push(axis, Motion::Revolute);
+            }
+            JointKind::Universal { second } => {
+                chain.push(axis, Motion::Revolute);
+                chain.push(z_to(second), Motion::Revolute);
+            }
+            JointKind::Planar => {
+                chain.push(axis * z_to(Vec3::X), Motion::Prismatic);
+                chain.push(axis * z_to(Vec3::Y), Motion::Prismatic);
+                chain.push(axis, Motion::Revolute);
+            }
+            JointKind::Spherical => chain.push(Rotation::IDENTITY, Motion::Spherical),
+            JointKind::Free => chain.push(Rotation::IDENTITY, Motion::Free),
+        }
+        let (slot, slot_from_child) = (chain.slot, chain.pending);
+        let slide = match spec.kind {
+            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Planar => {
+                let most = spec.limits.lower.abs().max(spec.limits.upper.abs());
+                if most.is_finite() { most } else { 0.0 }
+            }
+            _ => 0.0,
+        };
+        let way = self.way[parent] + spec.parent_from_joint.translation.norm() + slide;
+        self.place(child, slot, slot_from_child, way);
+    }
+}
+
+/// Writes the nodes of one joint one after the other.
+struct NodeChain<'a> {
+    nodes: &'a mut Vec<Node>,
+    slot: usize,
+    /// The joint frame at zero, seen from the slot.
+    pending: Pose,
+    next: usize,
+    multiplier: f64,
+    offset: f64,
+}
+
+impl NodeChain<'_> {
+    /// Adds a node whose z axis is `joint_from_z * z` in the joint frame.
+    fn push(&mut self, joint_from_z: Rotation, motion: Motion) {
+        let turn = Pose::from_rotation(joint_from_z);
+        self.nodes.push(Node {
+            parent: self.slot,
+            placement: (self.pending * turn).into(),
+            motion,
+            coordinate: self.next,
+            multiplier: self.multiplier,
+            offset: self.offset,
+        });
+        self.next += motion.dof();
+        self.slot = self.nodes.len();
+        self.pending = turn.inverse();
+    }
+}
+
+/// The frame that is driven when none is named: from the root along the only branch that moves to
+/// where none or several do (a hand with fingers), then to the last link fixed there. Where the
+/// root itself branches (humanoids, hands), the end of the branch with the most moving joints.
+pub(super) fn default_tool(
+    order: &Order,
+    joints: &[JointSpec],
+    links: &BTreeMap<String, usize>,
+) -> FrameId {
+    let ends = |j: &usize| (links[&joints[*j].parent], links[&joints[*j].child]);
+    let moves = |j: &usize| joints[*j].kind.dof() > 0;
+    // Moving joints below each link, and above it.
+    let mut below: BTreeMap<usize, usize> = BTreeMap::new();
+    for j in order.joints.iter().rev() {
+        let (parent, child) = ends(j);
+        let subtree = below.get(&child).copied().unwrap_or(0) + usize::from(moves(j));
+        *below.entry(parent).or_default() += subtree;
+    }
+    let mut above: BTreeMap<usize, usize> = BTreeMap::new();
+    for j in &order.joints {
+        let (parent, child) = ends(j);
+        let depth = above.get(&parent).copied().unwrap_or(0) + usize::from(moves(j));
+        above.insert(child, depth);
+    }
+    let children = |link: usize| order.joints.iter().filter(move |j| ends(j).0 == link);
+    let carries = |j: &&usize| moves(j) || below.get(&ends(j).1).copied().unwrap_or(0) > 0;
+
+    let mut link = order.root;
+    let mut moved = false;
+    loop {
+        let mut branches = children(link).filter(carries);
+        let (Some(only), None) = (branches.next(), branches.next()) else { break };
+        moved |= moves(only);
+        link = ends(only).1;
+    }
+    if !moved {
+        let deepest = above.iter().max_by_key(|(link, depth)| (**depth, **link));
+        link = deepest.map_or(order.root, |(link, _)| *link);
+    }
+    while let Some(fixed) = children(link).rev().find(|j| !carries(j)) {
+        link = ends(fixed).1;
+    }
+    FrameId(link)
+}

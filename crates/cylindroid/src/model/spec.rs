@@ -1,0 +1,91 @@
+//! A joint as the builder takes it, and the checks of its numbers.
+
+use super::joint::{JointKind, Limits, Mimic};
+use crate::spatial::{Pose, Vec3};
+use crate::tolerance::ZERO_AXIS;
+
+/// A joint as the builder takes it; links by name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointSpec {
+    /// Its name.
+    pub name: String,
+    /// Its kind.
+    pub kind: JointKind,
+    /// Name of the parent link.
+    pub parent: String,
+    /// Name of the child link.
+    pub child: String,
+    /// The joint frame at zero, seen from the parent link.
+    pub parent_from_joint: Pose,
+    /// The axis in the joint frame, any length.
+    pub axis: Vec3,
+    /// Its limits.
+    pub limits: Limits,
+    /// The joint it follows, if it does.
+    pub mimic: Option<Mimic>,
+    /// True if a motor drives it.
+    pub actuated: bool,
+}
+
+impl JointSpec {
+    /// A driven joint about (or along) z at the origin of the parent, without limits.
+    #[must_use]
+    pub fn new(name: &str, kind: JointKind, parent: &str, child: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+            parent: parent.to_owned(),
+            child: child.to_owned(),
+            parent_from_joint: Pose::IDENTITY,
+            axis: Vec3::Z,
+            limits: Limits::NONE,
+            mimic: None,
+            actuated: true,
+        }
+    }
+
+    /// What is wrong with the numbers of the joint, if anything.
+    pub(super) fn fault(&self) -> Option<String> {
+        let name = self.name.as_str();
+        if !self.parent_from_joint.is_finite() {
+            return Some(format!("the origin of joint '{name}' is not finite"));
+        }
+        let mut axes = vec![];
+        if !matches!(self.kind, JointKind::Fixed | JointKind::Spherical | JointKind::Free) {
+            axes.push(self.axis);
+        }
+        if let JointKind::Universal { second } = self.kind {
+            axes.push(second);
+            if self.axis.cross(second).norm() <= ZERO_AXIS {
+                return Some(format!("the two axes of universal joint '{name}' are parallel"));
+            }
+        }
+        if axes.iter().any(|a| a.unit(ZERO_AXIS).is_none()) {
+            return Some(format!(
+                "the axis of joint '{name}' has no direction; give a vector that is finite and not zero"
+            ));
+        }
+        if let JointKind::Helical { pitch } = self.kind
+            && !pitch.is_finite()
+        {
+            return Some(format!("the pitch of joint '{name}' is {pitch}"));
+        }
+        let l = &self.limits;
+        if l.lower.is_nan() || l.upper.is_nan() || l.lower > l.upper {
+            return Some(format!(
+                "joint '{name}' has lower limit {} above its upper limit {}; exchange them",
+                l.lower, l.upper
+            ));
+        }
+        for (what, value) in
+            [("velocity", l.velocity), ("acceleration", l.acceleration), ("effort", l.effort)]
+        {
+            if value.is_nan() || value < 0.0 {
+                return Some(format!(
+                    "joint '{name}' has {what} limit {value}; it must not be negative"
+                ));
+            }
+        }
+        None
+    }
+}

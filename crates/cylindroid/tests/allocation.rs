@@ -1,0 +1,101 @@
+//! A servo step allocates nothing, with any inverse and any secondary task, also where limits bite.
+#![allow(missing_docs, unsafe_code, clippy::unwrap_used)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use cylindroid::control::{Gain, Secondary, Task};
+use cylindroid::inverse::Method;
+use cylindroid::kinematics::Chain;
+use cylindroid::{Matrix, Pose, Reference, Servo, ServoOptions, Vec3, catalogue};
+
+struct Counting;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: hands every call to the system's allocator unchanged; it only counts.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the contract of `realloc`.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// One test, so that no other thread allocates meanwhile.
+#[test]
+fn hot_paths_allocate_nothing() {
+    for name in catalogue::names() {
+        let robot = catalogue::load(name).unwrap();
+        let home = robot.home().to_vec();
+        let start = robot.state(&home).unwrap().pose(robot.tool());
+
+        let mut state = robot.state(&home).unwrap();
+        let mut chain = Chain::new(&robot, robot.tool());
+        let mut j = Matrix::zeros(6, robot.n());
+        let counted = count(|| {
+            for _ in 0..100 {
+                state.set(&home).unwrap();
+                state.jacobian_into(robot.tool(), Reference::World, &mut j);
+                chain.set(&home);
+                chain.jacobian_into(Reference::Local, &mut j);
+            }
+        });
+        assert_eq!(counted, 0, "{name}: kinematics");
+
+        for method in Method::ALL {
+            for task in [Task::POSE, Task::POSITION] {
+                let options = ServoOptions {
+                    method,
+                    task,
+                    // So fast that velocity, acceleration and position limits all bite.
+                    gain: Gain { position: 100.0, orientation: 100.0 },
+                    secondary: vec![
+                        Secondary::Centring { gain: 1.0 },
+                        Secondary::Posture { q: home.clone(), gain: 1.0 },
+                        Secondary::LimitAvoidance { gain: 1.0, margin: 0.1 },
+                        Secondary::Manipulability { gain: 1.0 },
+                    ],
+                    ..ServoOptions::new(&robot)
+                };
+                let mut servo = Servo::new(&robot, options).unwrap();
+                let target =
+                    Pose { translation: start.translation + Vec3::new(0.3, 0.8, -0.9), ..start };
+                let mut q = home.clone();
+                let (mut scaled, mut bent) = (0, 0);
+                let counted = count(|| {
+                    for _ in 0..1500 {
+                        let step = servo.step(&q, target).unwrap();
+                        scaled += usize::from(step.saturation.scale < 1.0);
+                        bent += usize::from(step.saturation.bent);
+                        servo.advance(&mut q);
+                    }
+                });
+                assert_eq!(counted, 0, "{name}, {}: {counted} allocations", method.name());
+                // Selectively damped rates stay below the limits of some arms by themselves.
+                let slow = matches!(method, Method::SelectivelyDamped { .. });
+                assert!(scaled + bent > 0 || slow, "{name}: no limit was met");
+            }
+        }
+    }
+}
+
+fn count(f: impl FnOnce()) -> usize {
+    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    f();
+    ALLOCATIONS.load(Ordering::Relaxed) - before
+}

@@ -1,0 +1,16 @@
+//! The laws of the library: exact relations, finite differences, singular poses, bad input.
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::float_cmp_const
+)]
+
+mod inverse;
+mod kinematics;
+mod pinocchio;
+mod servo;
+mod spatial;
+mod support;
+mod svd;

@@ -1,0 +1,120 @@
+//! The steps of the tasks: each a command that a person could type.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+
+use crate::{layers, models};
+
+/// The workspace.
+pub(crate) fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf).unwrap_or_default()
+}
+
+/// Runs a command in the workspace, its output shown.
+///
+/// # Errors
+/// A command that cannot be started or fails.
+pub(crate) fn run(command: &mut Command) -> Result<()> {
+    let status = command
+        .current_dir(root())
+        .status()
+        .with_context(|| format!("cannot start {}", command.get_program().to_string_lossy()))?;
+    if !status.success() {
+        bail!("{command:?} failed ({status})");
+    }
+    Ok(())
+}
+
+fn cargo(arguments: &[&str]) -> Command {
+    let mut command = Command::new(std::env::var("CARGO").unwrap_or_else(|_| "cargo".into()));
+    command.args(arguments);
+    command
+}
+
+fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
+    println!("== {name}");
+    let start = Instant::now();
+    work().with_context(|| format!("step '{name}'"))?;
+    println!("== {name}: {:.0} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Formatting, layers, lints.
+pub(crate) fn quick() -> Result<()> {
+    step("format", || run(&mut cargo(&["fmt", "--all", "--check"])))?;
+    step("layers", layers::check)?;
+    step("lints", || {
+        run(&mut cargo(&[
+            "clippy",
+            "--quiet",
+            "--workspace",
+            "--all-targets",
+            "--",
+            "-D",
+            "warnings",
+        ]))
+    })
+}
+
+/// Everything: this is the whole CI.
+pub(crate) fn test() -> Result<()> {
+    let robots = models::fetch()?;
+    quick()?;
+    step("documentation", || {
+        run(cargo(&["doc", "--quiet", "--workspace", "--no-deps"])
+            .env("RUSTDOCFLAGS", "-D warnings"))
+    })?;
+    step("tests", || {
+        run(cargo(&["test", "--quiet", "--workspace"]).env("CYLINDROID_TEST_ROBOTS", &robots))
+    })
+}
+
+/// The reference vectors, by the script that made them, in an environment of its own.
+pub(crate) fn vectors() -> Result<()> {
+    let venv = root().join("target/vectors-venv");
+    let python = venv.join("bin/python");
+    if !python.exists() {
+        run(Command::new("python3").args(["-m", "venv"]).arg(&venv))?;
+    }
+    run(Command::new(&python).args([
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "-r",
+        "xtask/vectors/requirements.txt",
+    ]))?;
+    run(Command::new(&python).args([
+        "xtask/vectors/pinocchio_vectors.py",
+        "--out",
+        "crates/cylindroid/tests/vectors/pinocchio",
+    ]))
+}
+
+/// The kernels, on this machine.
+pub(crate) fn bench() -> Result<()> {
+    run(&mut cargo(&["bench", "--package", "cylindroid"]))
+}
+
+/// The figures of the README, by the command line that users have.
+pub(crate) fn figures() -> Result<()> {
+    run(&mut cargo(&[
+        "run",
+        "--release",
+        "--quiet",
+        "--package",
+        "cylindroid-cli",
+        "--",
+        "move",
+        "panda",
+        "--to",
+        "0.45,0.15,0.35",
+        "--rpy",
+        "3.1416,0,0.6",
+        "--plot",
+        "docs/move-panda.svg",
+    ]))
+}
