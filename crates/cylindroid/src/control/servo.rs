@@ -17,6 +17,7 @@ use super::saturation::{Problem, Saturation, Saturator, solve};
 use super::secondary::{Gradient, TaskRows};
 use super::stall::{Evidence, Stall, Watch, classify};
 use crate::error::{Error, Result};
+use crate::inverse::Method;
 use crate::kinematics::{Chain, Reference};
 use crate::linalg::{Matrix, RowSpace, Svd};
 use crate::model::{Limits, Mechanism};
@@ -324,6 +325,8 @@ impl Servo {
         options.dt = dt;
         options.gain = super::Gain { position: gain, orientation: gain };
         options.speed = super::Speed { linear: f64::INFINITY, angular: f64::INFINITY };
+        // Half a radian a step at most, and exact near the target also where it is nearly singular.
+        options.method = Method::SelectivelyDamped { max_rate: 0.5 / dt };
         let mut servo = Self::new(&self.mechanism, options)?;
         for limits in &mut servo.limits {
             limits.velocity = f64::INFINITY;

@@ -45,13 +45,13 @@ fn mutated_mechanism_files_give_a_model_or_an_error() {
 fn deep_and_long_files_are_answered() {
     let deep = format!("<robot>{}{}</robot>", "<a>".repeat(50_000), "</a>".repeat(50_000));
     assert!(read_urdf(&deep).is_err());
-    let links: String = (0..5000).map(|i| format!("<link name='l{i}'/>")).collect();
-    let joints: String = (1..5000)
+    let links: String = (0..1000).map(|i| format!("<link name='l{i}'/>")).collect();
+    let joints: String = (1..1000)
         .map(|i| {
             let parent = i - 1;
             format!("<joint name='j{i}' type='revolute'><parent link='l{parent}'/><child link='l{i}'/></joint>")
         })
         .collect();
-    assert_eq!(read_urdf(&format!("<robot>{links}{joints}</robot>")).unwrap().n(), 4999);
+    assert_eq!(read_urdf(&format!("<robot>{links}{joints}</robot>")).unwrap().n(), 999);
     assert!(read_toml(&format!("a = {}", "[".repeat(50_000))).is_err());
 }

@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn ranges_outside_the_text_or_inside_a_character_are_moved() {
         let inside = TEXT.find('é').unwrap() + 1;
-        for span in [inside..inside, 1000..2000, 5..2] {
+        for span in [inside..inside, 1000..2000, inside + 1..inside] {
             assert!(matches!(source().error(span, "m", ""), Error::File(_)));
         }
         assert_eq!(source().offset(99, 99), TEXT.len());

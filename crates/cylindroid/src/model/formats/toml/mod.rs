@@ -136,8 +136,12 @@ fn dimension(file: &Table<'_>) -> Result<u8> {
     }
 }
 
+fn dh_table<'t>(file: &Table<'t>) -> Result<Option<Table<'t>>> {
+    file.table("dh", "[dh]", &["convention", "rows", "base", "flange"])
+}
+
 fn joints(file: &Table<'_>, planar: bool) -> Result<Vec<JointSpec>> {
-    let Some(table) = file.table("dh", "[dh]", &["convention", "rows", "base", "flange"])? else {
+    let Some(table) = dh_table(file)? else {
         if !file.has("joint") {
             let help = "write [[joint]] tables or a [dh] table";
             return Err(file.refuse("joint", "the file has no joints", help));
@@ -202,12 +206,7 @@ fn row(table: &Table<'_>) -> Result<dh::Row> {
 
 /// Where the joints stand in the file, for errors of the builder.
 fn places(file: &Table<'_>) -> Result<Vec<(String, Range<usize>)>> {
-    let joints =
-        if let Some(dh) = file.table("dh", "[dh]", &["convention", "rows", "base", "flange"])? {
-            rows(&dh)?
-        } else {
-            tree::tables(file)?
-        };
+    let joints = if let Some(dh) = dh_table(file)? { rows(&dh)? } else { tree::tables(file)? };
     let place = |t: &Table<'_>| Ok((t.required_string("name")?.to_owned(), t.at("name")));
     joints.iter().map(place).collect()
 }
