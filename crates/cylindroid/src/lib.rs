@@ -8,6 +8,7 @@
 
 #![cfg_attr(test, allow(clippy::float_cmp_const))]
 
+pub mod control;
 pub mod error;
 pub mod linalg;
 pub mod model;

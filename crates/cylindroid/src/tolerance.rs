@@ -49,3 +49,11 @@ pub const LIMIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A joint nearer to its limit than this [rad or m] counts as standing at it in reports.
 pub const AT_LIMIT: f64 = 1e-6;
+
+/// A rotation nearer to a half turn than this [rad] goes about the axis whose first component
+/// that is not zero is positive, so that rounding does not choose the way round.
+pub const HALF_TURN: f64 = 1e-9;
+
+/// Three points name no circle when the height of their triangle is below this times its longest
+/// side [-]: a radius beyond 1e5 such sides.
+pub const COLLINEAR: f64 = 1e-6;
