@@ -9,8 +9,8 @@ use crate::error::Result;
 
 /// One instant of a motion.
 #[derive(Debug)]
-pub struct Sample<'a> {
-    /// Time since the start [s].
+pub struct Snapshot<'a> {
+    /// Time since the start (s).
     pub time: f64,
     /// The configuration before the step.
     pub q: &'a [f64],
@@ -33,7 +33,7 @@ pub struct Outcome {
     pub last: Step,
     /// Steps taken.
     pub steps: usize,
-    /// Duration [s].
+    /// Duration (s).
     pub time: f64,
     /// Smallest singular value ratio on the way.
     pub min_singular_ratio: f64,
@@ -42,7 +42,7 @@ pub struct Outcome {
 }
 
 /// Steps `servo` from `q` until it reports the end, or for `duration` seconds. `target` gives the
-/// target at a time [s] and whether it is the final one, `observe` sees every step.
+/// target at a time (s) and whether it is the final one, `observe` sees every step.
 ///
 /// # Errors
 /// As [`Servo::step`].
@@ -51,7 +51,7 @@ pub fn drive(
     q: &[f64],
     duration: f64,
     mut target: impl FnMut(f64) -> (Target, bool),
-    mut observe: impl FnMut(Sample<'_>),
+    mut observe: impl FnMut(Snapshot<'_>),
 ) -> Result<Outcome> {
     let dt = servo.options().dt;
     let mut q = q.to_vec();
@@ -64,7 +64,7 @@ pub fn drive(
         let step = servo.step(&q, now)?;
         min_singular_ratio = min_singular_ratio.min(step.singular_ratio);
         limits_hit.extend(servo.active_limits());
-        observe(Sample { time, q: &q, rates: servo.rates(), step: &step });
+        observe(Snapshot { time, q: &q, rates: servo.rates(), step: &step });
         let reached = is_final && step.status == Status::Reached;
         let stalled = is_final && step.status == Status::Stalled;
         if reached || stalled || time >= duration {
