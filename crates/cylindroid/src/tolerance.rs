@@ -53,3 +53,11 @@ pub const AT_LIMIT: f64 = 1e-6;
 /// A rate this near to its bound, relative to the bound, has met it: scaling a motion to a bound
 /// leaves a rounding [-].
 pub const LIMIT_MET: f64 = 1e-12;
+
+/// A rotation nearer to a half turn than this [rad] goes about the axis whose first component
+/// that is not zero is positive, so that rounding does not choose the way round.
+pub const HALF_TURN: f64 = 1e-9;
+
+/// Three points name no circle when the height of their triangle is below this times its longest
+/// side [-]: a radius beyond 1e5 such sides.
+pub const COLLINEAR: f64 = 1e-6;

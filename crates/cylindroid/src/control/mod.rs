@@ -1,17 +1,28 @@
 //! Cartesian control: the servo loop, its limits, its secondary tasks, time laws and paths.
+//!
+//! A path says where (`s` in [0, 1]), a time law says when (`s` over time), a move is both: the
+//! fastest law on this path that keeps every bound.
 
+mod cartesian_move;
 mod drive;
+mod joint_move;
 mod limits;
 mod options;
+mod path;
 mod saturation;
 mod secondary;
 mod servo;
 mod stall;
+mod time_law;
 
+pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
 pub use drive::{Outcome, Sample, drive};
+pub use joint_move::{JointMove, JointPath, JointSample};
 pub use limits::{LimitKind, Motion1, RateBounds};
 pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};
+pub use path::{CartesianPath, Deviation, Turn};
 pub use saturation::Saturation;
 pub use secondary::Secondary;
 pub use servo::{Servo, Status, Step, Target};
 pub use stall::Stall;
+pub use time_law::{Bounds, LawSample, TimeLaw};

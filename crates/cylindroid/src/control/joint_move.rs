@@ -1,0 +1,138 @@
+//! Joint moves: all joints straight to another configuration, starting and stopping together.
+//!
+//! Formula  q_i = from_i + s d_i, s from 0 to 1 by one law: s' <= v_i/|d_i|, s'' <= a_i/|d_i|,
+//!          s''' <= j_i/|d_i|, the tightest joint for each
+//! Shapes   n positions, n velocities, n bounds        Units  rad or m by the kind of the joint
+//! Valid    any displacement; joints that rest bound nothing, and where all rest the law has
+//!          duration zero. Time-optimal along the straight line in the joint space
+//! Fails    on lengths that disagree, numbers that are not finite, bounds that `TimeLaw` refuses
+//! Why so   one law for all keeps the path straight; a law for each joint, stretched to the
+//!          slowest, can be faster where different joints set velocity and acceleration, but it
+//!          bends the path, and a straight path is what collision checks and teachers see
+//! Source   Biagiotti & Melchiorri 2008, chapter 3
+//! Checked  tests/motion/moves.rs::joint_*
+
+use super::path::within;
+use super::time_law::{Bounds, LawSample, TimeLaw};
+use crate::error::{Error, Result};
+
+/// The straight motion of all joints from one configuration to another, over s in [0, 1].
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointPath {
+    from: Vec<f64>,
+    to: Vec<f64>,
+    displacement: Vec<f64>,
+}
+
+impl JointPath {
+    /// From one configuration to another, n joints each [rad or m].
+    ///
+    /// # Errors
+    /// Two lengths, or an entry (or a difference of two) that is not finite.
+    pub fn new(from: &[f64], to: &[f64]) -> Result<Self> {
+        Error::check_len("end of the joint path", from.len(), to.len())?;
+        Error::check_finite("start of the joint path", from)?;
+        Error::check_finite("end of the joint path", to)?;
+        let displacement: Vec<f64> = to.iter().zip(from).map(|(b, a)| b - a).collect();
+        Error::check_finite("displacement of the joint path", &displacement)?;
+        Ok(Self { from: from.to_vec(), to: to.to_vec(), displacement })
+    }
+
+    /// Number of joints.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.from.len()
+    }
+
+    /// `d positions / ds`, from start to end: n entries [rad or m], the same at every s.
+    #[must_use]
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// The positions [rad or m] at `s`, clamped to [0, 1]; NaN counts as 0.
+    ///
+    /// # Errors
+    /// A slice whose length is not [`Self::dof`].
+    pub fn position_into(&self, s: f64, positions: &mut [f64]) -> Result<()> {
+        Error::check_len("positions", self.dof(), positions.len())?;
+        let s = within(s);
+        for (i, position) in positions.iter_mut().enumerate() {
+            // From the nearer end: exact at both, and no overshoot.
+            *position = if s > 0.5 {
+                self.to[i] - self.displacement[i] * (1.0 - s)
+            } else {
+                self.from[i] + self.displacement[i] * s
+            };
+        }
+        Ok(())
+    }
+}
+
+/// All joints moving straight to another configuration, starting and stopping together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointMove {
+    path: JointPath,
+    law: TimeLaw,
+}
+
+/// Where [`JointMove::sample_into`] writes, n entries each.
+#[derive(Debug)]
+pub struct JointSample<'a> {
+    /// Positions [rad or m].
+    pub positions: &'a mut [f64],
+    /// Velocities [rad/s or m/s].
+    pub velocities: &'a mut [f64],
+}
+
+impl JointMove {
+    /// The move along `path` within the bounds of each joint (n of them, in the joint's unit).
+    ///
+    /// # Errors
+    /// A number of bounds other than the number of joints; bounds that are NaN, zero or negative,
+    /// or that leave both acceleration and jerk infinite.
+    pub fn new(path: JointPath, bounds: &[Bounds]) -> Result<Self> {
+        Error::check_len("bounds", path.dof(), bounds.len())?;
+        let mut tightest = Bounds::NONE;
+        for (i, (bound, displacement)) in bounds.iter().zip(path.displacement()).enumerate() {
+            bound.check(&format!("joint {i}"))?;
+            tightest = tightest.tightest(bound.over(displacement.abs()));
+        }
+        Ok(Self { path, law: TimeLaw::along(tightest)? })
+    }
+
+    /// The same move slowed down to end at `duration` [s].
+    ///
+    /// # Errors
+    /// A duration shorter than that of the move, or not finite.
+    pub fn stretched_to(self, duration: f64) -> Result<Self> {
+        Ok(Self { law: self.law.stretched_to(duration)?, ..self })
+    }
+
+    /// The path.
+    #[must_use]
+    pub fn path(&self) -> &JointPath {
+        &self.path
+    }
+
+    /// The law of the path coordinate, from 0 to 1.
+    #[must_use]
+    pub fn law(&self) -> &TimeLaw {
+        &self.law
+    }
+
+    /// Writes the state at time `t` [s], without allocation; at rest at the start before 0 and at
+    /// the end after the duration. Returns the path coordinate s and its derivatives.
+    ///
+    /// # Errors
+    /// A slice whose length is not the number of joints; nothing is written then.
+    pub fn sample_into(&self, t: f64, out: JointSample<'_>) -> Result<LawSample> {
+        Error::check_len("velocities", self.path.dof(), out.velocities.len())?;
+        let s = self.law.at(t);
+        self.path.position_into(s.position, out.positions)?;
+        for (velocity, displacement) in out.velocities.iter_mut().zip(self.path.displacement()) {
+            *velocity = displacement * s.velocity;
+        }
+        Ok(s)
+    }
+}
