@@ -23,6 +23,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::path::CartesianPath;
+use super::servo::Target;
 use super::time_law::{Bounds, LawSample, TimeLaw};
 use crate::error::Result;
 use crate::spatial::{Pose, Twist};
@@ -113,6 +114,15 @@ impl CartesianMove {
         let s = self.law.at(t);
         let twist = self.path.derivative(s.position) * s.velocity;
         CartesianSample { pose: self.path.pose(s.position), twist, s }
+    }
+
+    /// The target of a servo of period `dt` [s] at time `t` [s]: the pose now, and the constant
+    /// twist that leads to the pose of the next step. The twist at `t` itself would leave the
+    /// servo behind by acceleration * dt / (2 gain).
+    #[must_use]
+    pub fn target(&self, t: f64, dt: f64) -> Target {
+        let pose = self.at(t).pose;
+        Target { pose, feed_forward: pose.error_to(self.at(t + dt).pose) * (1.0 / dt) }
     }
 }
 

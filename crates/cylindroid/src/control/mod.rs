@@ -4,6 +4,7 @@
 //! fastest law on this path that keeps every bound.
 
 mod cartesian_move;
+mod detour;
 mod drive;
 mod joint_move;
 mod limits;
@@ -16,6 +17,7 @@ mod stall;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
+pub use detour::{Detour, find_posture};
 pub use drive::{Outcome, Sample, drive};
 pub use joint_move::{JointMove, JointPath, JointSample};
 pub use limits::{LimitKind, Motion1, RateBounds};

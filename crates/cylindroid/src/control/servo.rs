@@ -17,6 +17,7 @@ use super::saturation::{Problem, Saturation, Saturator, solve};
 use super::secondary::{Gradient, TaskRows};
 use super::stall::{Evidence, Stall, Watch, classify};
 use crate::error::{Error, Result};
+use crate::inverse::Method;
 use crate::kinematics::{Chain, Reference};
 use crate::linalg::{Matrix, RowSpace, Svd};
 use crate::model::{Limits, Mechanism};
@@ -310,6 +311,28 @@ impl Servo {
     /// If `q` is shorter than the mechanism's.
     pub fn advance(&self, q: &mut [f64]) {
         self.mechanism.integrate_in_place(q, &self.rates, self.options.dt);
+    }
+
+    /// The coordinates that move the end effector: places in `q`, ascending.
+    #[must_use]
+    pub fn coordinates(&self) -> &[usize] {
+        self.chain.coordinates()
+    }
+
+    /// The same servo at rest, with position limits alone and another period and gain [1/s].
+    pub(super) fn unhurried(&self, dt: f64, gain: f64) -> Result<Self> {
+        let mut options = self.options.clone();
+        options.dt = dt;
+        options.gain = super::Gain { position: gain, orientation: gain };
+        options.speed = super::Speed { linear: f64::INFINITY, angular: f64::INFINITY };
+        // Half a radian a step at most, and exact near the target also where it is nearly singular.
+        options.method = Method::SelectivelyDamped { max_rate: 0.5 / dt };
+        let mut servo = Self::new(&self.mechanism, options)?;
+        for limits in &mut servo.limits {
+            limits.velocity = f64::INFINITY;
+            limits.acceleration = f64::INFINITY;
+        }
+        Ok(servo)
     }
 
     fn check_input(&self, q: &[f64], target: &Target, wanted_rates: &[f64]) -> Result<()> {

@@ -212,38 +212,38 @@ pub(super) fn default_tool(
     joints: &[JointSpec],
     links: &BTreeMap<String, usize>,
 ) -> FrameId {
-    let ends = |j: &usize| (links[&joints[*j].parent], links[&joints[*j].child]);
-    let moves = |j: &usize| joints[*j].kind.dof() > 0;
-    // Moving joints below each link, and above it.
-    let mut below: BTreeMap<usize, usize> = BTreeMap::new();
-    for j in order.joints.iter().rev() {
-        let (parent, child) = ends(j);
-        let subtree = below.get(&child).copied().unwrap_or(0) + usize::from(moves(j));
-        *below.entry(parent).or_default() += subtree;
+    let ends: Vec<(usize, usize)> =
+        joints.iter().map(|j| (links[&j.parent], links[&j.child])).collect();
+    let moves = |j: usize| joints[j].kind.dof() > 0;
+    // For each link: the joints that leave it, the moving joints below it and above it.
+    let mut children = vec![Vec::new(); links.len()];
+    let mut above = vec![0; links.len()];
+    for &j in &order.joints {
+        let (parent, child) = ends[j];
+        children[parent].push(j);
+        above[child] = above[parent] + usize::from(moves(j));
     }
-    let mut above: BTreeMap<usize, usize> = BTreeMap::new();
-    for j in &order.joints {
-        let (parent, child) = ends(j);
-        let depth = above.get(&parent).copied().unwrap_or(0) + usize::from(moves(j));
-        above.insert(child, depth);
+    let mut below = vec![0; links.len()];
+    for &j in order.joints.iter().rev() {
+        let (parent, child) = ends[j];
+        below[parent] += below[child] + usize::from(moves(j));
     }
-    let children = |link: usize| order.joints.iter().filter(move |j| ends(j).0 == link);
-    let carries = |j: &&usize| moves(j) || below.get(&ends(j).1).copied().unwrap_or(0) > 0;
+    let carries = |j: usize| moves(j) || below[ends[j].1] > 0;
 
     let mut link = order.root;
     let mut moved = false;
     loop {
-        let mut branches = children(link).filter(carries);
+        let mut branches = children[link].iter().copied().filter(|&j| carries(j));
         let (Some(only), None) = (branches.next(), branches.next()) else { break };
         moved |= moves(only);
-        link = ends(only).1;
+        link = ends[only].1;
     }
     if !moved {
-        let deepest = above.iter().max_by_key(|(link, depth)| (**depth, **link));
-        link = deepest.map_or(order.root, |(link, _)| *link);
+        let deepest = (0..above.len()).max_by_key(|&l| (above[l], l));
+        link = deepest.unwrap_or(order.root);
     }
-    while let Some(fixed) = children(link).rev().find(|j| !carries(j)) {
-        link = ends(fixed).1;
+    while let Some(&fixed) = children[link].iter().rev().find(|&&j| !carries(j)) {
+        link = ends[fixed].1;
     }
     FrameId(link)
 }

@@ -268,6 +268,8 @@ impl Builder {
     /// For every mimic joint the joint at the end of its chain, with the ratio and offset to it.
     fn resolve_mimics(&self) -> Result<BTreeMap<usize, (usize, f64, f64)>> {
         let mut resolved = BTreeMap::new();
+        let by_name: BTreeMap<&str, usize> =
+            self.joints.iter().enumerate().map(|(j, o)| (o.name.as_str(), j)).collect();
         for (index, joint) in self.joints.iter().enumerate() {
             let Some(first) = &joint.mimic else { continue };
             let name = joint.name.as_str();
@@ -276,15 +278,15 @@ impl Builder {
             let mut source = 0;
             let mut length = 0;
             while let Some(mimic) = step {
-                if !(mimic.multiplier.is_finite() && mimic.offset.is_finite()) {
+                offset += multiplier * mimic.offset;
+                multiplier *= mimic.multiplier;
+                if !(multiplier.is_finite() && offset.is_finite()) {
                     return self.refuse(
                         name,
                         format!("the multiplier and offset of mimic joint '{name}' must be finite"),
                     );
                 }
-                offset += multiplier * mimic.offset;
-                multiplier *= mimic.multiplier;
-                let Some(j) = self.joints.iter().position(|o| o.name == mimic.joint) else {
+                let Some(&j) = by_name.get(mimic.joint.as_str()) else {
                     let unknown = Error::unknown(
                         "joint",
                         &mimic.joint,
@@ -393,8 +395,11 @@ impl Builder {
                 }
             })
             .collect();
+        // From places in the specification to places in the order.
+        let mut places = vec![0; self.joints.len()];
+        order.joints.iter().enumerate().for_each(|(place, &j)| places[j] = place);
         for c in &mut assembly.coordinates {
-            c.joint = order.joints.iter().position(|&j| j == c.joint).unwrap_or(0);
+            c.joint = places[c.joint];
         }
         Ok(Mechanism {
             data: Arc::new(Data {

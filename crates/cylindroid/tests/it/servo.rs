@@ -1,6 +1,6 @@
 use cylindroid::control::{
     Gain, LimitKind, Outcome, Projector, Secondary, Speed, Stall, Status, Target, Task, Tolerance,
-    drive,
+    drive, find_posture,
 };
 use cylindroid::inverse::Method;
 use cylindroid::model::{JointKind, JointSpec, Limits};
@@ -568,6 +568,34 @@ fn random_starts_to_random_targets() {
         println!("{name}: {reached} of {runs} reached; stalled: {causes:?}");
         assert!(reached > 0);
     }
+}
+
+/// Random motions that stall are reached by way of another posture, within all limits.
+#[test]
+fn a_detour_reaches_what_the_servo_does_not() {
+    for (name, seed) in [("panda", 61), ("ur5e", 62), ("puma560", 63)] {
+        let robot = catalogue::load(name).unwrap();
+        let mut random = Random(seed);
+        let servo = servo(&robot, |_| {});
+        let (mut most, runs) = (0, 300);
+        for _ in 0..runs {
+            let (from, to) = (random.q(&robot), random.q(&robot));
+            let target = robot.state(&to).unwrap().pose(robot.tool());
+            let found = find_posture(&servo, &from, target, 200).unwrap();
+            let found = found.unwrap_or_else(|| panic!("{name}: {to:?} not found"));
+            assert_eq!(robot.outside_limits(&found.q).count(), 0);
+            let end = robot.state(&found.q).unwrap().pose(robot.tool());
+            assert!((end.translation - target.translation).norm() <= 1e-6);
+            assert!(end.rotation.angle_to(target.rotation) <= 1e-6);
+            most = most.max(found.runs);
+        }
+        println!("{name}: {runs} of {runs} found, at most {most} runs");
+    }
+    // What nothing reaches is not found.
+    let robot = planar(3);
+    let servo = servo(&robot, |o| o.task = Task::POSITION);
+    let far = Pose::from_translation(Vec3::new(4.0, 0.0, 0.0));
+    assert_eq!(find_posture(&servo, &[0.0; 3], far, 20).unwrap(), None);
 }
 
 #[test]

@@ -1,0 +1,78 @@
+//! A way round: a posture within all limits that reaches a target which the servo, moving straight
+//! at it, does not.
+//!
+//! Method   runs the servo, freed of speed and acceleration limits, from the home posture and then
+//!          from postures drawn evenly within the limits, until one run reaches the target. Limits
+//!          of position form a box, so the straight way there through joint space keeps them.
+//! Units    rad, m
+//! Valid    any task and arm. `None` says that no run of so many reached it: likely, not proved,
+//!          that no posture does. The draws are the same on every run.
+//! Why so   what stops a servo is nearly always the posture it started from
+//! Checked  tests/it/servo.rs::a_detour_reaches_what_the_servo_does_not
+
+use super::servo::{Servo, Status, Target};
+use crate::error::Result;
+use crate::spatial::Pose;
+
+/// Steps of one run: far more than a converging run takes.
+const STEPS: usize = 400;
+/// Period and gain of the runs: the error halves with every step.
+const DT: f64 = 0.02;
+const GAIN: f64 = 25.0;
+
+/// A posture that reaches the target.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Detour {
+    /// The posture, all n coordinates.
+    pub q: Vec<f64>,
+    /// Runs it took to find it.
+    pub runs: usize,
+}
+
+/// A posture within the limits from which the servo's end effector is at `target`; coordinates
+/// that do not move the end effector keep their values of `q`.
+///
+/// # Errors
+/// As [`Servo::step`].
+pub fn find_posture(
+    servo: &Servo,
+    q: &[f64],
+    target: Pose,
+    most_runs: usize,
+) -> Result<Option<Detour>> {
+    let mut search = servo.unhurried(DT, GAIN)?;
+    let mechanism = servo.mechanism().clone();
+    let mut random = 0_u64;
+    for run in 0..most_runs {
+        let mut posture = q.to_vec();
+        for &c in servo.coordinates() {
+            let limits = &mechanism.coordinates()[c].limits;
+            let (lower, upper) =
+                (limits.lower.max(-std::f64::consts::PI), limits.upper.min(std::f64::consts::PI));
+            posture[c] = if run == 0 {
+                mechanism.home()[c].clamp(limits.lower, limits.upper)
+            } else {
+                // Limits that exclude [-pi, pi] leave one end of it.
+                (lower + (upper - lower) * uniform(&mut random)).clamp(limits.lower, limits.upper)
+            };
+        }
+        search.reset();
+        for _ in 0..STEPS {
+            match search.step(&posture, Target::from(target))?.status {
+                Status::Reached => return Ok(Some(Detour { q: posture, runs: run + 1 })),
+                Status::Stalled => break,
+                Status::Moving => search.advance(&mut posture),
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// The next number in [0, 1) of a fixed sequence (SplitMix64).
+fn uniform(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}
