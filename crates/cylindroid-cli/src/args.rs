@@ -3,7 +3,9 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 mod move_to;
-pub(crate) use move_to::{LawName, MoveArgs, TaskAxes};
+pub(crate) use move_to::{
+    InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
+};
 
 use crate::values::{Joints, Numbers};
 

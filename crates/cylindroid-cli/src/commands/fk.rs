@@ -92,7 +92,12 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     )?;
     writeln!(out, "\nworld_from_frame")?;
     let rows: Vec<Vec<f64>> = pose.to_matrix().iter().map(|row| row.to_vec()).collect();
-    output::matrix(out, &["x", "y", "z", ""], &["x axis", "y axis", "z axis", "origin [m]"], &rows)?;
+    output::matrix(
+        out,
+        &["x", "y", "z", ""],
+        &["x axis", "y axis", "z axis", "origin [m]"],
+        &rows,
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 

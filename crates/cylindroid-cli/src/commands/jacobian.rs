@@ -71,8 +71,7 @@ pub(crate) fn run(
         Some(angles) => {
             let (kind, angles) = orientation_rates(angles);
             let of = state.analytical_jacobian(end_effector, kind);
-            let report =
-                AnalyticalJson { angles, determinant: of.determinant, exists: of.exists };
+            let report = AnalyticalJson { angles, determinant: of.determinant, exists: of.exists };
             (of.matrix, Some(report))
         }
     };
@@ -114,10 +113,7 @@ fn orientation_rates(angles: Angles) -> (OrientationRates, &'static str) {
 }
 
 /// Singular values and rank with the linear rows divided by `length`.
-fn scaled_singular_values(
-    jacobian: &Matrix,
-    length: f64,
-) -> cylindroid::Result<(Vec<f64>, Rank)> {
+fn scaled_singular_values(jacobian: &Matrix, length: f64) -> cylindroid::Result<(Vec<f64>, Rank)> {
     let linear = length.powi(-2);
     let metric = Metric::diagonal("length", &[linear, linear, linear, 1.0, 1.0, 1.0])?;
     let mut scaled = jacobian.clone();
@@ -155,8 +151,17 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
     writeln!(out)?;
     output::matrix(out, &rows, &report.joint_names, &report.matrix)?;
     if let Some(derivative) = &report.derivative {
-        writeln!(out, "\nderivative in time at the rates {}", output::list(report.rates.as_deref().unwrap_or(&[])))?;
-        output::matrix(out, &rows.map(|r| r.split(' ').next().unwrap_or(r)), &report.joint_names, derivative)?;
+        writeln!(
+            out,
+            "\nderivative in time at the rates {}",
+            output::list(report.rates.as_deref().unwrap_or(&[]))
+        )?;
+        output::matrix(
+            out,
+            &rows.map(|r| r.split(' ').next().unwrap_or(r)),
+            &report.joint_names,
+            derivative,
+        )?;
     }
     writeln!(out)?;
     output::pairs(
@@ -166,7 +171,10 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
             ("rank", rank_text(report)),
             (
                 "length [m]",
-                format!("{}, divides the linear rows for the singular values", output::number(report.length)),
+                format!(
+                    "{}, divides the linear rows for the singular values",
+                    output::number(report.length)
+                ),
             ),
         ],
     )?;

@@ -37,9 +37,8 @@ pub(crate) fn run(style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode>
         return Ok(ExitCode::SUCCESS);
     }
     let columns = [("name", Align::Left), ("joints", Align::Right), ("description", Align::Left)];
-    let rows = models
-        .iter()
-        .map(|m| vec![m.name.to_owned(), m.joints.to_string(), m.description.clone()]);
+    let rows =
+        models.iter().map(|m| vec![m.name.to_owned(), m.joints.to_string(), m.description.clone()]);
     output::table(out, &columns, rows)?;
     writeln!(out, "\nsources")?;
     output::pairs(out, models.into_iter().map(|m| (m.name, m.source)))?;
