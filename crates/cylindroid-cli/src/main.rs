@@ -1,1 +1,54 @@
-fn main() {}
+//! `cylindroid`: moves robots in Cartesian space and tells what they can do.
+//!
+//! Parse, run, exit code: 0 done, 1 a negative answer, 2 an error. A closed pipe is a success.
+
+mod args;
+mod commands;
+mod diagnostic;
+mod output;
+mod plot;
+mod trajectory;
+mod values;
+
+use std::io::{self, BufWriter, Write};
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser};
+
+use crate::args::Cli;
+
+/// Exit code of an error.
+const ERROR: u8 = 2;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(code) => code,
+        Err(error) if diagnostic::is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            diagnostic::print(&error);
+            ExitCode::from(ERROR)
+        }
+    }
+}
+
+fn run() -> anyhow::Result<ExitCode> {
+    let words = values::join_after_commas(
+        std::env::args_os().map(|word| word.to_string_lossy().into_owned()),
+    );
+    if words.len() <= 1 {
+        Cli::command().print_help()?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let cli = match Cli::try_parse_from(words) {
+        Ok(cli) => cli,
+        Err(message) => {
+            // Help and version are no errors and go to stdout; clap knows.
+            message.print()?;
+            return Ok(ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(ERROR)));
+        }
+    };
+    let mut out = BufWriter::new(io::stdout().lock());
+    let code = commands::run(&cli, &mut out)?;
+    out.flush()?;
+    Ok(code)
+}

@@ -23,7 +23,8 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::path::CartesianPath;
-use super::time_law::{Bounds, Sample, TimeLaw};
+use super::servo::Target;
+use super::time_law::{Bounds, LawSample, TimeLaw};
 use crate::error::Result;
 use crate::spatial::{Pose, Twist};
 
@@ -66,7 +67,7 @@ pub struct CartesianSample {
     /// The feed-forward: world axes, linear part that of the moving origin [m/s, rad/s].
     pub twist: Twist,
     /// The path coordinate s and its derivatives [1, 1/s, 1/s^2, 1/s^3].
-    pub s: Sample,
+    pub s: LawSample,
 }
 
 impl CartesianMove {
@@ -113,6 +114,15 @@ impl CartesianMove {
         let s = self.law.at(t);
         let twist = self.path.derivative(s.position) * s.velocity;
         CartesianSample { pose: self.path.pose(s.position), twist, s }
+    }
+
+    /// The target of a servo of period `dt` (s) at time `t` (s): the pose now, and the constant
+    /// twist that leads to the pose of the next step. The twist at `t` itself would leave the
+    /// servo behind by acceleration * dt / (2 gain).
+    #[must_use]
+    pub fn target(&self, t: f64, dt: f64) -> Target {
+        let pose = self.at(t).pose;
+        Target { pose, feed_forward: pose.error_to(self.at(t + dt).pose) * (1.0 / dt) }
     }
 }
 

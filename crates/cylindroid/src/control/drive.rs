@@ -9,7 +9,7 @@ use crate::error::Result;
 
 /// One instant of a motion.
 #[derive(Debug)]
-pub struct Snapshot<'a> {
+pub struct Sample<'a> {
     /// Time since the start (s).
     pub time: f64,
     /// The configuration before the step.
@@ -51,7 +51,7 @@ pub fn drive(
     q: &[f64],
     duration: f64,
     mut target: impl FnMut(f64) -> (Target, bool),
-    mut observe: impl FnMut(Snapshot<'_>),
+    mut observe: impl FnMut(Sample<'_>),
 ) -> Result<Outcome> {
     let dt = servo.options().dt;
     let mut q = q.to_vec();
@@ -64,7 +64,7 @@ pub fn drive(
         let step = servo.step(&q, now)?;
         min_singular_ratio = min_singular_ratio.min(step.singular_ratio);
         limits_hit.extend(servo.active_limits());
-        observe(Snapshot { time, q: &q, rates: servo.rates(), step: &step });
+        observe(Sample { time, q: &q, rates: servo.rates(), step: &step });
         let reached = is_final && step.status == Status::Reached;
         let stalled = is_final && step.status == Status::Stalled;
         if reached || stalled || time >= duration {

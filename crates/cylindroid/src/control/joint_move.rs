@@ -13,7 +13,7 @@
 //! Checked  tests/motion/moves.rs::joint_*
 
 use super::path::within;
-use super::time_law::{Bounds, Sample, TimeLaw};
+use super::time_law::{Bounds, LawSample, TimeLaw};
 use crate::error::{Error, Result};
 
 /// The straight motion of all joints from one configuration to another, over s in [0, 1].
@@ -126,7 +126,7 @@ impl JointMove {
     ///
     /// # Errors
     /// A slice whose length is not the number of joints; nothing is written then.
-    pub fn sample_into(&self, t: f64, out: JointSample<'_>) -> Result<Sample> {
+    pub fn sample_into(&self, t: f64, out: JointSample<'_>) -> Result<LawSample> {
         Error::check_len("velocities", self.path.dof(), out.velocities.len())?;
         let s = self.law.at(t);
         self.path.position_into(s.position, out.positions)?;

@@ -19,7 +19,7 @@ mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
 pub use detour::{Detour, find_posture, joint_move};
-pub use drive::{Outcome, Snapshot, drive};
+pub use drive::{Outcome, Sample, drive};
 pub use joint_move::{JointMove, JointPath, JointSample};
 pub use limits::{LimitKind, Motion1, RateBounds};
 pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};
@@ -28,4 +28,4 @@ pub use saturation::Saturation;
 pub use secondary::Secondary;
 pub use servo::{Servo, Status, Step, Target};
 pub use stall::Stall;
-pub use time_law::{Bounds, Sample, TimeLaw};
+pub use time_law::{Bounds, LawSample, TimeLaw};

@@ -10,6 +10,7 @@
 //! Source   Liegeois 1977; Yoshikawa 1985; analytic gradient through the Hessian
 //! Checked  tests/it/servo.rs::secondary_*
 
+use crate::error::{Error, Result};
 use crate::kinematics::{Chain, Reference};
 use crate::linalg::{Matrix, Svd};
 use crate::model::{CoordinateKind, Mechanism};
@@ -60,6 +61,37 @@ pub(super) struct TaskRows<'a> {
 }
 
 impl Secondary {
+    /// The names of the tasks.
+    pub const NAMES: [&'static str; 4] =
+        ["posture", "centring", "limit-avoidance", "manipulability"];
+
+    /// The task of this name with its default numbers: gain 1/s, limit avoidance with 1 rad/s at
+    /// the limit from a tenth of the range on. `posture` is where the task "posture" goes.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] with the nearest names.
+    pub fn named(name: &str, posture: &[f64]) -> Result<Self> {
+        match name {
+            "posture" => Ok(Self::Posture { q: posture.to_vec(), gain: 1.0 }),
+            "centring" => Ok(Self::Centring { gain: 1.0 }),
+            "limit-avoidance" => Ok(Self::LimitAvoidance { gain: 1.0, margin: 0.1 }),
+            "manipulability" => Ok(Self::Manipulability { gain: 1.0 }),
+            _ => Err(Error::unknown("secondary task", name, Self::NAMES)),
+        }
+    }
+
+    /// The same task with another gain.
+    #[must_use]
+    pub fn with_gain(mut self, value: f64) -> Self {
+        match &mut self {
+            Self::Posture { gain, .. }
+            | Self::Centring { gain }
+            | Self::LimitAvoidance { gain, .. }
+            | Self::Manipulability { gain } => *gain = value,
+        }
+        self
+    }
+
     /// Adds the wanted rates of the chain's coordinates to `out`.
     pub(super) fn add_rates(
         &self,
@@ -142,7 +174,8 @@ impl Secondary {
     }
 
     /// The gain of the task.
-    pub(super) const fn gain(&self) -> f64 {
+    #[must_use]
+    pub const fn gain(&self) -> f64 {
         match self {
             Self::Posture { gain, .. }
             | Self::Centring { gain }

@@ -55,6 +55,20 @@ pub enum Stall {
     Slow,
 }
 
+impl Stall {
+    /// Its name in reports.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::OutOfReach { .. } => "out-of-reach",
+            Self::Limits { .. } => "limits",
+            Self::Singular { .. } => "singular",
+            Self::TooFewJoints { .. } => "too-few-joints",
+            Self::Slow => "slow",
+        }
+    }
+}
+
 /// Watches the error.
 #[derive(Debug, Clone)]
 pub(super) struct Watch {

@@ -36,7 +36,7 @@ pub struct Bounds {
 
 /// The state of one coordinate on its time law.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sample {
+pub struct LawSample {
     /// The coordinate, from 0 to the distance (u).
     pub position: f64,
     /// [u/s]
@@ -272,27 +272,31 @@ impl TimeLaw {
     /// The state at time `t` (s): at rest at 0 before 0 (and for NaN), at rest at the distance
     /// from the end on. Where the acceleration or the jerk jumps, one of its two values.
     #[must_use]
-    pub fn at(&self, t: f64) -> Sample {
+    pub fn at(&self, t: f64) -> LawSample {
         if t >= self.duration && t >= 0.0 {
-            return Sample { position: self.distance, ..Sample::default() };
+            return LawSample { position: self.distance, ..LawSample::default() };
         }
         if t.is_nan() || t < 0.0 {
-            return Sample::default();
+            return LawSample::default();
         }
         if t <= 0.5 * self.duration {
             return self.rise(t);
         }
         // The second half is the first, seen from the end.
         let left = self.rise(self.duration - t);
-        Sample { position: self.distance - left.position, acceleration: -left.acceleration, ..left }
+        LawSample {
+            position: self.distance - left.position,
+            acceleration: -left.acceleration,
+            ..left
+        }
     }
 
     /// The first half.
-    fn rise(&self, t: f64) -> Sample {
+    fn rise(&self, t: f64) -> LawSample {
         let Bounds { velocity: v, acceleration: a, jerk: j } = self.peak;
         let (Times { jerk: tj, hold, .. }, ramp) = (self.times, self.times.ramp());
         if t < tj {
-            return Sample {
+            return LawSample {
                 position: j * t * t * t / 6.0,
                 velocity: 0.5 * j * t * t,
                 acceleration: j * t,
@@ -301,7 +305,7 @@ impl TimeLaw {
         }
         if t < tj + hold {
             let d = t - tj;
-            return Sample {
+            return LawSample {
                 position: a * tj * tj / 6.0 + 0.5 * a * d * (tj + d),
                 velocity: a * (0.5 * tj + d),
                 acceleration: a,
@@ -310,13 +314,13 @@ impl TimeLaw {
         }
         if t < ramp {
             let left = ramp - t;
-            return Sample {
+            return LawSample {
                 position: v * (0.5 * ramp - left) + j * left * left * left / 6.0,
                 velocity: v - 0.5 * j * left * left,
                 acceleration: j * left,
                 jerk: -j,
             };
         }
-        Sample { position: v * (t - 0.5 * ramp), velocity: v, acceleration: 0.0, jerk: 0.0 }
+        LawSample { position: v * (t - 0.5 * ramp), velocity: v, acceleration: 0.0, jerk: 0.0 }
     }
 }

@@ -1,7 +1,7 @@
 //! `control::TimeLaw`: bounds, optimality, continuity, derivatives, degenerate cases.
 
 use cylindroid::Error;
-use cylindroid::control::{Bounds, Sample, TimeLaw};
+use cylindroid::control::{Bounds, LawSample, TimeLaw};
 use proptest::prelude::*;
 
 const INF: f64 = f64::INFINITY;
@@ -116,7 +116,7 @@ proptest! {
         prop_assert!(peaks.jerk <= bounds.jerk * over, "{peaks:?}");
         for pair in law.switches().windows(2) {
             if pair[1] - pair[0] > 1e-9 * law.duration() {
-                let Sample { velocity, acceleration, jerk, .. } = law.at(0.5 * (pair[0] + pair[1]));
+                let LawSample { velocity, acceleration, jerk, .. } = law.at(0.5 * (pair[0] + pair[1]));
                 let reached = [
                     velocity.abs() / bounds.velocity,
                     acceleration.abs() / bounds.acceleration,
@@ -169,7 +169,7 @@ proptest! {
                 continue;
             }
             let x = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| law.at(middle + k * step));
-            let rate = |f: fn(&Sample) -> f64|
+            let rate = |f: fn(&LawSample) -> f64|
                 (f(&x[0]) - 8.0 * f(&x[1]) + 8.0 * f(&x[3]) - f(&x[4])) / (12.0 * step);
             let peaks = law.peaks();
             for (got, expected, scale) in [
@@ -217,7 +217,7 @@ proptest! {
 #[test]
 fn ends_are_exact_and_at_rest() {
     for law in [law(0.1, 0.3, 0.7, 11.0), law(-1e-12, 1.0, 1.0, INF), law(1e6, 0.1, 3.0, 9.0)] {
-        let rest = |position| Sample { position, ..Sample::default() };
+        let rest = |position| LawSample { position, ..LawSample::default() };
         for late in [0.0, 1e-9, 1.0, INF] {
             assert_eq!(law.at(law.duration() + late), rest(law.distance()));
         }
@@ -234,11 +234,11 @@ fn no_distance_takes_no_time() {
         let law = law(0.0, 1.0, 1.0, jerk);
         assert_eq!(law.duration(), 0.0);
         for t in [-1.0, 0.0, 1.0] {
-            assert_eq!(law.at(t), Sample::default());
+            assert_eq!(law.at(t), LawSample::default());
         }
         let slow = law.stretched_to(3.0).unwrap();
         assert_eq!(slow.duration(), 3.0);
-        assert_eq!(slow.at(1.0), Sample::default());
+        assert_eq!(slow.at(1.0), LawSample::default());
     }
 }
 

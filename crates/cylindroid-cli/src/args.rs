@@ -1,0 +1,141 @@
+//! The command line as plain data; what it means is worked out in `commands`.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+mod move_to;
+pub(crate) use move_to::{
+    InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
+};
+
+use crate::values::{Joints, Numbers};
+
+const EXAMPLES: &str = "\
+Examples:
+  cylindroid info panda
+  cylindroid jacobian ur5e --q 0,-1.2,1.4,0,1.5,0 --reference local
+  cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --plot move.svg
+
+Exit codes: 0 done, 1 a negative answer (a target not reached), 2 an error.";
+
+/// Moves robots in Cartesian space and tells what they can do.
+///
+/// SI units and radians everywhere: lengths in m, angles in rad, times in s. Twists and the rows of
+/// Jacobians are linear first. A <MODEL> is a file (.urdf, .toml) or a name of the catalogue
+/// (`cylindroid models`).
+#[derive(Debug, Parser)]
+#[command(name = "cylindroid", version, after_help = EXAMPLES, max_term_width = 100)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+
+    /// Print one JSON object, numbers in full, instead of tables (infinite numbers are null)
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// List the catalogue: robots that can be loaded by name
+    Models,
+    /// Show what a model is: tree, joints and their limits, frames, what the loader ignored
+    Info(InfoArgs),
+    /// Forward kinematics: the pose of a frame, world_from_frame
+    Fk(FkArgs),
+    /// The Jacobian of a frame, its singular values and rank
+    Jacobian(JacobianArgs),
+    /// Cartesian control: drive a frame to a target and say whether and how it got there
+    #[command(long_about = move_to::ABOUT, after_long_help = move_to::EXAMPLES)]
+    Move(Box<MoveArgs>),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// A model file or a name of the catalogue
+    pub(crate) model: String,
+}
+
+/// A model at a configuration.
+#[derive(Debug, Args)]
+pub(crate) struct PostureArgs {
+    /// A model file or a name of the catalogue
+    pub(crate) model: String,
+
+    /// Configuration, in the order of `info` [rad or m]: numbers `0,-0.8,...`, or `name=value,...`
+    /// over home, or `home`, or `zero`
+    #[arg(long, value_name = "Q", default_value = "home", allow_hyphen_values = true)]
+    pub(crate) q: Joints,
+
+    /// Angles on the command line are in degrees: those of configurations (and rates), --rpy and
+    /// --rotation-vector. Lengths, speeds, tolerances and all output stay in SI units
+    #[arg(long)]
+    pub(crate) degrees: bool,
+}
+
+/// A frame and a point fixed to it.
+#[derive(Debug, Args)]
+pub(crate) struct FrameArgs {
+    /// Frame [default: the tool frame of the model]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) frame: Option<String>,
+
+    /// Point fixed to the frame, in its axes [m], taken instead of the frame's origin
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) tool: Option<Numbers<3>>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FkArgs {
+    #[command(flatten)]
+    pub(crate) posture: PostureArgs,
+
+    #[command(flatten)]
+    pub(crate) frame: FrameArgs,
+
+    /// Every frame of the model
+    #[arg(long, conflicts_with_all = ["frame", "tool"])]
+    pub(crate) all: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct JacobianArgs {
+    #[command(flatten)]
+    pub(crate) posture: PostureArgs,
+
+    #[command(flatten)]
+    pub(crate) frame: FrameArgs,
+
+    /// Point and axes of the twist: `local` (the frame's origin, its axes), `world` (the world's
+    /// origin and axes), `local_world_aligned` (the frame's origin, the world's axes)
+    #[arg(long, value_name = "NAME", default_value = "local_world_aligned")]
+    pub(crate) reference: ReferenceName,
+
+    /// Rates of angles instead of an angular velocity in the last three rows [rad/s], world axes
+    #[arg(long, value_name = "ANGLES", conflicts_with_all = ["reference", "rates"])]
+    pub(crate) analytical: Option<Angles>,
+
+    /// Also the derivative of the Jacobian in time at these rates [rad/s or m/s]; as --q, rates
+    /// that are not named are zero
+    #[arg(long, value_name = "RATES", allow_hyphen_values = true)]
+    pub(crate) rates: Option<Joints>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum ReferenceName {
+    /// The frame's origin, the frame's axes
+    Local,
+    /// The world's origin, the world's axes
+    World,
+    /// The frame's origin, the world's axes
+    LocalWorldAligned,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Angles {
+    /// Roll, pitch, yaw about the fixed x, y, z
+    Rpy,
+    /// Euler angles about z, the turned y, the turned z
+    Zyz,
+    /// The rotation vector, axis times angle
+    RotationVector,
+}

@@ -1,0 +1,234 @@
+//! The arguments of `move`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{FrameArgs, PostureArgs};
+use crate::values::{Joints, Named, Numbers, Pair};
+
+pub(crate) const ABOUT: &str = "\
+Cartesian control: drive a frame to a target and say whether and how it got there
+
+A servo runs at 1/dt against an ideal robot: rates = J+ (gain * error + feed-forward), within the \
+limits of all joints, until both errors are within tolerance, the error no longer falls, or the \
+time is up. Without an orientation only the position is driven, and the other way round. With \
+--line or --via the target moves along a path, with --joint-to every joint moves straight to its \
+goal.
+
+Exit code 0 if the target was reached, 1 if not, 2 on an error.";
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6
+  cylindroid move ur5e --to -0.3,0.4,0.5 --inverse damped --damping 0.05 --out move.csv
+  cylindroid move panda --to 0.45,0.15,0.35 --line --speed 0.1 --plot line.svg";
+
+#[derive(Debug, Args)]
+pub(crate) struct MoveArgs {
+    #[command(flatten)]
+    pub(crate) posture: PostureArgs,
+
+    #[command(flatten)]
+    pub(crate) frame: FrameArgs,
+
+    #[command(flatten)]
+    pub(crate) target: TargetArgs,
+
+    #[command(flatten)]
+    pub(crate) path: PathArgs,
+
+    #[command(flatten)]
+    pub(crate) servo: ServoArgs,
+
+    #[command(flatten)]
+    pub(crate) inverse: InverseArgs,
+
+    /// Stop after this time [s]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_hyphen_values = true)]
+    pub(crate) time_limit: f64,
+
+    /// Write the motion: time, q, rates, pose, errors, singular value ratio of every step
+    #[arg(long, value_name = "FILE.csv|FILE.json")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Draw joints, errors and singular value ratio over time
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Target")]
+pub(crate) struct TargetArgs {
+    /// Position of the tool in the world [m]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) to: Option<Numbers<3>>,
+
+    /// Orientation: roll, pitch, yaw about the fixed x, y, z [rad]
+    #[arg(long, value_name = "R,P,Y", allow_hyphen_values = true, group = "orientation")]
+    pub(crate) rpy: Option<Numbers<3>>,
+
+    /// Orientation: quaternion of any length but zero
+    #[arg(long, value_name = "W,X,Y,Z", allow_hyphen_values = true, group = "orientation")]
+    pub(crate) quaternion: Option<Numbers<4>>,
+
+    /// Orientation: axis times angle [rad]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, group = "orientation")]
+    pub(crate) rotation_vector: Option<Numbers<3>>,
+
+    /// What is driven: `pose`, `position`, `orientation`, `pointing` (position and direction of
+    /// the tool's z axis), or components like `x,y,rz` [default: what the target gives]. Where the
+    /// task asks for more than the target gives, the start's position or orientation is held
+    #[arg(long, value_name = "TASK")]
+    pub(crate) task: Option<String>,
+
+    /// Axes of the components [default: world; local, the tool's, for `pointing`]
+    #[arg(long, value_name = "AXES")]
+    pub(crate) task_axes: Option<TaskAxes>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Paths and time laws")]
+pub(crate) struct PathArgs {
+    /// Move the target along the straight line from the start, from rest to rest
+    #[arg(long, requires = "to")]
+    pub(crate) line: bool,
+
+    /// Move the target along the arc of the circle through this point [m]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, conflicts_with = "line")]
+    #[arg(requires = "to")]
+    pub(crate) via: Option<Numbers<3>>,
+
+    /// Move every joint straight to this configuration, all ending together; as --q
+    #[arg(long, value_name = "Q", allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["to", "orientation", "line", "via", "task", "task_axes"])]
+    pub(crate) joint_to: Option<Joints>,
+
+    /// Time law of --line, --via and --joint-to
+    #[arg(long, value_name = "LAW", default_value = "trapezoidal")]
+    pub(crate) law: LawName,
+
+    /// Acceleration on the path [m/s^2]
+    #[arg(long, value_name = "A", default_value_t = 1.0, allow_hyphen_values = true)]
+    pub(crate) acceleration_linear: f64,
+
+    /// Angular acceleration on the path [rad/s^2]
+    #[arg(long, value_name = "A", default_value_t = 4.0, allow_hyphen_values = true)]
+    pub(crate) acceleration_angular: f64,
+
+    /// Jerk on the path with the law jerk-limited [m/s^3]
+    #[arg(long, value_name = "J", default_value_t = 10.0, allow_hyphen_values = true)]
+    pub(crate) jerk_linear: f64,
+
+    /// Angular jerk on the path, and jerk of joints, with the law jerk-limited [rad/s^3]
+    #[arg(long, value_name = "J", default_value_t = 40.0, allow_hyphen_values = true)]
+    pub(crate) jerk_angular: f64,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Servo")]
+pub(crate) struct ServoArgs {
+    /// Gain, or gains of position and orientation [1/s]; gain * dt below 2 [default: 5]
+    #[arg(long, value_name = "K[,K]", allow_hyphen_values = true)]
+    pub(crate) gain: Option<Pair>,
+
+    /// Time between steps [s] [default: 0.001]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub(crate) dt: Option<f64>,
+
+    /// Position error at which the target counts as reached [m] [default: 1e-6]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) tolerance_position: Option<f64>,
+
+    /// Orientation error at which the target counts as reached [rad] [default: 1e-6]
+    #[arg(long, value_name = "RAD", allow_hyphen_values = true)]
+    pub(crate) tolerance_orientation: Option<f64>,
+
+    /// Largest speed of the tool [m/s], and largest angular speed [rad/s] [default: what the
+    /// joints allow; on paths 0.25 m/s and 1 rad/s]
+    #[arg(long, value_name = "V[,W]", allow_hyphen_values = true)]
+    pub(crate) speed: Option<Pair>,
+
+    /// Acceleration limit of joints that have none in the model [rad/s^2 or m/s^2] [default: none]
+    #[arg(long, value_name = "A", allow_hyphen_values = true)]
+    pub(crate) acceleration: Option<f64>,
+
+    /// Length that scales the linear rows of the Jacobian for the inverse and for singular values
+    /// [m] [default: the reach of the model]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) length: Option<f64>,
+
+    /// What the joints do where the tool does not care: `posture` (towards the start), `centring`,
+    /// `limit-avoidance`, `manipulability`, each with a gain [1/s]; may be given several times
+    /// [default: limit-avoidance where there are more joints than task components, else none]
+    #[arg(long, value_name = "NAME[=GAIN]|none")]
+    pub(crate) secondary: Vec<Named>,
+
+    /// The null space that they may use: `exact` never disturbs the task, `retained` also lets
+    /// them through directions that the inverse cut
+    #[arg(long, value_name = "NAME", default_value = "exact")]
+    pub(crate) projector: ProjectorName,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Inverse")]
+pub(crate) struct InverseArgs {
+    /// How the Jacobian is inverted: `truncated`, `damped`, `variable-damping`,
+    /// `numerical-filtering`, `selectively-damped`, `singular-value-filtering`
+    #[arg(long, value_name = "NAME", default_value = "truncated")]
+    pub(crate) inverse: String,
+
+    /// Share of the largest singular value at which others are cut [-] (truncated)
+    #[arg(long, value_name = "EPS", allow_hyphen_values = true)]
+    pub(crate) eps: Option<f64>,
+
+    /// Damping, in the unit of the scaled singular values [rad] (damped, variable-damping,
+    /// numerical-filtering)
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) damping: Option<f64>,
+
+    /// Share of the largest singular value below which damping sets in [-] (variable-damping,
+    /// numerical-filtering)
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
+    pub(crate) onset: Option<f64>,
+
+    /// Further damping of the weakest direction (numerical-filtering)
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) filter: Option<f64>,
+
+    /// Largest rate of any joint [rad/s or m/s] (selectively-damped)
+    #[arg(long, value_name = "RATE", allow_hyphen_values = true)]
+    pub(crate) max_rate: Option<f64>,
+
+    /// Shape of the filter, larger is nearer the exact inverse [-] (singular-value-filtering)
+    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
+    pub(crate) shape: Option<f64>,
+
+    /// Smallest filtered singular value (singular-value-filtering)
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    pub(crate) floor: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TaskAxes {
+    /// The tool's
+    Local,
+    /// The world's
+    World,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LawName {
+    /// Constant acceleration, constant speed, constant deceleration
+    Trapezoidal,
+    /// The same with bounded jerk
+    JerkLimited,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProjectorName {
+    /// Never disturbs the task
+    Exact,
+    /// Also the directions that the inverse cut
+    Retained,
+}

@@ -1,0 +1,271 @@
+//! `info`: what a model is.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use cylindroid::Mechanism;
+use cylindroid::model::{CoordinateKind, Joint};
+use serde::Serialize;
+
+use super::Style;
+use crate::args::InfoArgs;
+use crate::output::{self, Align};
+
+#[derive(Debug, Serialize)]
+struct InfoJson<'a> {
+    name: &'a str,
+    n: usize,
+    joint_names: Vec<&'a str>,
+    coordinates: Vec<CoordinateJson<'a>>,
+    joints: Vec<JointJson<'a>>,
+    links: Vec<&'a str>,
+    frames: Vec<FrameJson<'a>>,
+    tool: &'a str,
+    home: &'a [f64],
+    reach: f64,
+    report: ReportJson<'a>,
+}
+
+#[derive(Debug, Serialize)]
+struct CoordinateJson<'a> {
+    name: &'a str,
+    joint: &'a str,
+    kind: &'static str,
+    unit: &'static str,
+    lower: f64,
+    upper: f64,
+    velocity: f64,
+    acceleration: f64,
+    effort: f64,
+    home: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct JointJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    parent: &'a str,
+    child: &'a str,
+    axis: [f64; 3],
+    actuated: bool,
+    mimic: Option<MimicJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct MimicJson<'a> {
+    joint: &'a str,
+    multiplier: f64,
+    offset: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct FrameJson<'a> {
+    name: &'a str,
+    link: &'a str,
+}
+
+#[derive(Debug, Serialize)]
+struct ReportJson<'a> {
+    format: &'a str,
+    source: &'a str,
+    ignored: Vec<IgnoredJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct IgnoredJson<'a> {
+    line: usize,
+    what: &'a str,
+    why: &'a str,
+}
+
+pub(crate) fn run(args: &InfoArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let robot = cylindroid::load(&args.model)?;
+    let info = describe(&robot);
+    match style {
+        Style::Json => output::json(out, &info)?,
+        Style::Table => print(out, &robot, &info)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn describe(robot: &Mechanism) -> InfoJson<'_> {
+    let link = |i: usize| robot.links()[i].name.as_str();
+    let coordinates = robot.coordinates().iter().zip(robot.home()).map(|(c, &home)| {
+        let joint = &robot.joints()[c.joint];
+        CoordinateJson {
+            name: &c.name,
+            joint: &joint.name,
+            kind: joint.kind.name(),
+            unit: c.kind.unit(),
+            lower: c.limits.lower,
+            upper: c.limits.upper,
+            velocity: c.limits.velocity,
+            acceleration: c.limits.acceleration,
+            effort: c.limits.effort,
+            home,
+        }
+    });
+    let joints = robot.joints().iter().map(|j| JointJson {
+        name: &j.name,
+        kind: j.kind.name(),
+        parent: link(j.parent),
+        child: link(j.child),
+        axis: j.axis.to_array(),
+        actuated: j.actuated,
+        mimic: j.mimic.as_ref().map(|m| MimicJson {
+            joint: &m.joint,
+            multiplier: m.multiplier,
+            offset: m.offset,
+        }),
+    });
+    let ignored = robot.report().ignored.iter();
+    InfoJson {
+        name: robot.name(),
+        n: robot.n(),
+        joint_names: output::joint_names(robot),
+        coordinates: coordinates.collect(),
+        joints: joints.collect(),
+        links: robot.links().iter().map(|l| l.name.as_str()).collect(),
+        frames: robot
+            .frames()
+            .iter()
+            .map(|f| FrameJson { name: &f.name, link: link(f.link) })
+            .collect(),
+        tool: &robot.frame_of(robot.tool()).name,
+        home: robot.home(),
+        reach: robot.reach(),
+        report: ReportJson {
+            format: robot.report().format,
+            source: &robot.report().source,
+            ignored: ignored
+                .map(|i| IgnoredJson { line: i.line, what: &i.what, why: &i.why })
+                .collect(),
+        },
+    }
+}
+
+fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow::Result<()> {
+    // Link frames have the names of the links, which the tree shows.
+    let named: Vec<String> = info
+        .frames
+        .iter()
+        .filter(|f| f.name != f.link)
+        .map(|f| format!("{} (on {})", f.name, f.link))
+        .collect();
+    output::pairs(
+        out,
+        [
+            ("model", info.name.to_owned()),
+            ("coordinates", info.n.to_string()),
+            ("tool frame", info.tool.to_owned()),
+            ("other frames", named.join(", ")),
+            ("reach [m]", output::number(info.reach)),
+            ("format", info.report.format.to_owned()),
+            ("source", info.report.source.to_owned()),
+        ],
+    )?;
+    writeln!(out)?;
+    print_tree(out, robot)?;
+    if info.n > 0 {
+        writeln!(out)?;
+        print_coordinates(out, info, robot)?;
+    }
+    if !info.report.ignored.is_empty() {
+        writeln!(out, "\nignored by the loader")?;
+        let columns = [("line", Align::Right), ("what", Align::Left), ("why", Align::Left)];
+        let rows = info.report.ignored.iter().map(|i| {
+            let line = if i.line == 0 { "-".to_owned() } else { i.line.to_string() };
+            vec![line, i.what.to_owned(), i.why.to_owned()]
+        });
+        output::table(out, &columns, rows)?;
+    }
+    Ok(())
+}
+
+fn print_coordinates(
+    out: &mut dyn Write,
+    info: &InfoJson<'_>,
+    robot: &Mechanism,
+) -> io::Result<()> {
+    let columns = [
+        ("coordinate", Align::Left),
+        ("kind", Align::Left),
+        ("unit", Align::Left),
+        ("lower", Align::Right),
+        ("upper", Align::Right),
+        ("velocity [/s]", Align::Right),
+        ("acceleration [/s^2]", Align::Right),
+        ("effort", Align::Right),
+        ("home", Align::Right),
+    ];
+    let rows = info.coordinates.iter().zip(robot.coordinates()).map(|(c, coordinate)| {
+        let effort = match coordinate.kind {
+            _ if c.effort.is_infinite() => output::number(c.effort),
+            CoordinateKind::Angle | CoordinateKind::RotationVector => {
+                format!("{} N m", output::number(c.effort))
+            }
+            CoordinateKind::Length | CoordinateKind::Position => {
+                format!("{} N", output::number(c.effort))
+            }
+        };
+        vec![
+            c.name.to_owned(),
+            c.kind.to_owned(),
+            c.unit.to_owned(),
+            output::number(c.lower),
+            output::number(c.upper),
+            output::number(c.velocity),
+            output::number(c.acceleration),
+            effort,
+            output::number(c.home),
+        ]
+    });
+    output::table(out, &columns, rows)
+}
+
+/// The links as a tree, each with the joint that carries it. The stack holds joints still to be
+/// drawn with the prefix of their line, so that depth is bounded by memory alone.
+fn print_tree(out: &mut dyn Write, robot: &Mechanism) -> io::Result<()> {
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); robot.links().len()];
+    let mut is_child = vec![false; robot.links().len()];
+    for (i, joint) in robot.joints().iter().enumerate() {
+        children[joint.parent].push(i);
+        is_child[joint.child] = true;
+    }
+    for (root, link) in robot.links().iter().enumerate().filter(|(i, _)| !is_child[*i]) {
+        writeln!(out, "{}", link.name)?;
+        let mut stack: Vec<(usize, String, bool)> = Vec::new();
+        push_children(&mut stack, &children[root], "");
+        while let Some((i, prefix, is_last)) = stack.pop() {
+            let joint = &robot.joints()[i];
+            let branch = if is_last { "└─ " } else { "├─ " };
+            let child = &robot.links()[joint.child].name;
+            writeln!(out, "{prefix}{branch}{child}   {}", joint_text(joint))?;
+            let below = format!("{prefix}{}", if is_last { "   " } else { "│  " });
+            push_children(&mut stack, &children[joint.child], &below);
+        }
+    }
+    Ok(())
+}
+
+fn push_children(stack: &mut Vec<(usize, String, bool)>, joints: &[usize], prefix: &str) {
+    for (place, &joint) in joints.iter().enumerate().rev() {
+        stack.push((joint, prefix.to_owned(), place + 1 == joints.len()));
+    }
+}
+
+fn joint_text(joint: &Joint) -> String {
+    let mut text = format!("{} {}", joint.kind.name(), joint.name);
+    if let Some(mimic) = &joint.mimic {
+        text.push_str(&format!(
+            ", follows {} times {} plus {}",
+            mimic.joint,
+            output::number(mimic.multiplier),
+            output::number(mimic.offset)
+        ));
+    }
+    if !joint.actuated && joint.kind.dof() > 0 {
+        text.push_str(", passive");
+    }
+    text
+}

@@ -1,0 +1,45 @@
+//! One file per command: arguments in, text or JSON out, an exit code.
+
+mod fk;
+mod info;
+mod jacobian;
+mod models;
+mod move_to;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::model::Mechanism;
+use cylindroid::{EndEffector, Error, Pose, Vec3};
+
+use crate::args::{Cli, Command, FrameArgs};
+
+/// How a command prints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Style {
+    Table,
+    Json,
+}
+
+/// Runs the command of a command line.
+pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let style = if cli.json { Style::Json } else { Style::Table };
+    match &cli.command {
+        Command::Models => models::run(style, out),
+        Command::Info(args) => info::run(args, style, out),
+        Command::Fk(args) => fk::run(args, style, out),
+        Command::Jacobian(args) => jacobian::run(args, style, out),
+        Command::Move(args) => move_to::run(args, style, out),
+    }
+}
+
+/// The frame and tool point that are meant.
+fn end_effector(robot: &Mechanism, args: &FrameArgs) -> cylindroid::Result<EndEffector> {
+    let frame = match &args.frame {
+        None => robot.tool(),
+        Some(name) => robot.frame(name)?,
+    };
+    let tool = args.tool.map_or([0.0; 3], |t| t.0);
+    Error::check_finite("--tool", &tool)?;
+    Ok(EndEffector { frame, frame_from_tool: Pose::from_translation(Vec3::from_array(tool)) })
+}

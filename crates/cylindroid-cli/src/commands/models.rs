@@ -1,0 +1,46 @@
+//! `models`: the catalogue.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::catalogue;
+use serde::Serialize;
+
+use super::Style;
+use crate::output::{self, Align};
+
+#[derive(Debug, Serialize)]
+struct ModelsJson {
+    models: Vec<ModelJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct ModelJson {
+    name: &'static str,
+    joints: usize,
+    description: String,
+    source: String,
+}
+
+pub(crate) fn run(style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let models: Vec<ModelJson> = catalogue::entries()
+        .into_iter()
+        .map(|e| ModelJson {
+            name: e.name,
+            joints: e.dof,
+            description: e.description,
+            source: e.source,
+        })
+        .collect();
+    if style == Style::Json {
+        output::json(out, &ModelsJson { models })?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let columns = [("name", Align::Left), ("joints", Align::Right), ("description", Align::Left)];
+    let rows =
+        models.iter().map(|m| vec![m.name.to_owned(), m.joints.to_string(), m.description.clone()]);
+    output::table(out, &columns, rows)?;
+    writeln!(out, "\nsources")?;
+    output::pairs(out, models.into_iter().map(|m| (m.name, m.source)))?;
+    Ok(ExitCode::SUCCESS)
+}

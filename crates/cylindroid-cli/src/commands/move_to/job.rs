@@ -1,0 +1,337 @@
+//! From the arguments of `move` to a job that can be done: options of the servo, start, target.
+
+use cylindroid::control::{
+    Bounds, CartesianBounds, CartesianMove, CartesianPath, Gain, JointMove, Projector, Secondary,
+    Task,
+};
+use cylindroid::kinematics::Chain;
+use cylindroid::model::Mechanism;
+use cylindroid::spatial::{Quaternion, Rpy};
+use cylindroid::{Error, Method, Pose, Reference, Result, Rotation, ServoOptions, Vec3};
+
+use super::super::end_effector;
+use super::joints;
+use crate::args::{
+    InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
+};
+use crate::values::Named;
+
+/// The names of the task components, in the order of a twist.
+pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
+/// Speeds on a path where none are given [m/s], [rad/s].
+const PATH_SPEED: (f64, f64) = (0.25, 1.0);
+
+/// What is to be done.
+#[derive(Debug)]
+pub(super) struct Job {
+    pub(super) robot: Mechanism,
+    pub(super) options: ServoOptions,
+    /// Name of the frame that is driven.
+    pub(super) frame: String,
+    pub(super) start: Vec<f64>,
+    /// Where the tool shall be in the end; what was not given is as at the start.
+    pub(super) target_pose: Pose,
+    pub(super) goal: Goal,
+    /// What is driven, in words.
+    pub(super) driven: String,
+    pub(super) time_limit: f64,
+}
+
+/// How the target moves.
+#[derive(Debug)]
+pub(super) enum Goal {
+    /// Not at all.
+    Pose(Pose),
+    /// Along a path.
+    Along(Box<CartesianMove>),
+    /// There is none: the joints move.
+    Joints(Box<JointMove>),
+}
+
+impl Job {
+    pub(super) fn new(args: &MoveArgs) -> Result<Self> {
+        let robot = cylindroid::load(&args.posture.model)?;
+        let degrees = args.posture.degrees;
+        let start = args.posture.q.configuration(&robot, degrees)?;
+        robot.check_q("--q", &start)?;
+        within_limits(&robot, "--q", &start)?;
+        if !(args.time_limit > 0.0 && args.time_limit.is_finite()) {
+            return Err(Error::InvalidOption {
+                option: "--time-limit",
+                value: args.time_limit.to_string(),
+                reason: "it must be a positive number of seconds".to_owned(),
+            });
+        }
+
+        let mut options = ServoOptions::new(&robot);
+        options.end_effector = end_effector(&robot, &args.frame)?;
+        let (task, driven) = task(&args.target)?;
+        options.task = task;
+        options.method = method(&args.inverse)?;
+        apply(&args.servo, &mut options);
+        options.secondary = secondary(&args.servo.secondary, &robot, &options, &start)?;
+        // Before the target is looked at: a broken option is the clearer message.
+        options.check(&robot)?;
+
+        let pose = |q: &[f64]| robot.state(q).map(|s| s.pose(options.end_effector));
+        let from = pose(&start)?;
+        let (target_pose, goal, driven) = if let Some(q) = &args.path.joint_to {
+            let q = q.configuration(&robot, degrees)?;
+            robot.check_q("--joint-to", &q)?;
+            within_limits(&robot, "--joint-to", &q)?;
+            let motion = Box::new(joints::plan(&robot, &start, &q, args)?);
+            (pose(&q)?, Goal::Joints(motion), "all joints, straight".to_owned())
+        } else {
+            let to = target_pose(&args.target, from, degrees)?;
+            let path = path(&args.path, from, to)?;
+            let goal = match path {
+                None => Goal::Pose(to),
+                Some(path) => {
+                    // The law bounds the speed; the servo must not bound it a second time.
+                    options.speed = ServoOptions::new(&robot).speed;
+                    Goal::Along(Box::new(CartesianMove::new(path, path_bounds(args))?))
+                }
+            };
+            (to, goal, driven)
+        };
+        let frame = robot.frame_of(options.end_effector.frame).name.clone();
+        let time_limit = args.time_limit;
+        Ok(Self { robot, options, frame, start, target_pose, goal, driven, time_limit })
+    }
+}
+
+fn within_limits(robot: &Mechanism, option: &'static str, q: &[f64]) -> Result<()> {
+    let outside: Vec<String> = robot
+        .outside_limits(q)
+        .map(|i| {
+            let c = &robot.coordinates()[i];
+            let (lower, upper, unit) = (c.limits.lower, c.limits.upper, c.kind.unit());
+            format!("{} = {} is not within {lower} and {upper} {unit}", c.name, q[i])
+        })
+        .collect();
+    if outside.is_empty() {
+        return Ok(());
+    }
+    Err(Error::InvalidOption {
+        option,
+        value: format!("{q:?}"),
+        reason: format!("{}; `info` shows the limits", outside.join("; ")),
+    })
+}
+
+fn apply(args: &ServoArgs, options: &mut ServoOptions) {
+    if let Some(gain) = args.gain {
+        let orientation = gain.angular.unwrap_or(gain.linear);
+        options.gain = Gain { position: gain.linear, orientation };
+    }
+    if let Some(speed) = args.speed {
+        options.speed.linear = speed.linear;
+        options.speed.angular = speed.angular.unwrap_or(f64::INFINITY);
+    }
+    let set = |to: &mut f64, value: Option<f64>| *to = value.unwrap_or(*to);
+    set(&mut options.dt, args.dt);
+    set(&mut options.tolerance.position, args.tolerance_position);
+    set(&mut options.tolerance.orientation, args.tolerance_orientation);
+    set(&mut options.acceleration, args.acceleration);
+    set(&mut options.length, args.length);
+    options.projector = match args.projector {
+        ProjectorName::Exact => Projector::Exact,
+        ProjectorName::Retained => Projector::Retained,
+    };
+}
+
+/// The inverse with the numbers that were given.
+fn method(args: &InverseArgs) -> Result<Method> {
+    let mut method = Method::named(&args.inverse)?;
+    let name = method.name();
+    let mut numbers = match &mut method {
+        Method::Truncated { eps } => vec![("--eps", eps)],
+        Method::Damped { damping } => vec![("--damping", damping)],
+        Method::VariableDamping { onset, damping } => {
+            vec![("--onset", onset), ("--damping", damping)]
+        }
+        Method::NumericalFiltering { onset, damping, filter } => {
+            vec![("--onset", onset), ("--damping", damping), ("--filter", filter)]
+        }
+        Method::SelectivelyDamped { max_rate } => vec![("--max-rate", max_rate)],
+        Method::SingularValueFiltering { shape, floor } => {
+            vec![("--shape", shape), ("--floor", floor)]
+        }
+    };
+    let given = [
+        ("--eps", args.eps),
+        ("--damping", args.damping),
+        ("--onset", args.onset),
+        ("--filter", args.filter),
+        ("--max-rate", args.max_rate),
+        ("--shape", args.shape),
+        ("--floor", args.floor),
+    ];
+    for (option, value) in given.into_iter().filter_map(|(o, v)| Some((o, v?))) {
+        let Some((_, number)) = numbers.iter_mut().find(|(o, _)| *o == option) else {
+            let own: Vec<&str> = numbers.iter().map(|(o, _)| *o).collect();
+            return Err(Error::InvalidOption {
+                option,
+                value: value.to_string(),
+                reason: format!(
+                    "the inverse '{name}' has no such number but {}; choose one with --inverse",
+                    own.join(", ")
+                ),
+            });
+        };
+        **number = value;
+    }
+    Ok(method)
+}
+
+fn secondary(
+    named: &[Named],
+    robot: &Mechanism,
+    options: &ServoOptions,
+    start: &[f64],
+) -> Result<Vec<Secondary>> {
+    if named.is_empty() {
+        let components = options.task.components.iter().filter(|c| **c).count();
+        let joints = Chain::new(robot, options.end_effector).n();
+        let redundant = joints > components;
+        return if redundant {
+            Ok(vec![Secondary::named("limit-avoidance", start)?])
+        } else {
+            Ok(Vec::new())
+        };
+    }
+    if let [Named { name, number: None }] = named
+        && name == "none"
+    {
+        return Ok(Vec::new());
+    }
+    let build = |n: &Named| {
+        let secondary = Secondary::named(&n.name, start)?;
+        Ok(n.number.map_or(secondary.clone(), |gain| secondary.with_gain(gain)))
+    };
+    named.iter().map(build).collect()
+}
+
+/// The task, and what is driven in words.
+fn task(args: &TargetArgs) -> Result<(Task, String)> {
+    let position = args.to.is_some();
+    let orientation =
+        args.rpy.is_some() || args.quaternion.is_some() || args.rotation_vector.is_some();
+    let named = match (&args.task, position, orientation) {
+        (Some(task), ..) => task.as_str(),
+        (None, true, false) => "position",
+        (None, false, true) => "orientation",
+        (None, ..) => "pose",
+    };
+    let mut task = match named {
+        "pose" => Task::POSE,
+        "position" => Task::POSITION,
+        "orientation" => Task::ORIENTATION,
+        "pointing" => Task::POINTING,
+        list => Task { components: components(list)?, ..Task::POSE },
+    };
+    match args.task_axes {
+        None => {}
+        Some(TaskAxes::Local) => task.axes = Reference::Local,
+        Some(TaskAxes::World) => task.axes = Reference::LocalWorldAligned,
+    }
+    let driven = match (&args.task, named) {
+        (None, "position") => {
+            "position only (--rpy, --quaternion or --rotation-vector give an orientation)".into()
+        }
+        (None, "orientation") => "orientation only (--to gives a position)".into(),
+        (_, "pose") => "position and orientation".into(),
+        _ => {
+            let names = COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
+            let names: Vec<&str> = names.map(|(name, _)| *name).collect();
+            let axes = if task.axes == Reference::Local { "tool" } else { "world" };
+            format!("{} along and about the axes of the {axes}", names.join(", "))
+        }
+    };
+    Ok((task, driven))
+}
+
+fn components(list: &str) -> Result<[bool; 6]> {
+    let mut components = [false; 6];
+    for name in list.split(',').map(str::trim) {
+        match COMPONENTS.iter().position(|c| *c == name) {
+            Some(i) => components[i] = true,
+            None => {
+                let known = ["pose", "position", "orientation", "pointing"];
+                return Err(Error::unknown(
+                    "task or task component",
+                    name,
+                    known.iter().chain(&COMPONENTS),
+                ));
+            }
+        }
+    }
+    Ok(components)
+}
+
+/// What is given of the target, the rest as at the start.
+fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> Result<Pose> {
+    let si = |x: f64| if degrees { x.to_radians() } else { x };
+    let mut pose = from;
+    let mut given = false;
+    if let Some(to) = args.to {
+        Error::check_finite("--to", &to.0)?;
+        pose.translation = Vec3::from_array(to.0);
+        given = true;
+    }
+    let rotation = if let Some(rpy) = args.rpy {
+        Error::check_finite("--rpy", &rpy.0)?;
+        let [roll, pitch, yaw] = rpy.0.map(si);
+        Some(Rpy { roll, pitch, yaw }.rotation())
+    } else if let Some(vector) = args.rotation_vector {
+        Error::check_finite("--rotation-vector", &vector.0)?;
+        Some(Rotation::exp(Vec3::from_array(vector.0.map(si))))
+    } else if let Some(quaternion) = args.quaternion {
+        let [w, x, y, z] = quaternion.0;
+        Some(Quaternion { w, x, y, z }.rotation()?)
+    } else {
+        None
+    };
+    if let Some(rotation) = rotation {
+        pose.rotation = rotation;
+        given = true;
+    }
+    if given {
+        return Ok(pose);
+    }
+    Err(Error::InvalidOption {
+        option: "target",
+        value: "nothing".to_owned(),
+        reason: "say where to move: --to x,y,z, an orientation (--rpy, --quaternion, \
+                 --rotation-vector), or --joint-to q"
+            .to_owned(),
+    })
+}
+
+fn path(args: &PathArgs, from: Pose, to: Pose) -> Result<Option<CartesianPath>> {
+    if let Some(via) = args.via {
+        return CartesianPath::circle(from, Vec3::from_array(via.0), to).map(Some);
+    }
+    if args.line { CartesianPath::line(from, to).map(Some) } else { Ok(None) }
+}
+
+fn path_bounds(args: &MoveArgs) -> CartesianBounds {
+    let (path, speed) = (&args.path, args.servo.speed);
+    let jerk = |value: f64| match path.law {
+        LawName::Trapezoidal => f64::INFINITY,
+        LawName::JerkLimited => value,
+    };
+    CartesianBounds {
+        linear: Bounds {
+            velocity: speed.map_or(PATH_SPEED.0, |s| s.linear),
+            acceleration: path.acceleration_linear,
+            jerk: jerk(path.jerk_linear),
+        },
+        angular: Bounds {
+            velocity: speed.and_then(|s| s.angular).unwrap_or(PATH_SPEED.1),
+            acceleration: path.acceleration_angular,
+            jerk: jerk(path.jerk_angular),
+        },
+    }
+}

@@ -1,0 +1,130 @@
+//! `move`: drives a frame to a target and says whether and how it got there.
+
+mod job;
+mod joints;
+mod report;
+mod sentences;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::Servo;
+use cylindroid::control::{Outcome, Sample, Status, Target, drive, find_posture};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use self::job::{Goal, Job};
+use self::report::{Deviation, Result};
+use super::Style;
+use crate::args::MoveArgs;
+use crate::plot;
+use crate::trajectory::{self, Trajectory};
+
+/// Exit code of a target that was not reached.
+const NOT_REACHED: u8 = 1;
+/// Runs of the search for another posture after a stall: enough for nearly all, well below 1 s.
+const SEARCH_RUNS: usize = 20;
+/// Steps between two signs of life.
+const PROGRESS_STEPS: u64 = 256;
+
+pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let job = Job::new(args)?;
+    let format = args.out.as_deref().map(trajectory::format_of).transpose()?;
+    if let Some(path) = &args.plot {
+        plot::check(path)?;
+    }
+
+    let keep = args.out.is_some() || args.plot.is_some();
+    let mut trajectory = keep.then(|| Trajectory::new(&job.robot, &job.frame));
+    let result = perform(&job, trajectory.as_mut())?;
+    if let Some(trajectory) = &trajectory {
+        if let (Some(path), Some(format)) = (&args.out, format) {
+            trajectory.write(path, format)?;
+        }
+        if let Some(path) = &args.plot {
+            plot::draw(trajectory, path)?;
+        }
+    }
+
+    report::write(&job, &result, style, out)?;
+    let reached = result.outcome.reached;
+    Ok(if reached { ExitCode::SUCCESS } else { ExitCode::from(NOT_REACHED) })
+}
+
+/// Runs the motion.
+fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result<Result> {
+    let mut servo = Servo::new(&job.robot, job.options.clone())?;
+    let mut deviation: Option<Deviation> = None;
+    let progress = Progress::new(job.time_limit);
+    let mut observe = |sample: Sample<'_>| {
+        progress.show(&sample);
+        if let Goal::Along(motion) = &job.goal {
+            let now = motion.path().deviation(sample.step.pose);
+            let most = deviation.get_or_insert_default();
+            most.position = most.position.max(now.position);
+            most.orientation = most.orientation.max(now.orientation);
+        }
+        if let Some(trajectory) = &mut trajectory {
+            trajectory.push(&sample);
+        }
+    };
+    let dt = job.options.dt;
+    let outcome = match &job.goal {
+        Goal::Pose(pose) => {
+            let target = |_| (Target::from(*pose), true);
+            drive(&mut servo, &job.start, job.time_limit, target, &mut observe)?
+        }
+        Goal::Along(motion) => {
+            let target = |t| (motion.target(t, dt), t >= motion.law().duration());
+            drive(&mut servo, &job.start, job.time_limit, target, &mut observe)?
+        }
+        Goal::Joints(motion) => joints::drive(&mut servo, job, motion, &mut observe)?,
+    };
+    drop(progress);
+    let other_posture = other_posture(job, &servo, &outcome)?;
+    Ok(Result { outcome, deviation, other_posture })
+}
+
+/// A posture that reaches the target which the servo did not, where one can be found.
+fn other_posture(
+    job: &Job,
+    servo: &Servo,
+    outcome: &Outcome,
+) -> cylindroid::Result<Option<Vec<f64>>> {
+    let stalled = outcome.stall.is_some() && outcome.last.status == Status::Stalled;
+    if !stalled || outcome.stall.as_ref().is_some_and(|s| s.name() == "out-of-reach") {
+        return Ok(None);
+    }
+    let found = find_posture(servo, &job.start, job.target_pose, SEARCH_RUNS)?;
+    Ok(found.map(|detour| detour.q))
+}
+
+/// A line on stderr that shows that something happens; nothing where stderr is no terminal.
+#[derive(Debug)]
+struct Progress(ProgressBar);
+
+impl Progress {
+    fn new(time_limit: f64) -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}") {
+            bar.set_style(style);
+        }
+        bar.set_message(format!("moving, at most {time_limit} s"));
+        Self(bar)
+    }
+
+    fn show(&self, sample: &Sample<'_>) {
+        self.0.inc(1);
+        if self.0.position() % PROGRESS_STEPS == 0 && !self.0.is_hidden() {
+            self.0.set_message(format!(
+                "{:.2} s, position error {:.1e} m, orientation error {:.1e} rad",
+                sample.time, sample.step.position_error, sample.step.orientation_error
+            ));
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

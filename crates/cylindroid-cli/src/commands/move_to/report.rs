@@ -1,0 +1,220 @@
+//! What `move` prints: the table and the JSON object.
+
+use std::io::Write;
+
+use cylindroid::control::Outcome;
+use serde::Serialize;
+
+use super::job::{COMPONENTS, Goal, Job};
+use super::sentences;
+use crate::commands::Style;
+use crate::output::{self, PoseJson};
+
+/// What came of a job.
+#[derive(Debug)]
+pub(super) struct Result {
+    pub(super) outcome: Outcome,
+    pub(super) deviation: Option<Deviation>,
+    /// Where the motion stalled: a posture that reaches the target.
+    pub(super) other_posture: Option<Vec<f64>>,
+}
+
+/// The largest distances from the path.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub(super) struct Deviation {
+    /// [m]
+    pub(super) position: f64,
+    /// [rad]
+    pub(super) orientation: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct MoveJson<'a> {
+    model: &'a str,
+    frame: &'a str,
+    /// The tool point, in axes of the frame [m].
+    tool: [f64; 3],
+    joint_names: Vec<&'a str>,
+    reached: bool,
+    /// "reached", "out-of-reach", "limits", "singular", "too-few-joints", "slow", "time-limit".
+    reason: &'static str,
+    explanation: String,
+    /// The last configuration.
+    q: &'a [f64],
+    /// Of the components that are driven [m].
+    position_error: f64,
+    /// Of the components that are driven [rad].
+    orientation_error: f64,
+    steps: usize,
+    time: f64,
+    /// Smallest on the way.
+    min_singular_ratio: f64,
+    /// Divides the linear rows for the singular values [m].
+    length: f64,
+    limits_hit: Vec<LimitJson<'a>>,
+    /// The last `world_from_tool`.
+    pose: PoseJson,
+    /// Where the tool should be; what is not driven is as at the start.
+    target: PoseJson,
+    /// The components that are driven, and their axes: "local" or "local_world_aligned".
+    task: Vec<&'static str>,
+    task_axes: &'static str,
+    inverse: &'static str,
+    secondary: Vec<SecondaryJson>,
+    start: &'a [f64],
+    /// Duration of the time law [s].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    law_duration: Option<f64>,
+    /// Largest distance from the path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    path_deviation: Option<Deviation>,
+    /// Where the motion stalled: a posture that reaches the target, or null if none was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_posture: Option<&'a [f64]>,
+}
+
+#[derive(Debug, Serialize)]
+struct LimitJson<'a> {
+    joint: &'a str,
+    kind: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct SecondaryJson {
+    name: &'static str,
+    gain: f64,
+}
+
+pub(super) fn write(
+    job: &Job,
+    result: &Result,
+    style: Style,
+    out: &mut dyn Write,
+) -> anyhow::Result<()> {
+    match style {
+        Style::Json => output::json(out, &describe(job, result)),
+        Style::Table => print(out, job, result),
+    }
+}
+
+fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
+    let Result { outcome, deviation, other_posture } = result;
+    let (robot, options) = (&job.robot, &job.options);
+    let names = COMPONENTS.iter().zip(options.task.components).filter(|(_, on)| *on);
+    MoveJson {
+        model: robot.name(),
+        frame: &job.frame,
+        tool: options.end_effector.frame_from_tool.translation.to_array(),
+        joint_names: output::joint_names(robot),
+        reached: outcome.reached,
+        reason: sentences::reason(outcome),
+        explanation: sentences::explanation(job, outcome, other_posture.as_deref()),
+        q: &outcome.q,
+        position_error: outcome.last.position_error,
+        orientation_error: outcome.last.orientation_error,
+        steps: outcome.steps,
+        time: outcome.time,
+        min_singular_ratio: outcome.min_singular_ratio,
+        length: options.length,
+        limits_hit: outcome
+            .limits_hit
+            .iter()
+            .map(|(i, kind)| LimitJson { joint: &robot.coordinates()[*i].name, kind: kind.name() })
+            .collect(),
+        pose: outcome.last.pose.into(),
+        target: job.target_pose.into(),
+        task: names.map(|(name, _)| *name).collect(),
+        task_axes: options.task.axes.name(),
+        inverse: options.method.name(),
+        secondary: options
+            .secondary
+            .iter()
+            .map(|s| SecondaryJson { name: s.name(), gain: s.gain() })
+            .collect(),
+        start: &job.start,
+        law_duration: law_duration(job),
+        path_deviation: *deviation,
+        other_posture: other_posture.as_deref(),
+    }
+}
+
+fn law_duration(job: &Job) -> Option<f64> {
+    match &job.goal {
+        Goal::Pose(_) => None,
+        Goal::Along(motion) => Some(motion.law().duration()),
+        Goal::Joints(motion) => Some(motion.law().duration()),
+    }
+}
+
+fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> {
+    let Result { outcome, deviation, other_posture } = result;
+    let components = job.options.task.components;
+    let (linear, angular) = (components[..3].contains(&true), components[3..].contains(&true));
+    let driven = |on: bool, value: f64| {
+        if on { output::number(value) } else { "not driven".to_owned() }
+    };
+    let deviation = deviation.map_or_else(String::new, |d| {
+        let mut text = format!("{} m", output::number(d.position));
+        if angular {
+            text.push_str(&format!(", {} rad", output::number(d.orientation)));
+        }
+        text
+    });
+    output::pairs(
+        out,
+        [
+            ("model", job.robot.name().to_owned()),
+            ("frame", job.frame.clone()),
+            ("driven", job.driven.clone()),
+            ("result", if outcome.reached { "reached" } else { "not reached" }.to_owned()),
+            (
+                "reason",
+                if outcome.reached {
+                    String::new()
+                } else {
+                    sentences::explanation(job, outcome, other_posture.as_deref())
+                },
+            ),
+            ("steps", outcome.steps.to_string()),
+            ("time [s]", output::number(outcome.time)),
+            ("time law [s]", law_duration(job).map_or_else(String::new, output::number)),
+            ("position error [m]", driven(linear, outcome.last.position_error)),
+            ("orientation error [rad]", driven(angular, outcome.last.orientation_error)),
+            ("largest path deviation", deviation),
+            (
+                "smallest singular value ratio",
+                format!(
+                    "{} (linear rows divided by {} m)",
+                    output::number(outcome.min_singular_ratio),
+                    output::number(job.options.length)
+                ),
+            ),
+            ("inverse", job.options.method.name().to_owned()),
+            ("secondary", secondary(job)),
+            ("limits met", limits_met(job, outcome)),
+            ("final q [rad or m]", output::list(&outcome.q)),
+        ],
+    )?;
+    Ok(())
+}
+
+fn secondary(job: &Job) -> String {
+    if matches!(job.goal, Goal::Joints(_)) {
+        return String::new();
+    }
+    let names: Vec<&str> = job.options.secondary.iter().map(|s| s.name()).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// `joint (kind, kind), ...`
+fn limits_met(job: &Job, outcome: &Outcome) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for (i, coordinate) in job.robot.coordinates().iter().enumerate() {
+        let kinds: Vec<&str> =
+            outcome.limits_hit.iter().filter(|(c, _)| *c == i).map(|(_, k)| k.name()).collect();
+        if !kinds.is_empty() {
+            parts.push(format!("{} ({})", coordinate.name, kinds.join(", ")));
+        }
+    }
+    if parts.is_empty() { "none".to_owned() } else { parts.join(", ") }
+}

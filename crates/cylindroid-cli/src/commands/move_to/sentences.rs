@@ -1,0 +1,97 @@
+//! Why a motion ended, in full sentences: what happened, with names and numbers, and what to try.
+
+use cylindroid::Reference;
+use cylindroid::control::{Outcome, Stall};
+
+use super::job::{COMPONENTS, Job};
+use crate::output::{list, number};
+
+/// The cause as one word: "reached", a [`Stall::name`], or "time-limit".
+pub(super) fn reason(outcome: &Outcome) -> &'static str {
+    match &outcome.stall {
+        _ if outcome.reached => "reached",
+        Some(stall) => stall.name(),
+        None => "time-limit",
+    }
+}
+
+/// The cause as sentences.
+pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[f64]>) -> String {
+    let mut text = match &outcome.stall {
+        _ if outcome.reached => return "The target was reached.".to_owned(),
+        None => format!(
+            "The time limit of {} s ran out before the target was reached; allow more with \
+             --time-limit, or move faster (--gain, --speed).",
+            job.time_limit
+        ),
+        Some(Stall::OutOfReach { distance, length }) => format!(
+            "The target is out of reach: it is {} m from the first joint, but the arm stretched \
+             is {} m long from there. Bring the target nearer by at least {} m.",
+            number(*distance),
+            number(*length),
+            number(distance - length)
+        ),
+        Some(Stall::Limits { coordinates }) => limits(job, outcome, coordinates),
+        Some(Stall::Singular { ratio, direction }) => format!(
+            "The arm is in a singular pose: its smallest singular value is {} of the largest, and \
+             the remaining error ({}) lies along a direction that is lost there. Start from \
+             another posture (--q), or let a damped inverse through (--inverse damped).",
+            number(*ratio),
+            along(job, direction)
+        ),
+        Some(Stall::TooFewJoints { rank, task, direction }) => format!(
+            "The arm has {rank} independent motion{} here, the task asks for {task} components; \
+             the remaining error ({}) is outside of what it can do. Leave components free with \
+             --task (position, pointing, or a list like x,y,rz), or change the target.",
+            if *rank == 1 { "" } else { "s" },
+            along(job, direction)
+        ),
+        Some(Stall::Slow) => "The error fell by less than 0.1 % in the last second, and neither \
+             limits nor a singular pose stop it: the inverse is damped too much or a rate limit is \
+             too tight. Try less damping (--damping), another --inverse, or a higher --gain or \
+             --speed."
+            .to_owned(),
+    };
+    if let Some(q) = other_posture {
+        text.push_str(&format!(
+            " Another posture does reach it: --q \"{0}\" to start there, or --joint-to \"{0}\" to \
+             move there first.",
+            list(q)
+        ));
+    }
+    text
+}
+
+fn limits(job: &Job, outcome: &Outcome, coordinates: &[usize]) -> String {
+    let stands = coordinates.iter().map(|&i| {
+        let c = &job.robot.coordinates()[i];
+        let q = outcome.q[i];
+        let is_lower = q - c.limits.lower < c.limits.upper - q;
+        let (end, limit) =
+            if is_lower { ("lower", c.limits.lower) } else { ("upper", c.limits.upper) };
+        format!("{} at its {end} limit {} {}", c.name, number(limit), c.kind.unit())
+    });
+    let stands: Vec<String> = stands.collect();
+    let (noun, verb) = if stands.len() == 1 { ("Joint", "stands") } else { ("Joints", "stand") };
+    format!(
+        "{noun} {} {verb}: without the limit{} the tool would get nearer, the other joints cannot \
+         do it alone. Start from another posture (--q), keep the joints away from their limits \
+         (--secondary centring), or leave components free (--task).",
+        stands.join(", "),
+        if stands.len() == 1 { "" } else { "s" },
+    )
+}
+
+/// The larger components of a unit vector in task space, in words.
+fn along(job: &Job, direction: &[f64]) -> String {
+    /// Components below this are not named.
+    const SMALL: f64 = 0.1;
+    let names = COMPONENTS.iter().zip(job.options.task.components).filter(|(_, on)| *on);
+    let parts: Vec<String> = names
+        .zip(direction)
+        .filter(|(_, share)| share.abs() >= SMALL)
+        .map(|((name, _), share)| format!("{share:.2} {name}"))
+        .collect();
+    let axes = if job.options.task.axes == Reference::Local { "tool" } else { "world" };
+    format!("{}, {axes} axes", parts.join(", "))
+}

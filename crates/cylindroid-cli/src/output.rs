@@ -1,0 +1,221 @@
+//! What commands print: numbers of six digits in aligned tables, or one JSON object.
+
+use std::io::{self, Write};
+
+use comfy_table::{CellAlignment, ColumnConstraint, Table, TableComponent, presets};
+use cylindroid::spatial::{Quaternion, Rpy};
+use cylindroid::{Mechanism, Pose};
+use serde::Serialize;
+
+/// Writes one JSON object, numbers in full; what is infinite becomes `null`.
+pub(crate) fn json(out: &mut dyn Write, value: &impl Serialize) -> anyhow::Result<()> {
+    // By way of a string: the error of a closed pipe then stays an `io::Error`.
+    writeln!(out, "{}", serde_json::to_string_pretty(value)?)?;
+    Ok(())
+}
+
+/// Six significant digits, "-" for what is infinite or unknown.
+pub(crate) fn number(x: f64) -> String {
+    if x.is_infinite() {
+        return "-".to_owned();
+    }
+    if x == 0.0 || x.is_nan() {
+        return x.abs().to_string();
+    }
+    let scientific = format!("{x:.5e}");
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    if (-5..6).contains(&exponent) {
+        let decimals = usize::try_from(5 - exponent).unwrap_or(0);
+        return trim_zeros(&format!("{x:.decimals$}")).to_owned();
+    }
+    format!("{}e{exponent}", trim_zeros(mantissa))
+}
+
+fn trim_zeros(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+/// Numbers of [`number`], separated by commas: can be pasted back as an argument.
+pub(crate) fn list(values: &[f64]) -> String {
+    values.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ")
+}
+
+/// How a column stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Align {
+    Left,
+    Right,
+}
+
+/// A table without frame; the columns are named with their units.
+pub(crate) fn table(
+    out: &mut dyn Write,
+    columns: &[(&str, Align)],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> io::Result<()> {
+    let mut table = plain();
+    table.set_header(columns.iter().map(|(name, _)| *name));
+    table.set_style(TableComponent::HeaderLines, '-');
+    table.set_style(TableComponent::MiddleHeaderIntersections, ' ');
+    table.add_rows(rows);
+    for ((_, align), column) in columns.iter().zip(table.column_iter_mut()) {
+        if *align == Align::Right {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    writeln!(out, "{}", table.trim_fmt())
+}
+
+/// Names and values, one pair a line; the values aligned, and wrapped at `WIDTH`.
+pub(crate) fn pairs(
+    out: &mut dyn Write,
+    rows: impl IntoIterator<Item = (&'static str, String)>,
+) -> io::Result<()> {
+    let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
+    let names = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    for (name, value) in rows {
+        let mut label = name;
+        for line in wrap(&value, WIDTH.saturating_sub(names + 2)) {
+            writeln!(out, "{label:names$}  {line}")?;
+            label = "";
+        }
+    }
+    Ok(())
+}
+
+/// The widest line of running text.
+const WIDTH: usize = 98;
+
+fn wrap(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let last = lines.len() - 1;
+        if !lines[last].is_empty() && lines[last].chars().count() + 1 + word.chars().count() > width
+        {
+            lines.push(word.to_owned());
+        } else {
+            if !lines[last].is_empty() {
+                lines[last].push(' ');
+            }
+            lines[last].push_str(word);
+        }
+    }
+    lines
+}
+
+/// A matrix with names for its rows and columns.
+pub(crate) fn matrix(
+    out: &mut dyn Write,
+    row_names: &[&str],
+    column_names: &[&str],
+    rows: &[Vec<f64>],
+) -> io::Result<()> {
+    let columns: Vec<(&str, Align)> = std::iter::once(("", Align::Left))
+        .chain(column_names.iter().map(|name| (*name, Align::Right)))
+        .collect();
+    let cells = row_names.iter().zip(rows).map(|(name, row)| {
+        std::iter::once((*name).to_owned()).chain(row.iter().map(|x| quiet(*x))).collect()
+    });
+    table(out, &columns, cells)
+}
+
+fn plain() -> Table {
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING);
+    table.set_constraints(std::iter::empty::<ColumnConstraint>());
+    table
+}
+
+/// The columns of [`pose_cells`].
+pub(crate) const POSE_COLUMNS: [(&str, Align); 6] = [
+    ("x [m]", Align::Right),
+    ("y [m]", Align::Right),
+    ("z [m]", Align::Right),
+    ("roll [rad]", Align::Right),
+    ("pitch [rad]", Align::Right),
+    ("yaw [rad]", Align::Right),
+];
+
+/// Position and roll, pitch, yaw.
+pub(crate) fn pose_cells(pose: Pose) -> Vec<String> {
+    let Rpy { roll, pitch, yaw } = Rpy::of(pose.rotation);
+    let p = pose.translation;
+    [p.x, p.y, p.z, roll, pitch, yaw].map(quiet).to_vec()
+}
+
+/// [`number`] for entries of poses and matrices, whose size is of the order of 1: rounding is
+/// shown as 0 (JSON has it).
+fn quiet(x: f64) -> String {
+    number(if x.abs() < ROUNDING { 0.0 } else { x })
+}
+
+/// Entries below this are rounding [m, rad].
+const ROUNDING: f64 = 1e-12;
+
+/// A pose in JSON: `world_from_frame` in four notations.
+#[derive(Debug, Serialize)]
+pub(crate) struct PoseJson {
+    /// Rows of the 4 x 4 matrix.
+    matrix: [[f64; 4]; 4],
+    /// Position [m].
+    position: [f64; 3],
+    quaternion: QuaternionJson,
+    /// Roll, pitch, yaw about the fixed x, y, z [rad].
+    rpy: [f64; 3],
+}
+
+#[derive(Debug, Serialize)]
+struct QuaternionJson {
+    w: f64,
+    x: f64,
+    y: f64,
+    z: f64,
+}
+
+impl From<Pose> for PoseJson {
+    fn from(pose: Pose) -> Self {
+        let Rpy { roll, pitch, yaw } = Rpy::of(pose.rotation);
+        let Quaternion { w, x, y, z } = pose.rotation.to_quaternion();
+        Self {
+            matrix: pose.to_matrix(),
+            position: pose.translation.to_array(),
+            quaternion: QuaternionJson { w, x, y, z },
+            rpy: [roll, pitch, yaw],
+        }
+    }
+}
+
+/// The names of the coordinates, in the order of `q`.
+pub(crate) fn joint_names(robot: &Mechanism) -> Vec<&str> {
+    robot.coordinates().iter().map(|c| c.name.as_str()).collect()
+}
+
+/// The names of the coordinates that are outside their position limits.
+pub(crate) fn outside_limits<'a>(robot: &'a Mechanism, q: &'a [f64]) -> Vec<&'a str> {
+    robot.outside_limits(q).map(|i| robot.coordinates()[i].name.as_str()).collect()
+}
+
+/// A sentence for tables where a configuration is outside the limits, else nothing.
+pub(crate) fn outside_note(names: &[&str]) -> String {
+    if names.is_empty() {
+        return String::new();
+    }
+    format!("outside the position limits: {}", names.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_six_digits() {
+        let printed =
+            [0.0, -0.0, 1.0, -0.785_398_163, 123_456.7, 1_234_567.0, 1.5e-7, 0.000_012_345_678];
+        assert_eq!(
+            printed.map(number),
+            ["0", "0", "1", "-0.785398", "123457", "1.23457e6", "1.5e-7", "0.0000123457"]
+        );
+        assert_eq!(number(f64::NEG_INFINITY), "-");
+    }
+}

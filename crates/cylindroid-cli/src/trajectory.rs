@@ -1,0 +1,130 @@
+//! The motion of `move`, step by step, as CSV or JSON.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use cylindroid::control::Sample;
+use cylindroid::{Error, Mechanism, Result};
+use serde::Serialize;
+
+use crate::output;
+
+/// A motion.
+#[derive(Debug, Serialize)]
+pub(crate) struct Trajectory {
+    pub(crate) model: String,
+    pub(crate) frame: String,
+    pub(crate) joint_names: Vec<String>,
+    /// "rad" or "m", for each joint.
+    pub(crate) units: Vec<&'static str>,
+    pub(crate) samples: Vec<Row>,
+}
+
+/// One instant.
+#[derive(Debug, Serialize)]
+pub(crate) struct Row {
+    /// [s]
+    pub(crate) time: f64,
+    /// Before the step.
+    pub(crate) q: Vec<f64>,
+    /// Commanded by the step.
+    pub(crate) rates: Vec<f64>,
+    /// Of the tool in the world [m].
+    pub(crate) position: [f64; 3],
+    /// w, x, y, z
+    pub(crate) quaternion: [f64; 4],
+    /// [m]
+    pub(crate) position_error: f64,
+    /// [rad]
+    pub(crate) orientation_error: f64,
+    pub(crate) singular_ratio: f64,
+}
+
+/// The format of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
+    Csv,
+    Json,
+}
+
+/// The format that the name of a file asks for.
+pub(crate) fn format_of(path: &Path) -> Result<Format> {
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("csv") => Ok(Format::Csv),
+        Some("json") => Ok(Format::Json),
+        _ => Err(Error::InvalidOption {
+            option: "--out",
+            value: path.display().to_string(),
+            reason: "the name must end in .csv or .json".to_owned(),
+        }),
+    }
+}
+
+impl Trajectory {
+    pub(crate) fn new(robot: &Mechanism, frame: &str) -> Self {
+        Self {
+            model: robot.name().to_owned(),
+            frame: frame.to_owned(),
+            joint_names: output::joint_names(robot).into_iter().map(str::to_owned).collect(),
+            units: robot.coordinates().iter().map(|c| c.kind.unit()).collect(),
+            samples: Vec::new(),
+        }
+    }
+
+    pub(crate) fn push(&mut self, sample: &Sample<'_>) {
+        let pose = sample.step.pose;
+        let quaternion = pose.rotation.to_quaternion();
+        self.samples.push(Row {
+            time: sample.time,
+            q: sample.q.to_vec(),
+            rates: sample.rates.to_vec(),
+            position: pose.translation.to_array(),
+            quaternion: [quaternion.w, quaternion.x, quaternion.y, quaternion.z],
+            position_error: sample.step.position_error,
+            orientation_error: sample.step.orientation_error,
+            singular_ratio: sample.step.singular_ratio,
+        });
+    }
+
+    /// Writes all of it.
+    pub(crate) fn write(&self, path: &Path, format: Format) -> Result<()> {
+        let written = File::create(path).and_then(|file| {
+            let mut file = BufWriter::new(file);
+            match format {
+                Format::Csv => self.write_csv(&mut file)?,
+                Format::Json => serde_json::to_writer(&mut file, self)?,
+            }
+            file.flush()
+        });
+        written.map_err(|error| cannot_write(path, &error))
+    }
+
+    fn write_csv(&self, file: &mut impl Write) -> io::Result<()> {
+        let mut csv = csv::Writer::from_writer(file);
+        let mut header = vec!["time".to_owned()];
+        header.extend(self.joint_names.iter().map(|name| format!("q.{name}")));
+        header.extend(self.joint_names.iter().map(|name| format!("rate.{name}")));
+        let rest = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+        header.extend(rest.map(str::to_owned));
+        let rest = ["position_error", "orientation_error", "singular_ratio"];
+        header.extend(rest.map(str::to_owned));
+        csv.write_record(&header)?;
+        for row in &self.samples {
+            let errors = [row.position_error, row.orientation_error, row.singular_ratio];
+            let numbers = std::iter::once(&row.time)
+                .chain(&row.q)
+                .chain(&row.rates)
+                .chain(&row.position)
+                .chain(&row.quaternion)
+                .chain(&errors);
+            csv.write_record(numbers.map(f64::to_string))?;
+        }
+        csv.flush()
+    }
+}
+
+/// The error of a file that cannot be written.
+pub(crate) fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> Error {
+    Error::Io { path: path.to_owned(), action: "write", message: error.to_string() }
+}

@@ -1,0 +1,201 @@
+//! The values that users type: lists of numbers, configurations, names with a number.
+
+use std::str::FromStr;
+
+use cylindroid::model::CoordinateKind;
+use cylindroid::{Error, Mechanism};
+
+/// A list of `N` numbers: `0.1,-2e-3,4`; spaces after commas and square brackets are allowed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Numbers<const N: usize>(pub(crate) [f64; N]);
+
+impl<const N: usize> FromStr for Numbers<N> {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let list = numbers(text)?;
+        list.try_into().map(Self).map_err(|list: Vec<f64>| {
+            let given = list.len();
+            format!("{given} number{} where {N} are needed", if given == 1 { "" } else { "s" })
+        })
+    }
+}
+
+/// One number, or one for the linear and one for the angular part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pair {
+    pub(crate) linear: f64,
+    /// `None` where one number was given.
+    pub(crate) angular: Option<f64>,
+}
+
+impl FromStr for Pair {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match numbers(text)?[..] {
+            [linear] => Ok(Self { linear, angular: None }),
+            [linear, angular] => Ok(Self { linear, angular: Some(angular) }),
+            ref list => Err(format!("{} numbers where one or two are needed", list.len())),
+        }
+    }
+}
+
+/// A configuration or a list of rates, one number for each coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Joints {
+    /// `home`
+    Home,
+    /// `zero`
+    Zero,
+    /// All numbers, in the order of `info`.
+    All(Vec<f64>),
+    /// `name=value,...`, the rest as at home.
+    Some(Vec<(String, f64)>),
+}
+
+impl FromStr for Joints {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "home" => Ok(Self::Home),
+            "zero" => Ok(Self::Zero),
+            named if named.contains('=') => {
+                named.split(',').map(assignment).collect::<Result<_, _>>().map(Self::Some)
+            }
+            list => numbers(list).map(Self::All),
+        }
+    }
+}
+
+impl Joints {
+    /// The configuration that is meant; angles are read as degrees where `degrees` is set.
+    pub(crate) fn configuration(
+        &self,
+        robot: &Mechanism,
+        degrees: bool,
+    ) -> cylindroid::Result<Vec<f64>> {
+        self.resolve(robot, degrees, robot.home())
+    }
+
+    /// The rates that are meant: those that are not named are zero.
+    pub(crate) fn rates(&self, robot: &Mechanism, degrees: bool) -> cylindroid::Result<Vec<f64>> {
+        self.resolve(robot, degrees, &vec![0.0; robot.n()])
+    }
+
+    fn resolve(
+        &self,
+        robot: &Mechanism,
+        degrees: bool,
+        rest: &[f64],
+    ) -> cylindroid::Result<Vec<f64>> {
+        let coordinates = robot.coordinates();
+        let si = |i: usize, value: f64| match coordinates.get(i).map(|c| c.kind) {
+            Some(CoordinateKind::Angle | CoordinateKind::RotationVector) if degrees => {
+                value.to_radians()
+            }
+            _ => value,
+        };
+        match self {
+            Self::Home => Ok(rest.to_vec()),
+            Self::Zero => Ok(vec![0.0; robot.n()]),
+            Self::All(list) => Ok(list.iter().enumerate().map(|(i, v)| si(i, *v)).collect()),
+            Self::Some(pairs) => {
+                let mut q = rest.to_vec();
+                for (name, value) in pairs {
+                    let i = coordinates.iter().position(|c| c.name == *name).ok_or_else(|| {
+                        Error::unknown("joint", name, coordinates.iter().map(|c| &c.name))
+                    })?;
+                    q[i] = si(i, *value);
+                }
+                Ok(q)
+            }
+        }
+    }
+}
+
+/// `NAME` or `NAME=NUMBER`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Named {
+    pub(crate) name: String,
+    pub(crate) number: Option<f64>,
+}
+
+impl FromStr for Named {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.contains('=') {
+            let (name, number) = assignment(text)?;
+            return Ok(Self { name, number: Some(number) });
+        }
+        Ok(Self { name: text.trim().to_owned(), number: None })
+    }
+}
+
+fn assignment(text: &str) -> Result<(String, f64), String> {
+    let Some((name, value)) = text.split_once('=') else {
+        return Err(format!("'{}' is not of the form name=number", text.trim()));
+    };
+    Ok((name.trim().to_owned(), number(value)?))
+}
+
+fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    let text = text.trim();
+    let inner = text.strip_prefix('[').and_then(|t| t.strip_suffix(']')).unwrap_or(text);
+    if inner.contains(',') {
+        inner.split(',').map(number).collect()
+    } else {
+        inner.split_whitespace().map(number).collect()
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    text.parse().map_err(|_| {
+        if text.is_empty() {
+            "a number is missing between two commas".to_owned()
+        } else {
+            format!("'{text}' is not a number")
+        }
+    })
+}
+
+/// Joins what a shell has split after a comma: `--to 0.4, 0.1, 0.2` is one list.
+pub(crate) fn join_after_commas(words: impl IntoIterator<Item = String>) -> Vec<String> {
+    let mut joined: Vec<String> = Vec::new();
+    for word in words {
+        match joined.last_mut() {
+            Some(last) if last.ends_with(',') => last.push_str(&word),
+            _ => joined.push(word),
+        }
+    }
+    joined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_take_signs_exponents_spaces_and_brackets() {
+        assert_eq!("-0.3, 1e-3,+2".parse(), Ok(Numbers([-0.3, 1e-3, 2.0])));
+        assert_eq!("[1, 2 ,3]".parse(), Ok(Numbers([1.0, 2.0, 3.0])));
+        assert_eq!("1 2 3".parse(), Ok(Numbers([1.0, 2.0, 3.0])));
+    }
+
+    #[test]
+    fn numbers_say_what_is_wrong() {
+        let refused = |text: &str| text.parse::<Numbers<3>>().unwrap_err();
+        assert_eq!(refused("1,2"), "2 numbers where 3 are needed");
+        assert_eq!(refused("1,,3"), "a number is missing between two commas");
+        assert_eq!(refused("1,x,3"), "'x' is not a number");
+    }
+
+    #[test]
+    fn lists_split_by_the_shell_are_joined() {
+        let words = ["--to", "0.4,", "0.1,", "0.2", "--json"].map(str::to_owned);
+        assert_eq!(join_after_commas(words), ["--to", "0.4,0.1,0.2", "--json"]);
+    }
+}
