@@ -102,7 +102,7 @@ fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {
 fn thinned(rows: &[Row]) -> Vec<&Row> {
     let stride = rows.len().div_ceil(POINTS).max(1);
     let mut kept: Vec<&Row> = rows.iter().step_by(stride).collect();
-    if (rows.len().max(1) - 1) % stride != 0 {
+    if !(rows.len().max(1) - 1).is_multiple_of(stride) {
         kept.extend(rows.last());
     }
     kept
