@@ -1,9 +1,11 @@
 //! The project's own tasks: `cargo xtask` lists them.
-#![allow(clippy::print_stdout)] // it talks to a person
+#![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person
 
 mod layers;
 mod models;
 mod steps;
+
+use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 
@@ -19,7 +21,17 @@ cargo xtask <task>
   bench     runs the benchmarks of the kernels
   figures   draws the figures of the README";
 
-fn main() -> Result<()> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<()> {
     let task = std::env::args().nth(1);
     match task.as_deref() {
         Some("test" | "ci") => steps::test(),
