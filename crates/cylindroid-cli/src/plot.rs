@@ -102,7 +102,7 @@ fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {
 fn thinned(rows: &[Row]) -> Vec<&Row> {
     let stride = rows.len().div_ceil(POINTS).max(1);
     let mut kept: Vec<&Row> = rows.iter().step_by(stride).collect();
-    if (rows.len().max(1) - 1) % stride != 0 {
+    if !rows.len().saturating_sub(1).is_multiple_of(stride) {
         kept.extend(rows.last());
     }
     kept
@@ -167,11 +167,19 @@ fn builder<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'b, SVGBackend<'b>> {
 }
 
 fn legend(area: &Area<'_>, lines: &[Line]) -> Drawn {
-    /// Height of a line of the legend [px].
-    const HEIGHT: usize = 20;
-    for (line, y) in lines.iter().zip((20..).step_by(HEIGHT)) {
+    /// Height of a line of the legend where there is room, and of all of it [px].
+    const HEIGHT: (usize, usize) = (20, 250);
+    /// Most characters of a name.
+    const NAME: usize = 22;
+    let height = HEIGHT.0.min(HEIGHT.1 / lines.len().max(1)).max(4);
+    let size = i32::try_from(height.min(14)).unwrap_or(14);
+    for (line, y) in lines.iter().zip((20..).step_by(height)) {
+        let mut name: String = line.name.chars().take(NAME).collect();
+        if name.len() < line.name.len() {
+            name.push('…');
+        }
         area.draw(&PathElement::new([(4, y), (26, y)], line.colour.stroke_width(3)))?;
-        area.draw(&Text::new(line.name.clone(), (34, y - 7), (FONT, 14)))?;
+        area.draw(&Text::new(name, (34, y - size / 2), (FONT, size)))?;
     }
     Ok(())
 }

@@ -284,7 +284,11 @@ impl TimeLaw {
         }
         // The second half is the first, seen from the end.
         let left = self.rise(self.duration - t);
-        LawSample { position: self.distance - left.position, acceleration: -left.acceleration, ..left }
+        LawSample {
+            position: self.distance - left.position,
+            acceleration: -left.acceleration,
+            ..left
+        }
     }
 
     /// The first half.

@@ -22,8 +22,11 @@ fn any_bounds() -> impl Strategy<Value = Bounds> {
         2 => (log_uniform(-3.0, 3.0), Just(INF)),
         1 => (Just(INF), log_uniform(-3.0, 5.0)),
     ];
-    (velocity, limits)
-        .prop_map(|(velocity, (acceleration, jerk))| Bounds { velocity, acceleration, jerk })
+    (velocity, limits).prop_map(|(velocity, (acceleration, jerk))| Bounds {
+        velocity,
+        acceleration,
+        jerk,
+    })
 }
 
 fn any_distance() -> impl Strategy<Value = f64> {
@@ -55,13 +58,13 @@ fn textbook_duration(h: f64, bounds: Bounds) -> f64 {
 #[test]
 fn durations_of_the_textbook_cases() {
     let cases = [
-        (law(3.0, 1.0, 2.0, INF), 3.5),          // trapezoid
-        (law(2.0, 10.0, 0.5, INF), 4.0),         // triangle
-        (law(2.0, 2.0, 2.0, INF), 2.0),          // their border
+        (law(3.0, 1.0, 2.0, INF), 3.5),           // trapezoid
+        (law(2.0, 10.0, 0.5, INF), 4.0),          // triangle
+        (law(2.0, 2.0, 2.0, INF), 2.0),           // their border
         (law(10.0, 5.0, 10.0, 30.0), 17.0 / 6.0), // seven segments
         (law(10.0, 10.0, 10.0, 30.0), 1.0 / 3.0 + (37.0_f64 / 9.0).sqrt()), // no cruise
-        (law(10.0, 1.0, 100.0, 4.0), 11.0),      // no hold
-        (law(2.0, 10.0, 10.0, 1.0), 4.0),        // jerk alone
+        (law(10.0, 1.0, 100.0, 4.0), 11.0),       // no hold
+        (law(2.0, 10.0, 10.0, 1.0), 4.0),         // jerk alone
         (law(2.0, INF, INF, 1.0), 4.0),
         (law(2.0, INF, 0.5, INF), 4.0),
         (law(-2.0, 10.0, 10.0, 1.0), 4.0),

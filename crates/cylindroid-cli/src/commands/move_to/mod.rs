@@ -114,7 +114,7 @@ impl Progress {
 
     fn show(&self, sample: &Sample<'_>) {
         self.0.inc(1);
-        if self.0.position() % PROGRESS_STEPS == 0 && !self.0.is_hidden() {
+        if self.0.position().is_multiple_of(PROGRESS_STEPS) && !self.0.is_hidden() {
             self.0.set_message(format!(
                 "{:.2} s, position error {:.1e} m, orientation error {:.1e} rad",
                 sample.time, sample.step.position_error, sample.step.orientation_error

@@ -192,7 +192,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ("inverse", job.options.method.name().to_owned()),
             ("secondary", secondary(job)),
             ("limits met", limits_met(job, outcome)),
-            ("final q [rad or m]", output::list(&outcome.q)),
+            ("final q [rad or m]", output::entries(&outcome.q)),
         ],
     )?;
     Ok(())
