@@ -72,6 +72,11 @@ impl Trajectory {
         }
     }
 
+    /// Forgets what was kept.
+    pub(crate) fn clear(&mut self) {
+        self.samples.clear();
+    }
+
     pub(crate) fn push(&mut self, sample: &Sample<'_>) {
         let pose = sample.step.pose;
         let quaternion = pose.rotation.to_quaternion();

@@ -3,7 +3,7 @@
 //! Users meet thresholds as options with these values as defaults. Code never compares with a
 //! number of its own.
 
-/// Below this angle [rad] the coefficients of exp, log and their derivatives use Taylor series.
+/// Below this angle (rad) the coefficients of exp, log and their derivatives use Taylor series.
 ///
 /// The series keep seven terms, so their truncation error at the switch is below 1e-17 relative.
 /// Above it the worst closed form, `(1 - t^2/2 - cos t) / t^4`, loses `eps / t^4 = 4e-15`, and
@@ -37,10 +37,10 @@ pub const DAMPING_ONSET: f64 = 0.05;
 /// below this [-]: rates would be a million times the angular velocity.
 pub const ANGLE_SINGULAR: f64 = 1e-6;
 
-/// Default position tolerance of a Cartesian move [m].
+/// Default position tolerance of a Cartesian move (m).
 pub const POSITION: f64 = 1e-6;
 
-/// Default orientation tolerance of a Cartesian move [rad].
+/// Default orientation tolerance of a Cartesian move (rad).
 pub const ORIENTATION: f64 = 1e-6;
 
 /// Share of a joint's range (or 1 where it has none) kept free at a position limit against
@@ -54,7 +54,7 @@ pub const AT_LIMIT: f64 = 1e-6;
 /// leaves a rounding [-].
 pub const LIMIT_MET: f64 = 1e-12;
 
-/// A rotation nearer to a half turn than this [rad] goes about the axis whose first component
+/// A rotation nearer to a half turn than this (rad) goes about the axis whose first component
 /// that is not zero is positive, so that rounding does not choose the way round.
 pub const HALF_TURN: f64 = 1e-9;
 

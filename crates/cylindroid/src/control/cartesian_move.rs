@@ -88,7 +88,7 @@ impl CartesianMove {
         Ok(Self { path, law: TimeLaw::along(tightest)? })
     }
 
-    /// The same move slowed down to end at `duration` [s].
+    /// The same move slowed down to end at `duration` (s).
     ///
     /// # Errors
     /// A duration shorter than that of the move, or not finite.
@@ -108,7 +108,7 @@ impl CartesianMove {
         &self.law
     }
 
-    /// The state at time `t` [s]; at rest at the start before 0 and at the end after the duration.
+    /// The state at time `t` (s); at rest at the start before 0 and at the end after the duration.
     #[must_use]
     pub fn at(&self, t: f64) -> CartesianSample {
         let s = self.law.at(t);
@@ -116,7 +116,7 @@ impl CartesianMove {
         CartesianSample { pose: self.path.pose(s.position), twist, s }
     }
 
-    /// The target of a servo of period `dt` [s] at time `t` [s]: the pose now, and the constant
+    /// The target of a servo of period `dt` (s) at time `t` (s): the pose now, and the constant
     /// twist that leads to the pose of the next step. The twist at `t` itself would leave the
     /// servo behind by acceleration * dt / (2 gain).
     #[must_use]

@@ -10,8 +10,11 @@
 //! Why so   what stops a servo is nearly always the posture it started from
 //! Checked  tests/it/servo.rs::a_detour_reaches_what_the_servo_does_not
 
+use super::joint_move::{JointMove, JointPath};
 use super::servo::{Servo, Status, Target};
+use super::time_law::Bounds;
 use crate::error::Result;
+use crate::model::Mechanism;
 use crate::spatial::Pose;
 
 /// Steps of one run: far more than a converging run takes.
@@ -66,6 +69,33 @@ pub fn find_posture(
         }
     }
     Ok(None)
+}
+
+/// The straight joint move from `q` to `to` within the limits of speed and acceleration of every
+/// coordinate, where `acceleration` (rad/s^2 or m/s^2) holds for those that give none. Without one
+/// a joint takes half a second to full speed; without a limit of speed it makes 1 rad/s or m/s.
+///
+/// # Errors
+/// Configurations of the wrong size or not finite; an acceleration that is not positive.
+pub fn joint_move(
+    mechanism: &Mechanism,
+    q: &[f64],
+    to: &[f64],
+    acceleration: f64,
+) -> Result<JointMove> {
+    mechanism.check_q("start of the joint move", q)?;
+    mechanism.check_q("end of the joint move", to)?;
+    let bounds: Vec<Bounds> = mechanism
+        .coordinates()
+        .iter()
+        .map(|c| {
+            let velocity = if c.limits.velocity.is_finite() { c.limits.velocity } else { 1.0 };
+            let limit = c.limits.acceleration.min(acceleration);
+            let acceleration = if limit.is_finite() { limit } else { 2.0 * velocity };
+            Bounds { velocity, acceleration, jerk: f64::INFINITY }
+        })
+        .collect();
+    JointMove::new(JointPath::new(q, to)?, &bounds)
 }
 
 /// The next number in [0, 1) of a fixed sequence (SplitMix64).

@@ -10,7 +10,7 @@ use crate::error::Result;
 /// One instant of a motion.
 #[derive(Debug)]
 pub struct Sample<'a> {
-    /// Time since the start [s].
+    /// Time since the start (s).
     pub time: f64,
     /// The configuration before the step.
     pub q: &'a [f64],
@@ -33,7 +33,7 @@ pub struct Outcome {
     pub last: Step,
     /// Steps taken.
     pub steps: usize,
-    /// Duration [s].
+    /// Duration (s).
     pub time: f64,
     /// Smallest singular value ratio on the way.
     pub min_singular_ratio: f64,
@@ -42,7 +42,7 @@ pub struct Outcome {
 }
 
 /// Steps `servo` from `q` until it reports the end, or for `duration` seconds. `target` gives the
-/// target at a time [s] and whether it is the final one, `observe` sees every step.
+/// target at a time (s) and whether it is the final one, `observe` sees every step.
 ///
 /// # Errors
 /// As [`Servo::step`].

@@ -101,7 +101,7 @@ impl JointMove {
         Ok(Self { path, law: TimeLaw::along(tightest)? })
     }
 
-    /// The same move slowed down to end at `duration` [s].
+    /// The same move slowed down to end at `duration` (s).
     ///
     /// # Errors
     /// A duration shorter than that of the move, or not finite.
@@ -121,7 +121,7 @@ impl JointMove {
         &self.law
     }
 
-    /// Writes the state at time `t` [s], without allocation; at rest at the start before 0 and at
+    /// Writes the state at time `t` (s), without allocation; at rest at the start before 0 and at
     /// the end after the duration. Returns the path coordinate s and its derivatives.
     ///
     /// # Errors

@@ -1,7 +1,8 @@
 //! Cartesian control: the servo loop, its limits, its secondary tasks, time laws and paths.
 //!
-//! A path says where (`s` in [0, 1]), a time law says when (`s` over time), a move is both: the
-//! fastest law on this path that keeps every bound.
+//! A path says where (`s` in 0 to 1), a time law says when (`s` over time), a move is both: the
+//! fastest law on this path that keeps every bound. A servo follows a move, or goes straight at a
+//! pose.
 
 mod cartesian_move;
 mod detour;
@@ -17,7 +18,7 @@ mod stall;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
-pub use detour::{Detour, find_posture};
+pub use detour::{Detour, find_posture, joint_move};
 pub use drive::{Outcome, Sample, drive};
 pub use joint_move::{JointMove, JointPath, JointSample};
 pub use limits::{LimitKind, Motion1, RateBounds};

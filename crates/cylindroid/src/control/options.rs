@@ -19,9 +19,9 @@ pub struct Gain {
 /// Errors below which a target counts as reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Of the position [m].
+    /// Of the position (m).
     pub position: f64,
-    /// Of the orientation [rad].
+    /// Of the orientation (rad).
     pub orientation: f64,
 }
 
@@ -78,7 +78,7 @@ pub struct ServoOptions {
     pub end_effector: EndEffector,
     /// The components of its motion that matter.
     pub task: Task,
-    /// Time between steps [s].
+    /// Time between steps (s).
     pub dt: f64,
     /// Proportional gains; `gain * dt` must be below 2.
     pub gain: Gain,
@@ -86,7 +86,7 @@ pub struct ServoOptions {
     pub tolerance: Tolerance,
     /// How the Jacobian is inverted; its numbers refer to linear rows divided by `length`.
     pub method: Method,
-    /// Characteristic length that scales the linear rows [m].
+    /// Characteristic length that scales the linear rows (m).
     pub length: f64,
     /// A weight for each coordinate of the mechanism (large keeps it still); empty for none.
     pub joint_weights: Vec<f64>,

@@ -33,30 +33,30 @@ pub struct CartesianPath {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Curve {
-    /// From start to end [m].
+    /// From start to end (m).
     Line { displacement: Vec3 },
-    /// `x` from the centre to the start, `y` a quarter turn ahead, both as long as the radius [m];
-    /// angle >= 0 [rad].
+    /// `x` from the centre to the start, `y` a quarter turn ahead, both as long as the radius (m);
+    /// angle >= 0 (rad).
     Arc { x: Vec3, y: Vec3, angle: f64 },
 }
 
 /// A turn about a fixed line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
-    /// A point of the line, world axes [m].
+    /// A point of the line, world axes (m).
     pub centre: Vec3,
     /// Direction of the line, world axes; any length but zero [-].
     pub axis: Vec3,
-    /// How far, right-handed about the axis; more than one turn is allowed [rad].
+    /// How far, right-handed about the axis; more than one turn is allowed (rad).
     pub angle: f64,
 }
 
 /// How far a pose is off a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
-    /// Distance to the path [m].
+    /// Distance to the path (m).
     pub position: f64,
-    /// Angle to the path's orientation at `s`, in [0, pi] [rad].
+    /// Angle to the path's orientation at `s`, in [0, pi] (rad).
     pub orientation: f64,
     /// The nearest place on the path, in [0, 1]; the first of several.
     pub s: f64,
@@ -72,7 +72,7 @@ impl CartesianPath {
         Self::between(from, to, curve)
     }
 
-    /// Along the arc from `from` through the point `via` [m] to `to`, turning about the constant
+    /// Along the arc from `from` through the point `via` (m) to `to`, turning about the constant
     /// axis from the first orientation to the last by at most pi.
     ///
     /// # Errors
@@ -157,7 +157,7 @@ impl CartesianPath {
         if finite { Ok(self) } else { Err(not_finite()) }
     }
 
-    /// Length of the path of the origin [m].
+    /// Length of the path of the origin (m).
     #[must_use]
     pub fn length(&self) -> f64 {
         match self.curve {
@@ -166,13 +166,13 @@ impl CartesianPath {
         }
     }
 
-    /// Angle of the whole rotation, about one axis [rad].
+    /// Angle of the whole rotation, about one axis (rad).
     #[must_use]
     pub fn angle(&self) -> f64 {
         self.rotation.norm()
     }
 
-    /// Radius of the arc [m]; infinite for a line.
+    /// Radius of the arc (m); infinite for a line.
     #[must_use]
     pub fn radius(&self) -> f64 {
         match self.curve {
@@ -201,7 +201,7 @@ impl CartesianPath {
     }
 
     /// `d pose / ds` at `s` (clamped as in [`Self::pose`]): world axes, linear part that of the
-    /// moving origin [m], angular part [rad], both per unit of s and of constant length.
+    /// moving origin (m), angular part (rad), both per unit of s and of constant length.
     #[must_use]
     pub fn derivative(&self, s: f64) -> Twist {
         let linear = match self.curve {
@@ -261,7 +261,7 @@ impl CartesianPath {
 }
 
 impl Curve {
-    /// From the start to the place `s` [m].
+    /// From the start to the place `s` (m).
     fn offset(self, s: f64) -> Vec3 {
         match self {
             Self::Line { displacement } => displacement * s,

@@ -57,9 +57,9 @@ pub struct Step {
     pub status: Status,
     /// The pose of the tool before the step.
     pub pose: Pose,
-    /// Distance to the target, of the components that matter [m].
+    /// Distance to the target, of the components that matter (m).
     pub position_error: f64,
-    /// Angle to the target, of the components that matter [rad].
+    /// Angle to the target, of the components that matter (rad).
     pub orientation_error: f64,
     /// Smallest singular value of the scaled task Jacobian over the largest.
     pub singular_ratio: f64,
@@ -80,7 +80,7 @@ pub struct Servo {
     /// Scale of each column: 1 / sqrt(weight).
     columns: Vec<f64>,
     limits: Vec<Limits>,
-    /// Length of the chain after its first joint [m].
+    /// Length of the chain after its first joint (m).
     length: f64,
 
     jacobian: Matrix,

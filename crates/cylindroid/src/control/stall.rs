@@ -11,7 +11,7 @@
 
 use crate::linalg::Svd;
 
-/// Window within which the error must fall [s], and by which share [-].
+/// Window within which the error must fall (s), and by which share [-].
 const WINDOW: f64 = 1.0;
 const SHARE: f64 = 1e-3;
 /// Share of the squared error that must lie along realised directions for the motion to count as
@@ -23,9 +23,9 @@ const POSSIBLE: f64 = 1e-4;
 pub enum Stall {
     /// The target cannot be reached by any posture: it is too far away.
     OutOfReach {
-        /// Distance from the first joint to the target [m].
+        /// Distance from the first joint to the target (m).
         distance: f64,
-        /// Length of the stretched chain [m].
+        /// Length of the stretched chain (m).
         length: f64,
     },
     /// Joints stand at their position limits and the rest cannot do the task without them.

@@ -37,7 +37,7 @@ pub struct Bounds {
 /// The state of one coordinate on its time law.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LawSample {
-    /// The coordinate, from 0 to the distance [u].
+    /// The coordinate, from 0 to the distance (u).
     pub position: f64,
     /// [u/s]
     pub velocity: f64,
@@ -66,7 +66,7 @@ pub struct TimeLaw {
     peak: Bounds,
 }
 
-/// Lengths of the segments [s].
+/// Lengths of the segments (s).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Times {
     /// Each of the four with jerk: tj.
@@ -152,7 +152,7 @@ impl Times {
         Self { jerk, hold, cruise: (h / v - (2.0 * jerk + hold)).max(0.0) }
     }
 
-    /// From rest to the peak velocity [s].
+    /// From rest to the peak velocity (s).
     fn ramp(self) -> f64 {
         2.0 * self.jerk + self.hold
     }
@@ -163,7 +163,7 @@ impl Times {
 }
 
 impl TimeLaw {
-    /// The fastest law over `distance` [u] (of either sign) within `bounds`.
+    /// The fastest law over `distance` (u) (of either sign) within `bounds`.
     ///
     /// # Errors
     /// A distance that is not finite; bounds that are NaN, zero or negative, or that leave both
@@ -214,7 +214,7 @@ impl TimeLaw {
         Self { distance, duration, times, peak: Bounds { velocity, acceleration, jerk } }
     }
 
-    /// The same motion slowed down to end at `duration` [s], every bound still kept.
+    /// The same motion slowed down to end at `duration` (s), every bound still kept.
     ///
     /// With k = `duration` / [`Self::duration`], the velocity is divided by k, the acceleration by
     /// k^2, the jerk by k^3. So several axes end together.
@@ -242,13 +242,13 @@ impl TimeLaw {
         Ok(Self::from_times(self.distance, times, duration))
     }
 
-    /// Time from rest to rest [s].
+    /// Time from rest to rest (s).
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// The distance [u], as given.
+    /// The distance (u), as given.
     #[must_use]
     pub fn distance(&self) -> f64 {
         self.distance
@@ -262,14 +262,14 @@ impl TimeLaw {
         Bounds { velocity: velocity.abs(), acceleration: acceleration.abs(), jerk: jerk.abs() }
     }
 
-    /// Where the seven segments begin, and the end [s]; equal neighbours bound an empty segment.
+    /// Where the seven segments begin, and the end (s); equal neighbours bound an empty segment.
     #[must_use]
     pub fn switches(&self) -> [f64; 8] {
         let (Times { jerk, hold, .. }, ramp, end) = (self.times, self.times.ramp(), self.duration);
         [0.0, jerk, jerk + hold, ramp, end - ramp, end - jerk - hold, end - jerk, end]
     }
 
-    /// The state at time `t` [s]: at rest at 0 before 0 (and for NaN), at rest at the distance
+    /// The state at time `t` (s): at rest at 0 before 0 (and for NaN), at rest at the distance
     /// from the end on. Where the acceleration or the jerk jumps, one of its two values.
     #[must_use]
     pub fn at(&self, t: f64) -> LawSample {

@@ -128,12 +128,12 @@ impl Chain {
         self.tip().hessian_into(reference, out);
     }
 
-    /// Origin of the first moving joint in world; it does not depend on q [m].
+    /// Origin of the first moving joint in world; it does not depend on q (m).
     pub(crate) fn first_origin(&self) -> Vec3 {
         self.nodes.first().map_or(self.world_from_tool.translation, |n| n.placement.translation())
     }
 
-    /// The farthest that the tool can be from the origin of the first joint [m]: infinite where a
+    /// The farthest that the tool can be from the origin of the first joint (m): infinite where a
     /// joint slides without limits.
     pub(crate) fn length_after_first_joint(&self, mechanism: &Mechanism) -> f64 {
         let fixed: f64 = self.nodes.iter().skip(1).map(|n| n.placement.translation().norm()).sum();

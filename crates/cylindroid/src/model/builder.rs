@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
-/// Reach of a mechanism whose links have no length [m]: a wrist still needs a length scale.
+/// Reach of a mechanism whose links have no length (m): a wrist still needs a length scale.
 const LEAST_REACH: f64 = 1e-3;
 
 /// Collects links, joints and frames; [`Builder::build`] checks them all.

@@ -14,29 +14,29 @@ use crate::spatial::{Pose, Vec3};
 pub enum JointKind {
     /// No motion.
     Fixed,
-    /// Turns about the axis [rad], within limits.
+    /// Turns about the axis (rad), within limits.
     Revolute,
-    /// Turns about the axis [rad] without end.
+    /// Turns about the axis (rad) without end.
     Continuous,
-    /// Slides along the axis [m].
+    /// Slides along the axis (m).
     Prismatic,
-    /// Turns about the axis [rad] and moves `pitch` [m/rad] times as far along it.
+    /// Turns about the axis (rad) and moves `pitch` [m/rad] times as far along it.
     Helical {
         /// Advance per radian [m/rad].
         pitch: f64,
     },
-    /// Slides along the axis [m] and turns about it [rad].
+    /// Slides along the axis (m) and turns about it (rad).
     Cylindrical,
-    /// Turns about the axis [rad], then about the second axis, carried along [rad].
+    /// Turns about the axis (rad), then about the second axis, carried along (rad).
     Universal {
         /// The second axis, in the joint frame at zero.
         second: Vec3,
     },
-    /// Turns about a point: rotation vector [rad]; rates are the angular velocity in child axes.
+    /// Turns about a point: rotation vector (rad); rates are the angular velocity in child axes.
     Spherical,
-    /// Slides in the plane normal to the axis along its x and y [m], then turns about the axis [rad].
+    /// Slides in the plane normal to the axis along its x and y (m), then turns about the axis (rad).
     Planar,
-    /// Moves freely: position [m] and rotation vector [rad]; rates are the twist in child axes.
+    /// Moves freely: position (m) and rotation vector (rad); rates are the twist in child axes.
     Free,
 }
 

@@ -41,26 +41,26 @@ pub struct Visual {
 /// A shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Geometry {
-    /// A box with these edges [m].
+    /// A box with these edges (m).
     Box {
         /// Edges along x, y, z.
         size: Vec3,
     },
-    /// A cylinder along z, centred [m].
+    /// A cylinder along z, centred (m).
     Cylinder {
         /// Radius.
         radius: f64,
         /// Length along z.
         length: f64,
     },
-    /// A cylinder along z with half balls at its ends [m].
+    /// A cylinder along z with half balls at its ends (m).
     Capsule {
         /// Radius.
         radius: f64,
         /// Length of the cylinder alone.
         length: f64,
     },
-    /// A ball [m].
+    /// A ball (m).
     Sphere {
         /// Radius.
         radius: f64,
@@ -79,7 +79,7 @@ pub enum Geometry {
 /// Mass and moments of inertia of a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertial {
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: f64,
     /// Centre of mass, and the axes in which the inertia is given.
     pub link_from_inertia: Pose,

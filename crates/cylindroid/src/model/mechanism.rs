@@ -46,13 +46,13 @@ pub struct Coordinate {
 /// What a coordinate measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CoordinateKind {
-    /// Angle [rad].
+    /// Angle (rad).
     Angle,
-    /// Length [m].
+    /// Length (m).
     Length,
-    /// Component of a rotation vector [rad]; its rate is an angular velocity in child axes.
+    /// Component of a rotation vector (rad); its rate is an angular velocity in child axes.
     RotationVector,
-    /// Position of a free body [m]; its rate is a velocity in child axes.
+    /// Position of a free body (m); its rate is a velocity in child axes.
     Position,
 }
 
@@ -156,7 +156,7 @@ impl Mechanism {
         &self.data.home
     }
 
-    /// Characteristic length [m]: the longest way from the base to a frame along the links,
+    /// Characteristic length (m): the longest way from the base to a frame along the links,
     /// with sliding joints stretched (those without limits count nothing); at least 1 mm.
     #[must_use]
     pub fn reach(&self) -> f64 {

@@ -27,7 +27,7 @@ pub struct Quaternion {
     pub z: f64,
 }
 
-/// Roll, pitch and yaw: about the fixed axes x, y, z in this order [rad].
+/// Roll, pitch and yaw: about the fixed axes x, y, z in this order (rad).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rpy {
     /// About the fixed x axis.
@@ -38,7 +38,7 @@ pub struct Rpy {
     pub yaw: f64,
 }
 
-/// ZYZ Euler angles: about z, the turned y, the turned z [rad].
+/// ZYZ Euler angles: about z, the turned y, the turned z (rad).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Zyz {
     /// First, about z.

@@ -18,7 +18,7 @@ use crate::error::{Error, Result};
 pub struct Pose {
     /// The axes of b in a.
     pub rotation: Rotation,
-    /// The origin of b in a [m].
+    /// The origin of b in a (m).
     pub translation: Vec3,
 }
 
@@ -91,7 +91,7 @@ impl Pose {
     }
 
     /// The error that a controller closes, in the axes of frame a: the translation from this pose
-    /// to `target` [m] and the rotation vector from this orientation to the target's [rad].
+    /// to `target` (m) and the rotation vector from this orientation to the target's (rad).
     #[must_use]
     pub fn error_to(self, target: Self) -> Twist {
         Twist {

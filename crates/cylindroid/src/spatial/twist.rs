@@ -19,7 +19,7 @@ pub struct Twist {
 /// The force on a rigid body: its resultant and its moment about the frame's origin.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Wrench {
-    /// Force [N].
+    /// Force (N).
     pub force: Vec3,
     /// Moment about the origin of the frame [N m].
     pub moment: Vec3,
@@ -87,7 +87,7 @@ linear_space!(Twist, linear, angular);
 linear_space!(Wrench, force, moment);
 
 impl Twist {
-    /// Power of a wrench on a body that moves with this twist, both in one frame [W].
+    /// Power of a wrench on a body that moves with this twist, both in one frame (W).
     #[must_use]
     pub fn power(self, wrench: Wrench) -> f64 {
         self.linear.dot(wrench.force) + self.angular.dot(wrench.moment)
@@ -104,7 +104,7 @@ impl Twist {
         }
     }
 
-    /// The same motion with the linear part taken at the point `p` (same axes) [m].
+    /// The same motion with the linear part taken at the point `p` (same axes) (m).
     #[must_use]
     #[inline]
     pub fn at_point(self, p: Vec3) -> Self {
@@ -113,7 +113,7 @@ impl Twist {
 }
 
 impl Wrench {
-    /// The same wrench with the moment taken about the point `p` (same axes) [m].
+    /// The same wrench with the moment taken about the point `p` (same axes) (m).
     #[must_use]
     pub fn at_point(self, p: Vec3) -> Self {
         Self { force: self.force, moment: self.moment - p.cross(self.force) }

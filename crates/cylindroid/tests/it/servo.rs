@@ -1,6 +1,6 @@
 use cylindroid::control::{
-    Gain, LimitKind, Outcome, Projector, Secondary, Speed, Stall, Status, Target, Task, Tolerance,
-    drive, find_posture,
+    Gain, JointSample, LimitKind, Outcome, Projector, Secondary, Speed, Stall, Status, Target,
+    Task, Tolerance, drive, find_posture, joint_move,
 };
 use cylindroid::inverse::Method;
 use cylindroid::model::{JointKind, JointSpec, Limits};
@@ -596,6 +596,35 @@ fn a_detour_reaches_what_the_servo_does_not() {
     let servo = servo(&robot, |o| o.task = Task::POSITION);
     let far = Pose::from_translation(Vec3::new(4.0, 0.0, 0.0));
     assert_eq!(find_posture(&servo, &[0.0; 3], far, 20).unwrap(), None);
+}
+
+/// The move of a detour keeps every limit and ends at the posture.
+#[test]
+fn joint_moves_keep_the_limits() {
+    for name in catalogue::names() {
+        let robot = catalogue::load(name).unwrap();
+        let mut random = Random(71);
+        let (from, to) = (random.q(&robot), random.q(&robot));
+        let motion = joint_move(&robot, &from, &to, 40.0).unwrap();
+        let n = robot.n();
+        let (mut q, mut rates, mut before) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let (steps, dt) = (1000, motion.law().duration() / 1000.0);
+        for step in 0..=steps {
+            let t = f64::from(step) * dt;
+            motion
+                .sample_into(t, JointSample { positions: &mut q, velocities: &mut rates })
+                .unwrap();
+            for (i, c) in robot.coordinates().iter().enumerate() {
+                let (l, q, rate) = (&c.limits, q[i], rates[i]);
+                assert!(q >= l.lower && q <= l.upper, "{name}: {} left its limits", c.name);
+                assert!(rate.abs() <= l.velocity * (1.0 + 1e-12));
+                let most = l.acceleration.min(40.0) * dt * (1.0 + 1e-9) + 1e-12;
+                assert!((rate - before[i]).abs() <= most, "{name}: {}", c.name);
+            }
+            before.copy_from_slice(&rates);
+        }
+        assert_eq!(q, to);
+    }
 }
 
 #[test]

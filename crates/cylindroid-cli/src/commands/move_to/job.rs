@@ -36,6 +36,8 @@ pub(super) struct Job {
     /// What is driven, in words.
     pub(super) driven: String,
     pub(super) time_limit: f64,
+    /// Whether to go round where the servo alone stalls on its way to a pose.
+    pub(super) detour: bool,
 }
 
 /// How the target moves.
@@ -97,7 +99,8 @@ impl Job {
         };
         let frame = robot.frame_of(options.end_effector.frame).name.clone();
         let time_limit = args.time_limit;
-        Ok(Self { robot, options, frame, start, target_pose, goal, driven, time_limit })
+        let detour = !args.no_detour && matches!(goal, Goal::Pose(_));
+        Ok(Self { robot, options, frame, start, target_pose, goal, driven, time_limit, detour })
     }
 }
 

@@ -9,11 +9,11 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Servo;
-use cylindroid::control::{Outcome, Sample, Status, Target, drive, find_posture};
+use cylindroid::control::{Outcome, Sample, Status, Target, drive, find_posture, joint_move};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::job::{Goal, Job};
-use self::report::{Deviation, Result};
+use self::report::{Deviation, Result, Way};
 use super::Style;
 use crate::args::MoveArgs;
 use crate::plot;
@@ -21,8 +21,9 @@ use crate::trajectory::{self, Trajectory};
 
 /// Exit code of a target that was not reached.
 const NOT_REACHED: u8 = 1;
-/// Runs of the search for another posture after a stall: enough for nearly all, well below 1 s.
-const SEARCH_RUNS: usize = 20;
+/// Runs of the search for another posture after a stall: enough for all that were tried, about a
+/// second at the worst.
+const SEARCH_RUNS: usize = 200;
 /// Steps between two signs of life.
 const PROGRESS_STEPS: u64 = 256;
 
@@ -80,8 +81,23 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
         Goal::Joints(motion) => joints::drive(&mut servo, job, motion, &mut observe)?,
     };
     drop(progress);
-    let other_posture = other_posture(job, &servo, &outcome)?;
-    Ok(Result { outcome, deviation, other_posture })
+    let direct = |way| Ok(Result { outcome: outcome.clone(), deviation, way });
+    let Some(posture) = other_posture(job, &servo, &outcome)? else { return direct(Way::Direct) };
+    if !job.detour {
+        return direct(Way::Offered { posture });
+    }
+    // From the start once more, straight through joint space: the stalled attempt is not made.
+    let motion = joint_move(&job.robot, &job.start, &posture, job.options.acceleration)?;
+    if let Some(trajectory) = &mut trajectory {
+        trajectory.clear();
+    }
+    let push = |sample: Sample<'_>| {
+        if let Some(trajectory) = &mut trajectory {
+            trajectory.push(&sample);
+        }
+    };
+    let round = joints::drive(&mut servo, job, &motion, push)?;
+    Ok(Result { outcome: round, deviation: None, way: Way::Round { stalled: outcome.into() } })
 }
 
 /// A posture that reaches the target which the servo did not, where one can be found.

@@ -15,8 +15,27 @@ use crate::output::{self, PoseJson};
 pub(super) struct Result {
     pub(super) outcome: Outcome,
     pub(super) deviation: Option<Deviation>,
-    /// Where the motion stalled: a posture that reaches the target.
-    pub(super) other_posture: Option<Vec<f64>>,
+    pub(super) way: Way,
+}
+
+/// The way that was taken.
+#[derive(Debug)]
+pub(super) enum Way {
+    /// As asked for.
+    Direct,
+    /// As asked for, and it stalled; this posture reaches the target.
+    Offered { posture: Vec<f64> },
+    /// Round through joint space, since the servo alone would have ended like this.
+    Round { stalled: Box<Outcome> },
+}
+
+impl Way {
+    fn offered(&self) -> Option<&[f64]> {
+        match self {
+            Self::Offered { posture } => Some(posture),
+            Self::Direct | Self::Round { .. } => None,
+        }
+    }
 }
 
 /// The largest distances from the path.
@@ -68,9 +87,14 @@ struct MoveJson<'a> {
     /// Largest distance from the path.
     #[serde(skip_serializing_if = "Option::is_none")]
     path_deviation: Option<Deviation>,
-    /// Where the motion stalled: a posture that reaches the target, or null if none was found.
+    /// Where the motion stalled: a posture that reaches the target, absent if none was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     other_posture: Option<&'a [f64]>,
+    /// True if the joints went straight to another posture because the servo alone would stall.
+    detour: bool,
+    /// Why the servo alone would have stalled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    detour_reason: Option<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -98,7 +122,7 @@ pub(super) fn write(
 }
 
 fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
-    let Result { outcome, deviation, other_posture } = result;
+    let Result { outcome, deviation, way } = result;
     let (robot, options) = (&job.robot, &job.options);
     let names = COMPONENTS.iter().zip(options.task.components).filter(|(_, on)| *on);
     MoveJson {
@@ -108,7 +132,10 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         joint_names: output::joint_names(robot),
         reached: outcome.reached,
         reason: sentences::reason(outcome),
-        explanation: sentences::explanation(job, outcome, other_posture.as_deref()),
+        explanation: match way {
+            Way::Round { stalled } => sentences::round(job, stalled),
+            _ => sentences::explanation(job, outcome, way.offered()),
+        },
         q: &outcome.q,
         position_error: outcome.last.position_error,
         orientation_error: outcome.last.orientation_error,
@@ -134,7 +161,20 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         start: &job.start,
         law_duration: law_duration(job),
         path_deviation: *deviation,
-        other_posture: other_posture.as_deref(),
+        other_posture: way.offered(),
+        detour: matches!(way, Way::Round { .. }),
+        detour_reason: match way {
+            Way::Round { stalled } => Some(sentences::reason(stalled)),
+            Way::Direct | Way::Offered { .. } => None,
+        },
+    }
+}
+
+fn result_word(outcome: &Outcome, way: &Way) -> &'static str {
+    match (outcome.reached, way) {
+        (true, Way::Round { .. }) => "reached, by way of another posture",
+        (true, _) => "reached",
+        (false, _) => "not reached",
     }
 }
 
@@ -147,7 +187,7 @@ fn law_duration(job: &Job) -> Option<f64> {
 }
 
 fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> {
-    let Result { outcome, deviation, other_posture } = result;
+    let Result { outcome, deviation, way } = result;
     let components = job.options.task.components;
     let (linear, angular) = (components[..3].contains(&true), components[3..].contains(&true));
     let driven = |on: bool, value: f64| {
@@ -166,13 +206,13 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ("model", job.robot.name().to_owned()),
             ("frame", job.frame.clone()),
             ("driven", job.driven.clone()),
-            ("result", if outcome.reached { "reached" } else { "not reached" }.to_owned()),
+            ("result", result_word(outcome, way).to_owned()),
             (
                 "reason",
-                if outcome.reached {
-                    String::new()
-                } else {
-                    sentences::explanation(job, outcome, other_posture.as_deref())
+                match way {
+                    Way::Round { stalled } => sentences::round(job, stalled),
+                    _ if outcome.reached => String::new(),
+                    _ => sentences::explanation(job, outcome, way.offered()),
                 },
             ),
             ("steps", outcome.steps.to_string()),

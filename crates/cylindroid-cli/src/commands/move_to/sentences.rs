@@ -15,6 +15,28 @@ pub(super) fn reason(outcome: &Outcome) -> &'static str {
     }
 }
 
+/// Why the joints went straight to another posture.
+pub(super) fn round(job: &Job, stalled: &Outcome) -> String {
+    let what = match &stalled.stall {
+        Some(Stall::Limits { coordinates }) => {
+            let names: Vec<&str> =
+                coordinates.iter().map(|&i| job.robot.coordinates()[i].name.as_str()).collect();
+            format!("at the limit of {}", names.join(", "))
+        }
+        Some(Stall::Singular { .. }) => "in a singular pose".to_owned(),
+        Some(Stall::Slow | Stall::TooFewJoints { .. } | Stall::OutOfReach { .. }) | None => {
+            "for want of progress".to_owned()
+        }
+    };
+    format!(
+        "Going straight at the target, the servo would stall {} m and {} rad before it, {what}. \
+         So every joint moved straight to another posture that reaches it (--no-detour keeps the \
+         servo's motion).",
+        number(stalled.last.position_error),
+        number(stalled.last.orientation_error)
+    )
+}
+
 /// The cause as sentences.
 pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[f64]>) -> String {
     let mut text = match &outcome.stall {

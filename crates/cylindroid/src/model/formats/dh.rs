@@ -27,13 +27,13 @@ pub enum Convention {
 pub struct Row {
     /// Name of the joint.
     pub name: String,
-    /// Length along x [m].
+    /// Length along x (m).
     pub a: f64,
-    /// Twist about x [rad].
+    /// Twist about x (rad).
     pub alpha: f64,
-    /// Offset along z [m].
+    /// Offset along z (m).
     pub d: f64,
-    /// Angle about z [rad].
+    /// Angle about z (rad).
     pub theta: f64,
     /// True if q adds to d, false if it adds to theta.
     pub prismatic: bool,

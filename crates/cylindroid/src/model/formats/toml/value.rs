@@ -199,7 +199,7 @@ impl<'t> Table<'t> {
         self.array(key)?.unwrap_or(&[]).iter().map(read).collect()
     }
 
-    /// The pose of the keys `xyz` [m] and `rpy` [rad]; the identity without them.
+    /// The pose of the keys `xyz` (m) and `rpy` (rad); the identity without them.
     pub(super) fn pose(&self) -> Result<Pose> {
         let translation = self.vec3("xyz")?.unwrap_or(Vec3::ZERO);
         let [roll, pitch, yaw] = self.vec3("rpy")?.unwrap_or(Vec3::ZERO).to_array();
