@@ -28,12 +28,18 @@ pub(super) fn round(job: &Job, stalled: &Outcome) -> String {
             "for want of progress".to_owned()
         }
     };
+    let components = job.options.task.components;
+    let mut left = Vec::new();
+    if components[..3].contains(&true) {
+        left.push(format!("{} m", number(stalled.last.position_error)));
+    }
+    if components[3..].contains(&true) {
+        left.push(format!("{} rad", number(stalled.last.orientation_error)));
+    }
     format!(
-        "Going straight at the target, the servo would stall {} m and {} rad before it, {what}. \
-         So every joint moved straight to another posture that reaches it (--no-detour keeps the \
-         servo's motion).",
-        number(stalled.last.position_error),
-        number(stalled.last.orientation_error)
+        "Going straight at the target, the servo would stall {} before it, {what}. So every joint \
+         moved straight to another posture that reaches it (--no-detour keeps the servo's motion).",
+        left.join(" and "),
     )
 }
 
