@@ -85,10 +85,14 @@ fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {
     units.dedup();
     linear_panel(&areas[0], &joints, &time, &format!("joints [{}]", units.join(", ")))?;
 
-    let errors = [
-        line("position [m]", 0, &|row| row.position_error.max(SMALLEST_ERROR)),
-        line("orientation [rad]", 1, &|row| row.orientation_error.max(SMALLEST_ERROR)),
-    ];
+    // What is not driven has no error at any time.
+    let mut errors = Vec::new();
+    if rows.iter().any(|row| row.position_error > 0.0) {
+        errors.push(line("position [m]", 0, &|row| row.position_error.max(SMALLEST_ERROR)));
+    }
+    if rows.iter().any(|row| row.orientation_error > 0.0) {
+        errors.push(line("orientation [rad]", 1, &|row| row.orientation_error.max(SMALLEST_ERROR)));
+    }
     log_panel(&areas[1], &errors, &time, "error [m, rad]")?;
 
     let ratio = [line("smallest / largest", 2, &|row| row.singular_ratio)];
@@ -136,6 +140,8 @@ fn linear_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str)
 
 fn log_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str) -> Drawn {
     let (low, high) = extent(lines);
+    // Nothing to draw leaves 0 and 1.
+    let low = low.max(SMALLEST_ERROR);
     let (low, high) = (0.5 * low, 2.0 * high.max(10.0 * low));
     let (chart_area, legend_area) = area.split_horizontally(SIZE.0 - LEGEND);
     let mut chart =
