@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use comfy_table::{CellAlignment, ColumnConstraint, Table, TableComponent, presets};
+use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use cylindroid::spatial::{Quaternion, Rpy};
 use cylindroid::{Mechanism, Pose};
 use serde::Serialize;
@@ -25,7 +25,7 @@ pub(crate) fn number(x: f64) -> String {
     let scientific = format!("{x:.5e}");
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
-    if (-5..6).contains(&exponent) {
+    if (-4..6).contains(&exponent) {
         let decimals = usize::try_from(5 - exponent).unwrap_or(0);
         return trim_zeros(&format!("{x:.decimals$}")).to_owned();
     }
@@ -36,7 +36,12 @@ fn trim_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// Numbers of [`number`], separated by commas: can be pasted back as an argument.
+/// A configuration or a quaternion: as [`list`], rounding shown as 0.
+pub(crate) fn entries(values: &[f64]) -> String {
+    values.iter().map(|x| quiet(*x)).collect::<Vec<_>>().join(", ")
+}
+
+/// Numbers of [`number`], separated by commas.
 pub(crate) fn list(values: &[f64]) -> String {
     values.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ")
 }
@@ -54,12 +59,15 @@ pub(crate) fn table(
     columns: &[(&str, Align)],
     rows: impl IntoIterator<Item = Vec<String>>,
 ) -> io::Result<()> {
-    let mut table = plain();
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING);
     table.set_header(columns.iter().map(|(name, _)| *name));
     table.set_style(TableComponent::HeaderLines, '-');
     table.set_style(TableComponent::MiddleHeaderIntersections, ' ');
+    table.set_style(TableComponent::VerticalLines, ' ');
     table.add_rows(rows);
     for ((_, align), column) in columns.iter().zip(table.column_iter_mut()) {
+        column.set_padding((0, 1));
         if *align == Align::Right {
             column.set_cell_alignment(CellAlignment::Right);
         }
@@ -118,13 +126,6 @@ pub(crate) fn matrix(
         std::iter::once((*name).to_owned()).chain(row.iter().map(|x| quiet(*x))).collect()
     });
     table(out, &columns, cells)
-}
-
-fn plain() -> Table {
-    let mut table = Table::new();
-    table.load_preset(presets::NOTHING);
-    table.set_constraints(std::iter::empty::<ColumnConstraint>());
-    table
 }
 
 /// The columns of [`pose_cells`].
@@ -211,10 +212,10 @@ mod tests {
     #[test]
     fn numbers_have_six_digits() {
         let printed =
-            [0.0, -0.0, 1.0, -0.785_498_163, 123_456.7, 1_234_567.0, 1.5e-7, 0.000_012_345_678];
+            [0.0, -0.0, 1.0, -0.987_654_321, 123_456.7, 1_234_567.0, 1.5e-7, 0.000_012_345_678];
         assert_eq!(
             printed.map(number),
-            ["0", "0", "1", "-0.785498", "123457", "1.23457e6", "1.5e-7", "0.0000123457"]
+            ["0", "0", "1", "-0.987654", "123457", "1.23457e6", "1.5e-7", "1.23457e-5"]
         );
         assert_eq!(number(f64::NEG_INFINITY), "-");
     }

@@ -85,10 +85,14 @@ fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {
     units.dedup();
     linear_panel(&areas[0], &joints, &time, &format!("joints [{}]", units.join(", ")))?;
 
-    let errors = [
-        line("position [m]", 0, &|row| row.position_error.max(SMALLEST_ERROR)),
-        line("orientation [rad]", 1, &|row| row.orientation_error.max(SMALLEST_ERROR)),
-    ];
+    // What is not driven has no error at any time.
+    let mut errors = Vec::new();
+    if rows.iter().any(|row| row.position_error > 0.0) {
+        errors.push(line("position [m]", 0, &|row| row.position_error.max(SMALLEST_ERROR)));
+    }
+    if rows.iter().any(|row| row.orientation_error > 0.0) {
+        errors.push(line("orientation [rad]", 1, &|row| row.orientation_error.max(SMALLEST_ERROR)));
+    }
     log_panel(&areas[1], &errors, &time, "error [m, rad]")?;
 
     let ratio = [line("smallest / largest", 2, &|row| row.singular_ratio)];
@@ -102,7 +106,7 @@ fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {
 fn thinned(rows: &[Row]) -> Vec<&Row> {
     let stride = rows.len().div_ceil(POINTS).max(1);
     let mut kept: Vec<&Row> = rows.iter().step_by(stride).collect();
-    if !(rows.len().max(1) - 1).is_multiple_of(stride) {
+    if !rows.len().saturating_sub(1).is_multiple_of(stride) {
         kept.extend(rows.last());
     }
     kept
@@ -136,6 +140,8 @@ fn linear_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str)
 
 fn log_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str) -> Drawn {
     let (low, high) = extent(lines);
+    // Nothing to draw leaves 0 and 1.
+    let low = low.max(SMALLEST_ERROR);
     let (low, high) = (0.5 * low, 2.0 * high.max(10.0 * low));
     let (chart_area, legend_area) = area.split_horizontally(SIZE.0 - LEGEND);
     let mut chart =
@@ -167,11 +173,19 @@ fn builder<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'b, SVGBackend<'b>> {
 }
 
 fn legend(area: &Area<'_>, lines: &[Line]) -> Drawn {
-    /// Height of a line of the legend [px].
-    const HEIGHT: usize = 20;
-    for (line, y) in lines.iter().zip((20..).step_by(HEIGHT)) {
+    /// Height of a line of the legend where there is room, and of all of it [px].
+    const HEIGHT: (usize, usize) = (20, 250);
+    /// Most characters of a name.
+    const NAME: usize = 22;
+    let height = HEIGHT.0.min(HEIGHT.1 / lines.len().max(1)).max(4);
+    let size = i32::try_from(height.min(14)).unwrap_or(14);
+    for (line, y) in lines.iter().zip((20..).step_by(height)) {
+        let mut name: String = line.name.chars().take(NAME).collect();
+        if name.len() < line.name.len() {
+            name.push('…');
+        }
         area.draw(&PathElement::new([(4, y), (26, y)], line.colour.stroke_width(3)))?;
-        area.draw(&Text::new(line.name.clone(), (34, y - 7), (FONT, 14)))?;
+        area.draw(&Text::new(name, (34, y - size / 2), (FONT, size)))?;
     }
     Ok(())
 }

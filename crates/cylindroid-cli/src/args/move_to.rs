@@ -14,9 +14,9 @@ A servo runs at 1/dt against an ideal robot: rates = J+ (gain * error + feed-for
 limits of all joints, until both errors are within tolerance, the error no longer falls, or the \
 time is up. Without an orientation only the position is driven, and the other way round. With \
 --line or --via the target moves along a path, with --joint-to every joint moves straight to its \
-goal. Where the servo, going straight \
-at a pose, stalls although another posture within all limits reaches it, every joint moves straight \
-to that posture instead (--no-detour keeps the servo's motion).
+goal. Where the servo, going straight at a pose, stalls although another posture within all limits \
+reaches it, every joint moves straight to that posture instead (--no-detour keeps the servo's \
+motion).
 
 Exit code 0 if the target was reached, 1 if not, 2 on an error.";
 

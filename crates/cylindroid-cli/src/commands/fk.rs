@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use super::{Style, end_effector};
+use super::{Style, configuration, end_effector};
 use crate::args::FkArgs;
 use crate::output::{self, Align, PoseJson};
 
@@ -38,7 +38,7 @@ struct FrameJson<'a> {
 
 pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
     let robot = cylindroid::load(&args.posture.model)?;
-    let state = robot.state(&args.posture.q.configuration(&robot, args.posture.degrees)?)?;
+    let state = robot.state(&configuration(&robot, &args.posture)?)?;
     let outside_limits = output::outside_limits(&robot, state.q());
     let joint_names = output::joint_names(&robot);
     let (model, q) = (robot.name(), state.q());
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
             ("roll, pitch, yaw [rad]", cells[3..].join(", ")),
             (
                 "quaternion w, x, y, z",
-                output::list(&[quaternion.w, quaternion.x, quaternion.y, quaternion.z]),
+                output::entries(&[quaternion.w, quaternion.x, quaternion.y, quaternion.z]),
             ),
         ],
     )?;
@@ -111,7 +111,7 @@ fn print_posture(
         out,
         [
             ("model", model.to_owned()),
-            ("q [rad or m]", output::list(q)),
+            ("q [rad or m]", output::entries(q)),
             ("note", output::outside_note(outside_limits)),
         ],
     )

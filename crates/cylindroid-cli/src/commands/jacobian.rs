@@ -8,7 +8,7 @@ use cylindroid::linalg::{Metric, Rank, Svd};
 use cylindroid::{Matrix, Reference};
 use serde::Serialize;
 
-use super::{Style, end_effector};
+use super::{Style, configuration, end_effector};
 use crate::args::{Angles, JacobianArgs, ReferenceName};
 use crate::output;
 
@@ -58,7 +58,7 @@ pub(crate) fn run(
 ) -> anyhow::Result<ExitCode> {
     let robot = cylindroid::load(&args.posture.model)?;
     let degrees = args.posture.degrees;
-    let state = robot.state(&args.posture.q.configuration(&robot, degrees)?)?;
+    let state = robot.state(&configuration(&robot, &args.posture)?)?;
     let end_effector = end_effector(&robot, &args.frame)?;
     let reference = match args.reference {
         ReferenceName::Local => Reference::Local,
@@ -142,7 +142,7 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
         out,
         [
             ("model", report.model.to_owned()),
-            ("q [rad or m]", output::list(report.q)),
+            ("q [rad or m]", output::entries(report.q)),
             ("frame", report.frame.to_owned()),
             ("reference", report.reference.to_owned()),
             ("note", note),

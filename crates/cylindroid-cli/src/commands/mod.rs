@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use cylindroid::model::Mechanism;
 use cylindroid::{EndEffector, Error, Pose, Vec3};
 
-use crate::args::{Cli, Command, FrameArgs};
+use crate::args::{Cli, Command, FrameArgs, PostureArgs};
 
 /// How a command prints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +31,13 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Jacobian(args) => jacobian::run(args, style, out),
         Command::Move(args) => move_to::run(args, style, out),
     }
+}
+
+/// The configuration that is meant, of the right size and finite.
+fn configuration(robot: &Mechanism, args: &PostureArgs) -> cylindroid::Result<Vec<f64>> {
+    let q = args.q.configuration(robot, args.degrees)?;
+    robot.check_q("--q", &q)?;
+    Ok(q)
 }
 
 /// The frame and tool point that are meant.

@@ -9,7 +9,7 @@ use cylindroid::model::Mechanism;
 use cylindroid::spatial::{Quaternion, Rpy};
 use cylindroid::{Error, Method, Pose, Reference, Result, Rotation, ServoOptions, Vec3};
 
-use super::super::end_effector;
+use super::super::{configuration, end_effector};
 use super::joints;
 use crate::args::{
     InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
@@ -52,18 +52,18 @@ pub(super) enum Goal {
 }
 
 impl Job {
-    pub(super) fn new(args: &MoveArgs) -> Result<Self> {
+    pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
         let robot = cylindroid::load(&args.posture.model)?;
         let degrees = args.posture.degrees;
-        let start = args.posture.q.configuration(&robot, degrees)?;
-        robot.check_q("--q", &start)?;
+        let start = configuration(&robot, &args.posture)?;
         within_limits(&robot, "--q", &start)?;
         if !(args.time_limit > 0.0 && args.time_limit.is_finite()) {
             return Err(Error::InvalidOption {
                 option: "--time-limit",
                 value: args.time_limit.to_string(),
                 reason: "it must be a positive number of seconds".to_owned(),
-            });
+            }
+            .into());
         }
 
         let mut options = ServoOptions::new(&robot);
@@ -105,21 +105,13 @@ impl Job {
 }
 
 fn within_limits(robot: &Mechanism, option: &'static str, q: &[f64]) -> Result<()> {
-    let outside: Vec<String> = robot
-        .outside_limits(q)
-        .map(|i| {
-            let c = &robot.coordinates()[i];
-            let (lower, upper, unit) = (c.limits.lower, c.limits.upper, c.kind.unit());
-            format!("{} = {} is not within {lower} and {upper} {unit}", c.name, q[i])
-        })
-        .collect();
-    if outside.is_empty() {
-        return Ok(());
-    }
+    let Some(i) = robot.outside_limits(q).next() else { return Ok(()) };
+    let c = &robot.coordinates()[i];
+    let (lower, upper, unit) = (c.limits.lower, c.limits.upper, c.kind.unit());
     Err(Error::InvalidOption {
         option,
-        value: format!("{q:?}"),
-        reason: format!("{}; `info` shows the limits", outside.join("; ")),
+        value: format!("{} at {} {unit}", c.name, q[i]),
+        reason: format!("its limits are {lower} and {upper} {unit}"),
     })
 }
 
@@ -244,6 +236,13 @@ fn task(args: &TargetArgs) -> Result<(Task, String)> {
             "position only (--rpy, --quaternion or --rotation-vector give an orientation)".into()
         }
         (None, "orientation") => "orientation only (--to gives a position)".into(),
+        (None, _) => "position and orientation".into(),
+        (_, "pose") if !orientation => {
+            "position and orientation, the orientation held as at the start".into()
+        }
+        (_, "pose") if !position => {
+            "position and orientation, the position held as at the start".into()
+        }
         (_, "pose") => "position and orientation".into(),
         _ => {
             let names = COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
@@ -274,7 +273,7 @@ fn components(list: &str) -> Result<[bool; 6]> {
 }
 
 /// What is given of the target, the rest as at the start.
-fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> Result<Pose> {
+fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> anyhow::Result<Pose> {
     let si = |x: f64| if degrees { x.to_radians() } else { x };
     let mut pose = from;
     let mut given = false;
@@ -303,13 +302,10 @@ fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> Result<Pose> {
     if given {
         return Ok(pose);
     }
-    Err(Error::InvalidOption {
-        option: "target",
-        value: "nothing".to_owned(),
-        reason: "say where to move: --to x,y,z, an orientation (--rpy, --quaternion, \
-                 --rotation-vector), or --joint-to q"
-            .to_owned(),
-    })
+    anyhow::bail!(
+        "no target: say where to move with --to x,y,z, with an orientation (--rpy, --quaternion, \
+         --rotation-vector) or with --joint-to q"
+    )
 }
 
 fn path(args: &PathArgs, from: Pose, to: Pose) -> Result<Option<CartesianPath>> {

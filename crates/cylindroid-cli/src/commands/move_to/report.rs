@@ -133,7 +133,7 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         reached: outcome.reached,
         reason: sentences::reason(outcome),
         explanation: match way {
-            Way::Round { stalled } => sentences::round(job, stalled),
+            Way::Round { stalled } if outcome.reached => sentences::round(job, stalled),
             _ => sentences::explanation(job, outcome, way.offered()),
         },
         q: &outcome.q,
@@ -210,7 +210,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             (
                 "reason",
                 match way {
-                    Way::Round { stalled } => sentences::round(job, stalled),
+                    Way::Round { stalled } if outcome.reached => sentences::round(job, stalled),
                     _ if outcome.reached => String::new(),
                     _ => sentences::explanation(job, outcome, way.offered()),
                 },
@@ -232,7 +232,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ("inverse", job.options.method.name().to_owned()),
             ("secondary", secondary(job)),
             ("limits met", limits_met(job, outcome)),
-            ("final q [rad or m]", output::list(&outcome.q)),
+            ("final q [rad or m]", output::entries(&outcome.q)),
         ],
     )?;
     Ok(())

@@ -4,7 +4,7 @@ use cylindroid::Reference;
 use cylindroid::control::{Outcome, Stall};
 
 use super::job::{COMPONENTS, Job};
-use crate::output::{list, number};
+use crate::output::number;
 
 /// The cause as one word: "reached", a [`Stall::name`], or "time-limit".
 pub(super) fn reason(outcome: &Outcome) -> &'static str {
@@ -28,12 +28,18 @@ pub(super) fn round(job: &Job, stalled: &Outcome) -> String {
             "for want of progress".to_owned()
         }
     };
+    let components = job.options.task.components;
+    let mut left = Vec::new();
+    if components[..3].contains(&true) {
+        left.push(format!("{} m", number(stalled.last.position_error)));
+    }
+    if components[3..].contains(&true) {
+        left.push(format!("{} rad", number(stalled.last.orientation_error)));
+    }
     format!(
-        "Going straight at the target, the servo would stall {} m and {} rad before it, {what}. \
-         So every joint moved straight to another posture that reaches it (--no-detour keeps the \
-         servo's motion).",
-        number(stalled.last.position_error),
-        number(stalled.last.orientation_error)
+        "Going straight at the target, the servo would stall {} before it, {what}. So every joint \
+         moved straight to another posture that reaches it (--no-detour keeps the servo's motion).",
+        left.join(" and "),
     )
 }
 
@@ -78,29 +84,47 @@ pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[
         text.push_str(&format!(
             " Another posture does reach it: --q \"{0}\" to start there, or --joint-to \"{0}\" to \
              move there first.",
-            list(q)
+            pasteable(job, q)
         ));
     }
     text
 }
 
+/// A configuration that can be pasted back as an argument: six digits, all of them where six would
+/// be beyond a limit.
+fn pasteable(job: &Job, q: &[f64]) -> String {
+    let entries = job.robot.coordinates().iter().zip(q).map(|(c, x)| {
+        let short = number(*x);
+        let within = |x: f64| (c.limits.lower..=c.limits.upper).contains(&x);
+        if short.parse().is_ok_and(within) { short } else { x.to_string() }
+    });
+    entries.collect::<Vec<_>>().join(", ")
+}
+
 fn limits(job: &Job, outcome: &Outcome, coordinates: &[usize]) -> String {
-    let stands = coordinates.iter().map(|&i| {
-        let c = &job.robot.coordinates()[i];
-        let q = outcome.q[i];
+    let ends = coordinates.iter().map(|&i| {
+        let (c, q) = (&job.robot.coordinates()[i], outcome.q[i]);
         let is_lower = q - c.limits.lower < c.limits.upper - q;
         let (end, limit) =
             if is_lower { ("lower", c.limits.lower) } else { ("upper", c.limits.upper) };
-        format!("{} at its {end} limit {} {}", c.name, number(limit), c.kind.unit())
+        (&c.name, end, number(limit), c.kind.unit())
     });
-    let stands: Vec<String> = stands.collect();
-    let (noun, verb) = if stands.len() == 1 { ("Joint", "stands") } else { ("Joints", "stand") };
+    let ends: Vec<_> = ends.collect();
+    let stands = match &ends[..] {
+        [(name, end, limit, unit)] => {
+            format!("Joint {name} stands at its {end} limit, {limit} {unit}")
+        }
+        several => {
+            let list = several
+                .iter()
+                .map(|(name, end, limit, unit)| format!("{name} ({end}, {limit} {unit})"));
+            format!("Joints stand at their limits: {}", list.collect::<Vec<_>>().join(", "))
+        }
+    };
     format!(
-        "{noun} {} {verb}: without the limit{} the tool would get nearer, the other joints cannot \
-         do it alone. Start from another posture (--q), keep the joints away from their limits \
-         (--secondary centring), or leave components free (--task).",
-        stands.join(", "),
-        if stands.len() == 1 { "" } else { "s" },
+        "{stands}. Without that the tool would get nearer; the other joints cannot do it alone. \
+         Start from another posture (--q), keep the joints away from their limits (--secondary \
+         centring), or leave components free (--task)."
     )
 }
 

@@ -1,0 +1,84 @@
+//! Bad input: one clear message on stderr, nothing on stdout, exit code 2.
+
+use crate::cylindroid;
+
+fn refused(arguments: &[&str], message: &str) {
+    let output = cylindroid(arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(stderr.contains(message), "{arguments:?}: {stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+}
+
+const TO: [&str; 4] = ["move", "panda", "--to", "0.4,0.1,0.4"];
+
+fn refused_move(more: &[&str], message: &str) {
+    refused(&[&TO, more].concat(), message);
+}
+
+#[test]
+fn unknown_names_offer_the_nearest() {
+    refused(&["info", "pandas"], "nearest: panda");
+    refused(&["fk", "panda", "--frame", "hand"], "no frame named 'hand'; nearest: hand_tcp");
+    refused(&["fk", "panda", "--q", "panda_joint9=1"], "no joint named 'panda_joint9'");
+    refused_move(&["--inverse", "damp"], "nearest: damped");
+    refused_move(&["--secondary", "center"], "nearest: centring");
+    refused_move(&["--task", "x,y,yaw"], "no task or task component named 'yaw'");
+}
+
+#[test]
+fn configurations_must_fit() {
+    refused(&["fk", "panda", "--q", "0,0"], "--q has 2 entries, expected 7");
+    refused(&["fk", "panda", "--q", "0,0,nan,0,0,0,0"], "[2] (panda_joint3) is not finite");
+    refused(&["fk", "panda", "--q", "0,0,x,0,0,0,0"], "'x' is not a number");
+    refused_move(&["--q", "panda_joint1=4"], "panda_joint1 at 4 rad");
+    refused(&["move", "panda", "--joint-to", "zero"], "panda_joint4 at 0 rad");
+}
+
+#[test]
+fn targets_must_be_finite_and_complete() {
+    refused(&["move", "panda"], "no target");
+    refused(&["move", "panda", "--to", "nan,0,0"], "--to[0] is not finite");
+    refused(&["move", "panda", "--to", "0.1,0.2"], "2 numbers where 3 are needed");
+    refused(&["move", "panda", "--quaternion", "0,0,0,0"], "it must be finite and not zero");
+    refused_move(&["--rpy", "0,0,inf"], "--rpy[2] is not finite");
+    refused_move(&["--rpy", "0,0,0", "--rotation-vector", "0,0,0"], "cannot be used with");
+    refused_move(&["--line", "--via", "0,0,1"], "cannot be used with");
+}
+
+#[test]
+fn servo_options_must_make_a_controller() {
+    refused_move(&["--gain", "3000"], "gain * dt = 3 must be below 2");
+    refused_move(&["--gain", "5,0"], "orientation gain = 0");
+    refused_move(&["--dt", "-1e-3"], "dt = -0.001");
+    refused_move(&["--length", "nan"], "length = NaN");
+    refused_move(&["--time-limit", "0"], "--time-limit = 0");
+    refused_move(&["--tolerance-position", "0"], "position tolerance = 0");
+    refused_move(&["--speed", "0"], "linear speed = 0");
+    refused_move(&["--damping", "0.1"], "the inverse 'truncated' has no such number but --eps");
+    refused_move(&["--eps", "1"], "eps = 1 cannot be used");
+    refused_move(&["--acceleration-linear", "0", "--line"], "acceleration bound = 0");
+}
+
+#[test]
+fn files_must_have_a_known_name() {
+    refused_move(&["--out", "way.txt"], "must end in .csv or .json");
+    refused_move(&["--plot", "way.png"], "must end in .svg");
+    refused_move(&["--out", "/no/such/folder/way.csv"], "cannot write /no/such/folder/way.csv");
+    refused(&["info", "no_such.urdf"], "cannot read no_such.urdf");
+}
+
+#[test]
+fn a_broken_file_is_shown_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("broken.urdf");
+    let text = "<robot name=\"r\">\n  <link name=\"a\"/>\n  <joint name=\"j\" type=\"hinge\">\n    \
+                <parent link=\"a\"/><child link=\"b\"/>\n  </joint>\n  <link name=\"b\"/>\n</robot>\n";
+    std::fs::write(&path, text).unwrap();
+    let output = cylindroid(&["info", path.to_str().unwrap()]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("broken.urdf:3:"), "{stderr}");
+    assert!(stderr.contains("type=\"hinge\""), "the source line: {stderr}");
+}

@@ -1,0 +1,40 @@
+//! The binary as users meet it: exit codes, messages, JSON, files.
+
+#![allow(clippy::unwrap_used)]
+
+mod bad_input;
+mod motion;
+mod shape;
+
+use std::process::{Command, Output};
+
+/// Runs the binary.
+fn cylindroid(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_cylindroid")).args(arguments).output().unwrap()
+}
+
+/// Runs it with `--json` and expects this exit code.
+fn json(arguments: &[&str], code: i32) -> serde_json::Value {
+    let output = cylindroid(&[arguments, &["--json"]].concat());
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Runs it, expects success, returns what it printed.
+fn text(arguments: &[&str]) -> String {
+    let output = cylindroid(arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Largest difference of two lists (the JSON reader of the tests is off by one rounding).
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
+}
+
+/// The numbers of a JSON array.
+fn numbers(value: &serde_json::Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}

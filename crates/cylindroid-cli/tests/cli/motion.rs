@@ -1,0 +1,152 @@
+//! `move`.
+
+use crate::{cylindroid, difference, json, numbers, text};
+
+#[test]
+fn the_command_of_the_readme_reaches() {
+    let report = json(&["move", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"], 0);
+    assert_eq!((&report["reached"], &report["reason"]), (&true.into(), &"reached".into()));
+    assert!(report["position_error"].as_f64().unwrap() <= 1e-6);
+    assert!(report["orientation_error"].as_f64().unwrap() <= 1e-6);
+    assert_eq!(report["joint_names"][6], "panda_joint7");
+    let q = numbers(&report["q"]).iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let fk = json(&["fk", "panda", "--q", &q], 0);
+    let position = |value: &serde_json::Value| numbers(&value["pose"]["position"]);
+    assert!(difference(&position(&fk), &position(&report)) < 1e-15);
+    assert!((numbers(&fk["pose"]["position"])[0] - 0.45).abs() < 1e-6);
+    assert!(report["steps"].as_u64().unwrap() > 0 && report["time"].as_f64().unwrap() > 0.0);
+    assert!(report["min_singular_ratio"].as_f64().unwrap() > 0.0);
+    assert!(report["limits_hit"].as_array().unwrap().iter().all(|l| l["kind"].is_string()));
+}
+
+#[test]
+fn without_an_orientation_only_the_position_is_driven() {
+    let report = json(&["move", "panda", "--to", "-0.3, 0.1,", "0.2"], 0);
+    assert_eq!(report["task"], serde_json::json!(["x", "y", "z"]));
+    assert!(text(&["move", "panda", "--to", "4e-1,0,0.4"]).contains("position only"));
+}
+
+#[test]
+fn a_target_out_of_reach_is_a_negative_answer() {
+    let report = json(&["move", "panda", "--to", "2,0,0.3"], 1);
+    assert_eq!((&report["reached"], &report["reason"]), (&false.into(), &"out-of-reach".into()));
+    assert!(report["explanation"].as_str().unwrap().contains("Bring the target nearer"));
+}
+
+#[test]
+fn too_few_joints_name_what_remains() {
+    let command = ["move", "youbot", "--to", "0.3,0.1,0.3", "--rpy", "0.3,1.5,0.2"];
+    assert_eq!(json(&command, 1)["reason"], "too-few-joints");
+    let output = cylindroid(&command);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("not reached"));
+}
+
+#[test]
+fn time_limit_is_a_negative_answer() {
+    let report = json(&["move", "panda", "--to", "0.4,0.1,0.4", "--time-limit", "0.1"], 1);
+    assert_eq!(report["reason"], "time-limit");
+    assert!(report["time"].as_f64().unwrap() < 0.102);
+}
+
+#[test]
+fn every_inverse_and_secondary_task_reaches() {
+    for inverse in [
+        "truncated",
+        "damped",
+        "variable-damping",
+        "numerical-filtering",
+        "selectively-damped",
+        "singular-value-filtering",
+    ] {
+        let report = json(&["move", "panda", "--to", "0.4,0.1,0.4", "--inverse", inverse], 0);
+        assert_eq!(report["inverse"], inverse);
+    }
+    for secondary in ["posture", "centring=0.5", "limit-avoidance", "manipulability=2", "none"] {
+        let report = json(&["move", "panda", "--to", "0.4,0.1,0.4", "--secondary", secondary], 0);
+        let count = report["secondary"].as_array().unwrap().len();
+        assert_eq!(count, usize::from(secondary != "none"), "{secondary}");
+    }
+}
+
+#[test]
+fn a_line_stays_straight() {
+    let command = ["move", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6", "--line"];
+    for law in ["trapezoidal", "jerk-limited"] {
+        let report = json(&[&command[..], &["--law", law]].concat(), 0);
+        assert!(report["path_deviation"]["position"].as_f64().unwrap() < 1e-4, "{law}");
+        assert!(report["path_deviation"]["orientation"].as_f64().unwrap() < 1e-4, "{law}");
+        assert!(report["time"].as_f64().unwrap() >= report["law_duration"].as_f64().unwrap());
+    }
+}
+
+#[test]
+fn an_arc_goes_through_its_point() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("arc.json");
+    let path = file.to_str().unwrap();
+    let command = ["move", "panda", "--to", "0.4,-0.3,0.4", "--via", "0.5,0,0.6", "--out", path];
+    json(&command, 0);
+    let way: serde_json::Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+    let nearest = way["samples"].as_array().unwrap().iter().map(|sample| {
+        let p = numbers(&sample["position"]);
+        ((p[0] - 0.5).powi(2) + p[1].powi(2) + (p[2] - 0.6).powi(2)).sqrt()
+    });
+    assert!(nearest.fold(f64::INFINITY, f64::min) < 1e-3);
+}
+
+#[test]
+fn joints_go_straight_and_end_together() {
+    let report = json(&["move", "panda", "--joint-to", "panda_joint1=30", "--degrees"], 0);
+    let q = numbers(&report["q"]);
+    assert!((q[0] - std::f64::consts::FRAC_PI_6).abs() < 1e-15);
+    assert_eq!(q[1..], numbers(&report["start"])[1..]);
+}
+
+#[test]
+fn files_hold_every_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (csv, svg) = (file("way.csv"), file("way.svg"));
+    let target = ["move", "ur5e", "--to", "0.4,0.2,0.5", "--line"];
+    let report = json(&[&target[..], &["--out", &csv, "--plot", &svg]].concat(), 0);
+
+    let mut reader = csv::Reader::from_path(&csv).unwrap();
+    let header: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(header[..2], ["time", "q.shoulder_pan_joint"]);
+    assert_eq!(
+        header[13..],
+        [
+            "x",
+            "y",
+            "z",
+            "qw",
+            "qx",
+            "qy",
+            "qz",
+            "position_error",
+            "orientation_error",
+            "singular_ratio",
+        ]
+    );
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len() as u64, report["steps"].as_u64().unwrap() + 1);
+    let last: Vec<f64> = rows.last().unwrap().iter().map(|x| x.parse().unwrap()).collect();
+    assert!(difference(&last[1..7], &numbers(&report["q"])) < 2e-15, "full precision");
+
+    let drawing = std::fs::read_to_string(&svg).unwrap();
+    assert!(drawing.starts_with("<svg") && drawing.trim_end().ends_with("</svg>"));
+    for words in ["shoulder_pan_joint", "time [s]", "error [m, rad]", "joints [rad]"] {
+        assert!(drawing.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn a_stall_at_limits_goes_round_or_offers_another_posture() {
+    let command = ["move", "puma560", "--to", "-0.5,0.2,0.3"];
+    let report = json(&[&command[..], &["--no-detour"]].concat(), 1);
+    assert_eq!(report["reason"], "limits");
+    let round = json(&command, 0);
+    assert_eq!((&round["detour"], &round["detour_reason"]), (&true.into(), &"limits".into()));
+    let q = numbers(&report["other_posture"]).iter().map(f64::to_string).collect::<Vec<_>>();
+    json(&[&command[..], &["--q", &q.join(",")]].concat(), 0);
+}
