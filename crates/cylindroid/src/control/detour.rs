@@ -5,16 +5,14 @@
 //!          from postures drawn evenly within the limits, until one run reaches the target. Limits
 //!          of position form a box, so the straight way there through joint space keeps them.
 //! Units    rad, m
-//! Valid    any task and arm. `None` says that no run of so many reached it: likely, not proved,
+//! Valid    any task; arms without spherical and free joints (else `None`). `None` says that no run of so many reached it: likely, not proved,
 //!          that no posture does. The draws are the same on every run.
 //! Why so   what stops a servo is nearly always the posture it started from
 //! Checked  tests/it/servo.rs::a_detour_reaches_what_the_servo_does_not
 
-use super::joint_move::{JointMove, JointPath};
 use super::servo::{Servo, Status, Target};
-use super::time_law::Bounds;
 use crate::error::Result;
-use crate::model::Mechanism;
+use crate::model::CoordinateKind;
 use crate::spatial::Pose;
 
 /// Steps of one run: far more than a converging run takes.
@@ -43,8 +41,14 @@ pub fn find_posture(
     target: Pose,
     most_runs: usize,
 ) -> Result<Option<Detour>> {
-    let mut search = servo.unhurried(DT, GAIN)?;
     let mechanism = servo.mechanism().clone();
+    let straight = |c: &usize| {
+        matches!(mechanism.coordinates()[*c].kind, CoordinateKind::Angle | CoordinateKind::Length)
+    };
+    if !servo.coordinates().iter().all(straight) {
+        return Ok(None); // there is no straight way for spherical and free joints
+    }
+    let mut search = servo.unhurried(DT, GAIN)?;
     let mut random = 0_u64;
     for run in 0..most_runs {
         let mut posture = q.to_vec();
@@ -69,33 +73,6 @@ pub fn find_posture(
         }
     }
     Ok(None)
-}
-
-/// The straight joint move from `q` to `to` within the limits of speed and acceleration of every
-/// coordinate, where `acceleration` (rad/s^2 or m/s^2) holds for those that give none. Without one
-/// a joint takes half a second to full speed; without a limit of speed it makes 1 rad/s or m/s.
-///
-/// # Errors
-/// Configurations of the wrong size or not finite; an acceleration that is not positive.
-pub fn joint_move(
-    mechanism: &Mechanism,
-    q: &[f64],
-    to: &[f64],
-    acceleration: f64,
-) -> Result<JointMove> {
-    mechanism.check_q("start of the joint move", q)?;
-    mechanism.check_q("end of the joint move", to)?;
-    let bounds: Vec<Bounds> = mechanism
-        .coordinates()
-        .iter()
-        .map(|c| {
-            let velocity = if c.limits.velocity.is_finite() { c.limits.velocity } else { 1.0 };
-            let limit = c.limits.acceleration.min(acceleration);
-            let acceleration = if limit.is_finite() { limit } else { 2.0 * velocity };
-            Bounds { velocity, acceleration, jerk: f64::INFINITY }
-        })
-        .collect();
-    JointMove::new(JointPath::new(q, to)?, &bounds)
 }
 
 /// The next number in [0, 1) of a fixed sequence (SplitMix64).

@@ -15,6 +15,7 @@
 use super::path::within;
 use super::time_law::{Bounds, LawSample, TimeLaw};
 use crate::error::{Error, Result};
+use crate::model::{CoordinateKind, Mechanism};
 
 /// The straight motion of all joints from one configuration to another, over s in [0, 1].
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +77,15 @@ pub struct JointMove {
     law: TimeLaw,
 }
 
+/// Bounds of the joints that have none of their own in the model, and the jerk of all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointDefaults {
+    /// For joints that turn (rad).
+    pub angle: Bounds,
+    /// For joints that slide (m).
+    pub length: Bounds,
+}
+
 /// Where [`JointMove::sample_into`] writes, n entries each.
 #[derive(Debug)]
 pub struct JointSample<'a> {
@@ -99,6 +109,48 @@ impl JointMove {
             tightest = tightest.tightest(bound.over(displacement.abs()));
         }
         Ok(Self { path, law: TimeLaw::along(tightest)? })
+    }
+
+    /// The fastest straight move from `q` to `to` within the limits of a mechanism's joints.
+    ///
+    /// # Errors
+    /// Configurations of the wrong size or not finite; a displacement of a spherical or free joint,
+    /// which has no straight way; default bounds that are not positive.
+    pub fn within_limits(
+        mechanism: &Mechanism,
+        q: &[f64],
+        to: &[f64],
+        defaults: &JointDefaults,
+    ) -> Result<Self> {
+        mechanism.check_q("start of the joint move", q)?;
+        mechanism.check_q("end of the joint move", to)?;
+        let path = JointPath::new(q, to)?;
+        let mut bounds = Vec::with_capacity(path.dof());
+        for (coordinate, displacement) in mechanism.coordinates().iter().zip(path.displacement()) {
+            let default = match coordinate.kind {
+                CoordinateKind::Angle => defaults.angle,
+                CoordinateKind::Length => defaults.length,
+                CoordinateKind::RotationVector | CoordinateKind::Position
+                    if *displacement != 0.0 =>
+                {
+                    return Err(Error::InvalidOption {
+                        option: "joint move",
+                        value: coordinate.name.clone(),
+                        reason: "spherical and free joints have no straight motion between two \
+                                 configurations; drive a frame instead"
+                            .to_owned(),
+                    });
+                }
+                CoordinateKind::RotationVector | CoordinateKind::Position => defaults.angle,
+            };
+            let own = |limit: f64, default: f64| if limit.is_finite() { limit } else { default };
+            bounds.push(Bounds {
+                velocity: own(coordinate.limits.velocity, default.velocity),
+                acceleration: own(coordinate.limits.acceleration, default.acceleration),
+                jerk: default.jerk,
+            });
+        }
+        Self::new(path, &bounds)
     }
 
     /// The same move slowed down to end at `duration` (s).

@@ -18,9 +18,9 @@ mod stall;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
-pub use detour::{Detour, find_posture, joint_move};
+pub use detour::{Detour, find_posture};
 pub use drive::{Outcome, Sample, drive};
-pub use joint_move::{JointMove, JointPath, JointSample};
+pub use joint_move::{JointDefaults, JointMove, JointPath, JointSample};
 pub use limits::{LimitKind, Motion1, RateBounds};
 pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};
 pub use path::{CartesianPath, Deviation, Turn};

@@ -1,6 +1,6 @@
 use cylindroid::control::{
-    Gain, JointSample, LimitKind, Outcome, Projector, Secondary, Speed, Stall, Status, Target,
-    Task, Tolerance, drive, find_posture, joint_move,
+    Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Outcome, Projector, Secondary,
+    Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
 };
 use cylindroid::inverse::Method;
 use cylindroid::model::{JointKind, JointSpec, Limits};
@@ -605,7 +605,9 @@ fn joint_moves_keep_the_limits() {
         let robot = catalogue::load(name).unwrap();
         let mut random = Random(71);
         let (from, to) = (random.q(&robot), random.q(&robot));
-        let motion = joint_move(&robot, &from, &to, 40.0).unwrap();
+        let default = Bounds { velocity: 1.0, acceleration: 40.0, jerk: f64::INFINITY };
+        let defaults = JointDefaults { angle: default, length: default };
+        let motion = JointMove::within_limits(&robot, &from, &to, &defaults).unwrap();
         let n = robot.n();
         let (mut q, mut rates, mut before) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let (steps, dt) = (1000, motion.law().duration() / 1000.0);

@@ -1,8 +1,8 @@
 //! From the arguments of `move` to a job that can be done: options of the servo, start, target.
 
 use cylindroid::control::{
-    Bounds, CartesianBounds, CartesianMove, CartesianPath, Gain, JointMove, Projector, Secondary,
-    Task,
+    Bounds, CartesianBounds, CartesianMove, CartesianPath, Gain, JointDefaults, JointMove,
+    Projector, Secondary, Task,
 };
 use cylindroid::kinematics::Chain;
 use cylindroid::model::Mechanism;
@@ -20,7 +20,7 @@ use crate::values::Named;
 pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 /// Speeds on a path where none are given [m/s], [rad/s].
-const PATH_SPEED: (f64, f64) = (0.25, 1.0);
+pub(super) const PATH_SPEED: (f64, f64) = (0.25, 1.0);
 
 /// What is to be done.
 #[derive(Debug)]
@@ -38,6 +38,8 @@ pub(super) struct Job {
     pub(super) time_limit: f64,
     /// Whether to go round where the servo alone stalls on its way to a pose.
     pub(super) detour: bool,
+    /// For joint moves.
+    pub(super) defaults: JointDefaults,
 }
 
 /// How the target moves.
@@ -76,13 +78,14 @@ impl Job {
         // Before the target is looked at: a broken option is the clearer message.
         options.check(&robot)?;
 
+        let defaults = joints::defaults(args);
         let pose = |q: &[f64]| robot.state(q).map(|s| s.pose(options.end_effector));
         let from = pose(&start)?;
         let (target_pose, goal, driven) = if let Some(q) = &args.path.joint_to {
             let q = q.configuration(&robot, degrees)?;
             robot.check_q("--joint-to", &q)?;
             within_limits(&robot, "--joint-to", &q)?;
-            let motion = Box::new(joints::plan(&robot, &start, &q, args)?);
+            let motion = Box::new(JointMove::within_limits(&robot, &start, &q, &defaults)?);
             (pose(&q)?, Goal::Joints(motion), "all joints, straight".to_owned())
         } else {
             let to = target_pose(&args.target, from, degrees)?;
@@ -100,7 +103,18 @@ impl Job {
         let frame = robot.frame_of(options.end_effector.frame).name.clone();
         let time_limit = args.time_limit;
         let detour = !args.no_detour && matches!(goal, Goal::Pose(_));
-        Ok(Self { robot, options, frame, start, target_pose, goal, driven, time_limit, detour })
+        Ok(Self {
+            robot,
+            options,
+            frame,
+            start,
+            target_pose,
+            goal,
+            driven,
+            time_limit,
+            detour,
+            defaults,
+        })
     }
 }
 

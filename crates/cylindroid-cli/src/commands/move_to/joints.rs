@@ -2,52 +2,37 @@
 
 use std::collections::BTreeSet;
 
-use cylindroid::control::{Bounds, JointMove, JointPath, JointSample, Outcome, Sample};
-use cylindroid::model::{CoordinateKind, Mechanism};
-use cylindroid::{Error, Result, Servo};
+use cylindroid::control::{
+    Bounds, JointDefaults, JointMove, JointSample, LimitKind, Outcome, Sample,
+};
+use cylindroid::{Result, Servo};
 
-use super::job::Job;
+use super::job::{Job, PATH_SPEED};
 use crate::args::{LawName, MoveArgs};
 
-/// The fastest such motion within the limits of all joints.
-pub(super) fn plan(
-    robot: &Mechanism,
-    start: &[f64],
-    goal: &[f64],
-    args: &MoveArgs,
-) -> Result<JointMove> {
-    let path = JointPath::new(start, goal)?;
-    let mut bounds = Vec::with_capacity(robot.n());
-    for (coordinate, displacement) in robot.coordinates().iter().zip(path.displacement()) {
-        let (acceleration, jerk) = match coordinate.kind {
-            CoordinateKind::Angle => (args.path.acceleration_angular, args.path.jerk_angular),
-            CoordinateKind::Length => (args.path.acceleration_linear, args.path.jerk_linear),
-            CoordinateKind::RotationVector | CoordinateKind::Position if *displacement != 0.0 => {
-                return Err(Error::InvalidOption {
-                    option: "--joint-to",
-                    value: coordinate.name.clone(),
-                    reason: "spherical and free joints have no straight motion between two \
-                             configurations; drive a frame with --to instead"
-                        .to_owned(),
-                });
-            }
-            CoordinateKind::RotationVector | CoordinateKind::Position => (1.0, 1.0),
-        };
-        let own = coordinate.limits.acceleration;
-        bounds.push(Bounds {
-            velocity: coordinate.limits.velocity,
-            acceleration: if own.is_finite() {
-                own
-            } else {
-                args.servo.acceleration.unwrap_or(acceleration)
-            },
-            jerk: match args.path.law {
-                LawName::Trapezoidal => f64::INFINITY,
-                LawName::JerkLimited => jerk,
-            },
-        });
+/// Share of its limit from which a rate counts as having met it: a law leaves a rounding [-].
+const AT_SPEED: f64 = 1.0 - 1e-9;
+
+/// What joints keep to that have no limits of their own in the model.
+pub(super) fn defaults(args: &MoveArgs) -> JointDefaults {
+    let path = &args.path;
+    let jerk = |value: f64| match path.law {
+        LawName::Trapezoidal => f64::INFINITY,
+        LawName::JerkLimited => value,
+    };
+    let acceleration = |on_path: f64| args.servo.acceleration.unwrap_or(on_path);
+    JointDefaults {
+        angle: Bounds {
+            velocity: PATH_SPEED.1,
+            acceleration: acceleration(path.acceleration_angular),
+            jerk: jerk(path.jerk_angular),
+        },
+        length: Bounds {
+            velocity: PATH_SPEED.0,
+            acceleration: acceleration(path.acceleration_linear),
+            jerk: jerk(path.jerk_linear),
+        },
     }
-    JointMove::new(path, &bounds)
 }
 
 /// Runs it, step by step like a servo, until its end or the time limit. The servo only reports
@@ -62,6 +47,7 @@ pub(super) fn drive(
     let (mut q, mut rates) = (job.start.clone(), vec![0.0; job.robot.n()]);
     let mut steps = 0_usize;
     let mut min_singular_ratio = f64::INFINITY;
+    let mut limits_hit = BTreeSet::new();
     loop {
         let time = steps as f64 * dt;
         motion.sample_into(time, JointSample { positions: &mut q, velocities: &mut rates })?;
@@ -69,9 +55,14 @@ pub(super) fn drive(
         let last = servo.step(&q, job.target_pose)?;
         min_singular_ratio = min_singular_ratio.min(last.singular_ratio);
         observe(Sample { time, q: &q, rates: &rates, step: &last });
+        for (i, (coordinate, rate)) in job.robot.coordinates().iter().zip(&rates).enumerate() {
+            if rate.abs() >= AT_SPEED * coordinate.limits.velocity {
+                limits_hit.insert((i, LimitKind::Velocity));
+            }
+        }
         let reached = time >= motion.law().duration();
         if reached || time >= job.time_limit {
-            let (stall, limits_hit) = (None, BTreeSet::new());
+            let stall = None;
             return Ok(Outcome {
                 reached,
                 stall,

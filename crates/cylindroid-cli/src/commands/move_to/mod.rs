@@ -9,7 +9,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Servo;
-use cylindroid::control::{Outcome, Sample, Status, Target, drive, find_posture, joint_move};
+use cylindroid::control::{JointMove, Outcome, Sample, Status, Target, drive, find_posture};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::job::{Goal, Job};
@@ -87,7 +87,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
         return direct(Way::Offered { posture });
     }
     // From the start once more, straight through joint space: the stalled attempt is not made.
-    let motion = joint_move(&job.robot, &job.start, &posture, job.options.acceleration)?;
+    let motion = JointMove::within_limits(&job.robot, &job.start, &posture, &job.defaults)?;
     if let Some(trajectory) = &mut trajectory {
         trajectory.clear();
     }
