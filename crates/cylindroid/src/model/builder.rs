@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::assembly::{Assembly, default_tool};
-use super::joint::Joint;
+use super::joint::{Joint, Limits};
 use super::link::Link;
 use super::mechanism::{Data, Frame, FrameId, Mechanism};
 use super::report::LoadReport;
@@ -362,11 +362,7 @@ impl Builder {
 
         let n = assembly.coordinates.len();
         let home = match &self.home {
-            None => assembly
-                .coordinates
-                .iter()
-                .map(|c| 0.0_f64.clamp(c.limits.lower, c.limits.upper))
-                .collect(),
+            None => assembly.coordinates.iter().map(|c| rest(&c.limits)).collect(),
             Some(q) if q.len() == n && q.iter().all(|x| x.is_finite()) => q.clone(),
             Some(q) => {
                 return self.refuse(
@@ -415,6 +411,17 @@ impl Builder {
                 report: self.report,
             }),
         })
+    }
+}
+
+/// Zero where the limits allow it, else their middle: no joint rests at a limit.
+fn rest(limits: &Limits) -> f64 {
+    let (lower, upper) = (limits.lower, limits.upper);
+    let middle = 0.5 * (lower + upper);
+    match (lower <= 0.0 && 0.0 <= upper, middle.is_finite()) {
+        (true, _) => 0.0,
+        (false, true) => middle,
+        (false, false) => 0.0_f64.clamp(lower, upper),
     }
 }
 

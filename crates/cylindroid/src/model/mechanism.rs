@@ -150,7 +150,7 @@ impl Mechanism {
         self.data.tool
     }
 
-    /// The home configuration: the file's, else zero moved into the limits.
+    /// The home configuration: the file's, else zero, and the middle of limits that exclude zero.
     #[must_use]
     pub fn home(&self) -> &[f64] {
         &self.data.home

@@ -54,6 +54,7 @@ pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow:
 /// Runs the motion.
 fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result<Result> {
     let mut servo = Servo::new(&job.robot, job.options.clone())?;
+    let turns = job.options.task.components[3..].contains(&true);
     let mut deviation: Option<Deviation> = None;
     let progress = Progress::new(job.time_limit);
     let mut observe = |sample: Sample<'_>| {
@@ -62,7 +63,10 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
             let now = motion.path().deviation(sample.step.pose);
             let most = deviation.get_or_insert_default();
             most.position = most.position.max(now.position);
-            most.orientation = most.orientation.max(now.orientation);
+            if turns {
+                let before = most.orientation.unwrap_or(0.0);
+                most.orientation = Some(before.max(now.orientation));
+            }
         }
         if let Some(trajectory) = &mut trajectory {
             trajectory.push(&sample);

@@ -43,8 +43,8 @@ impl Way {
 pub(super) struct Deviation {
     /// [m]
     pub(super) position: f64,
-    /// [rad]
-    pub(super) orientation: f64,
+    /// [rad]; nothing where the orientation is not driven.
+    pub(super) orientation: Option<f64>,
 }
 
 #[derive(Debug, Serialize)]
@@ -195,8 +195,8 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
     };
     let deviation = deviation.map_or_else(String::new, |d| {
         let mut text = format!("{} m", output::number(d.position));
-        if angular {
-            text.push_str(&format!(", {} rad", output::number(d.orientation)));
+        if let Some(orientation) = d.orientation {
+            text.push_str(&format!(", {} rad", output::number(orientation)));
         }
         text
     });
