@@ -37,3 +37,8 @@ pub use kinematics::{EndEffector, Reference, State};
 pub use linalg::Matrix;
 pub use model::{FrameId, Mechanism, catalogue, load};
 pub use spatial::{Pose, Rotation, Twist, Vec3, Wrench};
+
+/// The code of the README is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
