@@ -61,3 +61,7 @@ pub const HALF_TURN: f64 = 1e-9;
 /// Three points name no circle when the height of their triangle is below this times its longest
 /// side [-]: a radius beyond 1e5 such sides.
 pub const COLLINEAR: f64 = 1e-6;
+
+/// Rank of a task Jacobian in postures without pattern, relative to the largest singular value:
+/// far below any regular posture, far above rounding [-].
+pub const GENERIC_RANK: f64 = 1e-9;

@@ -22,7 +22,10 @@ use crate::kinematics::{Chain, Reference};
 use crate::linalg::{Matrix, RowSpace, Svd};
 use crate::model::{Limits, Mechanism};
 use crate::spatial::{Pose, Twist};
-use crate::tolerance::AT_LIMIT;
+use crate::tolerance::{AT_LIMIT, GENERIC_RANK};
+
+/// Postures that are asked for the rank of the arm.
+const GENERIC_POSTURES: usize = 3;
 
 /// A moving target.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +85,8 @@ pub struct Servo {
     limits: Vec<Limits>,
     /// Length of the chain after its first joint (m).
     length: f64,
+    /// Rank of the task Jacobian in postures that are not singular.
+    generic_rank: usize,
 
     jacobian: Matrix,
     task: Matrix,
@@ -151,8 +156,9 @@ impl Servo {
         } else {
             Vec::new()
         };
-        Ok(Self {
+        let mut servo = Self {
             length: chain.length_after_first_joint(mechanism),
+            generic_rank: 0,
             mechanism: mechanism.clone(),
             options,
             rows,
@@ -184,7 +190,25 @@ impl Servo {
             last_target: None,
             distance: 0.0,
             chain,
-        })
+        };
+        servo.generic_rank = servo.find_generic_rank();
+        Ok(servo)
+    }
+
+    /// The largest rank of the task Jacobian in a few postures without pattern.
+    fn find_generic_rank(&mut self) -> usize {
+        let n = self.mechanism.n();
+        (1..=GENERIC_POSTURES)
+            .map(|posture| {
+                // Irrational steps: no posture is aligned with another or with the axes.
+                let q: Vec<f64> =
+                    (0..n).map(|i| 0.3 + ((posture * n + i) as f64 * 0.618_034).fract()).collect();
+                self.chain.set(&q);
+                self.load_jacobian();
+                Svd::of(&self.task).rank(GENERIC_RANK).rank
+            })
+            .max()
+            .unwrap_or(0)
     }
 
     /// One step: the rates to command from now until the next step are in [`Servo::rates`].
@@ -283,6 +307,7 @@ impl Servo {
             at_limit: &self.at_limit,
             distance: self.distance,
             length: self.length + self.offset_of_free_position(),
+            generic_rank: self.generic_rank,
         })
     }
 

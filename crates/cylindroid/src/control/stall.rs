@@ -3,12 +3,13 @@
 //! Formula  stalled when the error e = |dp| / L + |angle| has not fallen below (1 - share) of its
 //!          best within the window
 //! Causes   out of reach: the target is farther from the chain's first joint than the chain is
-//!          long (a proof); limits: the motion without limits would lower the error; too few joints:
-//!          the error is orthogonal to all the arm can do and nothing was cut; singular: the error
-//!          lies along directions that the inverse cut
+//!          long (a proof); limits: the motion without limits would lower the error; singular: the
+//!          error is orthogonal to what the inverse retains, and the arm can do more in other
+//!          postures; too few joints: the same, and it cannot
 //! Units    m, rad, s
 //! Checked  tests/it/servo.rs::stall_*
 
+use crate::inverse::is_kept;
 use crate::linalg::Svd;
 
 /// Window within which the error must fall (s), and by which share [-].
@@ -104,6 +105,8 @@ pub(super) struct Evidence<'a> {
     pub(super) at_limit: &'a [usize],
     pub(super) distance: f64,
     pub(super) length: f64,
+    /// Rank of the task Jacobian in postures that are not singular.
+    pub(super) generic_rank: usize,
 }
 
 pub(super) fn classify(e: &Evidence<'_>) -> Stall {
@@ -125,10 +128,9 @@ pub(super) fn classify(e: &Evidence<'_>) -> Stall {
         };
     }
     let direction = e.error.iter().map(|x| x / norm).collect();
-    let rank = e.svd.machine_rank().rank;
-    let cut = e.gains.iter().zip(e.svd.values()).any(|(g, s)| g * s < 0.5);
-    if !cut && rank < e.error.len() {
-        return Stall::TooFewJoints { rank, task: e.error.len(), direction };
+    let kept = e.gains.iter().zip(e.svd.values()).filter(|(g, s)| is_kept(*g * s)).count();
+    if kept >= e.generic_rank {
+        return Stall::TooFewJoints { rank: kept, task: e.error.len(), direction };
     }
     let ratio = if e.svd.is_empty() || e.svd.value(0) == 0.0 {
         0.0

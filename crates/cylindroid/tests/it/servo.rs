@@ -419,6 +419,21 @@ fn stall_with_too_few_joints_says_so() {
     assert!((direction[2] - 1.0).abs() < 1e-9);
 }
 
+/// An arm of the youBot's kind points only in the vertical plane of its first joint: joint 5 does
+/// nothing for a pointing task, in no posture, so this is no singular pose.
+#[test]
+fn stall_of_a_five_joint_arm_is_not_called_singular() {
+    let robot = catalogue::load("youbot").unwrap();
+    let mut servo = servo(&robot, |o| o.task = Task::POINTING);
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let target = Pose { translation: start.translation + Vec3::new(0.0, 0.1, 0.0), ..start };
+    let outcome = run(&mut servo, robot.home(), target);
+    let Some(Stall::TooFewJoints { rank, task, .. }) = outcome.stall else {
+        panic!("{:?}", outcome.stall)
+    };
+    assert_eq!((rank, task), (4, 5));
+}
+
 /// One to seven joints and thirty: the same code, position reached where it can be.
 #[test]
 fn any_number_of_joints() {
