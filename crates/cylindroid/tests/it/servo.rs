@@ -21,6 +21,16 @@ fn servo(robot: &Mechanism, change: impl FnOnce(&mut ServoOptions)) -> Servo {
 
 /// Drives and checks on every step that no limit is left: position, velocity, acceleration.
 fn run_checked(robot: &Mechanism, servo: &mut Servo, q: &[f64], target: Pose) -> Outcome {
+    run_checked_for(30.0, robot, servo, q, target)
+}
+
+fn run_checked_for(
+    duration: f64,
+    robot: &Mechanism,
+    servo: &mut Servo,
+    q: &[f64],
+    target: Pose,
+) -> Outcome {
     let dt = servo.options().dt;
     let fallback = servo.options().acceleration;
     let mut before = vec![0.0; robot.n()];
@@ -37,12 +47,14 @@ fn run_checked(robot: &Mechanism, servo: &mut Servo, q: &[f64], target: Pose) ->
                 assert!(rate.is_finite() && q.is_finite(), "{} is not finite", c.name);
                 assert!(q >= l.lower && q <= l.upper, "{} left its limits: {q}", c.name);
                 assert!(rate.abs() <= l.velocity * (1.0 + 1e-12), "{}: rate {rate}", c.name);
-                let change = (rate - before[i]).abs();
+                // A position has no more digits than f64: their rounding, over dt, is in the rate.
+                let rounding = 16.0 * f64::EPSILON * (1.0 + q.abs()) / dt;
+                let excess = (rate - before[i]).abs() - a * dt * (1.0 + 1e-12);
                 assert!(
-                    change <= a * dt * (1.0 + 1e-9) + 1e-15,
-                    "{}: acceleration {}",
+                    excess <= rounding + 1e-15 * rate.abs(),
+                    "{}: {excess:e} over {}, rounding {rounding:e}",
                     c.name,
-                    change / dt
+                    a * dt
                 );
                 before[i] = rate;
             }
@@ -305,6 +317,52 @@ fn speed_is_saturated_as_a_whole() {
     let ratio = twist.linear.norm() / twist.angular.norm();
     let wanted = Vec3::new(-0.1, 0.2, 0.1).norm() / Vec3::new(0.2, 0.1, 0.0).norm();
     assert!((ratio - wanted).abs() < 1e-6 * wanted);
+}
+
+/// Whatever the options: slow and fast loops, weak and strong joints, weights, targets anywhere.
+#[test]
+fn limits_hold_for_any_options() {
+    let mut random = Random(81);
+    for round in 0..120 {
+        let names = catalogue::names();
+        let robot = catalogue::load(names[round % names.len()]).unwrap();
+        let mut power = |lower: f64, upper: f64| 10_f64.powf(random.within(lower, upper));
+        let dt = power(-4.0, -1.3);
+        let (gain, acceleration, max_rate) =
+            (power(-1.0, 0.28) / dt, power(-2.0, 4.0), power(-2.0, 1.0));
+        let weights: Vec<f64> = (0..robot.n()).map(|_| power(-3.0, 3.0)).collect();
+        let mut servo = servo(&robot, |o| {
+            o.dt = dt;
+            o.gain = Gain { position: gain, orientation: gain };
+            o.acceleration = acceleration;
+            o.method = Method::ALL[round % 6];
+            if let Method::SelectivelyDamped { max_rate: rate } = &mut o.method {
+                *rate = max_rate;
+            }
+            if round % 2 == 0 {
+                o.joint_weights = weights;
+            }
+            if round % 3 == 0 {
+                o.secondary = vec![
+                    Secondary::Centring { gain: 5.0 },
+                    Secondary::Manipulability { gain: 5.0 },
+                ];
+            }
+            if round % 5 == 0 {
+                o.task = Task::POSITION;
+            }
+        });
+        // At a limit every other time.
+        let mut q = random.q(&robot);
+        if round % 2 == 0 {
+            q[round % robot.n()] = robot.coordinates()[round % robot.n()].limits.upper;
+        }
+        let mut target = random.pose();
+        if round % 7 == 0 {
+            target.translation = random.vec3(1e6);
+        }
+        run_checked_for(400.0 * dt, &robot, &mut servo, &q, target);
+    }
 }
 
 /// At and through singular poses rates stay bounded with every inverse.
