@@ -8,7 +8,7 @@
 //! Valid    any task; arms without spherical and free joints (else `None`). `None` says that no run of so many reached it: likely, not proved,
 //!          that no posture does. The draws are the same on every run.
 //! Why so   what stops a servo is nearly always the posture it started from
-//! Checked  tests/it/servo.rs::a_detour_reaches_what_the_servo_does_not
+//! Checked  tests/it/servo/ways.rs::a_detour_reaches_what_the_servo_does_not
 
 use super::servo::{Servo, Status, Target};
 use crate::error::Result;

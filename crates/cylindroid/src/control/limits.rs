@@ -13,7 +13,7 @@
 //! Why so   clamping to (limit - q) / dt alone, as common servo code does, stops a joint at its
 //!          limit with any deceleration; the continuous formula sqrt(2 A room) overshoots by up to
 //!          A dt^2 / 8
-//! Checked  tests/it/servo.rs::limits_*, tests in this file
+//! Checked  tests/it/servo/limits.rs::limits_*, tests in this file
 
 use crate::model::Limits;
 use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};

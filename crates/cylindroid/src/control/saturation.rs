@@ -9,7 +9,7 @@
 //!          only when the direction is lost altogether is it better to move on a bent way than not
 //! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
 //!          Parker 1995 (bounded-variable least squares)
-//! Checked  tests/it/servo.rs::saturation_*
+//! Checked  tests/it/servo/limits.rs::saturation_*
 
 use super::limits::{LimitKind, RateBounds};
 use crate::inverse::{Method, is_kept};

@@ -8,7 +8,7 @@
 //! Valid    coordinates without limits (and rotation vectors) are left alone by centring and limit
 //!          avoidance; the gradient is zero where w is zero up to rounding
 //! Source   Liegeois 1977; Yoshikawa 1985; analytic gradient through the Hessian
-//! Checked  tests/it/servo.rs::secondary_*
+//! Checked  tests/it/servo/secondary.rs::secondary_*
 
 use crate::error::{Error, Result};
 use crate::kinematics::{Chain, Reference};

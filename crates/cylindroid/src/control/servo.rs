@@ -9,7 +9,7 @@
 //! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step.
 //! Fails    on numbers that are not finite, and then leaves the servo as it was
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
-//! Checked  tests/it/servo.rs, tests/allocation.rs
+//! Checked  tests/it/servo/, tests/allocation.rs
 
 use super::limits::{LimitKind, Motion1, RateBounds};
 use super::options::{Projector, ServoOptions};

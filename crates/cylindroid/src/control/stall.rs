@@ -7,7 +7,7 @@
 //!          error is orthogonal to what the inverse retains, and the arm can do more in other
 //!          postures; too few joints: the same, and it cannot
 //! Units    m, rad, s
-//! Checked  tests/it/servo.rs::stall_*
+//! Checked  tests/it/servo/stall.rs::stall_*
 
 use crate::inverse::is_kept;
 use crate::linalg::Svd;

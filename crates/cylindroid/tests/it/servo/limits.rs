@@ -1,0 +1,193 @@
+//! Limits, saturation and singular poses: what rates may be.
+
+use super::*;
+
+/// Into the limit with full acceleration limits: never left, and the twist keeps its direction
+/// while it is only scaled.
+#[test]
+fn limits_scale_before_they_bend() {
+    let robot = planar(2);
+    let mut servo = servo(&robot, |o| {
+        o.task = Task::POSITION;
+        o.gain = Gain { position: 200.0, orientation: 1.0 };
+    });
+    let q = [0.4, 0.9];
+    let state = robot.state(&q).unwrap();
+    let start = state.pose(robot.tool());
+    let target = Pose { translation: start.translation + Vec3::new(-0.3, 0.2, 0.0), ..start };
+    let step = servo.step(&q, target).unwrap();
+    assert!(step.saturation.scale < 1.0 && !step.saturation.bent);
+    let v = state.jacobian(robot.tool(), Reference::LocalWorldAligned).mul_vec(servo.rates());
+    let cross = v[0] * 0.2 - v[1] * -0.3;
+    assert!(cross.abs() < 1e-12 * v[0].hypot(v[1]), "direction lost: {v:?}");
+    let largest = servo.rates().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
+    assert!((largest - 2.0).abs() < 1e-12, "the fastest joint goes at its limit: {largest}");
+    assert!(servo.active_limits().any(|(_, kind)| kind == LimitKind::Velocity));
+}
+
+/// A redundant arm with a blocked joint does the task with the others, unscaled.
+#[test]
+fn saturation_uses_the_other_joints() {
+    let mut b = Mechanism::builder("4r");
+    for i in 0..4 {
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::X * f64::from(u8::from(i > 0))),
+            limits: Limits { velocity: if i == 0 { 1e-3 } else { 3.0 }, ..Limits::NONE },
+            ..JointSpec::new(
+                &format!("q{i}"),
+                JointKind::Revolute,
+                &format!("l{i}"),
+                &format!("l{}", i + 1),
+            )
+        });
+    }
+    b.frame("tip", "l4", Pose::from_translation(Vec3::X)).tool("tip");
+    let robot = b.build().unwrap();
+    let mut servo = servo(&robot, |o| {
+        o.task = Task::POSITION;
+        o.gain = Gain { position: 1.0, orientation: 1.0 };
+    });
+    let q = [0.3, 0.8, -0.5, 0.9];
+    let state = robot.state(&q).unwrap();
+    let start = state.pose(robot.tool());
+    let way = Vec3::new(-0.2, 0.3, 0.0);
+    let step = servo.step(&q, Pose { translation: start.translation + way, ..start }).unwrap();
+    assert_eq!((step.saturation.scale, step.saturation.bent), (1.0, false));
+    let v = state.jacobian(robot.tool(), Reference::LocalWorldAligned).mul_vec(servo.rates());
+    assert!((v[0] - way.x).abs() < 1e-12 && (v[1] - way.y).abs() < 1e-12, "{v:?}");
+    assert!(servo.rates()[0].abs() <= 1e-3);
+}
+
+#[test]
+fn speed_is_saturated_as_a_whole() {
+    let robot = catalogue::load("ur5e").unwrap();
+    let state = robot.state(robot.home()).unwrap();
+    let start = state.pose(robot.tool());
+    let target = Pose {
+        translation: start.translation + Vec3::new(-0.1, 0.2, 0.1),
+        rotation: Rotation::exp(Vec3::new(0.2, 0.1, 0.0)) * start.rotation,
+    };
+    let mut servo = servo(&robot, |o| o.speed = Speed { linear: 0.05, angular: 0.1 });
+    servo.step(robot.home(), target).unwrap();
+    let twist = state.twist(servo.rates(), robot.tool(), Reference::LocalWorldAligned).unwrap();
+    assert!(
+        twist.linear.norm() <= 0.05 * (1.0 + 1e-9) && twist.angular.norm() <= 0.1 * (1.0 + 1e-9)
+    );
+    let ratio = twist.linear.norm() / twist.angular.norm();
+    let wanted = Vec3::new(-0.1, 0.2, 0.1).norm() / Vec3::new(0.2, 0.1, 0.0).norm();
+    assert!((ratio - wanted).abs() < 1e-6 * wanted);
+}
+
+/// Whatever the options: slow and fast loops, weak and strong joints, weights, targets anywhere.
+#[test]
+fn limits_hold_for_any_options() {
+    let mut random = Random(81);
+    for round in 0..120 {
+        let names = catalogue::names();
+        let robot = catalogue::load(names[round % names.len()]).unwrap();
+        let mut power = |lower: f64, upper: f64| 10_f64.powf(random.within(lower, upper));
+        let dt = power(-4.0, -1.3);
+        let (gain, acceleration, max_rate) =
+            (power(-1.0, 0.28) / dt, power(-2.0, 4.0), power(-2.0, 1.0));
+        let weights: Vec<f64> = (0..robot.n()).map(|_| power(-3.0, 3.0)).collect();
+        let mut servo = servo(&robot, |o| {
+            o.dt = dt;
+            o.gain = Gain { position: gain, orientation: gain };
+            o.acceleration = acceleration;
+            o.method = Method::ALL[round % 6];
+            if let Method::SelectivelyDamped { max_rate: rate } = &mut o.method {
+                *rate = max_rate;
+            }
+            if round % 2 == 0 {
+                o.joint_weights = weights;
+            }
+            if round % 3 == 0 {
+                o.secondary = vec![
+                    Secondary::Centring { gain: 5.0 },
+                    Secondary::Manipulability { gain: 5.0 },
+                ];
+            }
+            if round % 5 == 0 {
+                o.task = Task::POSITION;
+            }
+        });
+        // At a limit every other time.
+        let mut q = random.q(&robot);
+        if round % 2 == 0 {
+            q[round % robot.n()] = robot.coordinates()[round % robot.n()].limits.upper;
+        }
+        let mut target = random.pose();
+        if round % 7 == 0 {
+            target.translation = random.vec3(1e6);
+        }
+        run_checked_for(400.0 * dt, &robot, &mut servo, &q, target);
+    }
+}
+
+/// At and through singular poses rates stay bounded with every inverse.
+#[test]
+fn singular_poses_keep_rates_bounded() {
+    let panda = catalogue::load("panda").unwrap();
+    let ur5e = catalogue::load("ur5e").unwrap();
+    let mut stretched = panda.home().to_vec();
+    stretched[3] = panda.coordinates()[3].limits.upper; // as straight as the elbow goes
+    let mut wrist = panda.home().to_vec();
+    wrist[5] = panda.coordinates()[5].limits.lower.max(0.0);
+    let cases: Vec<(&Mechanism, Vec<f64>)> = vec![
+        (&panda, stretched),
+        (&panda, wrist),
+        (&ur5e, vec![0.0, -1.2, 0.0, -0.4, 1.2, 0.3]), // elbow stretched
+        (&ur5e, vec![0.3, -1.2, 1.4, -0.4, 0.0, 0.3]), // wrist aligned
+        (&ur5e, vec![0.0; 6]),                         // both
+    ];
+    for (robot, q) in cases {
+        let start = robot.state(&q).unwrap().pose(robot.tool());
+        for method in Method::ALL {
+            for direction in [Vec3::X, Vec3::Y, Vec3::Z] {
+                for sign in [1.0, -1.0] {
+                    let target = Pose {
+                        translation: start.translation + direction * (0.1 * sign),
+                        rotation: Rotation::exp(direction * (0.3 * sign)) * start.rotation,
+                    };
+                    // Without any limits of its own, only the inverse bounds the rates.
+                    let mut servo = servo(robot, |o| o.method = method);
+                    let outcome = drive(
+                        &mut servo,
+                        &q,
+                        2.0,
+                        |_| (target.into(), true),
+                        |sample| {
+                            assert!(sample.rates.iter().all(|r| r.is_finite() && r.abs() < 30.0));
+                        },
+                    );
+                    outcome.unwrap();
+                }
+            }
+        }
+    }
+}
+
+/// A heavy weight keeps a joint still while the others do the task.
+#[test]
+fn joint_weights_keep_joints_still() {
+    let robot = planar(4);
+    let q = [0.3, 0.8, -0.5, 0.9];
+    let state = robot.state(&q).unwrap();
+    let start = state.pose(robot.tool());
+    let target = Pose { translation: start.translation + Vec3::new(0.01, -0.02, 0.0), ..start };
+    let rates = |weights: Vec<f64>| {
+        let mut servo = servo(&robot, |o| {
+            o.task = Task::POSITION;
+            o.joint_weights = weights;
+        });
+        servo.step(&q, target).unwrap();
+        servo.rates().to_vec()
+    };
+    let (even, heavy) = (rates(vec![]), rates(vec![1.0, 1e8, 1.0, 1.0]));
+    assert!(heavy[1].abs() < 1e-6 && even[1].abs() > 1e-3);
+    let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+    for rates in [even, heavy] {
+        let v = j.mul_vec(&rates);
+        assert!((v[0] - 0.05).abs() < 1e-10 && (v[1] + 0.1).abs() < 1e-10);
+    }
+}

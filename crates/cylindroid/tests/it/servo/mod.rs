@@ -1,0 +1,77 @@
+//! The servo: laws, limits, stalls, secondary tasks.
+
+mod limits;
+mod secondary;
+mod stall;
+mod steps;
+mod ways;
+
+pub(crate) use cylindroid::control::{
+    Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Outcome, Projector, Secondary,
+    Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
+};
+pub(crate) use cylindroid::inverse::Method;
+pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits};
+pub(crate) use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3};
+pub(crate) use cylindroid::{Error, Mechanism, Reference, Servo, ServoOptions, catalogue};
+
+pub(crate) use crate::support::{Random, planar};
+
+pub(crate) fn run(servo: &mut Servo, q: &[f64], target: Pose) -> Outcome {
+    drive(servo, q, 30.0, |_| (Target::from(target), true), |_| {}).unwrap()
+}
+
+pub(crate) fn servo(robot: &Mechanism, change: impl FnOnce(&mut ServoOptions)) -> Servo {
+    let mut options = ServoOptions::new(robot);
+    change(&mut options);
+    Servo::new(robot, options).unwrap()
+}
+
+/// Drives and checks on every step that no limit is left: position, velocity, acceleration.
+pub(crate) fn run_checked(
+    robot: &Mechanism,
+    servo: &mut Servo,
+    q: &[f64],
+    target: Pose,
+) -> Outcome {
+    run_checked_for(30.0, robot, servo, q, target)
+}
+
+pub(crate) fn run_checked_for(
+    duration: f64,
+    robot: &Mechanism,
+    servo: &mut Servo,
+    q: &[f64],
+    target: Pose,
+) -> Outcome {
+    let dt = servo.options().dt;
+    let fallback = servo.options().acceleration;
+    let mut before = vec![0.0; robot.n()];
+    servo.reset();
+    drive(
+        servo,
+        q,
+        duration,
+        |_| (Target::from(target), true),
+        |sample| {
+            for (i, c) in robot.coordinates().iter().enumerate() {
+                let (l, q, rate) = (&c.limits, sample.q[i], sample.rates[i]);
+                let a = if l.acceleration.is_finite() { l.acceleration } else { fallback };
+                assert!(rate.is_finite() && q.is_finite(), "{} is not finite", c.name);
+                assert!(q >= l.lower && q <= l.upper, "{} left its limits: {q}", c.name);
+                assert!(rate.abs() <= l.velocity * (1.0 + 1e-12), "{}: rate {rate}", c.name);
+                // A position has no more digits than f64: their rounding, over dt, is in the rate.
+                let rounding = 16.0 * f64::EPSILON * (1.0 + q.abs()) / dt;
+                let excess = (rate - before[i]).abs() - a * dt * (1.0 + 1e-12);
+                assert!(
+                    excess <= rounding + 1e-15 * rate.abs(),
+                    "{}: {excess:e} over {}, rounding {rounding:e}",
+                    c.name,
+                    a * dt
+                );
+                before[i] = rate;
+            }
+        },
+    )
+    .unwrap()
+}

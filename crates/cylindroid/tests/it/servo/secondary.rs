@@ -1,0 +1,127 @@
+//! Secondary tasks and projectors.
+
+use super::*;
+
+/// The exact projector keeps the task undisturbed also where the inverse was truncated; the
+/// retained one does not, as the theory says.
+#[test]
+fn secondary_motion_stays_in_the_null_space() {
+    let robot = catalogue::load("panda").unwrap();
+    let mut random = Random(41);
+    let aligned_wrist = {
+        let mut q = robot.home().to_vec();
+        q[5] = 1e-4; // s_6 / s_1 about 1e-5: cut, yet not zero
+        q
+    };
+    for q in [robot.home().to_vec(), aligned_wrist] {
+        let state = robot.state(&q).unwrap();
+        let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+        for _ in 0..20 {
+            let wanted = random.vector(7);
+            let mut servo = servo(&robot, |o| o.method = Method::Truncated { eps: 0.05 });
+            servo.step_with(&q, state.pose(robot.tool()), &wanted).unwrap();
+            let rates = servo.rates().to_vec();
+            let size: f64 = rates.iter().map(|r| r * r).sum::<f64>().sqrt();
+            assert!(
+                size > 0.0 || robot.coordinates().iter().any(|c| c.limits.acceleration.is_finite())
+            );
+            let moved = j.mul_vec(&rates).iter().map(|v| v * v).sum::<f64>().sqrt();
+            assert!(moved <= 1e-12 * j.frobenius_norm() * size.max(1e-3), "{moved} of {size}");
+        }
+    }
+}
+
+#[test]
+fn retained_projector_disturbs_the_task_where_directions_were_cut() {
+    let robot = planar(3);
+    // Stretched but for a little: the radial direction is cut.
+    let q = [0.2, 1e-3, -2e-3];
+    let state = robot.state(&q).unwrap();
+    let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+    let disturbance = |projector| {
+        let mut servo = servo(&robot, |o| {
+            o.task = Task::POSITION;
+            o.method = Method::Truncated { eps: 0.1 };
+            o.projector = projector;
+        });
+        servo.step_with(&q, state.pose(robot.tool()), &[0.3, -1.0, 1.0]).unwrap();
+        let v = j.mul_vec(servo.rates());
+        v[0].hypot(v[1])
+    };
+    assert!(disturbance(Projector::Exact) < 1e-13);
+    assert!(disturbance(Projector::Retained) > 1e-5);
+}
+
+#[test]
+fn secondary_tasks_do_what_they_say() {
+    let robot = catalogue::load("iiwa14").unwrap();
+    let mut start = robot.home().to_vec();
+    start[2] = 0.9;
+    let pose = robot.state(&start).unwrap().pose(robot.tool());
+    let after = |secondary: Secondary| {
+        let mut servo = servo(&robot, |o| {
+            o.secondary = vec![secondary];
+            o.tolerance = Tolerance { position: 1e-9, orientation: 1e-9 };
+        });
+        let mut q = start.clone();
+        for _ in 0..20_000 {
+            let step = servo.step(&q, pose).unwrap();
+            assert!(step.position_error < 1e-4, "the task was disturbed");
+            servo.advance(&mut q);
+        }
+        // At rest where the wish has no part left in the null space.
+        assert!(servo.rates().iter().all(|r| r.abs() < 5e-3), "{:?}", servo.rates());
+        q
+    };
+    let distance =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt();
+    let posture = vec![0.0; 7];
+    let q = after(Secondary::Posture { q: posture.clone(), gain: 1.0 });
+    assert!(distance(&q, &posture) < distance(&start, &posture) - 0.1);
+    let q = after(Secondary::Centring { gain: 1.0 });
+    assert!(distance(&q, &[0.0; 7]) < distance(&start, &[0.0; 7]) - 0.1);
+    let w = |q: &[f64]| {
+        let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
+        cylindroid::linalg::Svd::of(&j).values().product::<f64>()
+    };
+    let q = after(Secondary::Manipulability { gain: 100.0 });
+    assert!(w(&q) > 1.01 * w(&start), "{} from {}", w(&q), w(&start));
+}
+
+/// The gradient of the manipulability against central differences, through what the servo commands.
+#[test]
+fn secondary_manipulability_gradient_by_finite_differences() {
+    let robot = planar(4);
+    let q = [0.3, 0.7, -0.4, 1.1];
+    let task = Task {
+        components: [true, false, false, false, false, false],
+        axes: Reference::LocalWorldAligned,
+    };
+    let w = |q: &[f64]| {
+        let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
+        (0..4).map(|k| (j[(0, k)] / robot.reach()).powi(2)).sum::<f64>().sqrt()
+    };
+    let h = 1e-6;
+    let mut gradient = [0.0; 4];
+    for k in 0..4 {
+        let (mut a, mut b) = (q, q);
+        a[k] += h;
+        b[k] -= h;
+        gradient[k] = (w(&a) - w(&b)) / (2.0 * h);
+    }
+    let mut servo = servo(&robot, |o| {
+        o.task = task;
+        o.secondary = vec![Secondary::Manipulability { gain: 1.0 }];
+    });
+    let state = robot.state(&q).unwrap();
+    servo.step(&q, state.pose(robot.tool())).unwrap();
+    // The gradient, projected on the null space of the one row.
+    let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+    let row: Vec<f64> = (0..4).map(|k| j[(0, k)]).collect();
+    let norm2: f64 = row.iter().map(|x| x * x).sum();
+    let along: f64 = row.iter().zip(gradient).map(|(r, g)| r * g).sum::<f64>() / norm2;
+    for k in 0..4 {
+        let expected = gradient[k] - along * row[k];
+        assert!((servo.rates()[k] - expected).abs() < 1e-9, "{} {expected}", servo.rates()[k]);
+    }
+}

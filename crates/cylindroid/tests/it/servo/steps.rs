@@ -1,0 +1,164 @@
+//! The loop: convergence, feed-forward, any number of joints, bad input.
+
+use super::*;
+
+#[test]
+fn reaches_a_pose_with_every_inverse() {
+    for name in ["panda", "ur5e", "iiwa14", "puma560"] {
+        let robot = catalogue::load(name).unwrap();
+        let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+        let target = Pose {
+            rotation: Rpy { roll: 0.1, pitch: -0.15, yaw: 0.2 }.rotation() * start.rotation,
+            translation: start.translation + Vec3::new(-0.05, 0.08, -0.06),
+        };
+        for method in Method::ALL {
+            let mut servo = servo(&robot, |o| o.method = method);
+            let outcome = run_checked(&robot, &mut servo, robot.home(), target);
+            assert!(outcome.reached, "{name} {}: {outcome:?}", method.name());
+            let end = robot.state(&outcome.q).unwrap().pose(robot.tool());
+            assert!((end.translation - target.translation).norm() <= 1e-6);
+            assert!(end.rotation.angle_to(target.rotation) <= 1e-6);
+        }
+    }
+}
+
+/// In a regular pose the error contracts by (1 - p dt) a step.
+#[test]
+fn the_error_contracts_as_the_theory_says() {
+    let robot = catalogue::load("panda").unwrap();
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let target = Pose { translation: start.translation + Vec3::new(1e-5, -2e-5, 1e-5), ..start };
+    let mut servo = servo(&robot, |o| {
+        o.dt = 1e-2;
+        o.gain = Gain { position: 20.0, orientation: 20.0 };
+        o.tolerance = Tolerance { position: 1e-12, orientation: 1e-12 };
+    });
+    let mut q = robot.home().to_vec();
+    let mut last = None;
+    for _ in 0..10 {
+        let step = servo.step(&q, target).unwrap();
+        if let Some(last) = last {
+            let ratio: f64 = step.position_error / last;
+            assert!((ratio - 0.8).abs() < 1e-3, "contracts by {ratio}");
+        }
+        last = Some(step.position_error);
+        servo.advance(&mut q);
+    }
+}
+
+#[test]
+fn gain_times_dt_of_two_is_refused_with_both_numbers() {
+    let robot = catalogue::load("panda").unwrap();
+    let mut options = ServoOptions::new(&robot);
+    options.dt = 0.1;
+    options.gain.position = 20.0;
+    let error = Servo::new(&robot, options.clone()).unwrap_err().to_string();
+    assert!(error.contains("20") && error.contains("0.1") && error.contains("below 2"), "{error}");
+    options.gain.position = 19.9;
+    assert!(Servo::new(&robot, options).is_ok());
+}
+
+/// Moves right through the wrist singularity of a UR arm, in both directions of joint 5.
+#[test]
+fn goes_through_the_wrist_singularity() {
+    let robot = catalogue::load("ur5e").unwrap();
+    let (mut from, mut to) = (robot.home().to_vec(), robot.home().to_vec());
+    (from[4], to[4]) = (-0.3, 0.3);
+    let target = robot.state(&to).unwrap().pose(robot.tool());
+    for method in [Method::Damped { damping: 0.05 }, Method::ALL[2], Method::ALL[3]] {
+        let mut servo = servo(&robot, |o| o.method = method);
+        let outcome = run_checked(&robot, &mut servo, &from, target);
+        assert!(outcome.reached, "{}: {outcome:?}", method.name());
+    }
+}
+
+/// One to seven joints and thirty: the same code, position reached where it can be.
+#[test]
+fn any_number_of_joints() {
+    for n in [2, 3, 4, 5, 6, 7, 30] {
+        let robot = planar(n);
+        let q: Vec<f64> = (0..n).map(|i| 0.3 - 0.05 * i as f64).collect();
+        let goal: Vec<f64> = q.iter().map(|x| x + 0.1).collect();
+        let mut servo = servo(&robot, |o| o.task = Task::POSITION);
+        let target = robot.state(&goal).unwrap().pose(robot.tool());
+        let outcome = run_checked(&robot, &mut servo, &q, target);
+        assert!(outcome.reached, "{n} joints: {outcome:?}");
+    }
+    // One joint: along its own circle.
+    let robot = planar(1);
+    let mut one = servo(&robot, |_| {});
+    let target = robot.state(&[1.2]).unwrap().pose(robot.tool());
+    assert!(run_checked(&robot, &mut one, &[0.1], target).reached);
+    let mut nothing = ServoOptions::new(&robot);
+    nothing.end_effector = robot.frame("link0").unwrap().into();
+    assert!(Servo::new(&robot, nothing).unwrap_err().to_string().contains("no joint moves"));
+}
+
+/// A target that moves: with its twist as feed-forward the lag vanishes.
+#[test]
+fn feed_forward_removes_the_lag() {
+    let robot = catalogue::load("panda").unwrap();
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let velocity = Vec3::new(0.0, 0.1, -0.05);
+    let lag = |feed_forward: bool| {
+        let mut servo = servo(&robot, |_| {});
+        let outcome = drive(
+            &mut servo,
+            robot.home(),
+            1.0,
+            |t| {
+                let pose = Pose { translation: start.translation + velocity * t, ..start };
+                let twist = Twist { linear: velocity, angular: Vec3::ZERO };
+                let feed_forward = if feed_forward { twist } else { Twist::ZERO };
+                (Target { pose, feed_forward }, false)
+            },
+            |_| {},
+        );
+        outcome.unwrap().last.position_error
+    };
+    assert!(lag(true) < 1e-4, "{}", lag(true));
+    assert!(lag(false) > 1e-2);
+}
+
+#[test]
+fn bad_input_is_refused_and_leaves_the_servo() {
+    let robot = catalogue::load("panda").unwrap();
+    let mut servo = servo(&robot, |_| {});
+    let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let target = Pose { translation: pose.translation + Vec3::X * 0.01, ..pose };
+    servo.step(robot.home(), target).unwrap();
+    let rates = servo.rates().to_vec();
+    let mut q = robot.home().to_vec();
+    q[2] = f64::INFINITY;
+    assert!(matches!(servo.step(&q, target), Err(Error::NotFinite { .. })));
+    assert!(matches!(servo.step(&q[..6], target), Err(Error::Dimension { .. })));
+    let nan = Pose { translation: Vec3::new(0.0, f64::NAN, 0.0), ..pose };
+    let error = servo.step(robot.home(), nan).unwrap_err().to_string();
+    assert!(error.contains("target position[1]"), "{error}");
+    assert_eq!(servo.rates(), rates);
+    for (change, word) in [
+        ((|o| o.dt = 0.0) as fn(&mut ServoOptions), "dt"),
+        (|o| o.length = f64::NAN, "length"),
+        (|o| o.speed.linear = -1.0, "linear speed"),
+        (|o| o.task.components = [false; 6], "task"),
+        (|o| o.joint_weights = vec![1.0; 3], "joint weights"),
+        (|o| o.method = Method::Damped { damping: -1.0 }, "damping"),
+        (|o| o.secondary = vec![Secondary::Posture { q: vec![0.0], gain: 1.0 }], "posture"),
+        (|o| o.tolerance.position = 0.0, "position tolerance"),
+    ] {
+        let mut options = ServoOptions::new(&robot);
+        change(&mut options);
+        let error = Servo::new(&robot, options).unwrap_err().to_string();
+        assert!(error.contains(word), "{error}");
+    }
+}
+
+#[test]
+fn status_is_reached_at_the_target() {
+    let robot = catalogue::load("panda").unwrap();
+    let mut servo = servo(&robot, |_| {});
+    let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let step = servo.step(robot.home(), pose).unwrap();
+    assert_eq!(step.status, Status::Reached);
+    assert!(servo.rates().iter().all(|r| r.abs() < 1e-12));
+}
