@@ -82,7 +82,7 @@ fn speed_is_saturated_as_a_whole() {
 #[test]
 fn limits_hold_for_any_options() {
     let mut random = Random(81);
-    for round in 0..120 {
+    for round in 0..1000 {
         let names = catalogue::names();
         let robot = catalogue::load(names[round % names.len()]).unwrap();
         let mut power = |lower: f64, upper: f64| 10_f64.powf(random.within(lower, upper));
