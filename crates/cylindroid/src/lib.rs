@@ -27,6 +27,7 @@ pub mod kinematics;
 pub mod linalg;
 pub mod model;
 mod scalar;
+pub mod screws;
 pub mod spatial;
 pub mod tolerance;
 

@@ -65,3 +65,22 @@ pub const COLLINEAR: f64 = 1e-6;
 /// Rank of a task Jacobian in postures without pattern, relative to the largest singular value:
 /// far below any regular posture, far above rounding [-].
 pub const GENERIC_RANK: f64 = 1e-9;
+
+/// Directions whose normal matrix is this small relative to the largest are those along nearly
+/// parallel axes (within 1e-3 rad): the point nearest to the axes is not looked for there [-].
+pub const NEARLY_PARALLEL: f64 = 1e-6;
+
+/// Coordinates of a canonical origin whose weight is below this are not determined [-].
+pub const ORIGIN_DETERMINED: f64 = 1e-13;
+
+/// Least threshold for the rank of a screw system: singular values of unit twists [-]. Noise
+/// raises it to 30 times its size at the centre.
+pub const SCREW_RANK: f64 = 1e-12;
+
+/// Least threshold for what a class hangs on: ratios of lengths to the characteristic length,
+/// sines of angles [-]. Noise raises it to 100 times its size at the centre and the conditioning
+/// of the twists. The factors 30 and 100 were found by trial over all classes in random frames.
+pub const SCREW_CLASS: f64 = 1e-8;
+
+/// A verdict is flagged when a quantity lies within this factor of its threshold [-].
+pub const AMBIGUOUS: f64 = 1e3;

@@ -16,13 +16,17 @@
 
 mod damped;
 mod filtered;
+mod hyperbolic;
 mod numerical_filtering;
+mod point_direction;
 mod report;
 mod selectively_damped;
 pub(crate) mod truncated;
 mod variable_damping;
 mod weighted;
 
+pub use hyperbolic::{HyperbolicDamping, HyperbolicOptions, hyperbolic, hyperbolic_with, oblique};
+pub use point_direction::{PointDirection, point_direction};
 pub(crate) use report::is_kept;
 pub use report::{Dropped, Inverse};
 pub use weighted::Weights;

@@ -3,6 +3,7 @@
 use super::{Method, Weights};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Svd};
+use crate::screws::NoInverse;
 
 /// An inverse and what was done to get it.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,8 +21,11 @@ pub struct Inverse {
     pub threshold: f64,
     /// The directions that were dropped, with what is left of them.
     pub dropped: Vec<Dropped>,
-    /// False where the method has no inverse for this Jacobian.
+    /// False where the method has no inverse for this Jacobian; the entries of `matrix` are then
+    /// NaN.
     pub exists: bool,
+    /// Why there is none.
+    pub reason: Option<NoInverse>,
 }
 
 /// A task direction that the inverse gives up, wholly or by more than half.
@@ -73,6 +77,7 @@ impl Inverse {
             threshold,
             dropped,
             exists: true,
+            reason: None,
         })
     }
 }

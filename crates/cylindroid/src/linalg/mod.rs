@@ -4,8 +4,10 @@ mod matrix;
 mod metric;
 mod null_space;
 mod svd;
+mod symmetric;
 
 pub use matrix::Matrix;
 pub use metric::Metric;
 pub use null_space::RowSpace;
 pub use svd::{Rank, Svd};
+pub use symmetric::Eigen;

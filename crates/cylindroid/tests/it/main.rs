@@ -10,6 +10,7 @@
 mod inverse;
 mod kinematics;
 mod pinocchio;
+mod screws;
 mod servo;
 mod spatial;
 mod support;

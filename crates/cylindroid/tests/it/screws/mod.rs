@@ -1,0 +1,3 @@
+//! Screws, screw systems and what is built on them.
+
+mod vectors;
