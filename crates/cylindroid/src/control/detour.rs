@@ -10,7 +10,8 @@
 //! Why so   what stops a servo is nearly always the posture it started from
 //! Checked  tests/it/servo/ways.rs::a_detour_reaches_what_the_servo_does_not
 
-use super::servo::{Servo, Status, Target};
+use super::servo::Servo;
+use super::step::{Status, Target};
 use crate::error::Result;
 use crate::model::CoordinateKind;
 use crate::spatial::Pose;

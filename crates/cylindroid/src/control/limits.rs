@@ -107,10 +107,16 @@ impl RateBounds {
         bounds
     }
 
-    /// The nearest allowed rate.
+    /// The nearest allowed rate; NaN stays NaN, it is near to none.
     #[must_use]
     pub fn clamp(&self, rate: f64) -> f64 {
-        rate.max(self.lower).min(self.upper)
+        if rate < self.lower {
+            self.lower
+        } else if rate > self.upper {
+            self.upper
+        } else {
+            rate
+        }
     }
 
     /// The limit that a rate has run into, if any.

@@ -15,6 +15,7 @@ mod saturation;
 mod secondary;
 mod servo;
 mod stall;
+mod step;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
@@ -26,6 +27,7 @@ pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};
 pub use path::{CartesianPath, Deviation, Turn};
 pub use saturation::Saturation;
 pub use secondary::Secondary;
-pub use servo::{Servo, Status, Step, Target};
+pub use servo::Servo;
 pub use stall::Stall;
+pub use step::{Status, Step, Target};
 pub use time_law::{Bounds, LawSample, TimeLaw};

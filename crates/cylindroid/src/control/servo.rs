@@ -7,15 +7,17 @@
 //! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
 //! Units    m, rad, s
 //! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step.
-//! Fails    on numbers that are not finite, and then leaves the servo as it was
+//! Fails    on numbers that are not finite, also where the twist or the rates overflow; rates,
+//!          target and the watch for stalls stay as they were
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
 use super::limits::{LimitKind, Motion1, RateBounds};
 use super::options::{Projector, ServoOptions};
-use super::saturation::{Problem, Saturation, Saturator, solve};
+use super::saturation::{Problem, Saturator, solve};
 use super::secondary::{Gradient, TaskRows};
 use super::stall::{Evidence, Stall, Watch, classify};
+use super::step::{Status, Step, Target};
 use crate::error::{Error, Result};
 use crate::inverse::Method;
 use crate::kinematics::{Chain, Reference};
@@ -26,51 +28,6 @@ use crate::tolerance::{AT_LIMIT, GENERIC_RANK};
 
 /// Postures that are asked for the rank of the arm.
 const GENERIC_POSTURES: usize = 3;
-
-/// A moving target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Target {
-    /// `world_from_tool` as it should be.
-    pub pose: Pose,
-    /// The twist of the target, world axes, at the tool.
-    pub feed_forward: Twist,
-}
-
-impl From<Pose> for Target {
-    fn from(pose: Pose) -> Self {
-        Self { pose, feed_forward: Twist::ZERO }
-    }
-}
-
-/// Where a servo stands after a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    /// On its way.
-    Moving,
-    /// Both errors are within tolerance.
-    Reached,
-    /// The error no longer falls; [`Servo::stall`] says why.
-    Stalled,
-}
-
-/// What one step did.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// Where the servo stands.
-    pub status: Status,
-    /// The pose of the tool before the step.
-    pub pose: Pose,
-    /// Distance to the target, of the components that matter (m).
-    pub position_error: f64,
-    /// Angle to the target, of the components that matter (rad).
-    pub orientation_error: f64,
-    /// Smallest singular value of the scaled task Jacobian over the largest.
-    pub singular_ratio: f64,
-    /// Directions realised by at least half.
-    pub rank: usize,
-    /// What the limits left of the task.
-    pub saturation: Saturation,
-}
 
 /// A Cartesian controller for one end effector.
 #[derive(Debug, Clone)]
@@ -235,10 +192,11 @@ impl Servo {
 
         let pose = self.chain.set(q);
         let error = pose.error_to(target.pose);
-        let (position_error, orientation_error) = self.load_task(pose, error, &target);
+        let (position_error, orientation_error) = self.load_task(pose, error, &target)?;
         let m = self.rows.len();
 
         self.load_jacobian();
+        Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
         solve(&self.svd, &self.options.method, &mut self.gains, &self.x, &mut self.primary);
         let rank = (0..self.svd.len())
@@ -254,6 +212,7 @@ impl Servo {
             bounds: &self.bounds,
         };
         let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
+        Error::check_finite("joint rates", &self.primary)?;
         self.store_rates();
 
         self.distance = (target.pose.translation - self.chain.first_origin()).norm();
@@ -365,16 +324,12 @@ impl Servo {
         if !wanted_rates.is_empty() {
             self.mechanism.check_q("wanted rates", wanted_rates)?;
         }
-        let p = target.pose.translation.to_array();
-        Error::check_finite("target position", &p)?;
-        if !target.pose.is_finite() {
-            return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
-        }
-        Error::check_finite("feed-forward twist", &target.feed_forward.to_array())
+        target.check()
     }
 
     /// Writes the commanded task twist and the error, both scaled; returns the two errors.
-    fn load_task(&mut self, pose: Pose, error: Twist, target: &Target) -> (f64, f64) {
+    /// Nothing is written where a number is too large.
+    fn load_task(&mut self, pose: Pose, error: Twist, target: &Target) -> Result<(f64, f64)> {
         let gain = self.options.gain;
         let mut twist = Twist {
             linear: error.linear * gain.position + target.feed_forward.linear,
@@ -403,11 +358,13 @@ impl Servo {
             twist = twist * (1.0 / excess);
         }
         let (twist, scaled) = (twist.to_array(), error.to_array());
+        Error::check_finite("error to the target", &scaled)?;
+        Error::check_finite("commanded twist (gain * error + feed-forward)", &twist)?;
         for (i, &(row, scale)) in self.rows.iter().enumerate() {
             self.x[i] = twist[row] * scale;
             self.error[i] = scaled[row] * scale;
         }
-        (error.linear.norm(), error.angular.norm())
+        Ok((error.linear.norm(), error.angular.norm()))
     }
 
     fn load_jacobian(&mut self) {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::assembly::{Assembly, default_tool};
 use super::joint::{Joint, Limits};
 use super::link::Link;
-use super::mechanism::{Data, Frame, FrameId, Mechanism};
+use super::mechanism::{Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
 use super::spec::JointSpec;
 use crate::error::{Error, Result};
@@ -351,7 +351,7 @@ impl Builder {
         let tool = match &self.tool {
             None => default_tool(order, &self.joints, links),
             Some(name) => match frames.iter().position(|f| f.name == *name) {
-                Some(i) => FrameId(i),
+                Some(i) => i,
                 None => {
                     let unknown =
                         Error::unknown("frame", name, frames.iter().map(|f| f.name.as_str()));
@@ -397,16 +397,18 @@ impl Builder {
         for c in &mut assembly.coordinates {
             c.joint = places[c.joint];
         }
+        let frame_key = frame_key(&frames);
         Ok(Mechanism {
             data: Arc::new(Data {
                 name: self.name,
                 links: self.links,
                 joints,
+                frame_key,
                 frames,
                 coordinates: assembly.coordinates,
                 nodes: assembly.nodes,
                 home,
-                tool,
+                tool: FrameId { index: tool, frame_key },
                 reach: assembly.reach.max(LEAST_REACH),
                 report: self.report,
             }),

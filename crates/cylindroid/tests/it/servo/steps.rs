@@ -162,3 +162,44 @@ fn status_is_reached_at_the_target() {
     assert_eq!(step.status, Status::Reached);
     assert!(servo.rates().iter().all(|r| r.abs() < 1e-12));
 }
+
+/// What overflows or is not of this robot is an error, not full speed.
+#[test]
+fn overflow_and_foreign_options_are_refused() {
+    let robot = catalogue::load("panda").unwrap();
+    let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let mut servo = servo(&robot, |_| {});
+    servo.step(robot.home(), pose * Pose::from_translation(Vec3::X * 0.01)).unwrap();
+    let rates = servo.rates().to_vec();
+    let far = Pose { translation: Vec3::X * 1e308, ..pose };
+    assert!(matches!(servo.step(robot.home(), far), Err(Error::NotFinite { .. })));
+    let mut overtaken = Target::from(pose);
+    overtaken.feed_forward.linear = Vec3::new(f64::MAX, f64::MAX, f64::MAX);
+    assert!(matches!(servo.step(robot.home(), overtaken), Err(Error::NotFinite { .. })));
+    assert_eq!(servo.rates(), rates);
+
+    let mut options = ServoOptions::new(&robot);
+    options.end_effector.frame_from_tool.translation.y = f64::NAN;
+    assert!(matches!(Servo::new(&robot, options), Err(Error::NotFinite { .. })));
+    // A frame beyond those of the robot, and one whose number the robot has too.
+    for name in ["3r", "youbot"] {
+        let other = catalogue::load(name).unwrap();
+        for (of, foreign) in [(&robot, other.tool()), (&other, robot.tool())] {
+            let mut options = ServoOptions::new(of);
+            options.end_effector = foreign.into();
+            let error = Servo::new(of, options).unwrap_err().to_string();
+            assert!(error.contains("another mechanism") && error.contains(of.name()), "{error}");
+        }
+    }
+    // The same robot, loaded twice, has the same frames.
+    let again = catalogue::load("panda").unwrap();
+    assert!(again.check_frame(robot.tool()).is_ok());
+
+    let bounds = RateBounds::next(
+        &robot.coordinates()[0].limits,
+        Motion1 { position: 0.0, rate: 0.0 },
+        1e-3,
+    );
+    assert!(bounds.clamp(f64::NAN).is_nan());
+    assert_eq!(bounds.clamp(f64::INFINITY), bounds.upper);
+}
