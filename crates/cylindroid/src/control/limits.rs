@@ -139,7 +139,7 @@ impl RateBounds {
 }
 
 /// The largest rate from which steps of `dt` with deceleration `acceleration` stop within `room`.
-fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
+pub(super) fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
     if room == f64::INFINITY {
         return f64::INFINITY;
     }

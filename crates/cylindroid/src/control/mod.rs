@@ -4,6 +4,7 @@
 //! fastest law on this path that keeps every bound. A servo follows a move, or goes straight at a
 //! pose.
 
+mod approach;
 mod cartesian_move;
 mod detour;
 mod drive;

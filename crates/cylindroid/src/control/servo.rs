@@ -1,6 +1,6 @@
 //! The servo: one step from joint positions and a target pose to joint rates.
 //!
-//! Formula  x = gain * error + feed-forward, error = [p_d - p; log(R_d R^T)] (world axes), saturated
+//! Formula  x = s gain * error + feed-forward, s of `approach.rs`, error = [p_d - p; log(R_d R^T)] (world axes), saturated
 //!          to the largest speeds; rates = J+ x + P z: J+ the chosen inverse of the task Jacobian
 //!          with linear rows divided by L, z the secondary wishes, P the null-space projector;
 //!          then position, velocity and acceleration limits (`limits.rs`, `saturation.rs`)
@@ -12,15 +12,16 @@
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
+use super::approach;
 use super::limits::{LimitKind, Motion1, RateBounds};
 use super::options::{Projector, ServoOptions};
-use super::saturation::{Problem, Saturator, solve};
+use super::saturation::{Problem, Saturator, apply, solve};
 use super::secondary::{Gradient, TaskRows};
-use super::stall::{Evidence, Stall, Watch, classify};
-use super::step::{Status, Step, Target};
+use super::stall::{Effort, Evidence, Stall, Watch, classify};
+use super::step::{Status, Step, Target, Wanted};
 use crate::error::{Error, Result};
 use crate::inverse::Method;
-use crate::kinematics::{Chain, Reference};
+use crate::kinematics::Chain;
 use crate::linalg::{Matrix, RowSpace, Svd};
 use crate::model::{Limits, Mechanism};
 use crate::spatial::{Pose, Twist};
@@ -34,6 +35,8 @@ const GENERIC_POSTURES: usize = 3;
 pub struct Servo {
     mechanism: Mechanism,
     options: ServoOptions,
+    /// The inverse of this step.
+    method: Method,
     chain: Chain,
     /// Row of the Jacobian and its scale, for each task component.
     rows: Vec<(usize, f64)>,
@@ -117,6 +120,7 @@ impl Servo {
             length: chain.length_after_first_joint(mechanism),
             generic_rank: 0,
             mechanism: mechanism.clone(),
+            method: options.method,
             options,
             rows,
             columns,
@@ -191,29 +195,22 @@ impl Servo {
         self.check_input(q, &target, wanted_rates)?;
 
         let pose = self.chain.set(q);
-        let error = pose.error_to(target.pose);
-        let (position_error, orientation_error) = self.load_task(pose, error, &target)?;
-        let m = self.rows.len();
-
+        let wanted = target.wanted(pose, &self.options)?;
         self.load_jacobian();
         Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
-        solve(&self.svd, &self.options.method, &mut self.gains, &self.x, &mut self.primary);
+        self.load_task(&wanted);
         let rank = (0..self.svd.len())
             .filter(|&i| crate::inverse::is_kept(self.gains[i] * self.svd.value(i)))
             .count();
         self.load_wish(wanted_rates, rank);
 
         self.load_bounds(q);
-        let problem = Problem {
-            j: &self.task,
-            x: &self.x[..m],
-            method: &self.options.method,
-            bounds: &self.bounds,
-        };
+        let problem =
+            Problem { j: &self.task, x: &self.x, method: &self.method, bounds: &self.bounds };
         let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
         Error::check_finite("joint rates", &self.primary)?;
-        self.store_rates();
+        let effort = self.store_rates();
 
         self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         if self.last_target != Some(target.pose) {
@@ -221,15 +218,17 @@ impl Servo {
             self.watch = Watch::new();
         }
         let tolerance = self.options.tolerance;
+        let (position_error, orientation_error) =
+            (wanted.error.linear.norm(), wanted.error.angular.norm());
         let scaled = position_error / self.options.length + orientation_error;
-        let status =
-            if position_error <= tolerance.position && orientation_error <= tolerance.orientation {
-                Status::Reached
-            } else if self.watch.stalled(scaled, self.options.dt) {
-                Status::Stalled
-            } else {
-                Status::Moving
-            };
+        let near =
+            position_error <= tolerance.position && orientation_error <= tolerance.orientation;
+        let stalled = self.watch.stalled(scaled, effort, self.options.dt);
+        let status = match (near, stalled) {
+            (true, _) if self.settled(wanted.feed_forward) => Status::Reached,
+            (false, true) => Status::Stalled,
+            _ => Status::Moving,
+        };
         Ok(Step {
             status,
             pose,
@@ -327,44 +326,57 @@ impl Servo {
         target.check()
     }
 
-    /// Writes the commanded task twist and the error, both scaled; returns the two errors.
-    /// Nothing is written where a number is too large.
-    fn load_task(&mut self, pose: Pose, error: Twist, target: &Target) -> Result<(f64, f64)> {
-        let gain = self.options.gain;
-        let mut twist = Twist {
-            linear: error.linear * gain.position + target.feed_forward.linear,
-            angular: error.angular * gain.orientation + target.feed_forward.angular,
-        };
-        let mut error = error;
-        if self.options.task.axes == Reference::Local {
-            let r = pose.rotation.matrix();
-            let turn =
-                |t: Twist| Twist { linear: r.tr_mul(t.linear), angular: r.tr_mul(t.angular) };
-            twist = turn(twist);
-            error = turn(error);
+    /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
+    fn load_task(&mut self, wanted: &Wanted) {
+        self.scale_rows(wanted.error);
+        self.error.copy_from_slice(&self.x);
+        self.method = self.options.method;
+        let mut twist = wanted.feedback;
+        if self.limits.iter().any(|l| l.acceleration < f64::INFINITY) {
+            self.scale_rows(twist);
+            self.solve();
+            apply(&self.svd, &self.gains, &self.error, &mut self.wish);
+            let dt = self.options.dt;
+            let share = approach::share(&self.wish, &self.primary, &self.columns, &self.limits, dt);
+            twist = twist * share;
+            self.method = approach::slowed(self.method, share);
         }
-        let keep = |t: Twist| {
-            let mut v = t.to_array();
-            for (x, keep) in v.iter_mut().zip(self.options.task.components) {
-                *x *= f64::from(u8::from(keep));
-            }
-            Twist::from_array(v)
-        };
-        let (mut twist, error) = (keep(twist), keep(error));
+        twist = twist + wanted.feed_forward;
         // Saturated as a whole: the direction of the motion is kept.
         let speed = self.options.speed;
         let excess = (twist.linear.norm() / speed.linear).max(twist.angular.norm() / speed.angular);
         if excess > 1.0 {
             twist = twist * (1.0 / excess);
         }
-        let (twist, scaled) = (twist.to_array(), error.to_array());
-        Error::check_finite("error to the target", &scaled)?;
-        Error::check_finite("commanded twist (gain * error + feed-forward)", &twist)?;
-        for (i, &(row, scale)) in self.rows.iter().enumerate() {
-            self.x[i] = twist[row] * scale;
-            self.error[i] = scaled[row] * scale;
+        self.scale_rows(twist);
+        self.solve();
+    }
+
+    /// `x = ` the twist in task coordinates.
+    fn scale_rows(&mut self, twist: Twist) {
+        let twist = twist.to_array();
+        for (x, &(row, scale)) in self.x.iter_mut().zip(&self.rows) {
+            *x = twist[row] * scale;
         }
-        Ok((error.linear.norm(), error.angular.norm()))
+    }
+
+    /// `primary = J+ x`
+    fn solve(&mut self) {
+        solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
+    }
+
+    /// True if the tool, moved by the rates of this step, is so slow against the target that an
+    /// error within tolerance stays within it. Overwrites `x`.
+    fn settled(&mut self, feed_forward: Twist) -> bool {
+        self.task.mul_vec_into(&self.primary, &mut self.x);
+        let mut speed = (feed_forward * -1.0).to_array();
+        for (x, &(row, scale)) in self.x.iter().zip(&self.rows) {
+            speed[row] += x / scale;
+        }
+        let (speed, gain, most) =
+            (Twist::from_array(speed), self.options.gain, self.options.tolerance);
+        speed.linear.norm() <= gain.position * most.position
+            && speed.angular.norm() <= gain.orientation * most.orientation
     }
 
     fn load_jacobian(&mut self) {
@@ -424,17 +436,25 @@ impl Servo {
         }
     }
 
-    fn store_rates(&mut self) {
+    fn store_rates(&mut self) -> Effort {
         self.at_limit.clear();
+        let mut effort = Effort::default();
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
-            self.rates[c] = rate * self.columns[i];
             self.active[i] = bound.met(rate);
+            let before = std::mem::replace(&mut self.rates[c], rate * self.columns[i]).abs();
+            let speed = self.rates[c].abs();
+            effort.gaining |= self.active[i] == Some(LimitKind::Acceleration) && speed > before;
+            if speed > 0.0 {
+                effort.stopping_time =
+                    effort.stopping_time.max(speed / self.limits[i].acceleration);
+            }
             let (q, l) = (self.chain.q()[i], self.limits[i]);
             if q - l.lower < AT_LIMIT || l.upper - q < AT_LIMIT {
                 self.at_limit.push(c);
             }
         }
+        effort
     }
 
     fn singular_ratio(&self) -> f64 {

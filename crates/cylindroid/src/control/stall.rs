@@ -1,7 +1,9 @@
 //! When a servo gets no nearer to its target, and why.
 //!
 //! Formula  stalled when the error e = |dp| / L + |angle| has not fallen below (1 - share) of its
-//!          best within the window
+//!          best within the window. The window begins when no joint gains speed under an
+//!          acceleration limit, and is longer by the time 4 |rate| / A that the weakest joint takes
+//!          to turn round from its rate at the best (|rate| / A to stop, the way back and its end)
 //! Causes   out of reach: the target is farther from the chain's first joint than the chain is
 //!          long (a proof); limits: the motion without limits would lower the error; singular: the
 //!          error is orthogonal to what the inverse retains, and the arm can do more in other
@@ -15,6 +17,8 @@ use crate::linalg::Svd;
 /// Window within which the error must fall (s), and by which share [-].
 const WINDOW: f64 = 1.0;
 const SHARE: f64 = 1e-3;
+/// Times |rate| / A that a joint takes to come back to where it was [-]: 1 + 2 sqrt 2, rounded up.
+const TURN_ROUND: f64 = 4.0;
 /// Share of the squared error that must lie along realised directions for the motion to count as
 /// possible [-].
 const POSSIBLE: f64 = 1e-4;
@@ -75,21 +79,34 @@ impl Stall {
 pub(super) struct Watch {
     best: f64,
     since: f64,
+    window: f64,
+}
+
+/// How the joints go about a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Effort {
+    /// True if a joint gains speed as fast as its acceleration limit lets it.
+    pub(super) gaining: bool,
+    /// The largest |rate| / A of the joints (s).
+    pub(super) stopping_time: f64,
 }
 
 impl Watch {
     pub(super) const fn new() -> Self {
-        Self { best: f64::INFINITY, since: 0.0 }
+        Self { best: f64::INFINITY, since: 0.0, window: WINDOW }
     }
 
     /// Notes the error of a step of `dt` seconds; true if stalled.
-    pub(super) fn stalled(&mut self, error: f64, dt: f64) -> bool {
+    pub(super) fn stalled(&mut self, error: f64, effort: Effort, dt: f64) -> bool {
         if error < self.best * (1.0 - SHARE) {
-            *self = Self { best: error, since: 0.0 };
+            let window = WINDOW + TURN_ROUND * effort.stopping_time;
+            *self = Self { best: error, since: 0.0, window };
             return false;
         }
-        self.since += dt;
-        self.since > WINDOW
+        if !effort.gaining {
+            self.since += dt;
+        }
+        self.since > self.window
     }
 }
 

@@ -203,3 +203,59 @@ fn overflow_and_foreign_options_are_refused() {
     assert!(bounds.clamp(f64::NAN).is_nan());
     assert_eq!(bounds.clamp(f64::INFINITY), bounds.upper);
 }
+
+/// Joints that can hardly brake slow down in time: they arrive, at rest, without swinging past.
+#[test]
+fn weak_joints_arrive() {
+    let robot = planar(1);
+    let target = robot.state(&[1.0]).unwrap().pose(robot.tool());
+    for acceleration in [10.0, 1.0, 0.5, 1e-3] {
+        for method in [Method::default(), Method::ALL[1], Method::ALL[4]] {
+            let mut servo = servo(&robot, |o| {
+                o.acceleration = acceleration;
+                o.method = method;
+            });
+            let mut most = 0.0_f64;
+            let outcome = drive(
+                &mut servo,
+                &[0.0],
+                300.0,
+                |_| (target.into(), true),
+                |sample| most = most.max(sample.q[0]),
+            )
+            .unwrap();
+            let name = method.name();
+            assert!(outcome.reached, "{acceleration}, {name}: {outcome:?}");
+            assert!(servo.rates()[0].abs() <= 5e-6 * (1.0 + 1e-9), "{:?}", servo.rates());
+            assert!(most <= 1.0 + 1e-6, "{acceleration}, {name}: swings to {most}");
+        }
+    }
+    // Seven joints, each weak: the way is not straight in joint space.
+    let robot = catalogue::load("panda").unwrap();
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let target = Pose { translation: start.translation + Vec3::new(-0.1, 0.2, -0.1), ..start };
+    for acceleration in [10.0, 1.0, 0.5] {
+        let mut servo = servo(&robot, |o| o.acceleration = acceleration);
+        let outcome = run_checked(&robot, &mut servo, robot.home(), target);
+        assert!(outcome.reached, "{acceleration}: {outcome:?}");
+    }
+}
+
+/// Passing through the target at speed is not reaching it.
+#[test]
+fn reached_means_at_rest() {
+    let robot = planar(1);
+    let target = robot.state(&[1.0]).unwrap().pose(robot.tool());
+    let mut servo = servo(&robot, |o| o.acceleration = 1.0);
+    // Up to speed towards a target farther on, which is then exchanged for the place passed.
+    let far = robot.state(&[3.0]).unwrap().pose(robot.tool());
+    let mut q = vec![0.0];
+    while q[0] < 1.0 {
+        servo.step(&q, far).unwrap();
+        servo.advance(&mut q);
+    }
+    assert!(servo.rates()[0] > 0.5);
+    assert_eq!(servo.step(&[1.0], target).unwrap().status, Status::Moving);
+    let outcome = drive(&mut servo, &q, 30.0, |_| (target.into(), true), |_| {}).unwrap();
+    assert!(outcome.reached && (outcome.q[0] - 1.0).abs() <= 1e-6, "{outcome:?}");
+}
