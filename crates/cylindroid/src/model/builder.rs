@@ -91,7 +91,8 @@ impl Builder {
     ///
     /// # Errors
     /// [`Error::Model`] for names given twice or unknown, a link with two parents, a cycle, more
-    /// than one root, an axis without direction, limits that contradict each other, a mimic joint
+    /// than one root, an axis without direction, limits that contradict each other or that no
+    /// joint of the kind can keep (positions of spherical and free joints), a mimic joint
     /// that follows itself, nothing, or a joint of several coordinates.
     pub fn build(mut self) -> Result<Mechanism> {
         let links = self.index_links()?;
