@@ -17,6 +17,7 @@ mod secondary;
 mod servo;
 mod stall;
 mod step;
+mod task_space;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};

@@ -20,7 +20,7 @@ const LEAST_SCALE: f64 = 0.05;
 
 /// A held joint is released when its pull is above this share of the largest possible one [-]:
 /// what is left of directions that the inverse cut must not release anything.
-const RELEASE: f64 = 1e-3;
+pub(super) const RELEASE: f64 = 1e-3;
 
 /// What became of the task.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,8 +11,9 @@
 //! Source   Liegeois 1977; Yoshikawa 1985; analytic gradient through the Hessian
 //! Checked  tests/it/servo/secondary.rs::secondary_*
 
+use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
-use crate::kinematics::{Chain, Reference};
+use crate::kinematics::Chain;
 use crate::linalg::{Matrix, Svd};
 use crate::model::{CoordinateKind, Mechanism};
 use crate::spatial::{Rotation, Vec3};
@@ -46,20 +47,10 @@ pub enum Secondary {
     },
 }
 
-/// Memory for the gradient of the manipulability, and the rows that the task keeps.
+/// Memory for the gradient of the manipulability.
 #[derive(Debug, Clone)]
 pub(super) struct Gradient {
     pub(super) hessian: Vec<Matrix>,
-}
-
-/// The task as the gradient needs it: which rows of the Jacobian, scaled how.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct TaskRows<'a> {
-    pub(super) reference: Reference,
-    /// Row of the 6 x n Jacobian and its scale, for each row of the task.
-    pub(super) rows: &'a [(usize, f64)],
-    /// Scale of each column.
-    pub(super) columns: &'a [f64],
 }
 
 impl Secondary {
@@ -100,7 +91,7 @@ impl Secondary {
         mechanism: &Mechanism,
         chain: &Chain,
         svd: &Svd,
-        task: TaskRows<'_>,
+        task: &TaskSpace,
         gradient: &mut Gradient,
         out: &mut [f64],
     ) {
@@ -138,7 +129,7 @@ impl Secondary {
                 }
             }
             Self::Manipulability { gain } => {
-                chain.hessian_into(task.reference, &mut gradient.hessian);
+                chain.hessian_into(task.axes, &mut gradient.hessian);
                 let rank = svd.machine_rank().rank;
                 if rank < svd.len() || rank == 0 {
                     return;
@@ -150,11 +141,11 @@ impl Secondary {
                     for i in 0..rank {
                         let (u, v) = (svd.u(i), svd.v(i));
                         let mut along = 0.0;
-                        for (j, (vj, cj)) in v.iter().zip(task.columns).enumerate() {
+                        for (j, (vj, cj)) in v.iter().zip(&task.columns).enumerate() {
                             let column = h.column(j);
                             let turned: f64 = u
                                 .iter()
-                                .zip(task.rows)
+                                .zip(&task.rows)
                                 .map(|(ui, (row, scale))| ui * scale * column[*row])
                                 .sum();
                             along += vj * cj * turned;

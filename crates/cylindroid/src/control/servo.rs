@@ -15,10 +15,11 @@
 use super::approach;
 use super::limits::{LimitKind, Motion1, RateBounds};
 use super::options::{Projector, ServoOptions};
-use super::saturation::{Problem, Saturator, apply, solve};
-use super::secondary::{Gradient, TaskRows};
+use super::saturation::{Problem, RELEASE, Saturator, apply, solve};
+use super::secondary::Gradient;
 use super::stall::{Effort, Evidence, Stall, Watch, classify};
 use super::step::{Status, Step, Target, Wanted};
+use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
 use crate::inverse::Method;
 use crate::kinematics::Chain;
@@ -38,21 +39,19 @@ pub struct Servo {
     /// The inverse of this step.
     method: Method,
     chain: Chain,
-    /// Row of the Jacobian and its scale, for each task component.
-    rows: Vec<(usize, f64)>,
-    /// Scale of each column: 1 / sqrt(weight).
-    columns: Vec<f64>,
+    space: TaskSpace,
     limits: Vec<Limits>,
     /// Length of the chain after its first joint (m).
     length: f64,
     /// Rank of the task Jacobian in postures that are not singular.
     generic_rank: usize,
 
-    jacobian: Matrix,
     task: Matrix,
     svd: Svd,
     gains: Vec<f64>,
     x: Vec<f64>,
+    /// J rates, the part of x that is carried out.
+    done: Vec<f64>,
     error: Vec<f64>,
     primary: Vec<f64>,
     wish: Vec<f64>,
@@ -76,11 +75,7 @@ impl Servo {
     pub fn new(mechanism: &Mechanism, options: ServoOptions) -> Result<Self> {
         options.check(mechanism)?;
         let chain = Chain::new(mechanism, options.end_effector);
-        let rows: Vec<(usize, f64)> = (0..6)
-            .filter(|&i| options.task.components[i])
-            .map(|i| (i, if i < 3 { 1.0 / options.length } else { 1.0 }))
-            .collect();
-        let (m, n) = (rows.len(), chain.n());
+        let n = chain.n();
         if n == 0 {
             return Err(Error::Model {
                 model: mechanism.name().to_owned(),
@@ -91,7 +86,7 @@ impl Servo {
                 ),
             });
         }
-        let limits = chain
+        let limits: Vec<Limits> = chain
             .coordinates()
             .iter()
             .map(|&c| {
@@ -102,11 +97,8 @@ impl Servo {
                 l
             })
             .collect();
-        let columns = chain
-            .coordinates()
-            .iter()
-            .map(|&c| options.joint_weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt()))
-            .collect();
+        let space = TaskSpace::new(&options, &chain, &limits);
+        let m = space.rows.len();
         let hessian = if options
             .secondary
             .iter()
@@ -122,14 +114,13 @@ impl Servo {
             mechanism: mechanism.clone(),
             method: options.method,
             options,
-            rows,
-            columns,
+            space,
             limits,
-            jacobian: Matrix::zeros(6, n),
             task: Matrix::zeros(m, n),
             svd: Svd::workspace(m, n),
             gains: vec![0.0; m.min(n)],
             x: vec![0.0; m],
+            done: vec![0.0; m],
             error: vec![0.0; m],
             primary: vec![0.0; n],
             wish: vec![0.0; n],
@@ -165,7 +156,7 @@ impl Servo {
                 let q: Vec<f64> =
                     (0..n).map(|i| 0.3 + ((posture * n + i) as f64 * 0.618_034).fract()).collect();
                 self.chain.set(&q);
-                self.load_jacobian();
+                self.space.load(&self.chain, &mut self.task);
                 Svd::of(&self.task).rank(GENERIC_RANK).rank
             })
             .max()
@@ -196,7 +187,7 @@ impl Servo {
 
         let pose = self.chain.set(q);
         let wanted = target.wanted(pose, &self.options)?;
-        self.load_jacobian();
+        self.space.load(&self.chain, &mut self.task);
         Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
         self.load_task(&wanted);
@@ -210,7 +201,9 @@ impl Servo {
             Problem { j: &self.task, x: &self.x, method: &self.method, bounds: &self.bounds };
         let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
         Error::check_finite("joint rates", &self.primary)?;
+        self.task.mul_vec_into(&self.primary, &mut self.done);
         let effort = self.store_rates();
+        self.note_limits();
 
         self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         if self.last_target != Some(target.pose) {
@@ -302,7 +295,14 @@ impl Servo {
         self.chain.coordinates()
     }
 
-    /// The same servo at rest, with position limits alone and another period and gain [1/s].
+    /// Those of them that are not locked by their limits.
+    pub(super) fn free_coordinates(&self) -> impl Iterator<Item = usize> + '_ {
+        let free = |(i, _): &(usize, &usize)| !self.space.is_locked(*i);
+        self.coordinates().iter().enumerate().filter(free).map(|(_, &c)| c)
+    }
+
+    /// The same servo at rest, with position limits alone and another period and gain [1/s]; what
+    /// is locked stays so.
     pub(super) fn unhurried(&self, dt: f64, gain: f64) -> Result<Self> {
         let mut options = self.options.clone();
         options.dt = dt;
@@ -328,16 +328,16 @@ impl Servo {
 
     /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
     fn load_task(&mut self, wanted: &Wanted) {
-        self.scale_rows(wanted.error);
-        self.error.copy_from_slice(&self.x);
+        self.space.scale(wanted.error, &mut self.error);
         self.method = self.options.method;
         let mut twist = wanted.feedback;
         if self.limits.iter().any(|l| l.acceleration < f64::INFINITY) {
-            self.scale_rows(twist);
+            self.space.scale(twist, &mut self.x);
             self.solve();
             apply(&self.svd, &self.gains, &self.error, &mut self.wish);
             let dt = self.options.dt;
-            let share = approach::share(&self.wish, &self.primary, &self.columns, &self.limits, dt);
+            let share =
+                approach::share(&self.wish, &self.primary, &self.space.columns, &self.limits, dt);
             twist = twist * share;
             self.method = approach::slowed(self.method, share);
         }
@@ -348,16 +348,8 @@ impl Servo {
         if excess > 1.0 {
             twist = twist * (1.0 / excess);
         }
-        self.scale_rows(twist);
+        self.space.scale(twist, &mut self.x);
         self.solve();
-    }
-
-    /// `x = ` the twist in task coordinates.
-    fn scale_rows(&mut self, twist: Twist) {
-        let twist = twist.to_array();
-        for (x, &(row, scale)) in self.x.iter_mut().zip(&self.rows) {
-            *x = twist[row] * scale;
-        }
     }
 
     /// `primary = J+ x`
@@ -366,27 +358,12 @@ impl Servo {
     }
 
     /// True if the tool, moved by the rates of this step, is so slow against the target that an
-    /// error within tolerance stays within it. Overwrites `x`.
-    fn settled(&mut self, feed_forward: Twist) -> bool {
-        self.task.mul_vec_into(&self.primary, &mut self.x);
-        let mut speed = (feed_forward * -1.0).to_array();
-        for (x, &(row, scale)) in self.x.iter().zip(&self.rows) {
-            speed[row] += x / scale;
-        }
-        let (speed, gain, most) =
-            (Twist::from_array(speed), self.options.gain, self.options.tolerance);
+    /// error within tolerance stays within it.
+    fn settled(&self, feed_forward: Twist) -> bool {
+        let speed = self.space.twist(&self.done) - feed_forward;
+        let (gain, most) = (self.options.gain, self.options.tolerance);
         speed.linear.norm() <= gain.position * most.position
             && speed.angular.norm() <= gain.orientation * most.orientation
-    }
-
-    fn load_jacobian(&mut self) {
-        self.chain.jacobian_into(self.options.task.axes, &mut self.jacobian);
-        for (j, &weight) in self.columns.iter().enumerate() {
-            let column = self.jacobian.column(j);
-            for (t, &(row, scale)) in self.task.column_mut(j).iter_mut().zip(&self.rows) {
-                *t = column[row] * scale * weight;
-            }
-        }
     }
 
     /// Secondary wishes in weighted coordinates, projected on the null space.
@@ -397,17 +374,12 @@ impl Servo {
                 *w = wanted_rates[c];
             }
         }
-        let rows = TaskRows {
-            reference: self.options.task.axes,
-            rows: &self.rows,
-            columns: &self.columns,
-        };
         for secondary in &self.options.secondary {
             secondary.add_rates(
                 &self.mechanism,
                 &self.chain,
                 &self.svd,
-                rows,
+                &self.space,
                 &mut self.gradient,
                 &mut self.wish,
             );
@@ -415,8 +387,8 @@ impl Servo {
         if self.wish.iter().all(|w| *w == 0.0) {
             return;
         }
-        for (w, c) in self.wish.iter_mut().zip(&self.columns) {
-            *w /= c;
+        for (w, &c) in self.wish.iter_mut().zip(&self.space.columns) {
+            *w = if c == 0.0 { 0.0 } else { *w / c };
         }
         let space = match self.options.projector {
             Projector::Exact => RowSpace::exact(&self.svd),
@@ -430,31 +402,49 @@ impl Servo {
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let now = Motion1 { position: q[c], rate: self.rates[c] };
             let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
-            bound.lower /= self.columns[i];
-            bound.upper /= self.columns[i];
+            if self.space.is_locked(i) {
+                (bound.lower, bound.upper) = (0.0, 0.0);
+            } else {
+                bound.lower /= self.space.columns[i];
+                bound.upper /= self.space.columns[i];
+            }
             self.bounds[i] = bound;
         }
     }
 
     fn store_rates(&mut self) -> Effort {
-        self.at_limit.clear();
         let mut effort = Effort::default();
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
-            self.active[i] = bound.met(rate);
-            let before = std::mem::replace(&mut self.rates[c], rate * self.columns[i]).abs();
+            self.active[i] = if self.space.is_locked(i) { None } else { bound.met(rate) };
+            let before = std::mem::replace(&mut self.rates[c], rate * self.space.columns[i]).abs();
             let speed = self.rates[c].abs();
             effort.gaining |= self.active[i] == Some(LimitKind::Acceleration) && speed > before;
             if speed > 0.0 {
                 effort.stopping_time =
                     effort.stopping_time.max(speed / self.limits[i].acceleration);
             }
+        }
+        effort
+    }
+
+    /// The joints that stand at a position limit, and beyond it would carry out more of the task.
+    fn note_limits(&mut self) {
+        self.at_limit.clear();
+        let left = |(x, done): (&f64, &f64)| x - done;
+        let size = self.x.iter().zip(&self.done).map(left).map(|r| r * r).sum::<f64>().sqrt();
+        let least = RELEASE * self.svd.value(0) * size;
+        for (i, &c) in self.chain.coordinates().iter().enumerate() {
+            let (rate, bound) = (self.primary[i], self.bounds[i]);
             let (q, l) = (self.chain.q()[i], self.limits[i]);
-            if q - l.lower < AT_LIMIT || l.upper - q < AT_LIMIT {
+            let rest = self.x.iter().zip(&self.done).map(left);
+            let pull: f64 = self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum();
+            let above = l.upper - q < AT_LIMIT && rate >= bound.upper && pull > least;
+            let below = q - l.lower < AT_LIMIT && rate <= bound.lower && pull < -least;
+            if !self.space.is_locked(i) && (above || below) {
                 self.at_limit.push(c);
             }
         }
-        effort
     }
 
     fn singular_ratio(&self) -> f64 {
