@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::limits::LimitKind;
-use super::servo::{Servo, Status, Step, Target};
+use super::servo::Servo;
 use super::stall::Stall;
+use super::step::{Status, Step, Target};
 use crate::error::Result;
 
 /// One instant of a motion.

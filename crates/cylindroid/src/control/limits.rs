@@ -107,10 +107,16 @@ impl RateBounds {
         bounds
     }
 
-    /// The nearest allowed rate.
+    /// The nearest allowed rate; NaN stays NaN, it is near to none.
     #[must_use]
     pub fn clamp(&self, rate: f64) -> f64 {
-        rate.max(self.lower).min(self.upper)
+        if rate < self.lower {
+            self.lower
+        } else if rate > self.upper {
+            self.upper
+        } else {
+            rate
+        }
     }
 
     /// The limit that a rate has run into, if any.
@@ -133,7 +139,7 @@ impl RateBounds {
 }
 
 /// The largest rate from which steps of `dt` with deceleration `acceleration` stop within `room`.
-fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
+pub(super) fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
     if room == f64::INFINITY {
         return f64::INFINITY;
     }

@@ -4,6 +4,7 @@
 //! fastest law on this path that keeps every bound. A servo follows a move, or goes straight at a
 //! pose.
 
+mod approach;
 mod cartesian_move;
 mod detour;
 mod drive;
@@ -15,6 +16,8 @@ mod saturation;
 mod secondary;
 mod servo;
 mod stall;
+mod step;
+mod task_space;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
@@ -26,6 +29,7 @@ pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};
 pub use path::{CartesianPath, Deviation, Turn};
 pub use saturation::Saturation;
 pub use secondary::Secondary;
-pub use servo::{Servo, Status, Step, Target};
+pub use servo::Servo;
 pub use stall::Stall;
+pub use step::{Status, Step, Target};
 pub use time_law::{Bounds, LawSample, TimeLaw};

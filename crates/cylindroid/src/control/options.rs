@@ -127,8 +127,13 @@ impl ServoOptions {
     /// Refuses numbers that make no controller.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] naming the option and its value.
+    /// [`Error::InvalidOption`] naming the option and its value, [`Error::NotFinite`].
     pub fn check(&self, mechanism: &Mechanism) -> Result<()> {
+        mechanism.check_frame(self.end_effector.frame)?;
+        if !self.end_effector.frame_from_tool.is_finite() {
+            let what = "frame_from_tool of the end effector".to_owned();
+            return Err(Error::NotFinite { what, value: f64::NAN });
+        }
         positive("dt", self.dt)?;
         positive("length", self.length)?;
         for (option, gain) in

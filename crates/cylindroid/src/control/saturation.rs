@@ -20,7 +20,7 @@ const LEAST_SCALE: f64 = 0.05;
 
 /// A held joint is released when its pull is above this share of the largest possible one [-]:
 /// what is left of directions that the inverse cut must not release anything.
-const RELEASE: f64 = 1e-3;
+pub(super) const RELEASE: f64 = 1e-3;
 
 /// What became of the task.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -263,6 +263,11 @@ impl Saturator {
 /// `out = V diag(gains) U^T x`
 pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], out: &mut [f64]) {
     method.gains(svd, x, gains);
+    apply(svd, gains, x, out);
+}
+
+/// `out = V diag(gains) U^T x` for gains that are known.
+pub(super) fn apply(svd: &Svd, gains: &[f64], x: &[f64], out: &mut [f64]) {
     out.fill(0.0);
     for (i, gain) in gains.iter().enumerate() {
         let along: f64 = svd.u(i).iter().zip(x).map(|(u, x)| u * x).sum();

@@ -1,24 +1,28 @@
 //! The servo: one step from joint positions and a target pose to joint rates.
 //!
-//! Formula  x = gain * error + feed-forward, error = [p_d - p; log(R_d R^T)] (world axes), saturated
+//! Formula  x = s gain * error + feed-forward, s of `approach.rs`, error = [p_d - p; log(R_d R^T)] (world axes), saturated
 //!          to the largest speeds; rates = J+ x + P z: J+ the chosen inverse of the task Jacobian
 //!          with linear rows divided by L, z the secondary wishes, P the null-space projector;
 //!          then position, velocity and acceleration limits (`limits.rs`, `saturation.rs`)
 //! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
 //! Units    m, rad, s
 //! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step.
-//! Fails    on numbers that are not finite, and then leaves the servo as it was
+//! Fails    on numbers that are not finite, also where the twist or the rates overflow; rates,
+//!          target and the watch for stalls stay as they were
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
+use super::approach;
 use super::limits::{LimitKind, Motion1, RateBounds};
 use super::options::{Projector, ServoOptions};
-use super::saturation::{Problem, Saturation, Saturator, solve};
-use super::secondary::{Gradient, TaskRows};
-use super::stall::{Evidence, Stall, Watch, classify};
+use super::saturation::{Problem, RELEASE, Saturator, apply, solve};
+use super::secondary::Gradient;
+use super::stall::{Effort, Evidence, Stall, Watch, classify};
+use super::step::{Status, Step, Target, Wanted};
+use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
 use crate::inverse::Method;
-use crate::kinematics::{Chain, Reference};
+use crate::kinematics::Chain;
 use crate::linalg::{Matrix, RowSpace, Svd};
 use crate::model::{Limits, Mechanism};
 use crate::spatial::{Pose, Twist};
@@ -27,72 +31,27 @@ use crate::tolerance::{AT_LIMIT, GENERIC_RANK};
 /// Postures that are asked for the rank of the arm.
 const GENERIC_POSTURES: usize = 3;
 
-/// A moving target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Target {
-    /// `world_from_tool` as it should be.
-    pub pose: Pose,
-    /// The twist of the target, world axes, at the tool.
-    pub feed_forward: Twist,
-}
-
-impl From<Pose> for Target {
-    fn from(pose: Pose) -> Self {
-        Self { pose, feed_forward: Twist::ZERO }
-    }
-}
-
-/// Where a servo stands after a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    /// On its way.
-    Moving,
-    /// Both errors are within tolerance.
-    Reached,
-    /// The error no longer falls; [`Servo::stall`] says why.
-    Stalled,
-}
-
-/// What one step did.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// Where the servo stands.
-    pub status: Status,
-    /// The pose of the tool before the step.
-    pub pose: Pose,
-    /// Distance to the target, of the components that matter (m).
-    pub position_error: f64,
-    /// Angle to the target, of the components that matter (rad).
-    pub orientation_error: f64,
-    /// Smallest singular value of the scaled task Jacobian over the largest.
-    pub singular_ratio: f64,
-    /// Directions realised by at least half.
-    pub rank: usize,
-    /// What the limits left of the task.
-    pub saturation: Saturation,
-}
-
 /// A Cartesian controller for one end effector.
 #[derive(Debug, Clone)]
 pub struct Servo {
     mechanism: Mechanism,
     options: ServoOptions,
+    /// The inverse of this step.
+    method: Method,
     chain: Chain,
-    /// Row of the Jacobian and its scale, for each task component.
-    rows: Vec<(usize, f64)>,
-    /// Scale of each column: 1 / sqrt(weight).
-    columns: Vec<f64>,
+    space: TaskSpace,
     limits: Vec<Limits>,
     /// Length of the chain after its first joint (m).
     length: f64,
     /// Rank of the task Jacobian in postures that are not singular.
     generic_rank: usize,
 
-    jacobian: Matrix,
     task: Matrix,
     svd: Svd,
     gains: Vec<f64>,
     x: Vec<f64>,
+    /// J rates, the part of x that is carried out.
+    done: Vec<f64>,
     error: Vec<f64>,
     primary: Vec<f64>,
     wish: Vec<f64>,
@@ -116,11 +75,7 @@ impl Servo {
     pub fn new(mechanism: &Mechanism, options: ServoOptions) -> Result<Self> {
         options.check(mechanism)?;
         let chain = Chain::new(mechanism, options.end_effector);
-        let rows: Vec<(usize, f64)> = (0..6)
-            .filter(|&i| options.task.components[i])
-            .map(|i| (i, if i < 3 { 1.0 / options.length } else { 1.0 }))
-            .collect();
-        let (m, n) = (rows.len(), chain.n());
+        let n = chain.n();
         if n == 0 {
             return Err(Error::Model {
                 model: mechanism.name().to_owned(),
@@ -131,7 +86,7 @@ impl Servo {
                 ),
             });
         }
-        let limits = chain
+        let limits: Vec<Limits> = chain
             .coordinates()
             .iter()
             .map(|&c| {
@@ -142,11 +97,8 @@ impl Servo {
                 l
             })
             .collect();
-        let columns = chain
-            .coordinates()
-            .iter()
-            .map(|&c| options.joint_weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt()))
-            .collect();
+        let space = TaskSpace::new(&options, &chain, &limits);
+        let m = space.rows.len();
         let hessian = if options
             .secondary
             .iter()
@@ -160,15 +112,15 @@ impl Servo {
             length: chain.length_after_first_joint(mechanism),
             generic_rank: 0,
             mechanism: mechanism.clone(),
+            method: options.method,
             options,
-            rows,
-            columns,
+            space,
             limits,
-            jacobian: Matrix::zeros(6, n),
             task: Matrix::zeros(m, n),
             svd: Svd::workspace(m, n),
             gains: vec![0.0; m.min(n)],
             x: vec![0.0; m],
+            done: vec![0.0; m],
             error: vec![0.0; m],
             primary: vec![0.0; n],
             wish: vec![0.0; n],
@@ -204,7 +156,7 @@ impl Servo {
                 let q: Vec<f64> =
                     (0..n).map(|i| 0.3 + ((posture * n + i) as f64 * 0.618_034).fract()).collect();
                 self.chain.set(&q);
-                self.load_jacobian();
+                self.space.load(&self.chain, &mut self.task);
                 Svd::of(&self.task).rank(GENERIC_RANK).rank
             })
             .max()
@@ -234,27 +186,24 @@ impl Servo {
         self.check_input(q, &target, wanted_rates)?;
 
         let pose = self.chain.set(q);
-        let error = pose.error_to(target.pose);
-        let (position_error, orientation_error) = self.load_task(pose, error, &target);
-        let m = self.rows.len();
-
-        self.load_jacobian();
+        let wanted = target.wanted(pose, &self.options)?;
+        self.space.load(&self.chain, &mut self.task);
+        Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
-        solve(&self.svd, &self.options.method, &mut self.gains, &self.x, &mut self.primary);
+        self.load_task(&wanted);
         let rank = (0..self.svd.len())
             .filter(|&i| crate::inverse::is_kept(self.gains[i] * self.svd.value(i)))
             .count();
         self.load_wish(wanted_rates, rank);
 
         self.load_bounds(q);
-        let problem = Problem {
-            j: &self.task,
-            x: &self.x[..m],
-            method: &self.options.method,
-            bounds: &self.bounds,
-        };
+        let problem =
+            Problem { j: &self.task, x: &self.x, method: &self.method, bounds: &self.bounds };
         let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
-        self.store_rates();
+        Error::check_finite("joint rates", &self.primary)?;
+        self.task.mul_vec_into(&self.primary, &mut self.done);
+        let effort = self.store_rates();
+        self.note_limits();
 
         self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         if self.last_target != Some(target.pose) {
@@ -262,15 +211,17 @@ impl Servo {
             self.watch = Watch::new();
         }
         let tolerance = self.options.tolerance;
+        let (position_error, orientation_error) =
+            (wanted.error.linear.norm(), wanted.error.angular.norm());
         let scaled = position_error / self.options.length + orientation_error;
-        let status =
-            if position_error <= tolerance.position && orientation_error <= tolerance.orientation {
-                Status::Reached
-            } else if self.watch.stalled(scaled, self.options.dt) {
-                Status::Stalled
-            } else {
-                Status::Moving
-            };
+        let near =
+            position_error <= tolerance.position && orientation_error <= tolerance.orientation;
+        let stalled = self.watch.stalled(scaled, effort, self.options.dt);
+        let status = match (near, stalled) {
+            (true, _) if self.settled(wanted.feed_forward) => Status::Reached,
+            (false, true) => Status::Stalled,
+            _ => Status::Moving,
+        };
         Ok(Step {
             status,
             pose,
@@ -344,7 +295,14 @@ impl Servo {
         self.chain.coordinates()
     }
 
-    /// The same servo at rest, with position limits alone and another period and gain [1/s].
+    /// Those of them that are not locked by their limits.
+    pub(super) fn free_coordinates(&self) -> impl Iterator<Item = usize> + '_ {
+        let free = |(i, _): &(usize, &usize)| !self.space.is_locked(*i);
+        self.coordinates().iter().enumerate().filter(free).map(|(_, &c)| c)
+    }
+
+    /// The same servo at rest, with position limits alone and another period and gain [1/s]; what
+    /// is locked stays so.
     pub(super) fn unhurried(&self, dt: f64, gain: f64) -> Result<Self> {
         let mut options = self.options.clone();
         options.dt = dt;
@@ -365,59 +323,47 @@ impl Servo {
         if !wanted_rates.is_empty() {
             self.mechanism.check_q("wanted rates", wanted_rates)?;
         }
-        let p = target.pose.translation.to_array();
-        Error::check_finite("target position", &p)?;
-        if !target.pose.is_finite() {
-            return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
-        }
-        Error::check_finite("feed-forward twist", &target.feed_forward.to_array())
+        target.check()
     }
 
-    /// Writes the commanded task twist and the error, both scaled; returns the two errors.
-    fn load_task(&mut self, pose: Pose, error: Twist, target: &Target) -> (f64, f64) {
-        let gain = self.options.gain;
-        let mut twist = Twist {
-            linear: error.linear * gain.position + target.feed_forward.linear,
-            angular: error.angular * gain.orientation + target.feed_forward.angular,
-        };
-        let mut error = error;
-        if self.options.task.axes == Reference::Local {
-            let r = pose.rotation.matrix();
-            let turn =
-                |t: Twist| Twist { linear: r.tr_mul(t.linear), angular: r.tr_mul(t.angular) };
-            twist = turn(twist);
-            error = turn(error);
+    /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
+    fn load_task(&mut self, wanted: &Wanted) {
+        self.space.scale(wanted.error, &mut self.error);
+        self.method = self.options.method;
+        let mut twist = wanted.feedback;
+        if self.limits.iter().any(|l| l.acceleration < f64::INFINITY) {
+            self.space.scale(twist, &mut self.x);
+            self.solve();
+            apply(&self.svd, &self.gains, &self.error, &mut self.wish);
+            let dt = self.options.dt;
+            let share =
+                approach::share(&self.wish, &self.primary, &self.space.columns, &self.limits, dt);
+            twist = twist * share;
+            self.method = approach::slowed(self.method, share);
         }
-        let keep = |t: Twist| {
-            let mut v = t.to_array();
-            for (x, keep) in v.iter_mut().zip(self.options.task.components) {
-                *x *= f64::from(u8::from(keep));
-            }
-            Twist::from_array(v)
-        };
-        let (mut twist, error) = (keep(twist), keep(error));
+        twist = twist + wanted.feed_forward;
         // Saturated as a whole: the direction of the motion is kept.
         let speed = self.options.speed;
         let excess = (twist.linear.norm() / speed.linear).max(twist.angular.norm() / speed.angular);
         if excess > 1.0 {
             twist = twist * (1.0 / excess);
         }
-        let (twist, scaled) = (twist.to_array(), error.to_array());
-        for (i, &(row, scale)) in self.rows.iter().enumerate() {
-            self.x[i] = twist[row] * scale;
-            self.error[i] = scaled[row] * scale;
-        }
-        (error.linear.norm(), error.angular.norm())
+        self.space.scale(twist, &mut self.x);
+        self.solve();
     }
 
-    fn load_jacobian(&mut self) {
-        self.chain.jacobian_into(self.options.task.axes, &mut self.jacobian);
-        for (j, &weight) in self.columns.iter().enumerate() {
-            let column = self.jacobian.column(j);
-            for (t, &(row, scale)) in self.task.column_mut(j).iter_mut().zip(&self.rows) {
-                *t = column[row] * scale * weight;
-            }
-        }
+    /// `primary = J+ x`
+    fn solve(&mut self) {
+        solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
+    }
+
+    /// True if the tool, moved by the rates of this step, is so slow against the target that an
+    /// error within tolerance stays within it.
+    fn settled(&self, feed_forward: Twist) -> bool {
+        let speed = self.space.twist(&self.done) - feed_forward;
+        let (gain, most) = (self.options.gain, self.options.tolerance);
+        speed.linear.norm() <= gain.position * most.position
+            && speed.angular.norm() <= gain.orientation * most.orientation
     }
 
     /// Secondary wishes in weighted coordinates, projected on the null space.
@@ -428,17 +374,12 @@ impl Servo {
                 *w = wanted_rates[c];
             }
         }
-        let rows = TaskRows {
-            reference: self.options.task.axes,
-            rows: &self.rows,
-            columns: &self.columns,
-        };
         for secondary in &self.options.secondary {
             secondary.add_rates(
                 &self.mechanism,
                 &self.chain,
                 &self.svd,
-                rows,
+                &self.space,
                 &mut self.gradient,
                 &mut self.wish,
             );
@@ -446,8 +387,8 @@ impl Servo {
         if self.wish.iter().all(|w| *w == 0.0) {
             return;
         }
-        for (w, c) in self.wish.iter_mut().zip(&self.columns) {
-            *w /= c;
+        for (w, &c) in self.wish.iter_mut().zip(&self.space.columns) {
+            *w = if c == 0.0 { 0.0 } else { *w / c };
         }
         let space = match self.options.projector {
             Projector::Exact => RowSpace::exact(&self.svd),
@@ -461,20 +402,46 @@ impl Servo {
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let now = Motion1 { position: q[c], rate: self.rates[c] };
             let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
-            bound.lower /= self.columns[i];
-            bound.upper /= self.columns[i];
+            if self.space.is_locked(i) {
+                (bound.lower, bound.upper) = (0.0, 0.0);
+            } else {
+                bound.lower /= self.space.columns[i];
+                bound.upper /= self.space.columns[i];
+            }
             self.bounds[i] = bound;
         }
     }
 
-    fn store_rates(&mut self) {
-        self.at_limit.clear();
+    fn store_rates(&mut self) -> Effort {
+        let mut effort = Effort::default();
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
-            self.rates[c] = rate * self.columns[i];
-            self.active[i] = bound.met(rate);
+            self.active[i] = if self.space.is_locked(i) { None } else { bound.met(rate) };
+            let before = std::mem::replace(&mut self.rates[c], rate * self.space.columns[i]).abs();
+            let speed = self.rates[c].abs();
+            effort.gaining |= self.active[i] == Some(LimitKind::Acceleration) && speed > before;
+            if speed > 0.0 {
+                effort.stopping_time =
+                    effort.stopping_time.max(speed / self.limits[i].acceleration);
+            }
+        }
+        effort
+    }
+
+    /// The joints that stand at a position limit, and beyond it would carry out more of the task.
+    fn note_limits(&mut self) {
+        self.at_limit.clear();
+        let left = |(x, done): (&f64, &f64)| x - done;
+        let size = self.x.iter().zip(&self.done).map(left).map(|r| r * r).sum::<f64>().sqrt();
+        let least = RELEASE * self.svd.value(0) * size;
+        for (i, &c) in self.chain.coordinates().iter().enumerate() {
+            let (rate, bound) = (self.primary[i], self.bounds[i]);
             let (q, l) = (self.chain.q()[i], self.limits[i]);
-            if q - l.lower < AT_LIMIT || l.upper - q < AT_LIMIT {
+            let rest = self.x.iter().zip(&self.done).map(left);
+            let pull: f64 = self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum();
+            let above = l.upper - q < AT_LIMIT && rate >= bound.upper && pull > least;
+            let below = q - l.lower < AT_LIMIT && rate <= bound.lower && pull < -least;
+            if !self.space.is_locked(i) && (above || below) {
                 self.at_limit.push(c);
             }
         }

@@ -14,7 +14,8 @@ use crate::linalg::Svd;
 pub(super) fn gains(svd: &Svd, shape: f64, floor: f64, out: &mut [f64]) -> f64 {
     let rank = svd.machine_rank().rank;
     for (i, (gain, s)) in out.iter_mut().zip(svd.values()).enumerate() {
-        let filtered = (s * (s * (s + shape) + 2.0) + 2.0 * floor) / (s * (s + shape) + 2.0);
+        // The rational function with its whole part s taken out: nothing but the rest can overflow.
+        let filtered = s + 2.0 * floor / (s * (s + shape) + 2.0);
         *gain = if i < rank { 1.0 / filtered } else { 0.0 };
     }
     floor

@@ -21,12 +21,12 @@ pub(super) struct Filter {
 }
 
 pub(super) fn gains(svd: &Svd, filter: Filter, out: &mut [f64]) -> f64 {
-    let share = fraction(svd, filter.onset);
-    let all = share * filter.damping * filter.damping;
-    let weakest = all + share * filter.weakest * filter.weakest;
+    let share = fraction(svd, filter.onset).sqrt();
+    let all = share * filter.damping;
+    let weakest = share * filter.damping.hypot(filter.weakest);
     let last = svd.len().saturating_sub(1);
     for (i, (gain, s)) in out.iter_mut().zip(svd.values()).enumerate() {
         *gain = damp(s, if i == last { weakest } else { all });
     }
-    weakest.sqrt()
+    weakest
 }

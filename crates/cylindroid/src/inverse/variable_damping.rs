@@ -11,11 +11,11 @@ use super::damped::damp;
 use crate::linalg::Svd;
 
 pub(super) fn gains(svd: &Svd, onset: f64, damping: f64, out: &mut [f64]) -> f64 {
-    let squared = fraction(svd, onset) * damping * damping;
+    let damping = fraction(svd, onset).sqrt() * damping;
     for (gain, s) in out.iter_mut().zip(svd.values()) {
-        *gain = damp(s, squared);
+        *gain = damp(s, damping);
     }
-    squared.sqrt()
+    damping
 }
 
 /// The share of the full damping: 0 in regular poses, 1 at rank loss.

@@ -205,7 +205,7 @@ impl Svd {
     }
 
     /// Rank at the relative threshold `eps` (values `s_i <= eps * s_1` do not count), never below
-    /// machine precision.
+    /// machine precision nor the smallest normal number, which has the largest inverse.
     #[must_use]
     pub fn rank(&self, eps: f64) -> Rank {
         let k = self.len();
@@ -213,7 +213,7 @@ impl Svd {
             return Rank { rank: 0, threshold: 0.0, gap: f64::INFINITY };
         }
         let machine = MACHINE_RANK * self.rows.max(self.cols) as f64;
-        let threshold = eps.max(machine) * self.value(0);
+        let threshold = (eps.max(machine) * self.value(0)).max(f64::MIN_POSITIVE);
         let rank = self.values().take_while(|&s| s > threshold).count();
         let gap = if rank == 0 || rank == k || self.value(rank) == 0.0 {
             f64::INFINITY

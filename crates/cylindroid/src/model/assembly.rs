@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::builder::Order;
 use super::joint::JointKind;
-use super::mechanism::{Coordinate, CoordinateKind, Frame, FrameId};
+use super::mechanism::{Coordinate, CoordinateKind, Frame};
 use super::node::{Motion, Node};
 use super::spec::JointSpec;
 use crate::spatial::{Pose, Rotation, Vec3};
@@ -204,14 +204,14 @@ impl NodeChain<'_> {
     }
 }
 
-/// The frame that is driven when none is named: from the root along the only branch that moves to
+/// The link whose frame is driven when none is named: from the root along the only branch that moves to
 /// where none or several do (a hand with fingers), then to the last link fixed there. Where the
 /// root itself branches (humanoids, hands), the end of the branch with the most moving joints.
 pub(super) fn default_tool(
     order: &Order,
     joints: &[JointSpec],
     links: &BTreeMap<String, usize>,
-) -> FrameId {
+) -> usize {
     let ends: Vec<(usize, usize)> =
         joints.iter().map(|j| (links[&j.parent], links[&j.child])).collect();
     let moves = |j: usize| joints[j].kind.dof() > 0;
@@ -245,5 +245,5 @@ pub(super) fn default_tool(
     while let Some(&fixed) = children[link].iter().rev().find(|&&j| !carries(j)) {
         link = ends[fixed].1;
     }
-    FrameId(link)
+    link
 }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::assembly::{Assembly, default_tool};
 use super::joint::{Joint, Limits};
 use super::link::Link;
-use super::mechanism::{Data, Frame, FrameId, Mechanism};
+use super::mechanism::{Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
 use super::spec::JointSpec;
 use crate::error::{Error, Result};
@@ -91,7 +91,8 @@ impl Builder {
     ///
     /// # Errors
     /// [`Error::Model`] for names given twice or unknown, a link with two parents, a cycle, more
-    /// than one root, an axis without direction, limits that contradict each other, a mimic joint
+    /// than one root, an axis without direction, limits that contradict each other or that no
+    /// joint of the kind can keep (positions of spherical and free joints), a mimic joint
     /// that follows itself, nothing, or a joint of several coordinates.
     pub fn build(mut self) -> Result<Mechanism> {
         let links = self.index_links()?;
@@ -351,7 +352,7 @@ impl Builder {
         let tool = match &self.tool {
             None => default_tool(order, &self.joints, links),
             Some(name) => match frames.iter().position(|f| f.name == *name) {
-                Some(i) => FrameId(i),
+                Some(i) => i,
                 None => {
                     let unknown =
                         Error::unknown("frame", name, frames.iter().map(|f| f.name.as_str()));
@@ -397,16 +398,18 @@ impl Builder {
         for c in &mut assembly.coordinates {
             c.joint = places[c.joint];
         }
+        let frame_key = frame_key(&frames);
         Ok(Mechanism {
             data: Arc::new(Data {
                 name: self.name,
                 links: self.links,
                 joints,
+                frame_key,
                 frames,
                 coordinates: assembly.coordinates,
                 nodes: assembly.nodes,
                 home,
-                tool,
+                tool: FrameId { index: tool, frame_key },
                 reach: assembly.reach.max(LEAST_REACH),
                 report: self.report,
             }),

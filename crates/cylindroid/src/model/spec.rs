@@ -77,6 +77,17 @@ impl JointSpec {
                 l.lower, l.upper
             ));
         }
+        let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
+        if bounded && !self.kind.takes_position_limits() {
+            return Some(format!(
+                "joint '{name}' is {} and has position limits {} and {}, which nothing could keep: \
+                 its rates are not the derivative of q; leave them infinite, or write it as \
+                 revolute and prismatic joints in a row, each with its limits",
+                self.kind.name(),
+                l.lower,
+                l.upper
+            ));
+        }
         for (what, value) in
             [("velocity", l.velocity), ("acceleration", l.acceleration), ("effort", l.effort)]
         {

@@ -251,6 +251,28 @@ fn bad_input_is_refused() {
     assert!(Method::named("dampd").unwrap_err().to_string().contains("nearest: damped"));
 }
 
+/// However large or small the numbers: no square overflows or vanishes on the way.
+#[test]
+fn extreme_scales() {
+    for size in [1e-310, 1e-300, 1e-200, 1e-160, 1.0, 1e160, 1e200, 1e300] {
+        let j = Matrix::diagonal(&[size, 0.7 * size, 0.5 * size]);
+        for method in Method::ALL {
+            let inverse = method.inverse(&j).unwrap();
+            let name = format!("{} at {size:e}", method.name());
+            assert!(inverse.matrix.is_finite(), "{name}: {:?}", inverse.matrix);
+            let share = inverse.matrix[(1, 1)] * j[(1, 1)];
+            assert!((0.0..=1.0 + 1e-15).contains(&share), "{name}: {share} realised");
+            // Damping far below the singular values does nothing.
+            let exact = size > 1e150 && !matches!(method, Method::SelectivelyDamped { .. });
+            assert!(!exact || share > 1.0 - 1e-15, "{name}: {share} realised");
+        }
+        // The damping in the unit of the values: half of the smallest direction is left.
+        let half = inverse::damped(&j, 0.5 * size).unwrap();
+        let share = half.matrix[(2, 2)] * j[(2, 2)];
+        assert!((share - 0.5).abs() < 1e-12 || size < 1e-300, "{size:e}: {share}");
+    }
+}
+
 #[test]
 fn no_rows_or_columns() {
     for (m, n) in [(0, 3), (3, 0), (0, 0)] {

@@ -9,6 +9,7 @@
 
 mod inverse;
 mod kinematics;
+mod model;
 mod pinocchio;
 mod screws;
 mod servo;

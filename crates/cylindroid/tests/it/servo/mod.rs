@@ -7,8 +7,8 @@ mod steps;
 mod ways;
 
 pub(crate) use cylindroid::control::{
-    Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Outcome, Projector, Secondary,
-    Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
+    Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Motion1, Outcome, Projector,
+    RateBounds, Secondary, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
 };
 pub(crate) use cylindroid::inverse::Method;
 pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits};

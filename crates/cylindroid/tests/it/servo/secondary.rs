@@ -125,3 +125,49 @@ fn secondary_manipulability_gradient_by_finite_differences() {
         assert!((servo.rates()[k] - expected).abs() < 1e-9, "{} {expected}", servo.rates()[k]);
     }
 }
+
+/// A ball joint and a free body go to a posture the short way, from any attitude: in the null
+/// space of a task that they do not disturb.
+#[test]
+fn secondary_posture_of_spherical_and_free_joints() {
+    let mut random = Random(42);
+    for kind in [JointKind::Spherical, JointKind::Free] {
+        let mut b = Mechanism::builder("body");
+        b.joint(JointSpec::new("body", kind, "ground", "a"));
+        // Position alone of the joint's own origin: a ball joint is free to turn.
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::ZERO),
+            ..JointSpec::new("slide", JointKind::Prismatic, "a", "tip")
+        });
+        let robot = b.build().unwrap();
+        let n = robot.n();
+        for _ in 0..20 {
+            let (mut q, mut posture) = (vec![0.0; n], vec![0.0; n]);
+            for x in [&mut q, &mut posture] {
+                x[n - 4..n - 1].copy_from_slice(&random.rotation().log().to_array());
+            }
+            if kind == JointKind::Free {
+                q[..3].copy_from_slice(&random.vec3(1.0).to_array());
+                let here = robot.state(&q).unwrap().pose(robot.tool()).translation;
+                posture[..3].copy_from_slice(&here.to_array());
+            }
+            let pose = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool());
+            let target = pose(&q);
+            let mut servo = servo(&robot, |o| {
+                o.task = Task::POSITION;
+                o.dt = 0.01;
+                o.secondary = vec![Secondary::Posture { q: posture.clone(), gain: 2.0 }];
+            });
+            let mut left = pose(&q).rotation.angle_to(pose(&posture).rotation);
+            for _ in 0..1000 {
+                let step = servo.step(&q, target).unwrap();
+                assert!(step.position_error < 1e-9, "{step:?}");
+                servo.advance(&mut q);
+                let now = pose(&q).rotation.angle_to(pose(&posture).rotation);
+                assert!(now <= left + 1e-12, "turns away: {left} rad, then {now}");
+                left = now;
+            }
+            assert!(left < 1e-6, "{kind:?}: {left} rad left");
+        }
+    }
+}

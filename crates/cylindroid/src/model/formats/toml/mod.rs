@@ -18,7 +18,7 @@ use ::toml::de::DeTable;
 
 use self::value::Table;
 use super::dh;
-use super::place::Source;
+use super::place::{Notes, Source};
 use crate::error::{Error, Result};
 use crate::model::{JointSpec, Mechanism};
 use crate::spatial::Pose;
@@ -71,7 +71,17 @@ pub(in crate::model) fn read(
     let joints = joints(&file, planar)?;
     let mut places = places(&file)?;
     let poses = world_from_links(&joints);
-    for joint in joints {
+    let mut notes = Notes::default();
+    for mut joint in joints {
+        let l = &mut joint.limits;
+        let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
+        if bounded && !joint.kind.takes_position_limits() {
+            (l.lower, l.upper) = (f64::NEG_INFINITY, f64::INFINITY);
+            let at = places.iter().find(|p| p.0 == joint.name).map_or(0, |p| p.1.start);
+            let why = "dropped: its rates are not the derivative of q, nothing could keep them";
+            let what = format!("position limits of {} joints", joint.kind.name());
+            notes.add(at, what, why, &joint.name);
+        }
         builder.joint(joint);
     }
     for frame in file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])? {
@@ -110,6 +120,7 @@ pub(in crate::model) fn read(
     let report = builder.report();
     report.format = format;
     report.source = file.string("source")?.unwrap_or("").to_owned();
+    notes.write(&source, report);
     let mechanism = builder.build().map_err(|e| place(&source, &places, e))?;
     Ok((mechanism, file.string("description")?.unwrap_or("").to_owned()))
 }
