@@ -84,3 +84,7 @@ pub const SCREW_CLASS: f64 = 1e-8;
 
 /// A verdict is flagged when a quantity lies within this factor of its threshold [-].
 pub const AMBIGUOUS: f64 = 1e3;
+
+/// A projector that enlarges motions by more than this is not used by a servo unless asked to [-]:
+/// the error to be realised would be a thousand times the error to be closed.
+pub const LARGEST_PROJECTION: f64 = 1e3;

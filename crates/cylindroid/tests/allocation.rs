@@ -4,10 +4,10 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cylindroid::control::{Gain, Secondary, Task};
-use cylindroid::inverse::Method;
+use cylindroid::control::{Gain, Projection, Secondary, Task};
+use cylindroid::inverse::{HyperbolicDamping, Method};
 use cylindroid::kinematics::Chain;
-use cylindroid::{Matrix, Pose, Reference, Servo, ServoOptions, Vec3, catalogue};
+use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Twist, Vec3, catalogue};
 
 struct Counting;
 
@@ -91,6 +91,36 @@ fn hot_paths_allocate_nothing() {
                 assert!(scaled + bent > 0 || slow, "{name}: no limit was met");
             }
         }
+        if *name == *"youbot" {
+            projections(&robot, start);
+        }
+    }
+}
+
+/// Five joints: every projection does something.
+fn projections(robot: &Mechanism, start: Pose) {
+    let give_up = Twist { linear: Vec3::ZERO, angular: Vec3::X };
+    let damped = |damping| Projection::DampedHyperbolic { h: 0.1, damping };
+    for projection in [
+        Projection::Hyperbolic { h: 0.1 },
+        Projection::Hyperbolic { h: f64::INFINITY },
+        damped(HyperbolicDamping::Invariant { mu: 0.01 }),
+        damped(HyperbolicDamping::Gram { lambda: 0.01 }),
+        Projection::Oblique { complement: vec![give_up], reference: Reference::Local },
+    ] {
+        let name = format!("{projection:?}");
+        let options = ServoOptions { projection, ..ServoOptions::new(robot) };
+        let mut servo = Servo::new(robot, options).unwrap();
+        let target = Pose { translation: start.translation + Vec3::new(0.01, 0.02, 0.0), ..start };
+        let mut q = robot.home().to_vec();
+        let counted = count(|| {
+            for _ in 0..200 {
+                servo.step(&q, target).unwrap();
+                servo.advance(&mut q);
+            }
+        });
+        assert_eq!(counted, 0, "{name}");
+        assert_eq!(servo.no_inverse(), None, "{name}");
     }
 }
 

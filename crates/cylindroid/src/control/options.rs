@@ -1,5 +1,6 @@
 //! What a servo is told: frame, task, gains, limits, inverse.
 
+use super::projection::Projection;
 use super::secondary::Secondary;
 use crate::error::{Error, Result};
 use crate::inverse::Method;
@@ -86,6 +87,12 @@ pub struct ServoOptions {
     pub tolerance: Tolerance,
     /// How the Jacobian is inverted; its numbers refer to linear rows divided by `length`.
     pub method: Method,
+    /// Which part of a motion is taken on where the arm cannot do all of it.
+    pub projection: Projection,
+    /// What takes over where `projection` does not exist; `None`: the arm stops and says why.
+    pub fallback: Option<Projection>,
+    /// A projection that enlarges motions by more than this counts as not existing [-].
+    pub largest_projection: f64,
     /// Characteristic length that scales the linear rows (m).
     pub length: f64,
     /// A weight for each coordinate of the mechanism (large keeps it still); empty for none.
@@ -115,6 +122,9 @@ impl ServoOptions {
                 orientation: tolerance::ORIENTATION,
             },
             method: Method::default(),
+            projection: Projection::Orthogonal,
+            fallback: None,
+            largest_projection: tolerance::LARGEST_PROJECTION,
             length: mechanism.reach(),
             joint_weights: Vec::new(),
             speed: Speed { linear: f64::INFINITY, angular: f64::INFINITY },
@@ -193,6 +203,20 @@ impl ServoOptions {
                 Secondary::LimitAvoidance { margin, .. } => positive("margin", *margin)?,
                 Secondary::Centring { .. } | Secondary::Manipulability { .. } => {}
             }
+        }
+        for projection in [Some(&self.projection), self.fallback.as_ref()].into_iter().flatten() {
+            projection.check()?;
+            if *projection != Projection::Orthogonal && self.task.components != [true; 6] {
+                return Err(Error::InvalidOption {
+                    option: "projection",
+                    value: projection.name().to_owned(),
+                    reason: "it needs whole poses as task: forms of twists have six components"
+                        .to_owned(),
+                });
+            }
+        }
+        if self.largest_projection.is_nan() || self.largest_projection <= 0.0 {
+            return Err(refuse("largest projection", self.largest_projection));
         }
         self.method.check()
     }

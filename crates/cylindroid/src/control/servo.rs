@@ -15,6 +15,7 @@
 use super::approach;
 use super::limits::{LimitKind, Motion1, RateBounds};
 use super::options::{Projector, ServoOptions};
+use super::projection::{Projecting, TaskFrame};
 use super::saturation::{Problem, RELEASE, Saturator, apply, solve};
 use super::secondary::Gradient;
 use super::stall::{Effort, Evidence, Stall, Watch, classify};
@@ -25,6 +26,7 @@ use crate::inverse::Method;
 use crate::kinematics::Chain;
 use crate::linalg::{Matrix, RowSpace, Svd};
 use crate::model::{Limits, Mechanism};
+use crate::screws::NoInverse;
 use crate::spatial::{Pose, Twist};
 use crate::tolerance::{AT_LIMIT, GENERIC_RANK};
 
@@ -53,6 +55,9 @@ pub struct Servo {
     /// J rates, the part of x that is carried out.
     done: Vec<f64>,
     error: Vec<f64>,
+    /// The error as projected.
+    possible: Vec<f64>,
+    projecting: Projecting,
     primary: Vec<f64>,
     wish: Vec<f64>,
     bounds: Vec<RateBounds>,
@@ -122,6 +127,8 @@ impl Servo {
             x: vec![0.0; m],
             done: vec![0.0; m],
             error: vec![0.0; m],
+            possible: vec![0.0; m],
+            projecting: Projecting::new(),
             primary: vec![0.0; n],
             wish: vec![0.0; n],
             bounds: vec![
@@ -190,6 +197,8 @@ impl Servo {
         self.space.load(&self.chain, &mut self.task);
         Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
+        let (axes, length) = (self.options.task.axes, self.options.length);
+        self.projecting.load(&self.options, &self.svd, TaskFrame { pose, axes, length });
         self.load_task(&wanted);
         let rank = (0..self.svd.len())
             .filter(|&i| crate::inverse::is_kept(self.gains[i] * self.svd.value(i)))
@@ -220,6 +229,7 @@ impl Servo {
         let status = match (near, stalled) {
             (true, _) if self.settled(wanted.feed_forward) => Status::Reached,
             (false, true) => Status::Stalled,
+            _ if self.projecting.is_stopped() => Status::Stalled,
             _ => Status::Moving,
         };
         Ok(Step {
@@ -255,11 +265,26 @@ impl Servo {
             svd: &self.svd,
             gains: &self.gains,
             error: &self.error,
+            possible: &self.possible,
+            no_inverse: self.projecting.reason().filter(|_| self.projecting.is_stopped()),
             at_limit: &self.at_limit,
             distance: self.distance,
             length: self.length + self.offset_of_free_position(),
             generic_rank: self.generic_rank,
         })
+    }
+
+    /// Why the projection that was asked for was not used in the last step: the fallback was, or
+    /// the arm was stopped.
+    #[must_use]
+    pub fn no_inverse(&self) -> Option<NoInverse> {
+        self.projecting.reason()
+    }
+
+    /// True if the last step commanded rest because neither the projection nor a fallback exists.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.projecting.is_stopped()
     }
 
     /// The options.
@@ -308,6 +333,8 @@ impl Servo {
         options.dt = dt;
         options.gain = super::Gain { position: gain, orientation: gain };
         options.speed = super::Speed { linear: f64::INFINITY, angular: f64::INFINITY };
+        // Only the posture at the end counts, not the way.
+        options.projection = super::Projection::Orthogonal;
         // Half a radian a step at most, and exact near the target also where it is nearly singular.
         options.method = Method::SelectivelyDamped { max_rate: 0.5 / dt };
         let mut servo = Self::new(&self.mechanism, options)?;
@@ -329,12 +356,14 @@ impl Servo {
     /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
     fn load_task(&mut self, wanted: &Wanted) {
         self.space.scale(wanted.error, &mut self.error);
+        self.possible.copy_from_slice(&self.error);
+        self.projecting.apply(&mut self.possible);
         self.method = self.options.method;
         let mut twist = wanted.feedback;
         if self.limits.iter().any(|l| l.acceleration < f64::INFINITY) {
-            self.space.scale(twist, &mut self.x);
+            self.load_twist(twist);
             self.solve();
-            apply(&self.svd, &self.gains, &self.error, &mut self.wish);
+            apply(&self.svd, &self.gains, &self.possible, &mut self.wish);
             let dt = self.options.dt;
             let share =
                 approach::share(&self.wish, &self.primary, &self.space.columns, &self.limits, dt);
@@ -348,8 +377,14 @@ impl Servo {
         if excess > 1.0 {
             twist = twist * (1.0 / excess);
         }
-        self.space.scale(twist, &mut self.x);
+        self.load_twist(twist);
         self.solve();
+    }
+
+    /// `x = P twist`, scaled.
+    fn load_twist(&mut self, twist: Twist) {
+        self.space.scale(twist, &mut self.x);
+        self.projecting.apply(&mut self.x);
     }
 
     /// `primary = J+ x`

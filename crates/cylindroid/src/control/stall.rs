@@ -15,6 +15,7 @@
 //! Checked  tests/it/servo/stall.rs::stall_*
 
 use crate::linalg::Svd;
+use crate::screws::NoInverse;
 use crate::tolerance::TRUNCATION;
 
 /// Window within which the error must fall (s), and by which share [-].
@@ -58,6 +59,13 @@ pub enum Stall {
         /// The remaining error as a unit vector in task space.
         direction: Vec<f64>,
     },
+    /// The inverse that was asked for does not exist here, and no other was named.
+    NoInverse(NoInverse),
+    /// The remaining error is what the projection gives up, although the arm could lessen it.
+    GivenUp {
+        /// The remaining error as a unit vector in task space.
+        direction: Vec<f64>,
+    },
     /// None of these: the inverse is damped so much, or the limits so tight, that progress is
     /// slower than the window.
     Slow,
@@ -72,6 +80,8 @@ impl Stall {
             Self::Limits { .. } => "limits",
             Self::Singular { .. } => "singular",
             Self::TooFewJoints { .. } => "too-few-joints",
+            Self::NoInverse(_) => "no-inverse",
+            Self::GivenUp { .. } => "given-up",
             Self::Slow => "slow",
         }
     }
@@ -121,6 +131,10 @@ pub(super) struct Evidence<'a> {
     pub(super) gains: &'a [f64],
     /// The remaining error in scaled task coordinates.
     pub(super) error: &'a [f64],
+    /// The same as projected.
+    pub(super) possible: &'a [f64],
+    /// Why there is no projector, if the arm was stopped for it.
+    pub(super) no_inverse: Option<NoInverse>,
     /// Coordinates that stand at a position limit against the wanted motion.
     pub(super) at_limit: &'a [usize],
     pub(super) distance: f64,
@@ -130,14 +144,20 @@ pub(super) struct Evidence<'a> {
 }
 
 pub(super) fn classify(e: &Evidence<'_>) -> Stall {
+    if let Some(reason) = e.no_inverse {
+        return Stall::NoInverse(reason);
+    }
     if e.distance > e.length * (1.0 + 1e-12) {
         return Stall::OutOfReach { distance: e.distance, length: e.length };
     }
     let total: f64 = e.error.iter().map(|x| x * x).sum();
     let norm = total.sqrt().max(f64::MIN_POSITIVE);
     let kept = |i: &usize| e.gains[*i] > 0.0 && e.svd.value(*i) > TRUNCATION * e.svd.value(0);
-    let along = |i| e.svd.u(i).iter().zip(e.error).map(|(u, x)| u * x).sum::<f64>();
-    let possible: f64 = (0..e.svd.len()).filter(kept).map(|i| along(i).powi(2)).sum();
+    let realised = |error: &[f64]| -> f64 {
+        let along = |i| e.svd.u(i).iter().zip(error).map(|(u, x)| u * x).sum::<f64>();
+        (0..e.svd.len()).filter(kept).map(|i| along(i).powi(2)).sum()
+    };
+    let possible = realised(e.possible);
     if possible > POSSIBLE * total {
         return if e.at_limit.is_empty() {
             Stall::Slow
@@ -145,7 +165,10 @@ pub(super) fn classify(e: &Evidence<'_>) -> Stall {
             Stall::Limits { coordinates: e.at_limit.to_vec() }
         };
     }
-    let direction = e.error.iter().map(|x| x / norm).collect();
+    let direction: Vec<f64> = e.error.iter().map(|x| x / norm).collect();
+    if realised(e.error) > POSSIBLE * total {
+        return Stall::GivenUp { direction };
+    }
     let rank = (0..e.svd.len()).filter(kept).count();
     if rank >= e.generic_rank {
         return Stall::TooFewJoints { rank, task: e.error.len(), direction };

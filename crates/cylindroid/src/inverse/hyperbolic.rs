@@ -169,7 +169,7 @@ fn from_projector(
 }
 
 impl HyperbolicDamping {
-    fn check(self) -> Result<()> {
+    pub(crate) fn check(self) -> Result<()> {
         match self {
             Self::None => Ok(()),
             Self::Gram { lambda } => Error::check_finite("lambda", &[lambda]),
@@ -179,7 +179,7 @@ impl HyperbolicDamping {
 
     /// What divides out an eigenvalue of the Gram matrix; both in units of `length`. `None` where
     /// the damping makes it zero.
-    fn gain(self, g: f64, length: f64) -> Option<f64> {
+    pub(crate) fn gain(self, g: f64, length: f64) -> Option<f64> {
         match self {
             Self::None => (g != 0.0).then(|| 1.0 / g),
             Self::Gram { lambda } => {

@@ -68,6 +68,11 @@ pub enum NoInverse {
         /// Order of the twists given up.
         other: usize,
     },
+    /// The inverse exists, but enlarges motions beyond what was allowed.
+    TooLarge {
+        /// Size of the projector: 1 for an orthogonal one onto one screw.
+        norm: f64,
+    },
     /// The Gram matrix is singular to the tolerance, although no principal pitch is near: the
     /// system is close to a class that has none.
     Close {
@@ -113,6 +118,11 @@ impl fmt::Display for NoInverse {
             Self::NotComplementary { .. } => write!(
                 f,
                 "some of the twists to give up are motions of the joints; choose ones that are not"
+            ),
+            Self::TooLarge { norm } => write!(
+                f,
+                "the projector enlarges motions by up to {norm:.3e}, more than allowed; take \
+                 another h, or a posture farther from the one that has no inverse"
             ),
             Self::Close { class, order } => write!(
                 f,

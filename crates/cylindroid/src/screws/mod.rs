@@ -25,6 +25,7 @@ mod screw;
 mod span;
 mod spanning;
 mod system;
+mod task_projector;
 mod transversals;
 
 pub use class::{Class, NormalForm};
@@ -35,4 +36,5 @@ pub use projector::Projector;
 pub use screw::{CommonNormal, Line, Screw};
 pub use spanning::ScrewOptions;
 pub use system::ScrewSystem;
+pub(crate) use task_projector::TaskProjector;
 pub use transversals::{Transversals, transversals};

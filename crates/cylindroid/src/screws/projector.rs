@@ -157,6 +157,40 @@ pub(crate) fn coordinates(span: &Span, h: f64) -> Option<[[f64; 6]; 6]> {
     Some(rows)
 }
 
+/// Rows `i` such that row i times x is the coordinate along basis vector i of the part of x in
+/// `span`, the rest being in `other`; `None` if the two do not split the space, to `tolerance`.
+pub(crate) fn oblique_coordinates(
+    span: &Span,
+    other: &Span,
+    tolerance: f64,
+) -> Option<[[f64; 6]; 6]> {
+    let k = span.k();
+    if k + other.k() != 6 {
+        return None;
+    }
+    let annihilator = other.complement();
+    let mut rows = [[0.0; 6]; 6];
+    rows[..k].copy_from_slice(annihilator.vectors());
+    let mut cosines = [[0.0; 6]; 6];
+    let mut squares = [[0.0; 6]; 6];
+    for (row, a) in cosines.iter_mut().zip(annihilator.vectors()) {
+        for (x, b) in row.iter_mut().zip(span.vectors()) {
+            *x = dot(a, b);
+        }
+    }
+    for (row, a) in squares.iter_mut().zip(&cosines) {
+        for (x, b) in row.iter_mut().zip(&cosines) {
+            *x = dot(a, b);
+        }
+    }
+    // The smallest singular value: the sine of the smallest angle between the two.
+    if k > 0 && Eigen::of(squares, k).values[k - 1] <= tolerance * tolerance {
+        return None;
+    }
+    solve(&mut cosines, &mut rows, k)?;
+    Some(rows)
+}
+
 fn has_translations(span: &Span) -> bool {
     let mut a = [[0.0; 6]; 6];
     for (i, x) in span.vectors().iter().enumerate() {
@@ -216,24 +250,8 @@ impl ScrewSystem {
     #[must_use]
     pub fn projector_along(&self, complement: &Self) -> Option<Projector> {
         let theirs = self.seen(complement);
-        let k = self.span.k();
-        if k + theirs.k() != 6 {
-            return None;
-        }
-        let annihilator = theirs.complement();
-        let mut rows = [[0.0; 6]; 6];
-        rows[..k].copy_from_slice(annihilator.vectors());
-        let cosines = Matrix::from_fn(k, k, |i, j| dot(&rows[i], &self.span.vectors()[j]));
-        if k > 0 && Svd::of(&cosines).value(k - 1) <= self.joint_tolerance(complement) {
-            return None;
-        }
-        let mut a = [[0.0; 6]; 6];
-        for (i, row) in a.iter_mut().enumerate().take(k) {
-            for (j, x) in row.iter_mut().enumerate().take(k) {
-                *x = cosines[(i, j)];
-            }
-        }
-        solve(&mut a, &mut rows, k)?;
-        Some(Projector { scale: self.scale, span: self.span, coordinates: rows })
+        let coordinates =
+            oblique_coordinates(&self.span, &theirs, self.joint_tolerance(complement))?;
+        Some(Projector { scale: self.scale, span: self.span, coordinates })
     }
 }

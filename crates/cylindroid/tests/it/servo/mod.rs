@@ -1,6 +1,7 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
 mod limits;
+mod projection;
 mod secondary;
 mod stall;
 mod steps;

@@ -37,6 +37,7 @@ fn random_starts_to_random_targets() {
                     Some(Stall::Limits { .. }) => "joint limits",
                     Some(Stall::Singular { .. }) => "singular",
                     Some(Stall::TooFewJoints { .. }) => "too few joints",
+                    Some(Stall::NoInverse(_) | Stall::GivenUp { .. }) => "no inverse",
                     Some(Stall::Slow) => "slow",
                 };
                 *causes.entry(cause).or_insert(0) += 1;
