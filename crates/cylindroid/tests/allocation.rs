@@ -91,7 +91,7 @@ fn hot_paths_allocate_nothing() {
                 assert!(scaled + bent > 0 || slow, "{name}: no limit was met");
             }
         }
-        if *name == *"youbot" {
+        if *name == "youbot" {
             projections(&robot, start);
         }
     }
