@@ -287,3 +287,24 @@ fn printed_digits_are_repaired() {
         );
     }
 }
+
+/// Never NaN for finite input, however long or short; always a rotation.
+#[test]
+fn exp_and_unit_of_any_length() {
+    for x in [5e-324, 1e-310, 1e-200, 1e-20, 1.0, 1e20, 1e160, 1e300, f64::MAX] {
+        for r in [Vec3::new(x, 0.0, 0.0), Vec3::new(-x, x, 0.5 * x), Vec3::new(x, x, x)] {
+            let m = Rotation::exp(r).matrix();
+            let error = entries(m.transpose() * m - Rotation::IDENTITY.matrix());
+            assert_close("R^T R", &error, &[0.0; 9], 1e-14);
+            assert!((m.determinant() - 1.0).abs() < 1e-14);
+            if let Some(unit) = r.unit(0.0) {
+                assert!((unit.norm() - 1.0).abs() < 1e-15, "{r:?}: {unit:?}");
+            } else {
+                assert_eq!(r.norm(), f64::INFINITY, "{r:?}");
+            }
+        }
+    }
+    assert_eq!(Rotation::exp(Vec3::ZERO), Rotation::IDENTITY);
+    assert!(!Rotation::exp(Vec3::new(f64::NAN, 0.0, 0.0)).matrix().is_finite());
+    assert!(!Rotation::exp(Vec3::new(f64::INFINITY, 0.0, 0.0)).matrix().is_finite());
+}
