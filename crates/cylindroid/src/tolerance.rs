@@ -47,7 +47,7 @@ pub const POSITION: f64 = 1e-6;
 /// Default orientation tolerance of a Cartesian move (rad).
 pub const ORIENTATION: f64 = 1e-6;
 
-/// Share of a joint's range (or 1 where it has none) kept free at a position limit against
+/// Share of 1 and the sizes of position and limit that is kept free at a position limit against
 /// rounding in the caller's `q + dt * rate` [-].
 pub const LIMIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 

@@ -55,6 +55,8 @@ pub struct Servo {
     error: Vec<f64>,
     primary: Vec<f64>,
     wish: Vec<f64>,
+    /// Bounds of the rates, and the same in scaled coordinates.
+    own_bounds: Vec<RateBounds>,
     bounds: Vec<RateBounds>,
     saturator: Saturator,
     gradient: Gradient,
@@ -124,15 +126,8 @@ impl Servo {
             error: vec![0.0; m],
             primary: vec![0.0; n],
             wish: vec![0.0; n],
-            bounds: vec![
-                RateBounds {
-                    lower: 0.0,
-                    upper: 0.0,
-                    lower_cause: LimitKind::Velocity,
-                    upper_cause: LimitKind::Velocity,
-                };
-                n
-            ],
+            own_bounds: vec![RateBounds::NONE; n],
+            bounds: vec![RateBounds::NONE; n],
             saturator: Saturator::new(m, n),
             gradient: Gradient { hessian },
             rates: vec![0.0; mechanism.n()],
@@ -402,6 +397,7 @@ impl Servo {
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let now = Motion1 { position: q[c], rate: self.rates[c] };
             let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
+            self.own_bounds[i] = bound;
             if self.space.is_locked(i) {
                 (bound.lower, bound.upper) = (0.0, 0.0);
             } else {
@@ -417,8 +413,13 @@ impl Servo {
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             self.active[i] = if self.space.is_locked(i) { None } else { bound.met(rate) };
-            let before = std::mem::replace(&mut self.rates[c], rate * self.space.columns[i]).abs();
-            let speed = self.rates[c].abs();
+            // Once more: the scale leaves a rounding.
+            let own = match self.space.is_locked(i) {
+                true => 0.0,
+                false => self.own_bounds[i].clamp(rate * self.space.columns[i]),
+            };
+            let before = std::mem::replace(&mut self.rates[c], own).abs();
+            let speed = own.abs();
             effort.gaining |= self.active[i] == Some(LimitKind::Acceleration) && speed > before;
             if speed > 0.0 {
                 effort.stopping_time =
