@@ -42,7 +42,8 @@ pub struct Outcome {
     pub limits_hit: BTreeSet<(usize, LimitKind)>,
 }
 
-/// Steps `servo` from `q` until it reports the end, or for `duration` seconds. `target` gives the
+/// Steps `servo` from `q` until it reports the end, or for `duration` seconds (at once after the
+/// first step where it is NaN). `target` gives the
 /// target at a time (s) and whether it is the final one, `observe` sees every step.
 ///
 /// # Errors
@@ -68,7 +69,8 @@ pub fn drive(
         observe(Sample { time, q: &q, rates: servo.rates(), step: &step });
         let reached = is_final && step.status == Status::Reached;
         let stalled = is_final && step.status == Status::Stalled;
-        if reached || stalled || time >= duration {
+        let in_time = time < duration; // NaN is not
+        if reached || stalled || !in_time {
             return Ok(Outcome {
                 reached,
                 stall: stalled.then(|| servo.stall()),
