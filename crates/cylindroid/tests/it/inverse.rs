@@ -190,6 +190,27 @@ fn selectively_damped_never_exceeds_the_rate() {
     assert_close("rates", &got, &exact, 1e-16);
 }
 
+/// At equal singular values the directions are any two: a large motion is clamped along those that
+/// are found, a small one is not and has the same rates on both sides.
+#[test]
+fn selectively_damped_may_jump_at_equal_singular_values() {
+    let rates = |turned: bool, size: f64| {
+        // 1 up to 1e-9: the directions are the axes, or the diagonals.
+        let e = 1e-9;
+        let j = if turned {
+            Matrix::from_rows(&[[1.0, e], [e, 1.0]]).unwrap()
+        } else {
+            Matrix::diagonal(&[1.0 + e, 1.0 - e])
+        };
+        let task = [size, 0.5 * size];
+        inverse::selectively_damped(&j, &task, 1.0).unwrap().matrix.mul_vec(&task)
+    };
+    assert_close("small", &rates(true, 0.1), &rates(false, 0.1), 1e-9);
+    let (a, b) = (rates(true, 10.0), rates(false, 10.0));
+    assert!((a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > 0.1, "{a:?} {b:?}");
+    assert!(a.iter().chain(&b).all(|r| r.abs() <= 1.0 + 1e-12), "{a:?} {b:?}");
+}
+
 /// W_q decides between rates that do the same, W_x between errors that cannot all vanish.
 #[test]
 fn weighted_minimises_in_the_metrics() {
