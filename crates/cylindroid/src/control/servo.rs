@@ -21,7 +21,7 @@ use super::stall::{Effort, Evidence, Stall, Watch, classify};
 use super::step::{Status, Step, Target, Wanted};
 use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
-use crate::inverse::Method;
+use crate::inverse::{Method, is_kept};
 use crate::kinematics::Chain;
 use crate::linalg::{Matrix, RowSpace, Svd};
 use crate::model::{Limits, Mechanism};
@@ -49,6 +49,8 @@ pub struct Servo {
     task: Matrix,
     svd: Svd,
     gains: Vec<f64>,
+    /// Directions realised by at least half.
+    kept: Vec<bool>,
     x: Vec<f64>,
     /// J rates, the part of x that is carried out.
     done: Vec<f64>,
@@ -121,6 +123,7 @@ impl Servo {
             task: Matrix::zeros(m, n),
             svd: Svd::workspace(m, n),
             gains: vec![0.0; m.min(n)],
+            kept: vec![false; m.min(n)],
             x: vec![0.0; m],
             done: vec![0.0; m],
             error: vec![0.0; m],
@@ -186,10 +189,11 @@ impl Servo {
         Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
         self.load_task(&wanted);
-        let rank = (0..self.svd.len())
-            .filter(|&i| crate::inverse::is_kept(self.gains[i] * self.svd.value(i)))
-            .count();
-        self.load_wish(wanted_rates, rank);
+        for (i, kept) in self.kept.iter_mut().enumerate() {
+            *kept = is_kept(self.gains[i] * self.svd.value(i));
+        }
+        let rank = self.kept.iter().filter(|kept| **kept).count();
+        self.load_wish(wanted_rates);
 
         self.load_bounds(q);
         let problem =
@@ -362,7 +366,7 @@ impl Servo {
     }
 
     /// Secondary wishes in weighted coordinates, projected on the null space.
-    fn load_wish(&mut self, wanted_rates: &[f64], rank: usize) {
+    fn load_wish(&mut self, wanted_rates: &[f64]) {
         self.wish.fill(0.0);
         if !wanted_rates.is_empty() {
             for (w, &c) in self.wish.iter_mut().zip(self.chain.coordinates()) {
@@ -387,7 +391,7 @@ impl Servo {
         }
         let space = match self.options.projector {
             Projector::Exact => RowSpace::exact(&self.svd),
-            Projector::Retained => RowSpace::retained(&self.svd, rank),
+            Projector::Retained => RowSpace::retained(&self.svd, &self.kept),
         };
         space.project_out(&mut self.wish);
     }
