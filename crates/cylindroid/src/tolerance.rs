@@ -37,13 +37,17 @@ pub const DAMPING_ONSET: f64 = 0.05;
 /// below this [-]: rates would be a million times the angular velocity.
 pub const ANGLE_SINGULAR: f64 = 1e-6;
 
+/// Angles are read from a rotation as at gimbal lock where the two entries that tell the first and
+/// the last angle apart are below this [-]: a few roundings of entries of size 1.
+pub const GIMBAL_LOCK: f64 = 8.0 * f64::EPSILON;
+
 /// Default position tolerance of a Cartesian move (m).
 pub const POSITION: f64 = 1e-6;
 
 /// Default orientation tolerance of a Cartesian move (rad).
 pub const ORIENTATION: f64 = 1e-6;
 
-/// Share of a joint's range (or 1 where it has none) kept free at a position limit against
+/// Share of 1 and the sizes of position and limit that is kept free at a position limit against
 /// rounding in the caller's `q + dt * rate` [-].
 pub const LIMIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 

@@ -47,7 +47,8 @@ pub struct Outcome {
     pub steps_without_inverse: usize,
 }
 
-/// Steps `servo` from `q` until it reports the end, or for `duration` seconds. `target` gives the
+/// Steps `servo` from `q` until it reports the end, or for `duration` seconds (at once after the
+/// first step where it is NaN). `target` gives the
 /// target at a time (s) and whether it is the final one, `observe` sees every step.
 ///
 /// # Errors
@@ -80,7 +81,8 @@ pub fn drive(
         }
         // An arm that stands still for want of an inverse does not follow a target any further.
         let stalled = step.status == Status::Stalled && (is_final || servo.is_stopped());
-        if reached || stalled || time >= duration {
+        let in_time = time < duration; // NaN is not
+        if reached || stalled || !in_time {
             return Ok(Outcome {
                 reached,
                 stall: stalled.then(|| servo.stall()),

@@ -22,7 +22,7 @@ use super::stall::{Effort, Evidence, Stall, Watch, classify};
 use super::step::{Status, Step, Target, Wanted};
 use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
-use crate::inverse::Method;
+use crate::inverse::{Method, is_kept};
 use crate::kinematics::Chain;
 use crate::linalg::{Matrix, RowSpace, Svd};
 use crate::model::{Limits, Mechanism};
@@ -51,6 +51,8 @@ pub struct Servo {
     task: Matrix,
     svd: Svd,
     gains: Vec<f64>,
+    /// Directions realised by at least half.
+    kept: Vec<bool>,
     x: Vec<f64>,
     /// J rates, the part of x that is carried out.
     done: Vec<f64>,
@@ -60,6 +62,8 @@ pub struct Servo {
     projecting: Projecting,
     primary: Vec<f64>,
     wish: Vec<f64>,
+    /// Bounds of the rates, and the same in scaled coordinates.
+    own_bounds: Vec<RateBounds>,
     bounds: Vec<RateBounds>,
     saturator: Saturator,
     gradient: Gradient,
@@ -124,6 +128,7 @@ impl Servo {
             task: Matrix::zeros(m, n),
             svd: Svd::workspace(m, n),
             gains: vec![0.0; m.min(n)],
+            kept: vec![false; m.min(n)],
             x: vec![0.0; m],
             done: vec![0.0; m],
             error: vec![0.0; m],
@@ -131,15 +136,8 @@ impl Servo {
             projecting: Projecting::new(),
             primary: vec![0.0; n],
             wish: vec![0.0; n],
-            bounds: vec![
-                RateBounds {
-                    lower: 0.0,
-                    upper: 0.0,
-                    lower_cause: LimitKind::Velocity,
-                    upper_cause: LimitKind::Velocity,
-                };
-                n
-            ],
+            own_bounds: vec![RateBounds::NONE; n],
+            bounds: vec![RateBounds::NONE; n],
             saturator: Saturator::new(m, n),
             gradient: Gradient { hessian },
             rates: vec![0.0; mechanism.n()],
@@ -200,10 +198,11 @@ impl Servo {
         let (axes, length) = (self.options.task.axes, self.options.length);
         self.projecting.load(&self.options, &self.svd, TaskFrame { pose, axes, length });
         self.load_task(&wanted);
-        let rank = (0..self.svd.len())
-            .filter(|&i| crate::inverse::is_kept(self.gains[i] * self.svd.value(i)))
-            .count();
-        self.load_wish(wanted_rates, rank);
+        for (i, kept) in self.kept.iter_mut().enumerate() {
+            *kept = is_kept(self.gains[i] * self.svd.value(i));
+        }
+        let rank = self.kept.iter().filter(|kept| **kept).count();
+        self.load_wish(wanted_rates);
 
         self.load_bounds(q);
         let problem =
@@ -402,7 +401,7 @@ impl Servo {
     }
 
     /// Secondary wishes in weighted coordinates, projected on the null space.
-    fn load_wish(&mut self, wanted_rates: &[f64], rank: usize) {
+    fn load_wish(&mut self, wanted_rates: &[f64]) {
         self.wish.fill(0.0);
         if !wanted_rates.is_empty() {
             for (w, &c) in self.wish.iter_mut().zip(self.chain.coordinates()) {
@@ -427,7 +426,7 @@ impl Servo {
         }
         let space = match self.options.projector {
             Projector::Exact => RowSpace::exact(&self.svd),
-            Projector::Retained => RowSpace::retained(&self.svd, rank),
+            Projector::Retained => RowSpace::retained(&self.svd, &self.kept),
         };
         space.project_out(&mut self.wish);
     }
@@ -437,6 +436,7 @@ impl Servo {
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let now = Motion1 { position: q[c], rate: self.rates[c] };
             let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
+            self.own_bounds[i] = bound;
             if self.space.is_locked(i) {
                 (bound.lower, bound.upper) = (0.0, 0.0);
             } else {
@@ -452,8 +452,13 @@ impl Servo {
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             self.active[i] = if self.space.is_locked(i) { None } else { bound.met(rate) };
-            let before = std::mem::replace(&mut self.rates[c], rate * self.space.columns[i]).abs();
-            let speed = self.rates[c].abs();
+            // Once more: the scale leaves a rounding.
+            let own = match self.space.is_locked(i) {
+                true => 0.0,
+                false => self.own_bounds[i].clamp(rate * self.space.columns[i]),
+            };
+            let before = std::mem::replace(&mut self.rates[c], own).abs();
+            let speed = own.abs();
             effort.gaining |= self.active[i] == Some(LimitKind::Acceleration) && speed > before;
             if speed > 0.0 {
                 effort.stopping_time =

@@ -5,7 +5,10 @@
 //!          r_i scaled so that its largest entry is at most g_i, then the sum at most max_rate
 //! Shapes   m x n and a task of m entries -> n x m (for this task)
 //! Units    max_rate in rad/s (m/s for sliding joints)
-//! Valid    any rank; |rates| <= max_rate always; continuous in J and x
+//! Valid    any rank; |rates| <= max_rate always. Continuous in x, and in J where its singular
+//!          values differ and none is zero: where two are equal their directions are not
+//!          determined, each choice has its own clamps, and the rates may jump (for motions so
+//!          small that nothing is clamped they do not)
 //! Why so   the original counts end-effector positions; here the task is one vector in the units
 //!          the caller scaled it to, so orientation counts as well
 //! Source   Buss & Kim 2005, eq. 13 to 15; rho_lj -> |J_j|

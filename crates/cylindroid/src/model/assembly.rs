@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::builder::Order;
-use super::joint::JointKind;
+use super::joint::{JointKind, Limits};
 use super::mechanism::{Coordinate, CoordinateKind, Frame};
 use super::node::{Motion, Node};
 use super::spec::JointSpec;
@@ -104,11 +104,11 @@ impl Assembly {
         let own = &mut self.coordinates[c].limits;
         let (a, b) =
             ((spec.limits.lower - offset) / multiplier, (spec.limits.upper - offset) / multiplier);
-        let (lower, upper) = (own.lower.max(a.min(b)), own.upper.min(a.max(b)));
-        let clash = lower > upper;
+        let narrowed =
+            Limits { lower: own.lower.max(a.min(b)), upper: own.upper.min(a.max(b)), ..*own };
+        let clash = !narrowed.leave_a_position();
         if !clash {
-            own.lower = lower;
-            own.upper = upper;
+            *own = narrowed;
         }
         own.velocity = own.velocity.min(spec.limits.velocity / multiplier.abs());
         own.acceleration = own.acceleration.min(spec.limits.acceleration / multiplier.abs());

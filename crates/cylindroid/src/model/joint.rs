@@ -102,6 +102,11 @@ impl Limits {
         acceleration: f64::INFINITY,
         effort: f64::INFINITY,
     };
+
+    /// True if some finite position is within them.
+    pub(super) fn leave_a_position(&self) -> bool {
+        self.lower <= self.upper && self.lower < f64::INFINITY && self.upper > f64::NEG_INFINITY
+    }
 }
 
 impl Default for Limits {

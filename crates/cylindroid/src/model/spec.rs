@@ -56,13 +56,20 @@ impl JointSpec {
         }
         if let JointKind::Universal { second } = self.kind {
             axes.push(second);
-            if self.axis.cross(second).norm() <= ZERO_AXIS {
-                return Some(format!("the two axes of universal joint '{name}' are parallel"));
-            }
         }
         if axes.iter().any(|a| a.unit(ZERO_AXIS).is_none()) {
             return Some(format!(
                 "the axis of joint '{name}' has no direction; give a vector that is finite and not zero"
+            ));
+        }
+        // Their lengths say nothing: short axes are not parallel ones.
+        if let JointKind::Universal { second } = self.kind
+            && let (Some(a), Some(b)) = (self.axis.unit(ZERO_AXIS), second.unit(ZERO_AXIS))
+            && a.cross(b).norm() <= ZERO_AXIS
+        {
+            return Some(format!(
+                "the two axes of universal joint '{name}' are parallel; give two directions, or \
+                 make it revolute"
             ));
         }
         if let JointKind::Helical { pitch } = self.kind
@@ -74,6 +81,13 @@ impl JointSpec {
         if l.lower.is_nan() || l.upper.is_nan() || l.lower > l.upper {
             return Some(format!(
                 "joint '{name}' has lower limit {} above its upper limit {}; exchange them",
+                l.lower, l.upper
+            ));
+        }
+        if !l.leave_a_position() {
+            return Some(format!(
+                "joint '{name}' has position limits {} and {}, which leave it no finite position; \
+                 without limits they are -inf and inf",
                 l.lower, l.upper
             ));
         }

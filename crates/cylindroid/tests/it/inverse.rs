@@ -1,5 +1,5 @@
 use cylindroid::inverse::{self, Method, Weights};
-use cylindroid::linalg::Metric;
+use cylindroid::linalg::{Metric, RowSpace, Svd};
 use cylindroid::{Error, Matrix};
 
 use crate::support::{Random, assert_close, assert_matrix};
@@ -188,6 +188,105 @@ fn selectively_damped_never_exceeds_the_rate() {
     let exact = inverse::truncated(&j, 1e-9).unwrap().matrix.mul_vec(&task);
     let got = inverse::selectively_damped(&j, &task, max_rate).unwrap().matrix.mul_vec(&task);
     assert_close("rates", &got, &exact, 1e-16);
+}
+
+/// At equal singular values the directions are any two: a large motion is clamped along those that
+/// are found, a small one is not and has the same rates on both sides.
+#[test]
+fn selectively_damped_may_jump_at_equal_singular_values() {
+    let rates = |turned: bool, size: f64| {
+        // 1 up to 1e-9: the directions are the axes, or the diagonals.
+        let e = 1e-9;
+        let j = if turned {
+            Matrix::from_rows(&[[1.0, e], [e, 1.0]]).unwrap()
+        } else {
+            Matrix::diagonal(&[1.0 + e, 1.0 - e])
+        };
+        let task = [size, 0.5 * size];
+        inverse::selectively_damped(&j, &task, 1.0).unwrap().matrix.mul_vec(&task)
+    };
+    assert_close("small", &rates(true, 0.1), &rates(false, 0.1), 1e-9);
+    let (a, b) = (rates(true, 10.0), rates(false, 10.0));
+    assert!((a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > 0.1, "{a:?} {b:?}");
+    assert!(a.iter().chain(&b).all(|r| r.abs() <= 1.0 + 1e-12), "{a:?} {b:?}");
+}
+
+/// Rank, gap, threshold and what was dropped, for each method at one matrix.
+#[test]
+fn report_of_each_method() {
+    let values = [1.0, 0.4, 0.03, 0.001];
+    let j = Matrix::diagonal(&values);
+    // The directions that are kept, and the threshold where it has a closed form.
+    let share = (1.0 - (0.001_f64 / 0.05).powi(2)).sqrt();
+    for (method, kept, threshold) in [
+        (Method::Truncated { eps: 0.01 }, 3, 0.01),
+        (Method::Damped { damping: 0.1 }, 2, 0.1),
+        (Method::VariableDamping { onset: 0.05, damping: 0.02 }, 3, 0.02 * share),
+        (
+            Method::NumericalFiltering { onset: 0.05, damping: 0.002, filter: 0.02 },
+            3,
+            0.002_f64.hypot(0.02) * share,
+        ),
+        // s^3 + nu s^2 + 2 s = 2 s_0 at s = 0.02
+        (
+            Method::SingularValueFiltering {
+                shape: 10.0,
+                floor: 0.5 * (8e-6 + 10.0 * 4e-4 + 2.0 * 0.02),
+            },
+            3,
+            0.02,
+        ),
+    ] {
+        let (report, name) = (method.inverse(&j).unwrap(), method.name());
+        assert_eq!(report.rank, kept, "{name}");
+        assert!((report.threshold / threshold - 1.0).abs() < 1e-12, "{name}: {report:?}");
+        let gap = values[kept - 1] / values[kept];
+        assert!((report.gap / gap - 1.0).abs() < 1e-12, "{name}: {}", report.gap);
+        for (i, dropped) in report.dropped.iter().enumerate() {
+            let s = values[kept + i];
+            let realised = report.matrix[(kept + i, kept + i)] * s;
+            assert!((dropped.singular_value / s - 1.0).abs() < 1e-12, "{name}");
+            assert!((dropped.realised - realised).abs() < 1e-15 && realised < 0.5, "{name}");
+            assert_eq!(dropped.direction[kept + i].abs(), 1.0, "{name}");
+        }
+        assert_eq!(report.dropped.len(), values.len() - kept, "{name}");
+        // Both sides of the threshold; numerical filtering and variable damping move with s.
+        if matches!(method, Method::Damped { .. } | Method::SingularValueFiltering { .. }) {
+            for (s, rank) in [(threshold * (1.0 - 1e-9), 1), (threshold * (1.0 + 1e-9), 2)] {
+                let near = method.inverse(&Matrix::diagonal(&[1.0, s])).unwrap();
+                assert_eq!(near.rank, rank, "{name} at {s}");
+            }
+        }
+    }
+}
+
+/// Selectively damped least squares drop what needs large rates, here the largest direction: the
+/// report and the projector go by the directions, not by their number.
+#[test]
+fn report_where_a_large_direction_is_dropped() {
+    let j = Matrix::diagonal(&[1.0, 0.5, 0.25]);
+    let task = [10.0, 0.01, 0.01];
+    let report = inverse::selectively_damped(&j, &task, 1.0).unwrap();
+    assert_eq!((report.rank, report.dropped.len()), (2, 1));
+    assert_eq!(report.dropped[0].singular_value, 1.0);
+    assert_eq!(report.dropped[0].direction, [1.0, 0.0, 0.0]);
+    assert!((report.dropped[0].realised - 0.1).abs() < 1e-15, "{report:?}");
+    assert_eq!(report.gap, 0.25);
+    assert_eq!(report.threshold, Svd::of(&j).machine_rank().threshold);
+    for (m, n) in [(3, 3), (4, 3), (3, 5)] {
+        let j = Matrix::from_fn(m, n, |a, b| if a == b { [1.0, 0.5, 0.25][a] } else { 0.0 });
+        let svd = Svd::of(&j);
+        let space = RowSpace::retained(&svd, &[false, true, true]);
+        assert_eq!(space.rank(), 2);
+        let mut x = vec![1.0; n];
+        space.project_out(&mut x);
+        assert_eq!(x[..3], [1.0, 0.0, 0.0]);
+        let basis = space.complement_basis();
+        assert_eq!(basis.cols(), n - 2);
+        for c in 0..basis.cols() {
+            assert_eq!(basis.column(c)[1..3], [0.0, 0.0], "{basis:?}");
+        }
+    }
 }
 
 /// W_q decides between rates that do the same, W_x between errors that cannot all vanish.

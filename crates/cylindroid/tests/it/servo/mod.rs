@@ -12,7 +12,7 @@ pub(crate) use cylindroid::control::{
     RateBounds, Secondary, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
 };
 pub(crate) use cylindroid::inverse::Method;
-pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits};
+pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 pub(crate) use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3};
 pub(crate) use cylindroid::{Error, Mechanism, Reference, Servo, ServoOptions, catalogue};
 

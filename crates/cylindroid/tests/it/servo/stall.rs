@@ -167,3 +167,20 @@ fn stall_with_a_locked_joint() {
         assert!(matches!(find_posture(&servo, &[0.2], nearer, 20), Err(Error::Dimension { .. })));
     }
 }
+
+/// A slider that follows an endless joint in no measure stays at its offset: the chain has a length.
+#[test]
+fn stall_out_of_reach_with_a_follower_that_rests() {
+    let mut b = Mechanism::builder("crane");
+    b.joint(JointSpec::new("turn", JointKind::Continuous, "ground", "boom"));
+    b.joint(JointSpec {
+        axis: Vec3::X,
+        mimic: Some(Mimic { joint: "turn".into(), multiplier: 0.0, offset: 0.5 }),
+        ..JointSpec::new("slide", JointKind::Prismatic, "boom", "hook")
+    });
+    b.frame("tip", "hook", Pose::from_translation(Vec3::X)).tool("tip");
+    let robot = b.build().unwrap();
+    let mut servo = servo(&robot, |o| o.task = Task::POSITION);
+    let outcome = run(&mut servo, &[0.3], Pose::from_translation(Vec3::X * 2.0));
+    assert_eq!(outcome.stall, Some(Stall::OutOfReach { distance: 2.0, length: 1.5 }));
+}

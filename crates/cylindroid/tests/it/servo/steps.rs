@@ -163,6 +163,16 @@ fn status_is_reached_at_the_target() {
     assert!(servo.rates().iter().all(|r| r.abs() < 1e-12));
 }
 
+/// A duration that is NaN ends the motion, it does not make it endless.
+#[test]
+fn a_duration_of_nan_ends() {
+    let robot = planar(2);
+    let mut servo = servo(&robot, |o| o.task = Task::POSITION);
+    let target = Target::from(Pose::from_translation(Vec3::Y));
+    let outcome = drive(&mut servo, &[0.1, 0.2], f64::NAN, |_| (target, false), |_| {}).unwrap();
+    assert_eq!((outcome.steps, outcome.reached, outcome.stall), (0, false, None));
+}
+
 /// What overflows or is not of this robot is an error, not full speed.
 #[test]
 fn overflow_and_foreign_options_are_refused() {
