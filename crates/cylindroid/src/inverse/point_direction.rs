@@ -47,7 +47,7 @@ pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<Point
         velocity.column_mut(c).copy_from_slice(&twist.at_point(point).linear.to_array());
     }
     let svd = Svd::of(&velocity);
-    let space = RowSpace::retained(&svd, svd.rank(SCREW_RANK).rank);
+    let space = RowSpace::first(&svd, svd.rank(SCREW_RANK).rank);
     let mut along = vec![0.0; j.cols()];
     let mut outside = q.to_array();
     for i in 0..space.rank() {

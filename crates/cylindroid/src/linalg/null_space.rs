@@ -30,6 +30,12 @@ impl<'a> RowSpace<'a> {
         Self { svd, kept: Kept::First(svd.machine_rank().rank) }
     }
 
+    /// The span of the first `rank` directions.
+    #[must_use]
+    pub fn first(svd: &'a Svd, rank: usize) -> Self {
+        Self { svd, kept: Kept::First(rank.min(svd.len())) }
+    }
+
     /// The span of the directions that an inverse retained: a flag for each, those without one are
     /// not retained. They need not be the first ones.
     #[must_use]
