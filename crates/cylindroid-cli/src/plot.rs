@@ -1,5 +1,7 @@
 //! The motion of `move` as an SVG: joints, errors and singular value ratio over time.
 
+pub(crate) mod screws;
+
 use std::ops::Range;
 use std::path::Path;
 

@@ -69,6 +69,30 @@ impl Class {
         }
     }
 
+    /// What a system of this class consists of (for orders 4 and 5: its reciprocal system).
+    #[must_use]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Zero => "no motion",
+            Self::H => "one screw of finite pitch",
+            Self::Inf => "one translation",
+            Self::IA => "two screws of different pitches that cross at right angles: a cylindroid",
+            Self::IB => "parallel screws of all pitches, with a translation that leans on them",
+            Self::IIA => "screws of one pitch in all directions through a point",
+            Self::IIB => "screws of one pitch, and the translation across their axes",
+            Self::IIC => "the translations of a plane",
+            Self::IA1 => "three screws of different pitches that cross at right angles",
+            Self::IA2 => "three screws that cross at right angles, two of one pitch",
+            Self::IB0 => {
+                "screws of one pitch in parallel planes, and a translation that leans on them"
+            }
+            Self::IB3 => "two screws of different pitches, and the translation across both",
+            Self::IC => "parallel screws, and two translations not both across them",
+            Self::IID => "all translations",
+            Self::Full => "every motion",
+        }
+    }
+
     /// True if no system of this class and order has a hyperbolic pseudoinverse for any pitch.
     /// (Of the same letters, a 2-system IIC and a 3-system IIC have none, a 4-system neither.)
     #[must_use]

@@ -92,7 +92,8 @@ impl fmt::Display for NoInverse {
         match self {
             Self::PrincipalPitch { pitch } => write!(
                 f,
-                "h is the principal pitch {pitch:.6} m/rad of the joint screws; take another h"
+                "h is the principal pitch {} m/rad of the joint screws; take another h",
+                six_digits(*pitch)
             ),
             Self::Class { class, order } => write!(
                 f,
@@ -107,8 +108,9 @@ impl fmt::Display for NoInverse {
             ),
             Self::DampingMeetsEigenvalue { eigenvalue } => write!(
                 f,
-                "lambda is the negative of the eigenvalue {eigenvalue:.6} of the Gram matrix; take \
-                 another, or the invariant damping, which always exists"
+                "lambda is the negative of the eigenvalue {} of the Gram matrix; take another, \
+                 or the invariant damping, which always exists",
+                six_digits(*eigenvalue)
             ),
             Self::NotComplementary { order, other } if order + other != 6 => write!(
                 f,
@@ -132,6 +134,11 @@ impl fmt::Display for NoInverse {
             ),
         }
     }
+}
+
+/// Six significant digits; rounding of a length of the order of one is zero.
+fn six_digits(x: f64) -> f64 {
+    if x.abs() < 1e-15 { 0.0 } else { format!("{x:.5e}").parse().unwrap_or(x) }
 }
 
 /// The size of the projectors over the pitch, and a pitch that keeps it small.

@@ -23,6 +23,8 @@ use crate::spatial::{Twist, Wrench};
 /// What a set of lines has in common.
 #[derive(Debug, Clone)]
 pub struct Involution {
+    /// How many lines.
+    pub lines: usize,
     /// True if the Gram matrix of the lines in the Klein form is singular.
     pub in_involution: bool,
     /// True if none of the lines is spanned by the others.
@@ -70,6 +72,7 @@ pub fn involution(lines: &[Line], options: &ScrewOptions) -> Result<Involution> 
         .collect();
     let first = null_twists.first().copied();
     Ok(Involution {
+        lines: lines.len(),
         in_involution: !independent || first.is_some(),
         independent,
         null_screw: first.and_then(Screw::of),

@@ -17,6 +17,7 @@
 
 mod class;
 mod classify;
+mod curve;
 mod existence;
 mod involution;
 mod lattice;
@@ -30,6 +31,7 @@ mod transversals;
 
 pub use class::{Class, NormalForm};
 pub use classify::Margin;
+pub use curve::{gram, gram_determinant};
 pub use existence::{Existence, NoInverse, PitchChoice};
 pub use involution::{Involution, involution};
 pub use projector::Projector;

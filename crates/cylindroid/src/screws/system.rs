@@ -183,6 +183,12 @@ impl ScrewSystem {
         self.scale.length
     }
 
+    /// The threshold of its class, without unit: a length is zero at or below this times L.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance.class
+    }
+
     /// The point at which lengths are judged (m).
     #[must_use]
     pub fn center(&self) -> Vec3 {

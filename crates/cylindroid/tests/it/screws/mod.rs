@@ -1,3 +1,4 @@
 //! Screws, screw systems and what is built on them.
 
+mod curve;
 mod vectors;
