@@ -8,6 +8,9 @@
 //! Shapes   rates of the n coordinates that move the end effector
 //! Valid    coordinates without limits (and rotation vectors) are left alone by centring and limit
 //!          avoidance; the gradient is zero where w is zero up to rounding
+//!          The manipulability is that of the scaled task: linear rows over L, and with joint
+//!          weights that of J W^(-1/2), so that joints which are kept still count less. Joints
+//!          without weights climb the plain one
 //! Source   Liegeois 1977; Yoshikawa 1985; analytic gradient through the Hessian
 //! Checked  tests/it/servo/secondary.rs::secondary_*
 
@@ -40,7 +43,7 @@ pub enum Secondary {
         /// Distance at which it sets in, as a share of the range [-].
         margin: f64,
     },
-    /// Towards larger manipulability of the task.
+    /// Towards larger manipulability of the task, in the metric of the joint weights.
     Manipulability {
         /// Gain.
         gain: f64,
