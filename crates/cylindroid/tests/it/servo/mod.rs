@@ -15,7 +15,7 @@ pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 pub(crate) use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3};
 pub(crate) use cylindroid::{Error, Mechanism, Reference, Servo, ServoOptions, catalogue};
 
-pub(crate) use crate::support::{Random, planar};
+pub(crate) use crate::support::{Random, odd_arm, planar, unlimited};
 
 pub(crate) fn run(servo: &mut Servo, q: &[f64], target: Pose) -> Outcome {
     drive(servo, q, 30.0, |_| (Target::from(target), true), |_| {}).unwrap()
