@@ -168,7 +168,7 @@ fn singular_poses_keep_rates_bounded() {
                             for c in 0..robot.n() {
                                 j.column_mut(c)[..3].iter_mut().for_each(|x| *x /= length);
                             }
-                            cylindroid::linalg::Svd::of(&j).value(0)
+                            Svd::of(&j).value(0)
                         };
                         let most = bound(method, largest, twist);
                         let name = method.name();

@@ -11,9 +11,10 @@ pub(crate) use cylindroid::control::{
     RateBounds, Secondary, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
 };
 pub(crate) use cylindroid::inverse::Method;
+pub(crate) use cylindroid::linalg::{RowSpace, Svd};
 pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 pub(crate) use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3};
-pub(crate) use cylindroid::{Error, Mechanism, Reference, Servo, ServoOptions, catalogue};
+pub(crate) use cylindroid::{Error, Matrix, Mechanism, Reference, Servo, ServoOptions, catalogue};
 
 pub(crate) use crate::support::{Random, odd_arm, planar, unlimited};
 
