@@ -139,6 +139,7 @@ impl ServoOptions {
     /// # Errors
     /// [`Error::InvalidOption`] naming the option and its value, [`Error::NotFinite`].
     pub fn check(&self, mechanism: &Mechanism) -> Result<()> {
+        let positive = Error::check_positive;
         mechanism.check_frame(self.end_effector.frame)?;
         if !self.end_effector.frame_from_tool.is_finite() {
             let what = "frame_from_tool of the end effector".to_owned();
@@ -170,9 +171,12 @@ impl ServoOptions {
             ("angular speed", self.speed.angular),
             ("acceleration", self.acceleration),
         ] {
-            // Infinity means "no limit" here.
             if value.is_nan() || value <= 0.0 {
-                return Err(refuse(option, value));
+                return Err(Error::InvalidOption {
+                    option,
+                    value: value.to_string(),
+                    reason: "it must be positive; infinity means no limit".to_owned(),
+                });
             }
         }
         if !self.task.components.contains(&true) {
@@ -219,17 +223,5 @@ impl ServoOptions {
             return Err(refuse("largest projection", self.largest_projection));
         }
         self.method.check()
-    }
-}
-
-fn positive(option: &'static str, value: f64) -> Result<()> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(refuse(option, value)) }
-}
-
-fn refuse(option: &'static str, value: f64) -> Error {
-    Error::InvalidOption {
-        option,
-        value: value.to_string(),
-        reason: "it must be positive".to_owned(),
     }
 }

@@ -1,13 +1,17 @@
 //! Secondary tasks: what the joints do where the end effector does not care.
 //!
 //! Formula  posture: k (q_0 - q), of rotation vectors and free bodies k log(R^T R_0) and
-//!          k R^T (p_0 - p), which are rates in the axes of the child; centring: the posture of the middle of the limits;
+//!          k R^T (p_0 - p), which are rates in the axes of the child;
+//!          centring: the posture of the middle of the limits;
 //!          limit avoidance: k (1 - room / margin) away from a limit nearer than the margin;
 //!          manipulability: k dw/dq, w = s_1 ... s_m, dw/dq_k = w sum_i u_i^T (dJ/dq_k) v_i / s_i
 //! Units    gains in 1/s; for manipulability rad/s for each unit of dw/dq
 //! Shapes   rates of the n coordinates that move the end effector
 //! Valid    coordinates without limits (and rotation vectors) are left alone by centring and limit
-//!          avoidance; the gradient is zero where w is zero up to rounding
+//!          avoidance; the gradient is zero where w is zero up to rounding.
+//!          The manipulability is that of the scaled task: linear rows over L, and with joint
+//!          weights that of J W^(-1/2), so that joints which are kept still count less. Joints
+//!          without weights climb the plain one
 //! Source   Liegeois 1977; Yoshikawa 1985; analytic gradient through the Hessian
 //! Checked  tests/it/servo/secondary.rs::secondary_*
 
@@ -40,7 +44,7 @@ pub enum Secondary {
         /// Distance at which it sets in, as a share of the range [-].
         margin: f64,
     },
-    /// Towards larger manipulability of the task.
+    /// Towards larger manipulability of the task, in the metric of the joint weights.
     Manipulability {
         /// Gain.
         gain: f64,

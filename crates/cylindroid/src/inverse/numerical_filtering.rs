@@ -6,7 +6,7 @@
 //! Valid    any rank; l > 0 keeps a second vanishing direction finite
 //! Why so   damping all directions disturbs the motions that are still possible
 //! Source   Maciejewski & Klein 1988; Chiaverini 1997, eq. 21
-//! Checked  tests/it/inverse.rs::numerical_filtering_*
+//! Checked  tests/it/inverse.rs::numerical_filtering_is_the_formula
 
 use super::damped::damp;
 use super::variable_damping::fraction;

@@ -5,7 +5,7 @@
 //! Shapes   m x n -> n x m          Units  onset [-], l_max in the unit of the singular values
 //! Valid    any rank; continuous in J; gain at most about 1 / (2 l_max) at rank loss
 //! Source   Maciejewski & Klein 1988; Chiaverini 1997, eq. 20
-//! Checked  tests/it/inverse.rs::variable_damping_*
+//! Checked  tests/it/inverse.rs::variable_damping_is_the_formula
 
 use super::damped::damp;
 use crate::linalg::Svd;

@@ -195,7 +195,8 @@ impl Mechanism {
     }
 
     /// Characteristic length (m): the longest way from the base to a frame along the links,
-    /// with sliding joints stretched (those without limits count nothing); at least 1 mm.
+    /// with sliding joints stretched to their own limits (those without limits, and the advance of
+    /// helical joints, count nothing); at least 1 mm.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.data.reach

@@ -40,17 +40,31 @@ fn truncated_is_relative_to_the_largest_value() {
     assert_eq!((inverse.rank, inverse.gap), (2, f64::INFINITY));
 }
 
-/// Values computed with numpy 1.26.4: numpy.linalg.pinv(J, 0.1) and (J, 1e-15).
+/// Values of numpy 2.4.6:
+///
+/// ```python
+/// J = numpy.array([[1.0, 2.0, 0.0], [0.0, 1.0, 0.1]])
+/// print(numpy.linalg.pinv(J, 1e-15).tolist(), numpy.linalg.pinv(J, 0.5).tolist())
+/// ```
 #[test]
 fn truncated_equals_numpy() {
     let j = Matrix::from_rows(&[[1.0, 2.0, 0.0], [0.0, 1.0, 0.1]]).unwrap();
     let all = inverse::truncated(&j, 1e-15).unwrap();
     let one = inverse::truncated(&j, 0.5).unwrap();
     assert_eq!((all.rank, one.rank), (2, 1));
-    // (J J^T)^-1 by hand: J J^T = [[5, 2], [2, 1.01]], det 1.05.
-    let d = 1.05;
-    let gram = Matrix::from_rows(&[[1.01 / d, -2.0 / d], [-2.0 / d, 5.0 / d]]).unwrap();
-    assert_matrix("J^T (J J^T)^-1", &all.matrix, &(&j.transpose() * &gram), 1e-14);
+    let numpy = |rows: &[[f64; 2]; 3]| Matrix::from_rows(rows).unwrap();
+    let expected = numpy(&[
+        [0.961_904_761_904_760_6, -1.904_761_904_761_902_4],
+        [0.019_047_619_047_619_063, 0.952_380_952_380_951_9],
+        [-0.190_476_190_476_190_2, 0.476_190_476_190_475_6],
+    ]);
+    assert_matrix("pinv(J, 1e-15)", &all.matrix, &expected, 1e-14);
+    let expected = numpy(&[
+        [0.146_333_818_069_384_11, 0.060_720_764_415_506_29],
+        [0.353_388_400_554_274_5, 0.146_637_421_891_461_67],
+        [0.006_072_076_441_550_627, 0.002_519_589_306_044_908],
+    ]);
+    assert_matrix("pinv(J, 0.5)", &one.matrix, &expected, 1e-15);
     // At the threshold itself the value is cut.
     let at = one.dropped[0].singular_value / one.singular_values[0];
     assert_eq!(inverse::truncated(&j, at).unwrap().rank, 1);
@@ -135,18 +149,15 @@ fn every_method_is_bounded_through_a_singularity() {
 }
 
 #[test]
-fn variable_damping_and_numerical_filtering_formulas() {
+fn variable_damping_is_the_formula() {
     let j = Matrix::diagonal(&[1.0, 0.5, 0.01]);
-    let (onset, l, b) = (0.05, 0.1, 0.2);
+    let (onset, l) = (0.05, 0.1);
     let share = 1.0 - (0.01_f64 / 0.05).powi(2);
     let variable = Method::VariableDamping { onset, damping: l }.inverse(&j).unwrap();
     let expected = |s: f64, d2: f64| s / (s * s + d2);
     for (i, s) in [1.0, 0.5, 0.01].into_iter().enumerate() {
         assert!((variable.matrix[(i, i)] - expected(s, share * l * l)).abs() < 1e-14);
     }
-    let filtered = Method::NumericalFiltering { onset, damping: l, filter: b }.inverse(&j).unwrap();
-    assert!((filtered.matrix[(1, 1)] - expected(0.5, share * l * l)).abs() < 1e-14);
-    assert!((filtered.matrix[(2, 2)] - expected(0.01, share * (l * l + b * b))).abs() < 1e-14);
     // Both sides of the onset agree.
     let near = |s: f64| {
         Method::VariableDamping { onset, damping: l }
@@ -155,6 +166,20 @@ fn variable_damping_and_numerical_filtering_formulas() {
             .matrix[(1, 1)]
     };
     assert!((near(0.05 * (1.0 - 1e-9)) - near(0.05 * (1.0 + 1e-9))).abs() < 1e-5);
+}
+
+#[test]
+fn numerical_filtering_is_the_formula() {
+    let (onset, l, b) = (0.05, 0.1, 0.2);
+    let share = 1.0 - (0.01_f64 / 0.05).powi(2);
+    let inverse = Method::NumericalFiltering { onset, damping: l, filter: b }
+        .inverse(&Matrix::diagonal(&[1.0, 0.5, 0.01]))
+        .unwrap();
+    // The weakest direction alone has the filter.
+    for (i, s, b) in [(0, 1.0, 0.0), (1, 0.5, 0.0), (2, 0.01, b)] {
+        let expected = s / (s * s + share * (l * l + b * b));
+        assert!((inverse.matrix[(i, i)] - expected).abs() < 1e-14, "{i}");
+    }
 }
 
 #[test]
