@@ -170,6 +170,7 @@ impl ServoOptions {
             ("linear speed", self.speed.linear),
             ("angular speed", self.speed.angular),
             ("acceleration", self.acceleration),
+            ("largest projection", self.largest_projection),
         ] {
             if value.is_nan() || value <= 0.0 {
                 return Err(Error::InvalidOption {
@@ -218,9 +219,6 @@ impl ServoOptions {
                         .to_owned(),
                 });
             }
-        }
-        if self.largest_projection.is_nan() || self.largest_projection <= 0.0 {
-            return Err(refuse("largest projection", self.largest_projection));
         }
         self.method.check()
     }

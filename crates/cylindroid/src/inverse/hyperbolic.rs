@@ -21,7 +21,6 @@
 //!          always exists
 //! Checked  tests/it/screws/vectors.rs, ::laws, tests/it/hyperbolic.rs
 
-use super::positive;
 use super::report::{Dropped, Inverse, assemble};
 use super::weighted::Weights;
 use crate::error::{Error, Result};
@@ -173,7 +172,7 @@ impl HyperbolicDamping {
         match self {
             Self::None => Ok(()),
             Self::Gram { lambda } => Error::check_finite("lambda", &[lambda]),
-            Self::Invariant { mu } => positive("mu", mu),
+            Self::Invariant { mu } => Error::check_positive("mu", mu),
         }
     }
 
