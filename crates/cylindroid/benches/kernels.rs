@@ -1,9 +1,10 @@
 //! How long the parts of a control step take: `cargo bench -p cylindroid`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use cylindroid::inverse::Method;
+use cylindroid::inverse::{self, Method};
 use cylindroid::kinematics::Chain;
 use cylindroid::linalg::Svd;
+use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, catalogue};
 use divan::{Bencher, black_box};
 
@@ -146,4 +147,43 @@ fn servo_step(bencher: Bencher<'_, '_>, robot_name: &str, method: &str) {
         servo.advance(&mut q);
         black_box(done)
     });
+}
+
+/// Twists of a three-joint and a five-joint arm, and of nothing in particular.
+fn jacobians() -> [(Matrix, &'static str); 2] {
+    let of = |name: &str, q: &[f64]| {
+        let robot = robot(name);
+        robot.state(q).unwrap().jacobian(robot.tool(), Reference::World)
+    };
+    [(of("3r", &[0.3, 0.5, -1.1]), "3r"), (of("youbot", &[0.4, 0.6, 0.9, 0.5, 0.2]), "youbot")]
+}
+
+/// Class, pitches, frame and margins from nothing.
+#[divan::bench(args = ["3r", "youbot"])]
+fn screw_system(bencher: Bencher<'_, '_>, name: &str) {
+    let (j, _) = jacobians().into_iter().find(|j| j.1 == name).unwrap();
+    let options = ScrewOptions::with_length(0.7);
+    bencher.bench_local(|| {
+        let system = ScrewSystem::of_columns(black_box(&j), &options).unwrap();
+        black_box((system.class(), system.principal_pitches()))
+    });
+}
+
+/// In a control loop: no report, no allocation.
+#[divan::bench(args = ["3r", "youbot"])]
+fn hyperbolic_inverse(bencher: Bencher<'_, '_>, name: &str) {
+    let (j, _) = jacobians().into_iter().find(|j| j.1 == name).unwrap();
+    let scale = ScrewOptions::with_length(0.7);
+    let mut out = Matrix::zeros(j.cols(), 6);
+    bencher.bench_local(|| {
+        let none = inverse::hyperbolic_into(black_box(&j), 0.1, &scale, &mut out).unwrap();
+        black_box((none.is_none(), &out));
+    });
+}
+
+/// With its report.
+#[divan::bench(args = ["3r", "youbot"])]
+fn hyperbolic_inverse_with_report(bencher: Bencher<'_, '_>, name: &str) {
+    let (j, _) = jacobians().into_iter().find(|j| j.1 == name).unwrap();
+    bencher.bench_local(|| black_box(inverse::hyperbolic(black_box(&j), 0.1).unwrap()));
 }

@@ -17,6 +17,7 @@
 mod damped;
 mod filtered;
 mod hyperbolic;
+mod independent;
 mod numerical_filtering;
 mod point_direction;
 mod report;
@@ -26,6 +27,7 @@ mod variable_damping;
 mod weighted;
 
 pub use hyperbolic::{HyperbolicDamping, HyperbolicOptions, hyperbolic, hyperbolic_with, oblique};
+pub use independent::hyperbolic_into;
 pub use point_direction::{PointDirection, point_direction};
 pub(crate) use report::is_kept;
 pub use report::{Dropped, Inverse};

@@ -91,7 +91,7 @@ impl Span {
     }
 
     /// Adds the part of `x` outside the span, made a unit vector; says how long it was.
-    fn push(&mut self, mut x: [f64; 6]) -> f64 {
+    pub(crate) fn push(&mut self, mut x: [f64; 6]) -> f64 {
         let mut norm = self.project_out(&mut x);
         let first = norm;
         if norm == 0.0 {
