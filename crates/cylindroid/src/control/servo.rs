@@ -151,8 +151,13 @@ impl Servo {
         (1..=GENERIC_POSTURES)
             .map(|posture| {
                 // Irrational steps: no posture is aligned with another or with the axes.
-                let q: Vec<f64> =
+                let mut q: Vec<f64> =
                     (0..n).map(|i| 0.3 + ((posture * n + i) as f64 * 0.618_034).fract()).collect();
+                for (x, c) in q.iter_mut().zip(self.mechanism.coordinates()) {
+                    if c.limits.lower == c.limits.upper {
+                        *x = c.limits.lower; // the one place that it has
+                    }
+                }
                 self.chain.set(&q);
                 self.space.load(&self.chain, &mut self.task);
                 Svd::of(&self.task).rank(GENERIC_RANK).rank
@@ -216,10 +221,12 @@ impl Servo {
         let near =
             position_error <= tolerance.position && orientation_error <= tolerance.orientation;
         let stalled = self.watch.stalled(scaled, effort, self.options.dt);
-        let status = match (near, stalled) {
-            (true, _) if self.settled(wanted.feed_forward) => Status::Reached,
-            (false, true) => Status::Stalled,
-            _ => Status::Moving,
+        let status = if near && self.settled(wanted.feed_forward) {
+            Status::Reached
+        } else if stalled {
+            Status::Stalled
+        } else {
+            Status::Moving
         };
         Ok(Step {
             status,
