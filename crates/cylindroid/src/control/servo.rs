@@ -337,10 +337,18 @@ impl Servo {
         self.space.scale(wanted.error, &mut self.error);
         self.method = self.options.method;
         let mut twist = wanted.feedback;
+        let mut solved = None;
         if self.limits.iter().any(|l| l.acceleration < f64::INFINITY) {
             self.space.scale(twist, &mut self.x);
             self.solve();
-            apply(&self.svd, &self.gains, &self.error, &mut self.wish);
+            solved = Some(twist);
+            let gain = self.options.gain;
+            if gain.position == gain.orientation {
+                let way = |(w, rate): (&mut f64, &f64)| *w = rate / gain.position;
+                self.wish.iter_mut().zip(&self.primary).for_each(way);
+            } else {
+                apply(&self.svd, &self.gains, &self.error, &mut self.wish);
+            }
             let dt = self.options.dt;
             let share =
                 approach::share(&self.wish, &self.primary, &self.space.columns, &self.limits, dt);
@@ -354,8 +362,11 @@ impl Servo {
         if excess > 1.0 {
             twist = twist * (1.0 / excess);
         }
-        self.space.scale(twist, &mut self.x);
-        self.solve();
+        // Where nothing was changed, the rates are there already.
+        if solved != Some(twist) {
+            self.space.scale(twist, &mut self.x);
+            self.solve();
+        }
     }
 
     /// `primary = J+ x`
