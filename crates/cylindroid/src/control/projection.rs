@@ -174,6 +174,9 @@ fn projector(
     svd: &Svd,
     frame: TaskFrame,
 ) -> std::result::Result<Option<TaskProjector>, NoInverse> {
+    if *projection == Projection::Orthogonal {
+        return Ok(None);
+    }
     let k = svd.rank(GENERIC_RANK).rank;
     let motions = (0..k).map(|i| std::array::from_fn(|r| svd.u(i)[r]));
     let found = match projection {

@@ -1,9 +1,10 @@
 //! The servo: one step from joint positions and a target pose to joint rates.
 //!
-//! Formula  x = s gain * error + feed-forward, s of `approach.rs`, error = [p_d - p; log(R_d R^T)] (world axes), saturated
-//!          to the largest speeds; rates = J+ x + P z: J+ the chosen inverse of the task Jacobian
-//!          with linear rows divided by L, z the secondary wishes, P the null-space projector;
-//!          then position, velocity and acceleration limits (`limits.rs`, `saturation.rs`)
+//! Formula  x = s gain * error + feed-forward, s of `approach.rs`, error = [p_d - p; log(R_d R^T)]
+//!          (world axes), saturated to the largest speeds, then projected (`projection.rs`);
+//!          rates = J+ x + P z: J+ the chosen inverse of the task Jacobian with linear rows divided
+//!          by L, z the secondary wishes, P the null-space projector; then position, velocity and
+//!          acceleration limits (`limits.rs`, `saturation.rs`)
 //! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
 //! Units    m, rad, s
 //! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step.
@@ -12,23 +13,24 @@
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
-use super::approach;
-use super::limits::{LimitKind, Motion1, RateBounds};
-use super::options::{Projector, ServoOptions};
+mod stages;
+
+use super::limits::{LimitKind, RateBounds};
+use super::options::ServoOptions;
 use super::projection::{Projecting, TaskFrame};
-use super::saturation::{Problem, RELEASE, Saturator, apply, solve};
+use super::saturation::{Problem, Saturator};
 use super::secondary::Gradient;
-use super::stall::{Effort, Evidence, Stall, Watch, classify};
-use super::step::{Status, Step, Target, Wanted};
+use super::stall::{Evidence, Stall, Watch, classify};
+use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
 use crate::inverse::{Method, is_kept};
 use crate::kinematics::Chain;
-use crate::linalg::{Matrix, RowSpace, Svd};
+use crate::linalg::{Matrix, Svd};
 use crate::model::{Limits, Mechanism};
 use crate::screws::NoInverse;
-use crate::spatial::{Pose, Twist};
-use crate::tolerance::{AT_LIMIT, GENERIC_RANK};
+use crate::spatial::Pose;
+use crate::tolerance::GENERIC_RANK;
 
 /// Postures that are asked for the rank of the arm.
 const GENERIC_POSTURES: usize = 3;
@@ -158,8 +160,13 @@ impl Servo {
         (1..=GENERIC_POSTURES)
             .map(|posture| {
                 // Irrational steps: no posture is aligned with another or with the axes.
-                let q: Vec<f64> =
+                let mut q: Vec<f64> =
                     (0..n).map(|i| 0.3 + ((posture * n + i) as f64 * 0.618_034).fract()).collect();
+                for (x, c) in q.iter_mut().zip(self.mechanism.coordinates()) {
+                    if c.limits.lower == c.limits.upper {
+                        *x = c.limits.lower; // the one place that it has
+                    }
+                }
                 self.chain.set(&q);
                 self.space.load(&self.chain, &mut self.task);
                 Svd::of(&self.task).rank(GENERIC_RANK).rank
@@ -225,11 +232,12 @@ impl Servo {
         let near =
             position_error <= tolerance.position && orientation_error <= tolerance.orientation;
         let stalled = self.watch.stalled(scaled, effort, self.options.dt);
-        let status = match (near, stalled) {
-            (true, _) if self.settled(wanted.feed_forward) => Status::Reached,
-            (false, true) => Status::Stalled,
-            _ if self.projecting.is_stopped() => Status::Stalled,
-            _ => Status::Moving,
+        let status = if near && self.settled(wanted.feed_forward) {
+            Status::Reached
+        } else if stalled || self.projecting.is_stopped() {
+            Status::Stalled
+        } else {
+            Status::Moving
         };
         Ok(Step {
             status,
@@ -350,141 +358,6 @@ impl Servo {
             self.mechanism.check_q("wanted rates", wanted_rates)?;
         }
         target.check()
-    }
-
-    /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
-    fn load_task(&mut self, wanted: &Wanted) {
-        self.space.scale(wanted.error, &mut self.error);
-        self.possible.copy_from_slice(&self.error);
-        self.projecting.apply(&mut self.possible);
-        self.method = self.options.method;
-        let mut twist = wanted.feedback;
-        if self.limits.iter().any(|l| l.acceleration < f64::INFINITY) {
-            self.load_twist(twist);
-            self.solve();
-            apply(&self.svd, &self.gains, &self.possible, &mut self.wish);
-            let dt = self.options.dt;
-            let share =
-                approach::share(&self.wish, &self.primary, &self.space.columns, &self.limits, dt);
-            twist = twist * share;
-            self.method = approach::slowed(self.method, share);
-        }
-        twist = twist + wanted.feed_forward;
-        // Saturated as a whole: the direction of the motion is kept.
-        let speed = self.options.speed;
-        let excess = (twist.linear.norm() / speed.linear).max(twist.angular.norm() / speed.angular);
-        if excess > 1.0 {
-            twist = twist * (1.0 / excess);
-        }
-        self.load_twist(twist);
-        self.solve();
-    }
-
-    /// `x = P twist`, scaled.
-    fn load_twist(&mut self, twist: Twist) {
-        self.space.scale(twist, &mut self.x);
-        self.projecting.apply(&mut self.x);
-    }
-
-    /// `primary = J+ x`
-    fn solve(&mut self) {
-        solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
-    }
-
-    /// True if the tool, moved by the rates of this step, is so slow against the target that an
-    /// error within tolerance stays within it.
-    fn settled(&self, feed_forward: Twist) -> bool {
-        let speed = self.space.twist(&self.done) - feed_forward;
-        let (gain, most) = (self.options.gain, self.options.tolerance);
-        speed.linear.norm() <= gain.position * most.position
-            && speed.angular.norm() <= gain.orientation * most.orientation
-    }
-
-    /// Secondary wishes in weighted coordinates, projected on the null space.
-    fn load_wish(&mut self, wanted_rates: &[f64]) {
-        self.wish.fill(0.0);
-        if !wanted_rates.is_empty() {
-            for (w, &c) in self.wish.iter_mut().zip(self.chain.coordinates()) {
-                *w = wanted_rates[c];
-            }
-        }
-        for secondary in &self.options.secondary {
-            secondary.add_rates(
-                &self.mechanism,
-                &self.chain,
-                &self.svd,
-                &self.space,
-                &mut self.gradient,
-                &mut self.wish,
-            );
-        }
-        if self.wish.iter().all(|w| *w == 0.0) {
-            return;
-        }
-        for (w, &c) in self.wish.iter_mut().zip(&self.space.columns) {
-            *w = if c == 0.0 { 0.0 } else { *w / c };
-        }
-        let space = match self.options.projector {
-            Projector::Exact => RowSpace::exact(&self.svd),
-            Projector::Retained => RowSpace::retained(&self.svd, &self.kept),
-        };
-        space.project_out(&mut self.wish);
-    }
-
-    /// The bounds of the next rates, in weighted coordinates.
-    fn load_bounds(&mut self, q: &[f64]) {
-        for (i, &c) in self.chain.coordinates().iter().enumerate() {
-            let now = Motion1 { position: q[c], rate: self.rates[c] };
-            let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
-            self.own_bounds[i] = bound;
-            if self.space.is_locked(i) {
-                (bound.lower, bound.upper) = (0.0, 0.0);
-            } else {
-                bound.lower /= self.space.columns[i];
-                bound.upper /= self.space.columns[i];
-            }
-            self.bounds[i] = bound;
-        }
-    }
-
-    fn store_rates(&mut self) -> Effort {
-        let mut effort = Effort::default();
-        for (i, &c) in self.chain.coordinates().iter().enumerate() {
-            let (rate, bound) = (self.primary[i], self.bounds[i]);
-            self.active[i] = if self.space.is_locked(i) { None } else { bound.met(rate) };
-            // Once more: the scale leaves a rounding.
-            let own = match self.space.is_locked(i) {
-                true => 0.0,
-                false => self.own_bounds[i].clamp(rate * self.space.columns[i]),
-            };
-            let before = std::mem::replace(&mut self.rates[c], own).abs();
-            let speed = own.abs();
-            effort.gaining |= self.active[i] == Some(LimitKind::Acceleration) && speed > before;
-            if speed > 0.0 {
-                effort.stopping_time =
-                    effort.stopping_time.max(speed / self.limits[i].acceleration);
-            }
-        }
-        effort
-    }
-
-    /// The joints that stand at a position limit, and beyond it would carry out more of the task.
-    fn note_limits(&mut self) {
-        self.at_limit.clear();
-        let left = |(x, done): (&f64, &f64)| x - done;
-        let size = self.x.iter().zip(&self.done).map(left).map(|r| r * r).sum::<f64>().sqrt();
-        let least = RELEASE * self.svd.value(0) * size;
-        for (i, &c) in self.chain.coordinates().iter().enumerate() {
-            let (rate, bound) = (self.primary[i], self.bounds[i]);
-            let (q, l) = (self.chain.q()[i], self.limits[i]);
-            let rest = self.x.iter().zip(&self.done).map(left);
-            let pull: f64 = self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum();
-            let above = l.upper - q < AT_LIMIT && rate >= bound.upper && pull > least;
-            let below = q - l.lower < AT_LIMIT && rate <= bound.lower && pull < -least;
-            if !self.space.is_locked(i) && (above || below) {
-                self.at_limit.push(c);
-            }
-        }
     }
 
     fn singular_ratio(&self) -> f64 {

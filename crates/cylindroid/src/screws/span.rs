@@ -106,6 +106,17 @@ impl Span {
         first
     }
 
+    /// Adds a vector of any length if it is clearly not in the span.
+    pub(crate) fn push_independent(&mut self, x: [f64; 6]) {
+        let norm = dot(&x, &x).sqrt();
+        let unit = x.map(|a| a / norm);
+        let mut rest = unit;
+        // NaN and the seventh vector fail this.
+        if self.project_out(&mut rest) > SCREW_CLASS && self.k < 6 {
+            self.push(unit);
+        }
+    }
+
     /// `x <- (1 - B B^T) x`; returns the length of what is left.
     pub(crate) fn project_out(&self, x: &mut [f64; 6]) -> f64 {
         for b in self.vectors() {

@@ -117,14 +117,18 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
             })
             .fold(1.0, f64::max)
     };
-    let mut found = decompose(&used, scale, options, &amplification);
-    if options.center.is_none() && found.span.k() > 0 {
+    if options.center.is_none() {
         // The centre of the given twists depends on which were given; that of an orthonormal
         // basis does not, to first order.
-        let basis: Vec<Twist> = found.span.vectors().iter().map(|x| scale.undo(x)).collect();
-        scale.center = least_squares_center(&basis, options.length, true);
-        found = decompose(&used, scale, options, &amplification);
+        let mut basis = Span::ZERO;
+        for t in &used {
+            basis.push_independent(scale.apply(*t));
+        }
+        let twists: [Twist; 6] =
+            std::array::from_fn(|i| basis.vectors().get(i).map_or(Twist::ZERO, |x| scale.undo(x)));
+        scale.center = least_squares_center(&twists[..basis.k()], options.length, true);
     }
+    let found = decompose(&used, scale, options, amplification(&scale));
     let noise = 100.0 * options.noise * amplification(&scale) * found.conditioning;
     let tolerance = Tolerances {
         rank: found.rank.threshold,
@@ -146,7 +150,7 @@ fn decompose(
     twists: &[Twist],
     scale: Scale,
     options: &ScrewOptions,
-    amplification: &impl Fn(&Scale) -> f64,
+    amplification: f64,
 ) -> Decomposed {
     let mut unit = Matrix::zeros(6, twists.len());
     for (j, t) in twists.iter().enumerate() {
@@ -157,7 +161,7 @@ fn decompose(
         }
     }
     let svd = Svd::of(&unit);
-    let noise = 30.0 * options.noise * amplification(&scale);
+    let noise = 30.0 * options.noise * amplification;
     let threshold = SCREW_RANK.max(noise).min(0.5);
     let k = (0..svd.len()).filter(|&i| svd.value(i) > threshold).count();
     let next = if k < svd.len() { svd.value(k) } else { 0.0 };

@@ -184,3 +184,31 @@ fn stall_out_of_reach_with_a_follower_that_rests() {
     let outcome = run(&mut servo, &[0.3], Pose::from_translation(Vec3::X * 2.0));
     assert_eq!(outcome.stall, Some(Stall::OutOfReach { distance: 2.0, length: 1.5 }));
 }
+
+/// What a locked joint takes away for good is no singular pose: with its elbow locked straight the
+/// arm turns its hand about one axis with two joints, in every posture.
+#[test]
+fn stall_of_an_arm_locked_straight_is_not_called_singular() {
+    let mut b = Mechanism::builder("straight");
+    for (i, (lower, upper)) in [(-3.0, 3.0), (0.0, 0.0), (-3.0, 3.0)].into_iter().enumerate() {
+        b.joint(JointSpec {
+            // The middle joint bends; the others turn about the same line while it is straight.
+            axis: if i == 1 { Vec3::X } else { Vec3::Z },
+            limits: Limits { lower, upper, ..Limits::NONE },
+            ..JointSpec::new(
+                &format!("q{i}"),
+                JointKind::Revolute,
+                &format!("l{i}"),
+                &format!("l{}", i + 1),
+            )
+        });
+    }
+    let robot = b.build().unwrap();
+    let mut servo = servo(&robot, |o| o.task = Task::ORIENTATION);
+    let target = Pose::from_rotation(Rotation::exp(Vec3::X * 0.5));
+    let outcome = run(&mut servo, &[0.2, 0.0, 0.1], target);
+    let Some(Stall::TooFewJoints { rank, task, .. }) = outcome.stall else {
+        panic!("{:?}", outcome.stall)
+    };
+    assert_eq!((rank, task), (1, 3));
+}
