@@ -44,8 +44,9 @@ impl<const N: usize> Eigen<N> {
                     }
                     rotated = true;
                     let theta = 0.5 * (a[q][q] - a[p][p]) / apq;
-                    let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-                    let c = 1.0 / t.hypot(1.0);
+                    // A theta whose square overflows gives t = 0, which is right.
+                    let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                    let c = 1.0 / (t * t + 1.0).sqrt();
                     let s = t * c;
                     a[p][p] -= t * apq;
                     a[q][q] += t * apq;

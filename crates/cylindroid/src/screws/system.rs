@@ -45,8 +45,8 @@ impl ScrewSystem {
     /// Twists or options that are not finite, a length that is not positive.
     pub fn of(twists: &[Twist], options: &ScrewOptions) -> Result<Self> {
         options.check()?;
-        for (i, t) in twists.iter().enumerate() {
-            Error::check_finite(&format!("twist {}", i + 1), &t.to_array())?;
+        if let Some(i) = twists.iter().position(|t| !t.is_finite()) {
+            Error::check_finite(&format!("twist {}", i + 1), &twists[i].to_array())?;
         }
         let (span, scale, tolerance, rank) = spanned(twists, options);
         Ok(Self::classified(span, scale, tolerance, rank))
