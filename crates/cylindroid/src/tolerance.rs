@@ -73,6 +73,9 @@ pub const NEARLY_PARALLEL: f64 = 1e-6;
 /// Coordinates of a canonical origin whose weight is below this are not determined [-].
 pub const ORIGIN_DETERMINED: f64 = 1e-13;
 
+/// Parallel lines nearer than this times the size of their points coincide up to rounding [-].
+pub const COINCIDENT: f64 = 16.0 * f64::EPSILON;
+
 /// Least threshold for the rank of a screw system: singular values of unit twists [-]. Noise
 /// raises it to 30 times its size at the centre.
 pub const SCREW_RANK: f64 = 1e-12;
