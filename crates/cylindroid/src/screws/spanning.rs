@@ -1,19 +1,24 @@
 //! The span of a set of twists: centre, rank and thresholds.
 //!
 //! Formula  singular values of the unit columns [v(c) / L; w] / |.|, c the least-squares point of
-//!          the axes, found a second time from an orthonormal basis
+//!          the axes of a basis that is orthonormal at c: a fixed point, found by iteration
 //! Units    L, c in m; thresholds without unit
 //! Valid    any twists; the result depends on the frame and on the unit to rounding alone
 //! Why so   a rank needs a scale, and noise on a twist far from the origin is noise on its moment:
 //!          the way to the centre is counted in the thresholds
 //! Checked  tests/it/screws/classes.rs
 
-use super::span::{Scale, Span, least_squares_center};
+use super::span::{Scale, Span, dot, least_squares_center, over, power_of_two, size};
 use super::system::ScrewSystem;
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank, Svd};
 use crate::spatial::{Twist, Vec3};
-use crate::tolerance::{AMBIGUOUS, SCREW_CLASS, SCREW_RANK};
+use crate::tolerance::{
+    AMBIGUOUS, CENTER_FOUND, NOISE_CLASS, NOISE_OF_ZERO, NOISE_RANK, SCREW_CLASS, SCREW_RANK,
+};
+
+/// Steps to the centre at most; each shortens the way by a factor that depends on the system.
+const CENTER_STEPS: usize = 32;
 
 /// Scale and noise of a set of twists.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,15 +79,16 @@ impl ScrewOptions {
 pub(super) struct Tolerances {
     pub(super) rank: f64,
     pub(super) class: f64,
-    /// What noise may make of a zero, times 100.
+    /// What noise asks for as a threshold of the class.
     pub(super) noise: f64,
     /// True if a singular value lies near the threshold of the rank.
     pub(super) narrow_rank: bool,
 }
 
-/// Within [`AMBIGUOUS`] of its threshold, unless it is what noise makes of zero.
+/// Within [`AMBIGUOUS`] of its threshold, unless it is what noise, which asks for a threshold of
+/// its own, makes of zero.
 pub(super) fn is_narrow(value: f64, threshold: f64, noise: f64) -> bool {
-    value < threshold * AMBIGUOUS && value > (threshold / AMBIGUOUS).max(noise)
+    value < threshold * AMBIGUOUS && value > (threshold / AMBIGUOUS).max(NOISE_OF_ZERO * noise)
 }
 
 /// The twists that are the columns of a matrix with six rows.
@@ -97,15 +103,19 @@ pub(super) fn six(x: &[f64]) -> [f64; 6] {
 
 /// Span, scale, thresholds and rank of a set of twists.
 pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale, Tolerances, Rank) {
-    let largest = |t: &Twist| (t.linear.norm() / options.length).max(t.angular.norm());
-    let size = twists.iter().map(largest).fold(0.0, f64::max);
-    // Twists that are rounding errors of the others span nothing.
+    let largest = |t: &Twist| size(*t, options.length);
+    let most = twists.iter().map(largest).fold(0.0, f64::max);
+    // Twists that are rounding errors of the others span nothing. Over a power of two, which
+    // changes no digit, squares of the others neither overflow nor vanish.
+    let power = power_of_two(most);
     let used: Vec<Twist> =
-        twists.iter().copied().filter(|t| largest(t) > SCREW_RANK * size).collect();
+        twists.iter().filter(|t| largest(t) > SCREW_RANK * most).map(|t| over(*t, power)).collect();
+    let noise = |factor: f64| NOISE_CLASS * options.noise * factor;
+    let class = |factor: f64| noise(factor).clamp(SCREW_CLASS, 0.1);
     let mut scale = Scale {
         center: options
             .center
-            .unwrap_or_else(|| least_squares_center(&used, options.length, false)),
+            .unwrap_or_else(|| least_squares_center(&used, options.length, class(1.0))),
         length: options.length,
     };
     // How much of the digits the way to the centre costs.
@@ -113,23 +123,33 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
         used.iter()
             .map(|t| {
                 let x = scale.apply(*t);
-                largest(t) / x.iter().map(|a| a * a).sum::<f64>().sqrt()
+                let moved = t.angular.norm() * scale.center.norm() / scale.length;
+                largest(t).max(moved) / dot(&x, &x).sqrt()
             })
             .fold(1.0, f64::max)
     };
     let mut found = decompose(&used, scale, options, &amplification);
     if options.center.is_none() && found.span.k() > 0 {
-        // The centre of the given twists depends on which were given; that of an orthonormal
-        // basis does not, to first order.
-        let basis: Vec<Twist> = found.span.vectors().iter().map(|x| scale.undo(x)).collect();
-        scale.center = least_squares_center(&basis, options.length, true);
+        // The centre of the given twists depends on which were given; that of a basis which is
+        // orthonormal there does not.
+        let mut span = found.span;
+        let turning = class(amplification(&scale) * found.conditioning);
+        for _ in 0..CENTER_STEPS {
+            let basis: Vec<Twist> = span.vectors().iter().map(|x| scale.undo(x)).collect();
+            let before = scale.center;
+            scale.center = least_squares_center(&basis, options.length, turning);
+            if (scale.center - before).norm() <= CENTER_FOUND * options.length {
+                break;
+            }
+            span = Span::of_independent(basis.into_iter().map(|t| scale.apply(t)));
+        }
         found = decompose(&used, scale, options, &amplification);
     }
-    let noise = 100.0 * options.noise * amplification(&scale) * found.conditioning;
+    let factor = amplification(&scale) * found.conditioning;
     let tolerance = Tolerances {
         rank: found.rank.threshold,
-        class: noise.clamp(SCREW_CLASS, 0.1),
-        noise,
+        class: class(factor),
+        noise: noise(factor),
         narrow_rank: found.narrow,
     };
     (found.span, scale, tolerance, found.rank)
@@ -151,13 +171,13 @@ fn decompose(
     let mut unit = Matrix::zeros(6, twists.len());
     for (j, t) in twists.iter().enumerate() {
         let x = scale.apply(*t);
-        let norm = x.iter().map(|a| a * a).sum::<f64>().sqrt();
+        let norm = dot(&x, &x).sqrt();
         if norm > 0.0 {
             unit.column_mut(j).copy_from_slice(&x.map(|a| a / norm));
         }
     }
     let svd = Svd::of(&unit);
-    let noise = 30.0 * options.noise * amplification(&scale);
+    let noise = NOISE_RANK * options.noise * amplification(&scale);
     let threshold = SCREW_RANK.max(noise).min(0.5);
     let k = (0..svd.len()).filter(|&i| svd.value(i) > threshold).count();
     let next = if k < svd.len() { svd.value(k) } else { 0.0 };
@@ -167,7 +187,7 @@ fn decompose(
         span: Span::of_independent((0..k).map(|i| six(svd.u(i)))),
         rank: Rank { rank: k, threshold, gap },
         conditioning: if k == 0 { 1.0 } else { svd.value(0) / last },
-        narrow: svd.values().any(|s| is_narrow(s, threshold, 0.3 * noise)),
+        narrow: svd.values().any(|s| is_narrow(s, threshold, noise)),
     }
 }
 

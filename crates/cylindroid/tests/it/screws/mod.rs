@@ -1,5 +1,7 @@
 //! Screws, screw systems and what is built on them.
 
+mod classes;
 mod forms;
 mod geometry;
+mod sample;
 mod vectors;
