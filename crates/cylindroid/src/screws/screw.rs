@@ -10,7 +10,7 @@
 //! Checked  tests/it/screws/geometry.rs
 
 use crate::spatial::{Rotation, Twist, Vec3};
-use crate::tolerance::ZERO_AXIS;
+use crate::tolerance::{COINCIDENT, ZERO_AXIS};
 
 /// A directed line in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,8 +50,10 @@ impl Line {
             // Parallel lines have a normal everywhere: the one at this line's point.
             let foot = other.nearest(self.point);
             let across = foot - self.point;
+            let across = across - a * a.dot(across);
+            // What is no more than the rounding of the points has no direction.
             let direction = across
-                .unit(ZERO_AXIS * (1.0 + between.norm()))
+                .unit(COINCIDENT * (self.point.norm() + between.norm()))
                 .or_else(|| Rotation::z_to(a).map(Rotation::x_axis))
                 .unwrap_or(Vec3::X);
             return CommonNormal {
@@ -123,24 +125,18 @@ impl Screw {
     /// are not finite.
     #[must_use]
     pub fn of(twist: Twist) -> Option<Self> {
-        let (speed, turn) = (twist.linear.norm(), twist.angular.norm());
-        if !twist.is_finite() || !speed.is_finite() || !turn.is_finite() {
+        if !twist.linear.norm().is_finite() || !twist.angular.norm().is_finite() {
             return None;
         }
-        if turn > 0.0 {
-            let direction = twist.angular * (1.0 / turn);
-            let linear = twist.linear * (1.0 / turn);
+        if let Some((direction, amplitude)) = polar(twist.angular) {
+            let linear = over(twist.linear, amplitude);
             let (point, pitch) = (direction.cross(linear), direction.dot(linear));
-            if point.is_finite() && pitch.is_finite() && direction.is_finite() {
-                return Some(Self { axis: Line { point, direction }, pitch, amplitude: turn });
+            if point.is_finite() && pitch.is_finite() {
+                return Some(Self { axis: Line { point, direction }, pitch, amplitude });
             }
         }
-        let direction = twist.linear.unit(0.0)?;
-        Some(Self {
-            axis: Line { point: Vec3::ZERO, direction },
-            pitch: f64::INFINITY,
-            amplitude: speed,
-        })
+        let (direction, amplitude) = polar(twist.linear)?;
+        Some(Self { axis: Line { point: Vec3::ZERO, direction }, pitch: f64::INFINITY, amplitude })
     }
 
     /// The twist of the screw.
@@ -161,4 +157,17 @@ impl Screw {
     pub fn is_translation(&self) -> bool {
         self.pitch.is_infinite()
     }
+}
+
+/// Direction and length, down to the smallest number that is not zero.
+fn polar(x: Vec3) -> Option<(Vec3, f64)> {
+    let largest = x.x.abs().max(x.y.abs()).max(x.z.abs());
+    let x = over(x, largest);
+    let direction = x.unit(0.0)?;
+    Some((direction, largest * x.norm()))
+}
+
+/// A quotient, where the reciprocal of `a` may overflow.
+fn over(x: Vec3, a: f64) -> Vec3 {
+    Vec3::new(x.x / a, x.y / a, x.z / a)
 }

@@ -10,7 +10,7 @@
 
 use crate::linalg::{Eigen, Matrix};
 use crate::spatial::{Twist, Vec3};
-use crate::tolerance::{NEARLY_PARALLEL, SCREW_CLASS};
+use crate::tolerance::NEARLY_PARALLEL;
 
 /// Where and in which unit a screw system is looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,6 +63,21 @@ pub(crate) fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+/// The size of a twist: the larger of its parts, the linear one over `length`.
+pub(crate) fn size(t: Twist, length: f64) -> f64 {
+    (t.linear.norm() / length).max(t.angular.norm())
+}
+
+/// The power of two below a size, within the normal numbers.
+pub(crate) fn power_of_two(size: f64) -> f64 {
+    let exponent = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
+    exponent.clamp(f64::MIN_POSITIVE, f64::MAX)
+}
+
+pub(crate) fn over(t: Twist, a: f64) -> Twist {
+    Twist::from_array(t.to_array().map(|x| x / a))
+}
+
 /// `Q_0 x`: one half of the linear and the angular part exchanged.
 pub(crate) fn lowered(x: &[f64; 6], h: f64) -> [f64; 6] {
     if h.is_infinite() {
@@ -106,15 +121,19 @@ impl Span {
         first
     }
 
-    /// Adds a vector of any length if it is clearly not in the span.
-    pub(crate) fn push_independent(&mut self, x: [f64; 6]) {
+    /// Adds a vector of any length if the sine of its angle to the span is above `threshold`, and
+    /// says what it is.
+    pub(crate) fn push_independent(&mut self, x: [f64; 6], threshold: f64) -> Option<f64> {
         let norm = dot(&x, &x).sqrt();
         let unit = x.map(|a| a / norm);
         let mut rest = unit;
+        let sine = self.project_out(&mut rest);
         // NaN and the seventh vector fail this.
-        if self.project_out(&mut rest) > SCREW_CLASS && self.k < 6 {
+        if sine > threshold && self.k < 6 {
             self.push(unit);
+            return Some(sine);
         }
+        None
     }
 
     /// `x <- (1 - B B^T) x`; returns the length of what is left.
@@ -174,10 +193,13 @@ impl Span {
     }
 
     /// Smallest singular value of the Gram matrix: zero where the system meets its own
-    /// h-reciprocal system. 1 for the zero system, whose inverse always exists.
+    /// h-reciprocal system. 1 for the zero system, whose inverse always exists; 0 for NaN.
     pub(crate) fn gram_margin(&self, h: f64) -> f64 {
+        if h.is_nan() {
+            return 0.0;
+        }
         let e = Eigen::of(self.gram(h), self.k);
-        e.values[..self.k].iter().fold(f64::INFINITY, |m, x| m.min(x.abs())).min(1.0)
+        e.values[..self.k].iter().fold(1.0, |m: f64, x| m.min(x.abs()))
     }
 
     /// The sine of the largest angle by which this span leaves `other`.
@@ -194,24 +216,23 @@ impl Span {
     }
 }
 
-/// The point that minimises `sum |v_i + w_i x c|^2 / |w_i|^2` (`weighted`: without the division),
-/// where it is determined; along directions nearly parallel to all axes it stays at the point of
+/// The point that minimises `sum |v_i + w_i x c|^2`, where it is determined; along directions nearly parallel to all axes it stays at the point of
 /// one axis, since the exact minimum runs to their far intersection and the axes become one there.
-/// Twists that are translations at the scale of `length` are left out.
-pub(crate) fn least_squares_center(twists: &[Twist], length: f64, weighted: bool) -> Vec3 {
-    let turns = |t: &&Twist| t.angular.norm() * length > SCREW_CLASS * t.linear.norm();
+/// Twists that turn by no more than `least` at the scale of `length` are translations, and left
+/// out.
+pub(crate) fn least_squares_center(twists: &[Twist], length: f64, least: f64) -> Vec3 {
+    let turns = |t: &&Twist| t.angular.norm() * length > least * t.linear.norm();
     let turning = || twists.iter().filter(turns);
-    let size = |t: &Twist| t.angular.norm();
-    let Some(most) = turning().max_by(|a, b| size(a).total_cmp(&size(b))) else {
+    let turn = |t: &Twist| t.angular.norm();
+    let Some(most) = turning().max_by(|a, b| turn(a).total_cmp(&turn(b))) else {
         return Vec3::ZERO;
     };
-    let unit = most.angular * (1.0 / size(most));
-    let start = unit.cross(most.linear * (1.0 / size(most)));
+    let unit = most.angular * (1.0 / turn(most));
+    let start = unit.cross(most.linear * (1.0 / turn(most)));
     let mut a = [[0.0; 3]; 3];
     let mut b = Vec3::ZERO;
     for t in turning() {
-        let scale = if weighted { 1.0 } else { 1.0 / size(t) };
-        let (w, v) = (t.angular * scale, t.at_point(start).linear * scale);
+        let (w, v) = (t.angular, t.at_point(start).linear);
         // |v + w x d|^2: normal matrix |w|^2 - w w^T, right side w x v.
         let wi = w.to_array();
         for i in 0..3 {

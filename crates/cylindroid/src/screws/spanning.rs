@@ -1,19 +1,24 @@
 //! The span of a set of twists: centre, rank and thresholds.
 //!
 //! Formula  singular values of the unit columns [v(c) / L; w] / |.|, c the least-squares point of
-//!          the axes, found a second time from an orthonormal basis
+//!          the axes of a basis that is orthonormal at c: a fixed point, found by iteration
 //! Units    L, c in m; thresholds without unit
 //! Valid    any twists; the result depends on the frame and on the unit to rounding alone
 //! Why so   a rank needs a scale, and noise on a twist far from the origin is noise on its moment:
 //!          the way to the centre is counted in the thresholds
 //! Checked  tests/it/screws/classes.rs
 
-use super::span::{Scale, Span, least_squares_center};
+use super::span::{Scale, Span, dot, least_squares_center, over, power_of_two, size};
 use super::system::ScrewSystem;
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank, Svd};
 use crate::spatial::{Twist, Vec3};
-use crate::tolerance::{AMBIGUOUS, SCREW_CLASS, SCREW_RANK};
+use crate::tolerance::{
+    AMBIGUOUS, CENTER_FOUND, NOISE_CLASS, NOISE_OF_ZERO, NOISE_RANK, SCREW_CLASS, SCREW_RANK,
+};
+
+/// Steps to the centre at most; each shortens the way by a factor that depends on the system.
+const CENTER_STEPS: usize = 32;
 
 /// Scale and noise of a set of twists.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,15 +79,16 @@ impl ScrewOptions {
 pub(super) struct Tolerances {
     pub(super) rank: f64,
     pub(super) class: f64,
-    /// What noise may make of a zero, times 100.
+    /// What noise asks for as a threshold of the class.
     pub(super) noise: f64,
     /// True if a singular value lies near the threshold of the rank.
     pub(super) narrow_rank: bool,
 }
 
-/// Within [`AMBIGUOUS`] of its threshold, unless it is what noise makes of zero.
+/// Within [`AMBIGUOUS`] of its threshold, unless it is what noise, which asks for a threshold of
+/// its own, makes of zero.
 pub(super) fn is_narrow(value: f64, threshold: f64, noise: f64) -> bool {
-    value < threshold * AMBIGUOUS && value > (threshold / AMBIGUOUS).max(noise)
+    value < threshold * AMBIGUOUS && value > (threshold / AMBIGUOUS).max(NOISE_OF_ZERO * noise)
 }
 
 /// The twists that are the columns of a matrix with six rows.
@@ -97,15 +103,19 @@ pub(super) fn six(x: &[f64]) -> [f64; 6] {
 
 /// Span, scale, thresholds and rank of a set of twists.
 pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale, Tolerances, Rank) {
-    let largest = |t: &Twist| (t.linear.norm() / options.length).max(t.angular.norm());
-    let size = twists.iter().map(largest).fold(0.0, f64::max);
-    // Twists that are rounding errors of the others span nothing.
+    let largest = |t: &Twist| size(*t, options.length);
+    let most = twists.iter().map(largest).fold(0.0, f64::max);
+    // Twists that are rounding errors of the others span nothing. Over a power of two, which
+    // changes no digit, squares of the others neither overflow nor vanish.
+    let power = power_of_two(most);
     let used: Vec<Twist> =
-        twists.iter().copied().filter(|t| largest(t) > SCREW_RANK * size).collect();
+        twists.iter().filter(|t| largest(t) > SCREW_RANK * most).map(|t| over(*t, power)).collect();
+    let noise = |factor: f64| NOISE_CLASS * options.noise * factor;
+    let class = |factor: f64| noise(factor).clamp(SCREW_CLASS, 0.1);
     let mut scale = Scale {
         center: options
             .center
-            .unwrap_or_else(|| least_squares_center(&used, options.length, false)),
+            .unwrap_or_else(|| least_squares_center(&used, options.length, class(1.0))),
         length: options.length,
     };
     // How much of the digits the way to the centre costs.
@@ -113,30 +123,54 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
         used.iter()
             .map(|t| {
                 let x = scale.apply(*t);
-                largest(t) / x.iter().map(|a| a * a).sum::<f64>().sqrt()
+                let moved = t.angular.norm() * scale.center.norm() / scale.length;
+                largest(t).max(moved) / dot(&x, &x).sqrt()
             })
             .fold(1.0, f64::max)
     };
-    if options.center.is_none() {
-        // The centre of the given twists depends on which were given; that of an orthonormal
-        // basis does not, to first order.
-        let mut basis = Span::ZERO;
-        for t in &used {
-            basis.push_independent(scale.apply(*t));
+    if options.center.is_none() && !used.is_empty() {
+        // The centre of the given twists depends on which were given; that of a basis which is
+        // orthonormal there does not.
+        let amplified = amplification(&scale);
+        let (mut span, smallest) = basis(&used, scale, NOISE_RANK * options.noise * amplified);
+        let turning = class(amplified / smallest);
+        for _ in 0..CENTER_STEPS {
+            let twists: [Twist; 6] = std::array::from_fn(|i| {
+                span.vectors().get(i).map_or(Twist::ZERO, |x| scale.undo(x))
+            });
+            let twists = &twists[..span.k()];
+            let before = scale.center;
+            scale.center = least_squares_center(twists, options.length, turning);
+            if (scale.center - before).norm() <= CENTER_FOUND * options.length {
+                break;
+            }
+            span = Span::of_independent(twists.iter().map(|t| scale.apply(*t)));
         }
-        let twists: [Twist; 6] =
-            std::array::from_fn(|i| basis.vectors().get(i).map_or(Twist::ZERO, |x| scale.undo(x)));
-        scale.center = least_squares_center(&twists[..basis.k()], options.length, true);
     }
-    let found = decompose(&used, scale, options, amplification(&scale));
-    let noise = 100.0 * options.noise * amplification(&scale) * found.conditioning;
+    let amplified = amplification(&scale);
+    let found = decompose(&used, scale, options, amplified);
+    let factor = amplified * found.conditioning;
     let tolerance = Tolerances {
         rank: found.rank.threshold,
-        class: noise.clamp(SCREW_CLASS, 0.1),
-        noise,
+        class: class(factor),
+        noise: noise(factor),
         narrow_rank: found.narrow,
     };
     (found.span, scale, tolerance, found.rank)
+}
+
+/// The columns, made orthonormal in their order, those left out that depend on the ones before
+/// them; and how much of the last one that was taken was outside the others.
+fn basis(twists: &[Twist], scale: Scale, noise: f64) -> (Span, f64) {
+    let (mut span, mut smallest) = (Span::ZERO, 1.0_f64);
+    for t in twists {
+        // Noise of a basis vector is that of its column over what it has outside the others.
+        let threshold = SCREW_CLASS.max(noise / smallest);
+        if let Some(rest) = span.push_independent(scale.apply(*t), threshold) {
+            smallest = smallest.min(rest);
+        }
+    }
+    (span, smallest)
 }
 
 struct Decomposed {
@@ -155,13 +189,13 @@ fn decompose(
     let mut unit = Matrix::zeros(6, twists.len());
     for (j, t) in twists.iter().enumerate() {
         let x = scale.apply(*t);
-        let norm = x.iter().map(|a| a * a).sum::<f64>().sqrt();
+        let norm = dot(&x, &x).sqrt();
         if norm > 0.0 {
             unit.column_mut(j).copy_from_slice(&x.map(|a| a / norm));
         }
     }
     let svd = Svd::of(&unit);
-    let noise = 30.0 * options.noise * amplification;
+    let noise = NOISE_RANK * options.noise * amplification;
     let threshold = SCREW_RANK.max(noise).min(0.5);
     let k = (0..svd.len()).filter(|&i| svd.value(i) > threshold).count();
     let next = if k < svd.len() { svd.value(k) } else { 0.0 };
@@ -171,7 +205,7 @@ fn decompose(
         span: Span::of_independent((0..k).map(|i| six(svd.u(i)))),
         rank: Rank { rank: k, threshold, gap },
         conditioning: if k == 0 { 1.0 } else { svd.value(0) / last },
-        narrow: svd.values().any(|s| is_narrow(s, threshold, 0.3 * noise)),
+        narrow: svd.values().any(|s| is_narrow(s, threshold, noise)),
     }
 }
 

@@ -17,7 +17,7 @@
 use super::class::{Class, NormalForm};
 use super::classify::{Classified, Margin, classify, placed};
 use super::screw::{Line, Screw};
-use super::span::{Scale, Span, join};
+use super::span::{Scale, Span, dot, join, over, power_of_two, size};
 use super::spanning::{ScrewOptions, Tolerances, columns, is_narrow, spanned};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank};
@@ -102,7 +102,7 @@ impl ScrewSystem {
             margins.extend(classified.margins);
         }
         system.ambiguous = tolerance.narrow_rank
-            || margins.iter().any(|m| is_narrow(m.value, m.threshold, 0.1 * tolerance.noise));
+            || margins.iter().any(|m| is_narrow(m.value, m.threshold, tolerance.noise));
         system.margins = margins;
         system
     }
@@ -199,8 +199,8 @@ impl ScrewSystem {
     /// for a member, one for a twist across all of them. Zero for the zero twist.
     #[must_use]
     pub fn sine_to(&self, twist: Twist) -> f64 {
-        let mut x = self.scale.apply(twist);
-        let norm = x.iter().map(|a| a * a).sum::<f64>().sqrt();
+        let mut x = self.scale.apply(over(twist, power_of_two(size(twist, self.scale.length))));
+        let norm = dot(&x, &x).sqrt();
         if norm == 0.0 {
             return 0.0;
         }
