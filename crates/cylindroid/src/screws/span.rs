@@ -107,15 +107,19 @@ impl Span {
 
     /// Adds the part of `x` outside the span, made a unit vector; says how long it was.
     pub(crate) fn push(&mut self, mut x: [f64; 6]) -> f64 {
+        let whole = dot(&x, &x).sqrt();
         let mut norm = self.project_out(&mut x);
         let first = norm;
         if norm == 0.0 {
             return 0.0;
         }
-        // "Twice is enough": the second pass removes what rounding left of the first.
-        x.iter_mut().for_each(|a| *a /= norm);
-        norm = self.project_out(&mut x);
-        x.iter_mut().for_each(|a| *a /= norm);
+        x = x.map(|a| a / norm);
+        if norm < 0.7 * whole {
+            // "Twice is enough": a second pass removes what rounding left of the first, where that
+            // took away much.
+            norm = self.project_out(&mut x);
+            x = x.map(|a| a / norm);
+        }
         self.basis[self.k] = x;
         self.k += 1;
         first

@@ -134,15 +134,24 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
         let amplified = amplification(&scale);
         let (mut span, smallest) = basis(&used, scale, NOISE_RANK * options.noise * amplified);
         let turning = class(amplified / smallest);
+        let mut before: Option<Vec3> = None;
         for _ in 0..CENTER_STEPS {
             let twists: [Twist; 6] = std::array::from_fn(|i| {
                 span.vectors().get(i).map_or(Twist::ZERO, |x| scale.undo(x))
             });
             let twists = &twists[..span.k()];
-            let before = scale.center;
-            scale.center = least_squares_center(twists, options.length, turning);
-            if (scale.center - before).norm() <= CENTER_FOUND * options.length {
+            let step = least_squares_center(twists, options.length, turning) - scale.center;
+            scale.center += step;
+            if step.norm() <= CENTER_FOUND * options.length {
                 break;
+            }
+            // Every step is a part of the one before: two tell where they end (Aitken).
+            let part = before.map_or(0.0, |b: Vec3| step.dot(b) / b.dot(b));
+            if part > 0.0 && part < 0.9 {
+                scale.center += step * (part / (1.0 - part));
+                before = None;
+            } else {
+                before = Some(step);
             }
             span = Span::of_independent(twists.iter().map(|t| scale.apply(*t)));
         }
