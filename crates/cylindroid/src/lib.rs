@@ -16,7 +16,7 @@
 //! Conventions, once for all: SI units and radians; twists and wrenches as vectors are linear
 //! first (`[v; w]`, `[f; m]`); `world_from_tool` names a pose; a Jacobian always names its
 //! [`Reference`]. The modules form one line, each imports only those before it:
-//! `error, tolerance, scalar, linalg, spatial, inverse, model, kinematics, control`.
+//! `error, tolerance, scalar, linalg, spatial, screws, inverse, model, kinematics, control`.
 
 #![cfg_attr(test, allow(clippy::float_cmp_const))]
 
@@ -37,6 +37,7 @@ pub use inverse::{Inverse, Method};
 pub use kinematics::{EndEffector, Reference, State};
 pub use linalg::Matrix;
 pub use model::{FrameId, Mechanism, catalogue, load};
+pub use screws::{Screw, ScrewSystem};
 pub use spatial::{Pose, Rotation, Twist, Vec3, Wrench};
 
 /// The code of the README is compiled and run.

@@ -25,7 +25,7 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6
   cylindroid move ur5e --to -0.3,0.4,0.5 --inverse damped --damping 0.05 --out move.csv
   cylindroid move panda --to 0.45,0.15,0.35 --line --speed 0.1 --plot line.svg
-  cylindroid move youbot --to 0.39,0.17,0.23 --rpy 2.6,1.05,2.8 --inverse hyperbolic --h 0.1";
+  cylindroid move youbot --to 0.35,0,0.25 --rpy 0,2,0 --inverse hyperbolic --h 0.1";
 
 #[derive(Debug, Args)]
 pub(crate) struct MoveArgs {

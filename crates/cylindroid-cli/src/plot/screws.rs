@@ -4,8 +4,8 @@
 use std::ops::Range;
 use std::path::Path;
 
-use cylindroid::screws::{Screw, ScrewSystem, gram_determinant};
-use cylindroid::{Matrix, Pose, Result};
+use cylindroid::screws::{Line, Screw, ScrewSystem, gram_determinant};
+use cylindroid::{Matrix, Pose, Result, Vec3};
 use plotters::prelude::*;
 
 use super::{Area, COLOURS, Drawn, FONT, builder};
@@ -18,7 +18,7 @@ const HEIGHT: u32 = 300;
 /// Height of the cylindroid [px].
 const TALL: u32 = 560;
 /// Pitches of a curve.
-const POINTS: i32 = 400;
+const POINTS: i32 = 1200;
 /// Projectors larger than this are drawn here.
 const LARGEST: f64 = 1e3;
 /// Screws of a cylindroid.
@@ -116,7 +116,9 @@ fn determinant(
     chart.draw_series(principal.iter().map(|&h| Circle::new((h, 0.0), 5, COLOURS[1].filled())))?;
     chart.draw_series(principal.iter().map(|&h| {
         let text = format!("h = {}", number(if h.abs() < 1e-12 { 0.0 } else { h }));
-        EmptyElement::at((h, 0.0)) + Text::new(text, (8, -18), (FONT, 14).into_font())
+        // Towards the middle, away from where the curve rises.
+        let shift = if h > 0.0 { (-90, -18) } else { (8, -18) };
+        EmptyElement::at((h, 0.0)) + Text::new(text, shift, (FONT, 14).into_font())
     }))?;
     Ok(())
 }
@@ -160,13 +162,18 @@ fn size(area: &Area<'_>, system: &ScrewSystem, range: &Range<f64>) -> Drawn {
 /// The axes of the screws of a two-system, in its canonical frame, coloured by pitch.
 fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn {
     let home: Pose = system.canonical_pose().inverse();
-    let screws: Vec<Screw> = pencil.iter().filter(|s| !s.is_translation()).copied().collect();
+    // In the canonical frame, each axis at its point nearest to the origin there.
+    let seen = |s: &Screw| {
+        let line = Line { point: home * s.axis.point, direction: home.rotation * s.axis.direction };
+        Screw { axis: Line { point: line.nearest(Vec3::ZERO), ..line }, ..*s }
+    };
+    let screws: Vec<Screw> = pencil.iter().filter(|s| !s.is_translation()).map(seen).collect();
     let finite = || screws.iter().map(|s| s.pitch).filter(|h| h.abs() < 10.0 * system.length());
     let (low, high) =
         (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
     let height = screws
         .iter()
-        .map(|s| (home * s.axis.point).norm())
+        .map(|s| s.axis.point.norm())
         .filter(|z| *z < 10.0 * system.length())
         .fold(0.0, f64::max);
     let half = if height > 0.0 { 1.6 * height } else { system.length() };
@@ -196,7 +203,7 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
         .z_labels(5)
         .draw()?;
     for screw in &screws {
-        let (p, d) = (home * screw.axis.point, home.rotation * screw.axis.direction);
+        let (p, d) = (screw.axis.point, screw.axis.direction);
         let share =
             if high > low { ((screw.pitch - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
         let ends = [p - d * half, p + d * half];
