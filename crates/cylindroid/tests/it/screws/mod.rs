@@ -3,5 +3,6 @@
 mod classes;
 mod forms;
 mod geometry;
+mod laws;
 mod sample;
 mod vectors;
