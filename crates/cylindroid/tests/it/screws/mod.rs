@@ -4,5 +4,6 @@ mod classes;
 mod forms;
 mod geometry;
 mod laws;
+mod projectors;
 mod sample;
 mod vectors;
