@@ -3,7 +3,9 @@
 mod classes;
 mod forms;
 mod geometry;
+mod invariance;
 mod laws;
+mod point_direction;
 mod projectors;
 mod sample;
 mod vectors;
