@@ -5,7 +5,8 @@
 //!          C+ = M^-1 C^T (C M^-1 C^T)^-1; P_h = J J+h
 //!          damped: (J^T Q_h J + lambda M)^-1 J^T Q_h
 //!          invariant damped: (G^2 + mu^2)^-1 G J^T Q_h, G = J^T Q_h J, in coordinates of the joints
-//!          in which M = 1; tends to J+h as mu goes to zero where that exists
+//!          in which M = 1; tends to J+h as mu goes to zero where that exists, else to the inverse
+//!          on the other eigenvectors of G
 //! Shapes   J: 6 x m (linear part first) -> m x 6; h, L, c as in `screws`
 //! Units    h in m/rad, lambda and mu in m/rad times the unit of M
 //! Valid    J+h exists iff F^T Q_h F is regular: never for some systems, see `screws::NoInverse`;
@@ -19,7 +20,7 @@
 //! Source   Donelan & Selig, theorems 1, 2 and 5, section 6.2; its example 1 has a wrong entry
 //!          (row 3, column 2: (16 h^2 + 16 h - 1) / 32 h), its damped form the wrong promise that it
 //!          always exists
-//! Checked  tests/it/screws/vectors.rs, ::laws, tests/it/hyperbolic.rs
+//! Checked  tests/it/screws/vectors.rs, ::laws, ::invariance
 
 use super::report::{Dropped, Inverse, assemble};
 use super::weighted::Weights;
@@ -225,9 +226,13 @@ fn damped(
         }
     }
     let eigen = Eigen::of(gram, k);
+    // What rounding leaves of a zero would be divided by the square of a small mu.
+    let rounding =
+        tolerance::MACHINE_RANK * svd.values().next().unwrap_or(0.0).powi(2) * (1.0 + h.abs());
     let mut reason = None;
     let mut matrix = Matrix::zeros(j.cols(), 6);
     for (&g, vector) in eigen.values.iter().zip(&eigen.vectors).take(k) {
+        let g = if g.abs() <= rounding { 0.0 } else { g };
         let Some(gain) = damping.gain(g, system.length()) else {
             reason = Some(NoInverse::DampingMeetsEigenvalue { eigenvalue: g * system.length() });
             continue;

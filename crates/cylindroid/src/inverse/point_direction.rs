@@ -9,7 +9,7 @@
 //!          joints add their null space
 //! Source   Donelan & Selig, example 3, corrected: the set is {rates : J rates in S}, S the twists
 //!          that move x along q, not the image of S under a pseudoinverse, which is larger
-//! Checked  tests/it/screws/vectors.rs::example3, tests/it/hyperbolic.rs::point_direction_*
+//! Checked  tests/it/screws/vectors.rs::example_3, ::point_direction
 
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, RowSpace, Svd};
@@ -42,12 +42,16 @@ pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<Point
         });
     };
     let mut velocity = Matrix::zeros(3, j.cols());
+    // Of the terms: where they cancel, what is left is their rounding.
+    let mut size = 0.0_f64;
     for c in 0..j.cols() {
         let twist = Twist::from_array(std::array::from_fn(|i| j.column(c)[i]));
+        size = size.max(twist.linear.norm() + twist.angular.norm() * point.norm());
         velocity.column_mut(c).copy_from_slice(&twist.at_point(point).linear.to_array());
     }
     let svd = Svd::of(&velocity);
-    let space = RowSpace::first(&svd, svd.rank(SCREW_RANK).rank);
+    let rank = svd.values().filter(|s| *s > SCREW_RANK * size).count();
+    let space = RowSpace::first(&svd, rank);
     let mut along = vec![0.0; j.cols()];
     let mut outside = q.to_array();
     for i in 0..space.rank() {

@@ -4,8 +4,11 @@
 //! Formula  exists iff B^T Q_h B is regular: margin = its smallest singular value, B orthonormal at
 //!          the centre with lengths over L
 //! Units    h in m/rad; margin and norms without unit
-//! Valid    every order; order 0 and 6 always exist. For an infinite pitch the limit of P_h exists
-//!          where the system (order <= 3) or its reciprocal (order >= 3) holds no translation
+//! Valid    every order; order 0 and 6 always exist. The limit of P_h for an infinite pitch is
+//!          taken where the system (order <= 3) or its reciprocal (order >= 3) holds no translation.
+//!          Of the others those of slope 0 have one too (a cylindrical joint, whose P_h does not
+//!          depend on h), but next to each are systems without: it is not taken for what no
+//!          measurement can tell
 //! Source   Donelan & Selig, theorems 2 and 3, corollary 4 (the sign of h flips on the reciprocal
 //!          side); choice of h by |P_h| is ours: the condition of the Gram matrix misleads for
 //!          orders 4 and 5, where it grows with |h| although P_h converges
@@ -49,7 +52,8 @@ pub enum NoInverse {
         /// Order of the system.
         order: usize,
     },
-    /// The projectors grow without bound as the pitch goes to infinity.
+    /// The system, or its reciprocal, holds translations, so that the projectors of it or of
+    /// systems as near as you like grow without bound as the pitch goes to infinity.
     NoLimit {
         /// The class (of the reciprocal system for orders 4 and 5).
         class: Class,
@@ -103,7 +107,8 @@ impl fmt::Display for NoInverse {
             ),
             Self::NoLimit { class, order } => write!(
                 f,
-                "for a {} the inverse has no limit as h goes to infinity; take a finite h",
+                "for a {} the inverse is not taken for an infinite h, where it or those of its \
+                 neighbours grow without bound; take a finite h",
                 system(class, order)
             ),
             Self::DampingMeetsEigenvalue { eigenvalue } => write!(
@@ -260,7 +265,7 @@ impl ScrewSystem {
 }
 
 /// Smallest sine between the twists of the system (order <= 3) or of its reciprocal (order >= 3)
-/// and the translations: zero where P_h has no limit.
+/// and the translations: zero where no limit of P_h is taken.
 fn limit_margin(span: &Span) -> f64 {
     let sine = |s: &Span| {
         if s.k() == 0 {

@@ -172,23 +172,15 @@ pub(crate) fn oblique_coordinates(
     let mut rows = [[0.0; 6]; 6];
     rows[..k].copy_from_slice(annihilator.vectors());
     let mut cosines = [[0.0; 6]; 6];
-    let mut squares = [[0.0; 6]; 6];
     for (row, a) in cosines.iter_mut().zip(annihilator.vectors()) {
         for (x, b) in row.iter_mut().zip(span.vectors()) {
             *x = dot(a, b);
         }
     }
-    for (row, a) in squares.iter_mut().zip(&cosines) {
-        for (x, b) in row.iter_mut().zip(&cosines) {
-            *x = dot(a, b);
-        }
-    }
-    // The smallest singular value: the sine of the smallest angle between the two.
-    if k > 0 && Eigen::of(squares, k).values[k - 1] <= tolerance * tolerance {
-        return None;
-    }
     solve(&mut cosines, &mut rows, k)?;
-    Some(rows)
+    // The rows are as long as one over the sine of the smallest angle between the two.
+    let size: f64 = rows.iter().take(k).map(|row| dot(row, row)).sum();
+    (size.sqrt() * tolerance < 1.0).then_some(rows)
 }
 
 fn has_translations(span: &Span) -> bool {
