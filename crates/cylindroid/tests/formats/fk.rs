@@ -17,7 +17,9 @@ pub(crate) fn tool(m: &Mechanism, q: &[f64]) -> Pose {
 fn link(m: &Mechanism, q: &[f64], index: usize) -> Pose {
     match m.joints().iter().find(|j| j.child == index) {
         None => Pose::IDENTITY,
-        Some(j) => link(m, q, j.parent) * j.parent_from_joint * motion(m, j, q),
+        Some(j) => {
+            link(m, q, j.parent) * j.parent_from_joint * motion(m, j, q) * j.joint_from_child
+        }
     }
 }
 

@@ -247,6 +247,7 @@ fn spec(
         parent: parent.to_owned(),
         child: child.to_owned(),
         parent_from_joint: Pose::from_translation(parent_to_origin),
+        joint_from_child: Pose::IDENTITY,
         axis: if reversed { -joint.axis } else { joint.axis },
         limits: joint.limits,
         mimic: joint.mimic.clone(),
