@@ -59,5 +59,5 @@ pub fn load(name: &str) -> Result<Mechanism> {
 }
 
 fn read(name: &str, text: &str) -> Result<(Mechanism, String)> {
-    toml::read(text, Path::new(&format!("catalogue/{name}.toml")), "catalogue")
+    toml::describe(text, Path::new(&format!("catalogue/{name}.toml")), "catalogue", 0)
 }

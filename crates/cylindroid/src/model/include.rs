@@ -31,6 +31,11 @@ impl Inclusion<'_> {
         if self.name.is_empty() { name.to_owned() } else { format!("{}/{name}", self.name) }
     }
 
+    /// What the joint between the parent and the root is called.
+    fn base(&self) -> String {
+        format!("{}/base", if self.name.is_empty() { self.parent } else { self.name })
+    }
+
     /// What a link of the included mechanism is called.
     #[must_use]
     pub fn link(&self, robot: &Mechanism, index: usize) -> String {
@@ -39,7 +44,8 @@ impl Inclusion<'_> {
 }
 
 impl Builder {
-    /// Adds a whole mechanism. Its root hangs at `parent` by a joint `name/base`, fixed or free.
+    /// Adds a whole mechanism. Its root hangs at `parent` by a joint `name/base` (`parent/base`
+    /// without a name), fixed or free.
     ///
     /// # Errors
     /// A start configuration that does not fit the mechanism.
@@ -58,7 +64,7 @@ impl Builder {
             self.joint(JointSpec {
                 parent_from_joint: how.parent_from_root,
                 actuated: false,
-                ..JointSpec::new(&how.prefixed("base"), kind, how.parent, &name(root))
+                ..JointSpec::new(&how.base(), kind, how.parent, &name(root))
             });
         }
         for joint in robot.joints() {

@@ -1,9 +1,12 @@
-//! The displacement of a joint.
+//! The displacement of a joint, and where links are at a configuration.
 //!
 //! Formula  parent_from_child = parent_from_joint motion(q) joint_from_child
-//! Checked  tests/it/graph.rs::motion_*, against `State`
+//! Why so   kinematics works on nodes and comes after the model; loaders need poses while they
+//!          still write the model, once for each file, so the plain product is enough here
+//! Checked  tests/it/graph.rs::motion_*, against `State`; tests/formats/closed_file.rs
 
 use super::joint::JointKind;
+use super::mechanism::Mechanism;
 use crate::spatial::{Pose, Rotation, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
@@ -35,5 +38,34 @@ impl JointKind {
             }
             Self::Free => Pose { rotation: Rotation::exp(vector(3)), translation: vector(0) },
         }
+    }
+}
+
+impl Mechanism {
+    /// The pose of every link in the root, for a `q` that was checked.
+    pub(super) fn link_poses(&self, q: &[f64]) -> Vec<Pose> {
+        let joints = self.joints();
+        // Mimic joints may follow one another, in any order of the tree.
+        let value = |start: usize| {
+            let (mut joint, mut factor, mut sum) = (start, 1.0, 0.0);
+            while let Some(mimic) = &joints[joint].mimic {
+                let Some(source) = joints.iter().position(|j| j.name == mimic.joint) else { break };
+                sum += factor * mimic.offset;
+                factor *= mimic.multiplier;
+                joint = source;
+            }
+            factor * joints[joint].coordinates.clone().map(|c| q[c]).sum::<f64>() + sum
+        };
+        let mut poses = vec![Pose::IDENTITY; self.links().len()];
+        for (i, joint) in joints.iter().enumerate() {
+            let motion = if joint.mimic.is_some() {
+                joint.kind.motion(joint.axis, &[value(i)])
+            } else {
+                joint.kind.motion(joint.axis, &q[joint.coordinates.clone()])
+            };
+            poses[joint.child] =
+                poses[joint.parent] * joint.parent_from_joint * motion * joint.joint_from_child;
+        }
+        poses
     }
 }
