@@ -7,9 +7,11 @@
 
 pub mod dh;
 mod graph;
+mod mesh;
 mod place;
 pub mod toml;
 pub mod urdf;
+mod xml;
 
 use std::path::Path;
 
