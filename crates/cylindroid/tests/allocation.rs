@@ -53,15 +53,19 @@ fn hot_paths_allocate_nothing() {
         let mut state = robot.state(&home).unwrap();
         let mut chain = Chain::new(&robot, robot.tool());
         let mut j = Matrix::zeros(6, robot.n());
+        let mut narrow = Matrix::zeros(6, chain.n());
         let counted = count(|| {
             for _ in 0..100 {
                 state.set(&home).unwrap();
                 state.jacobian_into(robot.tool(), Reference::World, &mut j);
                 chain.set(&home);
-                chain.jacobian_into(Reference::Local, &mut j);
+                chain.jacobian_into(Reference::Local, &mut narrow);
             }
         });
         assert_eq!(counted, 0, "{name}: kinematics");
+        if !robot.is_tree() {
+            continue;
+        }
 
         for method in Method::ALL {
             for task in [Task::POSE, Task::POSITION] {

@@ -18,6 +18,10 @@ struct InfoJson<'a> {
     joint_names: Vec<&'a str>,
     coordinates: Vec<CoordinateJson<'a>>,
     joints: Vec<JointJson<'a>>,
+    loops: Vec<LoopJson<'a>>,
+    contacts: Vec<ContactJson<'a>>,
+    dimension: usize,
+    reference: ReferenceJson<'a>,
     links: Vec<&'a str>,
     frames: Vec<FrameJson<'a>>,
     tool: &'a str,
@@ -37,6 +41,7 @@ struct CoordinateJson<'a> {
     velocity: f64,
     acceleration: f64,
     effort: f64,
+    actuated: bool,
     home: f64,
 }
 
@@ -56,6 +61,32 @@ struct MimicJson<'a> {
     joint: &'a str,
     multiplier: f64,
     offset: f64,
+}
+
+/// A joint that closes a loop.
+#[derive(Debug, Serialize)]
+struct LoopJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    a: &'a str,
+    b: &'a str,
+    axis: [f64; 3],
+    actuated: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct ContactJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    a: &'a str,
+    b: &'a str,
+    friction: Option<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct ReferenceJson<'a> {
+    frame: &'a str,
+    link: &'a str,
 }
 
 #[derive(Debug, Serialize)]
@@ -102,6 +133,7 @@ fn describe(robot: &Mechanism) -> InfoJson<'_> {
             velocity: c.limits.velocity,
             acceleration: c.limits.acceleration,
             effort: c.limits.effort,
+            actuated: c.actuated,
             home,
         }
     });
@@ -118,6 +150,22 @@ fn describe(robot: &Mechanism) -> InfoJson<'_> {
             offset: m.offset,
         }),
     });
+    let loops = robot.loops().iter().map(|l| LoopJson {
+        name: &l.name,
+        kind: l.kind.name(),
+        a: link(l.a),
+        b: link(l.b),
+        axis: l.axis.to_array(),
+        actuated: l.actuated,
+    });
+    let contacts = robot.contacts().iter().map(|c| ContactJson {
+        name: &c.name,
+        kind: c.kind.name(),
+        a: link(c.a),
+        b: link(c.b),
+        friction: c.friction,
+    });
+    let reference = robot.frame_of(robot.reference());
     let ignored = robot.report().ignored.iter();
     InfoJson {
         name: robot.name(),
@@ -125,6 +173,10 @@ fn describe(robot: &Mechanism) -> InfoJson<'_> {
         joint_names: output::joint_names(robot),
         coordinates: coordinates.collect(),
         joints: joints.collect(),
+        loops: loops.collect(),
+        contacts: contacts.collect(),
+        dimension: robot.dimension().number(),
+        reference: ReferenceJson { frame: &reference.name, link: link(reference.link) },
         links: robot.links().iter().map(|l| l.name.as_str()).collect(),
         frames: robot
             .frames()
@@ -152,11 +204,21 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
         .filter(|f| f.name != f.link)
         .map(|f| format!("{} (on {})", f.name, f.link))
         .collect();
+    let reference = match (robot.is_closed(), info.reference.frame == info.reference.link) {
+        (false, _) => String::new(),
+        (true, true) => info.reference.frame.to_owned(),
+        (true, false) => format!("{} (on {})", info.reference.frame, info.reference.link),
+    };
+    let count = |n: usize| if n == 0 { String::new() } else { n.to_string() };
     output::pairs(
         out,
         [
             ("model", info.name.to_owned()),
+            ("dimension", if info.dimension == 2 { "2".to_owned() } else { String::new() }),
             ("coordinates", info.n.to_string()),
+            ("loops", count(info.loops.len())),
+            ("contacts", count(info.contacts.len())),
+            ("reference", reference),
             ("tool frame", info.tool.to_owned()),
             ("named frames", named.join(", ")),
             ("reach [m]", output::number(info.reach)),
@@ -166,6 +228,7 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
     )?;
     writeln!(out)?;
     print_tree(out, robot)?;
+    print_closings(out, info)?;
     if info.n > 0 {
         writeln!(out)?;
         print_coordinates(out, info, robot)?;
@@ -221,6 +284,30 @@ fn print_coordinates(
         ]
     });
     output::table(out, &columns, rows)
+}
+
+/// The joints that close loops, and the contacts.
+fn print_closings(out: &mut dyn Write, info: &InfoJson<'_>) -> io::Result<()> {
+    let columns = |what| {
+        [(what, Align::Left), ("kind", Align::Left), ("between", Align::Left), ("", Align::Left)]
+    };
+    if !info.loops.is_empty() {
+        writeln!(out)?;
+        let driven = |l: &LoopJson<'_>| if l.actuated { "driven" } else { "passive" }.to_owned();
+        let rows = info.loops.iter().map(|l| {
+            vec![l.name.to_owned(), l.kind.to_owned(), format!("{}, {}", l.a, l.b), driven(l)]
+        });
+        output::table(out, &columns("closing joint"), rows)?;
+    }
+    if !info.contacts.is_empty() {
+        writeln!(out)?;
+        let rows = info.contacts.iter().map(|c| {
+            let friction = c.friction.map_or_else(String::new, |mu| format!("friction {mu}"));
+            vec![c.name.to_owned(), c.kind.to_owned(), format!("{}, {}", c.a, c.b), friction]
+        });
+        output::table(out, &columns("contact"), rows)?;
+    }
+    Ok(())
 }
 
 /// The links as a tree, each with the joint that carries it. The stack holds joints still to be

@@ -18,6 +18,8 @@ struct ModelsJson {
 struct ModelJson {
     name: &'static str,
     joints: usize,
+    loops: usize,
+    contacts: usize,
     description: String,
     source: String,
 }
@@ -28,6 +30,8 @@ pub(crate) fn run(style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode>
         .map(|e| ModelJson {
             name: e.name,
             joints: e.dof,
+            loops: e.loops,
+            contacts: e.contacts,
             description: e.description,
             source: e.source,
         })
@@ -36,9 +40,18 @@ pub(crate) fn run(style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode>
         output::json(out, &ModelsJson { models })?;
         return Ok(ExitCode::SUCCESS);
     }
-    let columns = [("name", Align::Left), ("joints", Align::Right), ("description", Align::Left)];
-    let rows =
-        models.iter().map(|m| vec![m.name.to_owned(), m.joints.to_string(), m.description.clone()]);
+    let columns = [
+        ("name", Align::Left),
+        ("joints", Align::Right),
+        ("loops", Align::Right),
+        ("contacts", Align::Right),
+        ("description", Align::Left),
+    ];
+    let count = |n: usize| if n == 0 { "-".to_owned() } else { n.to_string() };
+    let rows = models.iter().map(|m| {
+        let counts = [count(m.joints), count(m.loops), count(m.contacts)];
+        [vec![m.name.to_owned()], counts.to_vec(), vec![m.description.clone()]].concat()
+    });
     output::table(out, &columns, rows)?;
     writeln!(out, "\nsources")?;
     output::pairs(out, models.into_iter().map(|m| (m.name, m.source)))?;

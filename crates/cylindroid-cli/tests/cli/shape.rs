@@ -34,6 +34,36 @@ fn info_has_names_limits_and_report() {
 }
 
 #[test]
+fn info_shows_loops_and_contacts() {
+    let info = json(&["info", "five-bar"], 0);
+    assert_eq!((&info["n"], &info["dimension"]), (&4.into(), &2.into()));
+    let q5 = &info["loops"][0];
+    assert_eq!(
+        (&q5["name"], &q5["kind"], &q5["actuated"]),
+        (&"q5".into(), &"revolute".into(), &false.into())
+    );
+    assert_eq!((&q5["a"], &q5["b"]), (&"rocker".into(), &"ground".into()));
+    assert_eq!(info["reference"]["link"], "coupler");
+    assert_eq!(info["coordinates"][1]["actuated"], true);
+    assert_eq!(info["coordinates"][2]["actuated"], false);
+    let table = text(&["info", "five-bar"]);
+    assert!(table.contains("closing joint") && table.contains("rocker, ground"), "{table}");
+
+    let info = json(&["info", "two-arm"], 0);
+    let contacts = info["contacts"].as_array().unwrap();
+    assert_eq!((contacts.len(), &contacts[0]["kind"]), (2, &"complete".into()));
+    assert_eq!((&contacts[1]["a"], &contacts[1]["b"]), (&"right/flange".into(), &"box".into()));
+    assert!(contacts[0]["friction"].is_null());
+    assert!(text(&["info", "two-arm"]).contains("left/flange, box"));
+    let models = json(&["models"], 0);
+    let count = |name: &str, what: &str| {
+        let all = models["models"].as_array().unwrap();
+        all.iter().find(|m| m["name"] == name).unwrap()[what].clone()
+    };
+    assert_eq!((count("stewart", "loops"), count("two-arm", "contacts")), (5.into(), 2.into()));
+}
+
+#[test]
 fn info_shows_infinite_limits_as_null_and_dash() {
     // The sources of the PUMA 560 give no speeds.
     let info = json(&["info", "puma560"], 0);

@@ -141,6 +141,17 @@ impl ServoOptions {
     pub fn check(&self, mechanism: &Mechanism) -> Result<()> {
         let positive = Error::check_positive;
         mechanism.check_frame(self.end_effector.frame)?;
+        if !mechanism.is_tree() {
+            return Err(Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: String::new(),
+                message: format!(
+                    "'{}' has loops or contacts, which a servo of its spanning tree would break; \
+                     drive a serial or branched robot",
+                    mechanism.name()
+                ),
+            });
+        }
         if !self.end_effector.frame_from_tool.is_finite() {
             let what = "frame_from_tool of the end effector".to_owned();
             return Err(Error::NotFinite { what, value: f64::NAN });

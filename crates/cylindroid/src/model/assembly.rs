@@ -84,6 +84,7 @@ impl Assembly {
                 joint: j,
                 kind: *kind,
                 limits: spec.limits,
+                actuated: spec.actuated,
             });
         }
         self.ranges.insert(j, start..self.coordinates.len());
@@ -170,8 +171,9 @@ impl Assembly {
             }
             _ => 0.0,
         };
-        let way = self.way[parent] + spec.parent_from_joint.translation.norm() + slide;
-        self.place(child, slot, slot_from_child, way);
+        let lengths = [spec.parent_from_joint, spec.joint_from_child].map(|p| p.translation.norm());
+        let way = self.way[parent] + lengths[0] + lengths[1] + slide;
+        self.place(child, slot, slot_from_child * spec.joint_from_child, way);
     }
 }
 

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::assembly::{Assembly, default_tool};
+use super::closing::{Contact, ContactSpec, LoopJoint, LoopSpec};
+use super::held::Dimension;
 use super::joint::{Joint, Limits};
 use super::link::Link;
 use super::mechanism::{Data, Frame, FrameId, Mechanism, frame_key};
@@ -22,12 +24,17 @@ const LEAST_REACH: f64 = 1e-3;
 /// Collects links, joints and frames; [`Builder::build`] checks them all.
 #[derive(Debug, Clone)]
 pub struct Builder {
-    name: String,
-    links: Vec<Link>,
-    joints: Vec<JointSpec>,
+    pub(super) name: String,
+    pub(super) links: Vec<Link>,
+    pub(super) joints: Vec<JointSpec>,
+    pub(super) loops: Vec<LoopSpec>,
+    contacts: Vec<ContactSpec>,
+    dimension: Dimension,
     frames: Vec<(String, String, Pose)>,
     home: Option<Vec<f64>>,
+    starts: BTreeMap<String, Vec<f64>>,
     tool: Option<String>,
+    reference: Option<String>,
     report: LoadReport,
 }
 
@@ -37,9 +44,14 @@ impl Builder {
             name: name.to_owned(),
             links: Vec::new(),
             joints: Vec::new(),
+            loops: Vec::new(),
+            contacts: Vec::new(),
+            dimension: Dimension::Spatial,
             frames: Vec::new(),
             home: None,
+            starts: BTreeMap::new(),
             tool: None,
+            reference: None,
             report: LoadReport { format: "builder", ..LoadReport::default() },
         }
     }
@@ -56,9 +68,33 @@ impl Builder {
         self
     }
 
+    /// Adds a joint that closes a loop of the others; both links must exist without it.
+    pub fn close(&mut self, joint: LoopSpec) -> &mut Self {
+        self.loops.push(joint);
+        self
+    }
+
+    /// Adds a contact; both links must exist without it.
+    pub fn contact(&mut self, contact: ContactSpec) -> &mut Self {
+        self.contacts.push(contact);
+        self
+    }
+
+    /// Says where the mechanism moves; in space unless said otherwise.
+    pub fn dimension(&mut self, dimension: Dimension) -> &mut Self {
+        self.dimension = dimension;
+        self
+    }
+
     /// Adds a named frame on a link.
     pub fn frame(&mut self, name: &str, link: &str, link_from_frame: Pose) -> &mut Self {
         self.frames.push((name.to_owned(), link.to_owned(), link_from_frame));
+        self
+    }
+
+    /// Sets the home position of one joint of the tree; [`Builder::home`] overrides it.
+    pub fn start(&mut self, joint: &str, q: &[f64]) -> &mut Self {
+        self.starts.insert(joint.to_owned(), q.to_vec());
         self
     }
 
@@ -74,12 +110,18 @@ impl Builder {
         self
     }
 
+    /// Names the frame whose motion is the goal; the tool unless said otherwise.
+    pub fn reference(&mut self, frame: &str) -> &mut Self {
+        self.reference = Some(frame.to_owned());
+        self
+    }
+
     /// The report that goes into the mechanism.
     pub fn report(&mut self) -> &mut LoadReport {
         &mut self.report
     }
 
-    fn refuse<T>(&self, culprit: &str, message: impl Into<String>) -> Result<T> {
+    pub(super) fn refuse<T>(&self, culprit: &str, message: impl Into<String>) -> Result<T> {
         Err(Error::Model {
             model: self.name.clone(),
             culprit: culprit.to_owned(),
@@ -93,7 +135,8 @@ impl Builder {
     /// [`Error::Model`] for names given twice or unknown, a link with two parents, a cycle, more
     /// than one root, an axis without direction, limits that contradict each other or that no
     /// joint of the kind can keep (positions of spherical and free joints), a mimic joint
-    /// that follows itself, nothing, or a joint of several coordinates.
+    /// that follows itself, nothing, or a joint of several coordinates; for a closing joint or a
+    /// contact on a link that does not exist or on one link alone.
     pub fn build(mut self) -> Result<Mechanism> {
         let links = self.index_links()?;
         self.check_joints(&links)?;
@@ -169,7 +212,7 @@ impl Builder {
             if name.is_empty() {
                 return self.refuse("", "a joint has no name; give every joint one");
             }
-            if names.insert(name, ()).is_some() {
+            if names.insert(name, "joints").is_some() {
                 return self
                     .refuse(name, format!("two joints are named '{name}'; rename one of them"));
             }
@@ -183,17 +226,76 @@ impl Builder {
                 return self.refuse(
                     name,
                     format!(
-                        "link '{}' is the child of two joints, '{other}' and '{name}'; closed \
-                         loops cannot be driven by this version, keep one of the joints",
+                        "link '{}' is the child of two joints, '{other}' and '{name}'; keep one, \
+                         and close the loop in a mechanism file that includes this one",
                         joint.child
                     ),
                 );
             }
-            if let Some(fault) = joint.fault() {
+            if let Some(fault) = joint.fault(self.dimension) {
                 return self.refuse(name, fault);
             }
         }
+        let loops = self.loops.iter().map(|l| (l.name.as_str(), "joints"));
+        let contacts = self.contacts.iter().map(|c| (c.name.as_str(), "contacts"));
+        for (name, what) in loops.chain(contacts) {
+            if name.is_empty() {
+                return self.refuse("", format!("one of the {what} has no name; give it one"));
+            }
+            if names.insert(name, what).is_some() {
+                let message = format!("two joints or contacts are named '{name}'; rename one");
+                return self.refuse(name, message);
+            }
+        }
         Ok(())
+    }
+
+    /// The closing joints and the contacts, their links as indices.
+    fn closings(&self, links: &BTreeMap<String, usize>) -> Result<(Vec<LoopJoint>, Vec<Contact>)> {
+        let place = |name: &str| {
+            let name = name.to_owned();
+            move |message| Error::Model { model: self.name.clone(), culprit: name, message }
+        };
+        let close = |l: &LoopSpec| l.resolve(links, self.dimension).map_err(place(&l.name));
+        let touch = |c: &ContactSpec| c.resolve(links, self.dimension).map_err(place(&c.name));
+        Ok((
+            self.loops.iter().map(close).collect::<Result<_>>()?,
+            self.contacts.iter().map(touch).collect::<Result<_>>()?,
+        ))
+    }
+
+    /// The home configuration: the one that was set, else that of each joint, else rest.
+    fn home_of(&self, assembly: &Assembly) -> Result<Vec<f64>> {
+        let n = assembly.coordinates.len();
+        if let Some(q) = &self.home {
+            if q.len() == n && q.iter().all(|x| x.is_finite()) {
+                return Ok(q.clone());
+            }
+            return self.refuse(
+                "home",
+                format!("home has {} entries, expected {n} finite numbers", q.len()),
+            );
+        }
+        let mut home: Vec<f64> = assembly.coordinates.iter().map(|c| rest(&c.limits)).collect();
+        for (j, spec) in self.joints.iter().enumerate() {
+            let Some(start) = self.starts.get(&spec.name).filter(|_| spec.mimic.is_none()) else {
+                continue;
+            };
+            let range = assembly.ranges.get(&j).cloned().unwrap_or(0..0);
+            if start.len() != range.len() || start.iter().any(|x| !x.is_finite()) {
+                return self.refuse(
+                    &spec.name,
+                    format!(
+                        "the start of joint '{}' has {} entries, expected {} finite numbers",
+                        spec.name,
+                        start.len(),
+                        range.len()
+                    ),
+                );
+            }
+            home[range].copy_from_slice(start);
+        }
+        Ok(home)
     }
 
     fn depth_first(&self, links: &BTreeMap<String, usize>) -> Result<Order> {
@@ -266,61 +368,6 @@ impl Builder {
         self.refuse(&self.links[start].name, "it is not connected to the root")
     }
 
-    /// For every mimic joint the joint at the end of its chain, with the ratio and offset to it.
-    fn resolve_mimics(&self) -> Result<BTreeMap<usize, (usize, f64, f64)>> {
-        let mut resolved = BTreeMap::new();
-        let by_name: BTreeMap<&str, usize> =
-            self.joints.iter().enumerate().map(|(j, o)| (o.name.as_str(), j)).collect();
-        for (index, joint) in self.joints.iter().enumerate() {
-            let Some(first) = &joint.mimic else { continue };
-            let name = joint.name.as_str();
-            let (mut multiplier, mut offset) = (1.0, 0.0);
-            let mut step = Some(first);
-            let mut source = 0;
-            let mut length = 0;
-            while let Some(mimic) = step {
-                offset += multiplier * mimic.offset;
-                multiplier *= mimic.multiplier;
-                if !(multiplier.is_finite() && offset.is_finite()) {
-                    return self.refuse(
-                        name,
-                        format!("the multiplier and offset of mimic joint '{name}' must be finite"),
-                    );
-                }
-                let Some(&j) = by_name.get(mimic.joint.as_str()) else {
-                    let unknown = Error::unknown(
-                        "joint",
-                        &mimic.joint,
-                        self.joints.iter().map(|o| o.name.as_str()),
-                    );
-                    return self.refuse(name, format!("mimic joint '{name}' follows: {unknown}"));
-                };
-                source = j;
-                step = self.joints[j].mimic.as_ref();
-                length += 1;
-                if length > self.joints.len() {
-                    return self.refuse(
-                        name,
-                        format!("mimic joint '{name}' follows itself in a ring of mimic joints"),
-                    );
-                }
-            }
-            if joint.kind.dof() != 1 || self.joints[source].kind.dof() != 1 {
-                return self.refuse(
-                    name,
-                    format!(
-                        "mimic joint '{name}' ({}) follows '{}' ({}); both must have one coordinate",
-                        joint.kind.name(),
-                        self.joints[source].name,
-                        self.joints[source].kind.name()
-                    ),
-                );
-            }
-            resolved.insert(index, (source, multiplier, offset));
-        }
-        Ok(resolved)
-    }
-
     fn finish(
         self,
         links: &BTreeMap<String, usize>,
@@ -349,29 +396,23 @@ impl Builder {
             frames.push(assembly.frame(name.clone(), index, *pose));
         }
 
-        let tool = match &self.tool {
-            None => default_tool(order, &self.joints, links),
-            Some(name) => match frames.iter().position(|f| f.name == *name) {
-                Some(i) => i,
-                None => {
-                    let unknown =
-                        Error::unknown("frame", name, frames.iter().map(|f| f.name.as_str()));
-                    return self.refuse(name, format!("the tool: {unknown}"));
-                }
-            },
-        };
-
-        let n = assembly.coordinates.len();
-        let home = match &self.home {
-            None => assembly.coordinates.iter().map(|c| rest(&c.limits)).collect(),
-            Some(q) if q.len() == n && q.iter().all(|x| x.is_finite()) => q.clone(),
-            Some(q) => {
-                return self.refuse(
-                    "home",
-                    format!("home has {} entries, expected {n} finite numbers", q.len()),
-                );
+        let named = |what: &str, name: &String| match frames.iter().position(|f| f.name == *name) {
+            Some(i) => Ok(i),
+            None => {
+                let known = frames.iter().map(|f| f.name.as_str());
+                self.refuse(name, format!("the {what}: {}", Error::unknown("frame", name, known)))
             }
         };
+        let tool = match &self.tool {
+            None => default_tool(order, &self.joints, links),
+            Some(name) => named("tool", name)?,
+        };
+        let reference = match &self.reference {
+            None => tool,
+            Some(name) => named("reference", name)?,
+        };
+        let home = self.home_of(&assembly)?;
+        let (loops, contacts) = self.closings(links)?;
 
         let joints = order
             .joints
@@ -384,6 +425,7 @@ impl Builder {
                     parent: links[&spec.parent],
                     child: links[&spec.child],
                     parent_from_joint: spec.parent_from_joint,
+                    joint_from_child: spec.joint_from_child,
                     axis: spec.axis.unit(ZERO_AXIS).unwrap_or(Vec3::Z),
                     limits: spec.limits,
                     mimic: spec.mimic.clone(),
@@ -399,17 +441,22 @@ impl Builder {
             c.joint = places[c.joint];
         }
         let frame_key = frame_key(&frames);
+        let id = |index| FrameId { index, frame_key };
         Ok(Mechanism {
             data: Arc::new(Data {
                 name: self.name,
                 links: self.links,
                 joints,
                 frame_key,
+                loops,
+                contacts,
+                dimension: self.dimension,
+                reference: id(reference),
                 frames,
                 coordinates: assembly.coordinates,
                 nodes: assembly.nodes,
                 home,
-                tool: FrameId { index: tool, frame_key },
+                tool: id(tool),
                 reach: assembly.reach.max(LEAST_REACH),
                 report: self.report,
             }),

@@ -1,4 +1,4 @@
-//! The catalogue: robots inside the library, each a mechanism file with its source.
+//! The catalogue: robots and mechanisms inside the library, each a mechanism file with its source.
 
 use std::path::Path;
 
@@ -17,17 +17,31 @@ pub struct Entry {
     pub source: String,
     /// Number of coordinates.
     pub dof: usize,
+    /// Number of joints that close loops.
+    pub loops: usize,
+    /// Number of contacts.
+    pub contacts: usize,
 }
 
-const NAMES: [&str; 6] = ["panda", "ur5e", "puma560", "iiwa14", "youbot", "3r"];
+const NAMES: [&str; 13] = [
+    "panda", "ur5e", "puma560", "iiwa14", "youbot", "3r", "four-bar", "five-bar", "3rrr",
+    "stewart", "delta", "watt", "two-arm",
+];
 
-const TEXTS: [&str; 6] = [
+const TEXTS: [&str; 13] = [
     include_str!("catalogue/panda.toml"),
     include_str!("catalogue/ur5e.toml"),
     include_str!("catalogue/puma560.toml"),
     include_str!("catalogue/iiwa14.toml"),
     include_str!("catalogue/youbot.toml"),
     include_str!("catalogue/3r.toml"),
+    include_str!("catalogue/four-bar.toml"),
+    include_str!("catalogue/five-bar.toml"),
+    include_str!("catalogue/3rrr.toml"),
+    include_str!("catalogue/stewart.toml"),
+    include_str!("catalogue/delta.toml"),
+    include_str!("catalogue/watt.toml"),
+    include_str!("catalogue/two-arm.toml"),
 ];
 
 /// The names of the models.
@@ -41,8 +55,14 @@ pub const fn names() -> &'static [&'static str] {
 pub fn entries() -> Vec<Entry> {
     let read = |(name, text): (&&'static str, &&str)| {
         let (mechanism, description) = read(name, text).ok()?;
-        let (source, dof) = (mechanism.report().source.clone(), mechanism.n());
-        Some(Entry { name, description, source, dof })
+        Some(Entry {
+            name,
+            description,
+            source: mechanism.report().source.clone(),
+            dof: mechanism.n(),
+            loops: mechanism.loops().len(),
+            contacts: mechanism.contacts().len(),
+        })
     };
     NAMES.iter().zip(&TEXTS).filter_map(read).collect()
 }
@@ -59,5 +79,5 @@ pub fn load(name: &str) -> Result<Mechanism> {
 }
 
 fn read(name: &str, text: &str) -> Result<(Mechanism, String)> {
-    toml::read(text, Path::new(&format!("catalogue/{name}.toml")), "catalogue")
+    toml::describe(text, Path::new(&format!("catalogue/{name}.toml")), "catalogue", 0)
 }

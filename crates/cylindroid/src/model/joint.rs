@@ -137,8 +137,11 @@ pub struct Joint {
     pub parent: usize,
     /// Index of the child link.
     pub child: usize,
-    /// The joint frame at zero, seen from the parent link; the child's link frame at zero.
+    /// The joint frame at zero, seen from the parent link.
     pub parent_from_joint: Pose,
+    /// The child's link frame, seen from the joint frame that moves it: the identity but for
+    /// formats whose bodies have frames of their own (MJCF, SDF).
+    pub joint_from_child: Pose,
     /// Unit axis in the joint frame (z where the kind has none).
     pub axis: Vec3,
     /// Limits as in the file; those of a joint with several coordinates hold for each.

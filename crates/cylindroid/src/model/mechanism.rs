@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use super::builder::Builder;
+use super::closing::{Contact, LoopJoint};
+use super::held::Dimension;
 use super::joint::{Joint, Limits};
 use super::link::Link;
 use super::node::{Motion, Node};
@@ -16,11 +18,15 @@ pub struct Mechanism {
     pub(super) data: Arc<Data>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Data {
     pub(super) name: String,
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<Joint>,
+    pub(super) loops: Vec<LoopJoint>,
+    pub(super) contacts: Vec<Contact>,
+    pub(super) dimension: Dimension,
+    pub(super) reference: FrameId,
     pub(super) frames: Vec<Frame>,
     /// Fingerprint of the names of the frames: what an id belongs to.
     pub(super) frame_key: u64,
@@ -43,6 +49,8 @@ pub struct Coordinate {
     pub kind: CoordinateKind,
     /// Its limits; those of mimic joints that follow it are counted in.
     pub limits: Limits,
+    /// True if a motor drives it.
+    pub actuated: bool,
 }
 
 /// What a coordinate measures.
@@ -130,10 +138,91 @@ impl Mechanism {
         &self.data.links
     }
 
-    /// The joints, parents before children.
+    /// The joints of the spanning tree, parents before children: all that have coordinates.
     #[must_use]
     pub fn joints(&self) -> &[Joint] {
         &self.data.joints
+    }
+
+    /// The joints that close loops of the tree, in the order of the file.
+    #[must_use]
+    pub fn loops(&self) -> &[LoopJoint] {
+        &self.data.loops
+    }
+
+    /// The contacts, in the order of the file.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.data.contacts
+    }
+
+    /// True if loops or contacts constrain `q`.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        !(self.data.loops.is_empty() && self.data.contacts.is_empty())
+    }
+
+    /// Where it moves: in the plane x-y or in space.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        self.data.dimension
+    }
+
+    /// The frame whose motion is the goal: twist and wrench of its link are taken at its origin,
+    /// in world axes. The file's reference, else the tool.
+    #[must_use]
+    pub fn reference(&self) -> FrameId {
+        self.data.reference
+    }
+
+    /// The coordinates that motors drive (indices into `q`). A driven joint that closes a loop has
+    /// no coordinate; it is found in [`Mechanism::loops`].
+    pub fn actuated(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.n()).filter(|&i| self.data.coordinates[i].actuated)
+    }
+
+    /// The same mechanism driven by these joints and no others: names of joints of the tree, of
+    /// their coordinates, or of closing joints. Coordinates keep their order.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] with the nearest names; [`Error::InvalidOption`] for a joint that
+    /// does not move or follows another.
+    pub fn with_actuated<S: AsRef<str>>(&self, names: &[S]) -> Result<Self> {
+        let data = &self.data;
+        let mut joints = data.joints.clone();
+        let mut coordinates = data.coordinates.clone();
+        let mut loops = data.loops.clone();
+        joints.iter_mut().for_each(|j| j.actuated = false);
+        coordinates.iter_mut().for_each(|c| c.actuated = false);
+        loops.iter_mut().for_each(|l| l.actuated = false);
+        for name in names.iter().map(AsRef::as_ref) {
+            let refuse = |reason: String| {
+                Err(Error::InvalidOption { option: "actuated", value: name.to_owned(), reason })
+            };
+            if let Some(joint) = joints.iter_mut().find(|j| j.name == name) {
+                if let Some(mimic) = &joint.mimic {
+                    return refuse(format!("it follows '{}'; name that one", mimic.joint));
+                }
+                if joint.kind.dof() == 0 {
+                    return refuse("it is fixed; name a joint that moves".to_owned());
+                }
+                joint.actuated = true;
+                coordinates[joint.coordinates.clone()].iter_mut().for_each(|c| c.actuated = true);
+            } else if let Some(joint) = loops.iter_mut().find(|l| l.name == name) {
+                if joint.kind.dof() == 0 {
+                    return refuse("it is fixed; name a joint that moves".to_owned());
+                }
+                joint.actuated = true;
+            } else if let Some(coordinate) = coordinates.iter_mut().find(|c| c.name == name) {
+                coordinate.actuated = true;
+                joints[coordinate.joint].actuated = true;
+            } else {
+                let moving = data.joints.iter().filter(|j| j.kind.dof() > 0).map(|j| &j.name);
+                let known = moving.chain(data.loops.iter().map(|l| &l.name));
+                return Err(Error::unknown("joint", name, known));
+            }
+        }
+        Ok(Self { data: Arc::new(Data { joints, coordinates, loops, ..Data::clone(data) }) })
     }
 
     /// The frames: those of the links first, then named ones.
@@ -180,6 +269,12 @@ impl Mechanism {
 
     fn owns(&self, id: FrameId) -> bool {
         id.frame_key == self.data.frame_key && id.index < self.data.frames.len()
+    }
+
+    /// True if no joint closes a loop and nothing is in contact: coordinates are independent.
+    #[must_use]
+    pub fn is_tree(&self) -> bool {
+        self.data.loops.is_empty() && self.data.contacts.is_empty()
     }
 
     /// The frame that is driven when none is named: the file's tool, else the last leaf link.

@@ -1,5 +1,6 @@
 //! A joint as the builder takes it, and the checks of its numbers.
 
+use super::held::Dimension;
 use super::joint::{JointKind, Limits, Mimic};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
@@ -17,6 +18,8 @@ pub struct JointSpec {
     pub child: String,
     /// The joint frame at zero, seen from the parent link.
     pub parent_from_joint: Pose,
+    /// The child's link frame, seen from the joint frame that moves it.
+    pub joint_from_child: Pose,
     /// The axis in the joint frame, any length.
     pub axis: Vec3,
     /// Its limits.
@@ -37,6 +40,7 @@ impl JointSpec {
             parent: parent.to_owned(),
             child: child.to_owned(),
             parent_from_joint: Pose::IDENTITY,
+            joint_from_child: Pose::IDENTITY,
             axis: Vec3::Z,
             limits: Limits::NONE,
             mimic: None,
@@ -45,72 +49,97 @@ impl JointSpec {
     }
 
     /// What is wrong with the numbers of the joint, if anything.
-    pub(super) fn fault(&self) -> Option<String> {
-        let name = self.name.as_str();
-        if !self.parent_from_joint.is_finite() {
-            return Some(format!("the origin of joint '{name}' is not finite"));
+    pub(super) fn fault(&self, dimension: Dimension) -> Option<String> {
+        if !(self.parent_from_joint.is_finite() && self.joint_from_child.is_finite()) {
+            return Some(format!("the origin of joint '{}' is not finite", self.name));
         }
-        let mut axes = vec![];
-        if !matches!(self.kind, JointKind::Fixed | JointKind::Spherical | JointKind::Free) {
-            axes.push(self.axis);
-        }
-        if let JointKind::Universal { second } = self.kind {
-            axes.push(second);
-        }
-        if axes.iter().any(|a| a.unit(ZERO_AXIS).is_none()) {
-            return Some(format!(
-                "the axis of joint '{name}' has no direction; give a vector that is finite and not zero"
-            ));
-        }
-        // Their lengths say nothing: short axes are not parallel ones.
-        if let JointKind::Universal { second } = self.kind
-            && let (Some(a), Some(b)) = (self.axis.unit(ZERO_AXIS), second.unit(ZERO_AXIS))
-            && a.cross(b).norm() <= ZERO_AXIS
-        {
-            return Some(format!(
-                "the two axes of universal joint '{name}' are parallel; give two directions, or \
-                 make it revolute"
-            ));
-        }
-        if let JointKind::Helical { pitch } = self.kind
-            && !pitch.is_finite()
-        {
-            return Some(format!("the pitch of joint '{name}' is {pitch}"));
-        }
-        let l = &self.limits;
-        if l.lower.is_nan() || l.upper.is_nan() || l.lower > l.upper {
-            return Some(format!(
-                "joint '{name}' has lower limit {} above its upper limit {}; exchange them",
-                l.lower, l.upper
-            ));
-        }
-        if !l.leave_a_position() {
-            return Some(format!(
-                "joint '{name}' has position limits {} and {}, which leave it no finite position; \
-                 without limits they are -inf and inf",
-                l.lower, l.upper
-            ));
-        }
-        let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
-        if bounded && !self.kind.takes_position_limits() {
-            return Some(format!(
-                "joint '{name}' is {} and has position limits {} and {}, which nothing could keep: \
-                 its rates are not the derivative of q; leave them infinite, or write it as \
-                 revolute and prismatic joints in a row, each with its limits",
-                self.kind.name(),
-                l.lower,
-                l.upper
-            ));
-        }
-        for (what, value) in
-            [("velocity", l.velocity), ("acceleration", l.acceleration), ("effort", l.effort)]
-        {
-            if value.is_nan() || value < 0.0 {
-                return Some(format!(
-                    "joint '{name}' has {what} limit {value}; it must not be negative"
-                ));
-            }
-        }
-        None
+        fault(&self.name, self.kind, self.axis, &self.limits, dimension)
     }
+}
+
+/// What is wrong with a joint, if anything.
+pub(super) fn fault(
+    name: &str,
+    kind: JointKind,
+    axis: Vec3,
+    limits: &Limits,
+    dimension: Dimension,
+) -> Option<String> {
+    let in_plane = matches!(
+        kind,
+        JointKind::Fixed
+            | JointKind::Revolute
+            | JointKind::Continuous
+            | JointKind::Prismatic
+            | JointKind::Planar
+    );
+    if dimension == Dimension::Planar && !in_plane {
+        return Some(format!(
+            "joint '{name}' is {}, which leaves the plane; with dimension = 2 joints are \
+             revolute, prismatic, planar or fixed",
+            kind.name()
+        ));
+    }
+    let mut axes = vec![];
+    if !matches!(kind, JointKind::Fixed | JointKind::Spherical | JointKind::Free) {
+        axes.push(axis);
+    }
+    if let JointKind::Universal { second } = kind {
+        axes.push(second);
+    }
+    if axes.iter().any(|a| a.unit(ZERO_AXIS).is_none()) {
+        return Some(format!(
+            "the axis of joint '{name}' has no direction; give a vector that is finite and not zero"
+        ));
+    }
+    // Their lengths say nothing: short axes are not parallel ones.
+    if let JointKind::Universal { second } = kind
+        && let (Some(a), Some(b)) = (axis.unit(ZERO_AXIS), second.unit(ZERO_AXIS))
+        && a.cross(b).norm() <= ZERO_AXIS
+    {
+        return Some(format!(
+            "the two axes of universal joint '{name}' are parallel; give two directions, or \
+             make it revolute"
+        ));
+    }
+    if let JointKind::Helical { pitch } = kind
+        && !pitch.is_finite()
+    {
+        return Some(format!("the pitch of joint '{name}' is {pitch}"));
+    }
+    let l = limits;
+    if l.lower.is_nan() || l.upper.is_nan() || l.lower > l.upper {
+        return Some(format!(
+            "joint '{name}' has lower limit {} above its upper limit {}; exchange them",
+            l.lower, l.upper
+        ));
+    }
+    if !l.leave_a_position() {
+        return Some(format!(
+            "joint '{name}' has position limits {} and {}, which leave it no finite position; \
+             without limits they are -inf and inf",
+            l.lower, l.upper
+        ));
+    }
+    let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
+    if bounded && !kind.takes_position_limits() {
+        return Some(format!(
+            "joint '{name}' is {} and has position limits {} and {}, which nothing could keep: \
+             its rates are not the derivative of q; leave them infinite, or write it as \
+             revolute and prismatic joints in a row, each with its limits",
+            kind.name(),
+            l.lower,
+            l.upper
+        ));
+    }
+    for (what, value) in
+        [("velocity", l.velocity), ("acceleration", l.acceleration), ("effort", l.effort)]
+    {
+        if value.is_nan() || value < 0.0 {
+            return Some(format!(
+                "joint '{name}' has {what} limit {value}; it must not be negative"
+            ));
+        }
+    }
+    None
 }

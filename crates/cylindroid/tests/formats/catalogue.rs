@@ -4,7 +4,10 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use cylindroid::{Pose, Rotation, Vec3, catalogue, load};
 
-use crate::fk::{assert_close, frame, tool};
+use cylindroid::Mechanism;
+use cylindroid::model::{Dimension, JointKind};
+
+use crate::fk::{assert_close, closed_at_home, frame, tool};
 
 #[test]
 fn every_model_loads_and_says_where_its_numbers_come_from() {
@@ -18,6 +21,12 @@ fn every_model_loads_and_says_where_its_numbers_come_from() {
         assert_eq!((m.report().source.as_str(), m.n()), (entry.source.as_str(), entry.dof));
         assert!(!entry.description.is_empty() && !entry.source.is_empty());
         assert_eq!(m.outside_limits(m.home()).count(), 0, "home of {}", entry.name);
+        assert_eq!((m.loops().len(), m.contacts().len()), (entry.loops, entry.contacts));
+        closed_at_home(&m, 1e-12);
+        assert!(m.actuated().next().is_some());
+        if m.is_closed() {
+            continue; // passive joints have no stops in the sources
+        }
         for c in m.coordinates() {
             assert!(c.limits.lower.is_finite() && c.limits.upper.is_finite(), "{}", c.name);
         }
@@ -122,4 +131,106 @@ fn anthropomorphic() {
     let expected =
         Vec3::new(q1.cos() * reach, q1.sin() * reach, 0.4 + 0.4 * q2.sin() + 0.4 * (q2 + q3).sin());
     assert!((tool(&m, &[q1, q2, q3]).translation - expected).norm() < 1e-15);
+}
+
+/// What a mechanism is: joints of the tree, loops, contacts, driven joints, and its dimension.
+fn shape(m: &Mechanism) -> (usize, usize, usize, usize, Dimension) {
+    (m.n(), m.loops().len(), m.contacts().len(), m.actuated().count(), m.dimension())
+}
+
+/// Where a joint is at home, of the tree or closing it.
+fn origin(m: &Mechanism, name: &str) -> Vec3 {
+    let on = |link: usize| frame(m, m.home(), &m.links()[link].name);
+    let in_tree = m.joints().iter().find(|j| j.name == name);
+    let closing = m.loops().iter().find(|l| l.name == name);
+    in_tree
+        .map(|j| on(j.parent) * j.parent_from_joint)
+        .or_else(|| closing.map(|l| on(l.a) * l.link_a_from_joint))
+        .unwrap()
+        .translation
+}
+
+#[track_caller]
+fn assert_lengths(m: &Mechanism, lengths: &[(&str, &str, f64)]) {
+    for (a, b, length) in lengths {
+        let got = (origin(m, a) - origin(m, b)).norm();
+        assert!((got - length).abs() < 1e-12, "{a} to {b}: {got}");
+    }
+}
+
+#[test]
+fn planar_closed_chains() {
+    let m = load("four-bar").unwrap();
+    assert_eq!(shape(&m), (3, 1, 0, 1, Dimension::Planar));
+    assert_lengths(
+        &m,
+        &[("q1", "q2", 1.0), ("q2", "q3", 1.8), ("q3", "q4", 1.3), ("q4", "q1", 2.0)],
+    );
+
+    let m = load("five-bar").unwrap();
+    assert_eq!(shape(&m), (4, 1, 0, 2, Dimension::Planar));
+    let corners = [[0.0, 0.0], [0.0, 2.0], [1.0, 2.0], [2.0, 1.0], [2.0, 0.0]];
+    for (i, [x, y]) in corners.into_iter().enumerate() {
+        assert_eq!(origin(&m, &format!("q{}", i + 1)), Vec3::new(x, y, 0.0));
+    }
+    let reference = m.frame_of(m.reference());
+    assert_eq!(m.links()[reference.link].name, "coupler");
+    assert_eq!(tool(&m, m.home()).translation, Vec3::new(1.0, 2.0, 0.0));
+
+    let m = load("3rrr").unwrap();
+    assert_eq!(shape(&m), (7, 2, 0, 3, Dimension::Planar));
+    assert_lengths(&m, &[("a1", "b1", 0.6), ("b2", "p2", 0.55), ("a3", "b3", 0.6)]);
+
+    let m = load("watt").unwrap();
+    assert_eq!(shape(&m), (5, 2, 0, 1, Dimension::Planar));
+    assert_lengths(
+        &m,
+        &[("q1", "a", 1.0), ("a", "b", 1.9), ("b", "q4", 1.2), ("c", "e", 1.6), ("d", "e", 1.3)],
+    );
+}
+
+#[test]
+fn stewart() {
+    let m = load("stewart").unwrap();
+    // Six universal joints and slides, one ball in the tree; five balls close it.
+    assert_eq!(shape(&m), (6 * 3 + 3, 5, 0, 6, Dimension::Spatial));
+    assert!(m.loops().iter().all(|l| l.kind == JointKind::Spherical && !l.actuated));
+    for i in 1..=6 {
+        let (u, s) = (origin(&m, &format!("u{i}")), origin(&m, &format!("s{i}")));
+        // Joints on circles of 1 and 0.6, 40 degrees apart, 1 m above one another.
+        let length = (1.0 + 1.0 + 0.36 - 1.2 * (2.0 * PI / 9.0).cos()).sqrt();
+        assert!(((u - s).norm() - length).abs() < 1e-12, "{}", (u - s).norm());
+        let slide = m.joints().iter().find(|j| j.name == format!("leg{i}")).unwrap();
+        assert!(slide.axis.cross(s - u).norm() < 1e-12);
+    }
+    assert_close(tool(&m, m.home()), Pose::from_translation(Vec3::Z), 1e-14);
+}
+
+#[test]
+fn delta() {
+    let m = load("delta").unwrap();
+    // Three arms, six universal joints, one ball; five balls close it.
+    assert_eq!(shape(&m), (3 + 12 + 3, 5, 0, 3, Dimension::Spatial));
+    for i in 1..=3 {
+        for w in ["a", "b"] {
+            assert_lengths(&m, &[(&format!("u{i}{w}"), &format!("s{i}{w}"), 0.5)]);
+        }
+        let elbow = (origin(&m, &format!("u{i}a")) + origin(&m, &format!("u{i}b"))) * 0.5;
+        assert!(((elbow - origin(&m, &format!("arm{i}"))).norm() - 0.3).abs() < 1e-12);
+    }
+}
+
+/// The grasp points of the reference set are the flanges of our panda in the same postures.
+#[test]
+fn two_arm() {
+    let m = load("two-arm").unwrap();
+    assert_eq!(shape(&m), (7 + 7 + 6, 0, 2, 14, Dimension::Spatial));
+    for contact in m.contacts() {
+        assert!(contact.link_a_from_contact.translation.norm() < 1e-12);
+        assert_eq!(m.links()[contact.b].name, "box");
+    }
+    assert_eq!(m.frame_of(m.reference()).name, "box");
+    let alone = load("panda").unwrap();
+    let flange = frame(&alone, &m.home()[..7], "flange");
+    assert_close(frame(&m, m.home(), "left/flange"), flange, 1e-14);
 }

@@ -10,6 +10,18 @@ pub(crate) fn frame(m: &Mechanism, q: &[f64], name: &str) -> Pose {
     link(m, q, frame.link) * frame.link_from_frame
 }
 
+/// Closing joints and contacts coincide at home: both links put their frame at the same place.
+#[track_caller]
+pub(crate) fn closed_at_home(m: &Mechanism, tolerance: f64) {
+    let on = |l: usize| link(m, m.home(), l);
+    for l in m.loops() {
+        assert_close(on(l.a) * l.link_a_from_joint, on(l.b) * l.link_b_from_joint, tolerance);
+    }
+    for c in m.contacts() {
+        assert_close(on(c.a) * c.link_a_from_contact, on(c.b) * c.link_b_from_contact, tolerance);
+    }
+}
+
 pub(crate) fn tool(m: &Mechanism, q: &[f64]) -> Pose {
     frame(m, q, &m.frame_of(m.tool()).name)
 }
@@ -17,7 +29,9 @@ pub(crate) fn tool(m: &Mechanism, q: &[f64]) -> Pose {
 fn link(m: &Mechanism, q: &[f64], index: usize) -> Pose {
     match m.joints().iter().find(|j| j.child == index) {
         None => Pose::IDENTITY,
-        Some(j) => link(m, q, j.parent) * j.parent_from_joint * motion(m, j, q),
+        Some(j) => {
+            link(m, q, j.parent) * j.parent_from_joint * motion(m, j, q) * j.joint_from_child
+        }
     }
 }
 

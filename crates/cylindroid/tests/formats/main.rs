@@ -4,6 +4,7 @@
 
 mod broken;
 mod catalogue;
+mod closed_file;
 mod dh;
 mod fk;
 mod lax;

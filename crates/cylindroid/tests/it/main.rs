@@ -7,6 +7,7 @@
     clippy::float_cmp_const
 )]
 
+mod graph;
 mod hyperbolic;
 mod inverse;
 mod kinematics;

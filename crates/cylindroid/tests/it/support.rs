@@ -66,6 +66,12 @@ impl Random {
     }
 }
 
+/// The serial robots of the catalogue.
+pub(crate) fn robots() -> Vec<Mechanism> {
+    let all = cylindroid::catalogue::names().iter();
+    all.map(|name| cylindroid::catalogue::load(name).unwrap()).filter(Mechanism::is_tree).collect()
+}
+
 #[track_caller]
 pub(crate) fn assert_close(what: &str, got: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(got.len(), expected.len(), "{what}: sizes differ");

@@ -51,6 +51,7 @@ pub(super) enum Goal {
 impl Job {
     pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
         let robot = cylindroid::load(&args.posture.model)?;
+        crate::commands::refuse_closed(&robot, "move")?;
         let degrees = args.posture.degrees;
         let start = configuration(&robot, &args.posture)?;
         within_limits(&robot, "--q", &start)?;

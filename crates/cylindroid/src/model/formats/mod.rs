@@ -6,9 +6,12 @@
 //! [`Builder`]: super::Builder
 
 pub mod dh;
+mod graph;
+mod mesh;
 mod place;
 pub mod toml;
 pub mod urdf;
+mod xml;
 
 use std::path::Path;
 
@@ -30,14 +33,20 @@ const EXTENSIONS: [&str; 6] = ["urdf", "xml", "xacro", "sdf", "toml", "mjcf"];
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 pub fn load(name_or_path: &str) -> Result<Mechanism> {
+    load_from(Path::new(""), name_or_path, 0)
+}
+
+/// [`load`] for a file in `folder` that is included by `depth` others.
+fn load_from(folder: &Path, name_or_path: &str, depth: usize) -> Result<Mechanism> {
     if catalogue::names().contains(&name_or_path) {
         return catalogue::load(name_or_path);
     }
     let path = Path::new(name_or_path);
     let looks_like_a_path = name_or_path.contains(['/', '\\'])
         || extension(path).is_some_and(|e| EXTENSIONS.contains(&e.as_str()));
+    let path = folder.join(path);
     if looks_like_a_path || path.exists() {
-        return load_file(path);
+        return read_file(&path, depth);
     }
     let names = catalogue::names().iter().copied();
     Err(Error::unknown("catalogue model or file", name_or_path, names))
@@ -48,6 +57,10 @@ pub fn load(name_or_path: &str) -> Result<Mechanism> {
 /// # Errors
 /// As [`load`].
 pub fn load_file(path: &Path) -> Result<Mechanism> {
+    read_file(path, 0)
+}
+
+fn read_file(path: &Path, depth: usize) -> Result<Mechanism> {
     let bytes = std::fs::read(path).map_err(|e| Error::Io {
         path: path.to_owned(),
         action: "read",
@@ -57,7 +70,7 @@ pub fn load_file(path: &Path) -> Result<Mechanism> {
     let text = String::from_utf8_lossy(&bytes);
     let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
     match extension(path).as_deref() {
-        Some("toml") => toml::parse(&text, path),
+        Some("toml") => toml::read(&text, path, depth),
         Some("urdf" | "xml" | "xacro" | "sdf" | "mjcf") => urdf::parse(&text, path),
         _ if is_xml => urdf::parse(&text, path),
         _ => Err(Error::InvalidOption {

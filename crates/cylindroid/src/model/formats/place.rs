@@ -74,6 +74,8 @@ pub(super) struct Notes {
 
 #[derive(Debug)]
 struct Note {
+    /// 0 is the main file.
+    file: usize,
     offset: usize,
     what: String,
     why: &'static str,
@@ -91,10 +93,23 @@ impl Notes {
         why: &'static str,
         name: &str,
     ) {
+        self.add_in(0, offset, what, why, name);
+    }
+
+    /// [`Notes::add`] for a file that the main one (0) includes.
+    pub(super) fn add_in(
+        &mut self,
+        file: usize,
+        offset: usize,
+        what: impl Into<String>,
+        why: &'static str,
+        name: &str,
+    ) {
         let what = what.into();
-        let found = self.notes.iter().position(|n| n.what == what && n.why == why);
+        let same = |n: &Note| n.file == file && n.what == what && n.why == why;
+        let found = self.notes.iter().position(same);
         let index = found.unwrap_or_else(|| {
-            self.notes.push(Note { offset, what, why, count: 0, names: Vec::new() });
+            self.notes.push(Note { file, offset, what, why, count: 0, names: Vec::new() });
             self.notes.len() - 1
         });
         let note = &mut self.notes[index];
@@ -105,11 +120,15 @@ impl Notes {
         }
     }
 
-    /// Writes the notes into a report, in the order of the file.
-    pub(super) fn write(mut self, source: &Source<'_>, report: &mut LoadReport) {
-        self.notes.sort_by_key(|n| n.offset);
+    /// Writes the notes into a report, in the order of the files; the main one is the first.
+    pub(super) fn write(mut self, sources: &[Source<'_>], report: &mut LoadReport) {
+        self.notes.sort_by_key(|n| (n.file, n.offset));
         for note in self.notes {
+            let Some(source) = sources.get(note.file) else { continue };
             let mut detail = Vec::new();
+            if note.file > 0 {
+                detail.push(format!("in {}", source.path.display()));
+            }
             if note.count > 1 {
                 detail.push(format!("{} times", note.count));
             }
@@ -170,7 +189,7 @@ mod tests {
         notes.add(5, "<dynamics>", "not used", "a");
         notes.add(0, "<gazebo>", "not used", "");
         let mut report = LoadReport::default();
-        notes.write(&source(), &mut report);
+        notes.write(&[source()], &mut report);
         assert_eq!(report.ignored.len(), 2);
         assert_eq!(report.ignored[1].what, "<dynamics> (2 times: b, a)");
         assert_eq!((report.ignored[0].line, report.ignored[1].line), (1, 2));

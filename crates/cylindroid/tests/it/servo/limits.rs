@@ -83,8 +83,7 @@ fn speed_is_saturated_as_a_whole() {
 #[test]
 fn limits_hold_for_any_options() {
     let mut random = Random(81);
-    let mut robots: Vec<Mechanism> =
-        catalogue::names().iter().map(|name| catalogue::load(name).unwrap()).collect();
+    let mut robots: Vec<Mechanism> = crate::support::robots();
     robots.push(odd_arm());
     for round in 0..1000 {
         let robot = &robots[round % robots.len()];

@@ -1,18 +1,21 @@
-//! The joints of a mechanism file: a graph in world axes at q = 0, hung up at `ground`.
+//! The joints of a mechanism file: a graph in world axes at home, hung up at `ground`.
 //!
-//! Formula  parent_from_joint = Trans(origin - parent's origin): every link frame has world axes
-//!          at q = 0 and lies at the origin of the joint that leads to ground
+//! Formula  parent_from_joint = world_from_parent^-1 Trans(origin): every link frame has world
+//!          axes at home and lies at the origin of the joint that leads to ground
 //! Why so   a joint written from the far link to the near one keeps its q, the motion of the
 //!          second link relative to the first. Its inverse is the same motion about the opposite
 //!          axis for all kinds of one axis, pitch included; the others must be written near
-//!          link first
-//! Checked  tests/formats/mechanism_file.rs
+//!          link first where they are in the tree. Closing joints keep the order of the file
+//! Checked  tests/formats/mechanism_file.rs, tests/formats/closed_file.rs
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 
+use super::contact::Touch;
 use super::value::Table;
+use super::world::World;
 use crate::error::{Error, Result};
-use crate::model::{JointKind, JointSpec, Limits, Mimic};
+use crate::model::formats::graph::{Branch, Groups, span};
+use crate::model::{JointKind, JointSpec, Limits, LoopSpec, Mimic};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
@@ -36,12 +39,12 @@ const KEYS: [&str; 10] =
 pub(super) const GROUND: &str = "ground";
 
 /// A joint as it stands in the file.
-struct Written<'t> {
+pub(super) struct Written<'t> {
     table: Table<'t>,
     name: &'t str,
     kind: JointKind,
-    between: [&'t str; 2],
-    origin: Option<Vec3>,
+    pub(super) between: [&'t str; 2],
+    pub(super) origin: Option<Vec3>,
     axis: Vec3,
     limits: Limits,
     mimic: Option<Mimic>,
@@ -53,55 +56,182 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
     file.tables("joint", "[[joint]]", &KEYS)
 }
 
-/// The joints of the `[[joint]]` tables, parents before children.
-pub(super) fn joints(file: &Table<'_>, planar: bool) -> Result<Vec<JointSpec>> {
-    let written: Vec<Written<'_>> =
-        tables(file)?.into_iter().map(|t| read(t, planar)).collect::<Result<_>>()?;
-    refuse_loops(&written)?;
+/// The joints as they stand in the file.
+pub(super) fn joints<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<Written<'t>>> {
+    tables(file)?.into_iter().map(|t| read(t, planar)).collect()
+}
 
-    let mut at_link: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-    for (i, joint) in written.iter().enumerate() {
-        for link in joint.between {
-            at_link.entry(link).or_default().push(i);
+/// Writes the joints: those of the tree, those that close it, and free joints for objects that
+/// only contacts hold.
+pub(super) fn write(
+    world: &mut World<'_>,
+    joints: &[Written<'_>],
+    contacts: &[Touch<'_>],
+    reference: Option<(&str, Option<Vec3>)>,
+) -> Result<()> {
+    let mut names: Vec<&str> = Vec::new();
+    let mut index: BTreeMap<&str, usize> = BTreeMap::new();
+    let placed: Vec<String> = world.placed();
+    let between = joints.iter().flat_map(|j| j.between);
+    let touched = contacts.iter().flat_map(|c| c.between);
+    for link in placed.iter().map(String::as_str).chain(between).chain(touched) {
+        index.entry(link).or_insert_with(|| {
+            names.push(link);
+            names.len() - 1
+        });
+    }
+    let ends: Vec<[usize; 2]> = joints.iter().map(|j| j.between.map(|l| index[l])).collect();
+    if let Some(joint) = joints.iter().find(|j| j.between[0] == j.between[1]) {
+        let message =
+            format!("joint '{}' connects link '{}' with itself", joint.name, joint.between[0]);
+        return Err(joint.table.refuse("between", message, "name two links"));
+    }
+
+    let mut roots: Vec<usize> = (0..placed.len()).collect();
+    let mut groups = Groups::new(names.len());
+    roots.windows(2).for_each(|w| _ = groups.join(w[0], w[1]));
+    ends.iter().for_each(|[a, b]| _ = groups.join(*a, *b));
+    for link in objects(contacts, reference.map(|r| r.0), &index, &mut groups) {
+        let point = match reference {
+            Some((name, Some(point))) if name == names[link] => Some(point),
+            _ => first_origin(joints, names[link]),
+        };
+        let touching = contacts.iter().find(|c| c.between.contains(&names[link])).map(|c| c.point);
+        let place = Pose::from_translation(point.or(touching).unwrap_or(Vec3::ZERO));
+        world.free(names[link], place);
+        roots.push(link);
+    }
+
+    let followed =
+        |name: &str| joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == name));
+    let weight = |j: &Written<'_>| match () {
+        () if j.mimic.is_some() || followed(j.name) => 2,
+        () if j.actuated => 1,
+        () => 0,
+    };
+    let weights: Vec<u8> = joints.iter().map(weight).collect();
+    let graph = span(names.len(), &ends, &weights, &roots);
+    if let Some(&loose) = graph.loose.first() {
+        return Err(in_the_air(&joints[loose], joints.iter().any(|j| j.between.contains(&GROUND))));
+    }
+    for branch in graph.tree {
+        let Branch { joint, parent, child, reversed } = branch;
+        branch_out(world, &joints[joint], names[parent], names[child], reversed)?;
+    }
+    for joint in graph.loops {
+        close(world, &joints[joint])?;
+    }
+    Ok(())
+}
+
+/// The links that hang on contacts alone, one for each group of links: the reference where it is
+/// one of them, else the first that is touched.
+fn objects(
+    contacts: &[Touch<'_>],
+    reference: Option<&str>,
+    index: &BTreeMap<&str, usize>,
+    groups: &mut Groups,
+) -> Vec<usize> {
+    let touched: Vec<usize> =
+        contacts.iter().flat_map(|c| [c.between[1], c.between[0]]).map(|l| index[l]).collect();
+    let reference = reference.and_then(|r| index.get(r).copied());
+    let is_touched = |groups: &mut Groups, link: usize| {
+        let group = groups.of(link);
+        touched.iter().any(|&t| groups.of(t) == group)
+    };
+    let first = reference.filter(|&r| is_touched(groups, r));
+    let mut objects = Vec::new();
+    // The first link that was placed, or ground, is index 0.
+    for link in first.into_iter().chain(touched.iter().copied()) {
+        if groups.join(0, link) {
+            objects.push(link);
         }
     }
-    let mut origins = BTreeMap::from([(GROUND, Vec3::ZERO)]);
-    let mut queue = VecDeque::from([GROUND]);
-    let mut done = vec![false; written.len()];
-    let mut specs = Vec::with_capacity(written.len());
-    while let Some(parent) = queue.pop_front() {
-        for &i in at_link.get(parent).map_or(&[][..], Vec::as_slice) {
-            if std::mem::replace(&mut done[i], true) {
-                continue;
-            }
-            let joint = &written[i];
-            let reversed = joint.between[1] == parent;
-            let child = joint.between[usize::from(!reversed)];
-            let parent_origin = origins.get(parent).copied().unwrap_or(Vec3::ZERO);
-            let origin = joint.origin.unwrap_or(parent_origin);
-            specs.push(spec(joint, parent, child, origin - parent_origin, reversed)?);
-            origins.insert(child, origin);
-            queue.push_back(child);
-        }
+    objects
+}
+
+/// The origin of the first joint that names the link.
+pub(super) fn first_origin(joints: &[Written<'_>], link: &str) -> Option<Vec3> {
+    joints.iter().find(|j| j.between.contains(&link)).and_then(|j| j.origin)
+}
+
+fn in_the_air(joint: &Written<'_>, grounded: bool) -> Error {
+    let [a, b] = joint.between;
+    let message = format!(
+        "joint '{}' hangs in the air: neither '{a}' nor '{b}' is connected to '{GROUND}'",
+        joint.name
+    );
+    let help = if grounded {
+        "connect one of its links, or check the spelling of their names"
+    } else {
+        "name the fixed link ground, or add a joint of type free from ground"
+    };
+    joint.table.refuse("between", message, help)
+}
+
+fn branch_out(
+    world: &mut World<'_>,
+    joint: &Written<'_>,
+    parent: &str,
+    child: &str,
+    reversed: bool,
+) -> Result<()> {
+    let one_axis = !matches!(
+        joint.kind,
+        JointKind::Universal { .. } | JointKind::Spherical | JointKind::Planar | JointKind::Free
+    );
+    if reversed && !one_axis {
+        let message = format!(
+            "joint '{}' is {} and written from the far link to the one nearer to ground",
+            joint.name,
+            joint.kind.name()
+        );
+        let help = format!("write between = [\"{parent}\", \"{child}\"]");
+        return Err(joint.table.refuse("between", message, help));
     }
-    match done.iter().position(|d| !d) {
-        None => Ok(specs),
-        Some(i) => {
-            let joint = &written[i];
-            let [a, b] = joint.between;
-            let grounded = at_link.contains_key(GROUND);
-            let message = format!(
-                "joint '{}' hangs in the air: neither '{a}' nor '{b}' is connected to '{GROUND}'",
-                joint.name
-            );
-            let help = if grounded {
-                "connect one of its links, or check the spelling of their names"
-            } else {
-                "name the fixed link ground, or add a joint of type free from ground"
-            };
-            Err(joint.table.refuse("between", message, help))
-        }
+    let world_from_parent = world.pose(parent);
+    let origin = joint.origin.unwrap_or(world_from_parent.translation);
+    let world_from_joint = Pose::from_translation(origin);
+    world.place(child, world_from_joint);
+    world.joint(JointSpec {
+        name: joint.name.to_owned(),
+        kind: joint.kind,
+        parent: parent.to_owned(),
+        child: child.to_owned(),
+        parent_from_joint: world_from_parent.inverse() * world_from_joint,
+        joint_from_child: Pose::IDENTITY,
+        axis: if reversed { -joint.axis } else { joint.axis },
+        limits: joint.limits,
+        mimic: joint.mimic.clone(),
+        actuated: joint.actuated,
+    });
+    Ok(())
+}
+
+fn close(world: &mut World<'_>, joint: &Written<'_>) -> Result<()> {
+    let [a, b] = joint.between;
+    if joint.mimic.is_some() {
+        let message = format!(
+            "joint '{}' closes a loop and has no coordinate: it cannot follow another joint",
+            joint.name
+        );
+        let help = "every loop needs a joint that follows nothing";
+        return Err(joint.table.refuse("mimic", message, help));
     }
+    let [world_from_a, world_from_b] = [world.pose(a), world.pose(b)];
+    let world_from_joint = Pose::from_translation(joint.origin.unwrap_or(world_from_a.translation));
+    world.builder.close(LoopSpec {
+        name: joint.name.to_owned(),
+        kind: joint.kind,
+        a: a.to_owned(),
+        b: b.to_owned(),
+        link_a_from_joint: world_from_a.inverse() * world_from_joint,
+        link_b_from_joint: world_from_b.inverse() * world_from_joint,
+        axis: joint.axis,
+        limits: joint.limits,
+        actuated: joint.actuated,
+    });
+    Ok(())
 }
 
 fn read(table: Table<'_>, planar: bool) -> Result<Written<'_>> {
@@ -181,75 +311,4 @@ fn kind_and_axis(table: &Table<'_>, planar: bool) -> Result<(JointKind, Vec3)> {
         ));
     }
     Ok((kind, axis))
-}
-
-/// Refuses the first joint between two links that are already connected.
-fn refuse_loops(written: &[Written<'_>]) -> Result<()> {
-    let mut index: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut group: Vec<usize> = Vec::new();
-    for joint in written {
-        let [a, b] = joint.between.map(|link| {
-            let i = *index.entry(link).or_insert_with(|| {
-                group.push(group.len());
-                group.len() - 1
-            });
-            representative(&mut group, i)
-        });
-        if a == b {
-            let [a, b] = joint.between;
-            let message = if a == b {
-                format!("joint '{}' connects link '{a}' with itself", joint.name)
-            } else {
-                format!(
-                    "joint '{}' closes a loop: '{a}' and '{b}' are already connected",
-                    joint.name
-                )
-            };
-            let help = "this version reads trees only; leave out one joint of the loop";
-            return Err(joint.table.refuse("between", message, help));
-        }
-        group[a] = b;
-    }
-    Ok(())
-}
-
-fn representative(group: &mut [usize], mut i: usize) -> usize {
-    while group[i] != i {
-        group[i] = group[group[i]];
-        i = group[i];
-    }
-    i
-}
-
-fn spec(
-    joint: &Written<'_>,
-    parent: &str,
-    child: &str,
-    parent_to_origin: Vec3,
-    reversed: bool,
-) -> Result<JointSpec> {
-    let one_axis = !matches!(
-        joint.kind,
-        JointKind::Universal { .. } | JointKind::Spherical | JointKind::Planar | JointKind::Free
-    );
-    if reversed && !one_axis {
-        let message = format!(
-            "joint '{}' is {} and written from the far link to the one nearer to ground",
-            joint.name,
-            joint.kind.name()
-        );
-        let help = format!("write between = [\"{parent}\", \"{child}\"]");
-        return Err(joint.table.refuse("between", message, help));
-    }
-    Ok(JointSpec {
-        name: joint.name.to_owned(),
-        kind: joint.kind,
-        parent: parent.to_owned(),
-        child: child.to_owned(),
-        parent_from_joint: Pose::from_translation(parent_to_origin),
-        axis: if reversed { -joint.axis } else { joint.axis },
-        limits: joint.limits,
-        mimic: joint.mimic.clone(),
-        actuated: joint.actuated,
-    })
 }

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use ::toml::Spanned;
-use ::toml::de::{DeTable, DeValue};
+use ::toml::de::{DeString, DeTable, DeValue};
 
 use crate::error::{Error, Result};
 use crate::model::Limits;
@@ -171,6 +171,43 @@ impl<'t> Table<'t> {
                 format!("write {key} = [\"ground\", \"crank\"]"),
             )),
         }
+    }
+
+    /// A list of names.
+    pub(super) fn names(&self, key: &str) -> Result<Option<Vec<&'t str>>> {
+        let Some(array) = self.array(key)? else { return Ok(None) };
+        let read = |entry: &'t Spanned<DeValue<'t>>| {
+            entry.get_ref().as_str().ok_or_else(|| {
+                let message = format!("an entry of {key} is not a name");
+                self.source.error(entry.span(), message, "give texts in quotes")
+            })
+        };
+        array.iter().map(read).collect::<Result<_>>().map(Some)
+    }
+
+    /// The numbers of a table with keys of any name, and where they stand; `None` where the value
+    /// is no table.
+    #[allow(clippy::type_complexity)]
+    pub(super) fn named_numbers(
+        &self,
+        key: &str,
+    ) -> Result<Option<Vec<(&'t str, f64, Range<usize>)>>> {
+        let Some(DeValue::Table(map)) = self.get(key).map(Spanned::get_ref) else {
+            return Ok(None);
+        };
+        let read =
+            |(name, value): (&'t Spanned<DeString<'t>>, &'t Spanned<DeValue<'t>>)| match number(
+                value.get_ref(),
+            )
+            .filter(|x| x.is_finite())
+            {
+                Some(x) => Ok((name.get_ref().as_ref(), x, name.span())),
+                None => {
+                    let message = format!("an entry of {key} is not a finite number");
+                    Err(self.source.error(value.span(), message, "give numbers"))
+                }
+            };
+        map.iter().map(read).collect::<Result<_>>().map(Some)
     }
 
     /// A table inside this one.

@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 
 use roxmltree::Node;
 
-use super::xml::Reader;
 use crate::error::{Error, Result};
+use crate::model::formats::xml::Reader;
 use crate::model::{JointKind, JointSpec, Limits, Mimic};
 use crate::spatial::Vec3;
 use crate::tolerance::ZERO_AXIS;

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use roxmltree::Node;
 
-use super::mesh::Packages;
-use super::xml::Reader;
 use crate::error::Result;
+use crate::model::formats::mesh::Packages;
+use crate::model::formats::xml::Reader;
 use crate::model::{Geometry, Inertial, Link, Visual};
 use crate::spatial::{Mat3, Vec3};
 
@@ -100,7 +100,7 @@ impl Reader<'_> {
         let link_from_shape = self.origin(node)?;
         let Some(geometry) = self.geometry(node, packages)? else {
             let what = format!("<{}> without a shape", node.tag_name().name());
-            let link = super::xml::owner(node);
+            let link = self.owner(node);
             self.notes.add(node.range().start, what, "there is nothing to draw", link);
             return Ok(None);
         };

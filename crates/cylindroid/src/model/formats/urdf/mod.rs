@@ -2,8 +2,7 @@
 //!
 //! Formula  parent_from_child = Trans(xyz) Rz(yaw) Ry(pitch) Rx(roll) motion(axis, q)
 //! Units    m, rad, kg, N, N m, as in the file
-//! Valid    expanded URDF. xacro is refused with the command that expands it; MJCF and SDF are
-//!          refused by name
+//! Valid    expanded URDF. xacro is refused with the command that expands it
 //! Why so   real files are lax, so what the kinematics does not need is noted and never refused;
 //!          what it does need is never guessed. A reader of our own, because the existing crate
 //!          drops unknown elements, has no line numbers and reads missing limits as zero
@@ -12,23 +11,18 @@
 
 mod joint;
 mod link;
-mod mesh;
-mod xml;
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::Node;
 
-use self::mesh::Packages;
-use self::xml::Reader;
-use super::place::{Notes, Source};
+use super::mesh::Packages;
+use super::place::Source;
+use super::xml::{self, Reader};
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
-
-/// What to do with a xacro file.
-const XACRO_HELP: &str = "expand it first: pip install xacro, then \
-                          xacro file.urdf.xacro > file.urdf";
+use crate::spatial::{Pose, Quaternion, Rotation, Rpy, Vec3};
 
 /// Reads the text of a URDF. The path is used in errors and to find meshes; nothing is read from
 /// it.
@@ -38,21 +32,20 @@ const XACRO_HELP: &str = "expand it first: pip install xacro, then \
 /// one, a name that is missing or unknown, and all that the builder refuses.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
     let mut source = Source { format: "URDF", path, text };
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options).map_err(|e| broken(&source, &e))?;
+    let document = xml::document(&source)?;
     let root = document.root_element();
     let tag = Reader::tag(root);
     match root.tag_name().name() {
         "robot" => {}
         "mujoco" | "mujocoinclude" => {
             source.format = "MJCF";
-            let help = "give a URDF or a mechanism file; MuJoCo's own tools can convert";
-            return Err(source.error(tag, "this is MJCF, which this version does not read", help));
+            let help = "load it by its path, or read it with formats::mjcf";
+            return Err(source.error(tag, "this is MJCF, not a URDF", help));
         }
         "sdf" | "gazebo" => {
             source.format = "SDF";
-            let help = "give the URDF it was made from, or a mechanism file";
-            return Err(source.error(tag, "this is SDF, which this version does not read", help));
+            let help = "load it by its path, or read it with formats::sdf";
+            return Err(source.error(tag, "this is SDF, not a URDF", help));
         }
         other => {
             let message = format!("the root element is <{other}>, a URDF begins with <robot>");
@@ -61,7 +54,8 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
     }
     refuse_xacro(&source, root)?;
     let namespace = root.tag_name().namespace();
-    let mut reader = Reader { source, notes: Notes::default(), namespace };
+    let mut reader = Reader::new(source, namespace);
+    (reader.owners, reader.why) = (&["link", "joint"], why_unused);
     read_robot(&mut reader, root)
 }
 
@@ -94,7 +88,7 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
 
     let report = builder.report();
     report.format = "URDF";
-    std::mem::take(&mut reader.notes).write(&reader.source, report);
+    reader.report(report);
     builder.build().map_err(|e| place(reader, robot, e))
 }
 
@@ -127,21 +121,41 @@ fn refuse_xacro(source: &Source<'_>, root: Node<'_, '_>) -> Result<()> {
     let extension = source.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xacro"));
     let element = root.descendants().filter(Node::is_element).find(is_xacro);
     let Some(node) = element.or(extension.then_some(root)) else { return Ok(()) };
-    Err(xacro(source, Reader::tag(node)))
+    Err(xml::xacro(source, Reader::tag(node)))
 }
 
-fn xacro(source: &Source<'_>, span: std::ops::Range<usize>) -> Error {
-    source.error(span, "this is xacro, a program that writes a URDF, not a URDF", XACRO_HELP)
-}
-
-fn broken(source: &Source<'_>, error: &roxmltree::Error) -> Error {
-    let position = error.pos();
-    let offset = source.offset(position.row as usize, position.col as usize);
-    let span = offset..offset + 1;
-    if matches!(error, roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro") {
-        return xacro(source, span);
+impl Reader<'_> {
+    /// The pose of the `<origin>` of an element; the identity without one.
+    fn origin(&mut self, node: Node<'_, '_>) -> Result<Pose> {
+        let Some(origin) = self.child(node, "origin") else { return Ok(Pose::IDENTITY) };
+        self.leftovers(origin, &["xyz", "rpy", "quat_xyzw"], &[]);
+        let translation = self.vector::<3>(origin, "xyz")?.map_or(Vec3::ZERO, Vec3::from_array);
+        let rpy = self.vector::<3>(origin, "rpy")?;
+        let quaternion = self.vector::<4>(origin, "quat_xyzw")?;
+        let rotation = match (rpy, quaternion) {
+            (None, None) => Rotation::IDENTITY,
+            (Some([roll, pitch, yaw]), None) => Rpy { roll, pitch, yaw }.rotation(),
+            (None, Some([x, y, z, w])) => Quaternion { w, x, y, z }
+                .rotation()
+                .map_err(|e| self.refuse(origin, "quat_xyzw", e.to_string()))?,
+            (Some(_), Some(_)) => {
+                let message = "<origin> has both rpy and quat_xyzw";
+                return Err(self.refuse(origin, "quat_xyzw", message));
+            }
+        };
+        Ok(Pose { rotation, translation })
     }
-    let text = error.to_string();
-    let message = text.strip_suffix(&format!(" at {position}")).unwrap_or(&text);
-    source.error(span, format!("broken XML: {message}"), "")
+}
+
+fn why_unused(element: &str) -> &'static str {
+    match element {
+        "dynamics" => "friction and damping do not enter the kinematics",
+        "safety_controller" => "soft limits are not used; those of <limit> hold",
+        "calibration" => "encoder references do not enter the kinematics",
+        "texture" => "textures are not drawn; the colour is",
+        "gazebo" | "transmission" | "sensor" | "ros2_control" | "plugin" => {
+            "settings of simulators and controllers are not used"
+        }
+        _ => "not known to this reader",
+    }
 }

@@ -1,0 +1,105 @@
+//! A spanning tree of a graph of links and joints, and the joints that close its loops.
+//!
+//! Formula  Kruskal: joints enter the tree by falling weight, and in the order of the file within
+//!          one; the tree is then walked breadth-first from its roots
+//! Valid    any graph. Links that no root reaches are returned, never dropped
+//! Why so   a tree of largest weight holds as many driven joints as any tree can (matroid), which
+//!          a walk from the root does not: it takes whatever it meets first
+//! Checked  tests/formats/closed_file.rs::spanning_*
+
+use std::collections::VecDeque;
+
+/// A joint of the tree, seen from its root.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Branch {
+    /// Index of the joint.
+    pub(super) joint: usize,
+    /// The end nearer to the root.
+    pub(super) parent: usize,
+    /// The other end.
+    pub(super) child: usize,
+    /// True if the joint is written from the child to the parent.
+    pub(super) reversed: bool,
+}
+
+/// A graph taken apart.
+#[derive(Debug, Default)]
+pub(super) struct Span {
+    /// Parents before children.
+    pub(super) tree: Vec<Branch>,
+    /// Joints that close loops, in the order of the file.
+    pub(super) loops: Vec<usize>,
+    /// Joints that no root reaches, in the order of the file.
+    pub(super) loose: Vec<usize>,
+}
+
+/// Groups of links that hang together.
+#[derive(Debug, Clone)]
+pub(super) struct Groups {
+    parent: Vec<usize>,
+}
+
+impl Groups {
+    pub(super) fn new(links: usize) -> Self {
+        Self { parent: (0..links).collect() }
+    }
+
+    pub(super) fn of(&mut self, mut link: usize) -> usize {
+        while self.parent[link] != link {
+            self.parent[link] = self.parent[self.parent[link]];
+            link = self.parent[link];
+        }
+        link
+    }
+
+    /// Joins two groups; false if they were one already.
+    pub(super) fn join(&mut self, a: usize, b: usize) -> bool {
+        let (a, b) = (self.of(a), self.of(b));
+        self.parent[a] = b;
+        a != b
+    }
+}
+
+/// Spans the graph of `links` links whose joint `j` connects `ends[j]`. The roots count as
+/// connected with one another.
+pub(super) fn span(links: usize, ends: &[[usize; 2]], weights: &[u8], roots: &[usize]) -> Span {
+    let mut groups = Groups::new(links);
+    for pair in roots.windows(2) {
+        groups.join(pair[0], pair[1]);
+    }
+    let mut order: Vec<usize> = (0..ends.len()).collect();
+    order.sort_by_key(|&j| std::cmp::Reverse(weights[j]));
+    let mut in_tree = vec![false; ends.len()];
+    for j in order {
+        let [a, b] = ends[j];
+        in_tree[j] = groups.join(a, b);
+    }
+
+    let mut at_link: Vec<Vec<usize>> = vec![Vec::new(); links];
+    for (j, pair) in ends.iter().enumerate() {
+        pair.iter().for_each(|&link| at_link[link].push(j));
+    }
+    let mut reached = vec![false; links];
+    roots.iter().for_each(|&r| reached[r] = true);
+    let mut queue: VecDeque<usize> = roots.iter().copied().collect();
+    let mut span = Span::default();
+    while let Some(parent) = queue.pop_front() {
+        for &joint in at_link[parent].iter().filter(|&&j| in_tree[j]) {
+            let [a, b] = ends[joint];
+            let reversed = b == parent;
+            let child = if reversed { a } else { b };
+            if !std::mem::replace(&mut reached[child], true) {
+                span.tree.push(Branch { joint, parent, child, reversed });
+                queue.push_back(child);
+            }
+        }
+    }
+    for (j, [a, _]) in ends.iter().enumerate() {
+        if !reached[*a] {
+            span.loose.push(j);
+        } else if !in_tree[j] {
+            span.loops.push(j);
+        }
+    }
+    span
+}

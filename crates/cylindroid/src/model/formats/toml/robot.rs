@@ -1,0 +1,149 @@
+//! The `[[robot]]` tables of a mechanism file: robots of other files and of the catalogue.
+//!
+//! Keys     model (a name of the catalogue, or a path from this file's folder), name, link, base
+//!          (xyz, rpy), start, free, actuated, passive
+//! Formula  world_from_root = world_from_link base; home is the robot's start
+//! Why so   what a robot brings is called `name/...`; one without a name keeps its names, so that
+//!          joints and contacts can be added to a URDF as it is
+//! Checked  tests/formats/closed_file.rs::robots_*
+
+use super::tree::GROUND;
+use super::value::Table;
+use super::world::World;
+use crate::error::{Error, Result};
+use crate::model::{Dimension, Inclusion, Mechanism, formats};
+use crate::spatial::Pose;
+
+const KEYS: [&str; 8] = ["name", "model", "link", "base", "start", "free", "actuated", "passive"];
+
+/// Files that include files that include files: more of them are taken for a ring.
+const DEEPEST: usize = 8;
+
+/// The `[[robot]]` tables.
+pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
+    file.tables("robot", "[[robot]]", &KEYS)
+}
+
+/// Brings in the robots, in the order of the file.
+pub(super) fn include(file: &Table<'_>, world: &mut World<'_>, depth: usize) -> Result<()> {
+    let tables = tables(file)?;
+    if let (Some(table), true) = (tables.first(), file.has("dh")) {
+        let help = "put the [dh] arm into a file of its own and bring it in as a [[robot]]";
+        return Err(table.refuse("model", "a file has [dh] or [[robot]], not both", help));
+    }
+    let mut names: Vec<&str> = Vec::new();
+    for table in &tables {
+        let name = table.string("name")?.unwrap_or("");
+        if names.contains(&name) {
+            let message = match name {
+                "" => "two robots have no name".to_owned(),
+                _ => format!("two robots are named '{name}'"),
+            };
+            return Err(table.refuse("name", message, "give every robot a name of its own"));
+        }
+        if name.contains('/') {
+            let message = format!("the name '{name}' has a slash");
+            return Err(table.refuse("name", message, "what the robot brings is called name/..."));
+        }
+        names.push(name);
+        add(table, name, world, depth)?;
+    }
+    Ok(())
+}
+
+fn add(table: &Table<'_>, name: &str, world: &mut World<'_>, depth: usize) -> Result<()> {
+    let robot = load(table, depth)?;
+    if world.dimension == Dimension::Planar && robot.dimension() == Dimension::Spatial {
+        let message = format!("'{}' moves in space, this file in the plane", robot.name());
+        return Err(table.refuse("model", message, "leave out dimension = 2"));
+    }
+    let robot = drive(table, robot)?;
+    let start = start(table, &robot)?;
+    let parent = table.string("link")?.unwrap_or(GROUND);
+    world.check_link(table, "link", parent)?;
+    let base = table.table("base", "base", &["xyz", "rpy"])?;
+    let parent_from_root = base.as_ref().map_or(Ok(Pose::IDENTITY), Table::pose)?;
+    let free = table.boolean("free")?.unwrap_or(false);
+    let how = Inclusion { name, parent, parent_from_root, free, start: &start };
+
+    let poses = robot.link_poses(&start);
+    let world_from_root = world.pose(parent) * parent_from_root;
+    for (i, root_from_link) in poses.into_iter().enumerate() {
+        let link = how.link(&robot, i);
+        if link == parent && (free || base.is_some()) {
+            let message = format!("the root of '{}' is called '{parent}' too", robot.name());
+            let help = "give the robot a name, so that its root can stand elsewhere";
+            return Err(table.refuse("base", message, help));
+        }
+        if link != parent && world.has(&link) {
+            let message = format!("'{}' brings a second link '{link}'", robot.name());
+            return Err(table.refuse("model", message, "give the robot a name"));
+        }
+        world.place(&link, world_from_root * root_from_link);
+    }
+    world.builder.include(&robot, how)?;
+    Ok(())
+}
+
+fn load(table: &Table<'_>, depth: usize) -> Result<Mechanism> {
+    let model = table.required_string("model")?;
+    if depth >= DEEPEST {
+        let message = format!("'{model}' is included by {DEEPEST} files, one in the other");
+        return Err(table.refuse("model", message, "does a file include itself?"));
+    }
+    let folder = table.source.path.parent().unwrap_or_else(|| std::path::Path::new(""));
+    match formats::load_from(folder, model, depth + 1) {
+        Err(error) if !matches!(error, Error::File(_)) => {
+            let help = "name a catalogue model, or a file by its path from this file's folder";
+            Err(table.refuse("model", error.to_string(), help))
+        }
+        result => result,
+    }
+}
+
+/// The robot driven as the table says.
+fn drive(table: &Table<'_>, robot: Mechanism) -> Result<Mechanism> {
+    let refuse = |key: &'static str| move |e: Error| table.refuse(key, e.to_string(), "");
+    match (table.names("actuated")?, table.names("passive")?) {
+        (None, None) => Ok(robot),
+        (Some(names), None) => robot.with_actuated(&names).map_err(refuse("actuated")),
+        (None, Some(names)) => {
+            // Every name must be one that could be driven.
+            let passive = robot.with_actuated(&names).map_err(refuse("passive"))?;
+            let coordinates = robot.actuated().filter(|&i| !passive.coordinates()[i].actuated);
+            let closing = robot.loops().iter().zip(passive.loops());
+            let driven: Vec<&str> = coordinates
+                .map(|i| robot.coordinates()[i].name.as_str())
+                .chain(
+                    closing
+                        .filter(|(was, now)| was.actuated && !now.actuated)
+                        .map(|(l, _)| l.name.as_str()),
+                )
+                .collect();
+            robot.with_actuated(&driven).map_err(refuse("passive"))
+        }
+        (Some(_), Some(_)) => {
+            let message = "a robot has actuated or passive joints listed, not both";
+            Err(table.refuse("passive", message, "leave one of the lists out"))
+        }
+    }
+}
+
+/// The start configuration: all numbers, or some by name over the robot's home.
+fn start(table: &Table<'_>, robot: &Mechanism) -> Result<Vec<f64>> {
+    if let Some(named) = table.named_numbers("start")? {
+        let mut q = robot.home().to_vec();
+        for (name, value, span) in named {
+            let Some(i) = robot.coordinates().iter().position(|c| c.name == name) else {
+                let known = robot.coordinates().iter().map(|c| c.name.as_str());
+                let unknown = Error::unknown("joint", name, known);
+                return Err(table.source.error(span, unknown.to_string(), ""));
+            };
+            q[i] = value;
+        }
+        return Ok(q);
+    }
+    let Some(q) = table.numbers("start")? else { return Ok(robot.home().to_vec()) };
+    robot.check_q("start", &q).map_err(|e| table.refuse("start", e.to_string(), ""))?;
+    Ok(q)
+}

@@ -1,0 +1,144 @@
+//! The links of a mechanism file and where they stand at home, while the model is written.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::value::Table;
+use super::{arm, contact, robot, tree};
+use crate::error::{Error, Result};
+use crate::model::builder::Builder;
+use crate::model::formats::place::{Notes, Source};
+use crate::model::{Dimension, JointKind, JointSpec, Mechanism};
+use crate::spatial::{Pose, Vec3};
+
+/// What has been written so far.
+pub(super) struct World<'t> {
+    source: Source<'t>,
+    pub(super) builder: Builder,
+    pub(super) dimension: Dimension,
+    /// The root first, then in the order in which they were placed.
+    links: Vec<(String, Pose)>,
+    index: BTreeMap<String, usize>,
+    /// Where names stand in the file, for errors of the builder.
+    places: Vec<(String, Range<usize>)>,
+    notes: Notes,
+}
+
+impl<'t> World<'t> {
+    pub(super) fn new(source: Source<'t>, name: &str, dimension: Dimension) -> Self {
+        let mut builder = Mechanism::builder(name);
+        builder.dimension(dimension);
+        let (links, index, places) = (Vec::new(), BTreeMap::new(), Vec::new());
+        Self { source, builder, dimension, links, index, places, notes: Notes::default() }
+    }
+
+    /// Says where a link stands; it counts as connected with the root.
+    pub(super) fn place(&mut self, link: &str, world_from_link: Pose) {
+        if let Some(&i) = self.index.get(link) {
+            self.links[i].1 = world_from_link;
+        } else {
+            self.index.insert(link.to_owned(), self.links.len());
+            self.links.push((link.to_owned(), world_from_link));
+        }
+    }
+
+    /// The links that stand somewhere, the root first.
+    pub(super) fn placed(&self) -> Vec<String> {
+        self.links.iter().map(|l| l.0.clone()).collect()
+    }
+
+    pub(super) fn has(&self, link: &str) -> bool {
+        self.index.contains_key(link)
+    }
+
+    /// Where a link stands; the world's origin for one that is not known.
+    pub(super) fn pose(&self, link: &str) -> Pose {
+        self.index.get(link).map_or(Pose::IDENTITY, |&i| self.links[i].1)
+    }
+
+    /// The joints of a serial arm, parents first, at q = 0.
+    pub(super) fn arm(&mut self, joints: Vec<JointSpec>) {
+        for joint in joints {
+            let parent = self.pose(&joint.parent);
+            if !self.has(&joint.parent) {
+                self.place(&joint.parent, parent);
+            }
+            self.place(&joint.child, parent * joint.parent_from_joint);
+            self.joint(joint);
+        }
+    }
+
+    /// Writes a joint; position limits that its kind cannot keep are dropped with a note.
+    pub(super) fn joint(&mut self, mut joint: JointSpec) {
+        let l = &mut joint.limits;
+        let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
+        if bounded && !joint.kind.takes_position_limits() {
+            (l.lower, l.upper) = (f64::NEG_INFINITY, f64::INFINITY);
+            let at = self.places.iter().find(|p| p.0 == joint.name).map_or(0, |p| p.1.start);
+            let why = "dropped: its rates are not the derivative of q, nothing could keep them";
+            let what = format!("position limits of {} joints", joint.kind.name());
+            self.notes.add(at, what, why, &joint.name);
+        }
+        self.builder.joint(joint);
+    }
+
+    /// A link that hangs on nothing: free in space, or in the plane.
+    pub(super) fn free(&mut self, link: &str, world_from_link: Pose) {
+        let root = self.links.first().map_or(tree::GROUND, |l| l.0.as_str()).to_owned();
+        let kind = match self.dimension {
+            Dimension::Planar => JointKind::Planar,
+            Dimension::Spatial => JointKind::Free,
+        };
+        self.builder.joint(JointSpec {
+            parent_from_joint: self.pose(&root).inverse() * world_from_link,
+            axis: Vec3::Z,
+            actuated: false,
+            ..JointSpec::new(link, kind, &root, link)
+        });
+        self.place(link, world_from_link);
+    }
+
+    /// Refuses a name, the value of a key, that is no link.
+    pub(super) fn check_link(&self, table: &Table<'_>, key: &str, link: &str) -> Result<()> {
+        if self.has(link) {
+            return Ok(());
+        }
+        let unknown = Error::unknown("link", link, self.index.keys());
+        Err(table.refuse(key, unknown.to_string(), ""))
+    }
+
+    /// Notes where joints, contacts, robots and frames stand in the file.
+    pub(super) fn note_places(&mut self, file: &Table<'t>) -> Result<()> {
+        let rows = match arm::table(file)? {
+            Some(dh) => arm::rows(&dh)?,
+            None => Vec::new(),
+        };
+        let frames = file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])?;
+        let contacts = contact::tables(file)?;
+        for table in rows.iter().chain(&tree::tables(file)?).chain(&contacts).chain(&frames) {
+            self.places.push((table.required_string("name")?.to_owned(), table.at("name")));
+        }
+        for table in robot::tables(file)? {
+            let name = table.string("name")?.unwrap_or("");
+            self.places.push((name.to_owned(), table.span.clone()));
+        }
+        self.places.push((super::REFERENCE.to_owned(), file.at("reference_point")));
+        if let Some(tool) = file.string("tool")? {
+            self.places.push((tool.to_owned(), file.at("tool")));
+        }
+        self.places.push(("home".to_owned(), file.at("home")));
+        Ok(())
+    }
+
+    /// The mechanism; errors of the builder get their place in the file.
+    pub(super) fn build(mut self) -> Result<Mechanism> {
+        std::mem::take(&mut self.notes).write(&[self.source], self.builder.report());
+        self.builder.build().map_err(|error| {
+            let Error::Model { culprit, message, .. } = error else { return error };
+            let robot = culprit.split('/').next().unwrap_or("");
+            let of = |name: &str| self.places.iter().rev().find(|p| p.0 == name);
+            let span = of(&culprit).or_else(|| of(robot)).map_or(0..0, |p| p.1.clone());
+            self.source.error(span, message, "")
+        })
+    }
+}

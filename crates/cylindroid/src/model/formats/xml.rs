@@ -1,0 +1,271 @@
+//! Reads elements and attributes of XML models: every number checked, every error at its place,
+//! every thing that is not used noted. Shared by URDF, MJCF and SDF.
+
+use std::ops::Range;
+
+use roxmltree::{Document, Node, ParsingOptions};
+
+use super::place::{Notes, Source};
+use crate::error::{Error, Result};
+use crate::model::LoadReport;
+
+/// What to do with a xacro file.
+pub(super) const XACRO_HELP: &str = "expand it first: pip install xacro, then \
+                                     xacro file.urdf.xacro > file.urdf";
+
+/// What all parts of a reader share.
+#[derive(Debug)]
+pub(super) struct Reader<'a> {
+    pub(super) source: Source<'a>,
+    /// The texts of files that the main one includes.
+    pub(super) included: Vec<Source<'a>>,
+    pub(super) notes: Notes,
+    /// The namespace of the root: elements of another one are extensions.
+    pub(super) namespace: Option<&'a str>,
+    /// Elements whose names tell in notes whose something was.
+    pub(super) owners: &'static [&'static str],
+    /// Why an element or attribute of this name is not used.
+    pub(super) why: fn(&str) -> &'static str,
+}
+
+/// Parses XML; errors get their place.
+pub(super) fn document<'t>(source: &Source<'t>) -> Result<Document<'t>> {
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    Document::parse_with_options(source.text, options).map_err(|error| {
+        let position = error.pos();
+        let offset = source.offset(position.row as usize, position.col as usize);
+        let span = offset..offset + 1;
+        if matches!(&error, roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro") {
+            return xacro(source, span);
+        }
+        let text = error.to_string();
+        let message = text.strip_suffix(&format!(" at {position}")).unwrap_or(&text);
+        source.error(span, format!("broken XML: {message}"), "")
+    })
+}
+
+pub(super) fn xacro(source: &Source<'_>, span: Range<usize>) -> Error {
+    source.error(span, "this is xacro, a program that writes a URDF, not a URDF", XACRO_HELP)
+}
+
+impl<'a> Reader<'a> {
+    /// A reader of one file.
+    pub(super) fn new(source: Source<'a>, namespace: Option<&'a str>) -> Self {
+        let (included, notes) = (Vec::new(), Notes::default());
+        let why = |_: &str| "not known to this reader";
+        Self { source, included, notes, namespace, owners: &[], why }
+    }
+
+    /// The file that a node stands in: 0 is the main one.
+    fn file(&self, node: Node<'_, '_>) -> usize {
+        let text = node.document().input_text().as_ptr();
+        self.included.iter().position(|s| s.text.as_ptr() == text).map_or(0, |i| i + 1)
+    }
+
+    /// An error at a byte range of the file that the node stands in.
+    pub(super) fn error(
+        &self,
+        node: Node<'_, '_>,
+        span: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Error {
+        let source = self.file(node).checked_sub(1).and_then(|i| self.included.get(i));
+        source.unwrap_or(&self.source).error(span, message, help)
+    }
+
+    /// Notes that something at a node was not used; `name` says whose it is (may be empty).
+    pub(super) fn note(
+        &mut self,
+        node: Node<'_, '_>,
+        what: impl Into<String>,
+        why: &'static str,
+        name: &str,
+    ) {
+        self.note_at(node, node.range().start, what, why, name);
+    }
+
+    fn note_at(
+        &mut self,
+        node: Node<'_, '_>,
+        offset: usize,
+        what: impl Into<String>,
+        why: &'static str,
+        name: &str,
+    ) {
+        let file = self.file(node);
+        self.notes.add_in(file, offset, what, why, name);
+    }
+
+    /// Writes the notes into the report of a model.
+    pub(super) fn report(&mut self, report: &mut LoadReport) {
+        let mut sources = vec![self.source];
+        sources.extend(&self.included);
+        std::mem::take(&mut self.notes).write(&sources, report);
+    }
+
+    /// True for an element of this name in the namespace of the root.
+    pub(super) fn is(&self, node: Node<'_, '_>, name: &str) -> bool {
+        node.is_element()
+            && node.tag_name().name() == name
+            && node.tag_name().namespace() == self.namespace
+    }
+
+    /// The byte range of `<name`, prefix included.
+    pub(super) fn tag(node: Node<'_, '_>) -> Range<usize> {
+        let start = node.range().start;
+        let text = node.document().input_text().get(start..).unwrap_or("");
+        let length = text.find(|c: char| c.is_whitespace() || c == '/' || c == '>');
+        start..start + length.unwrap_or(text.len())
+    }
+
+    /// The byte range of an attribute's value; of the tag where there is no such attribute.
+    pub(super) fn value(node: Node<'_, '_>, attribute: &str) -> Range<usize> {
+        node.attribute_node(attribute).map_or_else(|| Self::tag(node), |a| a.range_value())
+    }
+
+    pub(super) fn required<'d>(&self, node: Node<'d, '_>, attribute: &str) -> Result<&'d str> {
+        node.attribute(attribute).filter(|v| !v.trim().is_empty()).ok_or_else(|| {
+            let tag = node.tag_name().name();
+            self.error(
+                node,
+                Self::value(node, attribute),
+                format!("<{tag}> has no {attribute}"),
+                format!("write <{tag} {attribute}=\"...\">"),
+            )
+        })
+    }
+
+    /// The numbers of an attribute, any count; infinite ones pass, NaN does not.
+    pub(super) fn list(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<Vec<f64>>> {
+        let Some(text) = node.attribute(attribute) else { return Ok(None) };
+        let what = || format!("{attribute} of <{}>", node.tag_name().name());
+        let read = |(word, message)| self.refuse_number(node, attribute, word, message);
+        numbers_in(text)
+            .map(Some)
+            .map_err(|word| read((text, format!("{}: '{word}' is not a number", what()))))
+    }
+
+    /// An error about the numbers of an attribute.
+    fn refuse_number(
+        &self,
+        node: Node<'_, '_>,
+        attribute: &str,
+        text: &str,
+        message: String,
+    ) -> Error {
+        let help = if text.contains("${") || text.contains("$(") { XACRO_HELP } else { "" };
+        self.error(node, Self::value(node, attribute), message, help)
+    }
+
+    /// The numbers of an attribute; infinite ones pass, NaN does not.
+    fn numbers<const N: usize>(
+        &self,
+        node: Node<'_, '_>,
+        attribute: &str,
+    ) -> Result<Option<[f64; N]>> {
+        let Some(values) = self.list(node, attribute)? else { return Ok(None) };
+        let count = values.len();
+        match <[f64; N]>::try_from(values) {
+            Ok(values) => Ok(Some(values)),
+            Err(_) => {
+                let tag = node.tag_name().name();
+                let message = format!("{attribute} of <{tag}> has {count} numbers, expected {N}");
+                let help = format!("{attribute} takes {N} number{}", if N == 1 { "" } else { "s" });
+                Err(self.error(node, Self::value(node, attribute), message, help))
+            }
+        }
+    }
+
+    /// A vector of finite numbers.
+    pub(super) fn vector<const N: usize>(
+        &self,
+        node: Node<'_, '_>,
+        attribute: &str,
+    ) -> Result<Option<[f64; N]>> {
+        let values = self.numbers::<N>(node, attribute)?;
+        if values.is_some_and(|v| v.iter().any(|x| !x.is_finite())) {
+            return Err(self.error(
+                node,
+                Self::value(node, attribute),
+                format!("{attribute} of <{}> is not finite", node.tag_name().name()),
+                "give finite numbers",
+            ));
+        }
+        Ok(values)
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<f64>> {
+        Ok(self.vector::<1>(node, attribute)?.map(|[x]| x))
+    }
+
+    /// A limit: a number that may be infinite.
+    pub(super) fn bound(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<f64>> {
+        Ok(self.numbers::<1>(node, attribute)?.map(|[x]| x))
+    }
+
+    /// The first child element of this name; further ones are noted.
+    pub(super) fn child<'d, 'i>(&mut self, node: Node<'d, 'i>, name: &str) -> Option<Node<'d, 'i>> {
+        let mut all = node.children().filter(|c| self.is(*c, name));
+        let first = all.next()?;
+        if let Some(second) = all.next() {
+            let what = format!("second <{name}> in <{}>", node.tag_name().name());
+            let owner = node.attribute("name").unwrap_or("");
+            self.note(second, what, "the first one counts", owner);
+        }
+        Some(first)
+    }
+
+    /// An error at the value of an attribute, where the message says it all.
+    pub(super) fn refuse(
+        &self,
+        node: Node<'_, '_>,
+        attribute: &str,
+        message: impl Into<String>,
+    ) -> Error {
+        self.error(node, Self::value(node, attribute), message, "")
+    }
+
+    /// Notes attributes and children that are not among those read.
+    pub(super) fn leftovers(&mut self, node: Node<'_, '_>, attributes: &[&str], children: &[&str]) {
+        self.unread_attributes(node, attributes);
+        for child in node.children().filter(Node::is_element) {
+            let name = child.tag_name().name();
+            let known = child.tag_name().namespace() == self.namespace && children.contains(&name);
+            if !known {
+                let owner = if node.parent_element().is_none() { "" } else { self.owner(node) };
+                let why = (self.why)(name);
+                self.note(child, format!("<{name}>"), why, owner);
+            }
+        }
+    }
+
+    /// Notes attributes that are not among those read.
+    pub(super) fn unread_attributes(&mut self, node: Node<'_, '_>, known: &[&str]) {
+        let tag = node.tag_name().name();
+        let owner = self.owner(node);
+        for attribute in node.attributes() {
+            if attribute.namespace().is_some() || !known.contains(&attribute.name()) {
+                let name = attribute.name();
+                let what = format!("attribute '{name}' of <{tag}>");
+                let why = (self.why)(name);
+                self.note_at(node, attribute.range().start, what, why, owner);
+            }
+        }
+    }
+
+    /// The name of the link, joint, ... that an element stands in.
+    pub(super) fn owner<'d>(&self, node: Node<'d, '_>) -> &'d str {
+        node.ancestors()
+            .find(|n| self.owners.contains(&n.tag_name().name()))
+            .and_then(|n| n.attribute("name"))
+            .unwrap_or("")
+    }
+}
+
+/// The numbers of a text; the first word that is none (NaN is none) as an error.
+pub(super) fn numbers_in(text: &str) -> std::result::Result<Vec<f64>, &str> {
+    let number = |word: &'_ str| word.parse().ok().filter(|x: &f64| !x.is_nan());
+    text.split_whitespace().map(|word| number(word).ok_or(word)).collect()
+}

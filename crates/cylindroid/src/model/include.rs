@@ -1,0 +1,126 @@
+//! One mechanism inside another: its links, joints, loops, contacts and frames under a prefix.
+//!
+//! Checked  tests/it/graph.rs::an_included_mechanism_*
+
+use super::builder::Builder;
+use super::closing::{ContactSpec, LoopSpec};
+use super::joint::{JointKind, Mimic};
+use super::link::Link;
+use super::mechanism::Mechanism;
+use super::spec::JointSpec;
+use crate::error::Result;
+use crate::spatial::Pose;
+
+/// How a mechanism stands in another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inclusion<'a> {
+    /// Its name: what it brings is called `name/...`. Empty: names stay as they are.
+    pub name: &'a str,
+    /// The link that carries its root. A root that is named like this link is this link.
+    pub parent: &'a str,
+    /// Where the root stands on that link.
+    pub parent_from_root: Pose,
+    /// True if the root moves freely, as an object does.
+    pub free: bool,
+    /// The configuration that becomes home.
+    pub start: &'a [f64],
+}
+
+impl Inclusion<'_> {
+    fn prefixed(&self, name: &str) -> String {
+        if self.name.is_empty() { name.to_owned() } else { format!("{}/{name}", self.name) }
+    }
+
+    /// What the joint between the parent and the root is called.
+    fn base(&self) -> String {
+        format!("{}/base", if self.name.is_empty() { self.parent } else { self.name })
+    }
+
+    /// What a link of the included mechanism is called.
+    #[must_use]
+    pub fn link(&self, robot: &Mechanism, index: usize) -> String {
+        robot.links().get(index).map_or_else(String::new, |l| self.prefixed(&l.name))
+    }
+}
+
+impl Builder {
+    /// Adds a whole mechanism. Its root hangs at `parent` by a joint `name/base` (`parent/base`
+    /// without a name), fixed or free.
+    ///
+    /// # Errors
+    /// A start configuration that does not fit the mechanism.
+    pub fn include(&mut self, robot: &Mechanism, how: Inclusion<'_>) -> Result<&mut Self> {
+        robot.check_q("start", how.start)?;
+        let name = |i: usize| how.link(robot, i);
+        let is_child = |i: usize| robot.joints().iter().any(|j| j.child == i);
+        let root = (0..robot.links().len()).find(|&i| !is_child(i)).unwrap_or(0);
+        for (i, link) in robot.links().iter().enumerate() {
+            if name(i) != how.parent {
+                self.link(Link { name: name(i), ..link.clone() });
+            }
+        }
+        if name(root) != how.parent {
+            let kind = if how.free { JointKind::Free } else { JointKind::Fixed };
+            self.joint(JointSpec {
+                parent_from_joint: how.parent_from_root,
+                actuated: false,
+                ..JointSpec::new(&how.base(), kind, how.parent, &name(root))
+            });
+        }
+        for joint in robot.joints() {
+            let follows = |m: &Mimic| Mimic { joint: how.prefixed(&m.joint), ..m.clone() };
+            self.joint(JointSpec {
+                name: how.prefixed(&joint.name),
+                kind: joint.kind,
+                parent: name(joint.parent),
+                child: name(joint.child),
+                parent_from_joint: joint.parent_from_joint,
+                joint_from_child: joint.joint_from_child,
+                axis: joint.axis,
+                limits: joint.limits,
+                mimic: joint.mimic.as_ref().map(follows),
+                actuated: joint.actuated,
+            });
+            if joint.mimic.is_none() && joint.kind.dof() > 0 {
+                self.start(&how.prefixed(&joint.name), &how.start[joint.coordinates.clone()]);
+            }
+        }
+        for joint in robot.loops() {
+            self.close(LoopSpec {
+                name: how.prefixed(&joint.name),
+                kind: joint.kind,
+                a: name(joint.a),
+                b: name(joint.b),
+                link_a_from_joint: joint.link_a_from_joint,
+                link_b_from_joint: joint.link_b_from_joint,
+                axis: joint.axis,
+                limits: joint.limits,
+                actuated: joint.actuated,
+            });
+        }
+        for contact in robot.contacts() {
+            self.contact(ContactSpec {
+                name: how.prefixed(&contact.name),
+                kind: contact.kind,
+                a: name(contact.a),
+                b: name(contact.b),
+                link_a_from_contact: contact.link_a_from_contact,
+                link_b_from_contact: contact.link_b_from_contact,
+                friction: contact.friction,
+            });
+        }
+        // The frames of the links come with the links.
+        for frame in robot.frames().iter().skip(robot.links().len()) {
+            self.frame(&how.prefixed(&frame.name), &name(frame.link), frame.link_from_frame);
+        }
+        for note in &robot.report().ignored {
+            let of = if how.name.is_empty() { robot.name() } else { how.name };
+            let what = match note.line {
+                0 => format!("{of}: {}", note.what),
+                line => format!("{of}, line {line}: {}", note.what),
+            };
+            self.report().ignore(0, what, note.why.clone());
+        }
+        Ok(self)
+    }
+}

@@ -1,0 +1,73 @@
+//! Mimic joints: whom they follow in the end.
+
+use std::collections::BTreeMap;
+
+use super::builder::Builder;
+use crate::error::{Error, Result};
+
+impl Builder {
+    /// For every mimic joint the joint at the end of its chain, with the ratio and offset to it.
+    pub(super) fn resolve_mimics(&self) -> Result<BTreeMap<usize, (usize, f64, f64)>> {
+        let mut resolved = BTreeMap::new();
+        let by_name: BTreeMap<&str, usize> =
+            self.joints.iter().enumerate().map(|(j, o)| (o.name.as_str(), j)).collect();
+        for (index, joint) in self.joints.iter().enumerate() {
+            let Some(first) = &joint.mimic else { continue };
+            let name = joint.name.as_str();
+            let (mut multiplier, mut offset) = (1.0, 0.0);
+            let mut step = Some(first);
+            let mut source = 0;
+            let mut length = 0;
+            while let Some(mimic) = step {
+                offset += multiplier * mimic.offset;
+                multiplier *= mimic.multiplier;
+                if !(multiplier.is_finite() && offset.is_finite()) {
+                    return self.refuse(
+                        name,
+                        format!("the multiplier and offset of mimic joint '{name}' must be finite"),
+                    );
+                }
+                let Some(&j) = by_name.get(mimic.joint.as_str()) else {
+                    if self.loops.iter().any(|l| l.name == mimic.joint) {
+                        return self.refuse(
+                            name,
+                            format!(
+                                "mimic joint '{name}' follows '{}', which closes a loop and has \
+                                 no coordinate",
+                                mimic.joint
+                            ),
+                        );
+                    }
+                    let unknown = Error::unknown(
+                        "joint",
+                        &mimic.joint,
+                        self.joints.iter().map(|o| o.name.as_str()),
+                    );
+                    return self.refuse(name, format!("mimic joint '{name}' follows: {unknown}"));
+                };
+                source = j;
+                step = self.joints[j].mimic.as_ref();
+                length += 1;
+                if length > self.joints.len() {
+                    return self.refuse(
+                        name,
+                        format!("mimic joint '{name}' follows itself in a ring of mimic joints"),
+                    );
+                }
+            }
+            if joint.kind.dof() != 1 || self.joints[source].kind.dof() != 1 {
+                return self.refuse(
+                    name,
+                    format!(
+                        "mimic joint '{name}' ({}) follows '{}' ({}); both must have one coordinate",
+                        joint.kind.name(),
+                        self.joints[source].name,
+                        self.joints[source].kind.name()
+                    ),
+                );
+            }
+            resolved.insert(index, (source, multiplier, offset));
+        }
+        Ok(resolved)
+    }
+}

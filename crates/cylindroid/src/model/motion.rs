@@ -1,0 +1,71 @@
+//! The displacement of a joint, and where links are at a configuration.
+//!
+//! Formula  parent_from_child = parent_from_joint motion(q) joint_from_child
+//! Why so   kinematics works on nodes and comes after the model; loaders need poses while they
+//!          still write the model, once for each file, so the plain product is enough here
+//! Checked  tests/it/graph.rs::motion_*, against `State`; tests/formats/closed_file.rs
+
+use super::joint::JointKind;
+use super::mechanism::Mechanism;
+use crate::spatial::{Pose, Rotation, Vec3};
+use crate::tolerance::ZERO_AXIS;
+
+impl JointKind {
+    /// Where the joint takes its second body: the pose of the joint frame moved by `q` in the
+    /// joint frame at zero. Coordinates that are missing count as zero.
+    #[must_use]
+    pub fn motion(self, axis: Vec3, q: &[f64]) -> Pose {
+        let axis = axis.unit(ZERO_AXIS).unwrap_or(Vec3::Z);
+        let x = |i: usize| q.get(i).copied().unwrap_or(0.0);
+        let vector = |i: usize| Vec3::new(x(i), x(i + 1), x(i + 2));
+        let turn = |axis: Vec3, angle: f64| Rotation::about(axis, angle).unwrap_or_default();
+        match self {
+            Self::Fixed => Pose::IDENTITY,
+            Self::Revolute | Self::Continuous => Pose::from_rotation(turn(axis, x(0))),
+            Self::Prismatic => Pose::from_translation(axis * x(0)),
+            Self::Helical { pitch } => {
+                Pose { rotation: turn(axis, x(0)), translation: axis * (pitch * x(0)) }
+            }
+            Self::Cylindrical => Pose { rotation: turn(axis, x(1)), translation: axis * x(0) },
+            Self::Universal { second } => {
+                Pose::from_rotation(turn(axis, x(0)) * turn(second, x(1)))
+            }
+            Self::Spherical => Pose::from_rotation(Rotation::exp(vector(0))),
+            Self::Planar => {
+                let frame = Rotation::z_to(axis).unwrap_or_default();
+                let translation = frame * Vec3::new(x(0), x(1), 0.0);
+                Pose { rotation: turn(axis, x(2)), translation }
+            }
+            Self::Free => Pose { rotation: Rotation::exp(vector(3)), translation: vector(0) },
+        }
+    }
+}
+
+impl Mechanism {
+    /// The pose of every link in the root, for a `q` that was checked.
+    pub(super) fn link_poses(&self, q: &[f64]) -> Vec<Pose> {
+        let joints = self.joints();
+        // Mimic joints may follow one another, in any order of the tree.
+        let value = |start: usize| {
+            let (mut joint, mut factor, mut sum) = (start, 1.0, 0.0);
+            while let Some(mimic) = &joints[joint].mimic {
+                let Some(source) = joints.iter().position(|j| j.name == mimic.joint) else { break };
+                sum += factor * mimic.offset;
+                factor *= mimic.multiplier;
+                joint = source;
+            }
+            factor * joints[joint].coordinates.clone().map(|c| q[c]).sum::<f64>() + sum
+        };
+        let mut poses = vec![Pose::IDENTITY; self.links().len()];
+        for (i, joint) in joints.iter().enumerate() {
+            let motion = if joint.mimic.is_some() {
+                joint.kind.motion(joint.axis, &[value(i)])
+            } else {
+                joint.kind.motion(joint.axis, &q[joint.coordinates.clone()])
+            };
+            poses[joint.child] =
+                poses[joint.parent] * joint.parent_from_joint * motion * joint.joint_from_child;
+        }
+        poses
+    }
+}
