@@ -76,7 +76,7 @@ pub const NEARLY_PARALLEL: f64 = 1e-6;
 
 /// The centre of a screw system is found when a step to it is below this part of the
 /// characteristic length [-]: margins then depend on the twists given by less than a factor of two.
-pub const CENTER_FOUND: f64 = 1e-2;
+pub const CENTER_FOUND: f64 = 0.1;
 
 /// Coordinates of a canonical origin whose weight is below this are not determined [-].
 pub const ORIGIN_DETERMINED: f64 = 1e-13;

@@ -171,7 +171,7 @@ fn infinite_pitch_is_the_limit() {
 
 #[test]
 fn the_chosen_pitch_is_the_best() {
-    cases(27, 9, |_, case| {
+    cases(27, 9, |random, case| {
         let s = spanned(case);
         let choice = s.choose_pitch();
         assert_eq!(choice.pitch.is_none(), case.never, "{:?}", case.form);
@@ -183,6 +183,13 @@ fn the_chosen_pitch_is_the_best() {
             assert!(choice.norm <= norm * (1.0 + 2e-6), "{:?} {h}: {norm}", case.form);
         }
         assert!(choice.norm <= choice.norm_at_infinity);
+        // Between the pitches of the curve, too, and nearby.
+        let near =
+            choice.pitch.filter(|h| h.is_finite()).map_or(vec![], |h| vec![0.97 * h, 1.03 * h]);
+        for h in (0..50).map(|_| random.within(-4.0, 4.0)).chain(near) {
+            let norm = s.projector_norm(h);
+            assert!(choice.norm <= norm * (1.0 + 2e-6), "{:?} {h}: {norm} {choice:?}", case.form);
+        }
         match choice.pitch {
             Some(h) => assert_eq!(choice.norm, s.projector_norm(h)),
             None => assert_eq!(choice.norm, f64::INFINITY),
