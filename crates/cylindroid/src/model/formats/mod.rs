@@ -8,6 +8,7 @@
 pub mod dh;
 mod graph;
 mod mesh;
+pub mod mjcf;
 mod place;
 pub mod toml;
 pub mod urdf;
@@ -71,13 +72,24 @@ fn read_file(path: &Path, depth: usize) -> Result<Mechanism> {
     let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
     match extension(path).as_deref() {
         Some("toml") => toml::read(&text, path, depth),
-        Some("urdf" | "xml" | "xacro" | "sdf" | "mjcf") => urdf::parse(&text, path),
-        _ if is_xml => urdf::parse(&text, path),
+        Some("mjcf") => mjcf::parse(&text, path),
+        Some("urdf" | "xml" | "xacro" | "sdf") => read_xml(&text, path),
+        _ if is_xml => read_xml(&text, path),
         _ => Err(Error::InvalidOption {
             option: "model file",
             value: path.display().to_string(),
-            reason: "its format cannot be told; name a .urdf or .toml file".to_owned(),
+            reason: "its format cannot be told; name a .urdf, .xml, .sdf or .toml file".to_owned(),
         }),
+    }
+}
+
+/// Reads XML by its root element; what cannot be told goes to URDF, which says what it is not.
+fn read_xml(text: &str, path: &Path) -> Result<Mechanism> {
+    let source = place::Source { format: "XML", path, text };
+    let root = xml::document(&source).ok().map(|d| d.root_element().tag_name().name().to_owned());
+    match root.as_deref() {
+        Some("mujoco" | "mujocoinclude") => mjcf::parse(text, path),
+        _ => urdf::parse(text, path),
     }
 }
 

@@ -1,0 +1,321 @@
+//! Bodies, joints and sites of MJCF.
+//!
+//! Formula  parent_from_body(q) = pose product_i [Trans(p_i) motion_i(q_i - ref_i) Trans(-p_i)]
+//!          with p_i, axis_i in the axes of the body; free: parent_from_body(q) = motion(q)
+//! Why so   every body keeps its own frame, so poses are those of MuJoCo; q counts as qpos does,
+//!          and home is qpos0 (or the key frame named "home")
+//! Source   mujoco.readthedocs.io, XML reference, body, joint; mj_kinematics
+//! Checked  tests/formats/mjcf.rs, against poses that MuJoCo computed
+
+use std::collections::BTreeSet;
+
+use roxmltree::Node;
+
+use super::compiler::ORIENTATIONS;
+use super::defaults::Element;
+use super::{Mjcf, used};
+use crate::error::{Error, Result};
+use crate::model::{JointKind, JointSpec, Limits, Link};
+use crate::spatial::{Pose, Vec3};
+
+/// A body still to be read.
+struct Pending<'d> {
+    node: Node<'d, 'd>,
+    parent: String,
+    /// Where `<frame>` elements put it.
+    parent_from_frame: Pose,
+    childclass: usize,
+    /// True inside the world, where a body may be free.
+    top: bool,
+}
+
+/// What stands in a body, `<frame>` elements resolved.
+#[derive(Default)]
+struct Inside<'d> {
+    bodies: Vec<(Node<'d, 'd>, Pose, usize)>,
+    joints: Vec<(Node<'d, 'd>, usize)>,
+    geoms: Vec<(Node<'d, 'd>, Pose, usize)>,
+    sites: Vec<(Node<'d, 'd>, Pose, usize)>,
+    inertial: Option<Node<'d, 'd>>,
+}
+
+/// A name that no other thing of its kind has.
+pub(super) fn unique(taken: &mut BTreeSet<String>, wanted: &str) -> String {
+    let mut name = wanted.to_owned();
+    let mut count = 1;
+    while !taken.insert(name.clone()) {
+        count += 1;
+        name = format!("{wanted}.{count}");
+    }
+    name
+}
+
+impl<'d> Mjcf<'d> {
+    /// The world and all bodies, depth-first in the order of the file.
+    pub(super) fn bodies(&mut self) -> Result<()> {
+        self.links.push(Link::named("world"));
+        self.link_names.insert("world".to_owned());
+        self.world.insert("world".to_owned(), Pose::IDENTITY);
+        let roots = self.files.children(self.files.main.root_element());
+        let mut worlds = Vec::new();
+        for root in roots.into_iter().filter(|n| n.has_tag_name("worldbody")) {
+            let class = self.defaults.class(&self.reader, root, "childclass")?.unwrap_or(0);
+            let inside = self.inside(root, class)?;
+            self.furnish(0, &inside)?;
+            for (joint, _) in &inside.joints {
+                self.reader.note(*joint, "<joint> of the world", "the world does not move", "");
+            }
+            worlds.push(inside.bodies);
+        }
+        let mut stack: Vec<Pending<'d>> = Vec::new();
+        for bodies in worlds.into_iter().rev() {
+            push(&mut stack, "world", bodies, true);
+        }
+        while let Some(body) = stack.pop() {
+            self.body(body, &mut stack)?;
+        }
+        Ok(())
+    }
+
+    fn body(&mut self, body: Pending<'d>, stack: &mut Vec<Pending<'d>>) -> Result<()> {
+        let Pending { node, parent, parent_from_frame, childclass, top } = body;
+        let mut known = vec!["name", "pos", "childclass"];
+        known.extend(ORIENTATIONS);
+        self.reader.unread_attributes(node, &known);
+        if node.attribute("mocap").is_some_and(|m| m.trim() == "true") {
+            let name = node.attribute("name").unwrap_or("");
+            self.reader.note(node, "mocap body", "it stays where the file puts it", name);
+        }
+        let name = match node.attribute("name").map(str::trim).filter(|n| !n.is_empty()) {
+            Some(name) => {
+                if !self.link_names.insert(name.to_owned()) {
+                    let message = format!("two bodies are named '{name}'");
+                    return Err(self.reader.refuse(node, "name", message));
+                }
+                name.to_owned()
+            }
+            None => unique(&mut self.link_names, &format!("body{}", self.links.len())),
+        };
+        let childclass =
+            self.defaults.class(&self.reader, node, "childclass")?.unwrap_or(childclass);
+        let inside = self.inside(node, childclass)?;
+        let pose = parent_from_frame * self.compiler.pose(&self.reader, &Element::bare(node))?;
+        self.joints_of(&parent, &name, pose, &inside.joints, top)?;
+        let world = self.world.get(&parent).copied().unwrap_or_default() * pose;
+        self.world.insert(name.clone(), world);
+        self.links.push(Link::named(&name));
+        self.furnish(self.links.len() - 1, &inside)?;
+        push(stack, &name, inside.bodies, false);
+        Ok(())
+    }
+
+    /// What stands in a body; `<frame>` elements only move what is in them.
+    fn inside(&mut self, body: Node<'d, 'd>, childclass: usize) -> Result<Inside<'d>> {
+        let mut inside = Inside::default();
+        let under = |node, pose: Pose, class: usize| {
+            let children = self.files.children(node).into_iter().rev();
+            children.map(move |child| (child, pose, class)).collect::<Vec<_>>()
+        };
+        let mut stack = under(body, Pose::IDENTITY, childclass);
+        let mut unread = Vec::new();
+        while let Some((child, pose, class)) = stack.pop() {
+            match child.tag_name().name() {
+                "body" => inside.bodies.push((child, pose, class)),
+                "joint" | "freejoint" => inside.joints.push((child, class)),
+                "geom" => inside.geoms.push((child, pose, class)),
+                "site" => inside.sites.push((child, pose, class)),
+                "inertial" if inside.inertial.is_none() => inside.inertial = Some(child),
+                "frame" => {
+                    let own = self.compiler.pose(&self.reader, &Element::bare(child))?;
+                    let class_of = self.defaults.class(&self.reader, child, "childclass")?;
+                    stack.extend(under(child, pose * own, class_of.unwrap_or(class)));
+                }
+                _ => unread.push(child),
+            }
+        }
+        for child in unread {
+            let name = child.tag_name().name();
+            let owner = self.reader.owner(child).to_owned();
+            self.reader.note(child, format!("<{name}>"), (self.reader.why)(name), &owner);
+        }
+        Ok(inside)
+    }
+
+    /// Shapes, masses and sites of a link.
+    fn furnish(&mut self, index: usize, inside: &Inside<'d>) -> Result<()> {
+        let mut link = self.links[index].clone();
+        if let Some(node) = inside.inertial {
+            link.inertial = self.inertial(node)?;
+        }
+        for (node, pose, class) in &inside.geoms {
+            self.geom(&mut link, *node, *class, *pose)?;
+        }
+        for (node, pose, class) in &inside.sites {
+            let element = self.defaults.of(&self.reader, *node, *class, &["site"])?;
+            self.reader.unread_attributes(*node, used("site"));
+            let Some(name) = node.attribute("name") else {
+                let why = "without a name there is no way to speak of it";
+                self.reader.note(*node, "<site> without a name", why, &link.name);
+                continue;
+            };
+            let place = *pose * self.compiler.pose(&self.reader, &element)?;
+            self.sites.push((name.to_owned(), link.name.clone(), place));
+        }
+        self.links[index] = link;
+        Ok(())
+    }
+
+    /// The joints between two bodies: one after the other, with a link between each two.
+    fn joints_of(
+        &mut self,
+        parent: &str,
+        body: &str,
+        pose: Pose,
+        joints: &[(Node<'d, 'd>, usize)],
+        top: bool,
+    ) -> Result<()> {
+        if joints.is_empty() {
+            let name = unique(&mut self.joint_names, body);
+            let fixed = JointSpec::new(&name, JointKind::Fixed, parent, body);
+            self.joints.push(JointSpec { parent_from_joint: pose, actuated: false, ..fixed });
+            return Ok(());
+        }
+        let mut near = parent.to_owned();
+        let mut pending = pose;
+        for (i, (node, class)) in joints.iter().enumerate() {
+            let last = i + 1 == joints.len();
+            let (mut spec, reference) = self.joint(*node, *class, body)?;
+            if spec.kind == JointKind::Free && !(top && joints.len() == 1) {
+                let message = format!("body '{body}' is free beside another joint or below a body");
+                return Err(self.reader.error(
+                    *node,
+                    crate::model::formats::xml::Reader::tag(*node),
+                    message,
+                    "a free joint is the only one of a body of the world",
+                ));
+            }
+            let far = if last {
+                body.to_owned()
+            } else {
+                unique(&mut self.link_names, &format!("{body}.{}", spec.name))
+            };
+            if spec.kind == JointKind::Free {
+                let turn = pose.rotation.log().to_array();
+                let q = [pose.translation.to_array(), turn].concat();
+                self.starts.push((spec.name.clone(), q));
+            } else {
+                let anchor = spec.parent_from_joint;
+                let back = spec.kind.motion(spec.axis, &reference).inverse();
+                spec.parent_from_joint = pending * anchor * back;
+                spec.joint_from_child = anchor.inverse();
+                self.starts.push((spec.name.clone(), reference));
+            }
+            (spec.parent, spec.child) = (near, far.clone());
+            if !last {
+                let base = self.world.get(parent).copied().unwrap_or_default();
+                self.world.insert(far.clone(), base * pose);
+                self.links.push(Link::named(&far));
+            }
+            self.joints.push(spec);
+            (near, pending) = (far, Pose::IDENTITY);
+        }
+        Ok(())
+    }
+
+    /// A joint at its anchor in the body, and its coordinates at `ref`.
+    fn joint(
+        &mut self,
+        node: Node<'d, 'd>,
+        class: usize,
+        body: &str,
+    ) -> Result<(JointSpec, Vec<f64>)> {
+        let reader = &mut self.reader;
+        let is_free = node.has_tag_name("freejoint");
+        let element = if is_free {
+            Element::bare(node)
+        } else {
+            self.defaults.of(reader, node, class, &["joint"])?
+        };
+        reader.unread_attributes(node, used("joint"));
+        let kind = match (is_free, element.text("type").unwrap_or("hinge")) {
+            (true, _) | (_, "free") => JointKind::Free,
+            (_, "hinge") => JointKind::Revolute,
+            (_, "slide") => JointKind::Prismatic,
+            (_, "ball") => JointKind::Spherical,
+            (_, other) => {
+                let unknown =
+                    Error::unknown("joint type", other, ["hinge", "slide", "ball", "free"]);
+                return Err(element.refuse(reader, "type", unknown.to_string()));
+            }
+        };
+        let name = match node.attribute("name").map(str::trim).filter(|n| !n.is_empty()) {
+            Some(name) if !self.joint_names.insert(name.to_owned()) => {
+                let message = format!("two joints are named '{name}'");
+                return Err(reader.refuse(node, "name", message));
+            }
+            Some(name) => name.to_owned(),
+            None => unique(&mut self.joint_names, body),
+        };
+        let mut spec = JointSpec::new(&name, kind, "", "");
+        spec.actuated = false;
+        let one = matches!(kind, JointKind::Revolute | JointKind::Prismatic);
+        let unit = if kind == JointKind::Prismatic { 1.0 } else { self.compiler.unit };
+        if kind != JointKind::Free {
+            let anchor = element.vector::<3>(reader, "pos")?.map_or(Vec3::ZERO, Vec3::from_array);
+            spec.parent_from_joint = Pose::from_translation(anchor);
+        }
+        if one && let Some(axis) = element.vector::<3>(reader, "axis")? {
+            spec.axis = Vec3::from_array(axis);
+            if spec.axis.unit(crate::tolerance::ZERO_AXIS).is_none() {
+                let message = format!("the axis of joint '{name}' has no direction");
+                return Err(element.refuse(reader, "axis", message));
+            }
+        }
+        if let Some([lower, upper]) = element.vector::<2>(reader, "range")? {
+            let limited = match element.text("limited") {
+                Some("true") => true,
+                Some("false") => false,
+                _ => self.compiler.autolimits,
+            };
+            if limited && one {
+                if lower > upper {
+                    let message = format!(
+                        "joint '{name}' has lower limit {lower} above its upper limit {upper}"
+                    );
+                    return Err(element.refuse(reader, "range", message));
+                }
+                (spec.limits.lower, spec.limits.upper) = (lower * unit, upper * unit);
+            } else if limited {
+                reader.note(node, "range of a ball joint", "cones are not limits here", &name);
+            }
+        }
+        if let Some([lower, upper]) = element.vector::<2>(reader, "actuatorfrcrange")? {
+            spec.limits.effort = lower.abs().max(upper.abs());
+        }
+        if kind == JointKind::Revolute && spec.limits.lower == f64::NEG_INFINITY {
+            spec.kind = JointKind::Continuous;
+            spec.limits = Limits { effort: spec.limits.effort, ..Limits::NONE };
+        }
+        let reference = match element.number(reader, "ref")? {
+            Some(x) if one => vec![x * unit],
+            _ if one => vec![0.0],
+            _ => vec![0.0; kind.dof()],
+        };
+        Ok((spec, reference))
+    }
+}
+
+fn push<'d>(
+    stack: &mut Vec<Pending<'d>>,
+    parent: &str,
+    bodies: Vec<(Node<'d, 'd>, Pose, usize)>,
+    top: bool,
+) {
+    stack.extend(bodies.into_iter().rev().map(|(node, parent_from_frame, childclass)| Pending {
+        node,
+        parent: parent.to_owned(),
+        parent_from_frame,
+        childclass,
+        top,
+    }));
+}

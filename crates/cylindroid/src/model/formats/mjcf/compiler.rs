@@ -1,0 +1,150 @@
+//! The `<compiler>` of MJCF and what it rules: angles and orientations.
+//!
+//! Formula  quat w x y z; axisangle x y z a; euler by eulerseq, small letters about turned axes,
+//!          capitals about fixed ones; xyaxes x y, y made orthogonal to x; zaxis the smallest turn
+//!          of z onto it
+//! Units    degrees unless angle = "radian"; lengths in m
+//! Source   mujoco.readthedocs.io, Modeling, frame orientations and compiler
+//! Checked  tests/formats/mjcf.rs::orientations
+
+use super::defaults::Element;
+use super::files::Files;
+use crate::error::{Error, Result};
+use crate::model::formats::xml::Reader;
+use crate::spatial::{Mat3, Pose, Quaternion, Rotation, Vec3};
+use crate::tolerance::ZERO_AXIS;
+
+/// Ways to write an orientation.
+pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
+
+/// The settings of a model.
+#[derive(Debug, Clone)]
+pub(super) struct Compiler {
+    /// rad in the file's unit of angle.
+    pub(super) unit: f64,
+    sequence: [char; 3],
+    pub(super) autolimits: bool,
+    /// Folder of meshes, from that of the model.
+    pub(super) meshes: String,
+}
+
+impl Compiler {
+    pub(super) fn read(files: &Files<'_>, reader: &mut Reader<'_>) -> Result<Self> {
+        let degree = std::f64::consts::PI / 180.0;
+        let mut it = Self {
+            unit: degree,
+            sequence: ['x', 'y', 'z'],
+            autolimits: true,
+            meshes: String::new(),
+        };
+        let root = files.children(files.main.root_element());
+        for node in root.into_iter().filter(|n| n.has_tag_name("compiler")) {
+            let known = ["angle", "eulerseq", "autolimits", "meshdir", "assetdir", "coordinate"];
+            reader.unread_attributes(node, &known);
+            match node.attribute("angle").map(str::trim) {
+                None => {}
+                Some("radian") => it.unit = 1.0,
+                Some("degree") => it.unit = degree,
+                Some(other) => {
+                    let unknown = Error::unknown("angle", other, ["radian", "degree"]);
+                    return Err(reader.refuse(node, "angle", unknown.to_string()));
+                }
+            }
+            if let Some(text) = node.attribute("eulerseq") {
+                let letters: Vec<char> = text.trim().chars().collect();
+                match <[char; 3]>::try_from(letters) {
+                    Ok(three) if three.iter().all(|c| "xyzXYZ".contains(*c)) => it.sequence = three,
+                    _ => {
+                        let message = format!("eulerseq is '{text}', three letters of xyzXYZ");
+                        return Err(reader.refuse(node, "eulerseq", message));
+                    }
+                }
+            }
+            if let Some(text) = node.attribute("autolimits") {
+                it.autolimits = text.trim() == "true";
+            }
+            if node.attribute("coordinate").is_some_and(|c| c.trim() == "global") {
+                let message = "coordinate = \"global\" was removed from MJCF";
+                return Err(reader.refuse(node, "coordinate", message));
+            }
+            if let Some(folder) = node.attribute("meshdir").or(node.attribute("assetdir")) {
+                folder.trim().clone_into(&mut it.meshes);
+            }
+        }
+        Ok(it)
+    }
+
+    /// The pose that an element writes as `pos` and one of the orientations.
+    pub(super) fn pose(&self, reader: &Reader<'_>, element: &Element<'_>) -> Result<Pose> {
+        let translation = element.vector::<3>(reader, "pos")?.map_or(Vec3::ZERO, Vec3::from_array);
+        Ok(Pose { rotation: self.orientation(reader, element)?, translation })
+    }
+
+    fn orientation(&self, reader: &Reader<'_>, element: &Element<'_>) -> Result<Rotation> {
+        let mut given = ORIENTATIONS.into_iter().filter(|a| element.node.has_attribute(*a));
+        if let (Some(first), Some(second)) = (given.next(), given.next()) {
+            let message =
+                format!("<{}> has both {first} and {second}", element.node.tag_name().name());
+            return Err(element.refuse(reader, second, message));
+        }
+        let refuse = |attribute: &str, message: &str| {
+            Err(element.refuse(reader, attribute, message.to_owned()))
+        };
+        if let Some([w, x, y, z]) = element.vector::<4>(reader, "quat")? {
+            return Quaternion { w, x, y, z }
+                .rotation()
+                .map_err(|e| element.refuse(reader, "quat", e.to_string()));
+        }
+        if let Some([x, y, z, angle]) = element.vector::<4>(reader, "axisangle")? {
+            return match Rotation::about(Vec3::new(x, y, z), angle * self.unit) {
+                Some(rotation) => Ok(rotation),
+                None => refuse("axisangle", "the axis has no direction"),
+            };
+        }
+        if let Some(angles) = element.vector::<3>(reader, "euler")? {
+            return Ok(self.euler(angles));
+        }
+        if let Some([a, b, c, d, e, f]) = element.vector::<6>(reader, "xyaxes")? {
+            let (x, y) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
+            let axes = x.unit(ZERO_AXIS).and_then(|x| {
+                let y = (y - x * x.dot(y)).unit(ZERO_AXIS)?;
+                Rotation::from_matrix(Mat3::from_cols(x, y, x.cross(y))).ok()
+            });
+            let none = || refuse("xyaxes", "the two axes are zero or parallel");
+            return axes.map_or_else(none, Ok);
+        }
+        if let Some(z) = element.vector::<3>(reader, "zaxis")? {
+            return match turn_z_to(Vec3::from_array(z)) {
+                Some(rotation) => Ok(rotation),
+                None => refuse("zaxis", "the axis has no direction"),
+            };
+        }
+        Ok(Rotation::IDENTITY)
+    }
+
+    fn euler(&self, angles: [f64; 3]) -> Rotation {
+        let mut rotation = Rotation::IDENTITY;
+        for (letter, angle) in self.sequence.into_iter().zip(angles) {
+            let axis = match letter.to_ascii_lowercase() {
+                'x' => Vec3::X,
+                'y' => Vec3::Y,
+                _ => Vec3::Z,
+            };
+            let turn = Rotation::about(axis, angle * self.unit).unwrap_or_default();
+            rotation = if letter.is_lowercase() { rotation * turn } else { turn * rotation };
+        }
+        rotation
+    }
+}
+
+/// The smallest turn that takes z to a direction; half a turn about x where it is -z.
+pub(super) fn turn_z_to(direction: Vec3) -> Option<Rotation> {
+    let direction = direction.unit(ZERO_AXIS)?;
+    let across = Vec3::Z.cross(direction);
+    let sine = across.norm();
+    if sine <= ZERO_AXIS {
+        let half = Rotation::about(Vec3::X, std::f64::consts::PI);
+        return if direction.z > 0.0 { Some(Rotation::IDENTITY) } else { half };
+    }
+    Rotation::about(across, sine.atan2(direction.z))
+}

@@ -1,0 +1,147 @@
+//! Default classes of MJCF: what an element does not say, its class says.
+//!
+//! Formula  own attribute, else that of its `class` (else the nearest `childclass` above, else the
+//!          outermost default), else that of the class around it, outwards
+//! Source   mujoco.readthedocs.io, Modeling, default settings
+
+use roxmltree::Node;
+
+use super::files::Files;
+use super::used;
+use crate::error::{Error, Result};
+use crate::model::formats::xml::Reader;
+
+/// Default classes; the outermost is the first.
+pub(super) struct Defaults<'d> {
+    classes: Vec<Class<'d>>,
+}
+
+struct Class<'d> {
+    name: &'d str,
+    parent: Option<usize>,
+    elements: Vec<Node<'d, 'd>>,
+}
+
+/// An element with its defaults.
+#[derive(Clone)]
+pub(super) struct Element<'d> {
+    pub(super) node: Node<'d, 'd>,
+    /// Where its attributes are looked for, nearest first.
+    places: Vec<Node<'d, 'd>>,
+}
+
+impl<'d> Defaults<'d> {
+    pub(super) fn read(files: &Files<'d>, reader: &mut Reader<'_>) -> Result<Self> {
+        let mut defaults =
+            Self { classes: vec![Class { name: "main", parent: None, elements: Vec::new() }] };
+        let root = files.children(files.main.root_element());
+        let outermost = root.into_iter().filter(|n| n.has_tag_name("default"));
+        // Outermost defaults are all one class; those inside make classes of their own.
+        let mut stack: Vec<(Node<'d, 'd>, usize)> = outermost.map(|n| (n, 0)).collect();
+        stack.reverse();
+        while let Some((node, class)) = stack.pop() {
+            reader.unread_attributes(node, &["class"]);
+            if let (0, Some(name)) = (class, node.attribute("class")) {
+                defaults.classes[0].name = name;
+            }
+            let mut nested = Vec::new();
+            for child in files.children(node) {
+                if child.has_tag_name("default") {
+                    let name = reader.required(child, "class")?;
+                    let parent = Some(class);
+                    defaults.classes.push(Class { name, parent, elements: Vec::new() });
+                    nested.push((child, defaults.classes.len() - 1));
+                } else {
+                    reader.unread_attributes(child, used(child.tag_name().name()));
+                    defaults.classes[class].elements.push(child);
+                }
+            }
+            stack.extend(nested.into_iter().rev());
+        }
+        Ok(defaults)
+    }
+
+    /// The index of a class.
+    pub(super) fn class(
+        &self,
+        reader: &Reader<'_>,
+        node: Node<'d, 'd>,
+        attribute: &str,
+    ) -> Result<Option<usize>> {
+        let Some(name) = node.attribute(attribute) else { return Ok(None) };
+        match self.classes.iter().position(|c| c.name == name) {
+            Some(i) => Ok(Some(i)),
+            None => {
+                let known = self.classes.iter().map(|c| c.name);
+                let unknown = Error::unknown("default class", name, known);
+                Err(reader.refuse(node, attribute, unknown.to_string()))
+            }
+        }
+    }
+
+    /// An element with its defaults, which stand in elements of these names.
+    pub(super) fn of(
+        &self,
+        reader: &Reader<'_>,
+        node: Node<'d, 'd>,
+        childclass: usize,
+        names: &[&str],
+    ) -> Result<Element<'d>> {
+        let mut class = Some(self.class(reader, node, "class")?.unwrap_or(childclass));
+        let mut places = vec![node];
+        while let Some(i) = class {
+            let here = self.classes[i].elements.iter().rev();
+            places.extend(here.filter(|n| names.contains(&n.tag_name().name())));
+            class = self.classes[i].parent;
+        }
+        Ok(Element { node, places })
+    }
+}
+
+impl<'d> Element<'d> {
+    /// The element alone, without defaults.
+    pub(super) fn bare(node: Node<'d, 'd>) -> Self {
+        Self { node, places: vec![node] }
+    }
+
+    /// The element that gives an attribute: itself, or a default.
+    pub(super) fn giver(&self, attribute: &str) -> Option<Node<'d, 'd>> {
+        self.places.iter().find(|n| n.has_attribute(attribute)).copied()
+    }
+
+    /// The text of an attribute.
+    pub(super) fn text(&self, attribute: &str) -> Option<&'d str> {
+        self.giver(attribute).and_then(|n| n.attribute(attribute)).map(str::trim)
+    }
+
+    /// An error at the value of an attribute.
+    pub(super) fn refuse(&self, reader: &Reader<'_>, attribute: &str, message: String) -> Error {
+        reader.refuse(self.giver(attribute).unwrap_or(self.node), attribute, message)
+    }
+
+    /// Finite numbers, as many as the attribute must have.
+    pub(super) fn vector<const N: usize>(
+        &self,
+        reader: &Reader<'_>,
+        attribute: &str,
+    ) -> Result<Option<[f64; N]>> {
+        self.giver(attribute).map_or(Ok(None), |n| reader.vector::<N>(n, attribute))
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self, reader: &Reader<'_>, attribute: &str) -> Result<Option<f64>> {
+        Ok(self.vector::<1>(reader, attribute)?.map(|[x]| x))
+    }
+
+    /// Finite numbers, any count.
+    pub(super) fn list(&self, reader: &Reader<'_>, attribute: &str) -> Result<Option<Vec<f64>>> {
+        let Some(node) = self.giver(attribute) else { return Ok(None) };
+        match reader.list(node, attribute)? {
+            Some(list) if list.iter().any(|x| !x.is_finite()) => {
+                let message = format!("{attribute} of <{}> is not finite", node.tag_name().name());
+                Err(reader.refuse(node, attribute, message))
+            }
+            list => Ok(list),
+        }
+    }
+}

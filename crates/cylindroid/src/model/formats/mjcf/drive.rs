@@ -1,0 +1,131 @@
+//! Actuators and key frames of MJCF: who is driven, how hard, and where home is.
+
+use roxmltree::Node;
+
+use super::Mjcf;
+use super::defaults::Element;
+use crate::error::Result;
+use crate::model::JointKind;
+use crate::spatial::Quaternion;
+
+/// Elements whose defaults actuators take.
+const ACTUATORS: [&str; 10] = [
+    "general",
+    "motor",
+    "position",
+    "velocity",
+    "intvelocity",
+    "damper",
+    "cylinder",
+    "muscle",
+    "dcmotor",
+    "adhesion",
+];
+
+impl<'d> Mjcf<'d> {
+    /// Marks the joints that actuators drive. A file without actuators says nothing of motors:
+    /// there all hinges and slides are driven, as in a URDF.
+    pub(super) fn actuators(&mut self) -> Result<()> {
+        let actuators = self.files.section("actuator");
+        if actuators.is_empty() {
+            let one = |kind| {
+                matches!(kind, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic)
+            };
+            self.joints.iter_mut().for_each(|j| j.actuated = one(j.kind));
+            return Ok(());
+        }
+        for node in actuators {
+            self.actuator(node)?;
+        }
+        // A motor at a joint that follows another drives that one.
+        for i in 0..self.joints.len() {
+            let mut at = i;
+            for _ in 0..self.joints.len() {
+                let Some(mimic) = &self.joints[at].mimic else { break };
+                let Some(next) = self.joints.iter().position(|j| j.name == mimic.joint) else {
+                    break;
+                };
+                at = next;
+            }
+            if at != i && self.joints[i].actuated {
+                self.joints[at].actuated = true;
+            }
+        }
+        Ok(())
+    }
+
+    fn actuator(&mut self, node: Node<'d, 'd>) -> Result<()> {
+        let tag = node.tag_name().name();
+        let name = node.attribute("name").unwrap_or("").to_owned();
+        let attribute = ["joint", "jointinparent"].into_iter().find(|a| node.has_attribute(*a));
+        let Some(attribute) = attribute else {
+            let by = ["tendon", "site", "body", "cranksite"]
+                .into_iter()
+                .find(|a| node.has_attribute(*a));
+            let what = format!("<{tag}> at a {}", by.unwrap_or("thing that is not a joint"));
+            self.reader.note(
+                node,
+                what,
+                "it drives no joint alone; its joints count as passive",
+                &name,
+            );
+            return Ok(());
+        };
+        let joint = self.joint_named(node, attribute)?;
+        let element: Element<'d> = self.defaults.of(&self.reader, node, 0, &ACTUATORS)?;
+        let gear = element.list(&self.reader, "gear")?.and_then(|g| g.first().copied());
+        // The control of a motor is its force; other kinds say theirs in forcerange.
+        let range = match element.vector::<2>(&self.reader, "forcerange")? {
+            None if tag == "motor" => element.vector::<2>(&self.reader, "ctrlrange")?,
+            range => range,
+        };
+        if let Some([lower, upper]) = range {
+            let most = lower.abs().max(upper.abs()) * gear.unwrap_or(1.0).abs();
+            let effort = &mut self.joints[joint].limits.effort;
+            if most > 0.0 {
+                *effort = effort.min(most);
+            }
+        }
+        self.joints[joint].actuated = true;
+        Ok(())
+    }
+
+    /// The key frame named "home" becomes home.
+    pub(super) fn key_frame(&mut self) -> Result<()> {
+        let keys = self.files.section("keyframe");
+        let home = keys.iter().copied().find(|k| k.attribute("name") == Some("home"));
+        for key in keys.into_iter().filter(|k| Some(*k) != home) {
+            let name = key.attribute("name").unwrap_or("");
+            self.reader.note(key, "<key>", "only the key named 'home' is used", name);
+        }
+        let Some(home) = home else { return Ok(()) };
+        let Some(qpos) = Element::bare(home).list(&self.reader, "qpos")? else { return Ok(()) };
+        let size = |kind: JointKind| match kind {
+            JointKind::Free => 7,
+            JointKind::Spherical => 4,
+            kind => kind.dof(),
+        };
+        let expected: usize = self.joints.iter().map(|j| size(j.kind)).sum();
+        if qpos.len() != expected {
+            let message = format!("qpos has {} numbers, the joints have {expected}", qpos.len());
+            return Err(self.reader.refuse(home, "qpos", message));
+        }
+        let mut rest = qpos.as_slice();
+        for joint in self.joints.iter().filter(|j| j.kind.dof() > 0) {
+            let (own, others) = rest.split_at(size(joint.kind));
+            rest = others;
+            let position = own.len().saturating_sub(4);
+            let q = match *own {
+                [.., w, x, y, z] => {
+                    let rotation = Quaternion { w, x, y, z }
+                        .rotation()
+                        .map_err(|e| self.reader.refuse(home, "qpos", e.to_string()))?;
+                    [&own[..position], &rotation.log().to_array()].concat()
+                }
+                _ => own.to_vec(),
+            };
+            self.starts.push((joint.name.clone(), q));
+        }
+        Ok(())
+    }
+}

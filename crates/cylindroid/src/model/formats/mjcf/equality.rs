@@ -1,0 +1,185 @@
+//! `<equality>` of MJCF: loops, and joints that follow others.
+//!
+//! Formula  connect: a spherical joint at `anchor` of body1 (or of site1 at site2);
+//!          weld: a fixed joint, body1_from_body2 = relpose, else as the file places them;
+//!          joint: q1 = ref1 + c0 + c1 (q2 - ref2), higher coefficients are not read
+//! Why so   a coupled joint is a mimic joint: it needs no loop and its column goes to the other
+//! Source   mujoco.readthedocs.io, XML reference, equality
+//! Checked  tests/formats/mjcf.rs::equality_*
+
+use roxmltree::Node;
+
+use super::Mjcf;
+use super::body::unique;
+use super::defaults::Element;
+use crate::error::{Error, Result};
+use crate::model::{JointKind, LoopSpec, Mimic};
+use crate::spatial::{Pose, Quaternion, Vec3};
+
+impl<'d> Mjcf<'d> {
+    pub(super) fn equalities(&mut self) -> Result<()> {
+        for node in self.files.section("equality") {
+            let tag = node.tag_name().name();
+            let name = node.attribute("name").unwrap_or(tag).to_owned();
+            let element = self.defaults.of(&self.reader, node, 0, &["equality"])?;
+            if element.text("active") == Some("false") {
+                self.reader.note(node, format!("<{tag}> that is not active"), "not read", &name);
+                continue;
+            }
+            let known = [
+                "name", "class", "active", "body1", "body2", "anchor", "site1", "site2", "relpose",
+                "joint1", "joint2", "polycoef",
+            ];
+            self.reader.unread_attributes(node, &known);
+            match tag {
+                "connect" | "weld" => self.close(node, tag, &name)?,
+                "joint" => self.couple(node, &name)?,
+                other => {
+                    let what = format!("<{other}> in <equality>");
+                    let why = "connect, weld and joint are read; this one holds nothing here";
+                    self.reader.note(node, what, why, &name);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn close(&mut self, node: Node<'d, 'd>, tag: &str, name: &str) -> Result<()> {
+        let kind = if tag == "connect" { JointKind::Spherical } else { JointKind::Fixed };
+        let ((a, on_a), (b, on_b)) = if node.has_attribute("site1") {
+            (self.site(node, "site1")?, self.site(node, "site2")?)
+        } else {
+            let a = self.body_named(node, "body1", None)?;
+            let b = self.body_named(node, "body2", Some("world"))?;
+            let place = |link: &String| self.world.get(link).copied().unwrap_or_default();
+            let b_from_a = place(&b).inverse() * place(&a);
+            let element = Element::bare(node);
+            let (on_a, on_b) = if kind == JointKind::Spherical {
+                let Some(anchor) = element.vector::<3>(&self.reader, "anchor")? else {
+                    let message = format!("connect '{name}' has no anchor");
+                    return Err(self.reader.refuse(node, "anchor", message));
+                };
+                let anchor = Pose::from_translation(Vec3::from_array(anchor));
+                (anchor, b_from_a * anchor)
+            } else {
+                match element.vector::<7>(&self.reader, "relpose")? {
+                    Some([x, y, z, quaternion @ ..]) if quaternion != [0.0; 4] => {
+                        let [w, i, j, k] = quaternion;
+                        let rotation = Quaternion { w, x: i, y: j, z: k }
+                            .rotation()
+                            .map_err(|e| self.reader.refuse(node, "relpose", e.to_string()))?;
+                        (Pose { rotation, translation: Vec3::new(x, y, z) }, Pose::IDENTITY)
+                    }
+                    _ => (Pose::IDENTITY, b_from_a),
+                }
+            };
+            ((a, on_a), (b, on_b))
+        };
+        if a == b {
+            let message = format!("{tag} '{name}' holds body '{a}' to itself");
+            return Err(self.reader.refuse(node, "name", message));
+        }
+        let name = unique(&mut self.joint_names, name);
+        self.loops.push(LoopSpec {
+            link_a_from_joint: on_a,
+            link_b_from_joint: on_b,
+            ..LoopSpec::new(&name, kind, &a, &b)
+        });
+        Ok(())
+    }
+
+    fn body_named(
+        &self,
+        node: Node<'d, 'd>,
+        attribute: &str,
+        missing: Option<&str>,
+    ) -> Result<String> {
+        let name = match (node.attribute(attribute), missing) {
+            (None, Some(name)) => name,
+            _ => self.reader.required(node, attribute)?.trim(),
+        };
+        if self.world.contains_key(name) {
+            return Ok(name.to_owned());
+        }
+        let unknown = Error::unknown("body", name, self.world.keys());
+        Err(self.reader.refuse(node, attribute, unknown.to_string()))
+    }
+
+    /// The body and place of a site.
+    fn site(&self, node: Node<'d, 'd>, attribute: &str) -> Result<(String, Pose)> {
+        let name = self.reader.required(node, attribute)?.trim();
+        match self.sites.iter().find(|s| s.0 == name) {
+            Some((_, link, pose)) => Ok((link.clone(), *pose)),
+            None => {
+                let unknown = Error::unknown("site", name, self.sites.iter().map(|s| &s.0));
+                Err(self.reader.refuse(node, attribute, unknown.to_string()))
+            }
+        }
+    }
+
+    /// The index of a joint that an attribute names.
+    pub(super) fn joint_named(&self, node: Node<'d, 'd>, attribute: &str) -> Result<usize> {
+        let name = self.reader.required(node, attribute)?.trim();
+        self.joints.iter().position(|j| j.name == name).ok_or_else(|| {
+            let unknown = Error::unknown("joint", name, self.joints.iter().map(|j| &j.name));
+            self.reader.refuse(node, attribute, unknown.to_string())
+        })
+    }
+
+    /// The position of a joint of one coordinate at qpos0.
+    fn reference(&self, joint: usize) -> f64 {
+        let name = &self.joints[joint].name;
+        let start = self.starts.iter().find(|s| s.0 == *name);
+        start.and_then(|s| s.1.first().copied()).unwrap_or(0.0)
+    }
+
+    fn couple(&mut self, node: Node<'d, 'd>, name: &str) -> Result<()> {
+        let follower = self.joint_named(node, "joint1")?;
+        if !node.has_attribute("joint2") {
+            let why = "a joint held at one position keeps its coordinate here";
+            self.reader.note(node, "<joint> of <equality> without joint2", why, name);
+            return Ok(());
+        }
+        let leader = self.joint_named(node, "joint2")?;
+        let polynomial = Element::bare(node).list(&self.reader, "polycoef")?;
+        let mut c = [0.0, 1.0, 0.0, 0.0, 0.0];
+        for (slot, value) in c.iter_mut().zip(polynomial.unwrap_or_default()) {
+            *slot = value;
+        }
+        let why = if [follower, leader].iter().any(|&j| self.joints[j].kind.dof() != 1) {
+            Some("only joints of one coordinate can follow")
+        } else if c[2..] != [0.0; 3] {
+            Some("only linear couplings are read: polycoef beyond the second is not zero")
+        } else if self.joints[follower].mimic.is_some() {
+            Some("its first joint follows another one already")
+        } else if self.follows(leader, follower) {
+            Some("the two joints would follow one another")
+        } else {
+            None
+        };
+        if let Some(why) = why {
+            self.reader.note(node, "<joint> in <equality>", why, name);
+            return Ok(());
+        }
+        let offset = self.reference(follower) + c[0] - c[1] * self.reference(leader);
+        let joint = self.joints[leader].name.clone();
+        self.joints[follower].mimic = Some(Mimic { joint, multiplier: c[1], offset });
+        Ok(())
+    }
+
+    /// True if `joint` follows `other`, through any number of joints, or is it.
+    fn follows(&self, joint: usize, other: usize) -> bool {
+        let mut at = joint;
+        for _ in 0..=self.joints.len() {
+            if at == other {
+                return true;
+            }
+            let Some(mimic) = &self.joints[at].mimic else { return false };
+            let Some(next) = self.joints.iter().position(|j| j.name == mimic.joint) else {
+                return false;
+            };
+            at = next;
+        }
+        true
+    }
+}

@@ -1,0 +1,166 @@
+//! Shapes and masses of MJCF bodies: kept as data, as far as a link holds them.
+//!
+//! Units    MJCF gives half sizes; ours are whole ones
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::compiler::turn_z_to;
+use super::defaults::Element;
+use super::{Mjcf, used};
+use crate::error::Result;
+use crate::model::formats::mesh::Packages;
+use crate::model::{Geometry, Inertial, Link, Visual};
+use crate::spatial::{Mat3, Pose, Vec3};
+
+/// What geoms refer to by name.
+#[derive(Default)]
+pub(super) struct Assets<'d> {
+    colours: BTreeMap<&'d str, [f64; 4]>,
+    /// Files and scales.
+    meshes: BTreeMap<String, (String, Vec3)>,
+    packages: Option<Packages>,
+}
+
+impl<'d> Mjcf<'d> {
+    /// Colours and meshes.
+    pub(super) fn assets(&mut self) -> Result<()> {
+        self.assets.packages = Some(Packages::of(self.reader.source.path));
+        for node in self.files.section("asset") {
+            match node.tag_name().name() {
+                "material" => {
+                    let element = self.defaults.of(&self.reader, node, 0, &["material"])?;
+                    let colour = element.vector::<4>(&self.reader, "rgba")?;
+                    if let (Some(name), Some(rgba)) = (node.attribute("name"), colour) {
+                        self.assets.colours.insert(name, rgba);
+                    }
+                }
+                "mesh" => {
+                    let element = self.defaults.of(&self.reader, node, 0, &["mesh"])?;
+                    let Some(file) = element.text("file") else {
+                        let name = node.attribute("name").unwrap_or("");
+                        self.reader.note(node, "<mesh> without file", "it is not drawn", name);
+                        continue;
+                    };
+                    let scale = element.vector::<3>(&self.reader, "scale")?;
+                    let scale = scale.map_or(Vec3::new(1.0, 1.0, 1.0), Vec3::from_array);
+                    let stem = Path::new(file).file_stem().map(|s| s.to_string_lossy());
+                    let own = node.attribute("name").map(Into::into);
+                    let name = own.or(stem).unwrap_or_default().into_owned();
+                    let folder = self.compiler.meshes.trim_end_matches('/');
+                    let uri =
+                        if folder.is_empty() { file.into() } else { format!("{folder}/{file}") };
+                    self.assets.meshes.insert(name, (uri, scale));
+                }
+                "texture" => {}
+                other => {
+                    let what = format!("<{other}> in <asset>");
+                    self.reader.note(node, what, "it is not drawn", "");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn inertial(&mut self, node: roxmltree::Node<'d, 'd>) -> Result<Option<Inertial>> {
+        let element = Element::bare(node);
+        let link_from_inertia = self.compiler.pose(&self.reader, &element)?;
+        let Some(mass) = element.number(&self.reader, "mass")? else { return Ok(None) };
+        let diagonal = element.vector::<3>(&self.reader, "diaginertia")?;
+        let full = element.vector::<6>(&self.reader, "fullinertia")?;
+        let [xx, yy, zz, xy, xz, yz] = match (full, diagonal) {
+            (Some(full), _) => full,
+            (None, Some([x, y, z])) => [x, y, z, 0.0, 0.0, 0.0],
+            (None, None) => [0.0; 6],
+        };
+        let inertia = Mat3::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
+        Ok(Some(Inertial { mass, link_from_inertia, inertia }))
+    }
+
+    /// A geom, as what the link looks like and as what it collides with.
+    pub(super) fn geom(
+        &mut self,
+        link: &mut Link,
+        node: roxmltree::Node<'d, 'd>,
+        childclass: usize,
+        link_from_frame: Pose,
+    ) -> Result<()> {
+        let element = self.defaults.of(&self.reader, node, childclass, &["geom"])?;
+        self.reader.unread_attributes(node, used("geom"));
+        let mut pose = self.compiler.pose(&self.reader, &element)?;
+        let mut size = element.list(&self.reader, "size")?.unwrap_or_default();
+        if let Some([a, b, c, d, e, f]) = element.vector::<6>(&self.reader, "fromto")? {
+            let (from, to) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
+            pose.translation = (from + to) * 0.5;
+            pose.rotation = turn_z_to(from - to).unwrap_or_default();
+            // The first size is across; the length comes from the two points.
+            size.truncate(1);
+            size.push((from - to).norm() * 0.5);
+        }
+        let name = node.attribute("name").unwrap_or("").to_owned();
+        let Some(geometry) = self.shape(&element, &size)? else { return Ok(()) };
+        let own = element.vector::<4>(&self.reader, "rgba")?;
+        let material = element.text("material").and_then(|m| self.assets.colours.get(m));
+        let flag = |attribute: &str, missing: f64| -> Result<f64> {
+            Ok(element.number(&self.reader, attribute)?.unwrap_or(missing))
+        };
+        let collides = flag("contype", 1.0)? != 0.0 || flag("conaffinity", 1.0)? != 0.0;
+        // The viewer of MuJoCo shows groups 0 to 2 unless told otherwise.
+        let shown = flag("group", 0.0)? < 3.0;
+        let visual = Visual {
+            name,
+            link_from_shape: link_from_frame * pose,
+            geometry,
+            rgba: own.or(material.copied()),
+        };
+        if collides {
+            link.collisions.push(visual.clone());
+        }
+        if shown {
+            link.visuals.push(visual);
+        }
+        Ok(())
+    }
+
+    fn shape(&mut self, element: &Element<'d>, size: &[f64]) -> Result<Option<Geometry>> {
+        let node = element.node;
+        let body = self.reader.owner(node).to_owned();
+        let implied = if element.giver("mesh").is_some() { "mesh" } else { "sphere" };
+        let kind = element.text("type").unwrap_or(implied);
+        let shape = match (kind, size) {
+            ("sphere", [radius, ..]) => Some(Geometry::Sphere { radius: *radius }),
+            ("capsule", [radius, half, ..]) => {
+                Some(Geometry::Capsule { radius: *radius, length: 2.0 * half })
+            }
+            ("cylinder", [radius, half, ..]) => {
+                Some(Geometry::Cylinder { radius: *radius, length: 2.0 * half })
+            }
+            ("box", [x, y, z]) => Some(Geometry::Box { size: Vec3::new(*x, *y, *z) * 2.0 }),
+            // Between two points: across, across, along.
+            ("box", [across, half]) => {
+                Some(Geometry::Box { size: Vec3::new(*across, *across, *half) * 2.0 })
+            }
+            ("mesh", _) => {
+                let mesh = element.text("mesh").and_then(|m| self.assets.meshes.get(m));
+                mesh.map(|(uri, scale)| {
+                    let path = self.assets.packages.as_ref().and_then(|p| p.find(uri));
+                    Geometry::Mesh { uri: uri.clone(), path, scale: *scale }
+                })
+            }
+            _ => None,
+        };
+        match &shape {
+            None => {
+                let what = format!("<geom> of type {kind}");
+                let why = "there is no such shape here, or its size or mesh is missing";
+                self.reader.note(node, what, why, &body);
+            }
+            Some(Geometry::Mesh { uri, path: None, .. }) => {
+                let why = "mesh not found beside the model";
+                self.reader.note(node, "mesh", why, uri);
+            }
+            Some(_) => {}
+        }
+        Ok(shape)
+    }
+}

@@ -1,0 +1,238 @@
+//! MJCF: models of MuJoCo.
+//!
+//! Formula  world_from_body and q as MuJoCo's xpos, xquat and qpos (quaternions as rotation
+//!          vectors); home is qpos0 or the key frame "home"
+//! Units    m, kg; degrees unless `<compiler angle="radian">`
+//! Valid    bodies, joints, sites, shapes, default classes, `<frame>`, `<include>` in the model's
+//!          own folder, `<equality>` connect, weld and joint, actuators at joints. What else
+//!          stands in the file is named in the load report
+//! Why so   equality constraints become closing joints and mimic joints, so that a gripper with
+//!          loops is the same kind of thing as a closed chain of a mechanism file
+//! Source   mujoco.readthedocs.io, XML reference
+//! Checked  tests/formats/mjcf.rs, against vectors that MuJoCo made
+
+mod body;
+mod compiler;
+mod defaults;
+mod drive;
+mod equality;
+mod files;
+mod geom;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use roxmltree::Document;
+
+use self::compiler::Compiler;
+use self::defaults::Defaults;
+use self::files::Files;
+use self::geom::Assets;
+use super::place::Source;
+use super::xml::{self, Reader};
+use crate::error::{Error, Result};
+use crate::model::{JointSpec, Link, LoopSpec, Mechanism};
+use crate::spatial::Pose;
+
+const FORMAT: &str = "MJCF";
+
+/// What is read so far.
+struct Mjcf<'d> {
+    reader: Reader<'d>,
+    files: Files<'d>,
+    compiler: Compiler,
+    defaults: Defaults<'d>,
+    assets: Assets<'d>,
+    links: Vec<Link>,
+    joints: Vec<JointSpec>,
+    loops: Vec<LoopSpec>,
+    /// Name, body, place on it.
+    sites: Vec<(String, String, Pose)>,
+    /// Home positions of joints; later ones count.
+    starts: Vec<(String, Vec<f64>)>,
+    /// Poses of the bodies at qpos0.
+    world: BTreeMap<String, Pose>,
+    link_names: BTreeSet<String>,
+    joint_names: BTreeSet<String>,
+}
+
+/// Reads the text of an MJCF model. The path is used in errors, to find meshes, and to read the
+/// files that the model includes.
+///
+/// # Errors
+/// [`Error::File`] with line and column for broken XML, a number that is not one, a name that is
+/// missing or unknown, an include that cannot be read, and all that the builder refuses.
+pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
+    let source = Source { format: FORMAT, path, text };
+    let main = xml::document(&source)?;
+    let root = main.root_element();
+    if !matches!(root.tag_name().name(), "mujoco" | "mujocoinclude") {
+        let message =
+            format!("the root element is <{}>, MJCF begins with <mujoco>", root.tag_name().name());
+        return Err(source.error(Reader::tag(root), message, ""));
+    }
+    let included = files::gather(&source)?;
+    let sources: Vec<Source<'_>> = included.iter().map(files::Included::source).collect();
+    let documents: Vec<Document<'_>> = sources.iter().map(xml::document).collect::<Result<_>>()?;
+    read(source, sources.clone(), Files::new(&main, &included, &documents))
+}
+
+fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> Result<Mechanism> {
+    let mut reader = Reader::new(source, None);
+    reader.included = included;
+    (reader.owners, reader.why) = (&["body", "key", "default"], why_unused);
+    let root = files.main.root_element();
+    reader.unread_attributes(root, &["model"]);
+    let sections =
+        ["compiler", "default", "asset", "worldbody", "equality", "actuator", "keyframe"];
+    for section in files.children(root) {
+        let name = section.tag_name().name();
+        if !sections.contains(&name) {
+            reader.note(section, format!("<{name}>"), why_unused(name), "");
+        }
+    }
+    let compiler = Compiler::read(&files, &mut reader)?;
+    let defaults = Defaults::read(&files, &mut reader)?;
+    let mut it = Mjcf {
+        reader,
+        files,
+        compiler,
+        defaults,
+        assets: Assets::default(),
+        links: Vec::new(),
+        joints: Vec::new(),
+        loops: Vec::new(),
+        sites: Vec::new(),
+        starts: Vec::new(),
+        world: BTreeMap::new(),
+        link_names: BTreeSet::new(),
+        joint_names: BTreeSet::new(),
+    };
+    it.assets()?;
+    it.bodies()?;
+    it.equalities()?;
+    it.actuators()?;
+    it.key_frame()?;
+    it.write(root.attribute("model"))
+}
+
+impl Mjcf<'_> {
+    fn write(mut self, model: Option<&str>) -> Result<Mechanism> {
+        let source = self.reader.source;
+        let stem = source.path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default();
+        let name = model.map(str::trim).filter(|n| !n.is_empty()).unwrap_or(&stem);
+        let mut builder = Mechanism::builder(name);
+        for link in self.links {
+            builder.link(link);
+        }
+        for joint in self.joints {
+            builder.joint(joint);
+        }
+        for joint in self.loops {
+            builder.close(joint);
+        }
+        // Sites and bodies have names of their own in MJCF; frames have one list of names here.
+        for (name, link, pose) in self.sites {
+            let free = self.link_names.insert(name.clone());
+            let name = if free {
+                name
+            } else {
+                body::unique(&mut self.link_names, &format!("site:{name}"))
+            };
+            builder.frame(&name, &link, pose);
+        }
+        for (joint, q) in self.starts {
+            builder.start(&joint, &q);
+        }
+        let report = builder.report();
+        report.format = FORMAT;
+        self.reader.report(report);
+        builder.build().map_err(|error| {
+            let Error::Model { culprit, message, .. } = error else { return error };
+            let root = self.files.main.root_element();
+            let named = |n: &roxmltree::Node<'_, '_>| {
+                !culprit.is_empty() && n.attribute("name") == Some(culprit.as_str())
+            };
+            match root.descendants().find(named) {
+                Some(node) => source.error(Reader::value(node, "name"), message, ""),
+                None => source.error(Reader::tag(root), message, ""),
+            }
+        })
+    }
+}
+
+/// The attributes that are read of an element; those of other elements are not looked at.
+fn used(element: &str) -> &'static [&'static str] {
+    match element {
+        "joint" | "freejoint" => &[
+            "name",
+            "class",
+            "type",
+            "group",
+            "pos",
+            "axis",
+            "range",
+            "limited",
+            "ref",
+            "actuatorfrcrange",
+        ],
+        "geom" => &[
+            "name",
+            "class",
+            "type",
+            "size",
+            "pos",
+            "quat",
+            "axisangle",
+            "euler",
+            "xyaxes",
+            "zaxis",
+            "fromto",
+            "rgba",
+            "material",
+            "mesh",
+            "contype",
+            "conaffinity",
+            "group",
+            "mass",
+            "density",
+        ],
+        "site" => &[
+            "name",
+            "class",
+            "type",
+            "size",
+            "pos",
+            "quat",
+            "axisangle",
+            "euler",
+            "xyaxes",
+            "zaxis",
+            "rgba",
+            "material",
+            "group",
+        ],
+        "mesh" => &["name", "class", "file", "scale"],
+        "material" => &["name", "class", "rgba"],
+        _ => &[],
+    }
+}
+
+fn why_unused(name: &str) -> &'static str {
+    match name {
+        "damping" | "armature" | "frictionloss" | "stiffness" | "springref" | "springdamper"
+        | "solreflimit" | "solimplimit" | "solreffriction" | "solimpfriction" | "gravcomp" => {
+            "springs, friction and inertia do not enter the kinematics"
+        }
+        "friction" | "condim" | "solref" | "solimp" | "margin" | "gap" | "priority" | "solmix"
+        | "contact" | "fluidshape" | "fluidcoef" => "contacts of the simulation are not used",
+        "option" | "size" | "visual" | "statistic" | "sensor" | "custom" | "extension"
+        | "plugin" | "actuatorfrclimited" | "user" => "settings of the simulator are not used",
+        "camera" | "light" | "texture" | "hfield" | "skin" => "it is not drawn",
+        "tendon" | "deformable" | "flexcomp" | "composite" => {
+            "tendons and soft bodies are not read; what they tie together is free here"
+        }
+        "replicate" | "attach" => "it is not expanded: what it would bring is missing",
+        _ => "not known to this reader",
+    }
+}

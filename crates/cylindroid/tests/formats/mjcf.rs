@@ -1,0 +1,352 @@
+//! MJCF: poses against MuJoCo, loops, couplings, defaults, includes, what is noted and refused.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use cylindroid::model::{JointKind, formats};
+use cylindroid::spatial::Quaternion;
+use cylindroid::{Mechanism, Pose, Result, Vec3};
+use serde_json::Value;
+
+use crate::fk::{assert_close, closed_at_home, frame, tool};
+use crate::{pointed_at, refused, report};
+
+const ZOO: &str = include_str!("../data/zoo.xml");
+
+pub(crate) fn read_mjcf(text: &str) -> Result<Mechanism> {
+    formats::mjcf::parse(text, Path::new("robots/test.xml"))
+}
+
+fn read(text: &str) -> Mechanism {
+    read_mjcf(text).unwrap()
+}
+
+#[track_caller]
+fn check(text: &str, at: &str, says: &str) {
+    let error = refused(text, read_mjcf(text));
+    let all = format!("{} ({})", error.message, error.help);
+    assert!(all.contains(says), "'{says}' not in: {all}");
+    assert!(pointed_at(text, &error).starts_with(at), "{all}: {:?}", pointed_at(text, &error));
+}
+
+/// A model with this in its world.
+fn world(inside: &str) -> String {
+    format!("<mujoco><compiler angle='radian'/><worldbody>{inside}</worldbody></mujoco>")
+}
+
+fn robosuite() -> PathBuf {
+    let models = crate::robots().join("../../../../robosuite/models/assets");
+    assert!(models.is_dir(), "no MJCF files in {}: run `cargo xtask setup`", models.display());
+    models
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+fn rotation(quaternion: &[f64]) -> cylindroid::Rotation {
+    let [w, x, y, z] = quaternion.try_into().unwrap();
+    Quaternion { w, x, y, z }.rotation().unwrap()
+}
+
+/// Poses of bodies and sites at three configurations, limits and loops, as MuJoCo says.
+fn against_mujoco(name: &str, m: &Mechanism) {
+    let path = format!("{}/tests/vectors/mujoco/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    let vectors: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    for case in vectors["cases"].as_array().unwrap() {
+        let mut q = vec![0.0; m.n()];
+        let moving = m.joints().iter().filter(|j| j.kind.dof() > 0);
+        for (joint, given) in moving.zip(case["q"].as_array().unwrap()) {
+            if joint.mimic.is_some() {
+                continue;
+            }
+            let given = numbers(given);
+            let own = match joint.kind {
+                JointKind::Spherical => rotation(&given).log().to_array().to_vec(),
+                JointKind::Free => [&given[..3], &rotation(&given[3..]).log().to_array()].concat(),
+                _ => given,
+            };
+            q[joint.coordinates.clone()].copy_from_slice(&own);
+        }
+        let mut compared = 0;
+        for (frame_name, pose) in case["frames"].as_object().unwrap() {
+            let pose = numbers(pose);
+            let expected = Pose {
+                translation: Vec3::new(pose[0], pose[1], pose[2]),
+                rotation: rotation(&pose[3..]),
+            };
+            assert_close(frame(m, &q, frame_name), expected, 1e-9);
+            compared += 1;
+        }
+        assert!(compared > 2, "{name}");
+    }
+    for (joint, range) in vectors["limits"].as_object().unwrap() {
+        let limits = m.joints().iter().find(|j| j.name == *joint).unwrap().limits;
+        let range = numbers(range);
+        assert!((limits.lower - range[0]).abs() < 1e-12, "{name} {joint}: {limits:?}");
+        assert!((limits.upper - range[1]).abs() < 1e-12, "{name} {joint}: {limits:?}");
+    }
+    assert_eq!(m.loops().len(), vectors["loops"].as_u64().unwrap() as usize, "{name}");
+}
+
+#[test]
+fn poses_are_those_of_mujoco() {
+    against_mujoco("zoo", &read(ZOO));
+}
+
+#[test]
+fn poses_of_real_models_are_those_of_mujoco() {
+    let robots = [
+        "baxter", "gr1", "iiwa", "jaco", "kinova3", "panda", "sawyer", "spot", "spot_arm", "tiago",
+        "ur5e", "xarm7",
+    ];
+    let grippers = [
+        "inspire_left_hand",
+        "jaco_three_finger_gripper",
+        "panda_gripper",
+        "robotiq_gripper_140",
+        "robotiq_gripper_85",
+        "robotiq_gripper_s",
+        "xarm7_gripper",
+    ];
+    let robots = robots.map(|name| (name, format!("robots/{name}/robot.xml")));
+    let grippers = grippers.map(|name| (name, format!("grippers/{name}.xml")));
+    for (name, path) in robots.into_iter().chain(grippers) {
+        let m = formats::load_file(&robosuite().join(path)).unwrap();
+        assert_eq!(m.report().format, "MJCF");
+        against_mujoco(name, &m);
+        assert!(m.actuated().next().is_some() || name == "xarm7_gripper", "{name}");
+    }
+}
+
+/// Every other file of the package loads or says why not.
+#[test]
+fn real_models_are_read_or_refused_in_words() {
+    let mut stack = vec![robosuite()];
+    let mut loaded = 0;
+    while let Some(folder) = stack.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                stack.push(path);
+            } else if path.extension().is_some_and(|e| e == "xml")
+                && fs::read_to_string(&path).unwrap().contains("<mujoco")
+            {
+                match formats::load_file(&path) {
+                    Ok(m) => {
+                        closed_at_home(&m, 1e-9);
+                        loaded += 1;
+                    }
+                    Err(error) => panic!("{}: {error}", path.display()),
+                }
+            }
+        }
+    }
+    assert!(loaded > 40, "{loaded}");
+}
+
+#[test]
+fn grippers_with_loops() {
+    let m = formats::load_file(&robosuite().join("grippers/xarm7_gripper.xml")).unwrap();
+    assert_eq!((m.n(), m.loops().len()), (5, 2));
+    assert!(m.loops().iter().all(|l| l.kind == JointKind::Spherical));
+    closed_at_home(&m, 1e-12);
+    let left = m.joints().iter().find(|j| j.name == "left_driver_joint").unwrap();
+    let mimic = left.mimic.as_ref().unwrap();
+    assert_eq!(
+        (mimic.joint.as_str(), mimic.multiplier, mimic.offset),
+        ("right_driver_joint", 1.0, 0.0)
+    );
+    // The actuator pulls a tendon: no joint is driven alone, and the report says so.
+    assert_eq!(m.actuated().count(), 0);
+    assert!(report(&m).contains("<general> at a tendon"), "{}", report(&m));
+}
+
+#[test]
+fn home_is_the_key_frame_named_home() {
+    let m = read(ZOO);
+    let at = |name: &str| {
+        let joint = m.joints().iter().find(|j| j.name == name).unwrap();
+        m.home()[joint.coordinates.clone()].to_vec()
+    };
+    assert_eq!((at("lift"), at("slip"), at("turn")), (vec![0.2], vec![0.05], vec![0.4]));
+    // Half of a third of a turn about (1, 1, 1).
+    let third = 2.0 * std::f64::consts::PI / 3.0 / 3f64.sqrt();
+    assert!(at("wrist").iter().all(|x| (x - third).abs() < 1e-14));
+    assert_eq!(at("box"), [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]);
+    let wrong = ZOO.replace("0.2 0.1 0.05 0.3", "0.2 0.1 0.05");
+    check(&wrong, "0.2 0.1 0.05", "qpos has 17 numbers, the joints have 18");
+    // Without it, home is qpos0, where the loops close.
+    let plain = ZOO
+        .replace("name=\"home\"", "name=\"ready\"")
+        .replace("tied\" site1", "tied\" active=\"false\" site1");
+    let m = read(&plain.replace("relpose=\"0.1 0.2 0.3 0.5 0.5 0.5 0.5\"", ""));
+    assert_eq!(m.loops().len(), 3);
+    closed_at_home(&m, 1e-12);
+    assert!((m.home()[0] - 15f64.to_radians()).abs() < 1e-15);
+}
+
+#[test]
+fn equality_constraints_are_loops_and_couplings() {
+    let m = read(ZOO);
+    let find = |name: &str| m.loops().iter().find(|l| l.name == name).unwrap();
+    assert_eq!((find("pin").kind, find("hold").kind), (JointKind::Spherical, JointKind::Fixed));
+    let pose = find("pose");
+    assert_eq!(pose.link_a_from_joint.translation, Vec3::new(0.1, 0.2, 0.3));
+    assert_eq!(m.links()[pose.b].name, "world");
+    assert_eq!(find("tied").link_a_from_joint.translation, Vec3::new(0.1, 0.0, 0.0));
+    let follow = m.joints().iter().find(|j| j.name == "follow").unwrap();
+    let mimic = follow.mimic.as_ref().unwrap();
+    assert_eq!((mimic.joint.as_str(), mimic.multiplier), ("turn", -0.5));
+    assert!((mimic.offset - (0.1 + 5f64.to_radians())).abs() < 1e-15);
+    let said = report(&m);
+    for what in [
+        "<joint> in <equality> (bent): only linear couplings",
+        "<weld> that is not active (off)",
+        "<general> at a tendon (m3)",
+        "<tendon>: tendons and soft bodies are not read",
+        "<geom> of type ellipsoid (crank)",
+        "<geom> of type plane",
+        "attribute 'damping' of <joint>: springs",
+        "<key> (other)",
+        "<option>",
+        "range of a ball joint (wrist)",
+    ] {
+        assert!(said.contains(what), "'{what}' not in\n{said}");
+    }
+}
+
+#[test]
+fn actuators_say_who_is_driven_and_how_hard() {
+    let m = read(ZOO);
+    let driven: Vec<&str> = m.actuated().map(|i| m.coordinates()[i].name.as_str()).collect();
+    // A motor at a joint that follows drives the one that leads.
+    assert_eq!(driven, ["lift", "turn"]);
+    assert_eq!(m.coordinates()[0].limits.effort, 30.0);
+    let without = world("<body><joint name='a'/><body><joint name='b' type='ball'/></body></body>");
+    assert_eq!(read(&without).actuated().collect::<Vec<_>>(), [0]);
+}
+
+#[test]
+fn shapes_have_whole_sizes() {
+    use cylindroid::model::Geometry;
+    let m = read(ZOO);
+    let link = |name: &str| m.links().iter().find(|l| l.name == name).unwrap();
+    let Geometry::Box { size } = link("base").visuals[0].geometry else { panic!("no box") };
+    assert_eq!(size, Vec3::new(0.2, 0.4, 0.1));
+    let capsule = &link("upper").collisions[0];
+    assert_eq!(capsule.geometry, Geometry::Capsule { radius: 0.03, length: 0.3 });
+    assert_eq!(capsule.link_from_shape.translation, Vec3::new(0.15, 0.0, 0.0));
+    assert!(link("fore").collisions.is_empty() && link("fore").visuals.len() == 1);
+    assert_eq!(link("base").visuals[0].rgba, Some([0.1, 0.2, 0.3, 1.0]));
+    assert_eq!(link("base").inertial.unwrap().mass, 2.0);
+}
+
+#[test]
+fn names_that_are_missing_or_shared_are_made() {
+    let text = world(
+        "<body><joint/><site name='world'/><body><joint/><joint type='slide'/></body></body>",
+    );
+    let m = read(&text);
+    let links: Vec<&str> = m.links().iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(links[0], "world");
+    assert_eq!((links.len(), m.n()), (4, 3));
+    assert!(m.frame("site:world").is_ok());
+    check(&world("<body name='a'/><body name='a'/>"), "a", "two bodies are named 'a'");
+    let twice = world("<body name='a'><joint name='j'/><joint name='j'/></body>");
+    check(&twice, "j", "two joints are named 'j'");
+}
+
+#[test]
+fn includes_stand_in_the_folder_of_the_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    };
+    let load = |path: &Path| formats::load_file(path);
+    write(
+        "arm.xml",
+        "<mujoco><worldbody><body name='a'><include file='hand.xml'/></body></worldbody></mujoco>",
+    );
+    write(
+        "hand.xml",
+        "<mujocoinclude><joint name='j'/><body name='b' pos='0 0 1'><jont/></body></mujocoinclude>",
+    );
+    let main = write("main.xml", "<mujoco><include file='./arm.xml'/></mujoco>");
+    let m = load(&main).unwrap();
+    assert_eq!((m.n(), tool(&m, m.home()).translation), (1, Vec3::Z));
+    let said = report(&m);
+    assert!(said.contains("hand.xml") && said.contains("1: <jont>"), "{said}");
+    // An error in an included file points there.
+    write("hand.xml", "<mujocoinclude>\n<joint name='j' axis='0 0'/></mujocoinclude>");
+    let error = load(&main).unwrap_err().to_string();
+    assert!(error.contains("hand.xml:2:23: axis of <joint> has 2 numbers"), "{error}");
+    for (file, says) in [
+        ("../arm.xml", "leaves the folder"),
+        ("/etc/passwd", "leaves the folder"),
+        ("none.xml", "cannot read"),
+        ("main.xml", "included twice"),
+    ] {
+        let path = write("main.xml", &format!("<mujoco><include file='{file}'/></mujoco>"));
+        let error = load(&path).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+    }
+}
+
+#[test]
+fn what_is_broken_is_pointed_at() {
+    check("<mujoco><worldbody>", "", "broken XML");
+    check("<sdf/>", "<sdf", "MJCF begins with <mujoco>");
+    let body = |inside: &str| world(&format!("<body name='b'>{inside}</body>"));
+    check(&body("<joint type='hing'/>"), "hing", "nearest: hinge");
+    check(&body("<joint axis='0 0 0'/>"), "0 0 0", "no direction");
+    check(&body("<joint range='1 -1'/>"), "1 -1", "above its upper limit");
+    check(&body("<joint range='1'/>"), "1", "has 1 numbers, expected 2");
+    check(&body("<joint pos='0 0 x'/>"), "0 0 x", "'x' is not a number");
+    check(&body("<joint class='none'/>"), "none", "no default class named 'none'");
+    check(&body("<freejoint/><joint/>"), "<freejoint", "only one of a body of the world");
+    check(&body("<body><freejoint/></body>"), "<freejoint", "only one of a body of the world");
+    check(&world("<body quat='0 0 0 0'/>"), "0 0 0 0", "finite and not zero");
+    check(&world("<body quat='1 0 0 0' euler='0 0 0'/>"), "0 0 0", "both quat and euler");
+    check(&world("<body xyaxes='1 0 0 2 0 0'/>"), "1 0 0 2 0 0", "parallel");
+    check(&world("<body zaxis='0 0 0'/>"), "0 0 0", "no direction");
+    check(&world("<body axisangle='0 0 0 1'/>"), "0 0 0 1", "no direction");
+    let equality = |inside: &str| {
+        body("<joint name='j'/><site name='s'/>")
+            .replace("</mujoco>", &format!("<equality>{inside}</equality></mujoco>"))
+    };
+    check(&equality("<connect body1='c' anchor='0 0 0'/>"), "c", "no body named 'c'");
+    check(&equality("<connect body1='b'/>"), "<connect", "has no anchor");
+    check(&equality("<weld body1='b' body2='b'/>"), "<weld", "to itself");
+    check(&equality("<weld/>"), "<weld", "<weld> has no body1");
+    check(&equality("<weld site1='s' site2='t'/>"), "t", "no site named 't'");
+    check(&equality("<joint joint1='k' joint2='j'/>"), "k", "no joint named 'k'; nearest: j");
+    let angle = world("").replace("radian", "grad");
+    check(&angle, "grad", "nearest: radian");
+    check("<mujoco><compiler eulerseq='xy'/></mujoco>", "xy", "three letters");
+    let motor = body("").replace("</mujoco>", "<actuator><motor joint='k'/></actuator></mujoco>");
+    check(&motor, "k", "no joint named 'k'");
+}
+
+#[test]
+fn couplings_that_cannot_be_followed_are_noted() {
+    let couple = |equality: &str| {
+        let bodies = "<body name='a'><joint name='i'/></body><body name='b'><joint name='j'/></body>\
+                      <body name='c'><joint name='k' type='ball'/></body>";
+        let equality = format!("<equality>{equality}</equality></mujoco>");
+        read(&world(bodies).replace("</mujoco>", &equality))
+    };
+    for (equality, says) in [
+        ("<joint joint1='i'/>", "without joint2"),
+        ("<joint joint1='i' joint2='k'/>", "one coordinate"),
+        ("<joint joint1='i' joint2='i'/>", "follow one another"),
+        ("<joint joint1='i' joint2='j'/><joint joint1='j' joint2='i'/>", "follow one another"),
+        ("<joint joint1='i' joint2='j'/><joint joint1='i' joint2='j'/>", "follows another one"),
+        ("<flex flex='f'/>", "<flex> in <equality>"),
+    ] {
+        let m = couple(equality);
+        assert!(report(&m).contains(says), "{equality}: {}", report(&m));
+    }
+}

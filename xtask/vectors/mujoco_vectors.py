@@ -1,0 +1,100 @@
+"""Reference vectors of MuJoCo: poses of bodies and sites for the MJCF loader.
+
+Shapes, meshes and sensors are taken out before MuJoCo reads a file: they do not move anything,
+and MuJoCo refuses a model whose meshes are not there.
+
+    python mujoco_vectors.py --out FOLDER FILE.xml ...
+"""
+
+import argparse
+import json
+import pathlib
+import xml.etree.ElementTree as ET
+
+import mujoco
+import numpy as np
+
+
+def bare(path):
+    """The text of a model without what does not move it."""
+    root = ET.parse(path).getroot()
+    for default in root.iter("default"):
+        default.attrib.pop("group", None)  # robosuite writes one; MuJoCo refuses it
+    for section in ("sensor", "contact", "asset", "visual", "statistic", "actuator", "tendon", "keyframe"):
+        for node in root.findall(section):
+            root.remove(node)
+    for parent in root.iter():
+        parent.attrib.pop("material", None)
+        for node in list(parent):
+            tendon = parent.tag == "equality" and node.tag == "tendon"
+            if tendon or node.tag in ("geom", "camera", "light", "mesh", "material", "texture"):
+                parent.remove(node)
+    ET.SubElement(root, "compiler", boundmass="0.001", boundinertia="0.001")
+    return ET.tostring(root, encoding="unicode")
+
+
+def couple(model, qpos):
+    """Joints that equality constraints tie together linearly."""
+    for _ in range(model.neq):
+        for i in range(model.neq):
+            if model.eq_type[i] != mujoco.mjtEq.mjEQ_JOINT or model.eq_obj2id[i] < 0:
+                continue
+            c = model.eq_data[i]
+            if np.any(c[2:5] != 0):
+                continue
+            a, b = (model.jnt_qposadr[j] for j in (model.eq_obj1id[i], model.eq_obj2id[i]))
+            qpos[a] = model.qpos0[a] + c[0] + c[1] * (qpos[b] - model.qpos0[b])
+
+
+def vectors(path, random):
+    model = mujoco.MjModel.from_xml_string(bare(path))
+    data = mujoco.MjData(model)
+    cases = []
+    for k in range(3):
+        qpos = model.qpos0.copy()
+        if k > 0:
+            qpos += random.uniform(-1, 1, model.nq) * (0.5 if k == 1 else 2.0)
+        mujoco.mj_normalizeQuat(model, qpos)
+        couple(model, qpos)
+        data.qpos[:] = qpos
+        mujoco.mj_kinematics(model, data)
+        q = []  # in the order of the joints, some of which have no name
+        for j in range(model.njnt):
+            size = {0: 7, 1: 4}.get(int(model.jnt_type[j]), 1)
+            start = model.jnt_qposadr[j]
+            q.append(qpos[start : start + size].tolist())
+        frames = {}
+        for i in range(1, model.nbody):
+            if model.body(i).name:
+                frames[model.body(i).name] = [*data.xpos[i], *data.xquat[i]]
+        for i in range(model.nsite):
+            name = model.site(i).name
+            if name and name not in frames:
+                quat = np.zeros(4)
+                mujoco.mju_mat2Quat(quat, data.site_xmat[i])
+                frames[name] = [*data.site_xpos[i], *quat]
+        cases.append({"q": q, "frames": frames})
+    limits = {
+        model.joint(j).name: model.jnt_range[j].tolist()
+        for j in range(model.njnt)
+        if model.jnt_limited[j] and model.jnt_type[j] >= 2
+    }
+    loops = int(sum(t in (0, 1) and a for t, a in zip(model.eq_type, model.eq_active0)))
+    return {"mujoco": mujoco.__version__, "limits": limits, "loops": loops, "cases": cases}
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--out", type=pathlib.Path, required=True)
+    arguments.add_argument("files", nargs="+", type=pathlib.Path)
+    options = arguments.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    for path in options.files:
+        name = path.parent.name if path.name == "robot.xml" else path.stem
+        result = vectors(path, np.random.default_rng(1))
+        (options.out / f"{name}.json").write_text(json.dumps(result) + "\n")
+        print(name, len(result["cases"][0]["q"]), "joints", result["loops"], "loops")
+
+
+if __name__ == "__main__":
+    main()
