@@ -14,5 +14,6 @@ mod pinocchio;
 mod screws;
 mod servo;
 mod spatial;
+mod subspaces;
 mod support;
 mod svd;
