@@ -84,3 +84,16 @@ pub const SCREW_CLASS: f64 = 1e-8;
 
 /// A verdict is flagged when a quantity lies within this factor of its threshold [-].
 pub const AMBIGUOUS: f64 = 1e3;
+
+/// Rank of the equilibrated constraint matrix of a closed chain, relative to its largest singular
+/// value: geometry given to ten digits leaves less than this where a rank is lost, and no regular
+/// pose of the reference set falls below 1e-3 [-].
+pub const CLOSURE_RANK: f64 = 1e-9;
+
+/// Rank of a block of an orthonormal basis of motions, absolute: the columns have length one, so
+/// a block that rounding alone filled holds 1e-15 [-].
+pub const CLOSURE_BLOCK: f64 = 1e-9;
+
+/// A kernel is right to this times the conditioning of its matrix (largest over smallest singular
+/// value kept): blocks of it are not read more finely [-].
+pub const KERNEL_ROUNDING: f64 = 64.0 * f64::EPSILON;

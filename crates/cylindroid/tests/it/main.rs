@@ -7,6 +7,7 @@
     clippy::float_cmp_const
 )]
 
+mod closure;
 mod inverse;
 mod kinematics;
 mod model;

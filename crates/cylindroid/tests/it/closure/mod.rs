@@ -1,0 +1,7 @@
+mod bad_input;
+mod case;
+mod laws;
+mod mobility;
+mod reference;
+mod singularity;
+mod statics;
