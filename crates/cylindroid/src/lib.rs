@@ -27,6 +27,7 @@ pub mod error;
 pub mod inverse;
 pub mod kinematics;
 pub mod linalg;
+pub mod manipulability;
 pub mod model;
 mod scalar;
 pub mod screws;

@@ -197,11 +197,7 @@ impl Relation {
         }
         let qr = Qr::plain(scaled.clone());
         let r = qr.r();
-        let mut reduce = Matrix::zeros(scaled.rows(), m);
-        for j in 0..m {
-            reduce[(j, j)] = 1.0;
-            qr.apply(reduce.column_mut(j));
-        }
+        let reduce = qr.basis();
         let columns = self.cs.len();
         let weighted = |a: &Matrix, size: &[f64]| {
             Matrix::from_fn(a.rows(), columns, |i, j| a[(i, j)] * size[j])
@@ -232,13 +228,13 @@ impl Relation {
     /// What is orthogonal to all attainable joint rates.
     fn internal_scaled(&self) -> Matrix {
         let attained = self.cs.x.columns_between(self.infinite, self.cs.len());
-        ColumnSpace::of(&attained, Threshold::Absolute(0.5)).complement()
+        Qr::plain(attained).complement()
     }
 
     /// What is orthogonal to all attainable twists.
     fn zero_torque_scaled(&self) -> Matrix {
         let attained = self.cs.y.columns_between(0, self.cs.len() - self.zero);
-        ColumnSpace::of(&attained, Threshold::Absolute(0.5)).complement()
+        Qr::plain(attained).complement()
     }
 
     /// Joint torques that balance the wrench with the least scaled norm, and the part of the

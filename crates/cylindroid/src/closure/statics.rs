@@ -18,7 +18,7 @@ use super::mobility::Subspace;
 use super::motions::Motions;
 use super::relation::Relation;
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, Matrix, Metric, Svd, Threshold};
+use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold};
 use crate::tolerance::CLOSURE_RANK;
 
 /// Joint torques that balance a wrench.
@@ -69,7 +69,7 @@ pub fn joint_torques(
         let mut internal = relation.forces().zero;
         metric.whiten_rows(&mut internal);
         metric.whiten(&mut torques);
-        let basis = ColumnSpace::of(&internal, Threshold::Relative(0.0)).basis();
+        let basis = Qr::plain(internal).basis();
         for j in 0..basis.cols() {
             let along: f64 = basis.column(j).iter().zip(&torques).map(|(b, t)| b * t).sum();
             torques.iter_mut().zip(basis.column(j)).for_each(|(t, b)| *t -= along * b);

@@ -88,6 +88,29 @@ impl Qr {
         })
     }
 
+    /// The first k columns of Q: for independent columns of A an orthonormal basis of their span.
+    #[must_use]
+    pub fn basis(&self) -> Matrix {
+        self.columns(0, self.factors.len())
+    }
+
+    /// The other columns of Q: for independent columns of A an orthonormal basis of what is
+    /// orthogonal to them.
+    #[must_use]
+    pub fn complement(&self) -> Matrix {
+        self.columns(self.factors.len(), self.packed.rows())
+    }
+
+    fn columns(&self, from: usize, to: usize) -> Matrix {
+        let mut basis = Matrix::zeros(self.packed.rows(), to - from);
+        for j in from..to {
+            let column = basis.column_mut(j - from);
+            column[j] = 1.0;
+            self.apply(column);
+        }
+        basis
+    }
+
     /// `order()[j]` is the column of A that was taken as the `j`-th.
     #[must_use]
     pub fn order(&self) -> &[usize] {

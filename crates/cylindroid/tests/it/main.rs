@@ -10,6 +10,7 @@
 mod closure;
 mod inverse;
 mod kinematics;
+mod manipulability;
 mod model;
 mod pinocchio;
 mod screws;

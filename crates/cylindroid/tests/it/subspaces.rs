@@ -1,7 +1,7 @@
 //! QR, spaces of columns and their complements, the CS decomposition.
 
 use cylindroid::Matrix;
-use cylindroid::linalg::{ColumnSpace, CosineSine, PairKind, Qr, Svd, Threshold};
+use cylindroid::linalg::{ColumnSpace, CosineSine, Metric, PairKind, Qr, Svd, Threshold};
 
 use crate::support::{Random, assert_close, assert_matrix};
 
@@ -164,5 +164,29 @@ fn cs_finds_the_angles_it_was_built_from() {
         let cs = check_cs(&(&stack * &z.transpose()), a);
         assert_close("cosines", &cs.cosines, &c, 2e-15);
         assert_close("sines", &cs.sines, &s, 2e-15);
+    }
+}
+
+/// Measured by the dual of the dual nothing changes; `x^T M^-1 x` for a known M.
+#[test]
+fn dual_metric() {
+    let mut random = Random(65);
+    for n in 0..7 {
+        let a = random.matrix(n, n);
+        let aat = &a * &a.transpose();
+        let m = Matrix::from_fn(n, n, |i, j| aat[(i, j)] + if i == j { 0.3 } else { 0.0 });
+        let metric = Metric::new("M", &m).unwrap();
+        let dual = metric.dual();
+        let norm = |metric: &Metric, x: &[f64]| {
+            let mut y = x.to_vec();
+            metric.whiten(&mut y);
+            y.iter().map(|a| a * a).sum::<f64>()
+        };
+        let x = random.vector(n);
+        let mx = m.mul_vec(&x);
+        // (M x)^T M^-1 (M x) = x^T M x
+        let size = 1.0 + norm(&metric, &x);
+        assert!((norm(&dual, &mx) - norm(&metric, &x)).abs() < 1e-12 * size);
+        assert!((norm(&dual.dual(), &x) - norm(&metric, &x)).abs() < 1e-12 * size);
     }
 }

@@ -1,5 +1,5 @@
 mod bad_input;
-mod case;
+pub(crate) mod case;
 mod laws;
 mod mobility;
 mod reference;

@@ -1,0 +1,3 @@
+mod metrics;
+mod reference;
+mod serial;
