@@ -101,3 +101,7 @@ pub const KERNEL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Pairs of motion and of force, computed apart from each other, agree to this in debug builds:
 /// each comes from a basis that is right to 1e-7 at the worst conditioning that counts [-].
 pub const DUALITY: f64 = 1e-6;
+
+/// Metrics of motions whose factors spread further than this have used up the digits there are:
+/// their duality is not checked [-].
+pub const LOPSIDED: f64 = 1.0 / f64::EPSILON;

@@ -96,6 +96,14 @@ impl Metric {
         }
     }
 
+    /// Largest over smallest diagonal entry of the factor: how lopsided the metric is, 1 at least.
+    #[must_use]
+    pub fn spread(&self) -> f64 {
+        let diagonal = (0..self.len()).map(|i| self.l[(i, i)]);
+        let smallest = diagonal.clone().fold(f64::INFINITY, f64::min);
+        (diagonal.fold(0.0, f64::max) / smallest).max(1.0)
+    }
+
     /// Size n of the metric.
     #[must_use]
     pub fn len(&self) -> usize {

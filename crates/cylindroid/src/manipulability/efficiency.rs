@@ -22,7 +22,7 @@ use super::metrics::Metrics;
 use crate::closure::{Parts, Relation};
 use crate::error::Result;
 use crate::linalg::{CosineSine, Matrix, Metric, Qr};
-use crate::tolerance::DUALITY;
+use crate::tolerance::{DUALITY, LOPSIDED};
 
 /// A point (s : c) of the projective line, `s^2 + c^2 = 1`: what comes out for what goes in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -158,7 +158,10 @@ impl Manipulability {
         let (torque, wrench) = (metrics.of_torque(), metrics.of_wrench());
         let force = Spectrum::of(relation.forces(), torque.as_ref(), wrench.as_ref());
         let all = Self { kinematic, force };
-        debug_assert!(!metrics.is_dual() || all.is_dual(), "forces are not dual: {all:?}");
+        debug_assert!(
+            !metrics.is_dual() || metrics.spread() > LOPSIDED || all.is_dual(),
+            "forces are not dual: {all:?}"
+        );
         Ok(all)
     }
 

@@ -96,6 +96,11 @@ impl Metrics {
         self.wrench.is_none() && self.torque.is_none()
     }
 
+    /// How lopsided the metrics of motions are.
+    pub(super) fn spread(&self) -> f64 {
+        [&self.object, &self.joint].into_iter().flatten().map(Metric::spread).product()
+    }
+
     /// Refuses metrics of the wrong size.
     pub(super) fn check(&self, joints: usize, object: usize) -> Result<()> {
         let all = [
