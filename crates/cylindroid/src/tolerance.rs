@@ -105,3 +105,19 @@ pub const DUALITY: f64 = 1e-6;
 /// Metrics of motions whose factors spread further than this have used up the digits there are:
 /// their duality is not checked [-].
 pub const LOPSIDED: f64 = 1.0 / f64::EPSILON;
+
+/// A direction whose part along another is below this, relative to both, is across it, when
+/// corners of boxes are looked for: above rounding of products of fourteen numbers, far below
+/// what tells two corners apart [-].
+pub const BOX_PROGRAM: f64 = 1e-12;
+
+/// Corners of polytopes nearer to a facet than this times the size of the body lie on it: above
+/// the rounding of their images, far below what can be seen [-].
+pub const HULL: f64 = 1e-9;
+
+/// Most facets of a hull: a polytope in three dimensions with ten thousand corners, and a second
+/// of work.
+pub const MOST_FACETS: usize = 20_000;
+
+/// How near bounds of a grasp's quality come to each other, relative to its largest wrench [-].
+pub const GRASP_QUALITY: f64 = 1e-3;

@@ -16,7 +16,7 @@
 
 use super::constraint::check_finite;
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, CosineSine, Cut, Matrix, PairKind, Qr, Threshold};
+use crate::linalg::{ColumnSpace, CosineSine, Cut, Matrix, PairKind, Qr, Threshold, solve_upper};
 use crate::tolerance::CLOSURE_BLOCK;
 
 /// The counts of a relation.
@@ -198,6 +198,11 @@ impl Relation {
         let qr = Qr::plain(scaled.clone());
         let r = qr.r();
         let reduce = qr.basis();
+        let mut wrench = Matrix::identity(m);
+        for j in 0..m {
+            let column = solve_upper(&r, wrench.column(j));
+            wrench.column_mut(j).copy_from_slice(&column);
+        }
         let columns = self.cs.len();
         let weighted = |a: &Matrix, size: &[f64]| {
             Matrix::from_fn(a.rows(), columns, |i, j| a[(i, j)] * size[j])
@@ -207,7 +212,7 @@ impl Relation {
         Ok(Self::from_scaled(
             &Matrix::above(columns, &[&joint, &object]),
             self.joint_scale.clone(),
-            ObjectScale { wrench: inverse_upper(&r), twist: r.transpose() },
+            ObjectScale { wrench, twist: r.transpose() },
             self.tolerance,
         ))
     }
@@ -296,18 +301,4 @@ impl Parts {
             Matrix::beside(object, &[&self.infinite, &self.object, &Matrix::zeros(object, zero)]);
         Matrix::above(above.cols(), &[&above, &below])
     }
-}
-
-/// The inverse of a regular upper triangular matrix.
-fn inverse_upper(r: &Matrix) -> Matrix {
-    let n = r.rows();
-    let mut inverse = Matrix::identity(n);
-    for j in 0..n {
-        let x = inverse.column_mut(j);
-        for i in (0..=j).rev() {
-            let sum: f64 = (i + 1..=j).map(|k| r[(i, k)] * x[k]).sum();
-            x[i] = (x[i] - sum) / r[(i, i)];
-        }
-    }
-    inverse
 }

@@ -140,6 +140,16 @@ impl Qr {
     }
 }
 
+/// `R^-1 y` for the leading square block of an upper triangular matrix.
+pub(crate) fn solve_upper(r: &Matrix, y: &[f64]) -> Vec<f64> {
+    let mut x = y.to_vec();
+    for i in (0..x.len()).rev() {
+        let sum: f64 = (i + 1..x.len()).map(|k| r[(i, k)] * x[k]).sum();
+        x[i] = (x[i] - sum) / r[(i, i)];
+    }
+    x
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

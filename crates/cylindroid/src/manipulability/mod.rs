@@ -23,7 +23,9 @@
 mod efficiency;
 mod index;
 mod metrics;
+mod polytope;
 
 pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
 pub use index::Index;
 pub use metrics::Metrics;
+pub use polytope::{Polytope, force_polytope, velocity_polytope};

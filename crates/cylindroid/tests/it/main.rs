@@ -8,6 +8,7 @@
 )]
 
 mod closure;
+mod hull;
 mod inverse;
 mod kinematics;
 mod manipulability;

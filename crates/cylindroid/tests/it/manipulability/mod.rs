@@ -1,3 +1,4 @@
 mod metrics;
+mod polytope;
 mod reference;
 mod serial;
