@@ -22,6 +22,7 @@
 //! ```
 
 mod constraint;
+mod grasp;
 mod mobility;
 mod motions;
 mod relation;
@@ -29,6 +30,7 @@ mod singularity;
 mod statics;
 
 pub use constraint::{Blocks, Constraint, Unit, Units};
+pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};
 pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
 pub use motions::{Motions, Rows};
 pub use relation::{Parts, Relation, RelationDimensions};

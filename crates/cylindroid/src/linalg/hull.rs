@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 
 use super::matrix::Matrix;
 use super::qr::Qr;
+use crate::tolerance::HULL;
 
 /// What is wanted of the hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,6 +85,7 @@ impl Hull {
             span,
             facets: Vec::new(),
             slack: options.tolerance * size,
+            flat: options.tolerance.min(HULL) * size,
         };
         let k = growth.span.cols();
         if k > 0 {
@@ -199,7 +201,11 @@ struct Growth {
     span: Matrix,
     /// A point inside.
     inner: Vec<f64>,
+    /// What a point may lie beyond a facet without changing it.
     slack: f64,
+    /// What a point may lie beyond a facet and not see it: rounding, since a facet that is kept
+    /// although it is seen folds the surface.
+    flat: f64,
 }
 
 impl Growth {
@@ -251,9 +257,9 @@ impl Growth {
             }
             let new = self.vertices.len();
             let mut rim: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
-            let slack = self.slack;
+            let flat = self.flat;
             self.facets.retain(|facet| {
-                let seen = dot(&facet.normal, &x) - facet.offset > slack;
+                let seen = dot(&facet.normal, &x) - facet.offset > flat;
                 if seen {
                     for left_out in 0..facet.vertices.len() {
                         let mut ridge = facet.vertices.clone();

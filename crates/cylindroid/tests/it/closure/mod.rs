@@ -1,5 +1,6 @@
 mod bad_input;
 pub(crate) mod case;
+mod grasp;
 mod laws;
 mod mobility;
 mod reference;
