@@ -91,7 +91,8 @@ impl Constraint {
     /// The same constraint with lengths measured in the characteristic length `length` (m).
     ///
     /// # Errors
-    /// Units of the wrong number; a length that is not positive and finite.
+    /// Units of the wrong number; a length that is not positive and finite, or so far from one
+    /// that scaled entries overflow.
     pub fn with_length(mut self, units: &Units, length: f64) -> Result<Self> {
         if !(length > 0.0 && length.is_finite()) {
             return Err(Error::InvalidOption {
@@ -109,6 +110,7 @@ impl Constraint {
         let columns = units.actuated.iter().chain(&units.passive).chain(&units.object);
         self.column_scale = columns.map(scale).collect();
         self.length = length;
+        check_finite("constraint scaled by the length, transposed,", &self.scaled_transpose())?;
         Ok(self)
     }
 

@@ -116,10 +116,6 @@ pub struct Mobility {
     pub zero_torque: Subspace,
     /// Contact forces that neither joint torques nor the wrench determine.
     pub hyperstatic: Subspace,
-    /// Contact forces without a wrench on the object: ker G.
-    pub internal_forces: Subspace,
-    /// Contact forces without torques at any joint: ker J^T.
-    pub structural_forces: Subspace,
     /// The counts of the relation between driven joints and object alone, where redundancy and
     /// indeterminacy take in what passive joints make possible.
     pub relation: RelationDimensions,
@@ -191,8 +187,6 @@ impl Mobility {
             internal: Subspace { basis: forces.zero, cut: joint_rank },
             zero_torque: Subspace { basis: forces.infinite, cut: object_rank },
             hyperstatic: statics::undetermined(constraint, motions),
-            internal_forces: statics::internal(constraint),
-            structural_forces: statics::structural(constraint),
             relation: relation.dimensions(),
             grubler: motions.grubler(),
             doubts: Vec::new(),
@@ -207,8 +201,6 @@ impl Mobility {
             ("relation", span),
             ("internal", joint_rank),
             ("zero_torque", object_rank),
-            ("internal_forces", report.internal_forces.cut),
-            ("structural_forces", report.structural_forces.cut),
         ]
         .into_iter()
         .filter(|(_, cut)| cut.is_doubtful())

@@ -35,4 +35,6 @@ pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
 pub use motions::{Motions, Rows};
 pub use relation::{Parts, Relation, RelationDimensions};
 pub use singularity::{Counts, Distances, Singularities, SingularityKind};
-pub use statics::{ContactForces, Load, Torques, contact_forces, joint_torques};
+pub use statics::{
+    ContactForces, Load, Torques, contact_forces, internal_forces, joint_torques, structural_forces,
+};

@@ -146,14 +146,17 @@ pub(super) fn undetermined(constraint: &Constraint, motions: &Motions) -> Subspa
     Subspace { basis, cut: motions.cut() }
 }
 
-/// ker G: contact forces without a wrench on the object.
-pub(super) fn internal(constraint: &Constraint) -> Subspace {
+/// ker G: contact forces without a wrench on the object. They need torques at the joints unless
+/// nothing determines them.
+#[must_use]
+pub fn internal_forces(constraint: &Constraint) -> Subspace {
     let joints = constraint.actuated() + constraint.passive();
     kernel_of_columns(constraint, joints, joints + constraint.object())
 }
 
 /// ker J^T: contact forces without torques at any joint.
-pub(super) fn structural(constraint: &Constraint) -> Subspace {
+#[must_use]
+pub fn structural_forces(constraint: &Constraint) -> Subspace {
     kernel_of_columns(constraint, 0, constraint.actuated() + constraint.passive())
 }
 

@@ -1,3 +1,4 @@
+mod any_matrices;
 mod bad_input;
 pub(crate) mod case;
 mod grasp;
