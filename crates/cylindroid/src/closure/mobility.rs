@@ -160,25 +160,33 @@ impl Mobility {
         let c = k.saturating_sub(r + i);
         let passive = joints_only.0.cols().saturating_sub(r + i_p);
         let object = object_only.0.cols().saturating_sub(r + i_u);
-        let sum = ColumnSpace::of(
-            &Matrix::beside(k, &[&joints_only.0, &object_only.0, &indeterminacy.0]),
-            tolerance,
-        );
-        let both = k - sum.rank();
-        let coordinate =
-            ColumnSpace::of(&Matrix::beside(k, &[&redundancy.0, &indeterminacy.0]), tolerance);
+        let mixed = i.saturating_sub(i_p + i_u);
+        // Without mixed motions nothing is counted twice.
+        let both = if mixed == 0 {
+            c.saturating_sub(passive + object)
+        } else {
+            let all = Matrix::beside(k, &[&joints_only.0, &object_only.0, &indeterminacy.0]);
+            k - ColumnSpace::of(&all, tolerance).rank()
+        };
+        let coordinate = if r + i == 0 {
+            Subspace { basis: motions.basis(), cut: motions.cut() }
+        } else {
+            let others = Matrix::beside(k, &[&redundancy.0, &indeterminacy.0]);
+            let others = ColumnSpace::of(&others, tolerance);
+            space(&(others.complement(), others.cut()))
+        };
         let forces = relation.forces();
         let [span, joint_rank, object_rank] = relation.cuts();
         let mut report = Self {
             dof: Subspace { basis: motions.basis(), cut: motions.cut() },
-            coordinate: space(&(coordinate.complement(), coordinate.cut())),
+            coordinate,
             coordinate_kinds: CoordinateKinds {
                 passive,
                 object,
                 both,
                 overlap: (passive + object + both).saturating_sub(c),
             },
-            mixed: i.saturating_sub(i_p + i_u),
+            mixed,
             joints: joint_mobility(motions, &indeterminacy.0, &idle.0),
             redundancy: space(&redundancy),
             indeterminacy: space(&indeterminacy),
@@ -197,7 +205,6 @@ impl Mobility {
             ("indeterminacy", report.indeterminacy.cut),
             ("idle", report.idle.cut),
             ("ungrasped", report.ungrasped.cut),
-            ("coordinate", report.coordinate.cut),
             ("relation", span),
             ("internal", joint_rank),
             ("zero_torque", object_rank),

@@ -1,7 +1,7 @@
 //! The space that the columns of a matrix span, and its orthogonal complement.
 //!
 //! Formula  A = Q R P^T, R = U S V^T; the first r columns of Q U span the columns of A, the others
-//!          what is orthogonal to them
+//!          what is orthogonal to them. Where the pivots end in rounding, U is left out.
 //! Shapes   A: m x n, basis: m x r, complement: m x (m - r)
 //! Units    those of A; rows and columns of mixed units are to be scaled first
 //! Valid    any matrix of finite numbers; a kernel is the complement of the transpose
@@ -13,6 +13,7 @@
 
 use super::matrix::Matrix;
 use super::qr::Qr;
+use super::singular_values::singular_values;
 use super::svd::{Rank, Svd};
 use crate::tolerance::{AMBIGUOUS, MACHINE_RANK};
 
@@ -60,7 +61,8 @@ impl Cut {
 pub struct ColumnSpace {
     rows: usize,
     qr: Qr,
-    svd: Svd,
+    /// Of R; none where the pivots alone tell the space: the columns of Q that they name.
+    svd: Option<Svd>,
     values: Vec<f64>,
     cut: Cut,
 }
@@ -74,17 +76,33 @@ impl ColumnSpace {
         let mut scaled = a.clone();
         scaled.as_mut_slice().iter_mut().for_each(|x| *x /= scale);
         let qr = Qr::pivoted(scaled);
-        let svd = Svd::of(&qr.r());
-        let values: Vec<f64> = svd.values().map(|s| s * scale).collect();
+        let machine = MACHINE_RANK * a.rows().max(a.cols()) as f64;
+        let dust = match threshold {
+            Threshold::Relative(_) => machine * qr.first_pivot(),
+            Threshold::Absolute(_) => machine / scale,
+        };
+        let (svd, mut values) = match clear_values(&qr, dust) {
+            Some(values) => (None, values),
+            None => {
+                let svd = Svd::of(&qr.r());
+                let values = svd.values().collect();
+                (Some(svd), values)
+            }
+        };
+        values.iter_mut().for_each(|s| *s *= scale);
         let first = values.first().copied().unwrap_or(0.0);
-        let machine = MACHINE_RANK * a.rows().max(a.cols()) as f64 * first;
-        let cut = Cut::of(
-            &values,
-            match threshold {
-                Threshold::Relative(eps) => machine.max(eps * first),
-                Threshold::Absolute(t) => machine.max(t),
-            },
-        );
+        let threshold = match threshold {
+            Threshold::Relative(eps) => eps.max(machine) * first,
+            Threshold::Absolute(t) => t.max(machine * first),
+        };
+        let cut = Cut::of(&values, threshold);
+        if svd.is_none() && cut.dropped > dust * scale {
+            // The cut goes through values that are no rounding: their directions are needed.
+            let svd = Svd::of(&qr.r());
+            let values: Vec<f64> = svd.values().map(|s| s * scale).collect();
+            let cut = Cut::of(&values, threshold);
+            return Self { rows: a.rows(), qr, svd: Some(svd), values, cut };
+        }
         Self { rows: a.rows(), qr, svd, values, cut }
     }
 
@@ -106,7 +124,7 @@ impl ColumnSpace {
         &self.values
     }
 
-    /// An orthonormal basis of the space, m x r, directions of the largest values first.
+    /// An orthonormal basis of the space, m x r.
     #[must_use]
     pub fn basis(&self) -> Matrix {
         self.columns(0, self.rank())
@@ -123,14 +141,39 @@ impl ColumnSpace {
         let mut basis = Matrix::zeros(self.rows, to - from);
         for j in from..to {
             let column = basis.column_mut(j - from);
-            if j < self.svd.len() {
-                let u = self.svd.u(j);
-                column[..u.len()].copy_from_slice(u);
-            } else {
-                column[j] = 1.0;
+            match &self.svd {
+                Some(svd) if j < svd.len() => {
+                    let u = svd.u(j);
+                    column[..u.len()].copy_from_slice(u);
+                }
+                _ => column[j] = 1.0,
             }
             self.qr.apply(column);
         }
         basis
     }
+}
+
+/// The singular values where all that comes after some pivot is rounding, with that rounding as
+/// one value: the first columns of Q then span the columns, to rounding.
+fn clear_values(qr: &Qr, dust: f64) -> Option<Vec<f64>> {
+    let r = qr.r();
+    let k = r.rows();
+    let mut rank = k;
+    let mut rest = 0.0;
+    while rank > 0 {
+        let row = (rank - 1..r.cols()).map(|j| r[(rank - 1, j)].powi(2)).sum::<f64>();
+        if !(rest + row <= dust * dust) {
+            break;
+        }
+        rest += row;
+        rank -= 1;
+    }
+    let regular = Matrix::from_fn(r.cols(), rank, |j, i| r[(i, j)]);
+    let mut values = singular_values(regular)?;
+    if rank < k && values.last().is_some_and(|&s| s <= dust) {
+        return None;
+    }
+    values.extend((rank..k).map(|i| if i == rank { rest.sqrt() } else { 0.0 }));
+    Some(values)
 }

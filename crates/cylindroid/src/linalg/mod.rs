@@ -9,6 +9,7 @@ mod matrix;
 mod metric;
 mod null_space;
 mod qr;
+mod singular_values;
 mod svd;
 mod symmetric;
 

@@ -111,6 +111,12 @@ impl Qr {
         basis
     }
 
+    /// Size of the first entry of the diagonal: with pivots, the size of the largest column.
+    #[must_use]
+    pub fn first_pivot(&self) -> f64 {
+        if self.factors.is_empty() { 0.0 } else { self.packed[(0, 0)].abs() }
+    }
+
     /// `order()[j]` is the column of A that was taken as the `j`-th.
     #[must_use]
     pub fn order(&self) -> &[usize] {

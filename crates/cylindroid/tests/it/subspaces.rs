@@ -65,6 +65,48 @@ fn column_space_and_complement_are_orthonormal_and_complete() {
     }
 }
 
+/// Known singular values, among them some between rounding and the threshold, and matrices whose
+/// pivots or bidiagonal forms have zeros in the wrong place.
+#[test]
+fn column_space_of_known_values() {
+    let mut random = Random(66);
+    for round in 0..300 {
+        let (m, n) = SHAPES[round % SHAPES.len()];
+        let k = m.min(n);
+        let mut values: Vec<f64> = (0..k)
+            .map(|_| {
+                10.0_f64.powf(random.within(-14.0, 0.0)) * f64::from(random.within(0.0, 1.0) < 0.8)
+            })
+            .collect();
+        values.sort_by(|a, b| b.total_cmp(a));
+        let (u, v) = (orthonormal(&mut random, m, k), orthonormal(&mut random, n, k));
+        let a = &(&u * &Matrix::diagonal(&values)) * &v.transpose();
+        let threshold = 1e-7;
+        if values.iter().any(|s| (s / threshold).log10().abs() < 0.05) {
+            continue;
+        }
+        let space = ColumnSpace::of(&a, Threshold::Absolute(threshold));
+        assert_close("values", space.values(), &values, 1e-14);
+        let kept = values.iter().filter(|s| **s > threshold).count();
+        assert_eq!(space.rank(), kept);
+        let outside = &space.complement().transpose() * &a;
+        let dropped = values.get(kept).copied().unwrap_or(0.0);
+        assert!(outside.frobenius_norm() <= 5.0 * dropped + 1e-14, "{dropped} {outside:?}");
+    }
+    for rows in [
+        vec![vec![0.0, 1.0], vec![0.0, 0.0]],
+        vec![vec![1.0, 1.0, 0.0], vec![0.0, 0.0, 1.0], vec![0.0, 0.0, 1.0]],
+        vec![vec![0.0, 0.0, 0.0], vec![0.0, 1.0, 1.0], vec![0.0, 1.0, 1.0]],
+        vec![vec![1.0, 1e-30], vec![0.0, 1e-20]],
+    ] {
+        let a = Matrix::from_rows(&rows).unwrap();
+        let space = ColumnSpace::of(&a, Threshold::Relative(1e-9));
+        let values: Vec<f64> = Svd::of(&a).values().collect();
+        assert_close("values", space.values(), &values, 1e-15);
+        assert_eq!(space.rank(), Svd::of(&a).rank(1e-9).rank);
+    }
+}
+
 #[test]
 fn column_space_of_nothing() {
     for (m, n) in [(0, 0), (0, 3), (4, 0)] {
