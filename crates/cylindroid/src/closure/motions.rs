@@ -37,6 +37,7 @@ pub struct Motions {
     kernel: Matrix,
     cut: Cut,
     largest: f64,
+    threshold: f64,
     tolerance: f64,
 }
 
@@ -62,6 +63,7 @@ impl Motions {
             kernel: space.complement(),
             cut: space.cut(),
             largest,
+            threshold,
             tolerance: CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning),
         }
     }
@@ -83,6 +85,11 @@ impl Motions {
     #[must_use]
     pub fn regularity(&self) -> f64 {
         if self.cut.rank.rank == 0 { 0.0 } else { self.cut.kept / self.largest }
+    }
+
+    /// The relative threshold of the constraint matrix [-].
+    pub(super) fn threshold(&self) -> f64 {
+        self.threshold
     }
 
     /// The absolute threshold for blocks of motions [-].

@@ -137,10 +137,8 @@ pub(super) fn undetermined(constraint: &Constraint, motions: &Motions) -> Subspa
     let basis = if motions.hyperstatic() == 0 {
         Matrix::zeros(constraint.rows(), 0)
     } else {
-        let space = ColumnSpace::of(
-            &constraint.scaled_transpose().transpose(),
-            Threshold::Relative(CLOSURE_RANK),
-        );
+        let scaled = constraint.scaled_transpose().transpose();
+        let space = ColumnSpace::of(&scaled, Threshold::Relative(motions.threshold()));
         unscaled(constraint, space.complement())
     };
     Subspace { basis, cut: motions.cut() }

@@ -15,6 +15,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::column_space::Cut;
 use super::matrix::Matrix;
+use super::qr::Qr;
 use super::svd::Svd;
 
 /// Which of the two blocks a direction lives in.
@@ -53,37 +54,33 @@ impl CosineSine {
         let (rows, k) = (basis.rows(), basis.cols());
         assert!(split <= rows, "a matrix of {rows} rows split after {split}");
         let (a, b) = (basis.rows_between(0, split), basis.rows_between(split, rows));
-        let outer = tall(&b);
-        let large = outer.values().take_while(|&s| s > FRAC_1_SQRT_2).count();
-        let mut z = Matrix::from_fn(k, k, |i, j| outer.v(j)[i]);
-        let mut ax = &a * &z;
+        let Complete { values: mut sines, mut y, mut z } = Complete::of(&b);
+        let large = sines.iter().take_while(|&&s| s > FRAC_1_SQRT_2).count();
+        let mut x = &a * &z;
         // What the small sines leave in the first block is large: normalised, these columns of X
-        // are sure, and the others are kept orthogonal to them.
+        // are sure, and the others are made orthogonal to them.
         let mut cosines: Vec<f64> = vec![0.0; k];
         for (j, cosine) in cosines.iter_mut().enumerate().skip(large) {
-            *cosine = normalise(ax.column_mut(j));
+            *cosine = normalise(x.column_mut(j));
         }
-        for j in 0..large {
-            ax.orthogonalise(j, large..k);
-        }
-        let inner = tall(&ax.columns_between(0, large));
+        let inner = Complete::of(&x.columns_between(0, large));
         // Largest cosine last.
-        let turn = Matrix::from_fn(large, large, |i, j| inner.v(large - 1 - j)[i]);
+        let turn = Matrix::from_fn(large, large, |i, j| inner.z[(i, large - 1 - j)]);
         let turned = &z.columns_between(0, large) * &turn;
-        for (j, cosine) in cosines.iter_mut().enumerate().take(large) {
-            z.column_mut(j).copy_from_slice(turned.column(j));
-            *cosine = inner.value(large - 1 - j);
-            ax.column_mut(j).copy_from_slice(&inner.u(large - 1 - j)[..split]);
-        }
-        let mut y = Matrix::from_fn(rows - split, k, |i, j| outer.u(j)[i]);
         let by = &b * &turned;
-        let mut sines: Vec<f64> = outer.values().collect();
-        for (j, sine) in sines.iter_mut().enumerate().take(large) {
+        for j in 0..large {
+            cosines[j] = inner.values[large - 1 - j];
+            x.column_mut(j).copy_from_slice(inner.y.column(large - 1 - j));
+            z.column_mut(j).copy_from_slice(turned.column(j));
             y.column_mut(j).copy_from_slice(by.column(j));
-            *sine = normalise(y.column_mut(j));
+            sines[j] = normalise(y.column_mut(j));
+        }
+        // Both change a small cosine or sine times its direction by rounding only.
+        for j in 0..large {
+            x.orthogonalise(j, large..k);
+            normalise(x.column_mut(j));
         }
         for j in large..k {
-            // Changes a small sine times its direction by rounding only.
             y.orthogonalise(j, 0..large);
             normalise(y.column_mut(j));
         }
@@ -92,7 +89,7 @@ impl CosineSine {
             debug_assert!((norm - 1.0).abs() < 1e-9, "columns of the split are not orthonormal");
             (*c, *s) = (*c / norm, *s / norm);
         }
-        Self { cosines, sines, x: ax, y, z }
+        Self { cosines, sines, x, y, z }
     }
 
     /// Number of directions.
@@ -134,11 +131,51 @@ impl CosineSine {
     }
 }
 
-/// The decomposition of `a` below which rows of zeros were added until it is tall: only then are
-/// all right vectors there, orthonormal whatever the rank.
-fn tall(a: &Matrix) -> Svd {
-    let rows = a.rows().max(a.cols() + 1);
-    Svd::of(&Matrix::from_fn(rows, a.cols(), |i, j| if i < a.rows() { a[(i, j)] } else { 0.0 }))
+/// A decomposition `B = Y diag(values) Z^T` of an m x k matrix with all k right vectors, orthonormal
+/// whatever the rank: those of a wide matrix alone would lack some.
+struct Complete {
+    /// k of them, largest first.
+    values: Vec<f64>,
+    /// m x k, zero where the value is.
+    y: Matrix,
+    /// k x k.
+    z: Matrix,
+}
+
+impl Complete {
+    fn of(b: &Matrix) -> Self {
+        let (m, k) = (b.rows(), b.cols());
+        if m >= k {
+            // A row of zeros makes a square matrix tall: its right vectors are then all there.
+            let rows = m.max(k + 1);
+            let svd =
+                Svd::of(&Matrix::from_fn(rows, k, |i, j| if i < m { b[(i, j)] } else { 0.0 }));
+            return Self {
+                values: svd.values().collect(),
+                y: Matrix::from_fn(m, k, |i, j| svd.u(j)[i]),
+                z: Matrix::from_fn(k, k, |i, j| svd.v(j)[i]),
+            };
+        }
+        // B^T P = Q R and R = U S V^T, U square: Z = Q blockdiag(U, 1), Y = P V.
+        let qr = Qr::pivoted(b.transpose());
+        let svd = Svd::of(&qr.r());
+        let mut all = Self { values: vec![0.0; k], y: Matrix::zeros(m, k), z: Matrix::zeros(k, k) };
+        for j in 0..k {
+            let z = all.z.column_mut(j);
+            if j < svd.len() {
+                all.values[j] = svd.value(j);
+                z[..svd.len()].copy_from_slice(svd.u(j));
+                let y = all.y.column_mut(j);
+                for (&i, &v) in qr.order().iter().zip(svd.v(j)) {
+                    y[i] = v;
+                }
+            } else {
+                z[j] = 1.0;
+            }
+            qr.apply(z);
+        }
+        all
+    }
 }
 
 /// Scales a vector to length one and returns its length; a zero vector stays.
