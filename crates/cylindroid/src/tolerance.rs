@@ -109,3 +109,40 @@ pub const AMBIGUOUS: f64 = 1e3;
 /// A projector that enlarges motions by more than this is not used by a servo unless asked to [-]:
 /// the error to be realised would be a thousand times the error to be closed.
 pub const LARGEST_PROJECTION: f64 = 1e3;
+
+/// Rank of the equilibrated constraint matrix of a closed chain, relative to its largest singular
+/// value: geometry given to ten digits leaves less than this where a rank is lost, and no regular
+/// pose of the reference set falls below 1e-3 [-].
+pub const CLOSURE_RANK: f64 = 1e-9;
+
+/// Rank of a block of an orthonormal basis of motions, absolute: the columns have length one, so
+/// a block that rounding alone filled holds 1e-15 [-].
+pub const CLOSURE_BLOCK: f64 = 1e-9;
+
+/// A kernel is right to this times the conditioning of its matrix (largest over smallest singular
+/// value kept): blocks of it are not read more finely [-].
+pub const KERNEL_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Pairs of motion and of force, computed apart from each other, agree to this in debug builds:
+/// each comes from a basis that is right to 1e-7 at the worst conditioning that counts [-].
+pub const DUALITY: f64 = 1e-6;
+
+/// Metrics of motions whose factors spread further than this have used up the digits there are:
+/// their duality is not checked [-].
+pub const LOPSIDED: f64 = 1.0 / f64::EPSILON;
+
+/// A direction whose part along another is below this, relative to both, is across it, when
+/// corners of boxes are looked for: above rounding of products of fourteen numbers, far below
+/// what tells two corners apart [-].
+pub const BOX_PROGRAM: f64 = 1e-12;
+
+/// Corners of polytopes nearer to a facet than this times the size of the body lie on it: above
+/// the rounding of their images, far below what can be seen [-].
+pub const HULL: f64 = 1e-9;
+
+/// Most facets of a hull: a polytope in three dimensions with ten thousand corners, and a second
+/// of work.
+pub const MOST_FACETS: usize = 20_000;
+
+/// How near bounds of a grasp's quality come to each other, relative to its largest wrench [-].
+pub const GRASP_QUALITY: f64 = 1e-3;
