@@ -49,10 +49,14 @@ impl Cut {
         Self { rank: Rank { rank, threshold, gap }, kept, dropped }
     }
 
-    /// True where the rank is a matter of taste: a small gap, or a kept value near the threshold.
+    /// True where the rank is a matter of taste: a small gap, a kept value near the threshold, or
+    /// nothing kept and a dropped value near it.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
-        self.rank.gap < AMBIGUOUS || self.kept < AMBIGUOUS * self.rank.threshold
+        let nothing_kept = self.rank.rank == 0;
+        self.rank.gap < AMBIGUOUS
+            || self.kept < AMBIGUOUS * self.rank.threshold
+            || (nothing_kept && self.dropped * AMBIGUOUS > self.rank.threshold)
     }
 }
 
@@ -119,7 +123,7 @@ impl ColumnSpace {
         self.cut
     }
 
-    /// All singular values, largest first.
+    /// All singular values, largest first; those that are rounding may be given as one.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
