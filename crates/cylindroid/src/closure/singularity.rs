@@ -6,9 +6,11 @@
 //!          type III  both
 //!          configuration space  rank of [J_a J_p -G^T] below generic, k above
 //!          passive   idle motions above generic
-//! Units    distances are sines of angles in units scaled by the characteristic length [-]: the
-//!          smallest s and c among the finite pairs of the relation, the smallest singular value
-//!          kept over the largest, the smallest value of the kernel without passive joints
+//! Units    distances have none: the smallest s and c among the finite pairs of the relation
+//!          (sines of angles in units scaled by the characteristic length, at the object's
+//!          reference point), the smallest value of the kernel without passive joints, and the
+//!          smallest singular value kept of the scaled constraint over the largest. The last
+//!          depends on where contacts are drawn; that each is zero does not depend on anything.
 //! Valid    relative to generic counts, which [`Counts::generic`] takes from several poses: a
 //!          mechanism may hold wrenches by its structure, or spin idly, in every pose
 //! Source   Gosselin & Angeles 1990 (I, II, III); Park & Kim 1999 and Zlatanov et al. 1995
@@ -63,7 +65,7 @@ impl fmt::Display for SingularityKind {
     }
 }
 
-/// How far a pose is from losing what it has: 0 at a singularity, sines of angles elsewhere [-].
+/// How far a pose is from losing what it has: 0 at a singularity, at most 1 elsewhere [-].
 /// Infinite where there is nothing to lose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Distances {

@@ -49,10 +49,14 @@ impl Cut {
         Self { rank: Rank { rank, threshold, gap }, kept, dropped }
     }
 
-    /// True where the rank is a matter of taste: a small gap, or a kept value near the threshold.
+    /// True where the rank is a matter of taste: a small gap, a kept value near the threshold, or
+    /// nothing kept and a dropped value near it.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
-        self.rank.gap < AMBIGUOUS || self.kept < AMBIGUOUS * self.rank.threshold
+        let nothing_kept = self.rank.rank == 0;
+        self.rank.gap < AMBIGUOUS
+            || self.kept < AMBIGUOUS * self.rank.threshold
+            || (nothing_kept && self.dropped * AMBIGUOUS > self.rank.threshold)
     }
 }
 
@@ -81,10 +85,11 @@ impl ColumnSpace {
             Threshold::Relative(_) => machine * qr.first_pivot(),
             Threshold::Absolute(_) => machine / scale,
         };
-        let (svd, mut values) = match clear_values(&qr, dust) {
+        let r = qr.r();
+        let (svd, mut values) = match clear_values(&r, dust) {
             Some(values) => (None, values),
             None => {
-                let svd = Svd::of(&qr.r());
+                let svd = Svd::of(&r);
                 let values = svd.values().collect();
                 (Some(svd), values)
             }
@@ -98,7 +103,7 @@ impl ColumnSpace {
         let cut = Cut::of(&values, threshold);
         if svd.is_none() && cut.dropped > dust * scale {
             // The cut goes through values that are no rounding: their directions are needed.
-            let svd = Svd::of(&qr.r());
+            let svd = Svd::of(&r);
             let values: Vec<f64> = svd.values().map(|s| s * scale).collect();
             let cut = Cut::of(&values, threshold);
             return Self { rows: a.rows(), qr, svd: Some(svd), values, cut };
@@ -118,7 +123,7 @@ impl ColumnSpace {
         self.cut
     }
 
-    /// All singular values, largest first.
+    /// All singular values, largest first; those that are rounding may be given as one.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
@@ -156,8 +161,7 @@ impl ColumnSpace {
 
 /// The singular values where all that comes after some pivot is rounding, with that rounding as
 /// one value: the first columns of Q then span the columns, to rounding.
-fn clear_values(qr: &Qr, dust: f64) -> Option<Vec<f64>> {
-    let r = qr.r();
+fn clear_values(r: &Matrix, dust: f64) -> Option<Vec<f64>> {
     let k = r.rows();
     let mut rank = k;
     let mut rest = 0.0;

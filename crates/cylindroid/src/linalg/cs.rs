@@ -48,7 +48,8 @@ impl CosineSine {
     /// Of a matrix with orthonormal columns, split after `split` rows.
     ///
     /// # Panics
-    /// If the matrix has fewer rows than `split`.
+    /// If the matrix has fewer rows than `split`; in debug builds if its columns are not
+    /// orthonormal.
     #[must_use]
     pub fn of(basis: &Matrix, split: usize) -> Self {
         let (rows, k) = (basis.rows(), basis.cols());

@@ -134,6 +134,9 @@ fn column_space_thresholds() {
     assert!(cut.cut().is_doubtful());
     let sure = ColumnSpace::of(&Matrix::diagonal(&[1.0, 1e-16]), Threshold::Absolute(1e-9));
     assert!(!sure.cut().is_doubtful());
+    let near = ColumnSpace::of(&Matrix::diagonal(&[5e-10]), Threshold::Absolute(1e-9));
+    assert!(near.rank() == 0 && near.cut().is_doubtful());
+    assert!(!ColumnSpace::of(&noise, Threshold::Absolute(1e-9)).cut().is_doubtful());
     for scale in [1e-300, 1e300] {
         let a = Matrix::diagonal(&[scale, 0.5 * scale, 0.0]);
         assert_eq!(ColumnSpace::of(&a, Threshold::Relative(1e-9)).rank(), 2);

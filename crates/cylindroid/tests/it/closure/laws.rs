@@ -4,7 +4,7 @@ use cylindroid::Matrix;
 use cylindroid::closure::{Constraint, Motions};
 use cylindroid::linalg::{ColumnSpace, Threshold};
 
-use super::case::cases;
+use super::case::{case, cases};
 use crate::support::Random;
 
 /// `tau^T q_a + w^T u = 0` for every force and every motion, and nothing is missing of either.
@@ -94,5 +94,21 @@ fn relation_does_not_depend_on_bases() {
         for (p, q) in one.finite_pairs().iter().zip(two.finite_pairs()) {
             assert!((p.0 - q.0).abs() + (p.1 - q.1).abs() < 1e-11, "{}", case.name);
         }
+    }
+}
+
+/// A Delta robot with real rods and one with idealised parallelograms, hyperstatic to the third
+/// degree: one relation. So a Stewart platform with rods that spin and one without.
+#[test]
+fn drawings_of_one_mechanism_have_one_relation() {
+    for (one, other) in [
+        ("delta_6xUS_rods", "delta_3xRRPaR_hyperstatic"),
+        ("stewart_6UPS_home", "stewart_6SPS_home"),
+    ] {
+        let basis = |name| Motions::of(&case(name).constraint()).relation().motions().basis();
+        let (one, other) = (basis(one), basis(other));
+        let both = Matrix::beside(one.rows(), &[&one, &other]);
+        let space = ColumnSpace::of(&both, Threshold::Relative(1e-12));
+        assert_eq!((space.rank(), one.cols()), (other.cols(), other.cols()));
     }
 }

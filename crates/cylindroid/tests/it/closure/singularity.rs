@@ -119,3 +119,54 @@ fn stretched_arm_is_type_i() {
     let blocked = found.blocked.column(0);
     assert!(blocked[0].abs() > 0.1 && blocked[1].abs() < 1e-14, "{blocked:?}");
 }
+
+/// Six legs by their lines, `l_i = n_i . (v + w x b_i)`: the platform above the base turned about
+/// the vertical by `yaw`.
+fn platform(yaw: f64) -> Constraint {
+    let at = |radius: f64, angle: f64, height: f64| {
+        Vec3::new(radius * angle.cos(), radius * angle.sin(), height)
+    };
+    let rows: Vec<[f64; 6]> = (0..6)
+        .map(|i| {
+            let third = f64::from(i / 2) * 2.0 * std::f64::consts::FRAC_PI_3;
+            let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let foot = at(2.0, third + 0.2 * side, -1.5);
+            let head = at(1.0, third + 0.8 * side + yaw, 0.0);
+            let leg = head - foot;
+            let n = leg * (1.0 / leg.norm());
+            let m = head.cross(n);
+            [n.x, n.y, n.z, m.x, m.y, m.z]
+        })
+        .collect();
+    let lines = Matrix::from_rows(&rows).unwrap();
+    Constraint::new(Blocks {
+        actuated: Matrix::identity(6),
+        passive: Matrix::zeros(6, 0),
+        grasp: lines.transpose(),
+    })
+    .unwrap()
+}
+
+/// A symmetric Stewart platform turned by a right angle: six legs of one linear complex, a
+/// screw about the vertical that no leg resists (Fichter 1986).
+#[test]
+fn stewart_platform_turned_by_a_right_angle() {
+    let generic = pose(&platform(0.3)).2;
+    let right = std::f64::consts::FRAC_PI_2;
+    for yaw in [right, -right] {
+        let (motions, relation, _) = pose(&platform(yaw));
+        let found = Singularities::of(&motions, &relation, &generic);
+        assert_eq!(found.kinds, [SingularityKind::TypeII], "{found:?}");
+        assert_eq!(found.gained.cols(), 1);
+        let u = found.gained.column(0);
+        // A screw about the vertical axis: v and w along z.
+        for i in [0, 1, 3, 4] {
+            assert!(u[i].abs() < 1e-12, "{u:?}");
+        }
+        assert!(u[5].abs() > 0.1);
+        assert_eq!(found.distances.type_ii, 0.0);
+    }
+    let (motions, relation, _) = pose(&platform(right - 1e-4));
+    let near = Singularities::of(&motions, &relation, &generic);
+    assert!(near.is_regular() && near.distances.type_ii < 1e-3, "{near:?}");
+}

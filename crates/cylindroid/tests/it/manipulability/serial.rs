@@ -76,3 +76,23 @@ fn nothing_at_all() {
         assert_eq!((m.kinematic.zeros.cols(), m.force.infinite.cols()), (n, d));
     }
 }
+
+/// Two links nearly stretched by an angle a: the smaller efficiency goes as a^2 down to where the
+/// direction counts as lost, and on the other side of that it is a zero by kind.
+#[test]
+fn both_sides_of_the_switch() {
+    let arm = |a: f64| {
+        let (s, c) = a.sin_cos();
+        of(&Matrix::from_rows(&[[-s, -s], [1.0 + c, c]]).unwrap())
+    };
+    for a in [1e-2, 1e-4, 1e-6, 1e-8] {
+        let m = arm(a);
+        assert_eq!(m.kinematic.finite.len(), 2, "{a}");
+        // det J = sin a, so the product of efficiencies is its square.
+        let product: f64 = m.kinematic.values().iter().product();
+        assert!((product / a.sin().powi(2) - 1.0).abs() < 1e-7, "{a}: {product}");
+    }
+    let m = arm(1e-10);
+    assert_eq!((m.kinematic.finite.len(), m.kinematic.zeros.cols()), (1, 1));
+    assert_eq!((m.force.finite.len(), m.force.infinite.cols()), (1, 1));
+}
