@@ -22,6 +22,7 @@
 //! ```
 
 mod constraint;
+mod graph;
 mod grasp;
 mod mobility;
 mod motions;
@@ -30,6 +31,7 @@ mod singularity;
 mod statics;
 
 pub use constraint::{Blocks, Constraint, Unit, Units};
+pub use graph::{ClosedChain, Gap};
 pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};
 pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
 pub use motions::{Motions, Rows};

@@ -1,0 +1,231 @@
+//! The constraint of a mechanism: from its loops, contacts and reference link to the matrices.
+//!
+//! Formula  for every closing joint and contact between links a and b, each held wrench h (a row):
+//!          h . (J_b - J_a) q = 0, both bodies seen from the world; for a closing joint of one
+//!          coordinate s also r . (J_b - J_a) q - s = 0, r the wrench that measures its rate;
+//!          J_ref q - u = 0: the reference link carries the object's twist u
+//! Shapes   t = held + measured + d rows; driven and passive coordinates as columns; d = 3 in the
+//!          plane (vx, vy, wz), else 6
+//! Units    lengths over the characteristic length for every rank decision
+//! Frame    u and its wrench: at the reference frame's origin, world axes
+//! Valid    any mechanism; for a tree it is u = J q. The pose is taken as it is: rows are those of
+//!          the two frames of a joint where they should coincide, see [`ClosedChain::gap`]
+//! Why so   a spanning tree and rows for what closes it needs no contact forces of tree joints; the
+//!          relation between driven joints and object is the same wherever the loops are cut, and
+//!          so is the hyperstatic degree
+//! Source   Bicchi & Prattichizzo 1998, eq. 2, with several objects as passive columns
+//! Checked  tests/it/closure/graph.rs
+
+use super::constraint::{Blocks, Constraint, Unit, Units};
+use crate::error::{Error, Result};
+use crate::kinematics::{Reference, State};
+use crate::linalg::Matrix;
+use crate::model::{Dimension, FrameId, JointKind, LoopJoint, Mechanism};
+use crate::spatial::{Pose, Rotation, Twist, Vec3, Wrench};
+
+/// A mechanism at a configuration as a constraint, with the names of what the columns are.
+#[derive(Debug, Clone)]
+pub struct ClosedChain {
+    /// The matrices.
+    pub constraint: Constraint,
+    /// Names of the driven coordinates, in the order of the columns.
+    pub actuated: Vec<String>,
+    /// Names of the passive coordinates.
+    pub passive: Vec<String>,
+    /// Units of rows and columns.
+    pub units: Units,
+    /// The frame whose motion is the goal.
+    pub reference: FrameId,
+    /// How far the loops are open: the largest distance (m) and angle (rad) by which what should
+    /// be held is not.
+    pub gap: Gap,
+}
+
+/// How far loops and contacts are from being closed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Gap {
+    /// Along held directions (m).
+    pub distance: f64,
+    /// About held directions (rad).
+    pub angle: f64,
+}
+
+/// A relative motion that is restricted, in world axes at the world's origin.
+struct Row {
+    /// What is measured of the motion of `b` relative to `a`.
+    wrench: Wrench,
+    a: usize,
+    b: usize,
+    unit: Unit,
+    /// Place among the coordinates of closing joints where it is their rate.
+    rate_of: Option<usize>,
+}
+
+impl ClosedChain {
+    /// The constraint of `state`, for the mechanism's reference frame or another, at its reach as
+    /// characteristic length or another (m).
+    ///
+    /// # Errors
+    /// A frame of another mechanism, a length that is not positive, a driven closing joint of
+    /// several coordinates.
+    pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
+        let mechanism = state.mechanism();
+        let reference = reference.unwrap_or_else(|| mechanism.reference());
+        mechanism.check_frame(reference)?;
+        let planar = mechanism.dimension() == Dimension::Planar;
+        let (rows, loops, gap) = rows(state)?;
+
+        // Columns: coordinates of the tree, then those of closing joints; driven ones first.
+        let n = mechanism.n();
+        let tree = mechanism.coordinates().iter().map(|c| {
+            let unit = if c.kind.unit() == "m" { Unit::Length } else { Unit::Angle };
+            (c.name.clone(), unit, c.actuated)
+        });
+        let closing = loops.iter().map(|l| {
+            let unit = if l.kind == JointKind::Prismatic { Unit::Length } else { Unit::Angle };
+            (l.name.clone(), unit, l.actuated)
+        });
+        let columns: Vec<(String, Unit, bool)> = tree.chain(closing).collect();
+
+        let components: &[usize] = if planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
+        let (held, d) = (rows.len(), components.len());
+        let mut all = Matrix::zeros(held + d, columns.len());
+        let links: Vec<Matrix> =
+            (0..mechanism.links().len()).map(|l| link_jacobian(state, l)).collect::<Result<_>>()?;
+        for (i, row) in rows.iter().enumerate() {
+            for j in 0..n {
+                let of = |link: usize| twist(&links[link], j);
+                all[(i, j)] = (of(row.b) - of(row.a)).power(row.wrench);
+            }
+            if let Some(k) = row.rate_of {
+                all[(i, n + k)] = -1.0;
+            }
+        }
+        let target = state.jacobian(reference, Reference::LocalWorldAligned);
+        for (i, &c) in components.iter().enumerate() {
+            for j in 0..n {
+                all[(held + i, j)] = target[(c, j)];
+            }
+        }
+        let pick = |driven: bool| -> Vec<usize> {
+            (0..columns.len()).filter(|&j| columns[j].2 == driven).collect()
+        };
+        let (driven, passive) = (pick(true), pick(false));
+        let block = |of: &[usize]| Matrix::from_fn(held + d, of.len(), |i, j| all[(i, of[j])]);
+        let named = |of: &[usize]| of.iter().map(|&j| columns[j].0.clone()).collect();
+        let of_units = |of: &[usize]| of.iter().map(|&j| columns[j].1).collect();
+        let object: Vec<Unit> =
+            components.iter().map(|&c| if c < 3 { Unit::Length } else { Unit::Angle }).collect();
+        let units = Units {
+            rows: rows.iter().map(|r| r.unit).chain(object.iter().copied()).collect(),
+            actuated: of_units(&driven),
+            passive: of_units(&passive),
+            object,
+        };
+        let grasp =
+            Matrix::from_fn(d, held + d, |i, j| f64::from(u8::from(j == held + i)));
+        let constraint =
+            Constraint::new(Blocks { actuated: block(&driven), passive: block(&passive), grasp })?
+                .with_length(&units, length.unwrap_or_else(|| mechanism.reach()))?;
+        Ok(Self {
+            constraint,
+            actuated: named(&driven),
+            passive: named(&passive),
+            units,
+            reference,
+            gap,
+        })
+    }
+}
+
+fn twist(jacobian: &Matrix, column: usize) -> Twist {
+    Twist::from_array(std::array::from_fn(|i| jacobian.column(column)[i]))
+}
+
+fn link_jacobian(state: &State, link: usize) -> Result<Matrix> {
+    let mechanism = state.mechanism();
+    let frame = mechanism.frame(&mechanism.links()[link].name)?;
+    Ok(state.jacobian(frame, Reference::World))
+}
+
+fn link_pose(state: &State, mechanism: &Mechanism, link: usize) -> Result<Pose> {
+    Ok(state.pose(mechanism.frame(&mechanism.links()[link].name)?))
+}
+
+/// Rows of all closing joints and contacts, the closing joints that have a rate, and the gap.
+fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
+    let mechanism = state.mechanism();
+    let dimension = mechanism.dimension();
+    let (mut rows, mut rated, mut gap) = (Vec::new(), Vec::new(), Gap::default());
+    let unit = |w: &Wrench| if w.force == Vec3::ZERO { Unit::Angle } else { Unit::Length };
+    for joint in mechanism.loops() {
+        let world_from_a = link_pose(state, mechanism, joint.a)? * joint.link_a_from_joint;
+        let world_from_b = link_pose(state, mechanism, joint.b)? * joint.link_b_from_joint;
+        let mut held = joint.kind.held(joint.axis, dimension);
+        if let (JointKind::Universal { second }, Dimension::Spatial) = (joint.kind, dimension) {
+            // Its moment is normal to an axis of either body, wherever they have turned.
+            let second = world_from_a.rotation.inverse() * (world_from_b.rotation * second);
+            if let (Some(row), Some(normal)) = (held.last_mut(), joint.axis.cross(second).unit(0.0))
+            {
+                row.moment = normal;
+            }
+        }
+        gap.widen(&held, world_from_a.inverse() * world_from_b);
+        let mut push = |w: Wrench, rate_of| {
+            let wrench = world_from_a.coadjoint(w);
+            rows.push(Row { wrench, a: joint.a, b: joint.b, unit: unit(&w), rate_of });
+        };
+        held.into_iter().for_each(|w| push(w, None));
+        let along = joint.axis;
+        let measure = match joint.kind {
+            JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
+                Some(Wrench { force: Vec3::ZERO, moment: along })
+            }
+            JointKind::Prismatic => Some(Wrench { force: along, moment: Vec3::ZERO }),
+            _ => None,
+        };
+        match measure {
+            Some(w) => {
+                push(w, Some(rated.len()));
+                rated.push(joint);
+            }
+            None if joint.actuated => {
+                return Err(Error::Model {
+                    model: mechanism.name().to_owned(),
+                    culprit: joint.name.clone(),
+                    message: format!(
+                        "joint '{}' closes a loop, is {} and driven; a motor needs a joint of one \
+                         coordinate: drive another, or write it as joints in a row",
+                        joint.name,
+                        joint.kind.name()
+                    ),
+                });
+            }
+            None => {}
+        }
+    }
+    for contact in mechanism.contacts() {
+        let world_from_a = link_pose(state, mechanism, contact.a)? * contact.link_a_from_contact;
+        let world_from_b = link_pose(state, mechanism, contact.b)? * contact.link_b_from_contact;
+        let held = contact.kind.held(dimension);
+        gap.widen(&held, world_from_a.inverse() * world_from_b);
+        for w in held {
+            let wrench = world_from_a.coadjoint(w);
+            rows.push(Row { wrench, a: contact.a, b: contact.b, unit: unit(&w), rate_of: None });
+        }
+    }
+    Ok((rows, rated, gap))
+}
+
+impl Gap {
+    /// Takes in what the frame of the second body leaves the first by along held directions.
+    fn widen(&mut self, held: &[Wrench], a_from_b: Pose) {
+        let turn = Rotation::log(a_from_b.rotation);
+        for w in held {
+            self.distance = self.distance.max(w.force.dot(a_from_b.translation).abs());
+            if w.force == Vec3::ZERO {
+                self.angle = self.angle.max(w.moment.dot(turn).abs());
+            }
+        }
+    }
+}
