@@ -26,6 +26,15 @@ pub struct BoxProgram {
     inverse: Option<Matrix>,
 }
 
+/// What a corner is wanted for.
+#[derive(Debug, Clone, Copy)]
+pub struct Pull<'a> {
+    /// c.
+    pub first: &'a [f64],
+    /// Decides among corners that are equally far along `first`.
+    pub second: &'a [f64],
+}
+
 impl BoxProgram {
     /// Of A (n x m, rank m) and positive bounds b.
     ///
@@ -39,28 +48,28 @@ impl BoxProgram {
         Self { normals, inverse }
     }
 
-    /// A corner of largest `c . z`, and among these of largest `second . z`.
+    /// A corner of largest `first . z`, and among these of largest `second . z`.
     #[must_use]
-    pub fn farthest(&self, c: &[f64], second: &[f64]) -> Vec<f64> {
+    pub fn farthest(&self, pull: Pull<'_>) -> Vec<f64> {
         match &self.inverse {
             Some(inverse) => {
                 let n = inverse.cols();
                 let mut signs = vec![0.0; n];
-                let size = norm(c);
+                let size = norm(pull.first);
                 for (j, sign) in signs.iter_mut().enumerate() {
                     let column = inverse.column(j);
-                    let first = dot(column, c);
+                    let first = dot(column, pull.first);
                     let tie = first.abs() <= BOX_PROGRAM * size * norm(column);
-                    *sign = if tie { dot(column, second) } else { first };
+                    *sign = if tie { dot(column, pull.second) } else { first };
                     *sign = if *sign < 0.0 { -1.0 } else { 1.0 };
                 }
                 inverse.mul_vec(&signs)
             }
-            None => self.active_set(c, second),
+            None => self.active_set(pull),
         }
     }
 
-    fn active_set(&self, c: &[f64], second: &[f64]) -> Vec<f64> {
+    fn active_set(&self, pull: Pull<'_>) -> Vec<f64> {
         let (m, n) = (self.normals.rows(), self.normals.cols());
         let mut z = vec![0.0; m];
         let mut active: Vec<(usize, f64)> = Vec::new();
@@ -70,7 +79,7 @@ impl BoxProgram {
                 self.normals[(i, active[j].0)] * active[j].1
             });
             let qr = Qr::plain(columns);
-            let goal = if tie_break { second } else { c };
+            let goal = if tie_break { pull.second } else { pull.first };
             let mut parts = goal.to_vec();
             qr.apply_transposed(&mut parts);
             let rank = active.len();

@@ -12,7 +12,7 @@
 //!
 //! [`Relation::task`]: crate::closure::Relation::task
 
-use crate::closure::Unit;
+use crate::closure::{Unit, Units};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Metric};
 
@@ -34,39 +34,62 @@ impl Metrics {
     /// The identity everywhere.
     pub const UNIT: Self = Self { object: None, joint: None, wrench: None, torque: None };
 
-    /// W_u and W_q as matrices, forces dual.
+    /// With W_u, symmetric and positive definite: an inertia matrix measures twists by energy.
     ///
     /// # Errors
     /// A matrix that is not symmetric and positive definite.
-    pub fn dual(object: &Matrix, joint: &Matrix) -> Result<Self> {
-        Ok(Self {
-            object: Some(Metric::new("Wu", object)?),
-            joint: Some(Metric::new("Wq", joint)?),
-            ..Self::UNIT
-        })
+    pub fn with_object(mut self, w: &Matrix) -> Result<Self> {
+        self.object = Some(Metric::new("Wu", w)?);
+        Ok(self)
     }
 
-    /// Twists measured with angles times the length `length` (m), rates of sliding joints over it
-    /// where `joints` says so: efficiencies without unit.
+    /// With W_q.
     ///
     /// # Errors
-    /// A length that is not positive and finite.
-    pub fn characteristic_length(object: &[Unit], joints: &[Unit], length: f64) -> Result<Self> {
-        if !(length > 0.0 && length.is_finite()) {
+    /// As [`Metrics::with_object`].
+    pub fn with_joint(mut self, w: &Matrix) -> Result<Self> {
+        self.joint = Some(Metric::new("Wq", w)?);
+        Ok(self)
+    }
+
+    /// With W_w of its own.
+    ///
+    /// # Errors
+    /// As [`Metrics::with_object`].
+    pub fn with_wrench(mut self, w: &Matrix) -> Result<Self> {
+        self.wrench = Some(Metric::new("Ww", w)?);
+        Ok(self)
+    }
+
+    /// With W_tau of its own.
+    ///
+    /// # Errors
+    /// As [`Metrics::with_object`].
+    pub fn with_torque(mut self, w: &Matrix) -> Result<Self> {
+        self.torque = Some(Metric::new("Wtau", w)?);
+        Ok(self)
+    }
+
+    /// Lengths measured in `length` (m), beside angles: efficiencies without unit. Of the units
+    /// those of the object and of the actuated joints are read.
+    ///
+    /// # Errors
+    /// A length that is not positive and finite, or whose square is not.
+    pub fn characteristic_length(units: &Units, length: f64) -> Result<Self> {
+        let weight = (length * length).recip();
+        if !(length > 0.0 && weight > 0.0 && weight.is_finite()) {
             return Err(Error::InvalidOption {
                 option: "length",
                 value: length.to_string(),
                 reason: "the characteristic length is positive and finite".to_owned(),
             });
         }
-        let inverse_square = (length * length).recip();
         let weights = |units: &[Unit]| -> Vec<f64> {
-            let weight = |u: &Unit| if *u == Unit::Length { inverse_square } else { 1.0 };
-            units.iter().map(weight).collect()
+            units.iter().map(|u| if *u == Unit::Length { weight } else { 1.0 }).collect()
         };
         Ok(Self {
-            object: Some(Metric::diagonal("Wu", &weights(object))?),
-            joint: Some(Metric::diagonal("Wq", &weights(joints))?),
+            object: Some(Metric::diagonal("Wu", &weights(&units.object))?),
+            joint: Some(Metric::diagonal("Wq", &weights(&units.actuated))?),
             ..Self::UNIT
         })
     }

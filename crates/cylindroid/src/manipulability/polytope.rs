@@ -17,7 +17,7 @@
 
 use crate::closure::{Parts, Relation};
 use crate::error::{Error, Result};
-use crate::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Matrix};
+use crate::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Matrix, Pull};
 use crate::tolerance::{HULL, MOST_FACETS};
 
 /// A polytope of twists or wrenches, about zero.
@@ -73,7 +73,10 @@ fn polytope(
     let second = pull(&(0..d).map(|i| ((i + 1) as f64).sqrt().fract() + 0.1).collect::<Vec<_>>());
     let hull = Hull::of(
         d,
-        |n| parts.object.mul_vec(&program.farthest(&pull(n), &second)[..c]),
+        |n| {
+            let corner = program.farthest(Pull { first: &pull(n), second: &second });
+            parts.object.mul_vec(&corner[..c])
+        },
         HullOptions { goal: HullGoal::Whole, tolerance: HULL, most_facets: MOST_FACETS },
     );
     Ok(Polytope { hull, unbounded: parts.infinite })

@@ -1,7 +1,7 @@
 //! Hulls by farthest points, corners of boxes.
 
 use cylindroid::Matrix;
-use cylindroid::linalg::{BoxProgram, Hull, HullGoal, HullOptions};
+use cylindroid::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Pull};
 
 use crate::support::{Random, assert_close};
 
@@ -124,7 +124,7 @@ fn box_program_finds_the_best_corner() {
             let bounds: Vec<f64> = (0..n).map(|_| random.within(0.3, 2.0)).collect();
             let program = BoxProgram::new(&a, &bounds);
             let (c, second) = (random.vector(m), random.vector(m));
-            let z = program.farthest(&c, &second);
+            let z = program.farthest(Pull { first: &c, second: &second });
             let az = a.mul_vec(&z);
             assert!(az.iter().zip(&bounds).all(|(x, b)| x.abs() <= b * (1.0 + 1e-9)), "{az:?}");
             // A corner: as many bounds met as there are unknowns.
@@ -171,7 +171,17 @@ fn box_program_breaks_ties() {
     for n in [2, 3] {
         let a = Matrix::from_fn(n, 2, |i, j| f64::from(u8::from(i % 2 == j)));
         let program = BoxProgram::new(&a, &vec![1.0; n]);
-        assert_close("up", &program.farthest(&[1.0, 0.0], &[0.3, 0.5]), &[1.0, 1.0], 1e-15);
-        assert_close("down", &program.farthest(&[1.0, 0.0], &[0.3, -0.5]), &[1.0, -1.0], 1e-15);
+        assert_close(
+            "up",
+            &program.farthest(Pull { first: &[1.0, 0.0], second: &[0.3, 0.5] }),
+            &[1.0, 1.0],
+            1e-15,
+        );
+        assert_close(
+            "down",
+            &program.farthest(Pull { first: &[1.0, 0.0], second: &[0.3, -0.5] }),
+            &[1.0, -1.0],
+            1e-15,
+        );
     }
 }

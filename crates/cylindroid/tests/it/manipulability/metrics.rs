@@ -1,7 +1,7 @@
 //! Metrics: duals, presets, lopsided ones, refusals.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Constraint, Motions, Relation, Unit};
+use cylindroid::closure::{Constraint, Motions, Relation, Unit, Units};
 use cylindroid::linalg::Metric;
 use cylindroid::manipulability::{Manipulability, Metrics};
 
@@ -78,17 +78,23 @@ fn limits_measure() {
 /// A characteristic length makes the efficiencies free of the unit.
 #[test]
 fn characteristic_length_takes_the_unit_out() {
-    let units = [Unit::Length, Unit::Length, Unit::Angle];
+    let units = Units {
+        rows: vec![],
+        actuated: vec![Unit::Angle; 2],
+        passive: vec![],
+        object: vec![Unit::Length, Unit::Length, Unit::Angle],
+    };
     let case = case("fivebar_sec5_case_a");
     let values = |factor: f64| {
         let case = case.moved(cylindroid::Pose::IDENTITY, factor);
         let relation = Motions::of(&case.constraint()).relation();
-        let metrics =
-            Metrics::characteristic_length(&units, &[Unit::Angle; 2], 1.7 * factor).unwrap();
+        let metrics = Metrics::characteristic_length(&units, 1.7 * factor).unwrap();
         Manipulability::of(&relation, &metrics).unwrap().kinematic.values()
     };
     assert_close("in mm", &values(1e3), &values(1.0), 1e-12);
-    assert!(Metrics::characteristic_length(&units, &[], 0.0).is_err());
+    for length in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-200, 1e200] {
+        assert!(Metrics::characteristic_length(&units, length).is_err());
+    }
 }
 
 /// Metrics that differ by 24 orders of magnitude change sizes, never kinds.
@@ -141,5 +147,7 @@ fn metrics_of_the_wrong_size() {
         let error = Manipulability::of(&relation, &metrics).unwrap_err().to_string();
         assert!(error.starts_with(name), "{error}");
     }
-    assert!(Metrics::dual(&Matrix::diagonal(&[1.0, 0.0]), &Matrix::identity(2)).is_err());
+    let semi = Matrix::diagonal(&[1.0, 0.0]);
+    assert!(Metrics::UNIT.with_object(&semi).is_err() && Metrics::UNIT.with_joint(&semi).is_err());
+    assert!(Metrics::UNIT.with_wrench(&semi).is_err() && Metrics::UNIT.with_torque(&semi).is_err());
 }

@@ -16,6 +16,10 @@ fn relation(case: &Case, constraint: &Constraint) -> Relation {
     case.task.as_ref().map_or(relation.clone(), |t| relation.task(t).unwrap())
 }
 
+fn metrics(case: &Case) -> Metrics {
+    Metrics::UNIT.with_object(&case.wu).unwrap().with_joint(&case.wq).unwrap()
+}
+
 #[track_caller]
 fn assert_relative(what: &str, got: &[f64], expected: &[f64]) {
     let ratio: Vec<f64> = got.iter().zip(expected).map(|(g, e)| g / e).collect();
@@ -30,8 +34,7 @@ fn check(case: &Case) {
 
 #[track_caller]
 fn check_relation(case: &Case, relation: &Relation) {
-    let metrics = Metrics::dual(&case.wu, &case.wq).unwrap();
-    let m = Manipulability::of(relation, &metrics).unwrap();
+    let m = Manipulability::of(relation, &metrics(case)).unwrap();
     for (kind, spectrum) in [
         ("kinematic", m.kinematic.clone()),
         ("active_force", m.active_force()),
@@ -134,7 +137,7 @@ fn five_bar_exactly() {
 fn directions_are_what_they_say() {
     for case in cases() {
         let relation = relation(&case, &case.constraint());
-        let m = Manipulability::of(&relation, &Metrics::dual(&case.wu, &case.wq).unwrap()).unwrap();
+        let m = Manipulability::of(&relation, &metrics(&case)).unwrap();
         let forces = relation.forces().basis();
         let norm = |w: &Matrix, x: &[f64]| -> f64 {
             let wx = w.mul_vec(x);
