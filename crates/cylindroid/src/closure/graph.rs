@@ -122,8 +122,7 @@ impl ClosedChain {
             passive: of_units(&passive),
             object,
         };
-        let grasp =
-            Matrix::from_fn(d, held + d, |i, j| f64::from(u8::from(j == held + i)));
+        let grasp = Matrix::from_fn(d, held + d, |i, j| f64::from(u8::from(j == held + i)));
         let constraint =
             Constraint::new(Blocks { actuated: block(&driven), passive: block(&passive), grasp })?
                 .with_length(&units, length.unwrap_or_else(|| mechanism.reach()))?;

@@ -1,6 +1,7 @@
 mod any_matrices;
 mod bad_input;
 pub(crate) mod case;
+mod graph;
 mod grasp;
 mod laws;
 mod mobility;

@@ -1,0 +1,160 @@
+//! From mechanisms to constraints: exact values, counts, wherever the loops are cut.
+
+use cylindroid::closure::{ClosedChain, Mobility, Motions};
+use cylindroid::linalg::Svd;
+use cylindroid::manipulability::{Manipulability, Metrics};
+use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec, LoopSpec};
+use cylindroid::{Error, Mechanism, Reference, catalogue};
+
+use crate::support::{Random, robots};
+
+fn chain(mechanism: &Mechanism) -> ClosedChain {
+    let state = mechanism.state(mechanism.home()).unwrap();
+    ClosedChain::of(&state, None, Some(1.0)).unwrap()
+}
+
+fn kinematic(chain: &ClosedChain) -> Vec<f64> {
+    let relation = Motions::of(&chain.constraint).relation();
+    Manipulability::of(&relation, &Metrics::UNIT).unwrap().kinematic.values()
+}
+
+/// dof, redundancy, indeterminacy, internal, zero_torque, hyperstatic, idle.
+fn counts(chain: &ClosedChain) -> [usize; 7] {
+    let m = Mobility::of(&chain.constraint);
+    [
+        m.dof.dimension(),
+        m.relation.redundancy,
+        m.relation.indeterminacy,
+        m.internal.dimension(),
+        m.zero_torque.dimension(),
+        m.hyperstatic.dimension(),
+        m.idle.dimension(),
+    ]
+}
+
+/// Section 5 of Bicchi & Prattichizzo 1998, geometry recovered: cases a, b and c.
+#[test]
+fn five_bar_exact() {
+    let five_bar = catalogue::load("five-bar").unwrap();
+    let (a, b, c) = (41_f64.sqrt(), 97_f64.sqrt(), 3_f64.sqrt());
+    for (driven, expected, internal) in [
+        (&["q1", "q5"][..], [7.0 + a, 7.0 - a], 0),
+        (&["q2", "q4"], [(15.0 + b) / 16.0, (15.0 - b) / 16.0], 0),
+        (&["q1", "q2", "q3", "q4", "q5"], [0.4 + 2.0 * c / 15.0, 0.4 - 2.0 * c / 15.0], 3),
+    ] {
+        let chain = chain(&five_bar.with_actuated(driven).unwrap());
+        assert!(chain.gap.distance < 1e-15 && chain.gap.angle < 1e-15);
+        assert_eq!(chain.actuated.len(), driven.len());
+        let got = kinematic(&chain);
+        assert_eq!(got.len(), 2);
+        for (g, e) in got.iter().zip(expected) {
+            assert!((g - e).abs() < 1e-12 * e, "{driven:?}: {g} instead of {e}");
+        }
+        assert_eq!(counts(&chain), [2, 0, 0, internal, 1, 0, 0], "{driven:?}");
+    }
+}
+
+#[test]
+fn counts_of_the_catalogue() {
+    for (name, expected) in [
+        ("four-bar", [1, 0, 0, 0, 2, 0, 0]),
+        ("3rrr", [3, 0, 0, 0, 0, 0, 0]),
+        ("stewart", [6, 0, 0, 0, 0, 0, 0]),
+        ("watt", [1, 0, 0, 0, 2, 0, 0]),
+        ("two-arm", [8, 2, 0, 6, 0, 0, 0]),
+    ] {
+        let chain = chain(&catalogue::load(name).unwrap());
+        assert!(chain.gap.distance < 1e-12 && chain.gap.angle < 1e-12, "{name}: {:?}", chain.gap);
+        assert_eq!(counts(&chain), expected, "{name}");
+    }
+    let delta = counts(&chain(&catalogue::load("delta").unwrap()));
+    assert_eq!((delta[0] - delta[6], delta[4]), (3, 3), "delta: {delta:?}");
+}
+
+/// A tree is u = J q: the efficiencies are the squares of the singular values.
+#[test]
+fn trees_are_serial() {
+    let mut random = Random(51);
+    for robot in robots() {
+        let state = robot.state(&random.q(&robot)).unwrap();
+        let chain = ClosedChain::of(&state, Some(robot.tool()), Some(1.0)).unwrap();
+        let got = kinematic(&chain);
+        let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+        let svd = Svd::of(&j);
+        let expected: Vec<f64> = svd.values().filter(|s| *s > 1e-9).map(|s| s * s).collect();
+        assert_eq!(got.len(), expected.len(), "{}", robot.name());
+        for (g, e) in got.iter().zip(&expected) {
+            assert!((g - e).abs() < 1e-9 * expected[0], "{}: {g} {e}", robot.name());
+        }
+    }
+}
+
+/// A spatial four-bar with parallel axes: one motion, three forces too many, wherever it is cut
+/// and whether its last joint is a joint or a firm grasp.
+#[test]
+fn a_spatial_four_bar_is_hyperstatic() {
+    use cylindroid::spatial::{Pose, Vec3};
+    let at = |x: f64, y: f64| Pose::from_translation(Vec3::new(x, y, 0.0));
+    let build = |closing: JointKind| {
+        let mut b = Mechanism::builder("four-bar");
+        let mut joint = |name: &str, parent: &str, child: &str, place: Pose| {
+            b.joint(JointSpec {
+                parent_from_joint: place,
+                actuated: name == "q1",
+                ..JointSpec::new(name, JointKind::Revolute, parent, child)
+            });
+        };
+        joint("q1", "ground", "crank", at(0.0, 0.0));
+        joint("q2", "crank", "coupler", at(0.0, 1.0));
+        joint("q3", "coupler", "rocker", at(2.0, 0.5));
+        b.close(LoopSpec {
+            link_a_from_joint: at(0.0, -1.5),
+            link_b_from_joint: at(2.0, 0.0),
+            ..LoopSpec::new("q4", closing, "rocker", "ground")
+        });
+        b.reference("coupler");
+        b.build().unwrap()
+    };
+    let four_bar = build(JointKind::Revolute);
+    assert_eq!(counts(&chain(&four_bar)), [1, 0, 0, 0, 5, 3, 0]);
+    // A ball joint leaves out the moments that were too many, but for one.
+    let ball = build(JointKind::Spherical);
+    assert_eq!(counts(&chain(&ball))[..1], [1]);
+    assert_eq!(counts(&chain(&ball))[5], 1);
+}
+
+#[test]
+fn loops_that_are_open_say_by_how_much() {
+    let five_bar = catalogue::load("five-bar").unwrap();
+    let mut q = five_bar.home().to_vec();
+    q[0] += 0.1;
+    let state = five_bar.state(&q).unwrap();
+    let open = ClosedChain::of(&state, None, None).unwrap();
+    assert!(open.gap.distance > 0.05, "{:?}", open.gap);
+}
+
+#[test]
+fn bad_requests_are_refused() {
+    let mut b = Mechanism::builder("ball loop");
+    b.joint(JointSpec::new("q1", JointKind::Revolute, "ground", "a"));
+    b.joint(JointSpec::new("q2", JointKind::Revolute, "a", "b"));
+    b.close(LoopSpec {
+        actuated: true,
+        ..LoopSpec::new("ball", JointKind::Spherical, "b", "ground")
+    });
+    let m = b.build().unwrap();
+    let refused = ClosedChain::of(&m.state(m.home()).unwrap(), None, None).unwrap_err();
+    let Error::Model { culprit, message, .. } = refused else { panic!("{refused}") };
+    assert!(culprit == "ball" && message.contains("one coordinate"), "{message}");
+    let state = m.state(m.home()).unwrap();
+    assert!(ClosedChain::of(&state, None, Some(0.0)).is_err());
+    let other = catalogue::load("panda").unwrap();
+    assert!(ClosedChain::of(&state, Some(other.tool()), None).is_err());
+    // A contact alone makes a chain too: a hand that touches the ground.
+    let mut b = Mechanism::builder("finger");
+    b.joint(JointSpec::new("q1", JointKind::Revolute, "ground", "finger"));
+    b.contact(ContactSpec::new("tip", ContactKind::HardFinger, "finger", "ground"));
+    let finger = b.build().unwrap();
+    let chain = ClosedChain::of(&finger.state(&[0.0]).unwrap(), None, None).unwrap();
+    assert_eq!(Mobility::of(&chain.constraint).dof.dimension(), 1, "it turns about the point");
+}
