@@ -2,8 +2,10 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+mod closed;
 mod move_to;
 mod screws;
+pub(crate) use closed::{ClosedArgs, ManipulabilityArgs, MetricName};
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
 };
@@ -53,6 +55,12 @@ pub(crate) enum Command {
     /// The screw system of the joints: class, pitches, frame, and which inverses exist
     #[command(long_about = screws::ABOUT, after_long_help = screws::EXAMPLES)]
     Screws(Box<ScrewsArgs>),
+    /// Mobility of a mechanism: how it can move, what is redundant, idle or held twice
+    #[command(long_about = closed::MOBILITY)]
+    Mobility(Box<ClosedArgs>),
+    /// How well motion and force go from the driven joints to the reference frame
+    #[command(long_about = closed::MANIPULABILITY)]
+    Manipulability(Box<ManipulabilityArgs>),
 }
 
 #[derive(Debug, Args)]

@@ -1,5 +1,6 @@
 //! One file per command: arguments in, text or JSON out, an exit code.
 
+mod closed;
 mod fk;
 mod info;
 mod jacobian;
@@ -32,6 +33,8 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Jacobian(args) => jacobian::run(args, style, out),
         Command::Move(args) => move_to::run(args, style, out),
         Command::Screws(args) => screws::run(args, style, out),
+        Command::Mobility(args) => closed::mobility::run(args, style, out),
+        Command::Manipulability(args) => closed::manipulability::run(args, style, out),
     }
 }
 

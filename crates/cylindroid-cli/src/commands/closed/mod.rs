@@ -1,0 +1,93 @@
+//! What the commands on closed chains share: the mechanism at its configuration as a constraint.
+
+pub(super) mod manipulability;
+pub(super) mod mobility;
+
+use cylindroid::closure::ClosedChain;
+use cylindroid::model::Mechanism;
+use cylindroid::{Error, Result};
+use serde::Serialize;
+
+use super::configuration;
+use crate::args::ClosedArgs;
+use crate::output::{self, number};
+
+/// A mechanism, its configuration and its constraint there.
+struct Posed {
+    mechanism: Mechanism,
+    q: Vec<f64>,
+    chain: ClosedChain,
+}
+
+impl Posed {
+    fn new(args: &ClosedArgs) -> Result<Self> {
+        let loaded = cylindroid::load(&args.posture.model)?;
+        let mechanism = match args.actuated.as_slice() {
+            [] => loaded,
+            names => loaded.with_actuated(names)?,
+        };
+        let q = configuration(&mechanism, &args.posture)?;
+        let frame = args.frame.as_deref().map(|name| mechanism.frame(name)).transpose()?;
+        if let Some(length) = args.length {
+            Error::check_positive("--length", length)?;
+        }
+        let chain = ClosedChain::of(&mechanism.state(&q)?, frame, args.length)?;
+        Ok(Self { mechanism, q, chain })
+    }
+
+    fn frame(&self) -> &str {
+        &self.mechanism.frame_of(self.chain.reference).name
+    }
+
+    /// Names of the components of the reference's twist.
+    fn components(&self) -> &'static [&'static str] {
+        match self.chain.constraint.object() {
+            3 => &["x", "y", "rz"],
+            _ => &["x", "y", "z", "rx", "ry", "rz"],
+        }
+    }
+
+    /// The lines that say what is looked at.
+    fn heading(&self) -> Vec<(&'static str, String)> {
+        let gap = self.chain.gap;
+        let open = gap.distance > 1e-9 || gap.angle > 1e-9;
+        vec![
+            ("model", self.mechanism.name().to_owned()),
+            ("reference frame", self.frame().to_owned()),
+            ("q [rad or m]", output::entries(&self.q)),
+            ("driven", list(&self.chain.actuated)),
+            ("passive", list(&self.chain.passive)),
+            (
+                "loops are open by",
+                if open {
+                    format!(
+                        "{} m, {} rad: what follows holds where they are closed",
+                        number(gap.distance),
+                        number(gap.angle)
+                    )
+                } else {
+                    String::new()
+                },
+            ),
+        ]
+    }
+}
+
+fn list(names: &[String]) -> String {
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// How far loops are from closed.
+#[derive(Debug, Serialize)]
+struct GapJson {
+    /// [m]
+    distance: f64,
+    /// [rad]
+    angle: f64,
+}
+
+impl From<&ClosedChain> for GapJson {
+    fn from(chain: &ClosedChain) -> Self {
+        Self { distance: chain.gap.distance, angle: chain.gap.angle }
+    }
+}
