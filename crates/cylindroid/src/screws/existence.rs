@@ -90,10 +90,9 @@ impl fmt::Display for NoInverse {
             _ => format!("{order}-system of class {class}"),
         };
         match self {
-            Self::PrincipalPitch { pitch } => write!(
-                f,
-                "h is the principal pitch {pitch:.6} m/rad of the joint screws; take another h"
-            ),
+            Self::PrincipalPitch { pitch } => {
+                write!(f, "h is the principal pitch {pitch:.6} m/rad of the screws; take another h")
+            }
             Self::Class { class, order } => write!(
                 f,
                 "a {} has no hyperbolic pseudoinverse for any h; use the invariant damped form, \
@@ -112,12 +111,13 @@ impl fmt::Display for NoInverse {
             ),
             Self::NotComplementary { order, other } if order + other != 6 => write!(
                 f,
-                "the joint screws span {order} dimensions and the twists to give up {other}; \
+                "the motions span {order} dimensions and the twists to give up {other}; \
                  together they must have six"
             ),
             Self::NotComplementary { .. } => write!(
                 f,
-                "some of the twists to give up are motions of the joints; choose ones that are not"
+                "some of the twists to give up are among the motions to keep; choose ones that are \
+                 not"
             ),
             Self::TooLarge { norm } => write!(
                 f,

@@ -91,7 +91,7 @@ impl Span {
     }
 
     /// Adds the part of `x` outside the span, made a unit vector; says how long it was.
-    fn push(&mut self, mut x: [f64; 6]) -> f64 {
+    pub(crate) fn push(&mut self, mut x: [f64; 6]) -> f64 {
         let mut norm = self.project_out(&mut x);
         let first = norm;
         if norm == 0.0 {
@@ -183,13 +183,17 @@ impl Span {
     }
 }
 
+/// True unless the twist is a translation at the scale of `length`.
+pub(crate) fn turns(t: &Twist, length: f64) -> bool {
+    t.angular.norm() * length > SCREW_CLASS * t.linear.norm()
+}
+
 /// The point that minimises `sum |v_i + w_i x c|^2 / |w_i|^2` (`weighted`: without the division),
 /// where it is determined; along directions nearly parallel to all axes it stays at the point of
 /// one axis, since the exact minimum runs to their far intersection and the axes become one there.
 /// Twists that are translations at the scale of `length` are left out.
 pub(crate) fn least_squares_center(twists: &[Twist], length: f64, weighted: bool) -> Vec3 {
-    let turns = |t: &&Twist| t.angular.norm() * length > SCREW_CLASS * t.linear.norm();
-    let turning = || twists.iter().filter(turns);
+    let turning = || twists.iter().filter(|t| turns(t, length));
     let size = |t: &Twist| t.angular.norm();
     let Some(most) = turning().max_by(|a, b| size(a).total_cmp(&size(b))) else {
         return Vec3::ZERO;
