@@ -92,3 +92,7 @@ pub const AMBIGUOUS: f64 = 1e3;
 /// A projector that enlarges motions by more than this is not used by a servo unless asked to [-]:
 /// the error to be realised would be a thousand times the error to be closed.
 pub const LARGEST_PROJECTION: f64 = 1e3;
+
+/// An eigenvalue of an admittance, divided by the roots of its diagonal, may be this much below
+/// zero [-]: the rounding of a map that was moved between frames.
+pub const PASSIVE: f64 = 1e-9;

@@ -222,7 +222,7 @@ impl ServoOptions {
     }
 }
 
-fn positive(option: &'static str, value: f64) -> Result<()> {
+pub(super) fn positive(option: &'static str, value: f64) -> Result<()> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(refuse(option, value)) }
 }
 
