@@ -146,3 +146,7 @@ pub const MOST_FACETS: usize = 20_000;
 
 /// How near bounds of a grasp's quality come to each other, relative to its largest wrench [-].
 pub const GRASP_QUALITY: f64 = 1e-3;
+
+/// An eigenvalue of an admittance, divided by the roots of its diagonal, may be this much below
+/// zero [-]: the rounding of a map that was moved between frames.
+pub const PASSIVE: f64 = 1e-9;

@@ -4,9 +4,13 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use cylindroid::control::{Gain, Projection, Secondary, Task};
+use cylindroid::control::{
+    Admittance, AdmittanceGain, Gain, HybridInput, HybridLaw, Projection, Secondary, SharedInput,
+    SharedLaw, Task,
+};
 use cylindroid::inverse::{HyperbolicDamping, Method};
 use cylindroid::kinematics::Chain;
+use cylindroid::screws::{Along, Projector, ScrewOptions};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Twist, Vec3, catalogue};
 
 struct Counting;
@@ -131,6 +135,32 @@ fn projections(robot: &Mechanism, start: Pose) {
         });
         assert_eq!(counted, 0, "{name}");
         assert_eq!(servo.no_inverse(), None, "{name}");
+    }
+}
+
+#[test]
+fn control_laws_allocate_nothing() {
+    let turn = |angular| Twist { linear: Vec3::ZERO, angular };
+    let slide = |linear| Twist { linear, angular: Vec3::ZERO };
+    let free = [slide(Vec3::X), slide(Vec3::Y), turn(Vec3::X), turn(Vec3::Y), turn(Vec3::Z)];
+    let normal = [slide(Vec3::Z)];
+    let admittance =
+        Admittance::at(Vec3::ZERO, AdmittanceGain { force: 1e-3, moment: 0.0 }).unwrap();
+    let (hybrid, shared) = (HybridLaw::new(5.0, admittance).unwrap(), SharedLaw::new(5.0).unwrap());
+    let options = ScrewOptions::with_length(0.5);
+    for along in [
+        Along::Twists(&normal),
+        Along::Reciprocal { h: 0.2 },
+        Along::Reciprocal { h: f64::INFINITY },
+    ] {
+        let counted = count(|| {
+            for _ in 0..100 {
+                let p = Projector::of(&free, along, &options).unwrap().unwrap();
+                hybrid.command(&p, &HybridInput::default()).unwrap();
+                shared.command(&p, &SharedInput::default()).unwrap();
+            }
+        });
+        assert_eq!(counted, 0, "{along:?}");
     }
 }
 

@@ -3,35 +3,47 @@
 //! A path says where (`s` in 0 to 1), a time law says when (`s` over time), a move is both: the
 //! fastest law on this path that keeps every bound. A servo follows a move, or goes straight at a
 //! pose.
+//!
+//! [`HybridLaw`] and [`SharedLaw`] give a twist from a projector on a screw system: motions and
+//! contact wrenches controlled side by side, a robot and an operator on one tool. A servo carries
+//! it out as the feed-forward of a [`Target`] at the tool's own pose.
 
+mod admittance;
 mod approach;
 mod cartesian_move;
 mod detour;
 mod drive;
+mod hybrid;
 mod joint_move;
 mod limits;
+mod operator_share;
 mod options;
 mod path;
 mod projection;
 mod saturation;
 mod secondary;
 mod servo;
+mod shared;
 mod stall;
 mod step;
 mod task_space;
 mod time_law;
 
+pub use admittance::{Admittance, AdmittanceGain};
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
 pub use detour::{Detour, find_posture};
 pub use drive::{Outcome, Sample, drive};
+pub use hybrid::{HybridCommand, HybridInput, HybridLaw};
 pub use joint_move::{JointDefaults, JointMove, JointPath, JointSample};
 pub use limits::{LimitKind, Motion1, RateBounds};
+pub use operator_share::{OperatorShare, ShareTimes};
 pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};
 pub use path::{CartesianPath, Deviation, Turn};
 pub use projection::Projection;
 pub use saturation::Saturation;
 pub use secondary::Secondary;
 pub use servo::Servo;
+pub use shared::{SharedCommand, SharedInput, SharedLaw};
 pub use stall::Stall;
 pub use step::{Status, Step, Target};
 pub use time_law::{Bounds, LawSample, TimeLaw};

@@ -96,7 +96,7 @@ impl fmt::Display for NoInverse {
         match self {
             Self::PrincipalPitch { pitch } => write!(
                 f,
-                "h is the principal pitch {} m/rad of the joint screws; take another h",
+                "h is the principal pitch {} m/rad of the screws; take another h",
                 six_digits(*pitch)
             ),
             Self::Class { class, order } => write!(
@@ -119,12 +119,13 @@ impl fmt::Display for NoInverse {
             ),
             Self::NotComplementary { order, other } if order + other != 6 => write!(
                 f,
-                "the joint screws span {order} dimensions and the twists to give up {other}; \
+                "the motions span {order} dimensions and the twists to give up {other}; \
                  together they must have six"
             ),
             Self::NotComplementary { .. } => write!(
                 f,
-                "some of the twists to give up are motions of the joints; choose ones that are not"
+                "some of the twists to give up are among the motions to keep; choose ones that are \
+                 not"
             ),
             Self::TooLarge { norm } => write!(
                 f,

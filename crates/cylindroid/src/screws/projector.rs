@@ -27,10 +27,10 @@ use crate::spatial::{Twist, Vec3, Wrench};
 /// A projector on a screw system, along another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Projector {
-    scale: Scale,
-    span: Span,
+    pub(super) scale: Scale,
+    pub(super) span: Span,
     /// Row i: the coordinate along the i-th basis vector of what is projected.
-    coordinates: [[f64; 6]; 6],
+    pub(super) coordinates: [[f64; 6]; 6],
 }
 
 impl Projector {

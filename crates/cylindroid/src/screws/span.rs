@@ -220,13 +220,18 @@ impl Span {
     }
 }
 
-/// The point that minimises `sum |v_i + w_i x c|^2`, where it is determined; along directions nearly parallel to all axes it stays at the point of
-/// one axis, since the exact minimum runs to their far intersection and the axes become one there.
+/// True if the twist turns by more than `least` at the scale of `length`; else it is a translation.
+pub(crate) fn turns(t: &Twist, length: f64, least: f64) -> bool {
+    t.angular.norm() * length > least * t.linear.norm()
+}
+
+/// The point that minimises `sum |v_i + w_i x c|^2`, where it is determined; along directions nearly
+/// parallel to all axes it stays at the point of one axis, since the exact minimum runs to their
+/// far intersection and the axes become one there.
 /// Twists that turn by no more than `least` at the scale of `length` are translations, and left
 /// out.
 pub(crate) fn least_squares_center(twists: &[Twist], length: f64, least: f64) -> Vec3 {
-    let turns = |t: &&Twist| t.angular.norm() * length > least * t.linear.norm();
-    let turning = || twists.iter().filter(turns);
+    let turning = || twists.iter().filter(|t| turns(t, length, least));
     let turn = |t: &Twist| t.angular.norm();
     let Some(most) = turning().max_by(|a, b| turn(a).total_cmp(&turn(b))) else {
         return Vec3::ZERO;

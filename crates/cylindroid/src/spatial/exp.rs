@@ -51,6 +51,28 @@ pub fn log(pose: Pose) -> Twist {
     Twist { linear: rotation_log_derivative(angular) * pose.translation, angular }
 }
 
+impl Pose {
+    /// The screw motion that takes this pose to `target` in one second, rotating by at most pi:
+    /// its twist, in the axes of frame a, at the origin of this pose.
+    ///
+    /// Unlike [`Pose::error_to`] it is the motion of a body: the same whichever point of the body
+    /// the two poses are of.
+    ///
+    /// ```
+    /// use cylindroid::{Pose, Rotation, Vec3};
+    /// let pose = Pose::from_translation(Vec3::X);
+    /// let quarter = Pose::from_rotation(Rotation::exp(Vec3::Z * std::f64::consts::FRAC_PI_2));
+    /// // About the origin, by which the pose is at radius 1 m.
+    /// let twist = pose.screw_to(quarter * pose);
+    /// assert!((twist.linear - Vec3::Y * std::f64::consts::FRAC_PI_2).norm() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn screw_to(self, target: Self) -> Twist {
+        let rotation = target.rotation * self.rotation.inverse();
+        log(Self { rotation, translation: target.translation - self.translation })
+    }
+}
+
 /// V: `d exp(w) = skew(V dw) exp(w)`, the left derivative of the rotation by the vector `w`.
 #[must_use]
 pub fn rotation_exp_derivative(w: Vec3) -> Mat3 {

@@ -1,8 +1,10 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
+mod hybrid;
 mod limits;
 mod projection;
 mod secondary;
+mod shared;
 mod stall;
 mod steps;
 mod ways;

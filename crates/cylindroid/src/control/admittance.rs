@@ -1,0 +1,123 @@
+//! Admittance: how a tool gives way to a wrench.
+//!
+//! Formula  C wrench = twist; of two gains at a point p: v(p) = c_f f, w = c_m m(p);
+//!          seen from another frame Ad C Ad^T, so that the twist moves by Ad
+//! Shapes   6 x 6, both linear first
+//! Units    c_f m/s/N, c_m rad/s/(N m)
+//! Valid    symmetric part positive semidefinite: the tool gives way, it never pushes back
+//! Why so   judged after dividing by the roots of the diagonal, so that the verdict does not depend
+//!          on the unit of length
+//! Source   Hogan 1985 (impedance and admittance)
+//! Checked  tests/it/servo/hybrid.rs::admittance_*
+
+use crate::error::{Error, Result};
+use crate::linalg::Eigen;
+use crate::spatial::{Pose, Twist, Vec3, Wrench};
+use crate::tolerance::PASSIVE;
+
+/// A map from wrenches to twists of one frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Admittance {
+    rows: [[f64; 6]; 6],
+}
+
+/// How much a tool gives way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AdmittanceGain {
+    /// To forces, in all directions [m/s/N].
+    pub force: f64,
+    /// To moments, about all axes of the point [rad/s/(N m)]; zero for a tool that does not turn.
+    pub moment: f64,
+}
+
+impl Admittance {
+    /// The same in all directions and about all axes of the point `point` (m).
+    ///
+    /// # Errors
+    /// Gains that are negative or not finite, a point that is not finite.
+    pub fn at(point: Vec3, gain: AdmittanceGain) -> Result<Self> {
+        Error::check_finite("point of the admittance", &point.to_array())?;
+        for (option, value) in
+            [("force admittance", gain.force), ("moment admittance", gain.moment)]
+        {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(refuse(option, value.to_string()));
+            }
+        }
+        let admittance = Self::of(|wrench| {
+            let wrench = wrench.at_point(point);
+            let (linear, angular) = (wrench.force * gain.force, wrench.moment * gain.moment);
+            Twist { linear, angular }.at_point(-point)
+        });
+        Error::check_finite("admittance", admittance.rows.as_flattened())?;
+        Ok(admittance)
+    }
+
+    /// The map with these rows: twist (linear first) from wrench (force first).
+    ///
+    /// # Errors
+    /// Entries that are not finite; a map that would push back against some wrench.
+    pub fn from_rows(rows: [[f64; 6]; 6]) -> Result<Self> {
+        Error::check_finite("admittance", rows.as_flattened())?;
+        let root = |i: usize| rows[i][i].max(0.0).sqrt();
+        let mut scaled = [[0.0; 6]; 6];
+        for (i, row) in scaled.iter_mut().enumerate() {
+            for (j, s) in row.iter_mut().enumerate() {
+                let symmetric = 0.5 * rows[i][j] + 0.5 * rows[j][i];
+                let size = root(i) * root(j);
+                // Beside a zero of the diagonal nothing but zero is semidefinite.
+                *s = if symmetric == 0.0 { 0.0 } else { symmetric / size };
+            }
+        }
+        let smallest = if scaled.as_flattened().iter().all(|s| s.is_finite()) {
+            Eigen::of(scaled, 6).values[5]
+        } else {
+            f64::NEG_INFINITY
+        };
+        if smallest < -PASSIVE {
+            return Err(refuse("admittance", format!("{rows:?}")));
+        }
+        Ok(Self { rows })
+    }
+
+    /// The twist of a wrench.
+    #[must_use]
+    pub fn apply(&self, wrench: Wrench) -> Twist {
+        let w = wrench.to_array();
+        Twist::from_array(self.rows.map(|row| row.iter().zip(w).map(|(c, w)| c * w).sum()))
+    }
+
+    /// The same admittance seen from another frame: `self` is in frame b.
+    #[must_use]
+    pub fn seen_from(&self, a_from_b: Pose) -> Self {
+        let b_from_a = a_from_b.inverse();
+        Self::of(|wrench| a_from_b.adjoint(self.apply(b_from_a.coadjoint(wrench))))
+    }
+
+    /// The rows of the map.
+    #[must_use]
+    pub fn rows(&self) -> [[f64; 6]; 6] {
+        self.rows
+    }
+
+    fn of(map: impl Fn(Wrench) -> Twist) -> Self {
+        let mut rows = [[0.0; 6]; 6];
+        for j in 0..6 {
+            let mut unit = [0.0; 6];
+            unit[j] = 1.0;
+            let column = map(Wrench::from_array(unit)).to_array();
+            rows.iter_mut().zip(column).for_each(|(row, c)| row[j] = c);
+        }
+        Self { rows }
+    }
+}
+
+fn refuse(option: &'static str, value: String) -> Error {
+    Error::InvalidOption {
+        option,
+        value,
+        reason: "a tool that pushes back against a force runs away from it; take gains that are \
+                 not negative, or a map whose symmetric part is positive semidefinite"
+            .to_owned(),
+    }
+}
