@@ -129,20 +129,13 @@ pub(crate) fn bench() -> Result<()> {
 
 /// The figures of the README, by the command line that users have.
 pub(crate) fn figures() -> Result<()> {
-    run(&mut cargo(&[
-        "run",
-        "--release",
-        "--quiet",
-        "--package",
-        "cylindroid-cli",
-        "--",
-        "move",
-        "panda",
-        "--to",
-        "0.45,0.15,0.35",
-        "--rpy",
-        "3.1416,0,0.6",
-        "--plot",
-        "docs/move-panda.svg",
-    ]))
+    let [to, rpy] = ["0.45,0.15,0.35", "3.1416,0,0.6"];
+    for command in [
+        &["move", "panda", "--to", to, "--rpy", rpy, "--plot", "docs/move-panda.svg"][..],
+        &["screws", "youbot", "--frame", "arm_link_2", "--plot", "docs/screws-youbot.svg"],
+    ] {
+        let run_it = ["run", "--release", "--quiet", "--package", "cylindroid-cli", "--"];
+        run(&mut cargo(&[&run_it, command].concat()))?;
+    }
+    Ok(())
 }

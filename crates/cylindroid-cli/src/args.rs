@@ -3,9 +3,12 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 mod move_to;
+mod screws;
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
 };
+
+pub(crate) use screws::ScrewsArgs;
 
 use crate::values::{Joints, Numbers};
 
@@ -14,6 +17,7 @@ Examples:
   cylindroid info panda
   cylindroid jacobian ur5e --q 0,-1.2,1.4,0,1.5,0 --reference local
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --plot move.svg
+  cylindroid screws youbot
 
 Exit codes: 0 done, 1 a negative answer (a target not reached), 2 an error.";
 
@@ -46,6 +50,9 @@ pub(crate) enum Command {
     /// Cartesian control: drive a frame to a target and say whether and how it got there
     #[command(long_about = move_to::ABOUT, after_long_help = move_to::EXAMPLES)]
     Move(Box<MoveArgs>),
+    /// The screw system of the joints: class, pitches, frame, and which inverses exist
+    #[command(long_about = screws::ABOUT, after_long_help = screws::EXAMPLES)]
+    Screws(Box<ScrewsArgs>),
 }
 
 #[derive(Debug, Args)]

@@ -1,10 +1,14 @@
 //! The motion of `move` as an SVG: joints, errors and singular value ratio over time.
 
+pub(crate) mod screws;
+
 use std::ops::Range;
 use std::path::Path;
 
 use cylindroid::{Error, Result};
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::ValueFormatter;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use crate::trajectory::{Row, Trajectory, cannot_write};
@@ -119,22 +123,7 @@ fn linear_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str)
     let low = if low >= 0.0 { 0.0 } else { low - margin };
     let (chart_area, legend_area) = area.split_horizontally(SIZE.0 - LEGEND);
     let mut chart = builder(&chart_area).build_cartesian_2d(time.clone(), low..high + margin)?;
-    chart
-        .configure_mesh()
-        .x_desc("time [s]")
-        .y_desc(label)
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .axis_desc_style((FONT, 15))
-        .label_style((FONT, 13))
-        .y_labels(6)
-        .draw()?;
-    for line in lines {
-        chart.draw_series(LineSeries::new(
-            line.points.iter().copied(),
-            line.colour.stroke_width(2),
-        ))?;
-    }
+    finish(&mut chart, lines, label, Numbers { most: 6, form: None })?;
     legend(&legend_area, lines)
 }
 
@@ -146,24 +135,46 @@ fn log_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str) ->
     let (chart_area, legend_area) = area.split_horizontally(SIZE.0 - LEGEND);
     let mut chart =
         builder(&chart_area).build_cartesian_2d(time.clone(), (low..high).log_scale())?;
-    chart
-        .configure_mesh()
-        .x_desc("time [s]")
+    let form: Option<&dyn Fn(&f64) -> String> = Some(&|y| format!("{y:.0e}"));
+    finish(&mut chart, lines, label, Numbers { most: 8, form })?;
+    legend(&legend_area, lines)
+}
+
+/// The numbers of the vertical axis: how many at most, and how they are written.
+struct Numbers<'a> {
+    most: usize,
+    form: Option<&'a dyn Fn(&f64) -> String>,
+}
+
+/// Draws axes and lines.
+fn finish<Y>(
+    chart: &mut ChartContext<'_, SVGBackend<'_>, Cartesian2d<RangedCoordf64, Y>>,
+    lines: &[Line],
+    label: &str,
+    numbers: Numbers<'_>,
+) -> Drawn
+where
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    let mut mesh = chart.configure_mesh();
+    mesh.x_desc("time [s]")
         .y_desc(label)
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.12))
         .axis_desc_style((FONT, 15))
         .label_style((FONT, 13))
-        .y_labels(8)
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .draw()?;
+        .y_labels(numbers.most);
+    if let Some(form) = numbers.form {
+        mesh.y_label_formatter(form);
+    }
+    mesh.draw()?;
     for line in lines {
         chart.draw_series(LineSeries::new(
             line.points.iter().copied(),
             line.colour.stroke_width(2),
         ))?;
     }
-    legend(&legend_area, lines)
+    Ok(())
 }
 
 fn builder<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'b, SVGBackend<'b>> {

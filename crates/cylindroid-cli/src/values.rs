@@ -134,6 +134,27 @@ impl FromStr for Named {
     }
 }
 
+/// A motion of a body: a component, or a twist, linear part first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Motion(pub(crate) [f64; 6]);
+
+/// The names of the components of a twist, in their order.
+pub(crate) const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
+impl FromStr for Motion {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some(i) = COMPONENTS.iter().position(|c| *c == text.trim()) {
+            return Ok(Self(std::array::from_fn(|j| f64::from(u8::from(i == j)))));
+        }
+        let all = || format!("one of {} or six numbers", COMPONENTS.join(", "));
+        text.parse::<Numbers<6>>()
+            .map(|n| Self(n.0))
+            .map_err(|why| format!("{why}; a motion is {}", all()))
+    }
+}
+
 fn assignment(text: &str) -> Result<(String, f64), String> {
     let Some((name, value)) = text.split_once('=') else {
         return Err(format!("'{}' is not of the form name=number", text.trim()));

@@ -1,9 +1,12 @@
 //! How long the parts of a control step take: `cargo bench -p cylindroid`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use cylindroid::inverse::Method;
+use cylindroid::closure::{Blocks, Constraint, Mobility, Motions};
+use cylindroid::inverse::{self, Method};
 use cylindroid::kinematics::Chain;
 use cylindroid::linalg::Svd;
+use cylindroid::manipulability::{Manipulability, Metrics};
+use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, catalogue};
 use divan::{Bencher, black_box};
 
@@ -145,5 +148,91 @@ fn servo_step(bencher: Bencher<'_, '_>, robot_name: &str, method: &str) {
         let done = servo.step(&q, targets[(step / 500) & 1]).unwrap();
         servo.advance(&mut q);
         black_box(done)
+    });
+}
+
+/// Twists of a three-joint and a five-joint arm, and of nothing in particular.
+fn jacobians() -> [(Matrix, &'static str); 2] {
+    let of = |name: &str, q: &[f64]| {
+        let robot = robot(name);
+        robot.state(q).unwrap().jacobian(robot.tool(), Reference::World)
+    };
+    [(of("3r", &[0.3, 0.5, -1.1]), "3r"), (of("youbot", &[0.4, 0.6, 0.9, 0.5, 0.2]), "youbot")]
+}
+
+/// Class, pitches, frame and margins from nothing.
+#[divan::bench(args = ["3r", "youbot"])]
+fn screw_system(bencher: Bencher<'_, '_>, name: &str) {
+    let (j, _) = jacobians().into_iter().find(|j| j.1 == name).unwrap();
+    let options = ScrewOptions::with_length(0.7);
+    bencher.bench_local(|| {
+        let system = ScrewSystem::of_columns(black_box(&j), &options).unwrap();
+        black_box((system.class(), system.principal_pitches()))
+    });
+}
+
+/// In a control loop: no report, no allocation.
+#[divan::bench(args = ["3r", "youbot"])]
+fn hyperbolic_inverse(bencher: Bencher<'_, '_>, name: &str) {
+    let (j, _) = jacobians().into_iter().find(|j| j.1 == name).unwrap();
+    let scale = ScrewOptions::with_length(0.7);
+    let mut out = Matrix::zeros(j.cols(), 6);
+    bencher.bench_local(|| {
+        let none = inverse::hyperbolic_into(black_box(&j), 0.1, &scale, &mut out).unwrap();
+        black_box((none.is_none(), &out));
+    });
+}
+
+/// With its report.
+#[divan::bench(args = ["3r", "youbot"])]
+fn hyperbolic_inverse_with_report(bencher: Bencher<'_, '_>, name: &str) {
+    let (j, _) = jacobians().into_iter().find(|j| j.1 == name).unwrap();
+    bencher.bench_local(|| black_box(inverse::hyperbolic(black_box(&j), 0.1).unwrap()));
+}
+
+/// Closed chains by name and size: constraint rows, driven joints, passive columns, object.
+const CHAINS: [(&str, [usize; 4]); 3] =
+    [("five-bar", [6, 2, 3, 3]), ("stewart", [18, 6, 12, 6]), ("two-arm", [12, 14, 0, 6])];
+
+/// A constraint as large as that of the named mechanism, limb after limb, entries of size one.
+fn chain(name: &str) -> Constraint {
+    let [t, a, p, d] = CHAINS.iter().find(|c| c.0 == name).unwrap().1;
+    let limbs = if name == "stewart" { 6 } else { 2 };
+    let entry = |i: usize, j: usize| ((1 + i * 31 + j * 17 + i * j * 7) as f64).sin();
+    let limb = |i: usize, of: usize| i * limbs / of.max(1);
+    let joints = |n: usize, salt: usize| {
+        Matrix::from_fn(
+            t,
+            n,
+            |i, j| {
+                if limb(i, t) == limb(j, n) { entry(i, j + salt) } else { 0.0 }
+            },
+        )
+    };
+    Constraint::new(Blocks {
+        actuated: joints(a, 0),
+        passive: joints(p, 40),
+        grasp: Matrix::from_fn(d, t, |i, j| entry(j, i + 80)),
+    })
+    .unwrap()
+}
+
+#[divan::bench(args = CHAINS.map(|c| c.0))]
+fn closed_chain_relation(bencher: Bencher<'_, '_>, name: &str) {
+    let constraint = chain(name);
+    bencher.bench_local(|| black_box(Motions::of(black_box(&constraint)).relation()));
+}
+
+#[divan::bench(args = CHAINS.map(|c| c.0))]
+fn closed_chain_mobility(bencher: Bencher<'_, '_>, name: &str) {
+    let constraint = chain(name);
+    bencher.bench_local(|| black_box(Mobility::of(black_box(&constraint))));
+}
+
+#[divan::bench(args = CHAINS.map(|c| c.0))]
+fn closed_chain_manipulability(bencher: Bencher<'_, '_>, name: &str) {
+    let relation = Motions::of(&chain(name)).relation();
+    bencher.bench_local(|| {
+        black_box(Manipulability::of(black_box(&relation), &Metrics::UNIT).unwrap())
     });
 }

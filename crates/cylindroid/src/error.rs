@@ -123,6 +123,18 @@ impl Error {
         }
     }
 
+    /// Refuses an option that is not positive and finite.
+    pub fn check_positive(option: &'static str, value: f64) -> Result<()> {
+        if value > 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        Err(Self::InvalidOption {
+            option,
+            value: value.to_string(),
+            reason: "it must be positive and finite".to_owned(),
+        })
+    }
+
     /// Refuses a size other than `expected`.
     pub fn check_len(what: &str, expected: usize, got: usize) -> Result<()> {
         if expected == got {

@@ -16,17 +16,21 @@
 //! Conventions, once for all: SI units and radians; twists and wrenches as vectors are linear
 //! first (`[v; w]`, `[f; m]`); `world_from_tool` names a pose; a Jacobian always names its
 //! [`Reference`]. The modules form one line, each imports only those before it:
-//! `error, tolerance, scalar, linalg, spatial, inverse, model, kinematics, control`.
+//! `error, tolerance, scalar, linalg, spatial, screws, inverse, model, kinematics, closure,
+//! manipulability, control`.
 
 #![cfg_attr(test, allow(clippy::float_cmp_const))]
 
+pub mod closure;
 pub mod control;
 pub mod error;
 pub mod inverse;
 pub mod kinematics;
 pub mod linalg;
+pub mod manipulability;
 pub mod model;
 mod scalar;
+pub mod screws;
 pub mod spatial;
 pub mod tolerance;
 
@@ -36,6 +40,7 @@ pub use inverse::{Inverse, Method};
 pub use kinematics::{EndEffector, Reference, State};
 pub use linalg::Matrix;
 pub use model::{FrameId, Mechanism, catalogue, load};
+pub use screws::{Screw, ScrewSystem};
 pub use spatial::{Pose, Rotation, Twist, Vec3, Wrench};
 
 /// The code of the README is compiled and run.

@@ -37,13 +37,17 @@ pub const DAMPING_ONSET: f64 = 0.05;
 /// below this [-]: rates would be a million times the angular velocity.
 pub const ANGLE_SINGULAR: f64 = 1e-6;
 
+/// Angles are read from a rotation as at gimbal lock where the two entries that tell the first and
+/// the last angle apart are below this [-]: a few roundings of entries of size 1.
+pub const GIMBAL_LOCK: f64 = 8.0 * f64::EPSILON;
+
 /// Default position tolerance of a Cartesian move (m).
 pub const POSITION: f64 = 1e-6;
 
 /// Default orientation tolerance of a Cartesian move (rad).
 pub const ORIENTATION: f64 = 1e-6;
 
-/// Share of a joint's range (or 1 where it has none) kept free at a position limit against
+/// Share of 1 and the sizes of position and limit that is kept free at a position limit against
 /// rounding in the caller's `q + dt * rate` [-].
 pub const LIMIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -65,3 +69,80 @@ pub const COLLINEAR: f64 = 1e-6;
 /// Rank of a task Jacobian in postures without pattern, relative to the largest singular value:
 /// far below any regular posture, far above rounding [-].
 pub const GENERIC_RANK: f64 = 1e-9;
+
+/// Directions whose normal matrix is this small relative to the largest are those along nearly
+/// parallel axes (within 1e-3 rad): the point nearest to the axes is not looked for there [-].
+pub const NEARLY_PARALLEL: f64 = 1e-6;
+
+/// The centre of a screw system is found when a step to it is below this part of the
+/// characteristic length [-]: margins then depend on the twists given by less than a factor of two.
+pub const CENTER_FOUND: f64 = 0.1;
+
+/// Coordinates of a canonical origin whose weight is below this are not determined [-].
+pub const ORIGIN_DETERMINED: f64 = 1e-13;
+
+/// Parallel lines nearer than this times the size of their points coincide up to rounding [-].
+pub const COINCIDENT: f64 = 16.0 * f64::EPSILON;
+
+/// Least threshold for the rank of a screw system: singular values of unit twists [-].
+pub const SCREW_RANK: f64 = 1e-12;
+
+/// Least threshold for what a class hangs on: ratios of lengths to the characteristic length,
+/// sines of angles [-].
+pub const SCREW_CLASS: f64 = 1e-8;
+
+/// Noise of the twists, at the centre, raises the threshold of the rank to this many times its
+/// size [-]. This factor and the next were found by trial over all classes in random frames.
+pub const NOISE_RANK: f64 = 30.0;
+
+/// Noise of the twists, at the centre and times the conditioning of the twists, raises the
+/// threshold of the class to this many times its size [-].
+pub const NOISE_CLASS: f64 = 100.0;
+
+/// What noise makes of a zero stays below this part of the threshold that it raises [-]: in 6e5
+/// random systems the largest was 0.31.
+pub const NOISE_OF_ZERO: f64 = 0.5;
+
+/// A verdict is flagged when a quantity lies within this factor of its threshold [-].
+pub const AMBIGUOUS: f64 = 1e3;
+
+/// A projector that enlarges motions by more than this is not used by a servo unless asked to [-]:
+/// the error to be realised would be a thousand times the error to be closed.
+pub const LARGEST_PROJECTION: f64 = 1e3;
+
+/// Rank of the equilibrated constraint matrix of a closed chain, relative to its largest singular
+/// value: geometry given to ten digits leaves less than this where a rank is lost, and no regular
+/// pose of the reference set falls below 1e-3 [-].
+pub const CLOSURE_RANK: f64 = 1e-9;
+
+/// Rank of a block of an orthonormal basis of motions, absolute: the columns have length one, so
+/// a block that rounding alone filled holds 1e-15 [-].
+pub const CLOSURE_BLOCK: f64 = 1e-9;
+
+/// A kernel is right to this times the conditioning of its matrix (largest over smallest singular
+/// value kept): blocks of it are not read more finely [-].
+pub const KERNEL_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Pairs of motion and of force, computed apart from each other, agree to this in debug builds:
+/// each comes from a basis that is right to 1e-7 at the worst conditioning that counts [-].
+pub const DUALITY: f64 = 1e-6;
+
+/// Metrics of motions whose factors spread further than this have used up the digits there are:
+/// their duality is not checked [-].
+pub const LOPSIDED: f64 = 1.0 / f64::EPSILON;
+
+/// A direction whose part along another is below this, relative to both, is across it, when
+/// corners of boxes are looked for: above rounding of products of fourteen numbers, far below
+/// what tells two corners apart [-].
+pub const BOX_PROGRAM: f64 = 1e-12;
+
+/// Corners of polytopes nearer to a facet than this times the size of the body lie on it: above
+/// the rounding of their images, far below what can be seen [-].
+pub const HULL: f64 = 1e-9;
+
+/// Most facets of a hull: a polytope in three dimensions with ten thousand corners, and a second
+/// of work.
+pub const MOST_FACETS: usize = 20_000;
+
+/// How near bounds of a grasp's quality come to each other, relative to its largest wrench [-].
+pub const GRASP_QUALITY: f64 = 1e-3;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{FrameArgs, PostureArgs};
-use crate::values::{Joints, Named, Numbers, Pair};
+use crate::values::{Joints, Motion, Named, Numbers, Pair};
 
 pub(crate) const ABOUT: &str = "\
 Cartesian control: drive a frame to a target and say whether and how it got there
@@ -24,7 +24,8 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6
   cylindroid move ur5e --to -0.3,0.4,0.5 --inverse damped --damping 0.05 --out move.csv
-  cylindroid move panda --to 0.45,0.15,0.35 --line --speed 0.1 --plot line.svg";
+  cylindroid move panda --to 0.45,0.15,0.35 --line --speed 0.1 --plot line.svg
+  cylindroid move youbot --to 0.35,0,0.25 --rpy 0,2,0 --inverse hyperbolic --h 0.1";
 
 #[derive(Debug, Args)]
 pub(crate) struct MoveArgs {
@@ -180,7 +181,9 @@ pub(crate) struct ServoArgs {
 #[command(next_help_heading = "Inverse")]
 pub(crate) struct InverseArgs {
     /// How the Jacobian is inverted: `truncated`, `damped`, `variable-damping`,
-    /// `numerical-filtering`, `selectively-damped`, `singular-value-filtering`
+    /// `numerical-filtering`, `selectively-damped`, `singular-value-filtering`; for arms that
+    /// cannot do all of a motion, in rates that no frame or unit changes: `hyperbolic` (--h),
+    /// `hyperbolic-damped` (--h, --mu), `hyperbolic-gram` (--h, --lambda), `oblique` (--give-up)
     #[arg(long, value_name = "NAME", default_value = "truncated")]
     pub(crate) inverse: String,
 
@@ -213,6 +216,29 @@ pub(crate) struct InverseArgs {
     /// Smallest filtered singular value (singular-value-filtering)
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub(crate) floor: Option<f64>,
+
+    /// Pitch of the form that tells motions apart [m/rad], or `inf` (hyperbolic inverses); a
+    /// length of the order of the arm, `screws` shows which
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
+    pub(crate) h: Option<f64>,
+
+    /// Invariant damping [m/rad] (hyperbolic-damped)
+    #[arg(long, value_name = "MU", allow_hyphen_values = true)]
+    pub(crate) mu: Option<f64>,
+
+    /// Damping of the Gram matrix [m/rad] (hyperbolic-gram)
+    #[arg(long, value_name = "LAMBDA", allow_hyphen_values = true)]
+    pub(crate) lambda: Option<f64>,
+
+    /// A motion of the tool, in its axes, that may be given up: x, y, z, rx, ry, rz, or a twist
+    /// `vx,vy,vz,wx,wy,wz`; as often as the arm lacks joints to six (oblique)
+    #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
+    pub(crate) give_up: Vec<Motion>,
+
+    /// What takes over where that inverse does not exist: `truncated`, `hyperbolic-damped`,
+    /// `hyperbolic-gram`, `hyperbolic`, `oblique` [default: none, the arm stops and says why]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) fallback: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

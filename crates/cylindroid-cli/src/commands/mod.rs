@@ -5,6 +5,7 @@ mod info;
 mod jacobian;
 mod models;
 mod move_to;
+mod screws;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -30,6 +31,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Fk(args) => fk::run(args, style, out),
         Command::Jacobian(args) => jacobian::run(args, style, out),
         Command::Move(args) => move_to::run(args, style, out),
+        Command::Screws(args) => screws::run(args, style, out),
     }
 }
 

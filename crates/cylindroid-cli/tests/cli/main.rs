@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod motion;
+mod screws;
 mod shape;
 
 use std::process::{Command, Output};

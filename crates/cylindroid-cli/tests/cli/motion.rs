@@ -150,3 +150,70 @@ fn a_stall_at_limits_goes_round_or_offers_another_posture() {
     let q = numbers(&report["other_posture"]).iter().map(f64::to_string).collect::<Vec<_>>();
     json(&[&command[..], &["--q", &q.join(",")]].concat(), 0);
 }
+
+/// A pose that the youBot reaches, its tool 25 degrees below the horizontal.
+const BELOW: [&str; 4] =
+    ["--to", "0.416601,0.176136,0.192563", "--quaternion", "0.513313,-0.0841979,0.83917,0.158786"];
+/// Six digits of a pose are reached to five.
+const LOOSE: [&str; 4] = ["--tolerance-position", "1e-5", "--tolerance-orientation", "1e-5"];
+
+fn youbot<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&["move", "youbot"], &BELOW[..], &LOOSE[..], more].concat()
+}
+
+#[test]
+fn hyperbolic_inverses_reach() {
+    for inverse in [
+        &["--inverse", "hyperbolic", "--h", "0.1"][..],
+        &["--inverse", "hyperbolic", "--h", "inf"],
+        &["--inverse", "hyperbolic-damped", "--h", "0.1", "--mu", "1e-4"],
+        &["--inverse", "hyperbolic-gram", "--h", "0.1", "--lambda", "1e-4"],
+        &["--inverse", "oblique", "--give-up", "rx"],
+    ] {
+        let report = json(&youbot(inverse), 0);
+        assert_eq!(report["inverse"], inverse[1], "{inverse:?}");
+        assert_eq!(report["steps_without_inverse"], 0);
+    }
+}
+
+/// Straight down no hyperbolic inverse exists: said, and left to what the user named.
+#[test]
+fn where_no_inverse_exists_it_is_said() {
+    let down = ["move", "youbot", "--q", "0.4,0.6,0.9,1.641592653589793,0.2"];
+    let target = ["--to", "0.2350376,0.0993723,0.04", "--task", "pose"];
+    let inverse = ["--inverse", "hyperbolic", "--h", "0.1"];
+    let command = [&down[..], &target, &inverse].concat();
+    let report = json(&command, 1);
+    assert_eq!(report["reason"], "no-inverse");
+    let why = report["explanation"].as_str().unwrap();
+    assert!(why.contains("reciprocal is of class inf") && why.contains("--fallback"), "{why}");
+    let command = [&command[..], &["--fallback", "truncated"]].concat();
+    let report = json(&command, 0);
+    assert_eq!(report["fallback"], "truncated");
+    assert!(report["steps_without_inverse"].as_u64().unwrap() > 100);
+    assert!(report["no_inverse"].as_str().unwrap().contains("class inf"));
+    assert!(text(&command).contains("taken by the fallback"));
+}
+
+#[test]
+fn the_pitch_is_asked_for_with_advice() {
+    let refused = |more: &[&str]| {
+        let output = cylindroid(&youbot(more));
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let text = refused(&["--inverse", "hyperbolic"]);
+    assert!(text.contains("at the start --h"), "{text}");
+    let text = refused(&["--inverse", "hyperbolic", "--h", "nan"]);
+    assert!(text.contains("pitch h"), "{text}");
+    let text = refused(&["--inverse", "damped", "--h", "0.1"]);
+    assert!(text.contains("only hyperbolic"), "{text}");
+    let text = refused(&["--inverse", "damped", "--fallback", "truncated"]);
+    assert!(text.contains("always exists"), "{text}");
+    let text = refused(&["--inverse", "hyperbolic", "--h", "0.1", "--fallback", "oblik"]);
+    assert!(text.contains("oblique"), "{text}");
+    let text = refused(&["--inverse", "hyperbolic-damped", "--h", "0.1"]);
+    assert!(text.contains("--mu"), "{text}");
+    let text = refused(&["--inverse", "oblique", "--give-up", "1,2"]);
+    assert!(text.contains("six numbers"), "{text}");
+}

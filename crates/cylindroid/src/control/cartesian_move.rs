@@ -23,7 +23,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::path::CartesianPath;
-use super::servo::Target;
+use super::step::Target;
 use super::time_law::{Bounds, LawSample, TimeLaw};
 use crate::error::Result;
 use crate::spatial::{Pose, Twist};

@@ -10,7 +10,8 @@
 //! Why so   what stops a servo is nearly always the posture it started from
 //! Checked  tests/it/servo/ways.rs::a_detour_reaches_what_the_servo_does_not
 
-use super::servo::{Servo, Status, Target};
+use super::servo::Servo;
+use super::step::{Status, Target};
 use crate::error::Result;
 use crate::model::CoordinateKind;
 use crate::spatial::Pose;
@@ -31,10 +32,10 @@ pub struct Detour {
 }
 
 /// A posture within the limits from which the servo's end effector is at `target`; coordinates
-/// that do not move the end effector keep their values of `q`.
+/// that do not move the end effector, and those that a limit locks, keep their values of `q`.
 ///
 /// # Errors
-/// As [`Servo::step`].
+/// A `q` of the wrong size or not finite, and as [`Servo::step`].
 pub fn find_posture(
     servo: &Servo,
     q: &[f64],
@@ -42,6 +43,7 @@ pub fn find_posture(
     most_runs: usize,
 ) -> Result<Option<Detour>> {
     let mechanism = servo.mechanism().clone();
+    mechanism.check_q("q", q)?;
     let straight = |c: &usize| {
         matches!(mechanism.coordinates()[*c].kind, CoordinateKind::Angle | CoordinateKind::Length)
     };
@@ -52,7 +54,7 @@ pub fn find_posture(
     let mut random = 0_u64;
     for run in 0..most_runs {
         let mut posture = q.to_vec();
-        for &c in servo.coordinates() {
+        for c in servo.free_coordinates() {
             let limits = &mechanism.coordinates()[c].limits;
             let (lower, upper) =
                 (limits.lower.max(-std::f64::consts::PI), limits.upper.min(std::f64::consts::PI));

@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 
 use super::limits::LimitKind;
-use super::servo::{Servo, Status, Step, Target};
+use super::servo::Servo;
 use super::stall::Stall;
+use super::step::{Status, Step, Target};
 use crate::error::Result;
+use crate::screws::NoInverse;
 
 /// One instant of a motion.
 #[derive(Debug)]
@@ -39,9 +41,14 @@ pub struct Outcome {
     pub min_singular_ratio: f64,
     /// Limits that set a rate on the way: place in `q` and kind.
     pub limits_hit: BTreeSet<(usize, LimitKind)>,
+    /// Why the projection that was asked for did not exist, where that happened first.
+    pub no_inverse: Option<NoInverse>,
+    /// Steps in which it did not: taken by the fallback, if one was named.
+    pub steps_without_inverse: usize,
 }
 
-/// Steps `servo` from `q` until it reports the end, or for `duration` seconds. `target` gives the
+/// Steps `servo` from `q` until it reports the end, or for `duration` seconds (at once after the
+/// first step where it is NaN). `target` gives the
 /// target at a time (s) and whether it is the final one, `observe` sees every step.
 ///
 /// # Errors
@@ -58,6 +65,8 @@ pub fn drive(
     let mut steps = 0_usize;
     let mut min_singular_ratio = f64::INFINITY;
     let mut limits_hit = BTreeSet::new();
+    let mut no_inverse = None;
+    let mut steps_without_inverse = 0;
     loop {
         let time = steps as f64 * dt;
         let (now, is_final) = target(time);
@@ -66,8 +75,14 @@ pub fn drive(
         limits_hit.extend(servo.active_limits());
         observe(Sample { time, q: &q, rates: servo.rates(), step: &step });
         let reached = is_final && step.status == Status::Reached;
-        let stalled = is_final && step.status == Status::Stalled;
-        if reached || stalled || time >= duration {
+        if let Some(reason) = servo.no_inverse() {
+            no_inverse.get_or_insert(reason);
+            steps_without_inverse += 1;
+        }
+        // An arm that stands still for want of an inverse does not follow a target any further.
+        let stalled = step.status == Status::Stalled && (is_final || servo.is_stopped());
+        let in_time = time < duration; // NaN is not
+        if reached || stalled || !in_time {
             return Ok(Outcome {
                 reached,
                 stall: stalled.then(|| servo.stall()),
@@ -77,6 +92,8 @@ pub fn drive(
                 time,
                 min_singular_ratio,
                 limits_hit,
+                no_inverse,
+                steps_without_inverse,
             });
         }
         servo.advance(&mut q);

@@ -103,19 +103,26 @@ impl JointMove {
     /// or that leave both acceleration and jerk infinite.
     pub fn new(path: JointPath, bounds: &[Bounds]) -> Result<Self> {
         Error::check_len("bounds", path.dof(), bounds.len())?;
+        Self::named(path, bounds, |i| format!("joint {i}"))
+    }
+
+    fn named(path: JointPath, bounds: &[Bounds], name: impl Fn(usize) -> String) -> Result<Self> {
         let mut tightest = Bounds::NONE;
         for (i, (bound, displacement)) in bounds.iter().zip(path.displacement()).enumerate() {
-            bound.check(&format!("joint {i}"))?;
+            bound.check(&name(i))?;
             tightest = tightest.tightest(bound.over(displacement.abs()));
         }
         Ok(Self { path, law: TimeLaw::along(tightest)? })
     }
 
-    /// The fastest straight move from `q` to `to` within the limits of a mechanism's joints.
+    /// The fastest straight move from `q` to `to` within the limits of a mechanism's joints: those
+    /// of position form a box, so both ends within it keep the way within it. The limits of joints
+    /// that rest are not looked at, which may be 0.
     ///
     /// # Errors
-    /// Configurations of the wrong size or not finite; a displacement of a spherical or free joint,
-    /// which has no straight way; default bounds that are not positive.
+    /// Configurations of the wrong size, not finite or outside position limits; a displacement of
+    /// a spherical or free joint, which has no straight way, or of one whose limits allow no
+    /// motion; default bounds that are not positive.
     pub fn within_limits(
         mechanism: &Mechanism,
         q: &[f64],
@@ -124,6 +131,9 @@ impl JointMove {
     ) -> Result<Self> {
         mechanism.check_q("start of the joint move", q)?;
         mechanism.check_q("end of the joint move", to)?;
+        for (option, end) in [("start of the joint move", q), ("end of the joint move", to)] {
+            check_limits(mechanism, option, end)?;
+        }
         let path = JointPath::new(q, to)?;
         let mut bounds = Vec::with_capacity(path.dof());
         for (coordinate, displacement) in mechanism.coordinates().iter().zip(path.displacement()) {
@@ -143,14 +153,16 @@ impl JointMove {
                 }
                 CoordinateKind::RotationVector | CoordinateKind::Position => defaults.angle,
             };
-            let own = |limit: f64, default: f64| if limit.is_finite() { limit } else { default };
+            let own = |limit: f64, default: f64| {
+                if limit.is_finite() && *displacement != 0.0 { limit } else { default }
+            };
             bounds.push(Bounds {
                 velocity: own(coordinate.limits.velocity, default.velocity),
                 acceleration: own(coordinate.limits.acceleration, default.acceleration),
                 jerk: default.jerk,
             });
         }
-        Self::new(path, &bounds)
+        Self::named(path, &bounds, |i| format!("joint '{}'", mechanism.coordinates()[i].name))
     }
 
     /// The same move slowed down to end at `duration` (s).
@@ -187,4 +199,16 @@ impl JointMove {
         }
         Ok(s)
     }
+}
+
+/// Refuses positions outside the limits, naming the first joint.
+fn check_limits(mechanism: &Mechanism, option: &'static str, q: &[f64]) -> Result<()> {
+    let Some(i) = mechanism.outside_limits(q).next() else { return Ok(()) };
+    let c = &mechanism.coordinates()[i];
+    let (lower, upper, unit) = (c.limits.lower, c.limits.upper, c.kind.unit());
+    Err(Error::InvalidOption {
+        option,
+        value: format!("{} at {} {unit}", c.name, q[i]),
+        reason: format!("its limits are {lower} and {upper} {unit}; move it within them"),
+    })
 }

@@ -64,12 +64,19 @@ pub struct Motion1 {
 }
 
 impl RateBounds {
+    /// Any rate.
+    pub(super) const NONE: Self = Self {
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        lower_cause: LimitKind::Velocity,
+        upper_cause: LimitKind::Velocity,
+    };
+
     /// The interval for the next step of `dt` seconds.
     #[must_use]
     pub fn next(limits: &Limits, now: Motion1, dt: f64) -> Self {
-        let rounding = LIMIT_ROUNDING * (1.0 + now.position.abs());
-        let above = (limits.upper - now.position - rounding).max(0.0);
-        let below = (now.position - limits.lower - rounding).max(0.0);
+        let above = room(limits.upper - now.position, now.position, limits.upper);
+        let below = room(now.position - limits.lower, now.position, limits.lower);
         let step = limits.acceleration * dt;
         let brake_up = stopping_rate(above, limits.acceleration, dt);
         let brake_down = -stopping_rate(below, limits.acceleration, dt);
@@ -107,10 +114,16 @@ impl RateBounds {
         bounds
     }
 
-    /// The nearest allowed rate.
+    /// The nearest allowed rate; NaN stays NaN, it is near to none.
     #[must_use]
     pub fn clamp(&self, rate: f64) -> f64 {
-        rate.max(self.lower).min(self.upper)
+        if rate < self.lower {
+            self.lower
+        } else if rate > self.upper {
+            self.upper
+        } else {
+            rate
+        }
     }
 
     /// The limit that a rate has run into, if any.
@@ -132,8 +145,16 @@ impl RateBounds {
     }
 }
 
+/// The way to a limit, less the rounding of the position, the limit and their difference.
+fn room(way: f64, position: f64, limit: f64) -> f64 {
+    if limit.is_infinite() {
+        return f64::INFINITY;
+    }
+    (way - LIMIT_ROUNDING * (1.0 + position.abs() + limit.abs())).max(0.0)
+}
+
 /// The largest rate from which steps of `dt` with deceleration `acceleration` stop within `room`.
-fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
+pub(super) fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
     if room == f64::INFINITY {
         return f64::INFINITY;
     }
@@ -186,6 +207,28 @@ mod tests {
                 v -= a * dt;
             }
             assert!((way - room).abs() < 1e-12 * (1.0 + room / 1e-3), "{way} of {room}");
+        }
+    }
+
+    /// Limits far from zero and wide ranges: the rounding of `q + dt * rate` is theirs.
+    #[test]
+    fn wide_ranges_are_not_left() {
+        for size in [1e3, 1e6, 1e9] {
+            for (lower, upper) in [(-size, size), (0.3 * size, 0.7 * size), (-1.0, 1.1 * size)] {
+                for acceleration in [f64::INFINITY, 10.0 * size] {
+                    let limits = Limits { lower, upper, acceleration, ..Limits::NONE };
+                    for i in 1..200 {
+                        let (share, dt) = (f64::from(i) * 0.005, 0.0007 * f64::from(i));
+                        let start = lower + share * (upper - lower);
+                        let mut now = Motion1 { position: start, rate: 0.0 };
+                        for _ in 0..40 {
+                            let rate = RateBounds::next(&limits, now, dt).upper;
+                            now = Motion1 { position: now.position + rate * dt, rate };
+                            assert!(now.position <= upper, "{} of {limits:?}", now.position);
+                        }
+                    }
+                }
+            }
         }
     }
 

@@ -4,6 +4,7 @@
 //! fastest law on this path that keeps every bound. A servo follows a move, or goes straight at a
 //! pose.
 
+mod approach;
 mod cartesian_move;
 mod detour;
 mod drive;
@@ -11,10 +12,13 @@ mod joint_move;
 mod limits;
 mod options;
 mod path;
+mod projection;
 mod saturation;
 mod secondary;
 mod servo;
 mod stall;
+mod step;
+mod task_space;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
@@ -24,8 +28,10 @@ pub use joint_move::{JointDefaults, JointMove, JointPath, JointSample};
 pub use limits::{LimitKind, Motion1, RateBounds};
 pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};
 pub use path::{CartesianPath, Deviation, Turn};
+pub use projection::Projection;
 pub use saturation::Saturation;
 pub use secondary::Secondary;
-pub use servo::{Servo, Status, Step, Target};
+pub use servo::Servo;
 pub use stall::Stall;
+pub use step::{Status, Step, Target};
 pub use time_law::{Bounds, LawSample, TimeLaw};

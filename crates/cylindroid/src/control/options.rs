@@ -1,5 +1,6 @@
 //! What a servo is told: frame, task, gains, limits, inverse.
 
+use super::projection::Projection;
 use super::secondary::Secondary;
 use crate::error::{Error, Result};
 use crate::inverse::Method;
@@ -86,6 +87,12 @@ pub struct ServoOptions {
     pub tolerance: Tolerance,
     /// How the Jacobian is inverted; its numbers refer to linear rows divided by `length`.
     pub method: Method,
+    /// Which part of a motion is taken on where the arm cannot do all of it.
+    pub projection: Projection,
+    /// What takes over where `projection` does not exist; `None`: the arm stops and says why.
+    pub fallback: Option<Projection>,
+    /// A projection that enlarges motions by more than this counts as not existing [-].
+    pub largest_projection: f64,
     /// Characteristic length that scales the linear rows (m).
     pub length: f64,
     /// A weight for each coordinate of the mechanism (large keeps it still); empty for none.
@@ -115,6 +122,9 @@ impl ServoOptions {
                 orientation: tolerance::ORIENTATION,
             },
             method: Method::default(),
+            projection: Projection::Orthogonal,
+            fallback: None,
+            largest_projection: tolerance::LARGEST_PROJECTION,
             length: mechanism.reach(),
             joint_weights: Vec::new(),
             speed: Speed { linear: f64::INFINITY, angular: f64::INFINITY },
@@ -127,8 +137,25 @@ impl ServoOptions {
     /// Refuses numbers that make no controller.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] naming the option and its value.
+    /// [`Error::InvalidOption`] naming the option and its value, [`Error::NotFinite`].
     pub fn check(&self, mechanism: &Mechanism) -> Result<()> {
+        let positive = Error::check_positive;
+        mechanism.check_frame(self.end_effector.frame)?;
+        if !mechanism.is_tree() {
+            return Err(Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: String::new(),
+                message: format!(
+                    "'{}' has loops or contacts, which a servo of its spanning tree would break; \
+                     drive a serial or branched robot",
+                    mechanism.name()
+                ),
+            });
+        }
+        if !self.end_effector.frame_from_tool.is_finite() {
+            let what = "frame_from_tool of the end effector".to_owned();
+            return Err(Error::NotFinite { what, value: f64::NAN });
+        }
         positive("dt", self.dt)?;
         positive("length", self.length)?;
         for (option, gain) in
@@ -154,10 +181,14 @@ impl ServoOptions {
             ("linear speed", self.speed.linear),
             ("angular speed", self.speed.angular),
             ("acceleration", self.acceleration),
+            ("largest projection", self.largest_projection),
         ] {
-            // Infinity means "no limit" here.
             if value.is_nan() || value <= 0.0 {
-                return Err(refuse(option, value));
+                return Err(Error::InvalidOption {
+                    option,
+                    value: value.to_string(),
+                    reason: "it must be positive; infinity means no limit".to_owned(),
+                });
             }
         }
         if !self.task.components.contains(&true) {
@@ -189,18 +220,17 @@ impl ServoOptions {
                 Secondary::Centring { .. } | Secondary::Manipulability { .. } => {}
             }
         }
+        for projection in [Some(&self.projection), self.fallback.as_ref()].into_iter().flatten() {
+            projection.check()?;
+            if *projection != Projection::Orthogonal && self.task.components != [true; 6] {
+                return Err(Error::InvalidOption {
+                    option: "projection",
+                    value: projection.name().to_owned(),
+                    reason: "it needs whole poses as task: forms of twists have six components"
+                        .to_owned(),
+                });
+            }
+        }
         self.method.check()
-    }
-}
-
-fn positive(option: &'static str, value: f64) -> Result<()> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(refuse(option, value)) }
-}
-
-fn refuse(option: &'static str, value: f64) -> Error {
-    Error::InvalidOption {
-        option,
-        value: value.to_string(),
-        reason: "it must be positive".to_owned(),
     }
 }

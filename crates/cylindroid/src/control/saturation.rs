@@ -9,7 +9,7 @@
 //!          only when the direction is lost altogether is it better to move on a bent way than not
 //! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
 //!          Parker 1995 (bounded-variable least squares)
-//! Checked  tests/it/servo/limits.rs::saturation_*
+//! Checked  tests/it/servo/limits.rs::saturation_*, tests in this file (bent against the conditions)
 
 use super::limits::{LimitKind, RateBounds};
 use crate::inverse::{Method, is_kept};
@@ -20,7 +20,7 @@ const LEAST_SCALE: f64 = 0.05;
 
 /// A held joint is released when its pull is above this share of the largest possible one [-]:
 /// what is left of directions that the inverse cut must not release anything.
-const RELEASE: f64 = 1e-3;
+pub(super) const RELEASE: f64 = 1e-3;
 
 /// What became of the task.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -263,6 +263,11 @@ impl Saturator {
 /// `out = V diag(gains) U^T x`
 pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], out: &mut [f64]) {
     method.gains(svd, x, gains);
+    apply(svd, gains, x, out);
+}
+
+/// `out = V diag(gains) U^T x` for gains that are known.
+pub(super) fn apply(svd: &Svd, gains: &[f64], x: &[f64], out: &mut [f64]) {
     out.fill(0.0);
     for (i, gain) in gains.iter().enumerate() {
         let along: f64 = svd.u(i).iter().zip(x).map(|(u, x)| u * x).sum();
@@ -304,4 +309,54 @@ fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<Span> {
         }
     }
     (least <= span.most).then_some(span)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The next number in [-1, 1) of a fixed sequence.
+    fn next(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// What is bent fulfils the conditions of Karush, Kuhn and Tucker for min |J r - x|^2 in a box:
+    /// no pull on joints between their bounds, on the others none inwards (above `RELEASE`).
+    #[test]
+    fn bent_rates_are_the_bounded_least_squares_solution() {
+        let mut state = 7;
+        let method = Method::Truncated { eps: 1e-9 };
+        for round in 0..2000 {
+            let (m, n) = [(6, 7), (6, 6), (3, 7), (2, 3), (6, 4), (3, 2)][round % 6];
+            let j = Matrix::from_fn(m, n, |_, _| next(&mut state));
+            let x: Vec<f64> = (0..m).map(|_| 3.0 * next(&mut state)).collect();
+            let bounds: Vec<RateBounds> = (0..n)
+                .map(|i| RateBounds {
+                    lower: -next(&mut state).abs() * f64::from(u8::from(i % 3 > 0)),
+                    upper: next(&mut state).abs(),
+                    ..RateBounds::NONE
+                })
+                .collect();
+            let mut saturator = Saturator::new(m, n);
+            let mut rates = vec![0.0; n];
+            solve(&Svd::of(&j), &method, &mut vec![0.0; m.min(n)], &x, &mut rates);
+            let problem = Problem { j: &j, x: &x, method: &method, bounds: &bounds };
+            saturator.bend(problem, &mut rates);
+
+            let rest: Vec<f64> = j.mul_vec(&rates).iter().zip(&x).map(|(y, x)| x - y).collect();
+            let size = rest.iter().map(|r| r * r).sum::<f64>().sqrt();
+            let slack = RELEASE * Svd::of(&j).value(0) * size;
+            let pulls = j.transpose().mul_vec(&rest);
+            for ((rate, bound), pull) in rates.iter().zip(&bounds).zip(pulls) {
+                assert!(bound.contains(*rate), "round {round}: {rate} in {bound:?}");
+                let (up, down) = (*rate < bound.upper, *rate > bound.lower);
+                if up && down {
+                    assert!(pull.abs() < 1e-9, "round {round}: {pull} between {bound:?}");
+                }
+                assert!(!up || pull <= slack + 1e-9, "round {round}: {pull} up, {slack}");
+                assert!(!down || pull >= -slack - 1e-9, "round {round}: {pull} down, {slack}");
+            }
+        }
+    }
 }

@@ -1,19 +1,26 @@
 //! Secondary tasks: what the joints do where the end effector does not care.
 //!
-//! Formula  posture: k (q_0 - q); centring: the posture of the middle of the limits;
+//! Formula  posture: k (q_0 - q), of rotation vectors and free bodies k log(R^T R_0) and
+//!          k R^T (p_0 - p), which are rates in the axes of the child;
+//!          centring: the posture of the middle of the limits;
 //!          limit avoidance: k (1 - room / margin) away from a limit nearer than the margin;
 //!          manipulability: k dw/dq, w = s_1 ... s_m, dw/dq_k = w sum_i u_i^T (dJ/dq_k) v_i / s_i
 //! Units    gains in 1/s; for manipulability rad/s for each unit of dw/dq
 //! Shapes   rates of the n coordinates that move the end effector
 //! Valid    coordinates without limits (and rotation vectors) are left alone by centring and limit
-//!          avoidance; the gradient is zero where w is zero up to rounding
+//!          avoidance; the gradient is zero where w is zero up to rounding.
+//!          The manipulability is that of the scaled task: linear rows over L, and with joint
+//!          weights that of J W^(-1/2), so that joints which are kept still count less. Joints
+//!          without weights climb the plain one
 //! Source   Liegeois 1977; Yoshikawa 1985; analytic gradient through the Hessian
 //! Checked  tests/it/servo/secondary.rs::secondary_*
 
+use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
-use crate::kinematics::{Chain, Reference};
+use crate::kinematics::Chain;
 use crate::linalg::{Matrix, Svd};
 use crate::model::{CoordinateKind, Mechanism};
+use crate::spatial::{Rotation, Vec3};
 
 /// A wish for the joints, followed as far as the end effector allows.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,27 +44,17 @@ pub enum Secondary {
         /// Distance at which it sets in, as a share of the range [-].
         margin: f64,
     },
-    /// Towards larger manipulability of the task.
+    /// Towards larger manipulability of the task, in the metric of the joint weights.
     Manipulability {
         /// Gain.
         gain: f64,
     },
 }
 
-/// Memory for the gradient of the manipulability, and the rows that the task keeps.
+/// Memory for the gradient of the manipulability.
 #[derive(Debug, Clone)]
 pub(super) struct Gradient {
     pub(super) hessian: Vec<Matrix>,
-}
-
-/// The task as the gradient needs it: which rows of the Jacobian, scaled how.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct TaskRows<'a> {
-    pub(super) reference: Reference,
-    /// Row of the 6 x n Jacobian and its scale, for each row of the task.
-    pub(super) rows: &'a [(usize, f64)],
-    /// Scale of each column.
-    pub(super) columns: &'a [f64],
 }
 
 impl Secondary {
@@ -98,7 +95,7 @@ impl Secondary {
         mechanism: &Mechanism,
         chain: &Chain,
         svd: &Svd,
-        task: TaskRows<'_>,
+        task: &TaskSpace,
         gradient: &mut Gradient,
         out: &mut [f64],
     ) {
@@ -107,8 +104,11 @@ impl Secondary {
             |i: usize| matches!(coordinate(i).kind, CoordinateKind::Angle | CoordinateKind::Length);
         match self {
             Self::Posture { q, gain } => {
-                for (i, rate) in out.iter_mut().enumerate() {
-                    *rate += gain * (q[chain.coordinates()[i]] - chain.q()[i]);
+                let mut i = 0;
+                while i < out.len() {
+                    let kind = coordinate(i).kind;
+                    let (here, there) = (&chain.q()[i..], &q[chain.coordinates()[i]..]);
+                    i += add_posture(kind, here, there, *gain, &mut out[i..]);
                 }
             }
             Self::Centring { gain } => {
@@ -133,7 +133,7 @@ impl Secondary {
                 }
             }
             Self::Manipulability { gain } => {
-                chain.hessian_into(task.reference, &mut gradient.hessian);
+                chain.hessian_into(task.axes, &mut gradient.hessian);
                 let rank = svd.machine_rank().rank;
                 if rank < svd.len() || rank == 0 {
                     return;
@@ -145,11 +145,11 @@ impl Secondary {
                     for i in 0..rank {
                         let (u, v) = (svd.u(i), svd.v(i));
                         let mut along = 0.0;
-                        for (j, (vj, cj)) in v.iter().zip(task.columns).enumerate() {
+                        for (j, (vj, cj)) in v.iter().zip(&task.columns).enumerate() {
                             let column = h.column(j);
                             let turned: f64 = u
                                 .iter()
-                                .zip(task.rows)
+                                .zip(&task.rows)
                                 .map(|(ui, (row, scale))| ui * scale * column[*row])
                                 .sum();
                             along += vj * cj * turned;
@@ -181,6 +181,42 @@ impl Secondary {
             | Self::Centring { gain }
             | Self::LimitAvoidance { gain, .. }
             | Self::Manipulability { gain } => *gain,
+        }
+    }
+}
+
+/// Adds the rates from one posture to another of the coordinates that belong to the first one;
+/// returns how many they are.
+fn add_posture(
+    kind: CoordinateKind,
+    here: &[f64],
+    there: &[f64],
+    gain: f64,
+    out: &mut [f64],
+) -> usize {
+    let vector = |x: &[f64], i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
+    let mut add = |i: usize, v: Vec3| {
+        out[i..].iter_mut().zip(v.to_array()).for_each(|(rate, x)| *rate += gain * x);
+    };
+    let turn = |i: usize| {
+        let back = Rotation::exp(vector(here, i)).inverse();
+        (back, (back * Rotation::exp(vector(there, i))).log())
+    };
+    match kind {
+        CoordinateKind::Angle | CoordinateKind::Length => {
+            out[0] += gain * (there[0] - here[0]);
+            1
+        }
+        CoordinateKind::RotationVector => {
+            add(0, turn(0).1);
+            3
+        }
+        // A free body: its position, then its rotation vector.
+        CoordinateKind::Position => {
+            let (back, rotation) = turn(3);
+            add(0, back * (vector(there, 0) - vector(here, 0)));
+            add(3, rotation);
+            6
         }
     }
 }

@@ -1,101 +1,71 @@
 //! The servo: one step from joint positions and a target pose to joint rates.
 //!
-//! Formula  x = gain * error + feed-forward, error = [p_d - p; log(R_d R^T)] (world axes), saturated
-//!          to the largest speeds; rates = J+ x + P z: J+ the chosen inverse of the task Jacobian
-//!          with linear rows divided by L, z the secondary wishes, P the null-space projector;
-//!          then position, velocity and acceleration limits (`limits.rs`, `saturation.rs`)
+//! Formula  x = s gain * error + feed-forward, s of `approach.rs`, error = [p_d - p; log(R_d R^T)]
+//!          (world axes), saturated to the largest speeds, then projected (`projection.rs`);
+//!          rates = J+ x + P z: J+ the chosen inverse of the task Jacobian with linear rows divided
+//!          by L, z the secondary wishes, P the null-space projector; then position, velocity and
+//!          acceleration limits (`limits.rs`, `saturation.rs`)
 //! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
 //! Units    m, rad, s
 //! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step.
-//! Fails    on numbers that are not finite, and then leaves the servo as it was
+//! Fails    on numbers that are not finite, also where the twist or the rates overflow; rates,
+//!          target and the watch for stalls stay as they were
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
-use super::limits::{LimitKind, Motion1, RateBounds};
-use super::options::{Projector, ServoOptions};
-use super::saturation::{Problem, Saturation, Saturator, solve};
-use super::secondary::{Gradient, TaskRows};
+mod stages;
+
+use super::limits::{LimitKind, RateBounds};
+use super::options::ServoOptions;
+use super::projection::{Projecting, TaskFrame};
+use super::saturation::{Problem, Saturator};
+use super::secondary::Gradient;
 use super::stall::{Evidence, Stall, Watch, classify};
+use super::step::{Status, Step, Target};
+use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
-use crate::inverse::Method;
-use crate::kinematics::{Chain, Reference};
-use crate::linalg::{Matrix, RowSpace, Svd};
+use crate::inverse::{Method, is_kept};
+use crate::kinematics::Chain;
+use crate::linalg::{Matrix, Svd};
 use crate::model::{Limits, Mechanism};
-use crate::spatial::{Pose, Twist};
-use crate::tolerance::{AT_LIMIT, GENERIC_RANK};
+use crate::screws::NoInverse;
+use crate::spatial::Pose;
+use crate::tolerance::GENERIC_RANK;
 
 /// Postures that are asked for the rank of the arm.
 const GENERIC_POSTURES: usize = 3;
-
-/// A moving target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Target {
-    /// `world_from_tool` as it should be.
-    pub pose: Pose,
-    /// The twist of the target, world axes, at the tool.
-    pub feed_forward: Twist,
-}
-
-impl From<Pose> for Target {
-    fn from(pose: Pose) -> Self {
-        Self { pose, feed_forward: Twist::ZERO }
-    }
-}
-
-/// Where a servo stands after a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    /// On its way.
-    Moving,
-    /// Both errors are within tolerance.
-    Reached,
-    /// The error no longer falls; [`Servo::stall`] says why.
-    Stalled,
-}
-
-/// What one step did.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// Where the servo stands.
-    pub status: Status,
-    /// The pose of the tool before the step.
-    pub pose: Pose,
-    /// Distance to the target, of the components that matter (m).
-    pub position_error: f64,
-    /// Angle to the target, of the components that matter (rad).
-    pub orientation_error: f64,
-    /// Smallest singular value of the scaled task Jacobian over the largest.
-    pub singular_ratio: f64,
-    /// Directions realised by at least half.
-    pub rank: usize,
-    /// What the limits left of the task.
-    pub saturation: Saturation,
-}
 
 /// A Cartesian controller for one end effector.
 #[derive(Debug, Clone)]
 pub struct Servo {
     mechanism: Mechanism,
     options: ServoOptions,
+    /// The inverse of this step.
+    method: Method,
     chain: Chain,
-    /// Row of the Jacobian and its scale, for each task component.
-    rows: Vec<(usize, f64)>,
-    /// Scale of each column: 1 / sqrt(weight).
-    columns: Vec<f64>,
+    space: TaskSpace,
     limits: Vec<Limits>,
     /// Length of the chain after its first joint (m).
     length: f64,
     /// Rank of the task Jacobian in postures that are not singular.
     generic_rank: usize,
 
-    jacobian: Matrix,
     task: Matrix,
     svd: Svd,
     gains: Vec<f64>,
+    /// Directions realised by at least half.
+    kept: Vec<bool>,
     x: Vec<f64>,
+    /// J rates, the part of x that is carried out.
+    done: Vec<f64>,
     error: Vec<f64>,
+    /// The error as projected.
+    possible: Vec<f64>,
+    projecting: Projecting,
     primary: Vec<f64>,
     wish: Vec<f64>,
+    /// Bounds of the rates, and the same in scaled coordinates.
+    own_bounds: Vec<RateBounds>,
     bounds: Vec<RateBounds>,
     saturator: Saturator,
     gradient: Gradient,
@@ -116,11 +86,7 @@ impl Servo {
     pub fn new(mechanism: &Mechanism, options: ServoOptions) -> Result<Self> {
         options.check(mechanism)?;
         let chain = Chain::new(mechanism, options.end_effector);
-        let rows: Vec<(usize, f64)> = (0..6)
-            .filter(|&i| options.task.components[i])
-            .map(|i| (i, if i < 3 { 1.0 / options.length } else { 1.0 }))
-            .collect();
-        let (m, n) = (rows.len(), chain.n());
+        let n = chain.n();
         if n == 0 {
             return Err(Error::Model {
                 model: mechanism.name().to_owned(),
@@ -131,7 +97,7 @@ impl Servo {
                 ),
             });
         }
-        let limits = chain
+        let limits: Vec<Limits> = chain
             .coordinates()
             .iter()
             .map(|&c| {
@@ -142,11 +108,8 @@ impl Servo {
                 l
             })
             .collect();
-        let columns = chain
-            .coordinates()
-            .iter()
-            .map(|&c| options.joint_weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt()))
-            .collect();
+        let space = TaskSpace::new(&options, &chain, &limits);
+        let m = space.rows.len();
         let hessian = if options
             .secondary
             .iter()
@@ -160,27 +123,23 @@ impl Servo {
             length: chain.length_after_first_joint(mechanism),
             generic_rank: 0,
             mechanism: mechanism.clone(),
+            method: options.method,
             options,
-            rows,
-            columns,
+            space,
             limits,
-            jacobian: Matrix::zeros(6, n),
             task: Matrix::zeros(m, n),
             svd: Svd::workspace(m, n),
             gains: vec![0.0; m.min(n)],
+            kept: vec![false; m.min(n)],
             x: vec![0.0; m],
+            done: vec![0.0; m],
             error: vec![0.0; m],
+            possible: vec![0.0; m],
+            projecting: Projecting::new(),
             primary: vec![0.0; n],
             wish: vec![0.0; n],
-            bounds: vec![
-                RateBounds {
-                    lower: 0.0,
-                    upper: 0.0,
-                    lower_cause: LimitKind::Velocity,
-                    upper_cause: LimitKind::Velocity,
-                };
-                n
-            ],
+            own_bounds: vec![RateBounds::NONE; n],
+            bounds: vec![RateBounds::NONE; n],
             saturator: Saturator::new(m, n),
             gradient: Gradient { hessian },
             rates: vec![0.0; mechanism.n()],
@@ -201,10 +160,15 @@ impl Servo {
         (1..=GENERIC_POSTURES)
             .map(|posture| {
                 // Irrational steps: no posture is aligned with another or with the axes.
-                let q: Vec<f64> =
+                let mut q: Vec<f64> =
                     (0..n).map(|i| 0.3 + ((posture * n + i) as f64 * 0.618_034).fract()).collect();
+                for (x, c) in q.iter_mut().zip(self.mechanism.coordinates()) {
+                    if c.limits.lower == c.limits.upper {
+                        *x = c.limits.lower; // the one place that it has
+                    }
+                }
                 self.chain.set(&q);
-                self.load_jacobian();
+                self.space.load(&self.chain, &mut self.task);
                 Svd::of(&self.task).rank(GENERIC_RANK).rank
             })
             .max()
@@ -234,27 +198,27 @@ impl Servo {
         self.check_input(q, &target, wanted_rates)?;
 
         let pose = self.chain.set(q);
-        let error = pose.error_to(target.pose);
-        let (position_error, orientation_error) = self.load_task(pose, error, &target);
-        let m = self.rows.len();
-
-        self.load_jacobian();
+        let wanted = target.wanted(pose, &self.options)?;
+        self.space.load(&self.chain, &mut self.task);
+        Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
-        solve(&self.svd, &self.options.method, &mut self.gains, &self.x, &mut self.primary);
-        let rank = (0..self.svd.len())
-            .filter(|&i| crate::inverse::is_kept(self.gains[i] * self.svd.value(i)))
-            .count();
-        self.load_wish(wanted_rates, rank);
+        let (axes, length) = (self.options.task.axes, self.options.length);
+        self.projecting.load(&self.options, &self.svd, TaskFrame { pose, axes, length });
+        self.load_task(&wanted);
+        for (i, kept) in self.kept.iter_mut().enumerate() {
+            *kept = is_kept(self.gains[i] * self.svd.value(i));
+        }
+        let rank = self.kept.iter().filter(|kept| **kept).count();
+        self.load_wish(wanted_rates);
 
         self.load_bounds(q);
-        let problem = Problem {
-            j: &self.task,
-            x: &self.x[..m],
-            method: &self.options.method,
-            bounds: &self.bounds,
-        };
+        let problem =
+            Problem { j: &self.task, x: &self.x, method: &self.method, bounds: &self.bounds };
         let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
-        self.store_rates();
+        Error::check_finite("joint rates", &self.primary)?;
+        self.task.mul_vec_into(&self.primary, &mut self.done);
+        let effort = self.store_rates();
+        self.note_limits();
 
         self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         if self.last_target != Some(target.pose) {
@@ -262,15 +226,19 @@ impl Servo {
             self.watch = Watch::new();
         }
         let tolerance = self.options.tolerance;
+        let (position_error, orientation_error) =
+            (wanted.error.linear.norm(), wanted.error.angular.norm());
         let scaled = position_error / self.options.length + orientation_error;
-        let status =
-            if position_error <= tolerance.position && orientation_error <= tolerance.orientation {
-                Status::Reached
-            } else if self.watch.stalled(scaled, self.options.dt) {
-                Status::Stalled
-            } else {
-                Status::Moving
-            };
+        let near =
+            position_error <= tolerance.position && orientation_error <= tolerance.orientation;
+        let stalled = self.watch.stalled(scaled, effort, self.options.dt);
+        let status = if near && self.settled(wanted.feed_forward) {
+            Status::Reached
+        } else if stalled || self.projecting.is_stopped() {
+            Status::Stalled
+        } else {
+            Status::Moving
+        };
         Ok(Step {
             status,
             pose,
@@ -304,11 +272,26 @@ impl Servo {
             svd: &self.svd,
             gains: &self.gains,
             error: &self.error,
+            possible: &self.possible,
+            no_inverse: self.projecting.reason().filter(|_| self.projecting.is_stopped()),
             at_limit: &self.at_limit,
             distance: self.distance,
             length: self.length + self.offset_of_free_position(),
             generic_rank: self.generic_rank,
         })
+    }
+
+    /// Why the projection that was asked for was not used in the last step: the fallback was, or
+    /// the arm was stopped.
+    #[must_use]
+    pub fn no_inverse(&self) -> Option<NoInverse> {
+        self.projecting.reason()
+    }
+
+    /// True if the last step commanded rest because neither the projection nor a fallback exists.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.projecting.is_stopped()
     }
 
     /// The options.
@@ -344,12 +327,21 @@ impl Servo {
         self.chain.coordinates()
     }
 
-    /// The same servo at rest, with position limits alone and another period and gain [1/s].
+    /// Those of them that are not locked by their limits.
+    pub(super) fn free_coordinates(&self) -> impl Iterator<Item = usize> + '_ {
+        let free = |(i, _): &(usize, &usize)| !self.space.is_locked(*i);
+        self.coordinates().iter().enumerate().filter(free).map(|(_, &c)| c)
+    }
+
+    /// The same servo at rest, with position limits alone and another period and gain [1/s]; what
+    /// is locked stays so.
     pub(super) fn unhurried(&self, dt: f64, gain: f64) -> Result<Self> {
         let mut options = self.options.clone();
         options.dt = dt;
         options.gain = super::Gain { position: gain, orientation: gain };
         options.speed = super::Speed { linear: f64::INFINITY, angular: f64::INFINITY };
+        // Only the posture at the end counts, not the way.
+        options.projection = super::Projection::Orthogonal;
         // Half a radian a step at most, and exact near the target also where it is nearly singular.
         options.method = Method::SelectivelyDamped { max_rate: 0.5 / dt };
         let mut servo = Self::new(&self.mechanism, options)?;
@@ -365,119 +357,7 @@ impl Servo {
         if !wanted_rates.is_empty() {
             self.mechanism.check_q("wanted rates", wanted_rates)?;
         }
-        let p = target.pose.translation.to_array();
-        Error::check_finite("target position", &p)?;
-        if !target.pose.is_finite() {
-            return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
-        }
-        Error::check_finite("feed-forward twist", &target.feed_forward.to_array())
-    }
-
-    /// Writes the commanded task twist and the error, both scaled; returns the two errors.
-    fn load_task(&mut self, pose: Pose, error: Twist, target: &Target) -> (f64, f64) {
-        let gain = self.options.gain;
-        let mut twist = Twist {
-            linear: error.linear * gain.position + target.feed_forward.linear,
-            angular: error.angular * gain.orientation + target.feed_forward.angular,
-        };
-        let mut error = error;
-        if self.options.task.axes == Reference::Local {
-            let r = pose.rotation.matrix();
-            let turn =
-                |t: Twist| Twist { linear: r.tr_mul(t.linear), angular: r.tr_mul(t.angular) };
-            twist = turn(twist);
-            error = turn(error);
-        }
-        let keep = |t: Twist| {
-            let mut v = t.to_array();
-            for (x, keep) in v.iter_mut().zip(self.options.task.components) {
-                *x *= f64::from(u8::from(keep));
-            }
-            Twist::from_array(v)
-        };
-        let (mut twist, error) = (keep(twist), keep(error));
-        // Saturated as a whole: the direction of the motion is kept.
-        let speed = self.options.speed;
-        let excess = (twist.linear.norm() / speed.linear).max(twist.angular.norm() / speed.angular);
-        if excess > 1.0 {
-            twist = twist * (1.0 / excess);
-        }
-        let (twist, scaled) = (twist.to_array(), error.to_array());
-        for (i, &(row, scale)) in self.rows.iter().enumerate() {
-            self.x[i] = twist[row] * scale;
-            self.error[i] = scaled[row] * scale;
-        }
-        (error.linear.norm(), error.angular.norm())
-    }
-
-    fn load_jacobian(&mut self) {
-        self.chain.jacobian_into(self.options.task.axes, &mut self.jacobian);
-        for (j, &weight) in self.columns.iter().enumerate() {
-            let column = self.jacobian.column(j);
-            for (t, &(row, scale)) in self.task.column_mut(j).iter_mut().zip(&self.rows) {
-                *t = column[row] * scale * weight;
-            }
-        }
-    }
-
-    /// Secondary wishes in weighted coordinates, projected on the null space.
-    fn load_wish(&mut self, wanted_rates: &[f64], rank: usize) {
-        self.wish.fill(0.0);
-        if !wanted_rates.is_empty() {
-            for (w, &c) in self.wish.iter_mut().zip(self.chain.coordinates()) {
-                *w = wanted_rates[c];
-            }
-        }
-        let rows = TaskRows {
-            reference: self.options.task.axes,
-            rows: &self.rows,
-            columns: &self.columns,
-        };
-        for secondary in &self.options.secondary {
-            secondary.add_rates(
-                &self.mechanism,
-                &self.chain,
-                &self.svd,
-                rows,
-                &mut self.gradient,
-                &mut self.wish,
-            );
-        }
-        if self.wish.iter().all(|w| *w == 0.0) {
-            return;
-        }
-        for (w, c) in self.wish.iter_mut().zip(&self.columns) {
-            *w /= c;
-        }
-        let space = match self.options.projector {
-            Projector::Exact => RowSpace::exact(&self.svd),
-            Projector::Retained => RowSpace::retained(&self.svd, rank),
-        };
-        space.project_out(&mut self.wish);
-    }
-
-    /// The bounds of the next rates, in weighted coordinates.
-    fn load_bounds(&mut self, q: &[f64]) {
-        for (i, &c) in self.chain.coordinates().iter().enumerate() {
-            let now = Motion1 { position: q[c], rate: self.rates[c] };
-            let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
-            bound.lower /= self.columns[i];
-            bound.upper /= self.columns[i];
-            self.bounds[i] = bound;
-        }
-    }
-
-    fn store_rates(&mut self) {
-        self.at_limit.clear();
-        for (i, &c) in self.chain.coordinates().iter().enumerate() {
-            let (rate, bound) = (self.primary[i], self.bounds[i]);
-            self.rates[c] = rate * self.columns[i];
-            self.active[i] = bound.met(rate);
-            let (q, l) = (self.chain.q()[i], self.limits[i]);
-            if q - l.lower < AT_LIMIT || l.upper - q < AT_LIMIT {
-                self.at_limit.push(c);
-            }
-        }
+        target.check()
     }
 
     fn singular_ratio(&self) -> f64 {

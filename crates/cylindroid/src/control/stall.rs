@@ -1,22 +1,30 @@
 //! When a servo gets no nearer to its target, and why.
 //!
 //! Formula  stalled when the error e = |dp| / L + |angle| has not fallen below (1 - share) of its
-//!          best within the window
+//!          best within the window. The window begins when no joint gains speed under an
+//!          acceleration limit, and is longer by the time 4 |rate| / A that the weakest joint takes
+//!          to turn round from its rate at the best (|rate| / A to stop, the way back and its end)
 //! Causes   out of reach: the target is farther from the chain's first joint than the chain is
-//!          long (a proof); limits: the motion without limits would lower the error; singular: the
-//!          error is orthogonal to what the inverse retains, and the arm can do more in other
-//!          postures; too few joints: the same, and it cannot
+//!          long (a proof); limits, slow: the error has a part along directions that are not lost,
+//!          and joints stand at limits against it, or not; singular: the error is along directions
+//!          that are lost here, and the arm can do more in other postures; too few joints: the
+//!          same, and it cannot
+//! Lost     is a direction that the inverse cuts, or whose singular value is below `TRUNCATION` of
+//!          the largest; a gain that is weak because the inverse is damped much is not a lost one
 //! Units    m, rad, s
 //! Checked  tests/it/servo/stall.rs::stall_*
 
-use crate::inverse::is_kept;
 use crate::linalg::Svd;
+use crate::screws::NoInverse;
+use crate::tolerance::TRUNCATION;
 
 /// Window within which the error must fall (s), and by which share [-].
 const WINDOW: f64 = 1.0;
 const SHARE: f64 = 1e-3;
-/// Share of the squared error that must lie along realised directions for the motion to count as
-/// possible [-].
+/// Times |rate| / A that a joint takes to come back to where it was [-]: 1 + 2 sqrt 2, rounded up.
+const TURN_ROUND: f64 = 4.0;
+/// Share of the squared error that must lie along directions that are not lost for the motion to
+/// count as possible [-].
 const POSSIBLE: f64 = 1e-4;
 
 /// Why the end effector does not get nearer to its target.
@@ -51,6 +59,13 @@ pub enum Stall {
         /// The remaining error as a unit vector in task space.
         direction: Vec<f64>,
     },
+    /// The inverse that was asked for does not exist here, and no other was named.
+    NoInverse(NoInverse),
+    /// The remaining error is what the projection gives up, although the arm could lessen it.
+    GivenUp {
+        /// The remaining error as a unit vector in task space.
+        direction: Vec<f64>,
+    },
     /// None of these: the inverse is damped so much, or the limits so tight, that progress is
     /// slower than the window.
     Slow,
@@ -65,6 +80,8 @@ impl Stall {
             Self::Limits { .. } => "limits",
             Self::Singular { .. } => "singular",
             Self::TooFewJoints { .. } => "too-few-joints",
+            Self::NoInverse(_) => "no-inverse",
+            Self::GivenUp { .. } => "given-up",
             Self::Slow => "slow",
         }
     }
@@ -75,21 +92,34 @@ impl Stall {
 pub(super) struct Watch {
     best: f64,
     since: f64,
+    window: f64,
+}
+
+/// How the joints go about a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Effort {
+    /// True if a joint gains speed as fast as its acceleration limit lets it.
+    pub(super) gaining: bool,
+    /// The largest |rate| / A of the joints (s).
+    pub(super) stopping_time: f64,
 }
 
 impl Watch {
     pub(super) const fn new() -> Self {
-        Self { best: f64::INFINITY, since: 0.0 }
+        Self { best: f64::INFINITY, since: 0.0, window: WINDOW }
     }
 
     /// Notes the error of a step of `dt` seconds; true if stalled.
-    pub(super) fn stalled(&mut self, error: f64, dt: f64) -> bool {
+    pub(super) fn stalled(&mut self, error: f64, effort: Effort, dt: f64) -> bool {
         if error < self.best * (1.0 - SHARE) {
-            *self = Self { best: error, since: 0.0 };
+            let window = WINDOW + TURN_ROUND * effort.stopping_time;
+            *self = Self { best: error, since: 0.0, window };
             return false;
         }
-        self.since += dt;
-        self.since > WINDOW
+        if !effort.gaining {
+            self.since += dt;
+        }
+        self.since > self.window
     }
 }
 
@@ -101,7 +131,11 @@ pub(super) struct Evidence<'a> {
     pub(super) gains: &'a [f64],
     /// The remaining error in scaled task coordinates.
     pub(super) error: &'a [f64],
-    /// Coordinates whose position limit sets their rate.
+    /// The same as projected.
+    pub(super) possible: &'a [f64],
+    /// Why there is no projector, if the arm was stopped for it.
+    pub(super) no_inverse: Option<NoInverse>,
+    /// Coordinates that stand at a position limit against the wanted motion.
     pub(super) at_limit: &'a [usize],
     pub(super) distance: f64,
     pub(super) length: f64,
@@ -110,27 +144,34 @@ pub(super) struct Evidence<'a> {
 }
 
 pub(super) fn classify(e: &Evidence<'_>) -> Stall {
+    if let Some(reason) = e.no_inverse {
+        return Stall::NoInverse(reason);
+    }
     if e.distance > e.length * (1.0 + 1e-12) {
         return Stall::OutOfReach { distance: e.distance, length: e.length };
     }
     let total: f64 = e.error.iter().map(|x| x * x).sum();
     let norm = total.sqrt().max(f64::MIN_POSITIVE);
-    let mut realised = 0.0;
-    for i in 0..e.svd.len() {
-        let along: f64 = e.svd.u(i).iter().zip(e.error).map(|(u, x)| u * x).sum();
-        realised += (e.gains[i] * e.svd.value(i)).min(1.0) * along * along;
-    }
-    if realised > POSSIBLE * total {
+    let kept = |i: &usize| e.gains[*i] > 0.0 && e.svd.value(*i) > TRUNCATION * e.svd.value(0);
+    let realised = |error: &[f64]| -> f64 {
+        let along = |i| e.svd.u(i).iter().zip(error).map(|(u, x)| u * x).sum::<f64>();
+        (0..e.svd.len()).filter(kept).map(|i| along(i).powi(2)).sum()
+    };
+    let possible = realised(e.possible);
+    if possible > POSSIBLE * total {
         return if e.at_limit.is_empty() {
             Stall::Slow
         } else {
             Stall::Limits { coordinates: e.at_limit.to_vec() }
         };
     }
-    let direction = e.error.iter().map(|x| x / norm).collect();
-    let kept = e.gains.iter().zip(e.svd.values()).filter(|(g, s)| is_kept(*g * s)).count();
-    if kept >= e.generic_rank {
-        return Stall::TooFewJoints { rank: kept, task: e.error.len(), direction };
+    let direction: Vec<f64> = e.error.iter().map(|x| x / norm).collect();
+    if realised(e.error) > POSSIBLE * total {
+        return Stall::GivenUp { direction };
+    }
+    let rank = (0..e.svd.len()).filter(kept).count();
+    if rank >= e.generic_rank {
+        return Stall::TooFewJoints { rank, task: e.error.len(), direction };
     }
     let ratio = if e.svd.is_empty() || e.svd.value(0) == 0.0 {
         0.0

@@ -12,13 +12,14 @@ use crate::linalg::Svd;
 
 pub(super) fn gains(svd: &Svd, damping: f64, out: &mut [f64]) -> f64 {
     for (gain, s) in out.iter_mut().zip(svd.values()) {
-        *gain = damp(s, damping * damping);
+        *gain = damp(s, damping);
     }
     damping
 }
 
-/// `s / (s^2 + l^2)`, zero at s = 0 also without damping.
+/// `s / (s^2 + l^2)`, in the form that squares neither; zero below the smallest normal number, also
+/// without damping.
 #[inline]
-pub(super) fn damp(s: f64, damping_squared: f64) -> f64 {
-    if s == 0.0 { 0.0 } else { s / (s * s + damping_squared) }
+pub(super) fn damp(s: f64, damping: f64) -> f64 {
+    if s < f64::MIN_POSITIVE { 0.0 } else { 1.0 / (s + damping * (damping / s)) }
 }

@@ -16,13 +16,19 @@
 
 mod damped;
 mod filtered;
+mod hyperbolic;
+mod independent;
 mod numerical_filtering;
+mod point_direction;
 mod report;
 mod selectively_damped;
 pub(crate) mod truncated;
 mod variable_damping;
 mod weighted;
 
+pub use hyperbolic::{HyperbolicDamping, HyperbolicOptions, hyperbolic, hyperbolic_with, oblique};
+pub use independent::hyperbolic_into;
+pub use point_direction::{PointDirection, point_direction};
 pub(crate) use report::is_kept;
 pub use report::{Dropped, Inverse};
 pub use weighted::Weights;
@@ -124,6 +130,7 @@ impl Method {
     /// # Errors
     /// [`Error::InvalidOption`] with the option and its value.
     pub fn check(&self) -> Result<()> {
+        let positive = Error::check_positive;
         match *self {
             Self::Truncated { eps } => within("eps", eps, 0.0, 1.0),
             Self::Damped { damping } => positive("damping", damping),
@@ -224,16 +231,5 @@ fn within(option: &'static str, value: f64, lower: f64, below: f64) -> Result<()
         option,
         value: value.to_string(),
         reason: format!("it must be at least {lower} and below {below}"),
-    })
-}
-
-fn positive(option: &'static str, value: f64) -> Result<()> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(());
-    }
-    Err(Error::InvalidOption {
-        option,
-        value: value.to_string(),
-        reason: "it must be positive and finite".to_owned(),
     })
 }

@@ -6,7 +6,7 @@
 //! Valid    any rank; l > 0 keeps a second vanishing direction finite
 //! Why so   damping all directions disturbs the motions that are still possible
 //! Source   Maciejewski & Klein 1988; Chiaverini 1997, eq. 21
-//! Checked  tests/it/inverse.rs::numerical_filtering_*
+//! Checked  tests/it/inverse.rs::numerical_filtering_is_the_formula
 
 use super::damped::damp;
 use super::variable_damping::fraction;
@@ -21,12 +21,12 @@ pub(super) struct Filter {
 }
 
 pub(super) fn gains(svd: &Svd, filter: Filter, out: &mut [f64]) -> f64 {
-    let share = fraction(svd, filter.onset);
-    let all = share * filter.damping * filter.damping;
-    let weakest = all + share * filter.weakest * filter.weakest;
+    let share = fraction(svd, filter.onset).sqrt();
+    let all = share * filter.damping;
+    let weakest = share * filter.damping.hypot(filter.weakest);
     let last = svd.len().saturating_sub(1);
     for (i, (gain, s)) in out.iter_mut().zip(svd.values()).enumerate() {
         *gain = damp(s, if i == last { weakest } else { all });
     }
-    weakest.sqrt()
+    weakest
 }

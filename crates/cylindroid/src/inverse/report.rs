@@ -3,6 +3,7 @@
 use super::{Method, Weights};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Svd};
+use crate::screws::NoInverse;
 
 /// An inverse and what was done to get it.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,15 +14,21 @@ pub struct Inverse {
     pub singular_values: Vec<f64>,
     /// Number of directions of which at least one half is realised.
     pub rank: usize,
-    /// Singular value of the last of these over that of the next: near 1 the rank is a matter of
-    /// taste, infinite when nothing that is not zero was dropped.
+    /// Smallest singular value of these over the largest that was dropped: near 1 the rank is a
+    /// matter of taste, below 1 where the method dropped a larger one than it kept, infinite when
+    /// nothing that is not zero was dropped.
     pub gap: f64,
-    /// The singular value below which a direction counts as dropped.
+    /// The singular value below which a direction counts as dropped; with numerical filtering that
+    /// of the weakest direction, with selectively damped least squares, which drop by the rates
+    /// that a direction would need, that of the rank at machine precision.
     pub threshold: f64,
     /// The directions that were dropped, with what is left of them.
     pub dropped: Vec<Dropped>,
-    /// False where the method has no inverse for this Jacobian.
+    /// False where the method has no inverse for this Jacobian; the entries of `matrix` are then
+    /// NaN.
     pub exists: bool,
+    /// Why there is none.
+    pub reason: Option<NoInverse>,
 }
 
 /// A task direction that the inverse gives up, wholly or by more than half.
@@ -55,24 +62,31 @@ impl Inverse {
         let mut gains = vec![0.0; svd.len()];
         let threshold = method.gains(&svd, task, &mut gains);
         let share = |i: usize| gains[i] * svd.value(i);
-        let rank = (0..svd.len()).filter(|&i| is_kept(share(i))).count();
-        let dropped = (0..svd.len())
-            .filter(|&i| !is_kept(share(i)))
-            .map(|i| Dropped {
+        // Not always the first ones: selectively damped least squares drop by rates.
+        let (kept, lost): (Vec<usize>, Vec<usize>) =
+            (0..svd.len()).partition(|&i| is_kept(share(i)));
+        let dropped = lost
+            .iter()
+            .map(|&i| Dropped {
                 singular_value: svd.value(i),
                 direction: svd.u(i).to_vec(),
                 realised: share(i),
             })
             .collect();
-        let next = if rank < svd.len() { svd.value(rank) } else { 0.0 };
+        let largest_lost = lost.first().map_or(0.0, |&i| svd.value(i));
+        let gap = match kept.last() {
+            Some(&i) if largest_lost > 0.0 => svd.value(i) / largest_lost,
+            _ => f64::INFINITY,
+        };
         Ok(Self {
             matrix: weights.unapply(assemble(&svd, &gains)),
             singular_values: svd.values().collect(),
-            rank,
-            gap: if rank == 0 || next == 0.0 { f64::INFINITY } else { svd.value(rank - 1) / next },
+            rank: kept.len(),
+            gap,
             threshold,
             dropped,
             exists: true,
+            reason: None,
         })
     }
 }

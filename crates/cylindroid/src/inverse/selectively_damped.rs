@@ -5,7 +5,10 @@
 //!          r_i scaled so that its largest entry is at most g_i, then the sum at most max_rate
 //! Shapes   m x n and a task of m entries -> n x m (for this task)
 //! Units    max_rate in rad/s (m/s for sliding joints)
-//! Valid    any rank; |rates| <= max_rate always; continuous in J and x
+//! Valid    any rank; |rates| <= max_rate always. Continuous in x, and in J where its singular
+//!          values differ and none is zero: where two are equal their directions are not
+//!          determined, each choice has its own clamps, and the rates may jump (for motions so
+//!          small that nothing is clamped they do not)
 //! Why so   the original counts end-effector positions; here the task is one vector in the units
 //!          the caller scaled it to, so orientation counts as well
 //! Source   Buss & Kim 2005, eq. 13 to 15; rho_lj -> |J_j|
@@ -33,19 +36,20 @@ pub(super) fn gains(svd: &Svd, max_rate: f64, task: &[f64], out: &mut [f64]) -> 
 
 fn direction_gain(svd: &Svd, i: usize, max_rate: f64, task: &[f64]) -> f64 {
     let (s, v) = (svd.value(i), svd.v(i));
-    // |J_j|^2 = sum_l (s_l v_lj)^2: the columns of J without J.
+    // |J_j|^2 = sum_l (s_l v_lj)^2: the columns of J without J, over s_i so that nothing vanishes.
     let moved: f64 = v
         .iter()
         .enumerate()
         .map(|(j, vj)| {
-            let column2: f64 = (0..svd.len()).map(|l| (svd.value(l) * svd.v(l)[j]).powi(2)).sum();
+            let column2: f64 =
+                (0..svd.len()).map(|l| (svd.value(l) / s * svd.v(l)[j]).powi(2)).sum();
             vj.abs() * column2.sqrt()
         })
-        .sum::<f64>()
-        / s;
+        .sum::<f64>();
     let allowed = (1.0 / moved).min(1.0) * max_rate;
-    let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * (along(svd, i, task) / s).abs();
-    if largest > allowed { allowed / (largest * s) } else { 1.0 / s }
+    // s times the largest rate along direction i
+    let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * along(svd, i, task).abs();
+    if largest > allowed * s { allowed / largest } else { 1.0 / s }
 }
 
 /// The task along direction i; without a task, a unit motion along every direction.

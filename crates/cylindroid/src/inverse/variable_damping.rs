@@ -5,17 +5,17 @@
 //! Shapes   m x n -> n x m          Units  onset [-], l_max in the unit of the singular values
 //! Valid    any rank; continuous in J; gain at most about 1 / (2 l_max) at rank loss
 //! Source   Maciejewski & Klein 1988; Chiaverini 1997, eq. 20
-//! Checked  tests/it/inverse.rs::variable_damping_*
+//! Checked  tests/it/inverse.rs::variable_damping_is_the_formula
 
 use super::damped::damp;
 use crate::linalg::Svd;
 
 pub(super) fn gains(svd: &Svd, onset: f64, damping: f64, out: &mut [f64]) -> f64 {
-    let squared = fraction(svd, onset) * damping * damping;
+    let damping = fraction(svd, onset).sqrt() * damping;
     for (gain, s) in out.iter_mut().zip(svd.values()) {
-        *gain = damp(s, squared);
+        *gain = damp(s, damping);
     }
-    squared.sqrt()
+    damping
 }
 
 /// The share of the full damping: 0 in regular poses, 1 at rank loss.

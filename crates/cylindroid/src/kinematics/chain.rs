@@ -143,14 +143,14 @@ impl Chain {
             .filter(|node| node.motion != Motion::Fixed)
             .map(|node| {
                 let limits = mechanism.coordinates()[self.coordinates[node.coordinate]].limits;
-                let ends =
-                    [limits.lower, limits.upper].map(|q| (q * node.multiplier + node.offset).abs());
-                let most = ends[0].max(ends[1]);
+                // Zero times an infinite limit is zero.
+                let times = |q: f64, factor: f64| if factor == 0.0 { 0.0 } else { q * factor };
+                let end = |q: f64| (times(q, node.multiplier) + node.offset).abs();
+                let most = end(limits.lower).max(end(limits.upper));
                 match node.motion {
                     Motion::Fixed | Motion::Revolute | Motion::Spherical => 0.0,
                     Motion::Prismatic => most,
-                    Motion::Helical(0.0) => 0.0, // not 0 times infinity
-                    Motion::Helical(pitch) => pitch.abs() * most,
+                    Motion::Helical(pitch) => times(most, pitch.abs()),
                     Motion::Free => f64::INFINITY,
                 }
             })

@@ -9,6 +9,10 @@ use crate::model::{FrameId, Mechanism};
 use crate::spatial::{Padded, Pose, Twist};
 
 /// A frame of a mechanism and a tool point fixed to it.
+///
+/// Functions that take one and return no [`Result`] panic if the frame is of another mechanism
+/// ([`Mechanism::check_frame`] asks beforehand); a tool that is not finite gives numbers that are
+/// not finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffector {
     /// The frame.

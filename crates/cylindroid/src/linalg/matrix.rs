@@ -91,6 +91,86 @@ impl Matrix {
         (0..self.rows).map(|i| (0..self.cols).map(|j| self[(i, j)]).collect()).collect()
     }
 
+    /// Rows `from..to`.
+    ///
+    /// # Panics
+    /// If there are fewer rows.
+    #[must_use]
+    pub fn rows_between(&self, from: usize, to: usize) -> Self {
+        assert!(to <= self.rows, "rows {from} to {to} of {self:?}");
+        let mut part = Self::zeros(to - from, self.cols);
+        for j in 0..self.cols {
+            part.column_mut(j).copy_from_slice(&self.column(j)[from..to]);
+        }
+        part
+    }
+
+    /// Columns `from..to`.
+    ///
+    /// # Panics
+    /// If there are fewer columns.
+    #[must_use]
+    pub fn columns_between(&self, from: usize, to: usize) -> Self {
+        let data = self.data[from * self.rows..to * self.rows].to_vec();
+        Self { rows: self.rows, cols: to - from, data }
+    }
+
+    /// The columns of all blocks side by side.
+    ///
+    /// # Panics
+    /// If the blocks have not `rows` rows each.
+    #[must_use]
+    pub fn beside(rows: usize, blocks: &[&Self]) -> Self {
+        let mut data = Vec::with_capacity(rows * blocks.iter().map(|b| b.cols).sum::<usize>());
+        for block in blocks {
+            assert_eq!(block.rows, rows, "{block:?} beside matrices of {rows} rows");
+            data.extend_from_slice(&block.data);
+        }
+        Self { rows, cols: blocks.iter().map(|b| b.cols).sum(), data }
+    }
+
+    /// The rows of all blocks one below the other.
+    ///
+    /// # Panics
+    /// If the blocks have not `cols` columns each.
+    #[must_use]
+    pub fn above(cols: usize, blocks: &[&Self]) -> Self {
+        let rows = blocks.iter().map(|b| b.rows).sum();
+        let mut stack = Self::zeros(rows, cols);
+        let mut from = 0;
+        for block in blocks {
+            assert_eq!(block.cols, cols, "{block:?} above matrices of {cols} columns");
+            for j in 0..cols {
+                stack.column_mut(j)[from..from + block.rows].copy_from_slice(block.column(j));
+            }
+            from += block.rows;
+        }
+        stack
+    }
+
+    /// Exchanges two columns.
+    pub(crate) fn swap_columns(&mut self, i: usize, j: usize) {
+        let (i, j) = (i.min(j), i.max(j));
+        if i < j {
+            let (head, tail) = self.data.split_at_mut(j * self.rows);
+            head[i * self.rows..(i + 1) * self.rows].swap_with_slice(&mut tail[..self.rows]);
+        }
+    }
+
+    /// Makes column `j` orthogonal to the columns `others` of length one (or zero), twice as
+    /// rounding asks.
+    pub(crate) fn orthogonalise(&mut self, j: usize, others: std::ops::Range<usize>) {
+        for _ in 0..2 {
+            for l in others.clone().filter(|&l| l != j) {
+                let (own, other) = (self.column(j), self.column(l));
+                let along: f64 = own.iter().zip(other).map(|(a, b)| a * b).sum();
+                for i in 0..self.rows {
+                    self[(i, j)] -= along * self[(i, l)];
+                }
+            }
+        }
+    }
+
     /// The transpose.
     #[must_use]
     pub fn transpose(&self) -> Self {

@@ -3,9 +3,10 @@
 //! Formula  |x|^2 = x^T M x = |L^T x|^2 with M = L L^T
 //! Shapes   M: n x n
 //! Fails    `Error::InvalidOption` when M is not square, not symmetric or not positive definite
-//! Checked  tests/it/inverse.rs::weighted_*
+//! Checked  tests/it/inverse.rs::weighted_*, tests/it/subspaces.rs::dual_metric
 
 use super::matrix::Matrix;
+use super::qr::Qr;
 use crate::error::{Error, Result};
 
 /// A positive definite quadratic form, held by its lower Cholesky factor L.
@@ -69,6 +70,38 @@ impl Metric {
             }
         }
         Ok(Self { l })
+    }
+
+    /// The dual metric `M^-1`, by which forces are measured when motions are measured by M: with
+    /// it power is at most the product of the two norms.
+    #[must_use]
+    pub fn dual(&self) -> Self {
+        // M^-1 = (L^-1)^T L^-1, and L^-1 = Q R makes it R^T R.
+        let n = self.len();
+        let mut inverse = Matrix::identity(n);
+        for j in 0..n {
+            let x = inverse.column_mut(j);
+            for i in j..n {
+                let sum: f64 = (j..i).map(|k| self.l[(i, k)] * x[k]).sum();
+                x[i] = (x[i] - sum) / self.l[(i, i)];
+            }
+        }
+        let r = Qr::plain(inverse).r();
+        Self {
+            l: Matrix::from_fn(
+                n,
+                n,
+                |i, j| if i >= j { r[(j, i)] * r[(j, j)].signum() } else { 0.0 },
+            ),
+        }
+    }
+
+    /// Largest over smallest diagonal entry of the factor: how lopsided the metric is, 1 at least.
+    #[must_use]
+    pub fn spread(&self) -> f64 {
+        let diagonal = (0..self.len()).map(|i| self.l[(i, i)]);
+        let smallest = diagonal.clone().fold(f64::INFINITY, f64::min);
+        (diagonal.fold(0.0, f64::max) / smallest).max(1.0)
     }
 
     /// Size n of the metric.

@@ -1,11 +1,26 @@
-//! Small dense linear algebra: matrices, singular values, rank with its gap, null spaces, metrics.
+//! Small dense linear algebra: matrices, singular values, rank with its gap, the spaces of columns
+//! and of kernels, angles between spaces, metrics, hulls of convex bodies.
 
+mod box_program;
+mod column_space;
+mod cs;
+mod hull;
 mod matrix;
 mod metric;
 mod null_space;
+mod qr;
+mod singular_values;
 mod svd;
+mod symmetric;
 
+pub use box_program::BoxProgram;
+pub use column_space::{ColumnSpace, Cut, Threshold};
+pub use cs::{CosineSine, PairKind};
+pub use hull::{Facet, Hull, HullGoal, HullOptions};
 pub use matrix::Matrix;
 pub use metric::Metric;
 pub use null_space::RowSpace;
+pub use qr::Qr;
+pub(crate) use qr::solve_upper;
 pub use svd::{Rank, Svd};
+pub use symmetric::Eigen;

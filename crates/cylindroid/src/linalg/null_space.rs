@@ -9,36 +9,60 @@
 use super::matrix::Matrix;
 use super::svd::Svd;
 
-/// The span of the first `rank` right singular vectors.
+/// The span of some right singular vectors.
 #[derive(Debug, Clone, Copy)]
 pub struct RowSpace<'a> {
     svd: &'a Svd,
-    rank: usize,
+    kept: Kept<'a>,
+}
+
+/// Which of them.
+#[derive(Debug, Clone, Copy)]
+enum Kept<'a> {
+    First(usize),
+    Flags(&'a [bool]),
 }
 
 impl<'a> RowSpace<'a> {
     /// The row space at machine precision: its complement is exactly ker A.
     #[must_use]
     pub fn exact(svd: &'a Svd) -> Self {
-        Self { svd, rank: svd.machine_rank().rank }
+        Self { svd, kept: Kept::First(svd.machine_rank().rank) }
     }
 
-    /// The span of the directions that an inverse retained.
+    /// The span of the first `rank` directions.
     #[must_use]
-    pub fn retained(svd: &'a Svd, rank: usize) -> Self {
-        Self { svd, rank: rank.min(svd.len()) }
+    pub fn first(svd: &'a Svd, rank: usize) -> Self {
+        Self { svd, kept: Kept::First(rank.min(svd.len())) }
+    }
+
+    /// The span of the directions that an inverse retained: a flag for each, those without one are
+    /// not retained. They need not be the first ones.
+    #[must_use]
+    pub fn retained(svd: &'a Svd, kept: &'a [bool]) -> Self {
+        Self { svd, kept: Kept::Flags(&kept[..kept.len().min(svd.len())]) }
+    }
+
+    fn keeps(&self, i: usize) -> bool {
+        match self.kept {
+            Kept::First(rank) => i < rank,
+            Kept::Flags(flags) => flags.get(i).is_some_and(|kept| *kept),
+        }
     }
 
     /// Dimension of the row space.
     #[must_use]
     pub fn rank(&self) -> usize {
-        self.rank
+        match self.kept {
+            Kept::First(rank) => rank,
+            Kept::Flags(flags) => flags.iter().filter(|kept| **kept).count(),
+        }
     }
 
     /// `x <- (1 - V_r V_r^T) x`, without allocation.
     pub fn project_out(&self, x: &mut [f64]) {
         for _ in 0..2 {
-            for i in 0..self.rank {
+            for i in (0..self.svd.len()).filter(|&i| self.keeps(i)) {
                 let v = self.svd.v(i);
                 let along: f64 = v.iter().zip(x.iter()).map(|(a, b)| a * b).sum();
                 for (xj, vj) in x.iter_mut().zip(v) {
@@ -52,18 +76,19 @@ impl<'a> RowSpace<'a> {
     #[must_use]
     pub fn complement_basis(&self) -> Matrix {
         let n = self.svd.cols();
-        let mut basis = Matrix::zeros(n, n - self.rank);
+        let missing = n - self.rank();
+        let mut basis = Matrix::zeros(n, missing);
         // For a tall matrix V is complete: the dropped columns are the basis. Otherwise complete
         // the kept columns from unit vectors.
         let mut found = 0;
         if self.svd.rows() > n {
-            for i in self.rank..n {
+            for i in (0..n).filter(|&i| !self.keeps(i)) {
                 basis.column_mut(found).copy_from_slice(self.svd.v(i));
                 found += 1;
             }
             return basis;
         }
-        while found < n - self.rank {
+        while found < missing {
             let mut best = (0.0, vec![0.0; n]);
             for unit in 0..n {
                 let mut x = vec![0.0; n];

@@ -6,6 +6,7 @@
 //!          all are orthogonal: B W = Q diag(s). W is always complete: for a Jacobian with
 //!          m <= n it is U, so that lost task directions are known also where s is exactly zero.
 //!          A column of Q whose singular value is exactly zero is zero: A does not determine it.
+//! Valid    any finite A; a singular value that no number holds is given as the largest number
 //! Warm     `decompose_warm` starts from the W of the last call; for a slowly changing Jacobian
 //!          one or two sweeps remain. The result is exact either way.
 //! Why so   high relative accuracy also of small singular values, no failure on rank-deficient
@@ -140,9 +141,13 @@ impl Svd {
             let s = self.sigma[j];
             let inverse = if s > 0.0 { 1.0 / s } else { 0.0 };
             self.b.column_mut(j).iter_mut().for_each(|x| *x *= inverse);
-            self.sigma[j] = s * scale;
+            self.sigma[j] = (s * scale).min(f64::MAX);
         }
-        debug_assert!(self.residual(a) < 1e-11, "SVD residual {} of {a:?}", self.residual(a));
+        debug_assert!(
+            self.value(0) == f64::MAX || self.residual(a) < 1e-11,
+            "SVD residual {} of {a:?}",
+            self.residual(a)
+        );
     }
 
     /// Number of singular values, min(m, n).
@@ -205,7 +210,7 @@ impl Svd {
     }
 
     /// Rank at the relative threshold `eps` (values `s_i <= eps * s_1` do not count), never below
-    /// machine precision.
+    /// machine precision nor the smallest normal number, which has the largest inverse.
     #[must_use]
     pub fn rank(&self, eps: f64) -> Rank {
         let k = self.len();
@@ -213,7 +218,7 @@ impl Svd {
             return Rank { rank: 0, threshold: 0.0, gap: f64::INFINITY };
         }
         let machine = MACHINE_RANK * self.rows.max(self.cols) as f64;
-        let threshold = eps.max(machine) * self.value(0);
+        let threshold = (eps.max(machine) * self.value(0)).max(f64::MIN_POSITIVE);
         let rank = self.values().take_while(|&s| s > threshold).count();
         let gap = if rank == 0 || rank == k || self.value(rank) == 0.0 {
             f64::INFINITY
@@ -239,9 +244,9 @@ impl Svd {
         let (mut difference, mut size) = (0.0, 0.0);
         for i in 0..self.rows {
             for j in 0..self.cols {
-                let rebuilt: f64 =
-                    (0..self.len()).map(|l| self.u(l)[i] * self.value(l) * self.v(l)[j]).sum();
-                difference += ((a[(i, j)] - rebuilt) / largest).powi(2);
+                let part = |l| self.u(l)[i] * (self.value(l) / largest) * self.v(l)[j];
+                let rebuilt: f64 = (0..self.len()).map(part).sum();
+                difference += (a[(i, j)] / largest - rebuilt).powi(2);
                 size += (a[(i, j)] / largest).powi(2);
             }
         }
@@ -276,15 +281,18 @@ impl Svd {
     /// B = scaled A (or A^T) times W.
     fn load_times_w(&mut self, a: &Matrix, factor: f64) {
         let k = self.sigma.len();
+        // A power of two again, so that the sums of large numbers do not overflow before `factor`.
+        let guard = if factor < 1.0 { 1.0 / 256.0 } else { 1.0 };
         for l in 0..k {
-            let w = self.w.column(l);
+            let w = &mut self.scratch[..k];
+            w.iter_mut().zip(self.w.column(l)).for_each(|(x, w)| *x = w * guard);
             let b = self.b.column_mut(l);
             if self.rows > self.cols {
                 a.mul_vec_into(w, b);
             } else {
                 a.tr_mul_vec_into(w, b);
             }
-            b.iter_mut().for_each(|x| *x *= factor);
+            b.iter_mut().for_each(|x| *x *= factor / guard);
         }
     }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::builder::Order;
-use super::joint::JointKind;
-use super::mechanism::{Coordinate, CoordinateKind, Frame, FrameId};
+use super::joint::{JointKind, Limits};
+use super::mechanism::{Coordinate, CoordinateKind, Frame};
 use super::node::{Motion, Node};
 use super::spec::JointSpec;
 use crate::spatial::{Pose, Rotation, Vec3};
@@ -105,11 +105,11 @@ impl Assembly {
         let own = &mut self.coordinates[c].limits;
         let (a, b) =
             ((spec.limits.lower - offset) / multiplier, (spec.limits.upper - offset) / multiplier);
-        let (lower, upper) = (own.lower.max(a.min(b)), own.upper.min(a.max(b)));
-        let clash = lower > upper;
+        let narrowed =
+            Limits { lower: own.lower.max(a.min(b)), upper: own.upper.min(a.max(b)), ..*own };
+        let clash = !narrowed.leave_a_position();
         if !clash {
-            own.lower = lower;
-            own.upper = upper;
+            *own = narrowed;
         }
         own.velocity = own.velocity.min(spec.limits.velocity / multiplier.abs());
         own.acceleration = own.acceleration.min(spec.limits.acceleration / multiplier.abs());
@@ -206,14 +206,14 @@ impl NodeChain<'_> {
     }
 }
 
-/// The frame that is driven when none is named: from the root along the only branch that moves to
+/// The link whose frame is driven when none is named: from the root along the only branch that moves to
 /// where none or several do (a hand with fingers), then to the last link fixed there. Where the
 /// root itself branches (humanoids, hands), the end of the branch with the most moving joints.
 pub(super) fn default_tool(
     order: &Order,
     joints: &[JointSpec],
     links: &BTreeMap<String, usize>,
-) -> FrameId {
+) -> usize {
     let ends: Vec<(usize, usize)> =
         joints.iter().map(|j| (links[&j.parent], links[&j.child])).collect();
     let moves = |j: usize| joints[j].kind.dof() > 0;
@@ -247,5 +247,5 @@ pub(super) fn default_tool(
     while let Some(&fixed) = children[link].iter().rev().find(|&&j| !carries(j)) {
         link = ends[fixed].1;
     }
-    FrameId(link)
+    link
 }

@@ -11,7 +11,7 @@ use super::closing::{Contact, ContactSpec, LoopJoint, LoopSpec};
 use super::held::Dimension;
 use super::joint::{Joint, Limits};
 use super::link::Link;
-use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism};
+use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
 use super::spec::JointSpec;
 use crate::error::{Error, Result};
@@ -133,7 +133,8 @@ impl Builder {
     ///
     /// # Errors
     /// [`Error::Model`] for names given twice or unknown, a link with two parents, a cycle, more
-    /// than one root, an axis without direction, limits that contradict each other, a mimic joint
+    /// than one root, an axis without direction, limits that contradict each other or that no
+    /// joint of the kind can keep (positions of spherical and free joints), a mimic joint
     /// that follows itself, nothing, or a joint of several coordinates; for a closing joint or a
     /// contact on a link that does not exist or on one link alone.
     pub fn build(mut self) -> Result<Mechanism> {
@@ -399,7 +400,7 @@ impl Builder {
         }
 
         let named = |what: &str, name: &String| match frames.iter().position(|f| f.name == *name) {
-            Some(i) => Ok(FrameId(i)),
+            Some(i) => Ok(i),
             None => {
                 let known = frames.iter().map(|f| f.name.as_str());
                 self.refuse(name, format!("the {what}: {}", Error::unknown("frame", name, known)))
@@ -442,20 +443,23 @@ impl Builder {
         for c in &mut assembly.coordinates {
             c.joint = places[c.joint];
         }
+        let frame_key = frame_key(&frames);
+        let id = |index| FrameId { index, frame_key };
         Ok(Mechanism {
             data: Arc::new(Data {
                 name: self.name,
                 links: self.links,
                 joints,
+                frame_key,
                 loops,
                 contacts,
                 dimension: self.dimension,
-                reference,
+                reference: id(reference),
                 frames,
                 coordinates: assembly.coordinates,
                 nodes: assembly.nodes,
                 home,
-                tool,
+                tool: id(tool),
                 reach: assembly.reach.max(LEAST_REACH),
                 report: self.report,
             }),

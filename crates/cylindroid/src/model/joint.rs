@@ -53,6 +53,13 @@ impl JointKind {
         }
     }
 
+    /// True if position limits mean something: not where the rates are not the derivative of `q`,
+    /// on rotation vectors and free bodies.
+    #[must_use]
+    pub const fn takes_position_limits(self) -> bool {
+        !matches!(self, Self::Spherical | Self::Free)
+    }
+
     /// The field's word for it, as in files and tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -74,9 +81,9 @@ impl JointKind {
 /// How far, fast and hard a coordinate may go. Infinite where nothing is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Smallest position [rad or m].
+    /// Smallest position [rad or m]; spherical and free joints have none.
     pub lower: f64,
-    /// Largest position [rad or m].
+    /// Largest position [rad or m]; spherical and free joints have none.
     pub upper: f64,
     /// Largest speed [rad/s or m/s].
     pub velocity: f64,
@@ -95,6 +102,11 @@ impl Limits {
         acceleration: f64::INFINITY,
         effort: f64::INFINITY,
     };
+
+    /// True if some finite position is within them.
+    pub(super) fn leave_a_position(&self) -> bool {
+        self.lower <= self.upper && self.lower < f64::INFINITY && self.upper > f64::NEG_INFINITY
+    }
 }
 
 impl Default for Limits {

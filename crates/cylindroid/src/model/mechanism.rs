@@ -28,6 +28,8 @@ pub(super) struct Data {
     pub(super) dimension: Dimension,
     pub(super) reference: FrameId,
     pub(super) frames: Vec<Frame>,
+    /// Fingerprint of the names of the frames: what an id belongs to.
+    pub(super) frame_key: u64,
     pub(super) coordinates: Vec<Coordinate>,
     pub(super) nodes: Vec<Node>,
     pub(super) home: Vec<f64>,
@@ -89,9 +91,21 @@ pub struct Frame {
     pub(crate) slot_from_frame: Pose,
 }
 
-/// Names a frame of one mechanism. From [`Mechanism::frame`].
+/// Names a frame of one mechanism, or of another whose frames have the same names in the same
+/// order. From [`Mechanism::frame`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct FrameId(pub(crate) usize);
+pub struct FrameId {
+    pub(super) index: usize,
+    pub(super) frame_key: u64,
+}
+
+/// FNV-1a over the names, each closed by a byte that no name holds.
+pub(super) fn frame_key(frames: &[Frame]) -> u64 {
+    let bytes = frames.iter().flat_map(|f| f.name.bytes().chain([0xff]));
+    bytes.fold(0xcbf2_9ce4_8422_2325, |key, byte| {
+        (key ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
 
 impl Mechanism {
     /// A builder for a mechanism of this name.
@@ -222,15 +236,45 @@ impl Mechanism {
     /// # Errors
     /// [`Error::UnknownName`] with the nearest names.
     pub fn frame(&self, name: &str) -> Result<FrameId> {
-        self.data.frames.iter().position(|f| f.name == name).map(FrameId).ok_or_else(|| {
+        let index = self.data.frames.iter().position(|f| f.name == name).ok_or_else(|| {
             Error::unknown("frame", name, self.data.frames.iter().map(|f| f.name.as_str()))
-        })
+        })?;
+        Ok(FrameId { index, frame_key: self.data.frame_key })
     }
 
     /// The frame of an id.
+    ///
+    /// # Panics
+    /// If the id is of another mechanism; [`Mechanism::check_frame`] asks beforehand.
     #[must_use]
     pub fn frame_of(&self, id: FrameId) -> &Frame {
-        &self.data.frames[id.0]
+        assert!(self.owns(id), "the frame is not one of mechanism '{}'", self.name());
+        &self.data.frames[id.index]
+    }
+
+    /// Refuses the id of a frame of another mechanism.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`].
+    pub fn check_frame(&self, id: FrameId) -> Result<()> {
+        if self.owns(id) {
+            return Ok(());
+        }
+        Err(Error::InvalidOption {
+            option: "frame",
+            value: format!("number {} of another mechanism", id.index),
+            reason: format!("ask this one for it, with frame(name) of '{}'", self.name()),
+        })
+    }
+
+    fn owns(&self, id: FrameId) -> bool {
+        id.frame_key == self.data.frame_key && id.index < self.data.frames.len()
+    }
+
+    /// True if no joint closes a loop and nothing is in contact: coordinates are independent.
+    #[must_use]
+    pub fn is_tree(&self) -> bool {
+        self.data.loops.is_empty() && self.data.contacts.is_empty()
     }
 
     /// The frame that is driven when none is named: the file's tool, else the last leaf link.
@@ -247,7 +291,8 @@ impl Mechanism {
     }
 
     /// Characteristic length (m): the longest way from the base to a frame along the links,
-    /// with sliding joints stretched (those without limits count nothing); at least 1 mm.
+    /// with sliding joints stretched to their own limits (those without limits, and the advance of
+    /// helical joints, count nothing); at least 1 mm.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.data.reach

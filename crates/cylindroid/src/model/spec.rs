@@ -86,13 +86,20 @@ pub(super) fn fault(
     }
     if let JointKind::Universal { second } = kind {
         axes.push(second);
-        if axis.cross(second).norm() <= ZERO_AXIS {
-            return Some(format!("the two axes of universal joint '{name}' are parallel"));
-        }
     }
     if axes.iter().any(|a| a.unit(ZERO_AXIS).is_none()) {
         return Some(format!(
             "the axis of joint '{name}' has no direction; give a vector that is finite and not zero"
+        ));
+    }
+    // Their lengths say nothing: short axes are not parallel ones.
+    if let JointKind::Universal { second } = kind
+        && let (Some(a), Some(b)) = (axis.unit(ZERO_AXIS), second.unit(ZERO_AXIS))
+        && a.cross(b).norm() <= ZERO_AXIS
+    {
+        return Some(format!(
+            "the two axes of universal joint '{name}' are parallel; give two directions, or \
+             make it revolute"
         ));
     }
     if let JointKind::Helical { pitch } = kind
@@ -105,6 +112,24 @@ pub(super) fn fault(
         return Some(format!(
             "joint '{name}' has lower limit {} above its upper limit {}; exchange them",
             l.lower, l.upper
+        ));
+    }
+    if !l.leave_a_position() {
+        return Some(format!(
+            "joint '{name}' has position limits {} and {}, which leave it no finite position; \
+             without limits they are -inf and inf",
+            l.lower, l.upper
+        ));
+    }
+    let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
+    if bounded && !kind.takes_position_limits() {
+        return Some(format!(
+            "joint '{name}' is {} and has position limits {} and {}, which nothing could keep: \
+             its rates are not the derivative of q; leave them infinite, or write it as \
+             revolute and prismatic joints in a row, each with its limits",
+            kind.name(),
+            l.lower,
+            l.upper
         ));
     }
     for (what, value) in

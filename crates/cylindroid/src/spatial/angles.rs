@@ -3,8 +3,11 @@
 //! Formula  rpy: R = Rz(yaw) Ry(pitch) Rx(roll), the URDF's fixed axes x, y, z
 //!          zyz: R = Rz(alpha) Ry(beta) Rz(gamma)
 //! Units    rad; pitch in [-pi/2, pi/2], beta in [0, pi]
+//!          the first angle from its two entries, the last one from the rows of Rz(first)^T R:
+//!          what rounding takes from the first near gimbal lock the last one gives back
 //! Valid    everywhere; at gimbal lock (|pitch| = pi/2, beta = 0 or pi) only a sum of two angles
-//!          is determined: the last one (roll, gamma) is set to zero
+//!          is determined: the last one (roll, gamma) is set to zero where the entries are nothing
+//!          but rounding (`tolerance::GIMBAL_LOCK`)
 //! Source   URDF specification; Siciliano et al. 2009, section 2.4
 //! Checked  tests/it/spatial.rs::angles_*
 
@@ -12,7 +15,7 @@ use super::rotation::Rotation;
 use super::vec3::{Mat3, Vec3};
 use crate::error::{Error, Result};
 use crate::scalar::sin_cos;
-use crate::tolerance::ANGLE_SINGULAR;
+use crate::tolerance::GIMBAL_LOCK;
 
 /// A unit quaternion `w + x i + y j + z k`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,10 +121,13 @@ impl Rpy {
         let m = rotation.matrix().to_rows();
         let cos_pitch = m[0][0].hypot(m[1][0]);
         let pitch = (-m[2][0]).atan2(cos_pitch);
-        if cos_pitch < ANGLE_SINGULAR {
+        if cos_pitch < GIMBAL_LOCK {
             return Self { roll: 0.0, pitch, yaw: (-m[0][1]).atan2(m[1][1]) };
         }
-        Self { roll: m[2][1].atan2(m[2][2]), pitch, yaw: m[1][0].atan2(m[0][0]) }
+        let yaw = m[1][0].atan2(m[0][0]);
+        let (s, c) = sin_cos(yaw);
+        let roll = (s * m[0][2] - c * m[1][2]).atan2(c * m[1][1] - s * m[0][1]);
+        Self { roll, pitch, yaw }
     }
 
     /// `omega = E rates`: from (roll, pitch, yaw) rates to the angular velocity in the axes of
@@ -147,12 +153,15 @@ impl Zyz {
         let m = rotation.matrix().to_rows();
         let sin_beta = m[0][2].hypot(m[1][2]);
         let beta = sin_beta.atan2(m[2][2]);
-        if sin_beta < ANGLE_SINGULAR {
+        if sin_beta < GIMBAL_LOCK {
             // alpha + gamma (beta = 0) or alpha - gamma (beta = pi) is all that is determined.
             let sign = m[2][2].signum();
             return Self { alpha: (sign * m[1][0]).atan2(sign * m[0][0]), beta, gamma: 0.0 };
         }
-        Self { alpha: m[1][2].atan2(m[0][2]), beta, gamma: m[2][1].atan2(-m[2][0]) }
+        let alpha = m[1][2].atan2(m[0][2]);
+        let (s, c) = sin_cos(alpha);
+        let gamma = (c * m[1][0] - s * m[0][0]).atan2(c * m[1][1] - s * m[0][1]);
+        Self { alpha, beta, gamma }
     }
 
     /// `omega = E rates`: from (alpha, beta, gamma) rates to the angular velocity in the axes of

@@ -7,7 +7,7 @@
 //! Units    v in m, w in rad
 //! Valid    exp everywhere; log on the whole group, |w| <= pi; D^-1 for |w| < 2 pi
 //! Source   Barfoot, State Estimation for Robotics, 2017, eq. 7.85, 7.86 (Q)
-//! Checked  tests/it/spatial.rs::exp_*, ::log_*, ::derivative_*
+//! Checked  tests/it/spatial.rs::exp_*, ::log_*, ::derivative*
 
 use super::pose::Pose;
 use super::rotation::Rotation;

@@ -6,6 +6,7 @@
 
 mod angles;
 mod exp;
+mod forms;
 mod padded;
 mod pose;
 mod rotation;

@@ -1,6 +1,6 @@
 //! Rotations: orthonormal matrices of determinant 1.
 //!
-//! Formula  exp(r) = 1 + a K + b K^2, K = skew(r), a = sin t / t, b = (1 - cos t) / t^2, t = |r|
+//! Formula  exp(r) = 1 + sin t K + 2 sin^2(t/2) K^2, K = skew(r / t), t = |r|
 //!          log through the quaternion of largest component: r = 2 atan2(|v|, w) v / |v|
 //! Units    r in rad: axis times angle, log's angle in [0, pi]
 //! Valid    everywhere. At angle pi the axis is ambiguous; the one whose first component that is
@@ -13,7 +13,6 @@
 use std::ops::Mul;
 
 use super::angles::Quaternion;
-use super::series::{cosc, sinc};
 use super::vec3::{Mat3, Vec3};
 use crate::error::{Error, Result};
 use crate::scalar::sin_cos;
@@ -33,8 +32,12 @@ impl Rotation {
     #[must_use]
     pub fn exp(r: Vec3) -> Self {
         let t = r.norm();
-        let k = Mat3::skew(r);
-        Self { matrix: Mat3::IDENTITY + k * sinc(t) + (k * k) * cosc(t) }
+        if t == f64::INFINITY && r.is_finite() {
+            let quarter = Self::exp(r * 0.25); // the length is beyond all numbers
+            return quarter * quarter * quarter * quarter;
+        }
+        // Without a direction: no rotation, or NaN from a vector that is not finite.
+        Self::about_unit(r.unit(0.0).unwrap_or(r), t)
     }
 
     /// The rotation vector: axis times angle, angle in [0, pi] (rad).
@@ -51,11 +54,13 @@ impl Rotation {
     /// The rotation about `axis` (any length) by `angle` rad; `None` if the axis has no direction.
     #[must_use]
     pub fn about(axis: Vec3, angle: f64) -> Option<Self> {
-        let n = axis.unit(ZERO_AXIS)?;
-        let (sin, _) = sin_cos(angle);
-        let half = sin_cos(0.5 * angle).0;
+        Some(Self::about_unit(axis.unit(ZERO_AXIS)?, angle))
+    }
+
+    fn about_unit(n: Vec3, angle: f64) -> Self {
+        let (sin, half) = (sin_cos(angle).0, sin_cos(0.5 * angle).0);
         let k = Mat3::skew(n);
-        Some(Self { matrix: Mat3::IDENTITY + k * sin + (k * k) * (2.0 * half * half) })
+        Self { matrix: Mat3::IDENTITY + k * sin + (k * k) * (2.0 * half * half) }
     }
 
     /// The rotation about z by `angle` rad.

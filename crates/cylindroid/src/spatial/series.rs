@@ -1,7 +1,8 @@
 //! The scalar functions of the angle in exp, log and their derivatives, right down to zero.
 //!
 //! Each is a Taylor series below `tolerance::SMALL_ANGLE` and a closed form above it; at the
-//! switch both agree to 1e-14 relative (`tests::both_sides_of_the_switch`).
+//! switch both agree to 3e-14 relative, and to 2e-13 in `sinc5`, which cancels twice and is
+//! multiplied by the fourth power of the angle (`tests::both_sides_of_the_switch`).
 
 use crate::tolerance::SMALL_ANGLE;
 
@@ -102,12 +103,15 @@ mod tests {
     #[test]
     fn both_sides_of_the_switch() {
         let below = SMALL_ANGLE * (1.0 - f64::EPSILON);
-        for (name, f) in
-            [("sinc3", sinc3 as fn(f64) -> f64), ("cotc", cotc), ("cosc4", cosc4), ("sinc5", sinc5)]
-        {
+        for (name, f, most) in [
+            ("sinc3", sinc3 as fn(f64) -> f64, 3e-14),
+            ("cotc", cotc, 3e-14),
+            ("cosc4", cosc4, 3e-14),
+            ("sinc5", sinc5, 2e-13),
+        ] {
             let (lo, hi) = (f(below), f(SMALL_ANGLE));
             let relative = ((lo - hi) / hi).abs();
-            assert!(relative < 2e-13, "{name}: {lo} below, {hi} above, {relative:.1e} relative");
+            assert!(relative < most, "{name}: {lo} below, {hi} above, {relative:.1e} relative");
         }
     }
 

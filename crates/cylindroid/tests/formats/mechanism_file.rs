@@ -218,3 +218,18 @@ fn joints_that_hold_nothing_up_are_refused() {
     check(&format!("{ARM_TOML}\n{loose}"), "[\"x\", \"y\"]", "'loose' hangs in the air");
     check(&loose, "[\"x\", \"y\"]", "name the fixed link ground");
 }
+
+/// Nothing could keep them, so they are dropped, and said to be.
+#[test]
+fn position_limits_of_a_free_joint_are_noted_and_dropped() {
+    for (kind, rest) in [("spherical", "origin = [0, 0, 1]"), ("free", "")] {
+        let rest = format!("{rest}\nlimits = {{ lower = -1, upper = 1, velocity = 2 }}");
+        let m = read_toml(&joint("ball", kind, ["ground", "a"], &rest)).unwrap();
+        let limits = m.coordinates()[0].limits;
+        assert_eq!((limits.lower, limits.upper), (f64::NEG_INFINITY, f64::INFINITY));
+        assert_eq!(limits.velocity, 2.0);
+        let note = &m.report().ignored[0];
+        assert!(note.what.contains("position limits") && note.what.contains("ball"), "{note:?}");
+        assert!(note.line > 0 && note.why.contains("dropped"), "{note:?}");
+    }
+}

@@ -1,5 +1,5 @@
 use cylindroid::inverse::{self, Method, Weights};
-use cylindroid::linalg::Metric;
+use cylindroid::linalg::{Metric, RowSpace, Svd};
 use cylindroid::{Error, Matrix};
 
 use crate::support::{Random, assert_close, assert_matrix};
@@ -40,17 +40,31 @@ fn truncated_is_relative_to_the_largest_value() {
     assert_eq!((inverse.rank, inverse.gap), (2, f64::INFINITY));
 }
 
-/// Values computed with numpy 1.26.4: numpy.linalg.pinv(J, 0.1) and (J, 1e-15).
+/// Values of numpy 2.4.6:
+///
+/// ```python
+/// J = numpy.array([[1.0, 2.0, 0.0], [0.0, 1.0, 0.1]])
+/// print(numpy.linalg.pinv(J, 1e-15).tolist(), numpy.linalg.pinv(J, 0.5).tolist())
+/// ```
 #[test]
 fn truncated_equals_numpy() {
     let j = Matrix::from_rows(&[[1.0, 2.0, 0.0], [0.0, 1.0, 0.1]]).unwrap();
     let all = inverse::truncated(&j, 1e-15).unwrap();
     let one = inverse::truncated(&j, 0.5).unwrap();
     assert_eq!((all.rank, one.rank), (2, 1));
-    // (J J^T)^-1 by hand: J J^T = [[5, 2], [2, 1.01]], det 1.05.
-    let d = 1.05;
-    let gram = Matrix::from_rows(&[[1.01 / d, -2.0 / d], [-2.0 / d, 5.0 / d]]).unwrap();
-    assert_matrix("J^T (J J^T)^-1", &all.matrix, &(&j.transpose() * &gram), 1e-14);
+    let numpy = |rows: &[[f64; 2]; 3]| Matrix::from_rows(rows).unwrap();
+    let expected = numpy(&[
+        [0.961_904_761_904_760_6, -1.904_761_904_761_902_4],
+        [0.019_047_619_047_619_063, 0.952_380_952_380_951_9],
+        [-0.190_476_190_476_190_2, 0.476_190_476_190_475_6],
+    ]);
+    assert_matrix("pinv(J, 1e-15)", &all.matrix, &expected, 1e-14);
+    let expected = numpy(&[
+        [0.146_333_818_069_384_11, 0.060_720_764_415_506_29],
+        [0.353_388_400_554_274_5, 0.146_637_421_891_461_67],
+        [0.006_072_076_441_550_627, 0.002_519_589_306_044_908],
+    ]);
+    assert_matrix("pinv(J, 0.5)", &one.matrix, &expected, 1e-15);
     // At the threshold itself the value is cut.
     let at = one.dropped[0].singular_value / one.singular_values[0];
     assert_eq!(inverse::truncated(&j, at).unwrap().rank, 1);
@@ -135,18 +149,15 @@ fn every_method_is_bounded_through_a_singularity() {
 }
 
 #[test]
-fn variable_damping_and_numerical_filtering_formulas() {
+fn variable_damping_is_the_formula() {
     let j = Matrix::diagonal(&[1.0, 0.5, 0.01]);
-    let (onset, l, b) = (0.05, 0.1, 0.2);
+    let (onset, l) = (0.05, 0.1);
     let share = 1.0 - (0.01_f64 / 0.05).powi(2);
     let variable = Method::VariableDamping { onset, damping: l }.inverse(&j).unwrap();
     let expected = |s: f64, d2: f64| s / (s * s + d2);
     for (i, s) in [1.0, 0.5, 0.01].into_iter().enumerate() {
         assert!((variable.matrix[(i, i)] - expected(s, share * l * l)).abs() < 1e-14);
     }
-    let filtered = Method::NumericalFiltering { onset, damping: l, filter: b }.inverse(&j).unwrap();
-    assert!((filtered.matrix[(1, 1)] - expected(0.5, share * l * l)).abs() < 1e-14);
-    assert!((filtered.matrix[(2, 2)] - expected(0.01, share * (l * l + b * b))).abs() < 1e-14);
     // Both sides of the onset agree.
     let near = |s: f64| {
         Method::VariableDamping { onset, damping: l }
@@ -155,6 +166,20 @@ fn variable_damping_and_numerical_filtering_formulas() {
             .matrix[(1, 1)]
     };
     assert!((near(0.05 * (1.0 - 1e-9)) - near(0.05 * (1.0 + 1e-9))).abs() < 1e-5);
+}
+
+#[test]
+fn numerical_filtering_is_the_formula() {
+    let (onset, l, b) = (0.05, 0.1, 0.2);
+    let share = 1.0 - (0.01_f64 / 0.05).powi(2);
+    let inverse = Method::NumericalFiltering { onset, damping: l, filter: b }
+        .inverse(&Matrix::diagonal(&[1.0, 0.5, 0.01]))
+        .unwrap();
+    // The weakest direction alone has the filter.
+    for (i, s, b) in [(0, 1.0, 0.0), (1, 0.5, 0.0), (2, 0.01, b)] {
+        let expected = s / (s * s + share * (l * l + b * b));
+        assert!((inverse.matrix[(i, i)] - expected).abs() < 1e-14, "{i}");
+    }
 }
 
 #[test]
@@ -188,6 +213,105 @@ fn selectively_damped_never_exceeds_the_rate() {
     let exact = inverse::truncated(&j, 1e-9).unwrap().matrix.mul_vec(&task);
     let got = inverse::selectively_damped(&j, &task, max_rate).unwrap().matrix.mul_vec(&task);
     assert_close("rates", &got, &exact, 1e-16);
+}
+
+/// At equal singular values the directions are any two: a large motion is clamped along those that
+/// are found, a small one is not and has the same rates on both sides.
+#[test]
+fn selectively_damped_may_jump_at_equal_singular_values() {
+    let rates = |turned: bool, size: f64| {
+        // 1 up to 1e-9: the directions are the axes, or the diagonals.
+        let e = 1e-9;
+        let j = if turned {
+            Matrix::from_rows(&[[1.0, e], [e, 1.0]]).unwrap()
+        } else {
+            Matrix::diagonal(&[1.0 + e, 1.0 - e])
+        };
+        let task = [size, 0.5 * size];
+        inverse::selectively_damped(&j, &task, 1.0).unwrap().matrix.mul_vec(&task)
+    };
+    assert_close("small", &rates(true, 0.1), &rates(false, 0.1), 1e-9);
+    let (a, b) = (rates(true, 10.0), rates(false, 10.0));
+    assert!((a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > 0.1, "{a:?} {b:?}");
+    assert!(a.iter().chain(&b).all(|r| r.abs() <= 1.0 + 1e-12), "{a:?} {b:?}");
+}
+
+/// Rank, gap, threshold and what was dropped, for each method at one matrix.
+#[test]
+fn report_of_each_method() {
+    let values = [1.0, 0.4, 0.03, 0.001];
+    let j = Matrix::diagonal(&values);
+    // The directions that are kept, and the threshold where it has a closed form.
+    let share = (1.0 - (0.001_f64 / 0.05).powi(2)).sqrt();
+    for (method, kept, threshold) in [
+        (Method::Truncated { eps: 0.01 }, 3, 0.01),
+        (Method::Damped { damping: 0.1 }, 2, 0.1),
+        (Method::VariableDamping { onset: 0.05, damping: 0.02 }, 3, 0.02 * share),
+        (
+            Method::NumericalFiltering { onset: 0.05, damping: 0.002, filter: 0.02 },
+            3,
+            0.002_f64.hypot(0.02) * share,
+        ),
+        // s^3 + nu s^2 + 2 s = 2 s_0 at s = 0.02
+        (
+            Method::SingularValueFiltering {
+                shape: 10.0,
+                floor: 0.5 * (8e-6 + 10.0 * 4e-4 + 2.0 * 0.02),
+            },
+            3,
+            0.02,
+        ),
+    ] {
+        let (report, name) = (method.inverse(&j).unwrap(), method.name());
+        assert_eq!(report.rank, kept, "{name}");
+        assert!((report.threshold / threshold - 1.0).abs() < 1e-12, "{name}: {report:?}");
+        let gap = values[kept - 1] / values[kept];
+        assert!((report.gap / gap - 1.0).abs() < 1e-12, "{name}: {}", report.gap);
+        for (i, dropped) in report.dropped.iter().enumerate() {
+            let s = values[kept + i];
+            let realised = report.matrix[(kept + i, kept + i)] * s;
+            assert!((dropped.singular_value / s - 1.0).abs() < 1e-12, "{name}");
+            assert!((dropped.realised - realised).abs() < 1e-15 && realised < 0.5, "{name}");
+            assert_eq!(dropped.direction[kept + i].abs(), 1.0, "{name}");
+        }
+        assert_eq!(report.dropped.len(), values.len() - kept, "{name}");
+        // Both sides of the threshold; numerical filtering and variable damping move with s.
+        if matches!(method, Method::Damped { .. } | Method::SingularValueFiltering { .. }) {
+            for (s, rank) in [(threshold * (1.0 - 1e-9), 1), (threshold * (1.0 + 1e-9), 2)] {
+                let near = method.inverse(&Matrix::diagonal(&[1.0, s])).unwrap();
+                assert_eq!(near.rank, rank, "{name} at {s}");
+            }
+        }
+    }
+}
+
+/// Selectively damped least squares drop what needs large rates, here the largest direction: the
+/// report and the projector go by the directions, not by their number.
+#[test]
+fn report_where_a_large_direction_is_dropped() {
+    let j = Matrix::diagonal(&[1.0, 0.5, 0.25]);
+    let task = [10.0, 0.01, 0.01];
+    let report = inverse::selectively_damped(&j, &task, 1.0).unwrap();
+    assert_eq!((report.rank, report.dropped.len()), (2, 1));
+    assert_eq!(report.dropped[0].singular_value, 1.0);
+    assert_eq!(report.dropped[0].direction, [1.0, 0.0, 0.0]);
+    assert!((report.dropped[0].realised - 0.1).abs() < 1e-15, "{report:?}");
+    assert_eq!(report.gap, 0.25);
+    assert_eq!(report.threshold, Svd::of(&j).machine_rank().threshold);
+    for (m, n) in [(3, 3), (4, 3), (3, 5)] {
+        let j = Matrix::from_fn(m, n, |a, b| if a == b { [1.0, 0.5, 0.25][a] } else { 0.0 });
+        let svd = Svd::of(&j);
+        let space = RowSpace::retained(&svd, &[false, true, true]);
+        assert_eq!(space.rank(), 2);
+        let mut x = vec![1.0; n];
+        space.project_out(&mut x);
+        assert_eq!(x[..3], [1.0, 0.0, 0.0]);
+        let basis = space.complement_basis();
+        assert_eq!(basis.cols(), n - 2);
+        for c in 0..basis.cols() {
+            assert_eq!(basis.column(c)[1..3], [0.0, 0.0], "{basis:?}");
+        }
+    }
 }
 
 /// W_q decides between rates that do the same, W_x between errors that cannot all vanish.
@@ -249,6 +373,28 @@ fn bad_input_is_refused() {
         assert!(error.starts_with(option), "{error}");
     }
     assert!(Method::named("dampd").unwrap_err().to_string().contains("nearest: damped"));
+}
+
+/// However large or small the numbers: no square overflows or vanishes on the way.
+#[test]
+fn extreme_scales() {
+    for size in [1e-310, 1e-300, 1e-200, 1e-160, 1.0, 1e160, 1e200, 1e300] {
+        let j = Matrix::diagonal(&[size, 0.7 * size, 0.5 * size]);
+        for method in Method::ALL {
+            let inverse = method.inverse(&j).unwrap();
+            let name = format!("{} at {size:e}", method.name());
+            assert!(inverse.matrix.is_finite(), "{name}: {:?}", inverse.matrix);
+            let share = inverse.matrix[(1, 1)] * j[(1, 1)];
+            assert!((0.0..=1.0 + 1e-15).contains(&share), "{name}: {share} realised");
+            // Damping far below the singular values does nothing.
+            let exact = size > 1e150 && !matches!(method, Method::SelectivelyDamped { .. });
+            assert!(!exact || share > 1.0 - 1e-15, "{name}: {share} realised");
+        }
+        // The damping in the unit of the values: half of the smallest direction is left.
+        let half = inverse::damped(&j, 0.5 * size).unwrap();
+        let share = half.matrix[(2, 2)] * j[(2, 2)];
+        assert!((share - 0.5).abs() < 1e-12 || size < 1e-300, "{size:e}: {share}");
+    }
 }
 
 #[test]

@@ -95,7 +95,7 @@ fn references_are_related_by_the_adjoint() {
 #[test]
 fn jacobian_is_assembled_by_conversion() {
     let mut random = Random(33);
-    for robot in catalogue::names().iter().map(|n| catalogue::load(n).unwrap()) {
+    for robot in crate::support::robots() {
         let q = random.q(&robot);
         let state = robot.state(&q).unwrap();
         let world_from_tool = state.pose(robot.tool());

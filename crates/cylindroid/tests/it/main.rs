@@ -7,11 +7,18 @@
     clippy::float_cmp_const
 )]
 
+mod closure;
 mod graph;
+mod hull;
+mod hyperbolic;
 mod inverse;
 mod kinematics;
+mod manipulability;
+mod model;
 mod pinocchio;
+mod screws;
 mod servo;
 mod spatial;
+mod subspaces;
 mod support;
 mod svd;

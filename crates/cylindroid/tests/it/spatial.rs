@@ -187,31 +187,25 @@ fn adjoint_laws() {
 #[test]
 fn angles_round_trip_also_at_gimbal_lock() {
     let mut random = Random(8);
-    let special = [0.0, 1e-9, 1e-3, FRAC_PI_2, FRAC_PI_2 - 1e-9, FRAC_PI_2 - 1e-7, PI, -FRAC_PI_2];
+    let near = [0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-3];
+    let ends = [0.0, FRAC_PI_2, PI, -FRAC_PI_2, 1.0];
+    let special = ends.iter().flat_map(|end| near.iter().map(move |d| end - d));
     for _ in 0..200 {
-        for middle in special {
+        for middle in special.clone() {
             let (a, c) = (random.within(-3.0, 3.0), random.within(-3.0, 3.0));
             let rpy = Rpy { roll: a, pitch: middle, yaw: c }.rotation();
             assert_close(
                 "rpy",
                 &entries(Rpy::of(rpy).rotation().matrix()),
                 &entries(rpy.matrix()),
-                2e-6,
+                4e-15,
             );
-            if (middle.abs() - FRAC_PI_2).abs() > 1e-5 {
-                assert_close(
-                    "rpy",
-                    &entries(Rpy::of(rpy).rotation().matrix()),
-                    &entries(rpy.matrix()),
-                    1e-14,
-                );
-            }
             let zyz = Zyz { alpha: a, beta: middle, gamma: c }.rotation();
             assert_close(
                 "zyz",
                 &entries(Zyz::of(zyz).rotation().matrix()),
                 &entries(zyz.matrix()),
-                2e-6,
+                4e-15,
             );
             let q = rpy.to_quaternion();
             assert!(q.w >= 0.0);
@@ -286,4 +280,25 @@ fn printed_digits_are_repaired() {
             1e-14,
         );
     }
+}
+
+/// Never NaN for finite input, however long or short; always a rotation.
+#[test]
+fn exp_and_unit_of_any_length() {
+    for x in [5e-324, 1e-310, 1e-200, 1e-20, 1.0, 1e20, 1e160, 1e300, f64::MAX] {
+        for r in [Vec3::new(x, 0.0, 0.0), Vec3::new(-x, x, 0.5 * x), Vec3::new(x, x, x)] {
+            let m = Rotation::exp(r).matrix();
+            let error = entries(m.transpose() * m - Rotation::IDENTITY.matrix());
+            assert_close("R^T R", &error, &[0.0; 9], 1e-14);
+            assert!((m.determinant() - 1.0).abs() < 1e-14);
+            if let Some(unit) = r.unit(0.0) {
+                assert!((unit.norm() - 1.0).abs() < 1e-15, "{r:?}: {unit:?}");
+            } else {
+                assert_eq!(r.norm(), f64::INFINITY, "{r:?}");
+            }
+        }
+    }
+    assert_eq!(Rotation::exp(Vec3::ZERO), Rotation::IDENTITY);
+    assert!(!Rotation::exp(Vec3::new(f64::NAN, 0.0, 0.0)).matrix().is_finite());
+    assert!(!Rotation::exp(Vec3::new(f64::INFINITY, 0.0, 0.0)).matrix().is_finite());
 }

@@ -1,7 +1,7 @@
 //! Random numbers that are the same on every run, comparisons that print the difference, and
 //! small mechanisms.
 
-use cylindroid::model::{JointKind, JointSpec, Limits};
+use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 use cylindroid::spatial::{Mat3, Pose, Rotation, Twist, Vec3};
 use cylindroid::{Matrix, Mechanism};
 
@@ -66,6 +66,12 @@ impl Random {
     }
 }
 
+/// The serial robots of the catalogue.
+pub(crate) fn robots() -> Vec<Mechanism> {
+    let all = cylindroid::catalogue::names().iter();
+    all.map(|name| cylindroid::catalogue::load(name).unwrap()).filter(Mechanism::is_tree).collect()
+}
+
 #[track_caller]
 pub(crate) fn assert_close(what: &str, got: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(got.len(), expected.len(), "{what}: sizes differ");
@@ -117,7 +123,7 @@ pub(crate) fn zoo() -> Mechanism {
         });
     }
     b.joint(JointSpec {
-        mimic: Some(cylindroid::model::Mimic { joint: "j0".into(), multiplier: -1.7, offset: 0.2 }),
+        mimic: Some(Mimic { joint: "j0".into(), multiplier: -1.7, offset: 0.2 }),
         axis: random.vec3(1.0),
         parent_from_joint: random.pose(),
         ..JointSpec::new("follower", JointKind::Revolute, "l11", "tip")
@@ -143,5 +149,61 @@ pub(crate) fn planar(n: usize) -> Mechanism {
     }
     b.frame("tip", &format!("link{n}"), Pose::from_translation(Vec3::X));
     b.tool("tip");
+    b.build().unwrap()
+}
+
+/// The same mechanism without any limits.
+pub(crate) fn unlimited(mechanism: &Mechanism) -> Mechanism {
+    let mut b = Mechanism::builder(mechanism.name());
+    let links = mechanism.links();
+    for link in links {
+        b.link(link.clone());
+    }
+    for joint in mechanism.joints() {
+        b.joint(JointSpec {
+            parent_from_joint: joint.parent_from_joint,
+            axis: joint.axis,
+            mimic: joint.mimic.clone(),
+            ..JointSpec::new(
+                &joint.name,
+                joint.kind,
+                &links[joint.parent].name,
+                &links[joint.child].name,
+            )
+        });
+    }
+    for frame in &mechanism.frames()[links.len()..] {
+        b.frame(&frame.name, &links[frame.link].name, frame.link_from_frame);
+    }
+    b.tool(&mechanism.frame_of(mechanism.tool()).name).home(mechanism.home());
+    b.build().unwrap()
+}
+
+/// Six joints and a follower, with every kind of odd limit.
+pub(crate) fn odd_arm() -> Mechanism {
+    let limits = |lower, upper| Limits { lower, upper, velocity: 1.5, ..Limits::NONE };
+    let (turn, screw) = (JointKind::Revolute, JointKind::Helical { pitch: 0.1 });
+    let joints = [
+        ("base", turn, Vec3::Z, limits(-3.0, 3.0)),
+        ("still", turn, Vec3::Y, Limits { velocity: 0.0, ..limits(-1.0, 1.0) }),
+        ("shoulder", turn, Vec3::Y, Limits { acceleration: 3.0, ..limits(-2.0, 2.0) }),
+        ("locked", turn, Vec3::X, limits(0.4, 0.4)),
+        ("screw", screw, Vec3::Z, limits(-2.0, 4.0)),
+        ("stiff", turn, Vec3::Y, Limits { acceleration: 0.0, ..limits(-1.0, 1.0) }),
+        ("slide", JointKind::Prismatic, Vec3::X, limits(0.0, 0.5)),
+        ("wrist", JointKind::Continuous, Vec3::Y, Limits::NONE),
+        ("follower", turn, Vec3::Z, limits(-0.5, 0.5)),
+    ];
+    let mut b = Mechanism::builder("odd");
+    for (i, (name, kind, axis, limits)) in joints.into_iter().enumerate() {
+        let leader = Mimic { joint: "shoulder".into(), multiplier: -0.7, offset: 0.2 };
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::new(0.2, 0.0, 0.1)),
+            axis,
+            limits,
+            mimic: (name == "follower").then_some(leader),
+            ..JointSpec::new(name, kind, &format!("l{i}"), &format!("l{}", i + 1))
+        });
+    }
     b.build().unwrap()
 }

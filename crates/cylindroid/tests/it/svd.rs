@@ -106,6 +106,27 @@ fn extreme_scales() {
     );
 }
 
+/// The largest numbers: what no number holds is the largest one, and nothing is NaN.
+#[test]
+fn largest_numbers() {
+    for (m, n) in [(1, 1), (2, 2), (6, 7), (7, 3)] {
+        for size in [1e307, 1.5e308, f64::MAX] {
+            let a = Matrix::from_fn(m, n, |i, j| if (i + 2 * j) % 3 == 0 { -size } else { size });
+            let mut svd = Svd::of(&a);
+            svd.decompose_warm(&a);
+            assert!(svd.values().all(|s| s.is_finite()), "{m} x {n} of {size:e}");
+            for i in 0..svd.machine_rank().rank {
+                let norm = svd.u(i).iter().map(|x| x * x).sum::<f64>();
+                assert!((norm - 1.0).abs() < 1e-13, "{m} x {n} of {size:e}: {norm}");
+            }
+            let least = size * f64::from(u8::from(svd.value(0) < f64::MAX));
+            assert!(svd.value(0) >= least);
+        }
+        let diagonal = Matrix::diagonal(&[f64::MAX, 1e308]);
+        assert_eq!(Svd::of(&diagonal).values().collect::<Vec<_>>(), [f64::MAX, 1e308]);
+    }
+}
+
 #[test]
 fn hilbert_matrix_to_relative_accuracy() {
     // Smallest singular value of the 8 x 8 Hilbert matrix, from 50-digit arithmetic.

@@ -3,8 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use cylindroid::control::{
-    Bounds, CartesianBounds, CartesianMove, CartesianPath, JointMove, JointPath, JointSample, Turn,
+    Bounds, CartesianBounds, CartesianMove, CartesianPath, JointDefaults, JointMove, JointPath,
+    JointSample, Turn,
 };
+use cylindroid::model::{JointKind, JointSpec, Limits, Mechanism};
 use cylindroid::{Error, Pose, Rotation, Vec3};
 use proptest::prelude::*;
 
@@ -296,5 +298,30 @@ fn joint_bad_input_is_named() {
         let sample = JointSample { positions: &mut q, velocities: &mut qd };
         assert!(matches!(motion.sample_into(0.5, sample), Err(Error::Dimension { .. })));
         assert!(q.iter().chain(&qd).all(|x| *x == 7.0), "nothing is written");
+    }
+}
+
+/// Both ends within the limits, joints that rest not asked for theirs, the culprit by its name.
+#[test]
+fn joint_limits_of_a_mechanism() {
+    let mut b = Mechanism::builder("arm");
+    for (i, name) in ["shoulder", "elbow"].into_iter().enumerate() {
+        let velocity = if name == "elbow" { 0.0 } else { 2.0 };
+        b.joint(JointSpec {
+            limits: Limits { lower: -1.0, upper: 1.0, velocity, ..Limits::NONE },
+            ..JointSpec::new(name, JointKind::Revolute, &format!("l{i}"), &format!("l{}", i + 1))
+        });
+    }
+    let arm = b.build().unwrap();
+    let defaults = JointDefaults { angle: LINEAR, length: LINEAR };
+    let between = |q: [f64; 2], to: [f64; 2]| JointMove::within_limits(&arm, &q, &to, &defaults);
+    assert!(between([0.0, 0.5], [1.0, 0.5]).is_ok(), "the elbow rests, and may");
+    for (q, to, says) in [
+        ([1.1, 0.0], [0.0, 0.0], "start of the joint move = shoulder at 1.1 rad"),
+        ([0.0, 0.0], [0.0, -2.0], "end of the joint move = elbow at -2 rad"),
+        ([0.0, 0.0], [0.0, 0.5], "joint 'elbow'"),
+    ] {
+        let error = between(q, to).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
     }
 }

@@ -7,17 +7,12 @@ use cylindroid::control::{
 use cylindroid::kinematics::Chain;
 use cylindroid::model::Mechanism;
 use cylindroid::spatial::{Quaternion, Rpy};
-use cylindroid::{Error, Method, Pose, Reference, Result, Rotation, ServoOptions, Vec3};
+use cylindroid::{Error, Pose, Reference, Result, Rotation, ServoOptions, Vec3};
 
 use super::super::{configuration, end_effector};
-use super::joints;
-use crate::args::{
-    InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
-};
-use crate::values::Named;
-
-/// The names of the task components, in the order of a twist.
-pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+use super::{inverse, joints};
+use crate::args::{LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes};
+use crate::values::{COMPONENTS, Named};
 
 /// Speeds on a path where none are given [m/s], [rad/s].
 pub(super) const PATH_SPEED: (f64, f64) = (0.25, 1.0);
@@ -73,8 +68,8 @@ impl Job {
         options.end_effector = end_effector(&robot, &args.frame)?;
         let (task, driven) = task(&args.target)?;
         options.task = task;
-        options.method = method(&args.inverse)?;
         apply(&args.servo, &mut options);
+        inverse::apply(&args.inverse, &start, &robot, &mut options)?;
         options.secondary = secondary(&args.servo.secondary, &robot, &options, &start)?;
         // Before the target is looked at: a broken option is the clearer message.
         options.check(&robot)?;
@@ -149,50 +144,6 @@ fn apply(args: &ServoArgs, options: &mut ServoOptions) {
         ProjectorName::Exact => Projector::Exact,
         ProjectorName::Retained => Projector::Retained,
     };
-}
-
-/// The inverse with the numbers that were given.
-fn method(args: &InverseArgs) -> Result<Method> {
-    let mut method = Method::named(&args.inverse)?;
-    let name = method.name();
-    let mut numbers = match &mut method {
-        Method::Truncated { eps } => vec![("--eps", eps)],
-        Method::Damped { damping } => vec![("--damping", damping)],
-        Method::VariableDamping { onset, damping } => {
-            vec![("--onset", onset), ("--damping", damping)]
-        }
-        Method::NumericalFiltering { onset, damping, filter } => {
-            vec![("--onset", onset), ("--damping", damping), ("--filter", filter)]
-        }
-        Method::SelectivelyDamped { max_rate } => vec![("--max-rate", max_rate)],
-        Method::SingularValueFiltering { shape, floor } => {
-            vec![("--shape", shape), ("--floor", floor)]
-        }
-    };
-    let given = [
-        ("--eps", args.eps),
-        ("--damping", args.damping),
-        ("--onset", args.onset),
-        ("--filter", args.filter),
-        ("--max-rate", args.max_rate),
-        ("--shape", args.shape),
-        ("--floor", args.floor),
-    ];
-    for (option, value) in given.into_iter().filter_map(|(o, v)| Some((o, v?))) {
-        let Some((_, number)) = numbers.iter_mut().find(|(o, _)| *o == option) else {
-            let own: Vec<&str> = numbers.iter().map(|(o, _)| *o).collect();
-            return Err(Error::InvalidOption {
-                option,
-                value: value.to_string(),
-                reason: format!(
-                    "the inverse '{name}' has no such number but {}; choose one with --inverse",
-                    own.join(", ")
-                ),
-            });
-        };
-        **number = value;
-    }
-    Ok(method)
 }
 
 fn secondary(

@@ -72,6 +72,8 @@ pub(super) fn drive(
                 time,
                 min_singular_ratio,
                 limits_hit,
+                no_inverse: None,
+                steps_without_inverse: 0,
             });
         }
         steps += 1;

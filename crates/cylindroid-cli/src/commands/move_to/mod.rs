@@ -1,5 +1,6 @@
 //! `move`: drives a frame to a target and says whether and how it got there.
 
+mod inverse;
 mod job;
 mod joints;
 mod report;
@@ -9,7 +10,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Servo;
-use cylindroid::control::{JointMove, Outcome, Sample, Status, Target, drive, find_posture};
+use cylindroid::control::{JointMove, Outcome, Sample, Stall, Status, Target, drive, find_posture};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::job::{Goal, Job};
@@ -111,7 +112,9 @@ fn other_posture(
     outcome: &Outcome,
 ) -> cylindroid::Result<Option<Vec<f64>>> {
     let stalled = outcome.stall.is_some() && outcome.last.status == Status::Stalled;
-    if !stalled || outcome.stall.as_ref().is_some_and(|s| s.name() == "out-of-reach") {
+    // Neither a proof that there is none, nor an inverse that the user asked for, is gone round.
+    let final_word = matches!(outcome.stall, Some(Stall::OutOfReach { .. } | Stall::NoInverse(_)));
+    if !stalled || final_word {
         return Ok(None);
     }
     let found = find_posture(servo, &job.start, job.target_pose, SEARCH_RUNS)?;

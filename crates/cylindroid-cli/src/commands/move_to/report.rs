@@ -5,10 +5,11 @@ use std::io::Write;
 use cylindroid::control::Outcome;
 use serde::Serialize;
 
-use super::job::{COMPONENTS, Goal, Job};
-use super::sentences;
+use super::job::{Goal, Job};
+use super::{inverse, sentences};
 use crate::commands::Style;
 use crate::output::{self, PoseJson};
+use crate::values::COMPONENTS;
 
 /// What came of a job.
 #[derive(Debug)]
@@ -55,7 +56,8 @@ struct MoveJson<'a> {
     tool: [f64; 3],
     joint_names: Vec<&'a str>,
     reached: bool,
-    /// "reached", "out-of-reach", "limits", "singular", "too-few-joints", "slow", "time-limit".
+    /// "reached", "out-of-reach", "limits", "singular", "too-few-joints", "no-inverse",
+    /// "given-up", "slow", "time-limit".
     reason: &'static str,
     explanation: String,
     /// The last configuration.
@@ -79,6 +81,15 @@ struct MoveJson<'a> {
     task: Vec<&'static str>,
     task_axes: &'static str,
     inverse: &'static str,
+    /// Pitch of the form of a hyperbolic inverse [m/rad]; null for the limit at infinity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    h: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fallback: Option<&'static str>,
+    /// Steps in which that inverse did not exist, and why in the first of them.
+    steps_without_inverse: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    no_inverse: Option<String>,
     secondary: Vec<SecondaryJson>,
     start: &'a [f64],
     /// Duration of the time law [s].
@@ -152,7 +163,11 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         target: job.target_pose.into(),
         task: names.map(|(name, _)| *name).collect(),
         task_axes: options.task.axes.name(),
-        inverse: options.method.name(),
+        inverse: inverse::name(&options.projection, &options.method),
+        h: inverse::pitch(&options.projection),
+        fallback: options.fallback.as_ref().map(|f| inverse::name(f, &options.method)),
+        steps_without_inverse: outcome.steps_without_inverse,
+        no_inverse: outcome.no_inverse.map(|reason| reason.to_string()),
         secondary: options
             .secondary
             .iter()
@@ -211,7 +226,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
                 "reason",
                 match way {
                     Way::Round { stalled } if outcome.reached => sentences::round(job, stalled),
-                    _ if outcome.reached => String::new(),
+                    _ if outcome.reached => sentences::without_inverse(outcome).trim().to_owned(),
                     _ => sentences::explanation(job, outcome, way.offered()),
                 },
             ),
@@ -229,13 +244,32 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
                     output::number(job.options.length)
                 ),
             ),
-            ("inverse", job.options.method.name().to_owned()),
+            ("inverse", inverse(job, outcome)),
             ("secondary", secondary(job)),
             ("limits met", limits_met(job, outcome)),
             ("final q [rad or m]", output::entries(&outcome.q)),
         ],
     )?;
     Ok(())
+}
+
+/// The inverse, its pitch and its fallback.
+fn inverse(job: &Job, outcome: &Outcome) -> String {
+    let options = &job.options;
+    let mut text = inverse::name(&options.projection, &options.method).to_owned();
+    if let Some(h) = inverse::pitch(&options.projection) {
+        let h = if h.is_infinite() { "infinity".to_owned() } else { output::number(h) };
+        text.push_str(&format!(" (h = {h} m/rad)"));
+    }
+    if let Some(fallback) = &options.fallback {
+        text.push_str(&format!(
+            ", else {} ({} of {} steps)",
+            inverse::name(fallback, &options.method),
+            outcome.steps_without_inverse,
+            outcome.steps + 1
+        ));
+    }
+    text
 }
 
 fn secondary(job: &Job) -> String {

@@ -3,8 +3,9 @@
 use cylindroid::Reference;
 use cylindroid::control::{Outcome, Stall};
 
-use super::job::{COMPONENTS, Job};
+use super::job::Job;
 use crate::output::number;
+use crate::values::COMPONENTS;
 
 /// The cause as one word: "reached", a [`Stall::name`], or "time-limit".
 pub(super) fn reason(outcome: &Outcome) -> &'static str {
@@ -24,6 +25,8 @@ pub(super) fn round(job: &Job, stalled: &Outcome) -> String {
             format!("at the limit of {}", names.join(", "))
         }
         Some(Stall::Singular { .. }) => "in a singular pose".to_owned(),
+        Some(Stall::NoInverse(_)) => "where the inverse does not exist".to_owned(),
+        Some(Stall::GivenUp { .. }) => "left with what the inverse gives up".to_owned(),
         Some(Stall::Slow | Stall::TooFewJoints { .. } | Stall::OutOfReach { .. }) | None => {
             "for want of progress".to_owned()
         }
@@ -46,7 +49,9 @@ pub(super) fn round(job: &Job, stalled: &Outcome) -> String {
 /// The cause as sentences.
 pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[f64]>) -> String {
     let mut text = match &outcome.stall {
-        _ if outcome.reached => return "The target was reached.".to_owned(),
+        _ if outcome.reached => {
+            return format!("The target was reached.{}", without_inverse(outcome));
+        }
         None => format!(
             "The time limit of {} s ran out before the target was reached; allow more with \
              --time-limit, or move faster (--gain, --speed).",
@@ -74,12 +79,22 @@ pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[
             if *rank == 1 { "" } else { "s" },
             along(job, direction)
         ),
+        Some(Stall::NoInverse(reason)) => format!(
+            "The inverse that was asked for does not exist here: {reason}. Or name what shall take \
+             over there (--fallback truncated).",
+        ),
+        Some(Stall::GivenUp { direction }) => format!(
+            "The remaining error ({}) is what the inverse gives up; the arm itself could lessen \
+             it. Choose another --h, other motions to give up, or another --inverse.",
+            along(job, direction)
+        ),
         Some(Stall::Slow) => "The error fell by less than 0.1 % in the last second, and neither \
              limits nor a singular pose stop it: the inverse is damped too much or a rate limit is \
              too tight. Try less damping (--damping), another --inverse, or a higher --gain or \
              --speed."
             .to_owned(),
     };
+    text.push_str(&without_inverse(outcome));
     if let Some(q) = other_posture {
         text.push_str(&format!(
             " Another posture does reach it: --q \"{0}\" to start there, or --joint-to \"{0}\" to \
@@ -88,6 +103,19 @@ pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[
         ));
     }
     text
+}
+
+/// A sentence about the steps that the fallback took, if any.
+pub(super) fn without_inverse(outcome: &Outcome) -> String {
+    match &outcome.no_inverse {
+        Some(reason) if outcome.steps_without_inverse > 0 && outcome.steps > 0 => format!(
+            " {} of {} steps were taken by the fallback, since the inverse that was asked for did \
+             not exist there: {reason}.",
+            outcome.steps_without_inverse,
+            outcome.steps + 1
+        ),
+        _ => String::new(),
+    }
 }
 
 /// A configuration that can be pasted back as an argument: six digits, all of them where six would

@@ -1,21 +1,23 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
 mod limits;
+mod projection;
 mod secondary;
 mod stall;
 mod steps;
 mod ways;
 
 pub(crate) use cylindroid::control::{
-    Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Outcome, Projector, Secondary,
-    Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
+    Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Motion1, Outcome, Projector,
+    RateBounds, Secondary, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
 };
 pub(crate) use cylindroid::inverse::Method;
-pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits};
+pub(crate) use cylindroid::linalg::{RowSpace, Svd};
+pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 pub(crate) use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3};
-pub(crate) use cylindroid::{Error, Mechanism, Reference, Servo, ServoOptions, catalogue};
+pub(crate) use cylindroid::{Error, Matrix, Mechanism, Reference, Servo, ServoOptions, catalogue};
 
-pub(crate) use crate::support::{Random, planar};
+pub(crate) use crate::support::{Random, odd_arm, planar, unlimited};
 
 pub(crate) fn run(servo: &mut Servo, q: &[f64], target: Pose) -> Outcome {
     drive(servo, q, 30.0, |_| (Target::from(target), true), |_| {}).unwrap()

@@ -82,7 +82,7 @@ fn secondary_tasks_do_what_they_say() {
     assert!(distance(&q, &[0.0; 7]) < distance(&start, &[0.0; 7]) - 0.1);
     let w = |q: &[f64]| {
         let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
-        cylindroid::linalg::Svd::of(&j).values().product::<f64>()
+        Svd::of(&j).values().product::<f64>()
     };
     let q = after(Secondary::Manipulability { gain: 100.0 });
     assert!(w(&q) > 1.01 * w(&start), "{} from {}", w(&q), w(&start));
@@ -123,5 +123,126 @@ fn secondary_manipulability_gradient_by_finite_differences() {
     for k in 0..4 {
         let expected = gradient[k] - along * row[k];
         assert!((servo.rates()[k] - expected).abs() < 1e-9, "{} {expected}", servo.rates()[k]);
+    }
+}
+
+/// A ball joint and a free body go to a posture the short way, from any attitude: in the null
+/// space of a task that they do not disturb.
+#[test]
+fn secondary_posture_of_spherical_and_free_joints() {
+    let mut random = Random(42);
+    for kind in [JointKind::Spherical, JointKind::Free] {
+        let mut b = Mechanism::builder("body");
+        b.joint(JointSpec::new("body", kind, "ground", "a"));
+        // Position alone of the joint's own origin: a ball joint is free to turn.
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::ZERO),
+            ..JointSpec::new("slide", JointKind::Prismatic, "a", "tip")
+        });
+        let robot = b.build().unwrap();
+        let n = robot.n();
+        for _ in 0..20 {
+            let (mut q, mut posture) = (vec![0.0; n], vec![0.0; n]);
+            for x in [&mut q, &mut posture] {
+                x[n - 4..n - 1].copy_from_slice(&random.rotation().log().to_array());
+            }
+            if kind == JointKind::Free {
+                q[..3].copy_from_slice(&random.vec3(1.0).to_array());
+                let here = robot.state(&q).unwrap().pose(robot.tool()).translation;
+                posture[..3].copy_from_slice(&here.to_array());
+            }
+            let pose = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool());
+            let target = pose(&q);
+            let mut servo = servo(&robot, |o| {
+                o.task = Task::POSITION;
+                o.dt = 0.01;
+                o.secondary = vec![Secondary::Posture { q: posture.clone(), gain: 2.0 }];
+            });
+            let mut left = pose(&q).rotation.angle_to(pose(&posture).rotation);
+            for _ in 0..1000 {
+                let step = servo.step(&q, target).unwrap();
+                assert!(step.position_error < 1e-9, "{step:?}");
+                servo.advance(&mut q);
+                let now = pose(&q).rotation.angle_to(pose(&posture).rotation);
+                assert!(now <= left + 1e-12, "turns away: {left} rad, then {now}");
+                left = now;
+            }
+            assert!(left < 1e-6, "{kind:?}: {left} rad left");
+        }
+    }
+}
+
+/// Several rows, scaled and weighted: the wish is the gradient of w = s_1 ... s_m of the scaled
+/// Jacobian, in central differences, projected on its null space.
+#[test]
+fn secondary_manipulability_gradient_of_several_rows() {
+    let robot = catalogue::load("iiwa14").unwrap();
+    let mut random = Random(43);
+    let weights: [f64; 7] = [1.0, 4.0, 0.5, 2.0, 1.0, 3.0, 0.25];
+    for (round, task) in [Task::POSITION, Task::POSE, Task::POINTING].into_iter().enumerate() {
+        for weighted in [false, true] {
+            let weights = if weighted { weights.to_vec() } else { Vec::new() };
+            let scale = |c: usize| weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt());
+            let q: Vec<f64> = random.vector(7).iter().map(|x| 0.4 + 0.5 * x).collect();
+            let scaled = |q: &[f64]| {
+                let j = robot.state(q).unwrap().jacobian(robot.tool(), task.axes);
+                let rows: Vec<usize> = (0..6).filter(|&i| task.components[i]).collect();
+                Matrix::from_fn(rows.len(), 7, |i, c| {
+                    let length = if rows[i] < 3 { robot.reach() } else { 1.0 };
+                    j[(rows[i], c)] / length * scale(c)
+                })
+            };
+            let w = |q: &[f64]| Svd::of(&scaled(q)).values().product::<f64>();
+            let h = 1e-5;
+            let mut expected: Vec<f64> = (0..7)
+                .map(|k| {
+                    let (mut a, mut b) = (q.clone(), q.clone());
+                    a[k] += h;
+                    b[k] -= h;
+                    (w(&a) - w(&b)) / (2.0 * h) / scale(k)
+                })
+                .collect();
+            RowSpace::exact(&Svd::of(&scaled(&q))).project_out(&mut expected);
+            let mut servo = servo(&robot, |o| {
+                o.task = task;
+                o.joint_weights = weights.clone();
+                o.secondary = vec![Secondary::Manipulability { gain: 1.0 }];
+            });
+            servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
+            let size = servo.rates().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
+            assert!(size > 1e-6, "{round}: nothing to compare in {size:e}");
+            for (c, expected) in expected.iter().enumerate() {
+                let (rate, expected) = (servo.rates()[c], expected * scale(c));
+                assert!((rate - expected).abs() < 1e-9, "{round}, {c}: {rate} {expected}");
+            }
+        }
+    }
+}
+
+/// A joint that the task does not need is pushed away from a limit nearer than the margin: fully at
+/// the limit, half as fast half way into it, not at all beyond.
+#[test]
+fn secondary_limit_avoidance_pushes_by_the_room_that_is_left() {
+    let mut b = Mechanism::builder("gantry");
+    b.joint(JointSpec::new("slide", JointKind::Prismatic, "ground", "cart"));
+    b.joint(JointSpec {
+        limits: Limits { lower: -1.0, upper: 3.0, ..Limits::NONE },
+        ..JointSpec::new("turn", JointKind::Revolute, "cart", "hook")
+    });
+    b.joint(JointSpec::new("swivel", JointKind::Continuous, "hook", "tip"));
+    let robot = b.build().unwrap();
+    let mut servo = servo(&robot, |o| {
+        o.task = Task::POSITION;
+        // 0.8 rad of the range of 4 rad
+        o.secondary = vec![Secondary::LimitAvoidance { gain: 0.5, margin: 0.2 }];
+    });
+    for (q, rate) in
+        [(-1.0, 0.5), (-0.6, 0.25), (-0.2, 0.0), (1.0, 0.0), (2.2, 0.0), (2.8, -0.375), (3.0, -0.5)]
+    {
+        let q = [0.3, q, 2.0];
+        servo.reset();
+        servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
+        assert!((servo.rates()[1] - rate).abs() < 1e-12, "{q:?}: {:?}", servo.rates());
+        assert!(servo.rates()[0].abs() < 1e-12 && servo.rates()[2].abs() < 1e-12);
     }
 }

@@ -71,3 +71,144 @@ fn stall_of_a_five_joint_arm_is_not_called_singular() {
     };
     assert_eq!((rank, task), (4, 5));
 }
+
+/// A weak inverse is slow, not singular: the home of the arm is a regular posture.
+#[test]
+fn stall_of_a_weak_inverse_is_slow() {
+    let robot = catalogue::load("panda").unwrap();
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let target = Pose { translation: start.translation + Vec3::new(0.05, 0.1, -0.1), ..start };
+    for method in [Method::Damped { damping: 200.0 }, Method::SelectivelyDamped { max_rate: 1e-4 }]
+    {
+        let mut servo = servo(&robot, |o| o.method = method);
+        let outcome = run(&mut servo, robot.home(), target);
+        assert_eq!(outcome.stall, Some(Stall::Slow), "{}", method.name());
+    }
+}
+
+/// Only what stands in the way is named: not a joint that stands at its limit and would leave it,
+/// nor one whose two limits are equal.
+#[test]
+fn stall_names_only_the_joints_in_the_way() {
+    let arm = |limits: [(f64, f64); 3]| {
+        let mut b = Mechanism::builder("3r");
+        for (i, (lower, upper)) in limits.into_iter().enumerate() {
+            b.joint(JointSpec {
+                parent_from_joint: Pose::from_translation(Vec3::X * f64::from(u8::from(i > 0))),
+                limits: Limits { lower, upper, velocity: 2.0, ..Limits::NONE },
+                ..JointSpec::new(
+                    &format!("q{i}"),
+                    JointKind::Revolute,
+                    &format!("l{i}"),
+                    &format!("l{}", i + 1),
+                )
+            });
+        }
+        b.frame("tip", "l3", Pose::from_translation(Vec3::X)).tool("tip");
+        b.build().unwrap()
+    };
+    let tip = |q: [f64; 3]| {
+        let mut p = Vec3::ZERO;
+        let mut angle = 0.0;
+        for q in q {
+            angle += q;
+            p += Vec3::new(angle.cos(), angle.sin(), 0.0);
+        }
+        Pose::from_translation(p)
+    };
+    // The first two joints cannot bend further; the third, locked, stands at both its limits.
+    let robot = arm([(-0.5, 0.3), (-0.5, 0.2), (0.4, 0.4)]);
+    let mut servo = servo(&robot, |o| o.task = Task::POSITION);
+    let outcome = run_checked(&robot, &mut servo, &[0.1, 0.0, 0.4], tip([0.8, 0.6, 0.4]));
+    assert_eq!(outcome.stall, Some(Stall::Limits { coordinates: vec![0, 1] }));
+    assert!(outcome.limits_hit.iter().all(|(c, _)| *c != 2), "{:?}", outcome.limits_hit);
+}
+
+/// A locked joint is as none: what only it could do is not called slow, and no search frees it.
+#[test]
+fn stall_with_a_locked_joint() {
+    let locks: [fn(&mut Limits); 3] =
+        [|l| (l.lower, l.upper) = (0.9, 0.9), |l| l.velocity = 0.0, |l| l.acceleration = 0.0];
+    for lock in locks {
+        let mut b = Mechanism::builder("2r");
+        for i in 0..2 {
+            let mut limits = Limits { lower: -3.0, upper: 3.0, velocity: 2.0, ..Limits::NONE };
+            if i == 1 {
+                lock(&mut limits);
+            }
+            b.joint(JointSpec {
+                parent_from_joint: Pose::from_translation(Vec3::X * f64::from(i)),
+                limits,
+                ..JointSpec::new(
+                    &format!("q{i}"),
+                    JointKind::Revolute,
+                    &format!("l{i}"),
+                    &format!("l{}", i + 1),
+                )
+            });
+        }
+        b.frame("tip", "l2", Pose::from_translation(Vec3::X)).tool("tip");
+        let robot = b.build().unwrap();
+        let mut servo = servo(&robot, |o| o.task = Task::POSITION);
+        let q = [0.2, 0.9];
+        let pose = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool());
+        // Round the first joint it goes.
+        let outcome = run_checked(&robot, &mut servo, &q, pose(&[-0.8, 0.9]));
+        assert!(outcome.reached, "{outcome:?}");
+        // Nearer to it, it does not.
+        let nearer = pose(&[0.2, 2.0]);
+        let outcome = run_checked(&robot, &mut servo, &q, nearer);
+        let Some(Stall::TooFewJoints { rank, task, .. }) = outcome.stall else {
+            panic!("{:?}", outcome.stall)
+        };
+        assert_eq!((rank, task, outcome.q[1]), (1, 3, 0.9));
+        assert_eq!(find_posture(&servo, &q, nearer, 20).unwrap(), None);
+        assert_eq!(find_posture(&servo, &q, pose(&[-0.8, 0.9]), 20).unwrap().unwrap().q[1], 0.9);
+        assert!(matches!(find_posture(&servo, &[0.2], nearer, 20), Err(Error::Dimension { .. })));
+    }
+}
+
+/// A slider that follows an endless joint in no measure stays at its offset: the chain has a length.
+#[test]
+fn stall_out_of_reach_with_a_follower_that_rests() {
+    let mut b = Mechanism::builder("crane");
+    b.joint(JointSpec::new("turn", JointKind::Continuous, "ground", "boom"));
+    b.joint(JointSpec {
+        axis: Vec3::X,
+        mimic: Some(Mimic { joint: "turn".into(), multiplier: 0.0, offset: 0.5 }),
+        ..JointSpec::new("slide", JointKind::Prismatic, "boom", "hook")
+    });
+    b.frame("tip", "hook", Pose::from_translation(Vec3::X)).tool("tip");
+    let robot = b.build().unwrap();
+    let mut servo = servo(&robot, |o| o.task = Task::POSITION);
+    let outcome = run(&mut servo, &[0.3], Pose::from_translation(Vec3::X * 2.0));
+    assert_eq!(outcome.stall, Some(Stall::OutOfReach { distance: 2.0, length: 1.5 }));
+}
+
+/// What a locked joint takes away for good is no singular pose: with its elbow locked straight the
+/// arm turns its hand about one axis with two joints, in every posture.
+#[test]
+fn stall_of_an_arm_locked_straight_is_not_called_singular() {
+    let mut b = Mechanism::builder("straight");
+    for (i, (lower, upper)) in [(-3.0, 3.0), (0.0, 0.0), (-3.0, 3.0)].into_iter().enumerate() {
+        b.joint(JointSpec {
+            // The middle joint bends; the others turn about the same line while it is straight.
+            axis: if i == 1 { Vec3::X } else { Vec3::Z },
+            limits: Limits { lower, upper, ..Limits::NONE },
+            ..JointSpec::new(
+                &format!("q{i}"),
+                JointKind::Revolute,
+                &format!("l{i}"),
+                &format!("l{}", i + 1),
+            )
+        });
+    }
+    let robot = b.build().unwrap();
+    let mut servo = servo(&robot, |o| o.task = Task::ORIENTATION);
+    let target = Pose::from_rotation(Rotation::exp(Vec3::X * 0.5));
+    let outcome = run(&mut servo, &[0.2, 0.0, 0.1], target);
+    let Some(Stall::TooFewJoints { rank, task, .. }) = outcome.stall else {
+        panic!("{:?}", outcome.stall)
+    };
+    assert_eq!((rank, task), (1, 3));
+}

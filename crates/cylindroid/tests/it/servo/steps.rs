@@ -162,3 +162,110 @@ fn status_is_reached_at_the_target() {
     assert_eq!(step.status, Status::Reached);
     assert!(servo.rates().iter().all(|r| r.abs() < 1e-12));
 }
+
+/// A duration that is NaN ends the motion, it does not make it endless.
+#[test]
+fn a_duration_of_nan_ends() {
+    let robot = planar(2);
+    let mut servo = servo(&robot, |o| o.task = Task::POSITION);
+    let target = Target::from(Pose::from_translation(Vec3::Y));
+    let outcome = drive(&mut servo, &[0.1, 0.2], f64::NAN, |_| (target, false), |_| {}).unwrap();
+    assert_eq!((outcome.steps, outcome.reached, outcome.stall), (0, false, None));
+}
+
+/// What overflows or is not of this robot is an error, not full speed.
+#[test]
+fn overflow_and_foreign_options_are_refused() {
+    let robot = catalogue::load("panda").unwrap();
+    let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let mut servo = servo(&robot, |_| {});
+    servo.step(robot.home(), pose * Pose::from_translation(Vec3::X * 0.01)).unwrap();
+    let rates = servo.rates().to_vec();
+    let far = Pose { translation: Vec3::X * 1e308, ..pose };
+    assert!(matches!(servo.step(robot.home(), far), Err(Error::NotFinite { .. })));
+    let mut overtaken = Target::from(pose);
+    overtaken.feed_forward.linear = Vec3::new(f64::MAX, f64::MAX, f64::MAX);
+    assert!(matches!(servo.step(robot.home(), overtaken), Err(Error::NotFinite { .. })));
+    assert_eq!(servo.rates(), rates);
+
+    let mut options = ServoOptions::new(&robot);
+    options.end_effector.frame_from_tool.translation.y = f64::NAN;
+    assert!(matches!(Servo::new(&robot, options), Err(Error::NotFinite { .. })));
+    // A frame beyond those of the robot, and one whose number the robot has too.
+    for name in ["3r", "youbot"] {
+        let other = catalogue::load(name).unwrap();
+        for (of, foreign) in [(&robot, other.tool()), (&other, robot.tool())] {
+            let mut options = ServoOptions::new(of);
+            options.end_effector = foreign.into();
+            let error = Servo::new(of, options).unwrap_err().to_string();
+            assert!(error.contains("another mechanism") && error.contains(of.name()), "{error}");
+        }
+    }
+    // The same robot, loaded twice, has the same frames.
+    let again = catalogue::load("panda").unwrap();
+    assert!(again.check_frame(robot.tool()).is_ok());
+
+    let bounds = RateBounds::next(
+        &robot.coordinates()[0].limits,
+        Motion1 { position: 0.0, rate: 0.0 },
+        1e-3,
+    );
+    assert!(bounds.clamp(f64::NAN).is_nan());
+    assert_eq!(bounds.clamp(f64::INFINITY), bounds.upper);
+}
+
+/// Joints that can hardly brake slow down in time: they arrive, at rest, without swinging past.
+#[test]
+fn weak_joints_arrive() {
+    let robot = planar(1);
+    let target = robot.state(&[1.0]).unwrap().pose(robot.tool());
+    for acceleration in [10.0, 1.0, 0.5, 1e-3] {
+        for method in [Method::default(), Method::ALL[1], Method::ALL[4]] {
+            let mut servo = servo(&robot, |o| {
+                o.acceleration = acceleration;
+                o.method = method;
+            });
+            let mut most = 0.0_f64;
+            let outcome = drive(
+                &mut servo,
+                &[0.0],
+                300.0,
+                |_| (target.into(), true),
+                |sample| most = most.max(sample.q[0]),
+            )
+            .unwrap();
+            let name = method.name();
+            assert!(outcome.reached, "{acceleration}, {name}: {outcome:?}");
+            assert!(servo.rates()[0].abs() <= 5e-6 * (1.0 + 1e-9), "{:?}", servo.rates());
+            assert!(most <= 1.0 + 1e-6, "{acceleration}, {name}: swings to {most}");
+        }
+    }
+    // Seven joints, each weak: the way is not straight in joint space.
+    let robot = catalogue::load("panda").unwrap();
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let target = Pose { translation: start.translation + Vec3::new(-0.1, 0.2, -0.1), ..start };
+    for acceleration in [10.0, 1.0, 0.5] {
+        let mut servo = servo(&robot, |o| o.acceleration = acceleration);
+        let outcome = run_checked(&robot, &mut servo, robot.home(), target);
+        assert!(outcome.reached, "{acceleration}: {outcome:?}");
+    }
+}
+
+/// Passing through the target at speed is not reaching it.
+#[test]
+fn reached_means_at_rest() {
+    let robot = planar(1);
+    let target = robot.state(&[1.0]).unwrap().pose(robot.tool());
+    let mut servo = servo(&robot, |o| o.acceleration = 1.0);
+    // Up to speed towards a target farther on, which is then exchanged for the place passed.
+    let far = robot.state(&[3.0]).unwrap().pose(robot.tool());
+    let mut q = vec![0.0];
+    while q[0] < 1.0 {
+        servo.step(&q, far).unwrap();
+        servo.advance(&mut q);
+    }
+    assert!(servo.rates()[0] > 0.5);
+    assert_eq!(servo.step(&[1.0], target).unwrap().status, Status::Moving);
+    let outcome = drive(&mut servo, &q, 30.0, |_| (target.into(), true), |_| {}).unwrap();
+    assert!(outcome.reached && (outcome.q[0] - 1.0).abs() <= 1e-6, "{outcome:?}");
+}

@@ -37,6 +37,7 @@ fn random_starts_to_random_targets() {
                     Some(Stall::Limits { .. }) => "joint limits",
                     Some(Stall::Singular { .. }) => "singular",
                     Some(Stall::TooFewJoints { .. }) => "too few joints",
+                    Some(Stall::NoInverse(_) | Stall::GivenUp { .. }) => "no inverse",
                     Some(Stall::Slow) => "slow",
                 };
                 *causes.entry(cause).or_insert(0) += 1;
@@ -78,8 +79,8 @@ fn a_detour_reaches_what_the_servo_does_not() {
 /// The move of a detour keeps every limit and ends at the posture.
 #[test]
 fn joint_moves_keep_the_limits() {
-    for name in catalogue::names() {
-        let robot = catalogue::load(name).unwrap();
+    for robot in crate::support::robots() {
+        let name = robot.name();
         let mut random = Random(71);
         let (from, to) = (random.q(&robot), random.q(&robot));
         let default = Bounds { velocity: 1.0, acceleration: 40.0, jerk: f64::INFINITY };

@@ -193,7 +193,7 @@ fn branch_out(
     let origin = joint.origin.unwrap_or(world_from_parent.translation);
     let world_from_joint = Pose::from_translation(origin);
     world.place(child, world_from_joint);
-    world.builder.joint(JointSpec {
+    world.joint(JointSpec {
         name: joint.name.to_owned(),
         kind: joint.kind,
         parent: parent.to_owned(),

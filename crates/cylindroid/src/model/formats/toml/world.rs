@@ -7,7 +7,7 @@ use super::value::Table;
 use super::{arm, contact, robot, tree};
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
-use crate::model::formats::place::Source;
+use crate::model::formats::place::{Notes, Source};
 use crate::model::{Dimension, JointKind, JointSpec, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
@@ -21,6 +21,7 @@ pub(super) struct World<'t> {
     index: BTreeMap<String, usize>,
     /// Where names stand in the file, for errors of the builder.
     places: Vec<(String, Range<usize>)>,
+    notes: Notes,
 }
 
 impl<'t> World<'t> {
@@ -28,7 +29,7 @@ impl<'t> World<'t> {
         let mut builder = Mechanism::builder(name);
         builder.dimension(dimension);
         let (links, index, places) = (Vec::new(), BTreeMap::new(), Vec::new());
-        Self { source, builder, dimension, links, index, places }
+        Self { source, builder, dimension, links, index, places, notes: Notes::default() }
     }
 
     /// Says where a link stands; it counts as connected with the root.
@@ -63,8 +64,22 @@ impl<'t> World<'t> {
                 self.place(&joint.parent, parent);
             }
             self.place(&joint.child, parent * joint.parent_from_joint);
-            self.builder.joint(joint);
+            self.joint(joint);
         }
+    }
+
+    /// Writes a joint; position limits that its kind cannot keep are dropped with a note.
+    pub(super) fn joint(&mut self, mut joint: JointSpec) {
+        let l = &mut joint.limits;
+        let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
+        if bounded && !joint.kind.takes_position_limits() {
+            (l.lower, l.upper) = (f64::NEG_INFINITY, f64::INFINITY);
+            let at = self.places.iter().find(|p| p.0 == joint.name).map_or(0, |p| p.1.start);
+            let why = "dropped: its rates are not the derivative of q, nothing could keep them";
+            let what = format!("position limits of {} joints", joint.kind.name());
+            self.notes.add(at, what, why, &joint.name);
+        }
+        self.builder.joint(joint);
     }
 
     /// A link that hangs on nothing: free in space, or in the plane.
@@ -116,7 +131,8 @@ impl<'t> World<'t> {
     }
 
     /// The mechanism; errors of the builder get their place in the file.
-    pub(super) fn build(self) -> Result<Mechanism> {
+    pub(super) fn build(mut self) -> Result<Mechanism> {
+        std::mem::take(&mut self.notes).write(&[self.source], self.builder.report());
         self.builder.build().map_err(|error| {
             let Error::Model { culprit, message, .. } = error else { return error };
             let robot = culprit.split('/').next().unwrap_or("");

@@ -1,0 +1,210 @@
+//! From `--inverse` and its numbers to the options of the servo.
+
+use cylindroid::control::Projection;
+use cylindroid::inverse::HyperbolicDamping;
+use cylindroid::model::Mechanism;
+use cylindroid::screws::{ScrewOptions, ScrewSystem};
+use cylindroid::{Error, Method, Reference, Result, ServoOptions, Twist};
+
+use crate::args::InverseArgs;
+use crate::output::number;
+
+/// The inverses that choose which part of a motion is taken on.
+const PROJECTIONS: [&str; 4] = ["hyperbolic", "hyperbolic-damped", "hyperbolic-gram", "oblique"];
+/// The one that chooses nothing, as a fallback.
+const PLAIN: &str = "truncated";
+
+/// Sets method, projection and fallback.
+pub(super) fn apply(
+    args: &InverseArgs,
+    start: &[f64],
+    robot: &Mechanism,
+    options: &mut ServoOptions,
+) -> Result<()> {
+    let chooses = PROJECTIONS.contains(&args.inverse.as_str());
+    let method = if chooses { Method::default() } else { named(&args.inverse)? };
+    options.method = with_numbers(args, method, &args.inverse)?;
+    let pitch = |name: &str| match args.h {
+        Some(h) => Ok(h),
+        None => Err(missing_pitch(name, start, robot, options)),
+    };
+    let wanted = match chooses {
+        true => projection(args, &args.inverse, pitch)?,
+        false => Projection::Orthogonal,
+    };
+    let fallback = match args.fallback.as_deref() {
+        None => None,
+        Some(_) if !chooses => {
+            return Err(Error::InvalidOption {
+                option: "--fallback",
+                value: args.fallback.clone().unwrap_or_default(),
+                reason: format!(
+                    "the inverse '{}' always exists; a fallback is for {}",
+                    args.inverse,
+                    PROJECTIONS.join(", ")
+                ),
+            });
+        }
+        Some(PLAIN) => Some(Projection::Orthogonal),
+        Some(name) if PROJECTIONS.contains(&name) => Some(projection(args, name, pitch)?),
+        Some(name) => {
+            return Err(Error::unknown("fallback", name, PROJECTIONS.iter().chain(&[PLAIN])));
+        }
+    };
+    (options.projection, options.fallback) = (wanted, fallback);
+    unused(args)
+}
+
+/// The name of the inverse that the options mean, as it was asked for.
+pub(super) fn name(projection: &Projection, method: &Method) -> &'static str {
+    match projection {
+        Projection::Orthogonal => method.name(),
+        Projection::Hyperbolic { .. } => "hyperbolic",
+        Projection::DampedHyperbolic { damping: HyperbolicDamping::Gram { .. }, .. } => {
+            "hyperbolic-gram"
+        }
+        Projection::DampedHyperbolic { .. } => "hyperbolic-damped",
+        Projection::Oblique { .. } => "oblique",
+    }
+}
+
+/// The pitch of the form, where there is one.
+pub(super) fn pitch(projection: &Projection) -> Option<f64> {
+    match projection {
+        Projection::Hyperbolic { h } | Projection::DampedHyperbolic { h, .. } => Some(*h),
+        Projection::Orthogonal | Projection::Oblique { .. } => None,
+    }
+}
+
+fn named(name: &str) -> Result<Method> {
+    Method::named(name).map_err(|_| {
+        let all = Method::ALL.iter().map(Method::name).chain(PROJECTIONS);
+        Error::unknown("inverse", name, all)
+    })
+}
+
+fn projection(
+    args: &InverseArgs,
+    name: &str,
+    pitch: impl Fn(&str) -> Result<f64>,
+) -> Result<Projection> {
+    let needed = |option: &'static str, value: Option<f64>| {
+        value.ok_or_else(|| Error::InvalidOption {
+            option,
+            value: "missing".to_owned(),
+            reason: format!("the inverse '{name}' needs this number, in m/rad: try 0.01"),
+        })
+    };
+    Ok(match name {
+        "hyperbolic" => Projection::Hyperbolic { h: pitch(name)? },
+        "hyperbolic-damped" => Projection::DampedHyperbolic {
+            h: pitch(name)?,
+            damping: HyperbolicDamping::Invariant { mu: needed("--mu", args.mu)? },
+        },
+        "hyperbolic-gram" => Projection::DampedHyperbolic {
+            h: pitch(name)?,
+            damping: HyperbolicDamping::Gram { lambda: needed("--lambda", args.lambda)? },
+        },
+        _ => Projection::Oblique {
+            complement: args.give_up.iter().map(|m| Twist::from_array(m.0)).collect(),
+            reference: Reference::Local,
+        },
+    })
+}
+
+/// `--h` has no default, since it is a real choice; but there is advice.
+fn missing_pitch(name: &str, start: &[f64], robot: &Mechanism, options: &ServoOptions) -> Error {
+    let advice = || -> Result<String> {
+        let j = robot.state(start)?.jacobian(options.end_effector, Reference::World);
+        let system = ScrewSystem::of_columns(&j, &ScrewOptions::with_length(options.length))?;
+        let choice = system.choose_pitch();
+        Ok(match choice.pitch {
+            Some(h) => format!(
+                "at the start --h {} keeps the projector smallest ({})",
+                if h.is_infinite() { "inf".to_owned() } else { number(h) },
+                number(choice.norm)
+            ),
+            None => "at the start there is no such inverse for any h".to_owned(),
+        })
+    };
+    Error::InvalidOption {
+        option: "--h",
+        value: "missing".to_owned(),
+        reason: format!(
+            "the inverse '{name}' needs a pitch in m/rad, of the order of the arm's length; {}",
+            advice().unwrap_or_default()
+        ),
+    }
+}
+
+/// Refuses numbers of inverses that were not asked for.
+fn unused(args: &InverseArgs) -> Result<()> {
+    let asked = |names: &[&str]| {
+        names.contains(&args.inverse.as_str())
+            || args.fallback.as_deref().is_some_and(|f| names.contains(&f))
+    };
+    let refuse = |option: &'static str, value: String, names: &[&str]| Error::InvalidOption {
+        option,
+        value,
+        reason: format!("only {} has it; choose one with --inverse", names.join(", ")),
+    };
+    let numbers: [(&'static str, Option<f64>, &[&str]); 3] = [
+        ("--h", args.h, &PROJECTIONS[..3]),
+        ("--mu", args.mu, &PROJECTIONS[1..2]),
+        ("--lambda", args.lambda, &PROJECTIONS[2..3]),
+    ];
+    for (option, value, names) in numbers {
+        if let Some(value) = value
+            && !asked(names)
+        {
+            return Err(refuse(option, value.to_string(), names));
+        }
+    }
+    if !args.give_up.is_empty() && !asked(&PROJECTIONS[3..]) {
+        let given = format!("{} motions", args.give_up.len());
+        return Err(refuse("--give-up", given, &PROJECTIONS[3..]));
+    }
+    Ok(())
+}
+
+/// The inverse with the numbers that were given.
+fn with_numbers(args: &InverseArgs, mut method: Method, name: &str) -> Result<Method> {
+    let mut numbers = match &mut method {
+        Method::Truncated { eps } => vec![("--eps", eps)],
+        Method::Damped { damping } => vec![("--damping", damping)],
+        Method::VariableDamping { onset, damping } => {
+            vec![("--onset", onset), ("--damping", damping)]
+        }
+        Method::NumericalFiltering { onset, damping, filter } => {
+            vec![("--onset", onset), ("--damping", damping), ("--filter", filter)]
+        }
+        Method::SelectivelyDamped { max_rate } => vec![("--max-rate", max_rate)],
+        Method::SingularValueFiltering { shape, floor } => {
+            vec![("--shape", shape), ("--floor", floor)]
+        }
+    };
+    let given = [
+        ("--eps", args.eps),
+        ("--damping", args.damping),
+        ("--onset", args.onset),
+        ("--filter", args.filter),
+        ("--max-rate", args.max_rate),
+        ("--shape", args.shape),
+        ("--floor", args.floor),
+    ];
+    for (option, value) in given.into_iter().filter_map(|(o, v)| Some((o, v?))) {
+        let Some((_, number)) = numbers.iter_mut().find(|(o, _)| *o == option) else {
+            let own: Vec<&str> = numbers.iter().map(|(o, _)| *o).collect();
+            return Err(Error::InvalidOption {
+                option,
+                value: value.to_string(),
+                reason: format!(
+                    "the inverse '{name}' has no such number but {}; choose one with --inverse",
+                    own.join(", ")
+                ),
+            });
+        };
+        **number = value;
+    }
+    Ok(method)
+}

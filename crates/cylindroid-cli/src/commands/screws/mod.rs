@@ -1,0 +1,66 @@
+//! `screws`: what the joint twists span and what can be done with it.
+
+mod report;
+mod twists;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::Result;
+use cylindroid::screws::{Involution, Line, Screw, ScrewOptions, ScrewSystem, involution};
+
+use self::twists::Twists;
+use super::Style;
+use crate::args::ScrewsArgs;
+use crate::plot;
+
+/// The twists and what was found.
+#[derive(Debug)]
+struct Found {
+    twists: Twists,
+    system: ScrewSystem,
+    screws: Vec<Option<Screw>>,
+    /// Of the twists that are lines, where at least two are.
+    involution: Option<Involution>,
+}
+
+pub(crate) fn run(
+    args: &ScrewsArgs,
+    style: Style,
+    out: &mut dyn Write,
+) -> anyhow::Result<ExitCode> {
+    if let Some(path) = &args.plot {
+        plot::check(path)?;
+    }
+    for h in &args.h {
+        if h.is_nan() {
+            return Err(cylindroid::Error::NotFinite { what: "--h".into(), value: *h }.into());
+        }
+    }
+    let found = find(args)?;
+    report::write(&found, &args.h, style, out)?;
+    if let Some(path) = &args.plot {
+        plot::screws::draw(&found.twists.title(), &found.twists.matrix(), &found.system, path)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn find(args: &ScrewsArgs) -> Result<Found> {
+    let twists = Twists::read(args)?;
+    let options = ScrewOptions {
+        length: args.length.unwrap_or(twists.length),
+        center: args.center.map(|c| cylindroid::Vec3::from_array(c.0)),
+        noise: args.noise.unwrap_or(ScrewOptions::default().noise),
+    };
+    let system = ScrewSystem::of(&twists.twists, &options)?;
+    let screws: Vec<Option<Screw>> = twists.twists.iter().map(|t| Screw::of(*t)).collect();
+    let lines = lines(&screws, &system);
+    let involution = if lines.len() < 2 { None } else { Some(involution(&lines, &options)?) };
+    Ok(Found { twists, system, screws, involution })
+}
+
+/// The axes of the screws of pitch zero, to the tolerance of the system.
+fn lines(screws: &[Option<Screw>], system: &ScrewSystem) -> Vec<Line> {
+    let is_line = |s: &&Screw| s.pitch.abs() <= system.tolerance() * system.length();
+    screws.iter().flatten().filter(is_line).map(|s| s.axis).collect()
+}

@@ -1,0 +1,479 @@
+//! What `screws` prints: tables and the JSON object.
+
+use std::io::Write;
+
+use cylindroid::Wrench;
+use cylindroid::screws::{Existence, Involution, Screw, ScrewSystem, Transversals};
+use cylindroid::{Twist, Vec3};
+use serde::Serialize;
+
+use super::Found;
+use crate::commands::Style;
+use crate::output::{self, Align, PoseJson, number};
+
+#[derive(Debug, Serialize)]
+struct ScrewsJson<'a> {
+    /// The robot, or the file of twists.
+    model: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    q: Option<&'a [f64]>,
+    /// Of the twists: the joints that move the frame, or numbers from 1.
+    names: &'a [String],
+    /// Linear part first, at the origin of the world (or of the file's frame).
+    twists: Vec<[f64; 6]>,
+    /// Each twist as a screw; null for a twist that is zero.
+    screws: Vec<Option<ScrewJson>>,
+    rank: usize,
+    /// Smallest singular value kept over the largest dropped; null where nothing was dropped.
+    gap: f64,
+    /// At or below this singular values of unit twists are zero.
+    threshold: f64,
+    /// Of the system, of its reciprocal for rank 4 and 5.
+    gibson_hunt: &'static str,
+    meaning: &'static str,
+    principal_pitches: Vec<f64>,
+    principal_screws: Vec<ScrewJson>,
+    normal_form: NormalFormJson,
+    canonical_pose: PoseJson,
+    residual: f64,
+    margins: Vec<MarginJson>,
+    ambiguous: bool,
+    length: f64,
+    center: [f64; 3],
+    /// Screws that span the reciprocal system.
+    reciprocal: Vec<ScrewJson>,
+    /// False where no pitch has a hyperbolic inverse.
+    invertible: bool,
+    choice: ChoiceJson,
+    /// At the pitches of --h.
+    existence: Vec<ExistenceJson>,
+    involution: Option<InvolutionJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct ScrewJson {
+    /// Point of the axis nearest to the origin; null for a translation.
+    point: Option<[f64; 3]>,
+    direction: [f64; 3],
+    /// [m/rad]; null for a translation.
+    pitch: f64,
+    /// [rad/s], of a translation [m/s].
+    amplitude: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct NormalFormJson {
+    /// Of the system that the form describes.
+    order: usize,
+    /// [m/rad]
+    pitches: Vec<f64>,
+    slope: Option<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct MarginJson {
+    quantity: &'static str,
+    value: f64,
+    threshold: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ChoiceJson {
+    /// [m/rad]; null where no finite pitch is proposed.
+    pitch: Option<f64>,
+    /// True if the limit for h to infinity is proposed.
+    at_infinity: bool,
+    norm: f64,
+    /// null where there is no limit.
+    norm_at_infinity: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ExistenceJson {
+    /// [m/rad]; null for infinity.
+    h: f64,
+    exists: bool,
+    margin: f64,
+    threshold: f64,
+    /// Largest factor by which the projector enlarges a twist; null where there is none.
+    norm: f64,
+    reason: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct InvolutionJson {
+    /// How many of the twists are lines.
+    lines: usize,
+    in_involution: bool,
+    independent: bool,
+    null_twist: Option<[f64; 6]>,
+    /// Force first.
+    wrench: Option<[f64; 6]>,
+    transversals: TransversalsJson,
+}
+
+#[derive(Debug, Serialize)]
+struct TransversalsJson {
+    infinitely_many: bool,
+    double: bool,
+    lines: Vec<LineJson>,
+    at_infinity: Vec<[f64; 3]>,
+}
+
+#[derive(Debug, Serialize)]
+struct LineJson {
+    point: [f64; 3],
+    direction: [f64; 3],
+}
+
+impl From<&Screw> for ScrewJson {
+    fn from(s: &Screw) -> Self {
+        Self {
+            point: (!s.is_translation()).then(|| s.axis.point.to_array()),
+            direction: s.axis.direction.to_array(),
+            pitch: s.pitch,
+            amplitude: s.amplitude,
+        }
+    }
+}
+
+pub(super) fn write(
+    found: &Found,
+    pitches: &[f64],
+    style: Style,
+    out: &mut dyn Write,
+) -> anyhow::Result<()> {
+    match style {
+        Style::Json => output::json(out, &describe(found, pitches)),
+        Style::Table => print(out, found, pitches),
+    }
+}
+
+fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
+    let (twists, system) = (&found.twists, &found.system);
+    let (form, choice) = (system.normal_form(), system.choose_pitch());
+    let robot = twists.robot.as_ref();
+    ScrewsJson {
+        model: robot.map_or(&twists.file, |(r, ..)| r.name()),
+        frame: robot.map(|(_, frame, _)| frame.as_str()),
+        q: robot.map(|(.., q)| q.as_slice()),
+        names: &twists.names,
+        twists: twists.twists.iter().map(|t| t.to_array()).collect(),
+        screws: found.screws.iter().map(|s| s.as_ref().map(Into::into)).collect(),
+        rank: system.order(),
+        gap: system.rank().gap,
+        threshold: system.rank().threshold,
+        gibson_hunt: system.class().name(),
+        meaning: system.class().meaning(),
+        principal_pitches: system.principal_pitches(),
+        principal_screws: system.principal_screws().iter().map(Into::into).collect(),
+        normal_form: NormalFormJson {
+            order: form.order,
+            pitches: form.pitches.clone(),
+            slope: form.slope,
+        },
+        canonical_pose: system.canonical_pose().into(),
+        residual: system.residual(),
+        margins: system
+            .margins()
+            .iter()
+            .map(|m| MarginJson { quantity: m.quantity, value: m.value, threshold: m.threshold })
+            .collect(),
+        ambiguous: system.is_ambiguous(),
+        length: system.length(),
+        center: system.center().to_array(),
+        reciprocal: reciprocal_screws(system).iter().map(Into::into).collect(),
+        invertible: choice.pitch.is_some(),
+        choice: ChoiceJson {
+            pitch: choice.pitch.filter(|h| h.is_finite()),
+            at_infinity: choice.pitch == Some(f64::INFINITY),
+            norm: choice.norm,
+            norm_at_infinity: choice.norm_at_infinity,
+        },
+        existence: pitches.iter().map(|&h| existence_json(system, h)).collect(),
+        involution: found.involution.as_ref().map(involution_json),
+    }
+}
+
+fn existence_json(system: &ScrewSystem, h: f64) -> ExistenceJson {
+    let Existence { exists, margin, threshold, reason } = system.existence(h);
+    let norm = system.projector_norm(h);
+    ExistenceJson { h, exists, margin, threshold, norm, reason: reason.map(|r| r.to_string()) }
+}
+
+fn involution_json(i: &Involution) -> InvolutionJson {
+    let t = &i.transversals;
+    InvolutionJson {
+        lines: i.lines,
+        in_involution: i.in_involution,
+        independent: i.independent,
+        null_twist: i.null_twists.first().map(|z| z.to_array()),
+        wrench: i.wrench.map(Wrench::to_array),
+        transversals: TransversalsJson {
+            infinitely_many: t.infinitely_many,
+            double: t.double,
+            lines: t
+                .lines
+                .iter()
+                .map(|l| LineJson { point: l.point.to_array(), direction: l.direction.to_array() })
+                .collect(),
+            at_infinity: t.at_infinity.iter().map(|d| d.to_array()).collect(),
+        },
+    }
+}
+
+/// Principal screws where they span the reciprocal system, else those of a basis.
+fn reciprocal_screws(system: &ScrewSystem) -> Vec<Screw> {
+    let reciprocal = system.reciprocal();
+    let form = reciprocal.normal_form();
+    let generators = form.twists();
+    let twists: Vec<Twist> = if form.order == reciprocal.order() && !generators.is_empty() {
+        generators.into_iter().map(|t| reciprocal.canonical_pose().adjoint(t)).collect()
+    } else {
+        reciprocal.basis()
+    };
+    twists.into_iter().filter_map(Screw::of).collect()
+}
+
+fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<()> {
+    let (twists, system) = (&found.twists, &found.system);
+    let robot = twists.robot.as_ref();
+    let pose = system.canonical_pose();
+    let frame = output::pose_cells(pose);
+    let form = system.normal_form();
+    output::pairs(
+        out,
+        [
+            ("model", robot.map_or(twists.file.as_str(), |(r, ..)| r.name()).to_owned()),
+            ("frame", robot.map_or_else(String::new, |(_, frame, _)| frame.clone())),
+            ("q [rad or m]", robot.map_or_else(String::new, |(.., q)| output::entries(q))),
+            ("order", order(system, twists.twists.len())),
+            ("class", class(system)),
+            ("pitches of the class [m/rad]", output::entries(&form.pitches)),
+            ("slope of the class", form.slope.map_or_else(String::new, number)),
+            ("principal pitches [m/rad]", principal(system)),
+            ("canonical frame", canonical(system, &frame)),
+            ("verdict", verdict(system)),
+            ("hyperbolic inverse", inverse(system)),
+            ("axes in involution", found.involution.as_ref().map_or_else(String::new, involution)),
+        ],
+    )?;
+    writeln!(out)?;
+    writeln!(out, "Twists as screws, seen from {}", seen_from(found))?;
+    let named =
+        twists.names.iter().map(String::as_str).zip(found.screws.iter().map(Option::as_ref));
+    screws(out, "twist", named)?;
+    let principal = system.principal_screws();
+    if !principal.is_empty() {
+        writeln!(out)?;
+        writeln!(out, "Principal screws")?;
+        let names: Vec<String> = (1..=principal.len()).map(|i| i.to_string()).collect();
+        screws(out, "", names.iter().map(String::as_str).zip(principal.iter().map(Some)))?;
+    }
+    let reciprocal = reciprocal_screws(system);
+    if !matches!(reciprocal.len(), 0 | 6) {
+        writeln!(out)?;
+        writeln!(out, "Reciprocal system: forces along these screws do no work")?;
+        let names: Vec<String> = (1..=reciprocal.len()).map(|i| i.to_string()).collect();
+        screws(out, "", names.iter().map(String::as_str).zip(reciprocal.iter().map(Some)))?;
+    }
+    if !pitches.is_empty() {
+        writeln!(out)?;
+        existence(out, system, pitches)?;
+    }
+    Ok(())
+}
+
+fn seen_from(found: &Found) -> &'static str {
+    if found.twists.robot.is_some() { "the world" } else { "the frame of the file" }
+}
+
+fn order(system: &ScrewSystem, count: usize) -> String {
+    let gap = system.rank().gap;
+    let gap = if gap.is_infinite() {
+        "nothing dropped".to_owned()
+    } else {
+        format!("gap {}", number(gap))
+    };
+    let s = if count == 1 { "" } else { "s" };
+    format!("{} of {count} twist{s} ({gap})", system.order())
+}
+
+fn class(system: &ScrewSystem) -> String {
+    let (class, order) = (system.class(), system.order());
+    let of = if matches!(order, 4 | 5) { "reciprocal to " } else { "" };
+    format!("{class}: {of}{}", class.meaning())
+}
+
+fn principal(system: &ScrewSystem) -> String {
+    let pitches = system.principal_pitches();
+    if pitches.is_empty() { "none".to_owned() } else { output::entries(&pitches) }
+}
+
+fn canonical(system: &ScrewSystem, cells: &[String]) -> String {
+    if matches!(system.order(), 0 | 6) {
+        return String::new();
+    }
+    format!(
+        "origin {} m; roll, pitch, yaw {} rad; the form fits to {}",
+        cells[..3].join(", "),
+        cells[3..].join(", "),
+        number(system.residual())
+    )
+}
+
+fn verdict(system: &ScrewSystem) -> String {
+    let scale = format!(
+        "at length {} m and center {} m",
+        number(system.length()),
+        output::entries(&system.center().to_array())
+    );
+    if !system.is_ambiguous() {
+        return format!("clear, {scale}");
+    }
+    let near = system
+        .margins()
+        .iter()
+        .filter(|m| m.value > 0.0)
+        .min_by(|a, b| {
+            let distance = |m: &cylindroid::screws::Margin| (m.value / m.threshold).ln().abs();
+            distance(a).total_cmp(&distance(b))
+        })
+        .map(|m| {
+            format!(": {} is {}, zero up to {}", m.quantity, number(m.value), number(m.threshold))
+        })
+        .unwrap_or_default();
+    format!("ambiguous, {scale}{near}")
+}
+
+fn inverse(system: &ScrewSystem) -> String {
+    let choice = system.choose_pitch();
+    match system.order() {
+        0 => return "exists for every h, and is zero".to_owned(),
+        6 => return "exists for every h, and is the pseudoinverse".to_owned(),
+        _ => {}
+    }
+    let Some(pitch) = choice.pitch else {
+        let reason = system.existence(system.length()).reason;
+        return reason.map_or_else(|| "none found".to_owned(), |r| format!("never: {r}"));
+    };
+    let but = match system.principal_pitches()[..] {
+        [] => "for every finite h".to_owned(),
+        ref pitches => format!("for every h but {} m/rad", output::entries(pitches)),
+    };
+    let h = if pitch.is_infinite() {
+        "infinity".to_owned()
+    } else {
+        format!("{} m/rad", number(pitch))
+    };
+    let limit = if choice.norm_at_infinity.is_infinite() || pitch.is_infinite() {
+        String::new()
+    } else {
+        format!(", {} at infinity", number(choice.norm_at_infinity))
+    };
+    format!(
+        "exists {but}; the smallest projector is at h = {h} (|P| = {}{limit})",
+        number(choice.norm)
+    )
+}
+
+fn involution(i: &Involution) -> String {
+    let lines = format!("{} of the twists are lines", i.lines);
+    if !i.in_involution {
+        return format!("no ({lines})");
+    }
+    let mut text = format!("yes ({lines}");
+    if !i.independent {
+        text.push_str(", dependent");
+    }
+    text.push(')');
+    if let (Some(screw), Some(_)) = (&i.null_screw, &i.wrench) {
+        if screw.is_translation() {
+            text.push_str(&format!(
+                "; a couple about {} needs no torque of these joints",
+                direction(screw.axis.direction)
+            ));
+        } else {
+            text.push_str(&format!(
+                "; a wrench of pitch {} m/rad on the axis through {} along {} needs no torque of \
+                 these joints",
+                number(clean(screw.pitch)),
+                output::entries(&screw.axis.point.to_array()),
+                direction(screw.axis.direction)
+            ));
+        }
+    }
+    let Transversals { infinitely_many, lines, at_infinity, double } = &i.transversals;
+    if *infinitely_many {
+        text.push_str("; infinitely many lines meet all axes");
+    } else if *double {
+        text.push_str("; one line, counted twice, meets all axes");
+    } else if !lines.is_empty() {
+        let s = if lines.len() == 1 { " meets" } else { "s meet" };
+        text.push_str(&format!("; {} line{s} all axes", lines.len()));
+    } else if !at_infinity.is_empty() {
+        text.push_str("; they meet one line at infinity: all are parallel to a plane");
+    }
+    text
+}
+
+fn direction(d: Vec3) -> String {
+    format!("({})", output::entries(&d.to_array()))
+}
+
+fn clean(x: f64) -> f64 {
+    if x.abs() < 1e-12 { 0.0 } else { x }
+}
+
+fn screws<'a>(
+    out: &mut dyn Write,
+    name: &str,
+    rows: impl Iterator<Item = (&'a str, Option<&'a Screw>)>,
+) -> anyhow::Result<()> {
+    let columns = [
+        (name, Align::Left),
+        ("pitch [m/rad]", Align::Right),
+        ("x [m]", Align::Right),
+        ("y [m]", Align::Right),
+        ("z [m]", Align::Right),
+        ("direction", Align::Left),
+    ];
+    let rows = rows.map(|(name, screw)| {
+        let Some(s) = screw else {
+            let blank = ["-"; 4].map(str::to_owned);
+            return [vec![name.to_owned()], blank.to_vec(), vec!["zero".to_owned()]].concat();
+        };
+        let point = if s.is_translation() {
+            ["-"; 3].map(str::to_owned).to_vec()
+        } else {
+            s.axis.point.to_array().map(|x| number(clean(x))).to_vec()
+        };
+        let pitch = if s.is_translation() { "slides".to_owned() } else { number(clean(s.pitch)) };
+        let direction = output::entries(&s.axis.direction.to_array());
+        [vec![name.to_owned(), pitch], point, vec![direction]].concat()
+    });
+    Ok(output::table(out, &columns, rows)?)
+}
+
+fn existence(out: &mut dyn Write, system: &ScrewSystem, pitches: &[f64]) -> anyhow::Result<()> {
+    let columns = [
+        ("h [m/rad]", Align::Right),
+        ("inverse", Align::Left),
+        ("margin", Align::Right),
+        ("|P_h|", Align::Right),
+        ("why", Align::Left),
+    ];
+    let rows = pitches.iter().map(|&h| {
+        let e = existence_json(system, h);
+        vec![
+            if h.is_infinite() { "infinity".to_owned() } else { number(h) },
+            if e.exists { "exists" } else { "none" }.to_owned(),
+            number(e.margin),
+            number(e.norm),
+            e.reason.unwrap_or_default(),
+        ]
+    });
+    Ok(output::table(out, &columns, rows)?)
+}

@@ -1,0 +1,150 @@
+//! Where the twists come from: a robot at a configuration, or a file of numbers.
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use cylindroid::kinematics::Chain;
+use cylindroid::{EndEffector, Error, Matrix, Reference, Result, Twist, Vec3};
+use cylindroid::{Pose, model::Mechanism};
+
+use crate::args::ScrewsArgs;
+
+/// Twists with names, in one frame.
+#[derive(Debug)]
+pub(super) struct Twists {
+    /// The robot and its configuration; `None` for a file of twists.
+    pub(super) robot: Option<(Mechanism, String, Vec<f64>)>,
+    pub(super) file: String,
+    pub(super) names: Vec<String>,
+    pub(super) twists: Vec<Twist>,
+    /// Characteristic length that belongs to them.
+    pub(super) length: f64,
+}
+
+impl Twists {
+    pub(super) fn read(args: &ScrewsArgs) -> Result<Self> {
+        let path = Path::new(&args.model);
+        match path.extension().and_then(OsStr::to_str) {
+            Some("csv") => Self::of_file(args, csv(path)?),
+            Some("json") => Self::of_file(args, json(path)?),
+            _ => Self::of_robot(args),
+        }
+    }
+
+    fn of_file(args: &ScrewsArgs, rows: Vec<[f64; 6]>) -> Result<Self> {
+        if args.frame.frame.is_some() || args.frame.tool.is_some() {
+            return Err(Error::InvalidOption {
+                option: "--frame or --tool",
+                value: args.model.clone(),
+                reason: "a file of twists has no frames; leave the option out".to_owned(),
+            });
+        }
+        let twist = |row: [f64; 6]| {
+            let [a, b, c, d, e, f] = row;
+            let (first, second) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
+            let (linear, angular) =
+                if args.angular_first { (second, first) } else { (first, second) };
+            Twist { linear, angular }
+        };
+        Ok(Self {
+            robot: None,
+            file: args.model.clone(),
+            names: (1..=rows.len()).map(|i| i.to_string()).collect(),
+            twists: rows.into_iter().map(twist).collect(),
+            length: 1.0,
+        })
+    }
+
+    fn of_robot(args: &ScrewsArgs) -> Result<Self> {
+        if args.angular_first {
+            return Err(Error::InvalidOption {
+                option: "--angular-first",
+                value: args.model.clone(),
+                reason: "it is for files of twists (.csv, .json)".to_owned(),
+            });
+        }
+        let robot = cylindroid::load(&args.model)?;
+        let q = args.q.configuration(&robot, args.degrees)?;
+        robot.check_q("--q", &q)?;
+        let frame = match &args.frame.frame {
+            None => robot.tool(),
+            Some(name) => robot.frame(name)?,
+        };
+        let tool = args.frame.tool.map_or([0.0; 3], |t| t.0);
+        Error::check_finite("--tool", &tool)?;
+        let end_effector =
+            EndEffector { frame, frame_from_tool: Pose::from_translation(Vec3::from_array(tool)) };
+        // Joints that do not move the frame have no twist there.
+        let chain = Chain::new(&robot, end_effector);
+        let jacobian = robot.state(&q)?.jacobian(end_effector, Reference::World);
+        let column = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
+        let names = chain.coordinates().iter().map(|&c| robot.coordinates()[c].name.clone());
+        Ok(Self {
+            file: args.model.clone(),
+            names: names.collect(),
+            twists: chain.coordinates().iter().map(column).collect(),
+            length: robot.reach(),
+            robot: Some((robot.clone(), robot.frame_of(frame).name.clone(), q)),
+        })
+    }
+
+    /// The twists as columns.
+    pub(super) fn matrix(&self) -> Matrix {
+        Matrix::from_fn(6, self.twists.len(), |i, j| self.twists[j].to_array()[i])
+    }
+
+    /// What they are, for a picture.
+    pub(super) fn title(&self) -> String {
+        match &self.robot {
+            Some((robot, frame, _)) => format!("{}: screws of {frame}", robot.name()),
+            None => format!("screws of {}", self.file),
+        }
+    }
+}
+
+fn csv(path: &Path) -> Result<Vec<[f64; 6]>> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_path(path)
+        .map_err(|e| cannot_read(path, &e.to_string()))?;
+    let mut rows = Vec::new();
+    for (i, record) in reader.records().enumerate() {
+        let record = record.map_err(|e| cannot_read(path, &e.to_string()))?;
+        let line = record.position().map_or(i as u64 + 1, csv::Position::line);
+        let numbers: std::result::Result<Vec<f64>, _> =
+            record.iter().map(str::parse::<f64>).collect();
+        match numbers {
+            Ok(row) => rows.push(six(path, &format!("line {line}"), &row)?),
+            // A first line that is no numbers names the columns.
+            Err(_) if i == 0 => {}
+            Err(_) => {
+                let text = record.iter().collect::<Vec<_>>().join(",");
+                let message = format!("line {line} is not six numbers: {text}");
+                return Err(cannot_read(path, &message));
+            }
+        }
+    }
+    Ok(rows)
+}
+
+fn json(path: &Path) -> Result<Vec<[f64; 6]>> {
+    let text = std::fs::read_to_string(path).map_err(|e| cannot_read(path, &e.to_string()))?;
+    let rows: Vec<Vec<f64>> = serde_json::from_str(&text)
+        .map_err(|e| cannot_read(path, &format!("not a list of lists of six numbers: {e}")))?;
+    rows.iter().enumerate().map(|(i, row)| six(path, &format!("twist {}", i + 1), row)).collect()
+}
+
+fn six(path: &Path, place: &str, row: &[f64]) -> Result<[f64; 6]> {
+    row.try_into().map_err(|_| {
+        let message =
+            format!("{place} has {} numbers; a twist has six, the linear part first", row.len());
+        cannot_read(path, &message)
+    })
+}
+
+fn cannot_read(path: &Path, message: &str) -> Error {
+    Error::Io { path: path.to_owned(), action: "read", message: message.to_owned() }
+}

@@ -1,0 +1,234 @@
+//! A screw system as an SVG: the Gram determinant and the size of the projector over the pitch,
+//! and the cylindroid of a two-system.
+
+use std::ops::Range;
+use std::path::Path;
+
+use cylindroid::screws::{Line, Screw, ScrewSystem, gram_determinant};
+use cylindroid::{Matrix, Pose, Result, Vec3};
+use plotters::prelude::*;
+
+use super::{Area, COLOURS, Drawn, FONT, builder};
+use crate::output::number;
+use crate::trajectory::cannot_write;
+
+/// Width, and height of a panel [px].
+const WIDTH: u32 = 820;
+const HEIGHT: u32 = 300;
+/// Height of the cylindroid [px].
+const TALL: u32 = 560;
+/// Pitches of a curve.
+const POINTS: i32 = 1200;
+/// Projectors larger than this are drawn here.
+const LARGEST: f64 = 1e3;
+/// Screws of a cylindroid.
+const SCREWS: usize = 72;
+
+/// Draws a system spanned by the columns of `jacobian`.
+pub(crate) fn draw(
+    title: &str,
+    jacobian: &Matrix,
+    system: &ScrewSystem,
+    path: &Path,
+) -> Result<()> {
+    let mut svg = String::new();
+    panels(title, jacobian, system, &mut svg).map_err(|error| cannot_write(path, &error))?;
+    std::fs::write(path, svg).map_err(|error| cannot_write(path, &error))
+}
+
+fn panels(title: &str, jacobian: &Matrix, system: &ScrewSystem, svg: &mut String) -> Drawn {
+    let pencil = system.pencil(SCREWS);
+    let tall = if pencil.is_empty() { 0 } else { TALL };
+    let root = SVGBackend::with_string(svg, (WIDTH, 40 + 2 * HEIGHT + tall)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let root = root.titled(title, (FONT, 20))?;
+    let (top, bottom) = root.split_vertically(HEIGHT);
+    let (middle, rest) = bottom.split_vertically(HEIGHT);
+    let range = pitches(system);
+    determinant(&top, jacobian, system, &range)?;
+    size(&middle, system, &range)?;
+    if !pencil.is_empty() {
+        cylindroid(&rest, system, &pencil)?;
+    }
+    root.present()?;
+    drop((top, bottom, middle, rest, root));
+    Ok(())
+}
+
+/// All principal pitches with room around them; a characteristic length where they are zero.
+fn pitches(system: &ScrewSystem) -> Range<f64> {
+    let most = system.principal_pitches().iter().fold(0.0, |m: f64, h| m.max(h.abs()));
+    let most = if most > 1e-3 * system.length() { 2.5 * most } else { system.length() };
+    -most..most
+}
+
+/// A label of an axis of this width: rounding is zero.
+fn label(x: f64, width: f64) -> String {
+    number(if x.abs() < 1e-9 * width { 0.0 } else { x })
+}
+
+fn samples(range: &Range<f64>) -> impl Iterator<Item = f64> + use<> {
+    let (from, width) = (range.start, range.end - range.start);
+    (0..=POINTS).map(move |i| from + width * f64::from(i) / f64::from(POINTS))
+}
+
+fn determinant(
+    area: &Area<'_>,
+    jacobian: &Matrix,
+    system: &ScrewSystem,
+    range: &Range<f64>,
+) -> Drawn {
+    // Dependent twists have the determinant zero for every pitch: then that of a basis is drawn.
+    let independent = jacobian.cols() == system.order();
+    let basis = system.basis();
+    let of = if independent {
+        jacobian.clone()
+    } else {
+        Matrix::from_fn(6, basis.len(), |i, j| basis[j].to_array()[i])
+    };
+    let name = if independent { "det(J^T Q_h J)" } else { "det(B^T Q_h B), B a basis" };
+    let values: Vec<(f64, f64)> =
+        samples(range).map(|h| Ok((h, gram_determinant(&of, h)?))).collect::<Result<_>>()?;
+    let low = values.iter().fold(0.0, |m: f64, v| m.min(v.1));
+    let high = values.iter().fold(0.0, |m: f64, v| m.max(v.1));
+    let height = if high > low { high - low } else { 1.0 };
+    let heights = low - 0.1 * height..high + 0.2 * height;
+    let mut chart = builder(area).build_cartesian_2d(range.clone(), heights)?;
+    let width = range.end - range.start;
+    chart
+        .configure_mesh()
+        .x_desc("pitch h [m/rad]")
+        .y_desc(name)
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .axis_desc_style((FONT, 15))
+        .label_style((FONT, 13))
+        .y_labels(6)
+        .x_label_formatter(&|x| label(*x, width))
+        .y_label_formatter(&|y| label(*y, height))
+        .draw()?;
+    chart.draw_series(LineSeries::new(
+        [(range.start, 0.0), (range.end, 0.0)],
+        BLACK.mix(0.5).stroke_width(1),
+    ))?;
+    chart.draw_series(LineSeries::new(values, COLOURS[0].stroke_width(2)))?;
+    let principal = system.principal_pitches();
+    chart.draw_series(principal.iter().map(|&h| Circle::new((h, 0.0), 5, COLOURS[1].filled())))?;
+    chart.draw_series(principal.iter().map(|&h| {
+        let text = format!("h = {}", number(if h.abs() < 1e-12 { 0.0 } else { h }));
+        // Towards the middle, away from where the curve rises.
+        let shift = if h > 0.0 { (-90, -18) } else { (8, -18) };
+        EmptyElement::at((h, 0.0)) + Text::new(text, shift, (FONT, 14).into_font())
+    }))?;
+    Ok(())
+}
+
+fn size(area: &Area<'_>, system: &ScrewSystem, range: &Range<f64>) -> Drawn {
+    let norms: Vec<(f64, f64)> =
+        samples(range).map(|h| (h, system.projector_norm(h).min(LARGEST))).collect();
+    let width = range.end - range.start;
+    let mut chart =
+        builder(area).build_cartesian_2d(range.clone(), (0.8..1.2 * LARGEST).log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc("pitch h [m/rad]")
+        .y_desc("size of the projector |P_h| [-]")
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .axis_desc_style((FONT, 15))
+        .label_style((FONT, 13))
+        .y_labels(4)
+        .x_label_formatter(&|x| label(*x, width))
+        .y_label_formatter(&|y| number(*y))
+        .draw()?;
+    if norms.iter().all(|n| n.1 >= LARGEST) {
+        let middle = (0.5 * (range.start + range.end), 30.0);
+        let text = "there is no projector for any pitch";
+        let style = (FONT, 16).into_font().color(&COLOURS[3]);
+        chart.draw_series([Text::new(text, middle, style)])?;
+        return Ok(());
+    }
+    chart.draw_series(LineSeries::new(norms, COLOURS[2].stroke_width(2)))?;
+    let choice = system.choose_pitch();
+    let proposed = choice.pitch.filter(|h| range.contains(h));
+    chart.draw_series(proposed.map(|h| Circle::new((h, choice.norm), 5, COLOURS[1].filled())))?;
+    chart.draw_series(proposed.map(|h| {
+        let text = format!("smallest: h = {}", number(h));
+        EmptyElement::at((h, choice.norm)) + Text::new(text, (8, -18), (FONT, 14).into_font())
+    }))?;
+    Ok(())
+}
+
+/// The axes of the screws of a two-system, in its canonical frame, coloured by pitch.
+fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn {
+    let home: Pose = system.canonical_pose().inverse();
+    // In the canonical frame, each axis at its point nearest to the origin there.
+    let seen = |s: &Screw| {
+        let line = Line { point: home * s.axis.point, direction: home.rotation * s.axis.direction };
+        Screw { axis: Line { point: line.nearest(Vec3::ZERO), ..line }, ..*s }
+    };
+    let screws: Vec<Screw> = pencil.iter().filter(|s| !s.is_translation()).map(seen).collect();
+    let finite = || screws.iter().map(|s| s.pitch).filter(|h| h.abs() < 10.0 * system.length());
+    let (low, high) =
+        (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let height = screws
+        .iter()
+        .map(|s| s.axis.point.norm())
+        .filter(|z| *z < 10.0 * system.length())
+        .fold(0.0, f64::max);
+    let half = if height > 0.0 { 1.6 * height } else { system.length() };
+    let of = if system.order() == 4 { "the reciprocal system" } else { "the system" };
+    let caption = format!(
+        "axes of {of} in its canonical frame [m]: pitch from {} (blue) to {} (orange) m/rad",
+        number(low),
+        number(high)
+    );
+    let area = area.titled(&caption, (FONT, 15))?;
+    let cube = -half..half;
+    let mut chart =
+        ChartBuilder::on(&area).margin(10).build_cartesian_3d(cube.clone(), cube.clone(), cube)?;
+    chart.with_projection(|mut view| {
+        view.pitch = 0.45;
+        view.yaw = 0.6;
+        view.scale = 0.8;
+        view.into_matrix()
+    });
+    chart
+        .configure_axes()
+        .light_grid_style(BLACK.mix(0.06))
+        .max_light_lines(2)
+        .label_style((FONT, 12))
+        .x_labels(5)
+        .y_labels(5)
+        .z_labels(5)
+        .draw()?;
+    for screw in &screws {
+        let (p, d) = (screw.axis.point, screw.axis.direction);
+        let share =
+            if high > low { ((screw.pitch - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
+        let ends = [p - d * half, p + d * half];
+        let inside = |x: f64| x.abs() <= 1.001 * half;
+        // Drawn with the z axis upwards, which is the second of the three here.
+        let points: Vec<(f64, f64, f64)> = ends
+            .iter()
+            .map(|e| {
+                let clip = half / e.x.abs().max(e.y.abs()).max(half);
+                let e = p + (*e - p) * clip;
+                (e.x, e.z, e.y)
+            })
+            .collect();
+        if points.iter().all(|(x, z, y)| inside(*x) && inside(*y) && inside(*z)) {
+            chart.draw_series(LineSeries::new(points, blend(share).stroke_width(2)))?;
+        }
+    }
+    Ok(())
+}
+
+/// From blue over grey to orange.
+fn blend(share: f64) -> RGBColor {
+    let stops = [(31.0, 119.0, 180.0), (150.0, 150.0, 150.0), (214.0, 95.0, 0.0)];
+    let (i, t) = if share < 0.5 { (0, 2.0 * share) } else { (1, 2.0 * share - 1.0) };
+    let (a, b) = (stops[i], stops[i + 1]);
+    let mix = |x: f64, y: f64| (x + t * (y - x)).round().clamp(0.0, 255.0) as u8;
+    RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}

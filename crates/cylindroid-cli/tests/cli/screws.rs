@@ -1,0 +1,97 @@
+//! `screws`.
+
+use std::fs;
+
+use crate::{cylindroid, difference, json, numbers, text};
+
+const BELOW: &str = "0.4,0.6,0.9,0.5,0.2";
+const DOWN: &str = "0.4,0.6,0.9,1.641592653589793,0.2";
+
+#[test]
+fn a_five_joint_arm() {
+    let report =
+        json(&["screws", "youbot", "--q", BELOW, "--h", "0.1", "--h", "0", "--h", "inf"], 0);
+    assert_eq!((&report["rank"], &report["gibson_hunt"]), (&5.into(), &"h".into()));
+    assert_eq!(numbers(&report["principal_pitches"]).len(), 1);
+    assert!(numbers(&report["principal_pitches"])[0].abs() < 1e-12);
+    assert_eq!((&report["ambiguous"], &report["invertible"]), (&false.into(), &true.into()));
+    let exists: Vec<bool> =
+        report["existence"].as_array().unwrap().iter().map(|e| e["exists"] == true).collect();
+    assert_eq!(exists, [true, false, true]);
+    assert!(report["existence"][1]["reason"].as_str().unwrap().contains("principal pitch 0 m/rad"));
+    // The horizontal line parallel to the pitch axes, through the crossing of axes 1 and 5.
+    let reciprocal = &report["reciprocal"][0];
+    assert!(numbers(&reciprocal["point"])[..2].iter().all(|x| x.abs() < 1e-12));
+    assert!(numbers(&reciprocal["direction"])[2].abs() < 1e-12);
+    let involution = &report["involution"];
+    assert_eq!((&involution["lines"], &involution["in_involution"]), (&5.into(), &true.into()));
+    assert_eq!(involution["transversals"]["lines"].as_array().unwrap().len(), 1);
+    assert_eq!(report["names"][4], "arm_joint_5");
+}
+
+#[test]
+fn straight_down_there_is_never_an_inverse() {
+    let report = json(&["screws", "youbot", "--q", DOWN], 0);
+    assert_eq!((&report["gibson_hunt"], &report["invertible"]), (&"inf".into(), &false.into()));
+    let text = text(&["screws", "youbot", "--q", DOWN]);
+    assert!(text.contains("never: a 5-system whose reciprocal is of class inf"), "{text}");
+    assert!(text.contains("one line at infinity"), "{text}");
+}
+
+#[test]
+fn the_frame_and_the_tool_change_no_verdict() {
+    let a = json(&["screws", "3r", "--q", "0.2,0.5,-1"], 0);
+    let b = json(&["screws", "3r", "--q", "0.2,0.5,-1", "--tool", "0.1,2,-3"], 0);
+    for key in ["rank", "gibson_hunt", "principal_pitches", "twists", "choice"] {
+        assert_eq!(a[key], b[key], "{key}");
+    }
+    assert_eq!(a["gibson_hunt"], "IB0");
+}
+
+#[test]
+fn files_of_twists() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let csv = path("two.csv");
+    fs::write(&csv, "# two lines\nvx, vy, vz, wx, wy, wz\n0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
+    let report = json(&["screws", &csv], 0);
+    assert_eq!(report["gibson_hunt"], "IA");
+    assert!(difference(&numbers(&report["principal_pitches"]), &[0.1, -0.1]) < 1e-15);
+    assert_eq!(report["names"], serde_json::json!(["1", "2"]));
+    let list = path("two.json");
+    fs::write(&list, "[[0,0,1,0,0,0],[1,0,0,0,0,-0.2]]").unwrap();
+    let same = json(&["screws", &list, "--angular-first"], 0);
+    assert_eq!(same["principal_pitches"], report["principal_pitches"]);
+    // In millimetres, with the length in millimetres.
+    fs::write(&csv, "0,0,0,0,0,1\n0,0,-200,1,0,0\n").unwrap();
+    let millimetres = json(&["screws", &csv, "--length", "1000"], 0);
+    assert!(difference(&numbers(&millimetres["principal_pitches"]), &[100.0, -100.0]) < 1e-12);
+
+    let plot = path("two.svg");
+    text(&["screws", &csv, "--length", "1000", "--plot", &plot]);
+    let svg = fs::read_to_string(&plot).unwrap();
+    assert!(svg.contains("det(J^T Q_h J)") && svg.contains("canonical frame"), "no cylindroid");
+
+    let refused = |content: &str, more: &[&str]| {
+        fs::write(&csv, content).unwrap();
+        let output = cylindroid(&[&["screws", csv.as_str()], more].concat());
+        assert_eq!(output.status.code(), Some(2), "{content}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    assert!(refused("1,2\n", &[]).contains("line 1 has 2 numbers"));
+    assert!(refused("0,0,0,0,0,1\n0,0,x,1,0,0\n", &[]).contains("line 2"));
+    assert!(refused("0,0,nan,0,0,1\n", &[]).contains("twist 1[2] is not finite"));
+    assert!(refused("0,0,0,0,0,1\n", &["--length", "0"]).contains("length"));
+    assert!(refused("0,0,0,0,0,1\n", &["--noise", "-1"]).contains("noise"));
+    assert!(refused("0,0,0,0,0,1\n", &["--h", "nan"]).contains("--h"));
+    assert!(refused("0,0,0,0,0,1\n", &["--tool", "0,0,1"]).contains("no frames"));
+    assert!(refused("0,0,0,0,0,1\n", &["--plot", "x.png"]).contains(".svg"));
+    // Nothing, and nothing that moves, are systems of order zero.
+    fs::write(&csv, "0,0,0,0,0,0\n").unwrap();
+    let zero = json(&["screws", &csv], 0);
+    assert_eq!((&zero["rank"], &zero["screws"][0]), (&0.into(), &serde_json::Value::Null));
+    fs::write(&csv, "").unwrap();
+    assert_eq!(json(&["screws", &csv], 0)["rank"], 0);
+    let output = cylindroid(&["screws", &path("none.csv")]);
+    assert_eq!(output.status.code(), Some(2));
+}

@@ -1,0 +1,208 @@
+//! The velocity constraint of a closed chain, and the scales that make its ranks mean something.
+//!
+//! Formula  J_a q_a + J_p q_p - G^T u = 0; scaled M' = D_r [J_a J_p -G^T] D_c
+//! Shapes   J_a: t x q_a, J_p: t x q_p, G: d x t
+//! Units    a row is a velocity (m/s) or an angular velocity (rad/s) at a contact, a column a rate
+//!          of either kind. With the characteristic length l, D_r divides rows of lengths by l and
+//!          D_c multiplies columns of lengths by it: M' has no unit.
+//! Frame    any: u and its wrench are taken at one point in one frame, each row in a frame of its
+//!          own
+//! Valid    any sizes, zero too. Several objects: the columns -G^T of those that are not the
+//!          reference belong to `passive`.
+//! Why so   scaling rows and columns to equal norms instead would need no length, but blows up a
+//!          row that is zero up to rounding and then counts it
+//! Source   Bicchi & Prattichizzo 1998, eq. 2 and appendix A
+//! Checked  tests/it/closure/*.rs (changes of unit), tests/it/closure/bad_input.rs
+
+use crate::error::{Error, Result};
+use crate::linalg::Matrix;
+
+/// What a coordinate or a row of the constraint measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// Metres: sliding joints, linear velocities.
+    Length,
+    /// Radians: turning joints, angular velocities.
+    Angle,
+}
+
+/// The three matrices of a constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Blocks {
+    /// `J_a`, t x q_a: velocities at the contacts by the driven joints.
+    pub actuated: Matrix,
+    /// `J_p`, t x q_p: by the passive joints and by objects other than the reference.
+    pub passive: Matrix,
+    /// `G`, d x t: wrench on the object by the forces at the contacts.
+    pub grasp: Matrix,
+}
+
+/// The unit of every row and column of a constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Units {
+    /// Of the t rows.
+    pub rows: Vec<Unit>,
+    /// Of the driven joints.
+    pub actuated: Vec<Unit>,
+    /// Of the passive columns.
+    pub passive: Vec<Unit>,
+    /// Of the object's twist.
+    pub object: Vec<Unit>,
+}
+
+/// A velocity constraint: finite, of fitting shapes, with its scales.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constraint {
+    blocks: Blocks,
+    length: f64,
+    /// D_r.
+    row_scale: Vec<f64>,
+    /// D_c of driven joints, passive columns and object.
+    column_scale: Vec<f64>,
+}
+
+impl Constraint {
+    /// A constraint whose rows and columns all have one unit, or metres and radians side by side
+    /// with the characteristic length 1 m.
+    ///
+    /// # Errors
+    /// Blocks of different numbers of rows, NaN or infinity.
+    pub fn new(blocks: Blocks) -> Result<Self> {
+        let t = blocks.grasp.cols();
+        for (name, block) in
+            [("actuated Jacobian", &blocks.actuated), ("passive Jacobian", &blocks.passive)]
+        {
+            if block.rows() != t {
+                return Err(Error::Dimension {
+                    what: format!("{name} (its columns)"),
+                    expected: t,
+                    got: block.rows(),
+                    hint: "one for each column of the grasp matrix".to_owned(),
+                });
+            }
+        }
+        check_finite("actuated Jacobian", &blocks.actuated)?;
+        check_finite("passive Jacobian", &blocks.passive)?;
+        check_finite("grasp matrix", &blocks.grasp)?;
+        let n = blocks.actuated.cols() + blocks.passive.cols() + blocks.grasp.rows();
+        Ok(Self { blocks, length: 1.0, row_scale: vec![1.0; t], column_scale: vec![1.0; n] })
+    }
+
+    /// The same constraint with lengths measured in the characteristic length `length` (m).
+    ///
+    /// # Errors
+    /// Units of the wrong number; a length that is not positive and finite, or so far from one
+    /// that scaled entries overflow.
+    pub fn with_length(mut self, units: &Units, length: f64) -> Result<Self> {
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(Error::InvalidOption {
+                option: "length",
+                value: length.to_string(),
+                reason: "the characteristic length is positive and finite".to_owned(),
+            });
+        }
+        Error::check_len("units of the rows", self.rows(), units.rows.len())?;
+        Error::check_len("units of the actuated joints", self.actuated(), units.actuated.len())?;
+        Error::check_len("units of the passive joints", self.passive(), units.passive.len())?;
+        Error::check_len("units of the object", self.object(), units.object.len())?;
+        let scale = |unit: &Unit| if *unit == Unit::Length { length } else { 1.0 };
+        self.row_scale = units.rows.iter().map(|u| 1.0 / scale(u)).collect();
+        let columns = units.actuated.iter().chain(&units.passive).chain(&units.object);
+        self.column_scale = columns.map(scale).collect();
+        self.length = length;
+        check_finite("constraint scaled by the length, transposed,", &self.scaled_transpose())?;
+        Ok(self)
+    }
+
+    /// A serial arm: `u = J q`, all joints driven.
+    ///
+    /// # Errors
+    /// NaN or infinity.
+    pub fn serial(jacobian: &Matrix) -> Result<Self> {
+        Self::new(Blocks {
+            actuated: jacobian.clone(),
+            passive: Matrix::zeros(jacobian.rows(), 0),
+            grasp: Matrix::identity(jacobian.rows()),
+        })
+    }
+
+    /// The matrices it was made of.
+    #[must_use]
+    pub fn blocks(&self) -> &Blocks {
+        &self.blocks
+    }
+
+    /// The characteristic length (m).
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// Number of driven joints.
+    #[must_use]
+    pub fn actuated(&self) -> usize {
+        self.blocks.actuated.cols()
+    }
+
+    /// Number of passive columns.
+    #[must_use]
+    pub fn passive(&self) -> usize {
+        self.blocks.passive.cols()
+    }
+
+    /// Size of the object's twist.
+    #[must_use]
+    pub fn object(&self) -> usize {
+        self.blocks.grasp.rows()
+    }
+
+    /// Number t of constrained components.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.blocks.grasp.cols()
+    }
+
+    /// `[J_a J_p -G^T]`, t x (q_a + q_p + d).
+    #[must_use]
+    pub fn matrix(&self) -> Matrix {
+        let (a, p) = (self.actuated(), self.passive());
+        Matrix::from_fn(self.rows(), a + p + self.object(), |i, j| {
+            if j < a {
+                self.blocks.actuated[(i, j)]
+            } else if j < a + p {
+                self.blocks.passive[(i, j - a)]
+            } else {
+                -self.blocks.grasp[(j - a - p, i)]
+            }
+        })
+    }
+
+    /// Its transpose in scaled coordinates, `D_c M^T D_r`.
+    pub(super) fn scaled_transpose(&self) -> Matrix {
+        let m = self.matrix();
+        Matrix::from_fn(m.cols(), m.rows(), |j, i| {
+            self.row_scale[i] * m[(i, j)] * self.column_scale[j]
+        })
+    }
+
+    /// D_r: a force at a contact is this times its scaled value.
+    pub(super) fn row_scale(&self) -> &[f64] {
+        &self.row_scale
+    }
+
+    /// D_c: a rate is this times its scaled value, a torque its scaled value over this.
+    pub(super) fn column_scale(&self) -> &[f64] {
+        &self.column_scale
+    }
+}
+
+/// Refuses the first entry that is NaN or infinite.
+pub(super) fn check_finite(name: &str, m: &Matrix) -> Result<()> {
+    match m.as_slice().iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(i) => Err(Error::NotFinite {
+            what: format!("{name} entry ({}, {})", i % m.rows(), i / m.rows()),
+            value: m.as_slice()[i],
+        }),
+    }
+}

@@ -1,0 +1,235 @@
+//! Mobility report: every kind of motion and force of a closed chain, counted and with a basis.
+//!
+//! Formula  dof            ker [J_a J_p -G^T]
+//!          redundancy     ker J_a: driven joints move, all else rests
+//!          indeterminacy  ker [J_p -G^T]: driven joints rest
+//!          coordinate     the rest, orthogonal to both: k - r - i
+//!          idle           ker J_p: passive joints move alone
+//!          ungrasped      ker G^T: the object moves alone
+//!          internal       (dom R)^perp, torques in balance without a wrench
+//!          zero_torque    (ran R)^perp, wrenches held without torques
+//!          hyperstatic    ker G and ker J^T: forces that nothing determines
+//! Shapes   motions: (q_a + q_p + d) x n, torques: q_a x n, wrenches: d x n, contact forces: t x n
+//! Units    of the constraint; bases are orthonormal in units scaled by the characteristic length
+//! Valid    any constraint. Counts come from ranks, never from Grubler's formula, which is given
+//!          beside them. Infinitesimal: a motion counted here may have no finite one behind it.
+//! Source   Bicchi & Prattichizzo 1998, eqs. 3 to 5; the counts of its eq. 5 modulo redundancy and
+//!          indeterminacy, where alone they are unique
+//! Checked  tests/it/closure/reference.rs, tests/it/closure/mobility.rs
+
+use std::fmt;
+
+use super::constraint::Constraint;
+use super::motions::{Motions, Rows};
+use super::relation::{Relation, RelationDimensions};
+use super::statics;
+use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
+
+/// A space of motions or forces with the rank decision behind its dimension.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Subspace {
+    /// A basis, a column each.
+    pub basis: Matrix,
+    /// The decision: the dimension is what this rank leaves.
+    pub cut: Cut,
+}
+
+impl Subspace {
+    /// Number of independent elements.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.basis.cols()
+    }
+}
+
+/// Coordinate motions by what takes part beside the driven joints. A motion of the driven joints
+/// that either passive joints or the object can take up is counted in `passive` and in `object`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CoordinateKinds {
+    /// With passive joints alone; the object may rest.
+    pub passive: usize,
+    /// With the object alone; passive joints may rest.
+    pub object: usize,
+    /// Only with both.
+    pub both: usize,
+    /// Counted in `passive` and in `object`.
+    pub overlap: usize,
+}
+
+/// How a joint can move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointMobility {
+    /// Its largest share in a motion of unit length (scaled) [-], between 0 and 1.
+    pub share: f64,
+    /// False where it is locked by the geometry.
+    pub moves: bool,
+    /// True where it can move with all driven joints at rest.
+    pub free_of_actuators: bool,
+    /// True where it can move with the driven joints and the object at rest (passive joints).
+    pub idle: bool,
+}
+
+/// A rank that hangs on little.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubt {
+    /// The count that depends on it.
+    pub count: &'static str,
+    /// The decision.
+    pub cut: Cut,
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Cut { rank, kept, dropped } = self.cut;
+        write!(
+            f,
+            "{} hangs on a rank of {}: smallest value kept {kept:.1e}, largest dropped \
+             {dropped:.1e}, threshold {:.1e}; near a singular pose, or geometry with few digits: \
+             change the pose a little or set the threshold",
+            self.count, rank.rank, rank.threshold
+        )
+    }
+}
+
+/// The mobility of a closed chain in one pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mobility {
+    /// All motions (q_a, q_p, u).
+    pub dof: Subspace,
+    /// Motions of driven joints alone.
+    pub redundancy: Subspace,
+    /// Motions with the driven joints at rest, idle ones included.
+    pub indeterminacy: Subspace,
+    /// Motions orthogonal to both (scaled).
+    pub coordinate: Subspace,
+    /// Which of them move what.
+    pub coordinate_kinds: CoordinateKinds,
+    /// Motions of passive joints alone.
+    pub idle: Subspace,
+    /// Motions of the object alone.
+    pub ungrasped: Subspace,
+    /// Indeterminate motions that need passive joints and object.
+    pub mixed: usize,
+    /// Joint torques in balance without a wrench on the object (active internal forces).
+    pub internal: Subspace,
+    /// Wrenches that need no joint torque.
+    pub zero_torque: Subspace,
+    /// Contact forces that neither joint torques nor the wrench determine.
+    pub hyperstatic: Subspace,
+    /// The counts of the relation between driven joints and object alone, where redundancy and
+    /// indeterminacy take in what passive joints make possible.
+    pub relation: RelationDimensions,
+    /// Columns less rows, for comparison.
+    pub grubler: i64,
+    /// Driven joints, then passive columns.
+    pub joints: Vec<JointMobility>,
+    /// Ranks that are a matter of taste.
+    pub doubts: Vec<Doubt>,
+}
+
+impl Mobility {
+    /// With the default threshold.
+    #[must_use]
+    pub fn of(constraint: &Constraint) -> Self {
+        let motions = Motions::of(constraint);
+        let relation = motions.relation();
+        Self::from_parts(constraint, &motions, &relation)
+    }
+
+    /// From motions and relation of this constraint.
+    #[must_use]
+    pub fn from_parts(constraint: &Constraint, motions: &Motions, relation: &Relation) -> Self {
+        const A: Rows = Rows { actuated: true, passive: false, object: false };
+        const P: Rows = Rows { actuated: false, passive: true, object: false };
+        const U: Rows = Rows { actuated: false, passive: false, object: true };
+        let k = motions.dof();
+        let tolerance = Threshold::Absolute(motions.tolerance());
+        let still = |rows| motions.still(rows);
+        let space = |(part, cut): &(Matrix, Cut)| Subspace {
+            basis: motions.unscaled(&(motions.kernel() * part)),
+            cut: *cut,
+        };
+        let redundancy = still(Rows { actuated: false, passive: true, object: true });
+        let indeterminacy = still(A);
+        let idle = still(Rows { passive: false, actuated: true, object: true });
+        let ungrasped = still(Rows { object: false, actuated: true, passive: true });
+        let joints_only = still(U);
+        let object_only = still(P);
+        let (r, i) = (redundancy.0.cols(), indeterminacy.0.cols());
+        let (i_p, i_u) = (idle.0.cols(), ungrasped.0.cols());
+        let c = k.saturating_sub(r + i);
+        let passive = joints_only.0.cols().saturating_sub(r + i_p);
+        let object = object_only.0.cols().saturating_sub(r + i_u);
+        let mixed = i.saturating_sub(i_p + i_u);
+        // Without mixed motions nothing is counted twice.
+        let both = if mixed == 0 {
+            c.saturating_sub(passive + object)
+        } else {
+            let all = Matrix::beside(k, &[&joints_only.0, &object_only.0, &indeterminacy.0]);
+            k - ColumnSpace::of(&all, tolerance).rank()
+        };
+        let coordinate = if r + i == 0 {
+            Subspace { basis: motions.basis(), cut: motions.cut() }
+        } else {
+            let others = Matrix::beside(k, &[&redundancy.0, &indeterminacy.0]);
+            let others = ColumnSpace::of(&others, tolerance);
+            space(&(others.complement(), others.cut()))
+        };
+        let forces = relation.forces();
+        let [span, joint_rank, object_rank] = relation.cuts();
+        let mut report = Self {
+            dof: Subspace { basis: motions.basis(), cut: motions.cut() },
+            coordinate,
+            coordinate_kinds: CoordinateKinds {
+                passive,
+                object,
+                both,
+                overlap: (passive + object + both).saturating_sub(c),
+            },
+            mixed,
+            joints: joint_mobility(motions, &indeterminacy.0, &idle.0),
+            redundancy: space(&redundancy),
+            indeterminacy: space(&indeterminacy),
+            idle: space(&idle),
+            ungrasped: space(&ungrasped),
+            internal: Subspace { basis: forces.zero, cut: joint_rank },
+            zero_torque: Subspace { basis: forces.infinite, cut: object_rank },
+            hyperstatic: statics::undetermined(constraint, motions),
+            relation: relation.dimensions(),
+            grubler: motions.grubler(),
+            doubts: Vec::new(),
+        };
+        report.doubts = [
+            ("dof", report.dof.cut),
+            ("redundancy", report.redundancy.cut),
+            ("indeterminacy", report.indeterminacy.cut),
+            ("idle", report.idle.cut),
+            ("ungrasped", report.ungrasped.cut),
+            ("relation", span),
+            ("internal", joint_rank),
+            ("zero_torque", object_rank),
+        ]
+        .into_iter()
+        .filter(|(_, cut)| cut.is_doubtful())
+        .map(|(count, cut)| Doubt { count, cut })
+        .collect();
+        report
+    }
+}
+
+fn joint_mobility(motions: &Motions, indeterminate: &Matrix, idle: &Matrix) -> Vec<JointMobility> {
+    let kernel = motions.kernel();
+    let (free, idle) = (kernel * indeterminate, kernel * idle);
+    let size = |m: &Matrix, i: usize| -> f64 {
+        (0..m.cols()).map(|j| m[(i, j)].powi(2)).sum::<f64>().sqrt()
+    };
+    let tolerance = motions.tolerance();
+    (0..motions.actuated() + motions.passive())
+        .map(|i| JointMobility {
+            share: size(kernel, i).min(1.0),
+            moves: size(kernel, i) > tolerance,
+            free_of_actuators: i >= motions.actuated() && size(&free, i) > tolerance,
+            idle: i >= motions.actuated() && size(&idle, i) > tolerance,
+        })
+        .collect()
+}

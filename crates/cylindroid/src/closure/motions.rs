@@ -1,0 +1,190 @@
+//! The motions that a constraint allows: the kernel of its matrix.
+//!
+//! Formula  K = ker M', M' = D_r [J_a J_p -G^T] D_c; parts of it: the combinations of columns of K
+//!          whose entries vanish in some rows
+//! Shapes   K: (q_a + q_p + d) x k, orthonormal; k is the number of degrees of freedom
+//! Units    scaled by the characteristic length inside, as given outside
+//! Valid    any constraint. One relative threshold decides the rank of M'; every part is decided
+//!          by an absolute one, since K has columns of length one: relative to a block that only
+//!          rounding filled, rounding would have full rank.
+//! Source   Bicchi & Prattichizzo 1998, eqs. 3 and 4, whose bases these are
+//! Checked  tests/it/closure/reference.rs (31 mechanisms), tests/it/closure/mobility.rs
+
+use super::constraint::Constraint;
+use super::relation::{ObjectScale, Relation};
+use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
+use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING};
+
+/// Groups of rows of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rows {
+    /// The driven joints.
+    pub actuated: bool,
+    /// The passive joints and the other objects.
+    pub passive: bool,
+    /// The reference object.
+    pub object: bool,
+}
+
+/// All motions of a constraint.
+#[derive(Debug, Clone)]
+pub struct Motions {
+    actuated: usize,
+    passive: usize,
+    object: usize,
+    constraint_rows: usize,
+    scale: Vec<f64>,
+    kernel: Matrix,
+    cut: Cut,
+    largest: f64,
+    threshold: f64,
+    tolerance: f64,
+}
+
+impl Motions {
+    /// With the default threshold [`CLOSURE_RANK`].
+    #[must_use]
+    pub fn of(constraint: &Constraint) -> Self {
+        Self::with_threshold(constraint, CLOSURE_RANK)
+    }
+
+    /// With singular values at or below `threshold` times the largest taken as zero.
+    #[must_use]
+    pub fn with_threshold(constraint: &Constraint, threshold: f64) -> Self {
+        let space = ColumnSpace::of(&constraint.scaled_transpose(), Threshold::Relative(threshold));
+        let largest = space.values().first().copied().unwrap_or(0.0);
+        let conditioning = if space.rank() == 0 { 1.0 } else { largest / space.cut().kept };
+        Self {
+            actuated: constraint.actuated(),
+            passive: constraint.passive(),
+            object: constraint.object(),
+            constraint_rows: constraint.rows(),
+            scale: constraint.column_scale().to_vec(),
+            kernel: space.complement(),
+            cut: space.cut(),
+            largest,
+            threshold,
+            tolerance: CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning),
+        }
+    }
+
+    /// Number k of degrees of freedom, idle ones included.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.kernel.cols()
+    }
+
+    /// Rank of the constraint matrix and what it was cut between (scaled).
+    #[must_use]
+    pub fn cut(&self) -> Cut {
+        self.cut
+    }
+
+    /// Smallest singular value kept over the largest: the distance to a pose where the constraint
+    /// loses rank [-].
+    #[must_use]
+    pub fn regularity(&self) -> f64 {
+        if self.cut.rank.rank == 0 { 0.0 } else { self.cut.kept / self.largest }
+    }
+
+    /// The relative threshold of the constraint matrix [-].
+    pub(super) fn threshold(&self) -> f64 {
+        self.threshold
+    }
+
+    /// The absolute threshold for blocks of motions [-].
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Grubler's count: columns less rows, negative for many mechanisms that move. The degrees of
+    /// freedom exceed it by the hyperstatic degree.
+    #[must_use]
+    pub fn grubler(&self) -> i64 {
+        self.scale.len() as i64 - self.constraint_rows as i64
+    }
+
+    /// Number t - rank of forces at the contacts that nothing determines.
+    #[must_use]
+    pub fn hyperstatic(&self) -> usize {
+        self.constraint_rows - self.cut.rank.rank
+    }
+
+    /// A basis of all motions, a column `(q_a, q_p, u)` each: orthonormal in scaled units, given
+    /// in those of the constraint.
+    #[must_use]
+    pub fn basis(&self) -> Matrix {
+        self.unscaled(&self.kernel)
+    }
+
+    /// Relation between driven joints and object: what is left when passive joints are forgotten.
+    #[must_use]
+    pub fn relation(&self) -> Relation {
+        let (a, n) = (self.actuated, self.kernel.rows());
+        let k = self.kernel.cols();
+        let (joints, object) =
+            (self.kernel.rows_between(0, a), self.kernel.rows_between(a + self.passive, n));
+        Relation::from_scaled(
+            &Matrix::above(k, &[&joints, &object]),
+            self.scale[..a].to_vec(),
+            ObjectScale::diagonal(&self.scale[a + self.passive..]),
+            self.tolerance,
+        )
+    }
+
+    /// The combinations of kernel columns (k entries each) whose entries in `rows` vanish, and the
+    /// rank of the kernel in these rows.
+    pub(super) fn still(&self, rows: Rows) -> (Matrix, Cut) {
+        let (a, p) = (self.actuated, self.passive);
+        let chosen: Vec<usize> = (0..self.kernel.rows())
+            .filter(|&i| {
+                if i < a {
+                    rows.actuated
+                } else if i < a + p {
+                    rows.passive
+                } else {
+                    rows.object
+                }
+            })
+            .collect();
+        let block =
+            Matrix::from_fn(self.kernel.cols(), chosen.len(), |j, i| self.kernel[(chosen[i], j)]);
+        let space = ColumnSpace::of(&block, Threshold::Absolute(self.tolerance));
+        (space.complement(), space.cut())
+    }
+
+    /// The motions in which `rows` stand still: a basis, a column `(q_a, q_p, u)` each.
+    #[must_use]
+    pub fn standing(&self, rows: Rows) -> Matrix {
+        self.unscaled(&(&self.kernel * &self.still(rows).0))
+    }
+
+    /// The kernel in scaled coordinates.
+    pub(super) fn kernel(&self) -> &Matrix {
+        &self.kernel
+    }
+
+    /// From scaled coordinates.
+    pub(super) fn unscaled(&self, motions: &Matrix) -> Matrix {
+        Matrix::from_fn(motions.rows(), motions.cols(), |i, j| self.scale[i] * motions[(i, j)])
+    }
+
+    /// Number of driven joints.
+    #[must_use]
+    pub fn actuated(&self) -> usize {
+        self.actuated
+    }
+
+    /// Number of passive columns.
+    #[must_use]
+    pub fn passive(&self) -> usize {
+        self.passive
+    }
+
+    /// Size of the object's twist.
+    #[must_use]
+    pub fn object(&self) -> usize {
+        self.object
+    }
+}

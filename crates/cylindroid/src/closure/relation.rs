@@ -1,0 +1,304 @@
+//! The linear relation between driven joints and object, and the forces that do no work on it.
+//!
+//! Formula  R = {(q_a, u)}: rows q_a and u of the kernel, made orthonormal, [X C; Y S] Z^T;
+//!          F = {(tau, w): tau^T q_a + w^T u = 0 on R} = R^perp, with the columns (-X S, Y C),
+//!          h = (dom R)^perp and s = (ran R)^perp
+//! Shapes   q_a and d rows, p = r' + i' + c' columns; F has q_a + d - p
+//! Units    scaled by the characteristic length inside, those of the constraint outside
+//! Frame    that of the object's twist; the wrench is taken at the same point
+//! Valid    any constraint, hyperstatic ones too: only the forces at contacts are undetermined
+//!          there, not joint torques and wrenches
+//! Why so   the paper's bases (eqs. 5 and 8) are not unique where a motion of the driven joints
+//!          can be taken up by passive joints or by the object, and its equations 15 and 16
+//!          depend on the choice; the relation leaves nothing to choose
+//! Source   Bicchi & Prattichizzo 1998, sections 2 to 4; virtual work for F
+//! Checked  tests/it/closure/reference.rs, tests/it/closure/laws.rs
+
+use super::constraint::check_finite;
+use crate::error::{Error, Result};
+use crate::linalg::{ColumnSpace, CosineSine, Cut, Matrix, PairKind, Qr, Threshold, solve_upper};
+use crate::tolerance::CLOSURE_BLOCK;
+
+/// The counts of a relation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RelationDimensions {
+    /// p: independent pairs of a joint motion and an object motion.
+    pub relation: usize,
+    /// c': motions of the object that the driven joints bring about and that need them.
+    pub coordinate: usize,
+    /// r': motions of the driven joints with which the object may rest.
+    pub redundancy: usize,
+    /// i': motions of the object with the driven joints at rest.
+    pub indeterminacy: usize,
+    /// h: joint torques that balance without a wrench on the object (active internal forces).
+    pub internal: usize,
+    /// s: wrenches on the object that need no joint torque (structural).
+    pub zero_torque: usize,
+}
+
+/// A relation split by what its directions do, in the units of the constraint. For forces read
+/// torque for rate and wrench for twist.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts {
+    /// Joint motions without object motion, a column each.
+    pub zero: Matrix,
+    /// Object motions without joint motion.
+    pub infinite: Matrix,
+    /// Joint motions of the coordinate directions ...
+    pub joint: Matrix,
+    /// ... and the object motions that go with them, column by column.
+    pub object: Matrix,
+}
+
+/// Between scaled and given coordinates of the object.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ObjectScale {
+    /// u = twist * u'.
+    twist: Matrix,
+    /// w = wrench * w', its inverse transpose.
+    wrench: Matrix,
+}
+
+impl ObjectScale {
+    pub(super) fn diagonal(scale: &[f64]) -> Self {
+        let inverse: Vec<f64> = scale.iter().map(|s| 1.0 / s).collect();
+        Self { twist: Matrix::diagonal(scale), wrench: Matrix::diagonal(&inverse) }
+    }
+}
+
+/// A linear relation between driven joints and object.
+#[derive(Debug, Clone)]
+pub struct Relation {
+    joint_scale: Vec<f64>,
+    scale: ObjectScale,
+    cs: CosineSine,
+    /// The directions in order: i' infinite, c' finite, r' zero.
+    infinite: usize,
+    zero: usize,
+    tolerance: f64,
+    rank: Cut,
+    joint_rank: Cut,
+    object_rank: Cut,
+}
+
+impl Relation {
+    /// Of the span of the columns of `span` (scaled), driven joints first.
+    pub(super) fn from_scaled(
+        span: &Matrix,
+        joint_scale: Vec<f64>,
+        scale: ObjectScale,
+        tolerance: f64,
+    ) -> Self {
+        let space = ColumnSpace::of(span, Threshold::Absolute(tolerance));
+        let cs = CosineSine::of(&space.basis(), joint_scale.len());
+        let count = |kind| (0..cs.len()).filter(|&j| cs.kind(j, tolerance) == kind).count();
+        Self {
+            infinite: count(PairKind::Infinite),
+            zero: count(PairKind::Zero),
+            rank: space.cut(),
+            joint_rank: cs.first_rank(tolerance),
+            object_rank: cs.second_rank(tolerance),
+            joint_scale,
+            scale,
+            cs,
+            tolerance,
+        }
+    }
+
+    /// Number of driven joints.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.joint_scale.len()
+    }
+
+    /// Size of the object's twist, or of the task.
+    #[must_use]
+    pub fn object(&self) -> usize {
+        self.scale.twist.rows()
+    }
+
+    /// The counts.
+    #[must_use]
+    pub fn dimensions(&self) -> RelationDimensions {
+        let p = self.cs.len();
+        RelationDimensions {
+            relation: p,
+            coordinate: p - self.infinite - self.zero,
+            redundancy: self.zero,
+            indeterminacy: self.infinite,
+            internal: self.joints() - (p - self.infinite),
+            zero_torque: self.object() - (p - self.zero),
+        }
+    }
+
+    /// The finite directions as pairs (s, c) in scaled units, s falling: how much of each belongs
+    /// to the object and to the joints. The smallest s is the sine of the angle to a pose where
+    /// the object loses a motion, the smallest c to one where it gains one.
+    #[must_use]
+    pub fn finite_pairs(&self) -> Vec<(f64, f64)> {
+        self.finite().map(|j| (self.cs.sines[j], self.cs.cosines[j])).collect()
+    }
+
+    /// The ranks of all columns, of the joint rows and of the object rows.
+    #[must_use]
+    pub fn cuts(&self) -> [Cut; 3] {
+        [self.rank, self.joint_rank, self.object_rank]
+    }
+
+    /// The motions by kind, in the units of the constraint.
+    #[must_use]
+    pub fn motions(&self) -> Parts {
+        self.parts(&Kinds {
+            zero: self.zero_columns(&self.cs.x),
+            infinite: self.cs.y.columns_between(0, self.infinite),
+            joint: self.finite_columns(&self.cs.x, |j| self.cs.cosines[j]),
+            object: self.finite_columns(&self.cs.y, |j| self.cs.sines[j]),
+            dual: false,
+        })
+    }
+
+    /// The forces by kind: internal torques, zero-torque wrenches, and torques with the wrenches
+    /// that they balance.
+    #[must_use]
+    pub fn forces(&self) -> Parts {
+        self.parts(&Kinds {
+            zero: self.internal_scaled(),
+            infinite: self.zero_torque_scaled(),
+            joint: self.finite_columns(&self.cs.x, |j| -self.cs.sines[j]),
+            object: self.finite_columns(&self.cs.y, |j| self.cs.cosines[j]),
+            dual: true,
+        })
+    }
+
+    /// The relation between driven joints and the task `T u`.
+    ///
+    /// # Errors
+    /// A map that has not a column for each component of u, has more rows than it can have
+    /// independent ones, dependent rows, NaN or infinity.
+    pub fn task(&self, map: &Matrix) -> Result<Self> {
+        Error::check_len("columns of the task map", self.object(), map.cols())?;
+        check_finite("task map", map)?;
+        // In scaled coordinates T' = R^T Q^T; Q^T u' are the scaled coordinates of the task, so
+        // that neither its units nor the lengths of its rows matter.
+        let m = map.rows();
+        let scaled = (map * &self.scale.twist).transpose();
+        let rows = Matrix::from_fn(scaled.rows(), m, |i, j| {
+            let size = scaled.column(j).iter().fold(0.0, |s: f64, x| s.max(x.abs()));
+            if size > 0.0 { scaled[(i, j)] / size } else { 0.0 }
+        });
+        let rank = ColumnSpace::of(&rows, Threshold::Relative(CLOSURE_BLOCK)).rank();
+        if rank < m {
+            return Err(Error::InvalidOption {
+                option: "task",
+                value: format!("{m} x {} map of rank {rank}", map.cols()),
+                reason: "its rows must be independent; leave out those that follow from others"
+                    .to_owned(),
+            });
+        }
+        let qr = Qr::plain(scaled.clone());
+        let r = qr.r();
+        let reduce = qr.basis();
+        let mut wrench = Matrix::identity(m);
+        for j in 0..m {
+            let column = solve_upper(&r, wrench.column(j));
+            wrench.column_mut(j).copy_from_slice(&column);
+        }
+        let columns = self.cs.len();
+        let weighted = |a: &Matrix, size: &[f64]| {
+            Matrix::from_fn(a.rows(), columns, |i, j| a[(i, j)] * size[j])
+        };
+        let joint = weighted(&self.cs.x, &self.cs.cosines);
+        let object = &reduce.transpose() * &weighted(&self.cs.y, &self.cs.sines);
+        Ok(Self::from_scaled(
+            &Matrix::above(columns, &[&joint, &object]),
+            self.joint_scale.clone(),
+            ObjectScale { wrench, twist: r.transpose() },
+            self.tolerance,
+        ))
+    }
+
+    fn finite(&self) -> std::ops::Range<usize> {
+        self.infinite..self.cs.len() - self.zero
+    }
+
+    fn zero_columns(&self, x: &Matrix) -> Matrix {
+        x.columns_between(self.cs.len() - self.zero, self.cs.len())
+    }
+
+    fn finite_columns(&self, a: &Matrix, size: impl Fn(usize) -> f64) -> Matrix {
+        let from = self.infinite;
+        Matrix::from_fn(a.rows(), self.finite().len(), |i, j| a[(i, from + j)] * size(from + j))
+    }
+
+    /// What is orthogonal to all attainable joint rates.
+    fn internal_scaled(&self) -> Matrix {
+        let attained = self.cs.x.columns_between(self.infinite, self.cs.len());
+        Qr::plain(attained).complement()
+    }
+
+    /// What is orthogonal to all attainable twists.
+    fn zero_torque_scaled(&self) -> Matrix {
+        let attained = self.cs.y.columns_between(0, self.cs.len() - self.zero);
+        Qr::plain(attained).complement()
+    }
+
+    /// Joint torques that balance the wrench with the least scaled norm, and the part of the
+    /// wrench that nothing balances (both in the units of the constraint).
+    pub(super) fn balance(&self, wrench: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        // w' = A^T w, since w^T u = w'^T u'.
+        let scaled = self.scale.twist.transpose().mul_vec(wrench);
+        let along =
+            |j: usize| -> f64 { self.cs.y.column(j).iter().zip(&scaled).map(|(y, w)| y * w).sum() };
+        let mut torque = vec![0.0; self.joints()];
+        for j in self.finite() {
+            let share = -along(j) * self.cs.sines[j] / self.cs.cosines[j];
+            torque.iter_mut().zip(self.cs.x.column(j)).for_each(|(t, x)| *t += share * x);
+        }
+        torque.iter_mut().zip(&self.joint_scale).for_each(|(t, s)| *t /= s);
+        let mut left = vec![0.0; self.object()];
+        for j in 0..self.infinite {
+            let share = along(j);
+            left.iter_mut().zip(self.cs.y.column(j)).for_each(|(l, y)| *l += share * y);
+        }
+        (torque, self.scale.wrench.mul_vec(&left))
+    }
+
+    fn parts(&self, kinds: &Kinds) -> Parts {
+        let joint = |a: &Matrix| {
+            Matrix::from_fn(a.rows(), a.cols(), |i, j| {
+                let s = self.joint_scale[i];
+                if kinds.dual { a[(i, j)] / s } else { a[(i, j)] * s }
+            })
+        };
+        let object = if kinds.dual { &self.scale.wrench } else { &self.scale.twist };
+        Parts {
+            zero: joint(&kinds.zero),
+            infinite: object * &kinds.infinite,
+            joint: joint(&kinds.joint),
+            object: object * &kinds.object,
+        }
+    }
+}
+
+/// Parts in scaled coordinates.
+struct Kinds {
+    zero: Matrix,
+    infinite: Matrix,
+    joint: Matrix,
+    object: Matrix,
+    dual: bool,
+}
+
+impl Parts {
+    /// All columns of the relation, joints above the object: infinite, finite, zero.
+    #[must_use]
+    pub fn basis(&self) -> Matrix {
+        let (joints, object) = (self.joint.rows(), self.object.rows());
+        let (zero, infinite) = (self.zero.cols(), self.infinite.cols());
+        let above =
+            Matrix::beside(joints, &[&Matrix::zeros(joints, infinite), &self.joint, &self.zero]);
+        let below =
+            Matrix::beside(object, &[&self.infinite, &self.object, &Matrix::zeros(object, zero)]);
+        Matrix::above(above.cols(), &[&above, &below])
+    }
+}

@@ -1,0 +1,176 @@
+//! Singular poses of closed chains: which counts differ from their generic values, what motion is
+//! lost or gained, and how far the next loss is.
+//!
+//! Formula  type I    zero-torque wrenches s or redundancy r' above generic: the object loses
+//!          type II   indeterminacy i' above generic: the object gains, the drives do not hold it
+//!          type III  both
+//!          configuration space  rank of [J_a J_p -G^T] below generic, k above
+//!          passive   idle motions above generic
+//! Units    distances have none: the smallest s and c among the finite pairs of the relation
+//!          (sines of angles in units scaled by the characteristic length, at the object's
+//!          reference point), the smallest value of the kernel without passive joints, and the
+//!          smallest singular value kept of the scaled constraint over the largest. The last
+//!          depends on where contacts are drawn; that each is zero does not depend on anything.
+//! Valid    relative to generic counts, which [`Counts::generic`] takes from several poses: a
+//!          mechanism may hold wrenches by its structure, or spin idly, in every pose
+//! Source   Gosselin & Angeles 1990 (I, II, III); Park & Kim 1999 and Zlatanov et al. 1995
+//!          (configuration space, passive)
+//! Checked  tests/it/closure/singularity.rs
+
+use std::fmt;
+
+use super::motions::{Motions, Rows};
+use super::relation::{Relation, RelationDimensions};
+use crate::linalg::Matrix;
+
+/// The counts that singularities change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Counts {
+    /// Rank of the constraint matrix.
+    pub rank: usize,
+    /// Motions of passive joints alone.
+    pub idle: usize,
+    /// Redundancy r' of the relation.
+    pub redundancy: usize,
+    /// Indeterminacy i' of the relation.
+    pub indeterminacy: usize,
+    /// Zero-torque wrenches s.
+    pub zero_torque: usize,
+}
+
+/// The kinds of singular pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SingularityKind {
+    /// The object loses a motion (end-effector, serial).
+    TypeI,
+    /// The object gains a motion that the driven joints do not control (actuator, parallel).
+    TypeII,
+    /// Both at once.
+    TypeIII,
+    /// The constraint loses rank: the mechanism gains a degree of freedom.
+    ConfigurationSpace,
+    /// Passive joints gain a motion of their own.
+    Passive,
+}
+
+impl fmt::Display for SingularityKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TypeI => "type I / end-effector (object loses motion)",
+            Self::TypeII => "type II / actuator (object gains uncontrolled motion)",
+            Self::TypeIII => "type III (object loses one motion and gains another)",
+            Self::ConfigurationSpace => "configuration space (the mechanism gains a motion)",
+            Self::Passive => "passive (passive joints gain a motion of their own)",
+        })
+    }
+}
+
+/// How far a pose is from losing what it has: 0 at a singularity, at most 1 elsewhere [-].
+/// Infinite where there is nothing to lose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Distances {
+    /// To the loss of a motion of the object.
+    pub type_i: f64,
+    /// To a motion of the object that the driven joints do not hold.
+    pub type_ii: f64,
+    /// To the loss of rank of the constraint.
+    pub configuration_space: f64,
+    /// To a motion of passive joints alone.
+    pub passive: f64,
+}
+
+/// What is singular about a pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Singularities {
+    /// The kinds, in the order of [`SingularityKind`]; empty for a regular pose.
+    pub kinds: Vec<SingularityKind>,
+    /// Wrenches held without torque, a column each: those beyond the generic number block the
+    /// lost motions.
+    pub blocked: Matrix,
+    /// Motions of the object with the driven joints at rest: those beyond the generic number are
+    /// gained.
+    pub gained: Matrix,
+    /// How far the pose is from each kind.
+    pub distances: Distances,
+}
+
+impl Counts {
+    /// Of one pose.
+    #[must_use]
+    pub fn of(motions: &Motions, relation: &Relation) -> Self {
+        let RelationDimensions { redundancy, indeterminacy, zero_torque, .. } =
+            relation.dimensions();
+        Self {
+            rank: motions.cut().rank.rank,
+            idle: motions.standing(OTHERS).cols(),
+            redundancy,
+            indeterminacy,
+            zero_torque,
+        }
+    }
+
+    /// The generic counts of two poses: the largest rank and the smallest of all others. Folded
+    /// over some poses at random it gives those of the mechanism.
+    #[must_use]
+    pub fn generic(self, other: Self) -> Self {
+        Self {
+            rank: self.rank.max(other.rank),
+            idle: self.idle.min(other.idle),
+            redundancy: self.redundancy.min(other.redundancy),
+            indeterminacy: self.indeterminacy.min(other.indeterminacy),
+            zero_torque: self.zero_torque.min(other.zero_torque),
+        }
+    }
+}
+
+const OTHERS: Rows = Rows { actuated: true, passive: false, object: true };
+
+impl Singularities {
+    /// Of a pose, against the generic counts of its mechanism.
+    #[must_use]
+    pub fn of(motions: &Motions, relation: &Relation, generic: &Counts) -> Self {
+        let now = Counts::of(motions, relation);
+        let loses = now.zero_torque > generic.zero_torque || now.redundancy > generic.redundancy;
+        let gains = now.indeterminacy > generic.indeterminacy;
+        let folds = now.rank < generic.rank;
+        let idles = now.idle > generic.idle;
+        let mut kinds = Vec::new();
+        match (loses, gains) {
+            (true, true) => kinds.push(SingularityKind::TypeIII),
+            (true, false) => kinds.push(SingularityKind::TypeI),
+            (false, true) => kinds.push(SingularityKind::TypeII),
+            (false, false) => {}
+        }
+        if folds {
+            kinds.push(SingularityKind::ConfigurationSpace);
+        }
+        if idles {
+            kinds.push(SingularityKind::Passive);
+        }
+        let pairs = relation.finite_pairs();
+        let distance = |singular: bool, value: Option<f64>| {
+            if singular { 0.0 } else { value.unwrap_or(f64::INFINITY) }
+        };
+        let finite = |x: f64| x.is_finite().then_some(x);
+        Self {
+            kinds,
+            blocked: relation.forces().infinite,
+            gained: relation.motions().infinite,
+            distances: Distances {
+                type_i: distance(loses, pairs.last().map(|p| p.0)),
+                type_ii: distance(gains, pairs.first().map(|p| p.1)),
+                configuration_space: distance(
+                    folds,
+                    (motions.cut().rank.rank > 0).then(|| motions.regularity()),
+                ),
+                passive: distance(idles, finite(motions.still(OTHERS).1.kept)),
+            },
+        }
+    }
+
+    /// True for a pose that is regular in all respects.
+    #[must_use]
+    pub fn is_regular(&self) -> bool {
+        self.kinds.is_empty()
+    }
+}

@@ -1,0 +1,173 @@
+//! Statics of a closed chain: joint torques for a wrench, forces at the contacts for both.
+//!
+//! Formula  w = G t, tau = -J_a^T t, 0 = J_p^T t, that is M^T t = -(tau, 0, w);
+//!          elastic: of all such t the one of least t^T C t (C the compliance of the contacts)
+//! Shapes   w: d, tau: q_a, t: t entries; C: t x t
+//! Units    of the constraint. Without a compliance the norm is that of the scaled forces: forces
+//!          times the characteristic length beside moments
+//! Frame    w acts on the object, at the point and in the axes of its twist; t acts from the
+//!          object on the limbs, in the frames of the rows
+//! Valid    any constraint. What cannot be balanced is returned, not hidden: a wrench along which
+//!          the object moves freely; torques and a wrench that contradict each other. Where the
+//!          chain is not hyperstatic the compliance has no influence.
+//! Source   Bicchi & Prattichizzo 1998, eq. 12; elastic forces by least complementary energy
+//! Checked  tests/it/closure/statics.rs
+
+use super::constraint::Constraint;
+use super::mobility::Subspace;
+use super::motions::Motions;
+use super::relation::Relation;
+use crate::error::{Error, Result};
+use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold};
+use crate::tolerance::CLOSURE_RANK;
+
+/// Joint torques that balance a wrench.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Torques {
+    /// The torques of least norm, an entry for each driven joint. Any combination of the internal
+    /// torques of the mobility report may be added.
+    pub torques: Vec<f64>,
+    /// The part of the wrench that no torque and no structure balances: zero, or along motions of
+    /// the object that the driven joints do not hold.
+    pub unbalanced: Vec<f64>,
+}
+
+/// Joint torques and the wrench on the object at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Load<'a> {
+    /// An entry for each driven joint.
+    pub torques: &'a [f64],
+    /// The wrench on the object.
+    pub wrench: &'a [f64],
+}
+
+/// Forces at the contacts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactForces {
+    /// An entry for each row of the constraint.
+    pub forces: Vec<f64>,
+    /// What the load leaves unbalanced over the load (scaled) [-]: rounding, unless torques and
+    /// wrench contradict each other.
+    pub unbalanced: f64,
+}
+
+/// The joint torques of least norm that hold the wrench `wrench` on the object; in `metric`, or
+/// scaled by the characteristic length without one.
+///
+/// # Errors
+/// A wrench or metric of the wrong size, NaN or infinity.
+pub fn joint_torques(
+    relation: &Relation,
+    wrench: &[f64],
+    metric: Option<&Metric>,
+) -> Result<Torques> {
+    Error::check_len("wrench", relation.object(), wrench.len())?;
+    Error::check_finite("wrench", wrench)?;
+    let (mut torques, unbalanced) = relation.balance(wrench);
+    if let Some(metric) = metric {
+        Error::check_len("torque metric", relation.joints(), metric.len())?;
+        let mut internal = relation.forces().zero;
+        metric.whiten_rows(&mut internal);
+        metric.whiten(&mut torques);
+        let basis = Qr::plain(internal).basis();
+        for j in 0..basis.cols() {
+            let along: f64 = basis.column(j).iter().zip(&torques).map(|(b, t)| b * t).sum();
+            torques.iter_mut().zip(basis.column(j)).for_each(|(t, b)| *t -= along * b);
+        }
+        metric.colour(&mut torques);
+    }
+    Ok(Torques { torques, unbalanced })
+}
+
+/// The contact forces under a load: the ones of least norm, or with a compliance the elastic ones.
+/// Any combination of the hyperstatic forces of the mobility report may be added.
+///
+/// # Errors
+/// Torques, wrench or compliance of the wrong size, NaN or infinity.
+pub fn contact_forces(
+    constraint: &Constraint,
+    motions: &Motions,
+    load: Load<'_>,
+    compliance: Option<&Metric>,
+) -> Result<ContactForces> {
+    Error::check_len("torques", constraint.actuated(), load.torques.len())?;
+    Error::check_len("wrench", constraint.object(), load.wrench.len())?;
+    Error::check_finite("torques", load.torques)?;
+    Error::check_finite("wrench", load.wrench)?;
+    let t = constraint.rows();
+    // b' = -D_c (tau, 0, -w): the columns of the object carry -G^T, and G t = w.
+    let (a, p) = (constraint.actuated(), constraint.passive());
+    let scale = constraint.column_scale();
+    let mut target = vec![0.0; a + p + constraint.object()];
+    for (i, torque) in load.torques.iter().enumerate() {
+        target[i] = -torque * scale[i];
+    }
+    for (i, w) in load.wrench.iter().enumerate() {
+        target[a + p + i] = -w * scale[a + p + i];
+    }
+    // Unknown: the scaled forces t = D_r t', or z = L^T t with C = L L^T.
+    let mut equations = constraint.scaled_transpose();
+    let rows = constraint.row_scale();
+    if let Some(metric) = compliance {
+        Error::check_len("compliance", t, metric.len())?;
+        for (j, r) in rows.iter().enumerate() {
+            equations.column_mut(j).iter_mut().for_each(|x| *x /= r);
+        }
+        metric.colour_columns(&mut equations);
+    }
+    let svd = Svd::of(&equations);
+    let mut forces = vec![0.0; t];
+    let mut left = target.clone();
+    for i in 0..motions.cut().rank.rank.min(svd.len()) {
+        let along: f64 = svd.u(i).iter().zip(&target).map(|(u, b)| u * b).sum();
+        forces.iter_mut().zip(svd.v(i)).for_each(|(f, v)| *f += along / svd.value(i) * v);
+        left.iter_mut().zip(svd.u(i)).for_each(|(l, u)| *l -= along * u);
+    }
+    match compliance {
+        Some(metric) => metric.colour(&mut forces),
+        None => forces.iter_mut().zip(rows).for_each(|(f, r)| *f *= r),
+    }
+    let norm = |x: &[f64]| x.iter().map(|a| a * a).sum::<f64>().sqrt();
+    let size = norm(&target);
+    Ok(ContactForces { forces, unbalanced: if size > 0.0 { norm(&left) / size } else { 0.0 } })
+}
+
+/// ker G and ker J^T: contact forces that nothing determines.
+pub(super) fn undetermined(constraint: &Constraint, motions: &Motions) -> Subspace {
+    let basis = if motions.hyperstatic() == 0 {
+        Matrix::zeros(constraint.rows(), 0)
+    } else {
+        let scaled = constraint.scaled_transpose().transpose();
+        let space = ColumnSpace::of(&scaled, Threshold::Relative(motions.threshold()));
+        unscaled(constraint, space.complement())
+    };
+    Subspace { basis, cut: motions.cut() }
+}
+
+/// ker G: contact forces without a wrench on the object. They need torques at the joints unless
+/// nothing determines them.
+#[must_use]
+pub fn internal_forces(constraint: &Constraint) -> Subspace {
+    let joints = constraint.actuated() + constraint.passive();
+    kernel_of_columns(constraint, joints, joints + constraint.object())
+}
+
+/// ker J^T: contact forces without torques at any joint.
+#[must_use]
+pub fn structural_forces(constraint: &Constraint) -> Subspace {
+    kernel_of_columns(constraint, 0, constraint.actuated() + constraint.passive())
+}
+
+/// Contact forces that do no work on columns `from..to` of the constraint.
+fn kernel_of_columns(constraint: &Constraint, from: usize, to: usize) -> Subspace {
+    let columns = constraint.scaled_transpose().rows_between(from, to).transpose();
+    let space = ColumnSpace::of(&columns, Threshold::Relative(CLOSURE_RANK));
+    Subspace { basis: unscaled(constraint, space.complement()), cut: space.cut() }
+}
+
+fn unscaled(constraint: &Constraint, mut forces: Matrix) -> Matrix {
+    for j in 0..forces.cols() {
+        forces.column_mut(j).iter_mut().zip(constraint.row_scale()).for_each(|(f, r)| *f *= r);
+    }
+    forces
+}

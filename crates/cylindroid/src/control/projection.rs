@@ -1,0 +1,222 @@
+//! Which part of a motion an arm takes on when it cannot do all of it.
+//!
+//! Formula  rates = J+ P x with P a projector on the motions of the arm: orthogonal in scaled task
+//!          coordinates (then P changes nothing: J+ P = J+), P_h along the h-reciprocal twists
+//!          (then J+ P = J+h), along twists given by the task (26), or damped
+//! Shapes   P: 6 x 6 on [v / L; w] at the tool; the motions of the arm are the left singular
+//!          vectors of the task Jacobian, found there already
+//! Units    h, mu, lambda in m/rad (mu and lambda times the unit of the joint weights)
+//! Valid    tasks of all six components. Where P does not exist, or enlarges a twist by more than
+//!          `largest`, the reason is kept and the fallback takes over; without one the arm stops
+//! Why so   the pseudoinverse of the joint space stays what it was, so limits, secondary tasks and
+//!          the treatment of singular poses are the same for every projection
+//! Checked  tests/it/servo/projection.rs
+
+use super::options::ServoOptions;
+use crate::error::{Error, Result};
+use crate::inverse::HyperbolicDamping;
+use crate::kinematics::Reference;
+use crate::linalg::Svd;
+use crate::screws::{NoInverse, ScrewOptions, ScrewSystem, TaskProjector};
+use crate::spatial::{Pose, Rotation, Twist, Vec3};
+use crate::tolerance::GENERIC_RANK;
+
+/// Which part of a motion is taken on.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Projection {
+    /// The nearest motion in scaled task coordinates: what [`Method`](crate::Method) alone does.
+    /// It changes with the tool point and the characteristic length.
+    #[default]
+    Orthogonal,
+    /// The hyperbolic pseudoinverse: what is left out is h-reciprocal to all motions of the arm,
+    /// in any frame and unit. It does not exist at principal pitches and for some systems.
+    Hyperbolic {
+        /// Pitch of the form [m/rad]; infinite for the limit.
+        h: f64,
+    },
+    /// The hyperbolic pseudoinverse with damping.
+    DampedHyperbolic {
+        /// Pitch of the form [m/rad].
+        h: f64,
+        /// The damping.
+        damping: HyperbolicDamping,
+    },
+    /// What is left out is a sum of these twists, which the task does not mind.
+    Oblique {
+        /// As many as the arm lacks to six.
+        complement: Vec<Twist>,
+        /// The frame they are given in: `Local` (the tool's), `LocalWorldAligned` or `World`.
+        reference: Reference,
+    },
+}
+
+impl Projection {
+    /// Its name in options and reports.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Orthogonal => "orthogonal",
+            Self::Hyperbolic { .. } => "hyperbolic",
+            Self::DampedHyperbolic { .. } => "damped-hyperbolic",
+            Self::Oblique { .. } => "oblique",
+        }
+    }
+
+    /// Refuses numbers outside the domain.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] with the option and its value; twists that are not finite.
+    pub fn check(&self) -> Result<()> {
+        match self {
+            Self::Orthogonal => Ok(()),
+            Self::Hyperbolic { h } if h.is_nan() => {
+                Err(Error::NotFinite { what: "pitch h".into(), value: *h })
+            }
+            Self::Hyperbolic { .. } => Ok(()),
+            Self::DampedHyperbolic { h, damping } => {
+                Error::check_finite("pitch h of a damped form", &[*h])?;
+                damping.check()
+            }
+            Self::Oblique { complement, .. } => {
+                if complement.len() > 6 {
+                    return Err(Error::InvalidOption {
+                        option: "complement",
+                        value: format!("{} twists", complement.len()),
+                        reason: "at most six twists can be given up".to_owned(),
+                    });
+                }
+                complement.iter().enumerate().try_for_each(|(i, t)| {
+                    Error::check_finite(&format!("complement twist {}", i + 1), &t.to_array())
+                })
+            }
+        }
+    }
+}
+
+/// Where the task is looked at: the tool's pose, the axes of the task and the length.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TaskFrame {
+    pub(super) pose: Pose,
+    pub(super) axes: Reference,
+    pub(super) length: f64,
+}
+
+impl TaskFrame {
+    /// A twist given in `reference` in scaled task coordinates.
+    fn scaled(&self, twist: Twist, reference: Reference) -> [f64; 6] {
+        let turn = |t: Twist, r: Rotation| Twist { linear: r * t.linear, angular: r * t.angular };
+        let aligned = match reference {
+            Reference::Local => turn(twist, self.pose.rotation),
+            Reference::World => twist.at_point(self.pose.translation),
+            Reference::LocalWorldAligned => twist,
+        };
+        let t = match self.axes {
+            Reference::Local => turn(aligned, self.pose.rotation.inverse()),
+            Reference::World | Reference::LocalWorldAligned => aligned,
+        };
+        Twist { linear: t.linear * (1.0 / self.length), angular: t.angular }.to_array()
+    }
+}
+
+/// The projector of this step.
+#[derive(Debug, Clone)]
+pub(super) struct Projecting {
+    projector: Option<TaskProjector>,
+    reason: Option<NoInverse>,
+    stopped: bool,
+}
+
+impl Projecting {
+    pub(super) const fn new() -> Self {
+        Self { projector: None, reason: None, stopped: false }
+    }
+
+    /// Finds the projector for the pose of this decomposition, or the fallback's.
+    pub(super) fn load(&mut self, options: &ServoOptions, svd: &Svd, frame: TaskFrame) {
+        *self = Self::new();
+        let largest = options.largest_projection;
+        match projector(&options.projection, largest, svd, frame) {
+            Ok(found) => self.projector = found,
+            Err(reason) => {
+                self.reason = Some(reason);
+                match options.fallback.as_ref().map(|f| projector(f, largest, svd, frame)) {
+                    Some(Ok(found)) => self.projector = found,
+                    Some(Err(_)) | None => self.stopped = true,
+                }
+            }
+        }
+    }
+
+    /// `x <- P x`, zero where there is no projector.
+    pub(super) fn apply(&self, x: &mut [f64]) {
+        if self.stopped {
+            x.fill(0.0);
+        } else if let (Some(p), Ok(x)) = (&self.projector, <&mut [f64; 6]>::try_from(x)) {
+            *x = p.apply(x);
+        }
+    }
+
+    /// Why the wanted projector was not used.
+    pub(super) fn reason(&self) -> Option<NoInverse> {
+        self.reason
+    }
+
+    /// True if the fallback did not exist either, or was not named.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stopped
+    }
+}
+
+/// `None` for the projector that changes nothing.
+fn projector(
+    projection: &Projection,
+    largest: f64,
+    svd: &Svd,
+    frame: TaskFrame,
+) -> std::result::Result<Option<TaskProjector>, NoInverse> {
+    if *projection == Projection::Orthogonal {
+        return Ok(None);
+    }
+    let k = svd.rank(GENERIC_RANK).rank;
+    let motions = (0..k).map(|i| std::array::from_fn(|r| svd.u(i)[r]));
+    let found = match projection {
+        Projection::Orthogonal => return Ok(None),
+        Projection::Hyperbolic { h } => {
+            let found = TaskProjector::hyperbolic(motions, h / frame.length);
+            match found {
+                Some(p) if p.norm() <= largest => p,
+                _ => {
+                    let norm = found.map_or(f64::INFINITY, |p| p.norm());
+                    return Err(why_not(svd, k, *h, frame.length, norm));
+                }
+            }
+        }
+        Projection::DampedHyperbolic { h, damping } => {
+            let twists = (0..k).map(|i| std::array::from_fn(|r| svd.u(i)[r] * svd.value(i)));
+            let gain = |g: f64| damping.gain(g, frame.length);
+            TaskProjector::damped(twists, h / frame.length, gain)
+                .map_err(|g| NoInverse::DampingMeetsEigenvalue { eigenvalue: g * frame.length })?
+        }
+        Projection::Oblique { complement, reference } => {
+            let given_up = complement.iter().map(|t| frame.scaled(*t, *reference));
+            TaskProjector::oblique(motions, given_up)?
+        }
+    };
+    let norm = found.norm();
+    if norm > largest { Err(NoInverse::TooLarge { norm }) } else { Ok(Some(found)) }
+}
+
+/// Why there is no hyperbolic inverse of pitch `h` that is as small as wanted.
+fn why_not(svd: &Svd, k: usize, h: f64, length: f64, norm: f64) -> NoInverse {
+    let twist = |i: usize| {
+        let [a, b, c, d, e, f] = std::array::from_fn(|r| svd.u(i)[r]);
+        Twist::from_array([a * length, b * length, c * length, d, e, f])
+    };
+    let twists: Vec<Twist> = (0..k).map(twist).collect();
+    // At the tool, like the projector.
+    let options = ScrewOptions { center: Some(Vec3::ZERO), ..ScrewOptions::with_length(length) };
+    ScrewSystem::of(&twists, &options)
+        .ok()
+        .and_then(|system| system.existence(h).reason)
+        .unwrap_or(NoInverse::TooLarge { norm })
+}

@@ -1,0 +1,160 @@
+//! The stages of a servo step, in their order: task, wishes, bounds, rates.
+
+use super::super::approach;
+use super::super::limits::{LimitKind, Motion1, RateBounds};
+use super::super::options::Projector;
+use super::super::saturation::{RELEASE, apply, solve};
+use super::super::stall::Effort;
+use super::super::step::Wanted;
+use super::Servo;
+use crate::linalg::RowSpace;
+use crate::spatial::Twist;
+use crate::tolerance::AT_LIMIT;
+
+impl Servo {
+    /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
+    pub(super) fn load_task(&mut self, wanted: &Wanted) {
+        self.space.scale(wanted.error, &mut self.error);
+        self.possible.copy_from_slice(&self.error);
+        self.projecting.apply(&mut self.possible);
+        self.method = self.options.method;
+        let mut twist = wanted.feedback;
+        let mut solved = None;
+        if self.limits.iter().any(|l| l.acceleration < f64::INFINITY) {
+            self.load_twist(twist);
+            self.solve();
+            solved = Some(twist);
+            let gain = self.options.gain;
+            if gain.position == gain.orientation {
+                let way = |(w, rate): (&mut f64, &f64)| *w = rate / gain.position;
+                self.wish.iter_mut().zip(&self.primary).for_each(way);
+            } else {
+                apply(&self.svd, &self.gains, &self.possible, &mut self.wish);
+            }
+            let dt = self.options.dt;
+            let share =
+                approach::share(&self.wish, &self.primary, &self.space.columns, &self.limits, dt);
+            twist = twist * share;
+            self.method = approach::slowed(self.method, share);
+        }
+        twist = twist + wanted.feed_forward;
+        // Saturated as a whole: the direction of the motion is kept.
+        let speed = self.options.speed;
+        let excess = (twist.linear.norm() / speed.linear).max(twist.angular.norm() / speed.angular);
+        if excess > 1.0 {
+            twist = twist * (1.0 / excess);
+        }
+        // Where nothing was changed, the rates are there already.
+        if solved != Some(twist) {
+            self.load_twist(twist);
+            self.solve();
+        }
+    }
+
+    /// `x = P twist`, scaled.
+    pub(super) fn load_twist(&mut self, twist: Twist) {
+        self.space.scale(twist, &mut self.x);
+        self.projecting.apply(&mut self.x);
+    }
+
+    /// `primary = J+ x`
+    pub(super) fn solve(&mut self) {
+        solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
+    }
+
+    /// True if the tool, moved by the rates of this step, is so slow against the target that an
+    /// error within tolerance stays within it.
+    pub(super) fn settled(&self, feed_forward: Twist) -> bool {
+        let speed = self.space.twist(&self.done) - feed_forward;
+        let (gain, most) = (self.options.gain, self.options.tolerance);
+        speed.linear.norm() <= gain.position * most.position
+            && speed.angular.norm() <= gain.orientation * most.orientation
+    }
+
+    /// Secondary wishes in weighted coordinates, projected on the null space.
+    pub(super) fn load_wish(&mut self, wanted_rates: &[f64]) {
+        self.wish.fill(0.0);
+        if !wanted_rates.is_empty() {
+            for (w, &c) in self.wish.iter_mut().zip(self.chain.coordinates()) {
+                *w = wanted_rates[c];
+            }
+        }
+        for secondary in &self.options.secondary {
+            secondary.add_rates(
+                &self.mechanism,
+                &self.chain,
+                &self.svd,
+                &self.space,
+                &mut self.gradient,
+                &mut self.wish,
+            );
+        }
+        if self.wish.iter().all(|w| *w == 0.0) {
+            return;
+        }
+        for (w, &c) in self.wish.iter_mut().zip(&self.space.columns) {
+            *w = if c == 0.0 { 0.0 } else { *w / c };
+        }
+        let space = match self.options.projector {
+            Projector::Exact => RowSpace::exact(&self.svd),
+            Projector::Retained => RowSpace::retained(&self.svd, &self.kept),
+        };
+        space.project_out(&mut self.wish);
+    }
+
+    /// The bounds of the next rates, in weighted coordinates.
+    pub(super) fn load_bounds(&mut self, q: &[f64]) {
+        for (i, &c) in self.chain.coordinates().iter().enumerate() {
+            let now = Motion1 { position: q[c], rate: self.rates[c] };
+            let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
+            self.own_bounds[i] = bound;
+            if self.space.is_locked(i) {
+                (bound.lower, bound.upper) = (0.0, 0.0);
+            } else {
+                bound.lower /= self.space.columns[i];
+                bound.upper /= self.space.columns[i];
+            }
+            self.bounds[i] = bound;
+        }
+    }
+
+    pub(super) fn store_rates(&mut self) -> Effort {
+        let mut effort = Effort::default();
+        for (i, &c) in self.chain.coordinates().iter().enumerate() {
+            let (rate, bound) = (self.primary[i], self.bounds[i]);
+            self.active[i] = if self.space.is_locked(i) { None } else { bound.met(rate) };
+            // Once more: the scale leaves a rounding.
+            let own = match self.space.is_locked(i) {
+                true => 0.0,
+                false => self.own_bounds[i].clamp(rate * self.space.columns[i]),
+            };
+            let before = std::mem::replace(&mut self.rates[c], own).abs();
+            let speed = own.abs();
+            effort.gaining |= self.active[i] == Some(LimitKind::Acceleration) && speed > before;
+            if speed > 0.0 {
+                effort.stopping_time =
+                    effort.stopping_time.max(speed / self.limits[i].acceleration);
+            }
+        }
+        effort
+    }
+
+    /// The joints that stand at a position limit, and beyond it would carry out more of the task.
+    pub(super) fn note_limits(&mut self) {
+        self.at_limit.clear();
+        let left = |(x, done): (&f64, &f64)| x - done;
+        let size = self.x.iter().zip(&self.done).map(left).map(|r| r * r).sum::<f64>().sqrt();
+        let least = RELEASE * self.svd.value(0) * size;
+        for (i, &c) in self.chain.coordinates().iter().enumerate() {
+            let (rate, bound) = (self.primary[i], self.bounds[i]);
+            let (q, l) = (self.chain.q()[i], self.limits[i]);
+            let rest = self.x.iter().zip(&self.done).map(left);
+            let pull: f64 = self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum();
+            let above = l.upper - q < AT_LIMIT && rate >= bound.upper && pull > least;
+            let below = q - l.lower < AT_LIMIT && rate <= bound.lower && pull < -least;
+            if !self.space.is_locked(i) && (above || below) {
+                self.at_limit.push(c);
+            }
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! The coordinates in which a task is inverted: the components that matter, linear ones divided by
+//! the characteristic length, joints by the square root of their weight.
+//!
+//! Formula  J_task = diag(r) S J diag(c), S the rows that matter, r = 1/L or 1, c = 1/sqrt(weight),
+//!          0 for joints that are locked; rates = diag(c) (rates of the scaled problem)
+//! Shapes   J: 6 x n, J_task: m x n
+//! Checked  tests/it/servo/limits.rs::joint_weights_keep_joints_still
+
+use super::options::ServoOptions;
+use crate::kinematics::{Chain, Reference};
+use crate::linalg::Matrix;
+use crate::model::Limits;
+use crate::spatial::Twist;
+
+/// Which rows and columns, scaled how.
+#[derive(Debug, Clone)]
+pub(super) struct TaskSpace {
+    pub(super) axes: Reference,
+    /// Row of the 6 x n Jacobian and its scale, for each of the m components.
+    pub(super) rows: Vec<(usize, f64)>,
+    /// Scale of each of the n columns; 0 for joints that are locked.
+    pub(super) columns: Vec<f64>,
+    /// The Jacobian before it is scaled, 6 x n.
+    jacobian: Matrix,
+}
+
+impl TaskSpace {
+    /// For the joints of `chain` with these limits.
+    pub(super) fn new(options: &ServoOptions, chain: &Chain, limits: &[Limits]) -> Self {
+        let scale = |i: usize| if i < 3 { 1.0 / options.length } else { 1.0 };
+        let component = |&i: &usize| options.task.components[i];
+        let weight = |c: usize| options.joint_weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt());
+        let column = |(&c, l): (&usize, &Limits)| if is_locked(l) { 0.0 } else { weight(c) };
+        Self {
+            axes: options.task.axes,
+            rows: (0..6).filter(component).map(|i| (i, scale(i))).collect(),
+            columns: chain.coordinates().iter().zip(limits).map(column).collect(),
+            jacobian: Matrix::zeros(6, chain.n()),
+        }
+    }
+
+    /// Writes J_task.
+    pub(super) fn load(&mut self, chain: &Chain, task: &mut Matrix) {
+        chain.jacobian_into(self.axes, &mut self.jacobian);
+        for (j, &weight) in self.columns.iter().enumerate() {
+            let column = self.jacobian.column(j);
+            for (t, &(row, scale)) in task.column_mut(j).iter_mut().zip(&self.rows) {
+                *t = column[row] * scale * weight;
+            }
+        }
+    }
+
+    /// Writes a twist in task coordinates.
+    pub(super) fn scale(&self, twist: Twist, x: &mut [f64]) {
+        let twist = twist.to_array();
+        for (x, &(row, scale)) in x.iter_mut().zip(&self.rows) {
+            *x = twist[row] * scale;
+        }
+    }
+
+    /// The twist of these task coordinates, zero in the other components.
+    pub(super) fn twist(&self, x: &[f64]) -> Twist {
+        let mut twist = [0.0; 6];
+        for (x, &(row, scale)) in x.iter().zip(&self.rows) {
+            twist[row] = x / scale;
+        }
+        Twist::from_array(twist)
+    }
+
+    /// True for joints that no step can move: they take no part, as if they were fixed.
+    pub(super) fn is_locked(&self, i: usize) -> bool {
+        self.columns[i] == 0.0
+    }
+}
+
+fn is_locked(limits: &Limits) -> bool {
+    limits.lower == limits.upper || limits.velocity == 0.0 || limits.acceleration == 0.0
+}

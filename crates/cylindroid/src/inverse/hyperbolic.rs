@@ -1,0 +1,266 @@
+//! Hyperbolic pseudoinverse: the inverse whose joint rates do not change with the frame.
+//!
+//! Formula  independent columns: J+h = (J^T Q_h J)^-1 J^T Q_h
+//!          any rank, joint metric M, J = F C: J+h = C+ (F^T Q_h F)^-1 F^T Q_h,
+//!          C+ = M^-1 C^T (C M^-1 C^T)^-1; P_h = J J+h
+//!          damped: (J^T Q_h J + lambda M)^-1 J^T Q_h
+//!          invariant damped: (G^2 + mu^2)^-1 G J^T Q_h, G = J^T Q_h J, in coordinates of the joints
+//!          in which M = 1; tends to J+h as mu goes to zero where that exists, else to the inverse
+//!          on the other eigenvectors of G
+//! Shapes   J: 6 x m (linear part first) -> m x 6; h, L, c as in `screws`
+//! Units    h in m/rad, lambda and mu in m/rad times the unit of M
+//! Valid    J+h exists iff F^T Q_h F is regular: never for some systems, see `screws::NoInverse`;
+//!          the first damped form is singular where an eigenvalue of G (against M) is -lambda; the
+//!          invariant one always exists. For rank 6 and a finite h it is the pseudoinverse of J
+//! Fails    only on input that is not finite or of the wrong shape. Where there is no inverse,
+//!          `exists` is false, `reason` says why, and the entries of the matrix are NaN
+//! Why so   the Moore-Penrose inverse of a twist Jacobian adds metres to radians: its rates change
+//!          with the origin and the unit. These do not; they are not optimal in any frame either:
+//!          the twist that is realised, P_h s, makes (s - P_h s)^T Q_h (s - P_h s) stationary
+//! Source   Donelan & Selig, theorems 1, 2 and 5, section 6.2; its example 1 has a wrong entry
+//!          (row 3, column 2: (16 h^2 + 16 h - 1) / 32 h), its damped form the wrong promise that it
+//!          always exists
+//! Checked  tests/it/screws/vectors.rs, ::laws, ::invariance
+
+use super::report::{Dropped, Inverse, assemble};
+use super::weighted::Weights;
+use crate::error::{Error, Result};
+use crate::linalg::{Eigen, Matrix, Metric, Svd};
+use crate::screws::{NoInverse, Projector, ScrewOptions, ScrewSystem};
+use crate::spatial::{Twist, Wrench};
+use crate::tolerance;
+
+/// What a hyperbolic pseudoinverse is told besides the pitch.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct HyperbolicOptions {
+    /// Characteristic length, centre and noise, for the rank and the verdict on existence: the
+    /// inverse itself does not depend on them.
+    pub scale: ScrewOptions,
+    /// Metric of the joint rates, m x m; it matters for dependent columns and for damping.
+    pub joint_metric: Option<Metric>,
+    /// Damping.
+    pub damping: HyperbolicDamping,
+}
+
+/// Damping of the hyperbolic pseudoinverse.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum HyperbolicDamping {
+    /// None: the inverse itself.
+    #[default]
+    None,
+    /// `(J^T Q_h J + lambda M)^-1 J^T Q_h`: may itself be singular.
+    Gram {
+        /// lambda, in m/rad times the unit of the joint metric; of either sign.
+        lambda: f64,
+    },
+    /// `(G^2 + mu^2)^-1 G J^T Q_h`: always exists.
+    Invariant {
+        /// mu, positive, in m/rad times the unit of the joint metric.
+        mu: f64,
+    },
+}
+
+/// The hyperbolic pseudoinverse of pitch `h` of a 6 x m Jacobian (linear part first), at
+/// characteristic length 1. `h` may be infinite: the limit, where it exists.
+///
+/// ```
+/// use cylindroid::{inverse, Matrix};
+///
+/// // A rotation about z through (1, 0, 0), asked to realise a translation along x.
+/// let j = Matrix::from_rows(&[[0.0], [-1.0], [0.0], [0.0], [0.0], [1.0]]).unwrap();
+/// let rates = inverse::hyperbolic(&j, 0.1)?;
+/// assert!(rates.exists);
+/// // The pitch of the joint itself has no inverse, and says so.
+/// assert!(!inverse::hyperbolic(&j, 0.0)?.exists);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// # Errors
+/// A matrix that has not six rows or is not finite; a pitch that is NaN.
+pub fn hyperbolic(j: &Matrix, h: f64) -> Result<Inverse> {
+    hyperbolic_with(j, h, &HyperbolicOptions::default())
+}
+
+/// [`hyperbolic`] with a characteristic length, a joint metric and damping.
+///
+/// # Errors
+/// As [`hyperbolic`]; a metric of the wrong size; options outside their domain.
+pub fn hyperbolic_with(j: &Matrix, h: f64, options: &HyperbolicOptions) -> Result<Inverse> {
+    check_pitch(h)?;
+    Error::check_finite("matrix", j.as_slice())?;
+    let system = ScrewSystem::of_columns(j, &options.scale)?;
+    match options.damping {
+        HyperbolicDamping::None => {
+            let reason = system.existence(h).reason;
+            let projector = system.projector(h);
+            from_projector(j, &system, projector.ok_or(reason), options.joint_metric.as_ref())
+        }
+        damping => damped(j, h, damping, &system, options.joint_metric.as_ref()),
+    }
+}
+
+/// The inverse that realises the part of a motion that lies in the span of `j` along the twists of
+/// `complement` (eq. 26): `J (K^T J)^-1 K^T`, whatever frame both are given in. The columns of
+/// `complement` are chosen by the task: twists that may be given up.
+///
+/// # Errors
+/// Matrices that have not six rows or are not finite; options outside their domain.
+pub fn oblique(j: &Matrix, complement: &Matrix, options: &HyperbolicOptions) -> Result<Inverse> {
+    Error::check_finite("matrix", j.as_slice())?;
+    Error::check_finite("complement", complement.as_slice())?;
+    let system = ScrewSystem::of_columns(j, &options.scale)?;
+    let other = ScrewSystem::of_columns(complement, &options.scale)?;
+    let reason = NoInverse::NotComplementary { order: system.order(), other: other.order() };
+    let projector = system.projector_along(&other);
+    from_projector(j, &system, projector.ok_or(Some(reason)), options.joint_metric.as_ref())
+}
+
+fn check_pitch(h: f64) -> Result<()> {
+    if h.is_nan() {
+        return Err(Error::NotFinite { what: "pitch h".into(), value: h });
+    }
+    Ok(())
+}
+
+fn unit(t: Twist) -> Vec<f64> {
+    let norm = t.linear.norm().hypot(t.angular.norm());
+    t.to_array().map(|x| x / norm).to_vec()
+}
+
+/// Entries of an inverse that does not exist: nobody computes with them unnoticed.
+fn nan(rows: usize, cols: usize) -> Matrix {
+    Matrix::from_fn(rows, cols, |_, _| f64::NAN)
+}
+
+/// `C+ X S`: coordinates along the basis of the span, then the smallest rates that give them.
+fn from_projector(
+    j: &Matrix,
+    system: &ScrewSystem,
+    projector: std::result::Result<Projector, Option<NoInverse>>,
+    metric: Option<&Metric>,
+) -> Result<Inverse> {
+    let weights = Weights { joint: metric.cloned(), task: None };
+    let (m, k) = (j.cols(), system.order());
+    let coordinates = system.coordinates(j);
+    let svd = Svd::of(&weights.apply(&coordinates)?);
+    let report = |matrix, reason: Option<NoInverse>, dropped| Inverse {
+        matrix,
+        singular_values: svd.values().collect(),
+        rank: k,
+        gap: system.rank().gap,
+        threshold: system.rank().threshold,
+        dropped,
+        exists: reason.is_none(),
+        reason,
+    };
+    let projector = match projector {
+        Ok(projector) => projector,
+        Err(reason) => return Ok(report(nan(m, 6), reason, vec![])),
+    };
+    let gains: Vec<f64> = svd.values().map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }).collect();
+    let right = weights.unapply(assemble(&svd, &gains));
+    let matrix = &right * &projector.coordinate_matrix();
+    let dropped = projector
+        .kernel()
+        .into_iter()
+        .map(|t| Dropped { singular_value: 0.0, direction: unit(t), realised: 0.0 })
+        .collect();
+    Ok(report(matrix, None, dropped))
+}
+
+impl HyperbolicDamping {
+    pub(crate) fn check(self) -> Result<()> {
+        match self {
+            Self::None => Ok(()),
+            Self::Gram { lambda } => Error::check_finite("lambda", &[lambda]),
+            Self::Invariant { mu } => Error::check_positive("mu", mu),
+        }
+    }
+
+    /// What divides out an eigenvalue of the Gram matrix; both in units of `length`. `None` where
+    /// the damping makes it zero.
+    pub(crate) fn gain(self, g: f64, length: f64) -> Option<f64> {
+        match self {
+            Self::None => (g != 0.0).then(|| 1.0 / g),
+            Self::Gram { lambda } => {
+                let lambda = lambda / length;
+                let sum = g + lambda;
+                (sum.abs() > tolerance::SCREW_RANK * (g.abs() + lambda.abs())).then(|| 1.0 / sum)
+            }
+            Self::Invariant { mu } => {
+                let mu = mu / length;
+                Some(if g == 0.0 { 0.0 } else { 1.0 / (g + mu * (mu / g)) })
+            }
+        }
+    }
+}
+
+/// `V diag(gain(g)) V^T J^T Q_h` over the eigenvalues g of `J^T Q_h J` on the row space of J, in
+/// joint coordinates that the metric makes orthonormal.
+fn damped(
+    j: &Matrix,
+    h: f64,
+    damping: HyperbolicDamping,
+    system: &ScrewSystem,
+    metric: Option<&Metric>,
+) -> Result<Inverse> {
+    if h.is_infinite() {
+        return Err(Error::InvalidOption {
+            option: "h",
+            value: h.to_string(),
+            reason: "the damped forms need a finite pitch".to_owned(),
+        });
+    }
+    damping.check()?;
+    let weights = Weights { joint: metric.cloned(), task: None };
+    let svd = Svd::of(&weights.apply(&system.scaled(j))?);
+    let k = system.order();
+    let h = h / system.length();
+    let twists: Vec<Twist> = (0..k)
+        .map(|i| Twist::from_array(std::array::from_fn(|r| svd.u(i)[r] * svd.value(i))))
+        .collect();
+    let mut gram = [[0.0; 6]; 6];
+    for (row, a) in gram.iter_mut().zip(&twists) {
+        for (x, b) in row.iter_mut().zip(&twists) {
+            *x = a.pitch_form(*b, h);
+        }
+    }
+    let eigen = Eigen::of(gram, k);
+    // What rounding leaves of a zero would be divided by the square of a small mu.
+    let rounding =
+        tolerance::MACHINE_RANK * svd.values().next().unwrap_or(0.0).powi(2) * (1.0 + h.abs());
+    let mut reason = None;
+    let mut matrix = Matrix::zeros(j.cols(), 6);
+    for (&g, vector) in eigen.values.iter().zip(&eigen.vectors).take(k) {
+        let g = if g.abs() <= rounding { 0.0 } else { g };
+        let Some(gain) = damping.gain(g, system.length()) else {
+            reason = Some(NoInverse::DampingMeetsEigenvalue { eigenvalue: g * system.length() });
+            continue;
+        };
+        let mut row = Wrench::ZERO;
+        let mut rates = vec![0.0; j.cols()];
+        for (i, (twist, c)) in twists.iter().zip(vector).enumerate() {
+            row = row + twist.lowered(h) * *c;
+            rates.iter_mut().zip(svd.v(i)).for_each(|(r, v)| *r += c * v);
+        }
+        for (column, x) in row.to_array().into_iter().enumerate() {
+            for (entry, r) in matrix.column_mut(column).iter_mut().zip(&rates) {
+                *entry += gain * r * x;
+            }
+        }
+    }
+    let matrix = match reason {
+        None => system.unscaled(&weights.unapply(matrix)),
+        Some(_) => nan(j.cols(), 6),
+    };
+    Ok(Inverse {
+        matrix,
+        singular_values: svd.values().collect(),
+        rank: k,
+        gap: system.rank().gap,
+        threshold: system.rank().threshold,
+        dropped: vec![],
+        exists: reason.is_none(),
+        reason,
+    })
+}

@@ -1,0 +1,65 @@
+//! All joint rates that move a point of the end effector along a given direction.
+//!
+//! Formula  J_x = v + w x x (columns of J at the point x); rates with J_x rates parallel to q are
+//!          lambda J_x+ q + the null space of J_x, if q is in the range of J_x, else the null space
+//! Shapes   J: 6 x m, x and q: 3
+//! Units    m, rad; the first rates are per 1 m/s along q
+//! Frame    that of J
+//! Valid    any m and rank. The rates need not be the only ones that carry a twist: dependent
+//!          joints add their null space
+//! Source   Donelan & Selig, example 3, corrected: the set is {rates : J rates in S}, S the twists
+//!          that move x along q, not the image of S under a pseudoinverse, which is larger
+//! Checked  tests/it/screws/vectors.rs::example_3, ::point_direction
+
+use crate::error::{Error, Result};
+use crate::linalg::{Matrix, RowSpace, Svd};
+use crate::spatial::{Twist, Vec3};
+use crate::tolerance::{SCREW_CLASS, SCREW_RANK, ZERO_AXIS};
+
+/// The joint rates that move a point along a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointDirection {
+    /// The smallest rates that move the point at 1 m/s along the direction; `None` if none do.
+    pub along: Option<Vec<f64>>,
+    /// Rates that keep the point at rest: an orthonormal basis, m x d.
+    pub still: Matrix,
+}
+
+/// The joint rates that move `point` along `direction` (any length), both in the frame of the
+/// 6 x m Jacobian `j`, whose linear part is the velocity at that frame's origin.
+///
+/// # Errors
+/// A matrix that has not six rows or is not finite; a direction of no length.
+pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<PointDirection> {
+    Error::check_len("rows of the matrix of twists", 6, j.rows())?;
+    Error::check_finite("matrix", j.as_slice())?;
+    Error::check_finite("point", &point.to_array())?;
+    let Some(q) = direction.unit(ZERO_AXIS) else {
+        return Err(Error::InvalidOption {
+            option: "direction",
+            value: format!("{:?}", direction.to_array()),
+            reason: "a direction is finite and not zero".to_owned(),
+        });
+    };
+    let mut velocity = Matrix::zeros(3, j.cols());
+    // Of the terms: where they cancel, what is left is their rounding.
+    let mut size = 0.0_f64;
+    for c in 0..j.cols() {
+        let twist = Twist::from_array(std::array::from_fn(|i| j.column(c)[i]));
+        size = size.max(twist.linear.norm() + twist.angular.norm() * point.norm());
+        velocity.column_mut(c).copy_from_slice(&twist.at_point(point).linear.to_array());
+    }
+    let svd = Svd::of(&velocity);
+    let rank = svd.values().filter(|s| *s > SCREW_RANK * size).count();
+    let space = RowSpace::first(&svd, rank);
+    let mut along = vec![0.0; j.cols()];
+    let mut outside = q.to_array();
+    for i in 0..space.rank() {
+        let component: f64 = svd.u(i).iter().zip(q.to_array()).map(|(u, x)| u * x).sum();
+        outside.iter_mut().zip(svd.u(i)).for_each(|(o, u)| *o -= component * u);
+        let gain = component / svd.value(i);
+        along.iter_mut().zip(svd.v(i)).for_each(|(a, v)| *a += gain * v);
+    }
+    let reachable = Vec3::from_array(outside).norm() <= SCREW_CLASS;
+    Ok(PointDirection { along: reachable.then_some(along), still: space.complement_basis() })
+}

@@ -1,0 +1,287 @@
+//! The hull of a convex body known only by its farthest point in any direction.
+//!
+//! Formula  start from a simplex; ask for the farthest point along the normal of a facet; where it
+//!          lies beyond, replace all facets that it sees by those from their rim to it
+//! Shapes   d from 1 to about 6; a facet has as many vertices as the body has dimensions
+//! Units    of the points; the tolerance is relative to the size of the body
+//! Valid    any bounded convex body, flat ones too (the hull is then that of its span). Exact for
+//!          polytopes up to the tolerance; for curved bodies an inscribed polytope that comes as
+//!          near as the tolerance, the true facet lying between it and the farthest points.
+//! Fails    never: where the bound on facets is met, the hull is marked incomplete
+//! Why so   one algorithm draws polygons of velocity, solids of force and measures grasps in six
+//!          dimensions, for boxes, their images and friction cones alike; listing all vertices
+//!          first would cost 2^n
+//! Source   van den Bergen 2001 (expanding polytope); Zheng 2013 for its use on grasps
+//! Checked  tests/it/hull.rs
+
+use std::collections::BTreeMap;
+
+use super::matrix::Matrix;
+use super::qr::Qr;
+use crate::tolerance::HULL;
+
+/// What is wanted of the hull.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HullGoal {
+    /// All facets.
+    Whole,
+    /// Only the facet nearest to the origin, or the one farthest beyond it.
+    NearestFacet,
+}
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HullOptions {
+    /// What is wanted.
+    pub goal: HullGoal,
+    /// A point that lies beyond a facet by less than this times the size of the body does not
+    /// change it [-].
+    pub tolerance: f64,
+    /// Most facets held at a time.
+    pub most_facets: usize,
+}
+
+/// A simplex of the boundary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facet {
+    /// Its corners, as numbers of vertices.
+    pub vertices: Vec<usize>,
+    /// Unit outward normal, within the span of the body.
+    pub normal: Vec<f64>,
+    /// `normal . x` on the facet: the distance of its plane from the origin, negative where the
+    /// origin lies beyond.
+    pub offset: f64,
+    /// How far beyond it the body reaches at most (infinite while it was not asked).
+    pub gap: f64,
+}
+
+/// A hull.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hull {
+    /// Points of the body; all are corners of the polytope unless the body is curved.
+    pub vertices: Vec<Vec<f64>>,
+    /// The boundary in simplices; facets of the body with more corners come in several.
+    pub facets: Vec<Facet>,
+    /// Directions in which the body extends, orthonormal, a column each: all d for a solid one.
+    pub span: Matrix,
+    /// False where the bound on facets was met first.
+    pub complete: bool,
+}
+
+impl Hull {
+    /// Of a body in `dimension` coordinates, of which `farthest(n)` gives a point of largest
+    /// `n . x`. The directions asked have length one.
+    pub fn of(
+        dimension: usize,
+        mut farthest: impl FnMut(&[f64]) -> Vec<f64>,
+        options: HullOptions,
+    ) -> Self {
+        let (points, span, size) = first_points(dimension, &mut farthest, options.tolerance);
+        let mut growth = Growth {
+            inner: (0..dimension)
+                .map(|i| points.iter().map(|p| p[i]).sum::<f64>() / points.len() as f64)
+                .collect(),
+            vertices: points,
+            span,
+            facets: Vec::new(),
+            slack: options.tolerance * size,
+            flat: options.tolerance.min(HULL) * size,
+        };
+        let k = growth.span.cols();
+        if k > 0 {
+            for left_out in 0..=k {
+                let corners = (0..=k).filter(|&i| i != left_out).collect();
+                growth.add_facet(corners);
+            }
+        }
+        let complete = growth.grow(&mut farthest, options);
+        let mut hull =
+            Self { vertices: growth.vertices, facets: growth.facets, span: growth.span, complete };
+        hull.drop_unused();
+        hull
+    }
+
+    /// The facet whose plane is nearest to the origin, or the one farthest beyond it.
+    #[must_use]
+    pub fn nearest_facet(&self) -> Option<&Facet> {
+        self.facets.iter().min_by(|a, b| a.offset.total_cmp(&b.offset))
+    }
+
+    /// The corners in the order of the rim, for a body of two dimensions.
+    #[must_use]
+    pub fn polygon(&self) -> Vec<&[f64]> {
+        if self.span.cols() != 2 {
+            return self.vertices.iter().map(Vec::as_slice).collect();
+        }
+        let n = self.vertices.len() as f64;
+        let angle = |p: &[f64]| {
+            let along = |j: usize| -> f64 {
+                (0..p.len())
+                    .map(|i| {
+                        let mean = self.vertices.iter().map(|v| v[i]).sum::<f64>() / n;
+                        self.span[(i, j)] * (p[i] - mean)
+                    })
+                    .sum()
+            };
+            along(1).atan2(along(0))
+        };
+        let mut order: Vec<(f64, &[f64])> =
+            self.vertices.iter().map(|v| (angle(v), v.as_slice())).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order.into_iter().map(|(_, v)| v).collect()
+    }
+
+    /// Vertices that later points left inside go.
+    fn drop_unused(&mut self) {
+        if self.facets.is_empty() {
+            return;
+        }
+        let mut used = vec![false; self.vertices.len()];
+        for facet in &self.facets {
+            facet.vertices.iter().for_each(|&v| used[v] = true);
+        }
+        let mut number = 0;
+        let numbers: Vec<usize> = used
+            .iter()
+            .map(|&u| {
+                number += usize::from(u);
+                number.saturating_sub(1)
+            })
+            .collect();
+        for facet in &mut self.facets {
+            facet.vertices.iter_mut().for_each(|v| *v = numbers[*v]);
+        }
+        let mut keep = used.iter();
+        self.vertices.retain(|_| *keep.next().unwrap_or(&true));
+    }
+}
+
+/// Corners of a simplex of the full dimension of the body, the span of the body, its size.
+fn first_points(
+    dimension: usize,
+    farthest: &mut impl FnMut(&[f64]) -> Vec<f64>,
+    tolerance: f64,
+) -> (Vec<Vec<f64>>, Matrix, f64) {
+    let mut points: Vec<Vec<f64>> = Vec::new();
+    let mut span = Matrix::zeros(dimension, 0);
+    let mut size: f64 = 0.0;
+    while span.cols() < dimension {
+        // The largest reach orthogonal to what is spanned: none along a basis means none at all.
+        let directions = Qr::plain(span.clone()).complement();
+        let mut best: (f64, Vec<f64>) = (0.0, Vec::new());
+        for j in 0..directions.cols() {
+            for sign in [1.0, -1.0] {
+                let n: Vec<f64> = directions.column(j).iter().map(|x| sign * x).collect();
+                let x = farthest(&n);
+                if points.is_empty() {
+                    points.push(x);
+                    continue;
+                }
+                let reach = (dot(&n, &x) - dot(&n, &points[0])).abs();
+                if reach > best.0 {
+                    best = (reach, x);
+                }
+            }
+        }
+        size = size.max(best.0);
+        if !(best.0 > tolerance * size) {
+            break;
+        }
+        let edge: Vec<f64> = best.1.iter().zip(&points[0]).map(|(a, b)| a - b).collect();
+        let edge = Matrix::from_fn(dimension, 1, |i, _| edge[i] / best.0);
+        span = Matrix::beside(dimension, &[&span, &edge]);
+        points.push(best.1);
+    }
+    (points, Qr::plain(span).basis(), size)
+}
+
+struct Growth {
+    vertices: Vec<Vec<f64>>,
+    facets: Vec<Facet>,
+    span: Matrix,
+    /// A point inside.
+    inner: Vec<f64>,
+    /// What a point may lie beyond a facet without changing it.
+    slack: f64,
+    /// What a point may lie beyond a facet and not see it: rounding, since a facet that is kept
+    /// although it is seen folds the surface.
+    flat: f64,
+}
+
+impl Growth {
+    fn add_facet(&mut self, vertices: Vec<usize>) {
+        let first = &self.vertices[vertices[0]];
+        let k = self.span.cols();
+        let edges = Matrix::from_fn(k, k - 1, |i, j| {
+            let other = &self.vertices[vertices[j + 1]];
+            (0..first.len()).map(|l| self.span[(l, i)] * (other[l] - first[l])).sum()
+        });
+        let across = Qr::plain(edges).complement();
+        let mut normal = self.span.mul_vec(across.column(0));
+        let mut offset = dot(&normal, first);
+        if dot(&normal, &self.inner) > offset {
+            normal.iter_mut().for_each(|x| *x = -*x);
+            offset = -offset;
+        }
+        self.facets.push(Facet { vertices, normal, offset, gap: f64::INFINITY });
+    }
+
+    /// The facet to be asked next.
+    fn open(&self, goal: HullGoal) -> Option<usize> {
+        let (i, facet) = match goal {
+            HullGoal::Whole => {
+                self.facets.iter().enumerate().rev().find(|(_, f)| f.gap == f64::INFINITY)?
+            }
+            HullGoal::NearestFacet => {
+                self.facets.iter().enumerate().min_by(|a, b| a.1.offset.total_cmp(&b.1.offset))?
+            }
+        };
+        (facet.gap == f64::INFINITY).then_some(i)
+    }
+
+    /// True when the goal is met.
+    fn grow(
+        &mut self,
+        farthest: &mut impl FnMut(&[f64]) -> Vec<f64>,
+        options: HullOptions,
+    ) -> bool {
+        while let Some(i) = self.open(options.goal) {
+            if self.facets.len() > options.most_facets {
+                return false;
+            }
+            let x = farthest(&self.facets[i].normal);
+            let gain = dot(&self.facets[i].normal, &x) - self.facets[i].offset;
+            if !(gain > self.slack) {
+                self.facets[i].gap = gain.max(0.0);
+                continue;
+            }
+            let new = self.vertices.len();
+            let mut rim: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
+            let flat = self.flat;
+            self.facets.retain(|facet| {
+                let seen = dot(&facet.normal, &x) - facet.offset > flat;
+                if seen {
+                    for left_out in 0..facet.vertices.len() {
+                        let mut ridge = facet.vertices.clone();
+                        ridge.remove(left_out);
+                        ridge.sort_unstable();
+                        *rim.entry(ridge).or_default() += 1;
+                    }
+                }
+                !seen
+            });
+            self.vertices.push(x);
+            for (mut ridge, times) in rim {
+                if times == 1 {
+                    ridge.push(new);
+                    self.add_facet(ridge);
+                }
+            }
+        }
+        true
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

@@ -1,0 +1,222 @@
+//! Efficiencies of motion and of force, as pairs that are never a division by zero.
+//!
+//! Formula  kinematic  R = min over u' of |u|^2 / min over q' of |q|^2, u' and q' moving freely
+//!          force      the same for F, the wrenches and torques that do no work on R
+//!          Whiten, take q orthogonal to r', u to i', make [Q; U] orthonormal; then
+//!          [Q; U] = [X C; Y S] Z^T and the efficiencies are s_j^2 / c_j^2
+//! Shapes   finite: c' of both kinds; kinematic: r' zeros, i' infinite; force: h zeros, s infinite
+//! Units    `|u|^2 / |q|^2`, `|w|^2 / |tau|^2` in the metrics given
+//! Frame    that of the object's twist
+//! Valid    any relation, also where N and D of the paper's eq. 9 are both singular. Which
+//!          directions are zero or infinite is the relation's decision, taken in scaled units, so
+//!          no metric, however lopsided, turns one into the other. With dual metrics the finite
+//!          efficiencies of force are the inverses of the kinematic ones, largest for smallest
+//!          (not equal, as section 4.3 says): checked in debug builds.
+//! Why so   eqs. 15 and 16 leave out cross terms and depend on the basis, even on where a contact
+//!          is drawn on its link; eq. 9 loses half the digits by squaring
+//! Source   Bicchi & Prattichizzo 1998, sections 3 and 4, as corrected above
+//! Checked  tests/it/manipulability/reference.rs (31 mechanisms to 1e-9 relative),
+//!          tests/it/manipulability/serial.rs
+
+use super::metrics::Metrics;
+use crate::closure::{Parts, Relation};
+use crate::error::Result;
+use crate::linalg::{CosineSine, Matrix, Metric, Qr};
+use crate::tolerance::{DUALITY, LOPSIDED};
+
+/// A point (s : c) of the projective line, `s^2 + c^2 = 1`: what comes out for what goes in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// s: size of the object's part.
+    pub output: f64,
+    /// c: size of the joints' part.
+    pub input: f64,
+}
+
+impl Pair {
+    /// `s^2 / c^2`, infinite for (1 : 0).
+    #[must_use]
+    pub fn efficiency(&self) -> f64 {
+        let ratio = self.output / self.input;
+        ratio * ratio
+    }
+
+    /// `atan(s / c)`, from 0 (zero efficiency) to pi / 2 (infinite).
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        self.output.atan2(self.input)
+    }
+}
+
+/// A principal direction: together its parts have length one in the metrics.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Direction {
+    /// Sizes of the parts.
+    pub pair: Pair,
+    /// Rates (torques) of the driven joints.
+    pub joint: Vec<f64>,
+    /// The twist (wrench) that goes with them.
+    pub object: Vec<f64>,
+}
+
+/// All efficiencies of a kind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
+    /// Largest first. Where efficiencies are equal only the span of their directions means
+    /// anything.
+    pub finite: Vec<Direction>,
+    /// Joint motions (torques) with nothing at the object: orthonormal in the metric, q_a rows.
+    pub zeros: Matrix,
+    /// Object motions (wrenches) for nothing at the joints: orthonormal in the metric, d rows.
+    pub infinite: Matrix,
+}
+
+impl Spectrum {
+    /// The finite efficiencies, largest first.
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        self.finite.iter().map(|d| d.pair.efficiency()).collect()
+    }
+
+    /// The semi-axes of the ellipsoid of what comes out for an input of length one, a column
+    /// each, the longest first.
+    #[must_use]
+    pub fn semi_axes(&self) -> Matrix {
+        Matrix::from_fn(self.infinite.rows(), self.finite.len(), |i, j| {
+            let direction = &self.finite[j];
+            direction.object[i] / direction.pair.input
+        })
+    }
+
+    fn of(parts: Parts, joint: Option<&Metric>, object: Option<&Metric>) -> Self {
+        let whiten = |metric: Option<&Metric>, mut a: Matrix| {
+            if let Some(metric) = metric {
+                metric.whiten_rows(&mut a);
+            }
+            a
+        };
+        let colour = |metric: Option<&Metric>, x: &mut [f64]| {
+            if let Some(metric) = metric {
+                metric.colour(x);
+            }
+        };
+        let mut zeros = orthonormal(whiten(joint, parts.zero));
+        let mut infinite = orthonormal(whiten(object, parts.infinite));
+        let q = without(whiten(joint, parts.joint), &zeros);
+        let mut u = without(whiten(object, parts.object), &infinite);
+        // A common factor between the two spaces changes all efficiencies alike: taken out, it
+        // costs no digits.
+        let balance = if u.cols() == 0 { 1.0 } else { u.frobenius_norm() / q.frobenius_norm() };
+        u.as_mut_slice().iter_mut().for_each(|x| *x /= balance);
+        let stack = Matrix::above(q.cols(), &[&q, &u]);
+        let cs = CosineSine::of(&orthonormal(stack), q.rows());
+        let finite = (0..cs.len())
+            .map(|j| {
+                let (s, c) = (balance * cs.sines[j], cs.cosines[j]);
+                let norm = s.hypot(c);
+                let pair = Pair { output: s / norm, input: c / norm };
+                let times = |x: &[f64], size: f64| x.iter().map(|a| a * size).collect();
+                let mut direction = Direction {
+                    pair,
+                    joint: times(cs.x.column(j), pair.input),
+                    object: times(cs.y.column(j), pair.output),
+                };
+                colour(joint, &mut direction.joint);
+                colour(object, &mut direction.object);
+                direction
+            })
+            .collect();
+        for j in 0..zeros.cols() {
+            colour(joint, zeros.column_mut(j));
+        }
+        for j in 0..infinite.cols() {
+            colour(object, infinite.column_mut(j));
+        }
+        Self { finite, zeros, infinite }
+    }
+}
+
+/// The efficiencies of a mechanism in one pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Manipulability {
+    /// Motions of the object for rates of the driven joints.
+    pub kinematic: Spectrum,
+    /// Wrenches on the object for torques of the driven joints: zeros are internal torques,
+    /// infinite ones wrenches that the structure holds.
+    pub force: Spectrum,
+}
+
+impl Manipulability {
+    /// Of a relation (of a task too, see [`Relation::task`]) in the given metrics.
+    ///
+    /// # Errors
+    /// Metrics of the wrong size.
+    pub fn of(relation: &Relation, metrics: &Metrics) -> Result<Self> {
+        metrics.check(relation.joints(), relation.object())?;
+        let kinematic =
+            Spectrum::of(relation.motions(), metrics.joint.as_ref(), metrics.object.as_ref());
+        let (torque, wrench) = (metrics.of_torque(), metrics.of_wrench());
+        let force = Spectrum::of(relation.forces(), torque.as_ref(), wrench.as_ref());
+        let all = Self { kinematic, force };
+        debug_assert!(
+            !metrics.is_dual() || metrics.spread() > LOPSIDED || all.is_dual(),
+            "forces are not dual: {all:?}"
+        );
+        Ok(all)
+    }
+
+    /// The force efficiencies against given torques: finite ones, and a zero for each internal
+    /// torque.
+    #[must_use]
+    pub fn active_force(&self) -> Spectrum {
+        let none = Matrix::zeros(self.force.infinite.rows(), 0);
+        Spectrum { infinite: none, ..self.force.clone() }
+    }
+
+    /// The force efficiencies against given wrenches: finite ones, and an infinite one for each
+    /// wrench that the structure holds.
+    #[must_use]
+    pub fn passive_force(&self) -> Spectrum {
+        let none = Matrix::zeros(self.force.zeros.rows(), 0);
+        Spectrum { zeros: none, ..self.force.clone() }
+    }
+
+    /// Efficiencies of force are inverse to those of motion, up to what rounding does to the pairs.
+    fn is_dual(&self) -> bool {
+        let (motion, force) = (&self.kinematic.finite, &self.force.finite);
+        motion.len() == force.len()
+            && motion.iter().zip(force.iter().rev()).all(|(m, f)| {
+                (m.pair.output - f.pair.input).abs() < DUALITY
+                    && (m.pair.input - f.pair.output).abs() < DUALITY
+            })
+    }
+}
+
+/// An orthonormal basis of the span of independent columns.
+fn orthonormal(mut a: Matrix) -> Matrix {
+    for j in 0..a.cols() {
+        let column = a.column_mut(j);
+        let size = column.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        if size > 0.0 {
+            column.iter_mut().for_each(|x| *x /= size);
+        }
+    }
+    Qr::plain(a).basis()
+}
+
+/// The columns without their parts along an orthonormal basis; twice, as rounding asks.
+fn without(mut a: Matrix, basis: &Matrix) -> Matrix {
+    if basis.cols() == 0 {
+        return a;
+    }
+    for _ in 0..2 {
+        for j in 0..a.cols() {
+            for l in 0..basis.cols() {
+                let b = basis.column(l);
+                let along: f64 = a.column(j).iter().zip(b).map(|(x, y)| x * y).sum();
+                a.column_mut(j).iter_mut().zip(b).for_each(|(x, y)| *x -= along * y);
+            }
+        }
+    }
+    a
+}

@@ -1,0 +1,98 @@
+//! The six indices of manipulability, and the usual single numbers.
+//!
+//! Formula  finite efficiencies e_1 >= ... >= e_n of a spectrum, with zeros and infinite ones where
+//!          the index keeps one side fixed; anisotropy e_1 / e_n, volume prod sqrt(e_i)
+//! Units    of the efficiencies; the anisotropy has none, the volume their root to the power n
+//! Valid    any spectrum. The volume of a serial arm with full rank is Yoshikawa's
+//!          sqrt(det J J^T), its anisotropy the squared condition number.
+//! Source   Bicchi & Prattichizzo 1998, sections 3 and 4; Yoshikawa 1985
+//! Checked  tests/it/manipulability/reference.rs, tests/it/manipulability/serial.rs
+
+use super::efficiency::{Manipulability, Spectrum};
+
+/// Which side is given and which is free to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Index {
+    /// Motion, both sides at their best (eq. 9): finite efficiencies only.
+    Kinematic,
+    /// Joint rates given, the object moves as little as it may: a zero for each redundant motion.
+    ActiveKinematic,
+    /// Twist given, the joints as slow as they may: an infinite one for each motion that the
+    /// drives do not control.
+    PassiveKinematic,
+    /// Force, both sides at their best (eq. 17): finite efficiencies only.
+    Force,
+    /// Torques given (eq. 14): a zero for each internal torque.
+    ActiveForce,
+    /// Wrench given: an infinite one for each wrench that the structure holds.
+    PassiveForce,
+}
+
+impl Index {
+    /// All six.
+    pub const ALL: [Self; 6] = [
+        Self::Kinematic,
+        Self::ActiveKinematic,
+        Self::PassiveKinematic,
+        Self::Force,
+        Self::ActiveForce,
+        Self::PassiveForce,
+    ];
+
+    /// Its name in options and reports.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Kinematic => "kinematic",
+            Self::ActiveKinematic => "active-kinematic",
+            Self::PassiveKinematic => "passive-kinematic",
+            Self::Force => "force",
+            Self::ActiveForce => "active-force",
+            Self::PassiveForce => "passive-force",
+        }
+    }
+
+    /// The efficiencies that count, largest first, infinities and zeros included.
+    #[must_use]
+    pub fn values(&self, m: &Manipulability) -> Vec<f64> {
+        let (spectrum, zeros, infinite) = match self {
+            Self::Kinematic => (&m.kinematic, false, false),
+            Self::ActiveKinematic => (&m.kinematic, true, false),
+            Self::PassiveKinematic => (&m.kinematic, false, true),
+            Self::Force => (&m.force, false, false),
+            Self::ActiveForce => (&m.force, true, false),
+            Self::PassiveForce => (&m.force, false, true),
+        };
+        let mut values = vec![f64::INFINITY; if infinite { spectrum.infinite.cols() } else { 0 }];
+        values.extend(spectrum.values());
+        values.extend(vec![0.0; if zeros { spectrum.zeros.cols() } else { 0 }]);
+        values
+    }
+}
+
+impl Spectrum {
+    /// Largest finite efficiency, if there is one.
+    #[must_use]
+    pub fn largest(&self) -> Option<f64> {
+        self.finite.first().map(|d| d.pair.efficiency())
+    }
+
+    /// Smallest finite efficiency, if there is one.
+    #[must_use]
+    pub fn smallest(&self) -> Option<f64> {
+        self.finite.last().map(|d| d.pair.efficiency())
+    }
+
+    /// Largest over smallest finite efficiency, 1 for an isotropic pose.
+    #[must_use]
+    pub fn anisotropy(&self) -> Option<f64> {
+        Some(self.largest()? / self.smallest()?)
+    }
+
+    /// Product of the roots of the finite efficiencies: the volume of the ellipsoid up to a
+    /// constant (1 for none).
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.finite.iter().map(|d| d.pair.output / d.pair.input).product()
+    }
+}

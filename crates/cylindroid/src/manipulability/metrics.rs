@@ -1,0 +1,144 @@
+//! The four metrics that efficiencies are measured in, and presets of them.
+//!
+//! Formula  |u|^2 = u^T W_u u, |q|^2 = q^T W_q q, |w|^2 = w^T W_w w, |tau|^2 = tau^T W_tau tau;
+//!          by default W_w = W_u^-1, W_tau = W_q^-1
+//! Shapes   W_u, W_w: d x d; W_q, W_tau: q_a x q_a
+//! Units    an efficiency has the unit of `|u|^2 / |q|^2`; with lengths beside angles only metrics
+//!          that make both norms pure numbers (limits, a characteristic length) give efficiencies
+//!          that do not change with the unit
+//! Valid    positive definite. To leave components out use [`Relation::task`], not zero weights.
+//! Source   Bicchi & Prattichizzo 1998, section 3; Doty, Melchiorri & Bonivento 1993 on units
+//! Checked  tests/it/manipulability/metrics.rs
+//!
+//! [`Relation::task`]: crate::closure::Relation::task
+
+use crate::closure::Unit;
+use crate::error::{Error, Result};
+use crate::linalg::{Matrix, Metric};
+
+/// Metrics of twists, joint rates, wrenches and joint torques. `None` is the identity for twists
+/// and rates, and the dual for wrenches and torques.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Metrics {
+    /// W_u, of the object's twist or of the task.
+    pub object: Option<Metric>,
+    /// W_q, of the driven joints.
+    pub joint: Option<Metric>,
+    /// W_w, of the wrench.
+    pub wrench: Option<Metric>,
+    /// W_tau, of the torques of the driven joints.
+    pub torque: Option<Metric>,
+}
+
+impl Metrics {
+    /// The identity everywhere.
+    pub const UNIT: Self = Self { object: None, joint: None, wrench: None, torque: None };
+
+    /// W_u and W_q as matrices, forces dual.
+    ///
+    /// # Errors
+    /// A matrix that is not symmetric and positive definite.
+    pub fn dual(object: &Matrix, joint: &Matrix) -> Result<Self> {
+        Ok(Self {
+            object: Some(Metric::new("Wu", object)?),
+            joint: Some(Metric::new("Wq", joint)?),
+            ..Self::UNIT
+        })
+    }
+
+    /// Twists measured with angles times the length `length` (m), rates of sliding joints over it
+    /// where `joints` says so: efficiencies without unit.
+    ///
+    /// # Errors
+    /// A length that is not positive and finite.
+    pub fn characteristic_length(object: &[Unit], joints: &[Unit], length: f64) -> Result<Self> {
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(Error::InvalidOption {
+                option: "length",
+                value: length.to_string(),
+                reason: "the characteristic length is positive and finite".to_owned(),
+            });
+        }
+        let inverse_square = (length * length).recip();
+        let weights = |units: &[Unit]| -> Vec<f64> {
+            let weight = |u: &Unit| if *u == Unit::Length { inverse_square } else { 1.0 };
+            units.iter().map(weight).collect()
+        };
+        Ok(Self {
+            object: Some(Metric::diagonal("Wu", &weights(object))?),
+            joint: Some(Metric::diagonal("Wq", &weights(joints))?),
+            ..Self::UNIT
+        })
+    }
+
+    /// Rates measured by their limits: `|q| <= 1` is an ellipsoid within all of them.
+    ///
+    /// # Errors
+    /// A limit that is not positive and finite.
+    pub fn with_rate_limits(mut self, limits: &[f64]) -> Result<Self> {
+        self.joint = Some(of_limits("rate limit", limits)?);
+        Ok(self)
+    }
+
+    /// Torques measured by their limits. Forces are then no longer dual to motions: a drive may be
+    /// fast and weak.
+    ///
+    /// # Errors
+    /// A limit that is not positive and finite.
+    pub fn with_torque_limits(mut self, limits: &[f64]) -> Result<Self> {
+        self.torque = Some(of_limits("torque limit", limits)?);
+        Ok(self)
+    }
+
+    /// True if wrenches and torques are measured by the duals of the metrics of motions.
+    #[must_use]
+    pub fn is_dual(&self) -> bool {
+        self.wrench.is_none() && self.torque.is_none()
+    }
+
+    /// How lopsided the metrics of motions are.
+    pub(super) fn spread(&self) -> f64 {
+        [&self.object, &self.joint].into_iter().flatten().map(Metric::spread).product()
+    }
+
+    /// Refuses metrics of the wrong size.
+    pub(super) fn check(&self, joints: usize, object: usize) -> Result<()> {
+        let all = [
+            ("Wu", &self.object, object),
+            ("Wq", &self.joint, joints),
+            ("Ww", &self.wrench, object),
+            ("Wtau", &self.torque, joints),
+        ];
+        for (name, metric, expected) in all {
+            if let Some(metric) = metric {
+                Error::check_len(name, expected, metric.len())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// W_w in effect.
+    pub(super) fn of_wrench(&self) -> Option<Metric> {
+        self.wrench.clone().or_else(|| self.object.as_ref().map(Metric::dual))
+    }
+
+    /// W_tau in effect.
+    pub(super) fn of_torque(&self) -> Option<Metric> {
+        self.torque.clone().or_else(|| self.joint.as_ref().map(Metric::dual))
+    }
+}
+
+fn of_limits(name: &'static str, limits: &[f64]) -> Result<Metric> {
+    for &limit in limits {
+        if !(limit > 0.0 && limit.is_finite()) {
+            return Err(Error::InvalidOption {
+                option: name,
+                value: limit.to_string(),
+                reason: "limits that measure are positive and finite; give one for each driven \
+                         joint"
+                    .to_owned(),
+            });
+        }
+    }
+    Metric::diagonal(name, &limits.iter().map(|l| (l * l).recip()).collect::<Vec<_>>())
+}

@@ -1,0 +1,31 @@
+//! What a mechanism can do, in numbers: efficiencies of motion and force, indices, polytopes.
+//!
+//! Serial arms and closed chains go through the same code: both are a [`Relation`] between driven
+//! joints and object. For a serial arm the finite kinematic efficiencies are the squares of the
+//! singular values of its Jacobian, and the directions the axes of the textbook ellipsoid.
+//!
+//! ```
+//! use cylindroid::closure::{Constraint, Motions};
+//! use cylindroid::manipulability::{Manipulability, Metrics};
+//! use cylindroid::Matrix;
+//!
+//! let jacobian = Matrix::from_rows(&[[2.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
+//! let relation = Motions::of(&Constraint::serial(&jacobian)?).relation();
+//! let m = Manipulability::of(&relation, &Metrics::UNIT)?;
+//! assert_eq!(m.kinematic.zeros.cols(), 1); // the third joint moves nothing
+//! assert!((m.kinematic.values()[0] - 4.0).abs() < 1e-12);
+//! assert!((m.force.values()[0] - 1.0).abs() < 1e-12);
+//! # Ok::<(), cylindroid::Error>(())
+//! ```
+//!
+//! [`Relation`]: crate::closure::Relation
+
+mod efficiency;
+mod index;
+mod metrics;
+mod polytope;
+
+pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
+pub use index::Index;
+pub use metrics::Metrics;
+pub use polytope::{Polytope, force_polytope, velocity_polytope};

@@ -1,0 +1,65 @@
+//! Curves to look at: the Gram determinant over the pitch, the screws of a two-system.
+//!
+//! Formula  det(J^T Q_h J), with the 1/2 of Q_h: a polynomial in h whose zeros are the principal
+//!          pitches; screws cos(t) s_1 + sin(t) s_2, whose axes sweep the cylindroid
+//!          z (x^2 + y^2) = (h_b - h_a) x y (Ball's surface) for a system of class IA
+//! Shapes   J: 6 x m, m <= 6
+//! Units    h in m/rad
+//! Source   Ball 1900, chapter II; Donelan & Selig, section 4, whose determinants of examples 1 and
+//!          4 belong to 2 Q_h
+//! Checked  tests/it/screws/curve.rs
+
+use super::screw::Screw;
+use super::span::{dot, lowered};
+use super::spanning::{columns, six};
+use super::system::ScrewSystem;
+use crate::error::Result;
+use crate::linalg::{Eigen, Matrix};
+use crate::spatial::{Twist, Vec3};
+
+/// `J^T Q_h J` for the twists that are the columns of `j` (6 x m): m x m.
+///
+/// # Errors
+/// A matrix that has not six rows.
+pub fn gram(j: &Matrix, h: f64) -> Result<Matrix> {
+    let twists = columns(j)?;
+    Ok(Matrix::from_fn(twists.len(), twists.len(), |a, b| twists[a].pitch_form(twists[b], h)))
+}
+
+/// `det(J^T Q_h J)`: zero for more than six twists, which are dependent.
+///
+/// # Errors
+/// A matrix that has not six rows.
+pub fn gram_determinant(j: &Matrix, h: f64) -> Result<f64> {
+    columns(j)?;
+    let m = j.cols();
+    if m > 6 {
+        return Ok(0.0);
+    }
+    let mut g = [[0.0; 6]; 6];
+    for (a, row) in g.iter_mut().enumerate().take(m) {
+        let image = lowered(&six(j.column(a)), h);
+        for (b, x) in row.iter_mut().enumerate().take(m) {
+            *x = dot(&image, &six(j.column(b)));
+        }
+    }
+    Ok(Eigen::of(g, m).values[..m].iter().product())
+}
+
+impl ScrewSystem {
+    /// `count` screws of a system of order two (of the reciprocal system for order four), from one
+    /// generator of the normal form to the other and on to the first again; empty for other
+    /// orders. Translations count with the characteristic length.
+    #[must_use]
+    pub fn pencil(&self, count: usize) -> Vec<Screw> {
+        let [a, b] = self.normal_form().twists()[..] else { return Vec::new() };
+        let scale = |t: Twist| if t.angular == Vec3::ZERO { t * self.length() } else { t };
+        let (a, b) = (scale(a), scale(b));
+        (0..count)
+            .filter_map(|i| {
+                let (s, c) = (std::f64::consts::PI * i as f64 / count as f64).sin_cos();
+                Screw::of(self.canonical_pose().adjoint(a * c + b * s))
+            })
+            .collect()
+    }
+}

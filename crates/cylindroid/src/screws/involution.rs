@@ -1,0 +1,86 @@
+//! Lines in involution: joint axes that let a load through without feeling it.
+//!
+//! Formula  lines J = (s_1 ... s_m) are in involution iff det(J^T Q_0 J) = 0: either they are
+//!          dependent, or their span meets its own reciprocal system in a twist z; the wrench
+//!          Q_0 z then does no work on any of the lines, although it is made of forces along them
+//! Shapes   m lines, z a twist, Q_0 z a wrench
+//! Units    m; z is a unit vector at the centre and length of the system
+//! Valid    2 to 6 lines. z may be of infinite pitch, and the wrench then a pure couple
+//! Source   Donelan & Selig, section 4, with corrections: four independent lines are in involution
+//!          iff their two transversals coincide (also at infinity) or are infinitely many; five
+//!          iff they have a common transversal, which may lie at infinity; "involution iff forces
+//!          on the lines in equilibrium" (Sylvester) is for six lines
+//! Checked  tests/it/screws/lines.rs
+
+use super::screw::{Line, Screw};
+use super::spanning::ScrewOptions;
+use super::system::ScrewSystem;
+use super::transversals::{Transversals, transversals_of};
+use crate::error::Result;
+use crate::linalg::Eigen;
+use crate::spatial::{Twist, Wrench};
+
+/// What a set of lines has in common.
+#[derive(Debug, Clone)]
+pub struct Involution {
+    /// How many lines.
+    pub lines: usize,
+    /// True if the Gram matrix of the lines in the Klein form is singular.
+    pub in_involution: bool,
+    /// True if none of the lines is spanned by the others.
+    pub independent: bool,
+    /// The twists of the lines' span that are reciprocal to all of it.
+    pub null_twists: Vec<Twist>,
+    /// The first of them as a screw: a common transversal where its pitch is zero.
+    pub null_screw: Option<Screw>,
+    /// The wrench on it, which no joint on the lines feels.
+    pub wrench: Option<Wrench>,
+    /// The lines that meet all lines.
+    pub transversals: Transversals,
+    /// Smallest singular value of the Gram matrix of the span: at or below `threshold` it is zero.
+    pub margin: f64,
+    /// See `margin`.
+    pub threshold: f64,
+    /// The system that the lines span.
+    pub system: ScrewSystem,
+}
+
+/// Whether `lines` are in involution, and what follows from it.
+///
+/// # Errors
+/// Options that are no scale.
+pub fn involution(lines: &[Line], options: &ScrewOptions) -> Result<Involution> {
+    let twists: Vec<_> = lines.iter().map(Line::twist).collect();
+    let system = ScrewSystem::of(&twists, options)?;
+    let independent = system.order() == lines.len();
+    let k = system.order();
+    let gram = Eigen::of(system.span.gram(0.0), k);
+    let threshold = system.tolerance.class;
+    let null_twists: Vec<Twist> = (0..k)
+        .filter(|&i| gram.values[i].abs() <= threshold)
+        .map(|i| {
+            let mut x = [0.0; 6];
+            for (b, c) in system.span.vectors().iter().zip(gram.vectors[i]) {
+                x.iter_mut().zip(b).for_each(|(xi, bi)| *xi += c * bi);
+            }
+            // What counts as zero is zero: a couple is a couple.
+            if x[3..].iter().all(|w| w.abs() <= threshold) {
+                x[3..].fill(0.0);
+            }
+            system.scale.undo(&x)
+        })
+        .collect();
+    let first = null_twists.first().copied();
+    Ok(Involution {
+        lines: lines.len(),
+        in_involution: !independent || first.is_some(),
+        independent,
+        null_screw: first.and_then(Screw::of),
+        wrench: first.map(|z| z.lowered(0.0)),
+        null_twists,
+        transversals: transversals_of(&system),
+        margin: system.span.gram_margin(0.0),
+        threshold,
+        system,
+    })
+}

@@ -1,0 +1,44 @@
+//! Screws, lines and screw systems: the geometry of instantaneous motion, in numbers that do not
+//! change with the frame.
+//!
+//! ```
+//! use cylindroid::screws::{Class, Line, ScrewOptions, ScrewSystem};
+//! use cylindroid::Vec3;
+//!
+//! // Two axes at right angles, 0.2 m apart: the cylindroid between pitches -0.1 and 0.1 m/rad.
+//! let yaw = Line { point: Vec3::ZERO, direction: Vec3::Z };
+//! let pitch = Line { point: Vec3::new(0.0, 0.2, 0.0), direction: Vec3::X };
+//! let system = ScrewSystem::of(&[yaw.twist(), pitch.twist()], &ScrewOptions::default())?;
+//! assert_eq!(system.class(), Class::IA);
+//! let pitches = system.principal_pitches();
+//! assert!((pitches[0] - 0.1).abs() < 1e-15 && (pitches[1] + 0.1).abs() < 1e-15);
+//! # Ok::<(), cylindroid::Error>(())
+//! ```
+
+mod class;
+mod classify;
+mod curve;
+mod existence;
+mod independent;
+mod involution;
+mod lattice;
+mod projector;
+mod screw;
+mod span;
+mod spanning;
+mod system;
+mod task_projector;
+mod transversals;
+
+pub use class::{Class, NormalForm};
+pub use classify::Margin;
+pub use curve::{gram, gram_determinant};
+pub use existence::{Existence, NoInverse, PitchChoice};
+pub(crate) use independent::independent_coordinates;
+pub use involution::{Involution, involution};
+pub use projector::Projector;
+pub use screw::{CommonNormal, Line, Screw};
+pub use spanning::ScrewOptions;
+pub use system::ScrewSystem;
+pub(crate) use task_projector::TaskProjector;
+pub use transversals::{Transversals, transversals};

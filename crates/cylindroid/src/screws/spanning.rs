@@ -1,0 +1,245 @@
+//! The span of a set of twists: centre, rank and thresholds.
+//!
+//! Formula  singular values of the unit columns [v(c) / L; w] / |.|, c the least-squares point of
+//!          the axes of a basis that is orthonormal at c: a fixed point, found by iteration
+//! Units    L, c in m; thresholds without unit
+//! Valid    any twists; the result depends on the frame and on the unit to rounding alone
+//! Why so   a rank needs a scale, and noise on a twist far from the origin is noise on its moment:
+//!          the way to the centre is counted in the thresholds
+//! Checked  tests/it/screws/classes.rs
+
+use super::span::{Scale, Span, dot, least_squares_center, over, power_of_two, size};
+use super::system::ScrewSystem;
+use crate::error::{Error, Result};
+use crate::linalg::{Matrix, Rank, Svd};
+use crate::spatial::{Twist, Vec3};
+use crate::tolerance::{
+    AMBIGUOUS, CENTER_FOUND, NOISE_CLASS, NOISE_OF_ZERO, NOISE_RANK, SCREW_CLASS, SCREW_RANK,
+};
+
+/// Steps to the centre at most; each shortens the way by a factor that depends on the system.
+const CENTER_STEPS: usize = 32;
+
+/// Scale and noise of a set of twists.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScrewOptions {
+    /// The characteristic length L, in the unit of the twists' linear parts: the reach of an arm,
+    /// the size of a workspace.
+    pub length: f64,
+    /// The point at which lengths are judged; `None` for the point nearest to all axes.
+    pub center: Option<Vec3>,
+    /// Error of the twists, relative to the size of each.
+    pub noise: f64,
+}
+
+impl Default for ScrewOptions {
+    /// L = 1, at the axes, exact to rounding.
+    fn default() -> Self {
+        Self { length: 1.0, center: None, noise: f64::EPSILON }
+    }
+}
+
+impl ScrewOptions {
+    /// The defaults with this characteristic length.
+    #[must_use]
+    pub fn with_length(length: f64) -> Self {
+        Self { length, ..Self::default() }
+    }
+
+    /// Refuses numbers that are no scale.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] with the option and its value.
+    pub fn check(&self) -> Result<()> {
+        if !(self.length > 0.0 && self.length.is_finite()) {
+            return Err(Error::InvalidOption {
+                option: "length",
+                value: self.length.to_string(),
+                reason: "the characteristic length is positive and finite: the reach of the arm, \
+                         in the unit of the linear velocities"
+                    .to_owned(),
+            });
+        }
+        if !(self.noise >= 0.0 && self.noise < 0.1) {
+            return Err(Error::InvalidOption {
+                option: "noise",
+                value: self.noise.to_string(),
+                reason: "noise is relative to the twists, at least 0 and below 0.1".to_owned(),
+            });
+        }
+        match self.center {
+            Some(c) => Error::check_finite("center", &c.to_array()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Thresholds of one system, without unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Tolerances {
+    pub(super) rank: f64,
+    pub(super) class: f64,
+    /// What noise asks for as a threshold of the class.
+    pub(super) noise: f64,
+    /// True if a singular value lies near the threshold of the rank.
+    pub(super) narrow_rank: bool,
+}
+
+/// Within [`AMBIGUOUS`] of its threshold, unless it is what noise, which asks for a threshold of
+/// its own, makes of zero.
+pub(super) fn is_narrow(value: f64, threshold: f64, noise: f64) -> bool {
+    value < threshold * AMBIGUOUS && value > (threshold / AMBIGUOUS).max(NOISE_OF_ZERO * noise)
+}
+
+/// The twists that are the columns of a matrix with six rows.
+pub(super) fn columns(jacobian: &Matrix) -> Result<Vec<Twist>> {
+    Error::check_len("rows of the matrix of twists", 6, jacobian.rows())?;
+    Ok((0..jacobian.cols()).map(|j| Twist::from_array(six(jacobian.column(j)))).collect())
+}
+
+pub(super) fn six(x: &[f64]) -> [f64; 6] {
+    std::array::from_fn(|i| x[i])
+}
+
+/// Span, scale, thresholds and rank of a set of twists.
+pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale, Tolerances, Rank) {
+    let largest = |t: &Twist| size(*t, options.length);
+    let most = twists.iter().map(largest).fold(0.0, f64::max);
+    // Twists that are rounding errors of the others span nothing. Over a power of two, which
+    // changes no digit, squares of the others neither overflow nor vanish.
+    let power = power_of_two(most);
+    let used: Vec<Twist> =
+        twists.iter().filter(|t| largest(t) > SCREW_RANK * most).map(|t| over(*t, power)).collect();
+    let noise = |factor: f64| NOISE_CLASS * options.noise * factor;
+    let class = |factor: f64| noise(factor).clamp(SCREW_CLASS, 0.1);
+    let mut scale = Scale {
+        center: options
+            .center
+            .unwrap_or_else(|| least_squares_center(&used, options.length, class(1.0))),
+        length: options.length,
+    };
+    // How much of the digits the way to the centre costs.
+    let amplification = |scale: &Scale| {
+        used.iter()
+            .map(|t| {
+                let x = scale.apply(*t);
+                let moved = t.angular.norm() * scale.center.norm() / scale.length;
+                largest(t).max(moved) / dot(&x, &x).sqrt()
+            })
+            .fold(1.0, f64::max)
+    };
+    if options.center.is_none() && !used.is_empty() {
+        // The centre of the given twists depends on which were given; that of a basis which is
+        // orthonormal there does not.
+        let amplified = amplification(&scale);
+        let (mut span, smallest) = basis(&used, scale, NOISE_RANK * options.noise * amplified);
+        let turning = class(amplified / smallest);
+        let mut before: Option<Vec3> = None;
+        for _ in 0..CENTER_STEPS {
+            let twists: [Twist; 6] = std::array::from_fn(|i| {
+                span.vectors().get(i).map_or(Twist::ZERO, |x| scale.undo(x))
+            });
+            let twists = &twists[..span.k()];
+            let step = least_squares_center(twists, options.length, turning) - scale.center;
+            scale.center += step;
+            if step.norm() <= CENTER_FOUND * options.length {
+                break;
+            }
+            // Every step is a part of the one before: two tell where they end (Aitken).
+            let part = before.map_or(0.0, |b: Vec3| step.dot(b) / b.dot(b));
+            if part > 0.0 && part < 0.9 {
+                scale.center += step * (part / (1.0 - part));
+                before = None;
+            } else {
+                before = Some(step);
+            }
+            span = Span::of_independent(twists.iter().map(|t| scale.apply(*t)));
+        }
+    }
+    let amplified = amplification(&scale);
+    let found = decompose(&used, scale, options, amplified);
+    let factor = amplified * found.conditioning;
+    let tolerance = Tolerances {
+        rank: found.rank.threshold,
+        class: class(factor),
+        noise: noise(factor),
+        narrow_rank: found.narrow,
+    };
+    (found.span, scale, tolerance, found.rank)
+}
+
+/// The columns, made orthonormal in their order, those left out that depend on the ones before
+/// them; and how much of the last one that was taken was outside the others.
+fn basis(twists: &[Twist], scale: Scale, noise: f64) -> (Span, f64) {
+    let (mut span, mut smallest) = (Span::ZERO, 1.0_f64);
+    for t in twists {
+        // Noise of a basis vector is that of its column over what it has outside the others.
+        let threshold = SCREW_CLASS.max(noise / smallest);
+        if let Some(rest) = span.push_independent(scale.apply(*t), threshold) {
+            smallest = smallest.min(rest);
+        }
+    }
+    (span, smallest)
+}
+
+struct Decomposed {
+    span: Span,
+    rank: Rank,
+    conditioning: f64,
+    narrow: bool,
+}
+
+fn decompose(
+    twists: &[Twist],
+    scale: Scale,
+    options: &ScrewOptions,
+    amplification: f64,
+) -> Decomposed {
+    let mut unit = Matrix::zeros(6, twists.len());
+    for (j, t) in twists.iter().enumerate() {
+        let x = scale.apply(*t);
+        let norm = dot(&x, &x).sqrt();
+        if norm > 0.0 {
+            unit.column_mut(j).copy_from_slice(&x.map(|a| a / norm));
+        }
+    }
+    let svd = Svd::of(&unit);
+    let noise = NOISE_RANK * options.noise * amplification;
+    let threshold = SCREW_RANK.max(noise).min(0.5);
+    let k = (0..svd.len()).filter(|&i| svd.value(i) > threshold).count();
+    let next = if k < svd.len() { svd.value(k) } else { 0.0 };
+    let last = if k > 0 { svd.value(k - 1) } else { 0.0 };
+    let gap = if k == 0 || next == 0.0 { f64::INFINITY } else { last / next };
+    Decomposed {
+        span: Span::of_independent((0..k).map(|i| six(svd.u(i)))),
+        rank: Rank { rank: k, threshold, gap },
+        conditioning: if k == 0 { 1.0 } else { svd.value(0) / last },
+        narrow: svd.values().any(|s| is_narrow(s, threshold, noise)),
+    }
+}
+
+impl ScrewSystem {
+    /// The columns of a matrix that spans the system, as [v(c) / L; w].
+    pub(crate) fn scaled(&self, jacobian: &Matrix) -> Matrix {
+        let mut scaled = Matrix::zeros(6, jacobian.cols());
+        for j in 0..jacobian.cols() {
+            let x = self.scale.apply(Twist::from_array(six(jacobian.column(j))));
+            scaled.column_mut(j).copy_from_slice(&x);
+        }
+        scaled
+    }
+
+    /// A matrix on scaled twists as a matrix on twists.
+    pub(crate) fn unscaled(&self, a: &Matrix) -> Matrix {
+        self.scale.after_scaling(a)
+    }
+
+    /// The coordinates of the columns in the basis of the system (k x m).
+    pub(crate) fn coordinates(&self, jacobian: &Matrix) -> Matrix {
+        let scaled = self.scaled(jacobian);
+        let basis = self.span.vectors();
+        Matrix::from_fn(basis.len(), jacobian.cols(), |i, j| {
+            basis[i].iter().zip(scaled.column(j)).map(|(b, x)| b * x).sum()
+        })
+    }
+}

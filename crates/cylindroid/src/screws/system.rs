@@ -1,0 +1,260 @@
+//! Screw systems: the subspaces of twists that a set of screws spans.
+//!
+//! Formula  span of the columns [v(c) / L; w], rank by singular values of unit columns; class,
+//!          moduli and frame from the system itself (order <= 3) or its reciprocal (order 4, 5)
+//! Shapes   m twists -> order k <= 6
+//! Units    L, c in m; pitches in m/rad
+//! Frame    that of the twists; the canonical pose is `frame_from_canonical`
+//! Valid    any twists, noisy or dependent. The verdict does not change with the frame, with the
+//!          unit of length (as long as L is given in it) or with the twists chosen to span the
+//!          system; near a boundary of classes it is flagged as ambiguous
+//! Why so   se(3) has no invariant length of a twist, so noise and rank need a scale: L, which the
+//!          user knows, and a centre c, which moves with the axes. Deriving L from the twists
+//!          fails for a wrist, which has no length
+//! Source   Donelan & Selig, section 4; the tolerances: `tolerance.rs`
+//! Checked  tests/it/screws/classes.rs, ::vectors, ::laws
+
+use super::class::{Class, NormalForm};
+use super::classify::{Classified, Margin, classify, placed};
+use super::screw::{Line, Screw};
+use super::span::{Scale, Span, dot, join, over, power_of_two, size};
+use super::spanning::{ScrewOptions, Tolerances, columns, is_narrow, spanned};
+use crate::error::{Error, Result};
+use crate::linalg::{Matrix, Rank};
+use crate::spatial::{Pose, Twist, Vec3};
+
+/// A subspace of twists with its class, its principal screws and its frame.
+#[derive(Debug, Clone)]
+pub struct ScrewSystem {
+    pub(super) span: Span,
+    pub(super) scale: Scale,
+    pub(super) tolerance: Tolerances,
+    rank: Rank,
+    form: NormalForm,
+    canonical: Pose,
+    residual: f64,
+    margins: Vec<Margin>,
+    ambiguous: bool,
+    principal: Vec<Screw>,
+}
+
+impl ScrewSystem {
+    /// The system that these twists of one frame span.
+    ///
+    /// # Errors
+    /// Twists or options that are not finite, a length that is not positive.
+    pub fn of(twists: &[Twist], options: &ScrewOptions) -> Result<Self> {
+        options.check()?;
+        if let Some(i) = twists.iter().position(|t| !t.is_finite()) {
+            Error::check_finite(&format!("twist {}", i + 1), &twists[i].to_array())?;
+        }
+        let (span, scale, tolerance, rank) = spanned(twists, options);
+        Ok(Self::classified(span, scale, tolerance, rank))
+    }
+
+    /// The system spanned by the columns of a Jacobian (6 rows, linear first).
+    ///
+    /// # Errors
+    /// As [`ScrewSystem::of`]; a matrix that has not six rows.
+    pub fn of_columns(jacobian: &Matrix, options: &ScrewOptions) -> Result<Self> {
+        Self::of(&columns(jacobian)?, options)
+    }
+
+    pub(super) fn classified(span: Span, scale: Scale, tolerance: Tolerances, rank: Rank) -> Self {
+        let k = span.k();
+        let small = match k {
+            4 | 5 => span.reciprocal(),
+            6 => Span::ZERO,
+            _ => span,
+        };
+        let mut margins = Vec::with_capacity(6);
+        let mut system = Self {
+            span,
+            scale,
+            tolerance,
+            rank,
+            form: NormalForm {
+                class: if k == 0 { Class::Zero } else { Class::Full },
+                order: k,
+                pitches: vec![],
+                slope: None,
+            },
+            canonical: Pose::from_translation(scale.center),
+            residual: 0.0,
+            margins: vec![],
+            ambiguous: false,
+            principal: vec![],
+        };
+        if small.k() > 0 {
+            let classified = classify(&small, tolerance.class);
+            system.form = NormalForm {
+                class: classified.class,
+                order: small.k(),
+                pitches: classified.pitches.iter().map(|h| h * scale.length).collect(),
+                slope: classified.slope,
+            };
+            system.canonical = Pose {
+                rotation: classified.rotation,
+                translation: scale.center + classified.origin * scale.length,
+            };
+            system.residual = residual(&small, &classified);
+            system.principal = principal_screws(&system.form, system.canonical, k);
+            margins.extend(classified.margins);
+        }
+        system.ambiguous = tolerance.narrow_rank
+            || margins.iter().any(|m| is_narrow(m.value, m.threshold, tolerance.noise));
+        system.margins = margins;
+        system
+    }
+
+    /// Dimension of the system: 0 to 6.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.span.k()
+    }
+
+    /// The order with the singular values behind it: threshold and gap.
+    #[must_use]
+    pub fn rank(&self) -> Rank {
+        self.rank
+    }
+
+    /// Its class after Gibson and Hunt: of the reciprocal system for orders 4 and 5.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        self.form.class
+    }
+
+    /// Class and moduli: the normal form, of the reciprocal system for orders 4 and 5.
+    #[must_use]
+    pub fn normal_form(&self) -> &NormalForm {
+        &self.form
+    }
+
+    /// The canonical frame, seen from the frame of the twists: the normal form in it spans the
+    /// system (its reciprocal for orders 4 and 5).
+    #[must_use]
+    pub fn canonical_pose(&self) -> Pose {
+        self.canonical
+    }
+
+    /// Sine of the angle between the system and its normal form in the canonical frame: what the
+    /// class leaves out.
+    #[must_use]
+    pub fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    /// The quantities that the class hangs on.
+    #[must_use]
+    pub fn margins(&self) -> &[Margin] {
+        &self.margins
+    }
+
+    /// True if a quantity lies so near to its threshold that the verdict is a matter of taste.
+    #[must_use]
+    pub fn is_ambiguous(&self) -> bool {
+        self.ambiguous
+    }
+
+    /// The pitches [m/rad] at which the hyperbolic pseudoinverse ceases to exist, largest first
+    /// (of class IA2 the single one first); empty for classes that never have one, and where every pitch will do.
+    #[must_use]
+    pub fn principal_pitches(&self) -> Vec<f64> {
+        self.principal.iter().map(|s| s.pitch).collect()
+    }
+
+    /// A screw of the system for each principal pitch: reciprocal to every other screw of the
+    /// system in the form of that pitch. Amplitude 1 rad/s.
+    #[must_use]
+    pub fn principal_screws(&self) -> &[Screw] {
+        &self.principal
+    }
+
+    /// Twists that span the system: orthonormal at the centre, with the linear part over L.
+    #[must_use]
+    pub fn basis(&self) -> Vec<Twist> {
+        self.span.vectors().iter().map(|x| self.scale.undo(x)).collect()
+    }
+
+    /// The characteristic length (m).
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.scale.length
+    }
+
+    /// The threshold of its class, without unit: a length is zero at or below this times L.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance.class
+    }
+
+    /// The point at which lengths are judged (m).
+    #[must_use]
+    pub fn center(&self) -> Vec3 {
+        self.scale.center
+    }
+
+    /// The sine of the angle by which a twist leaves the system, at its centre and length: zero
+    /// for a member, one for a twist across all of them. Zero for the zero twist.
+    #[must_use]
+    pub fn sine_to(&self, twist: Twist) -> f64 {
+        let mut x = self.scale.apply(over(twist, power_of_two(size(twist, self.scale.length))));
+        let norm = dot(&x, &x).sqrt();
+        if norm == 0.0 {
+            return 0.0;
+        }
+        x.iter_mut().for_each(|a| *a /= norm);
+        self.span.project_out(&mut x)
+    }
+
+    /// True if the twist belongs to the system, to the tolerance of its class.
+    #[must_use]
+    pub fn contains(&self, twist: Twist) -> bool {
+        self.sine_to(twist) <= self.tolerance.class
+    }
+}
+
+fn residual(span: &Span, classified: &Classified) -> f64 {
+    let form = NormalForm {
+        class: classified.class,
+        order: span.k(),
+        pitches: classified.pitches.clone(),
+        slope: classified.slope,
+    };
+    let generators: Vec<[f64; 6]> =
+        form.twists().iter().map(|t| join(t.linear, t.angular)).collect();
+    span.sine_to(&placed(classified, &generators)).min(1.0)
+}
+
+/// Those of the system itself: for orders 4 and 5 on the axes of the reciprocal system, with the
+/// pitches negated.
+fn principal_screws(form: &NormalForm, canonical: Pose, order: usize) -> Vec<Screw> {
+    if form.class.never_invertible() || form.class == Class::IB {
+        return vec![];
+    }
+    let axes = match form.class {
+        // One of the two directions of IB0 alone: the other is bound to the translation.
+        Class::IB0 => vec![canonical.rotation.y_axis()],
+        _ => vec![
+            canonical.rotation.x_axis(),
+            canonical.rotation.y_axis(),
+            canonical.rotation.z_axis(),
+        ],
+    };
+    let mut screws: Vec<Screw> = form
+        .pitches
+        .iter()
+        .zip(axes)
+        .map(|(&h, direction)| {
+            let axis = Line { point: canonical.translation, direction };
+            let point = axis.nearest(Vec3::ZERO);
+            let pitch = if order > 3 { 0.0 - h } else { h };
+            Screw { axis: Line { point, direction }, pitch, amplitude: 1.0 }
+        })
+        .collect();
+    if order > 3 {
+        screws.reverse();
+    }
+    screws
+}

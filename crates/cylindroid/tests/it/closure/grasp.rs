@@ -1,0 +1,191 @@
+//! Force closure and the quality of grasps.
+
+use cylindroid::closure::{
+    Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality,
+};
+use cylindroid::spatial::Vec3;
+
+use crate::support::Random;
+
+const PLANE: WrenchSpace = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar: true };
+const SPACE: WrenchSpace = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar: false };
+
+fn finger(point: [f64; 3], normal: [f64; 3], friction: Friction) -> FingerContact {
+    let vec3 = |v: [f64; 3]| Vec3::new(v[0], v[1], v[2]);
+    FingerContact { point: vec3(point), normal: vec3(normal), friction, strength: 1.0 }
+}
+
+fn quality(contacts: &[FingerContact], space: WrenchSpace) -> GraspQuality {
+    grasp_quality(contacts, space, Effort::Shared).unwrap()
+}
+
+#[track_caller]
+fn assert_exact(found: &GraspQuality, epsilon: f64) {
+    let (lower, upper) = found.epsilon;
+    assert!((lower - epsilon).abs() < 1e-12 && (upper - epsilon).abs() < 1e-12, "{found:?}");
+    assert!(found.closed);
+}
+
+/// Four fingers without friction on a square: the wrenches are the corners of a tetrahedron, its
+/// faces at a / sqrt(1 + 4 a^2).
+#[test]
+fn four_frictionless_fingers() {
+    for a in [0.05, 0.3, 0.9] {
+        let contacts = [
+            finger([1.0, a, 0.0], [-1.0, 0.0, 0.0], Friction::None),
+            finger([-1.0, -a, 0.0], [1.0, 0.0, 0.0], Friction::None),
+            finger([a, 1.0, 0.0], [0.0, -1.0, 0.0], Friction::None),
+            finger([-a, -1.0, 0.0], [0.0, 1.0, 0.0], Friction::None),
+        ];
+        assert_exact(&quality(&contacts, PLANE), a / (1.0 + 4.0 * a * a).sqrt());
+        // Moments over another length.
+        let half = WrenchSpace { length: 0.5, ..PLANE };
+        let b = 2.0 * a;
+        assert_exact(&quality(&contacts, half), b / (1.0 + 4.0 * b * b).sqrt());
+        // Through the middle nothing holds a moment.
+        let middle = contacts.map(|c| FingerContact { point: c.normal * -1.0, ..c });
+        let open = quality(&middle, PLANE);
+        assert!(!open.closed && open.epsilon == (0.0, 0.0));
+        assert!((open.weakest[2].abs() - 1.0).abs() < 1e-12, "{open:?}");
+    }
+}
+
+/// Two fingers with friction in the plane: mu / sqrt(2 + mu^2).
+#[test]
+fn two_fingers_with_friction() {
+    for mu in [0.1, 0.5, 1.5] {
+        let friction = Friction::Hard { mu };
+        let contacts = [
+            finger([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], friction),
+            finger([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], friction),
+        ];
+        assert_exact(&quality(&contacts, PLANE), mu / (2.0 + mu * mu).sqrt());
+    }
+}
+
+/// In space two hard fingers hold no moment about the line through them, two soft ones do.
+#[test]
+fn soft_fingers_hold_a_moment_about_their_line() {
+    let pair = |friction| {
+        [
+            finger([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], friction),
+            finger([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], friction),
+        ]
+    };
+    let hard = quality(&pair(Friction::Hard { mu: 0.5 }), SPACE);
+    assert!(!hard.closed);
+    assert!((hard.weakest[3].abs() - 1.0).abs() < 1e-12, "{hard:?}");
+    let soft = quality(&pair(Friction::Soft { mu: 0.5, torsion: 0.1 }), SPACE);
+    assert!(soft.closed && soft.epsilon.0 > 0.01, "{soft:?}");
+    // The moment about the line is the weakest: 0.1, a little less with what else moves along.
+    assert!(soft.epsilon.1 < 0.1 + 1e-3);
+}
+
+/// What is held along any direction at all is at least the lower bound, and along the weakest at
+/// most the upper.
+#[test]
+fn bounds_hold_in_space() {
+    let mut random = Random(76);
+    for round in 0..6 {
+        let friction = if round % 2 == 0 {
+            Friction::Hard { mu: 0.6 }
+        } else {
+            Friction::Soft { mu: 0.6, torsion: 0.2 }
+        };
+        let contacts: Vec<FingerContact> = (0..3 + round % 2)
+            .map(|i| {
+                let angle = f64::from(i) * 2.1 + random.within(-0.3, 0.3);
+                let normal = [-angle.cos(), -angle.sin(), 0.0];
+                let point = [angle.cos(), angle.sin(), random.within(-0.2, 0.2)];
+                finger(point, normal, friction)
+            })
+            .collect();
+        for effort in [Effort::Shared, Effort::Each] {
+            let found = grasp_quality(&contacts, SPACE, effort).unwrap();
+            let (lower, upper) = found.epsilon;
+            assert!(found.closed && lower <= upper && upper < lower + 0.02, "{found:?}");
+            let held = |n: &[f64]| -> f64 {
+                let each = contacts.iter().map(|c| held_by(c, n));
+                match effort {
+                    Effort::Shared => each.fold(f64::NEG_INFINITY, f64::max),
+                    Effort::Each => each.map(|h| h.max(0.0)).sum(),
+                }
+            };
+            assert!((held(&found.weakest) - upper).abs() < 1e-9, "{found:?}");
+            for _ in 0..2000 {
+                let n = random.vector(6);
+                let size = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let n: Vec<f64> = n.iter().map(|x| x / size).collect();
+                assert!(held(&n) >= lower - 1e-12);
+            }
+        }
+    }
+}
+
+/// The farthest wrench of a finger along `n`, by the geometry of its cone.
+fn held_by(contact: &FingerContact, n: &[f64]) -> f64 {
+    let (f, m) = (Vec3::new(n[0], n[1], n[2]), Vec3::new(n[3], n[4], n[5]));
+    // Power of a unit force at the contact along the "twist" n.
+    let velocity = f + m.cross(contact.point);
+    let along = velocity.dot(contact.normal);
+    let slip = velocity - contact.normal * along;
+    let (mu, torsion) = match contact.friction {
+        Friction::None => (0.0, 0.0),
+        Friction::Hard { mu } => (mu, 0.0),
+        Friction::Soft { mu, torsion } => (mu, torsion),
+    };
+    along + (mu * slip.norm()).hypot(torsion * m.dot(contact.normal))
+}
+
+/// Fingers on one side, and no fingers at all.
+#[test]
+fn open_grasps() {
+    let friction = Friction::Hard { mu: 0.4 };
+    let side = [
+        finger([0.3, 1.0, 0.0], [0.0, -1.0, 0.0], friction),
+        finger([-0.3, 1.0, 0.0], [0.0, -1.0, 0.0], friction),
+    ];
+    let open = quality(&side, PLANE);
+    assert!(!open.closed && open.epsilon.1 <= 0.0, "{open:?}");
+    // Nothing pushes along the weakest direction.
+    assert!(open.weakest[1] > 0.5, "{open:?}");
+    let each = grasp_quality(&side, PLANE, Effort::Each).unwrap();
+    assert!(!each.closed && each.epsilon.0.abs() < 1e-12, "{each:?}");
+    assert!(!quality(&[], SPACE).closed);
+    let one = quality(&side[..1], SPACE);
+    assert!(!one.closed);
+}
+
+/// Twice as strong fingers hold twice as much.
+#[test]
+fn strength_scales() {
+    let friction = Friction::Hard { mu: 0.5 };
+    let mut contacts = [
+        finger([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], friction),
+        finger([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], friction),
+    ];
+    let of = |c: &[FingerContact]| grasp_quality(c, PLANE, Effort::Each).unwrap().epsilon.0;
+    let one = of(&contacts);
+    contacts.iter_mut().for_each(|c| c.strength = 2.0);
+    assert!((of(&contacts) / one - 2.0).abs() < 1e-12);
+}
+
+#[test]
+fn contacts_that_are_none() {
+    let good = finger([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], Friction::Hard { mu: 0.5 });
+    let error =
+        |c: FingerContact, space| grasp_quality(&[c], space, Effort::Each).unwrap_err().to_string();
+    let long = FingerContact { normal: good.normal * 2.0, ..good };
+    assert!(error(long, SPACE).starts_with("normal = 2"));
+    let slippery = FingerContact { friction: Friction::Hard { mu: -0.1 }, ..good };
+    assert!(error(slippery, SPACE).starts_with("mu = -0.1"));
+    let twisted = FingerContact { friction: Friction::Soft { mu: 0.1, torsion: f64::NAN }, ..good };
+    assert!(error(twisted, SPACE).starts_with("torsion"));
+    let weak = FingerContact { strength: 0.0, ..good };
+    assert!(error(weak, SPACE).starts_with("strength = 0"));
+    let nowhere = FingerContact { point: Vec3::new(0.0, f64::NAN, 0.0), ..good };
+    assert!(error(nowhere, SPACE).starts_with("contact point[1]"));
+    let out = FingerContact { point: Vec3::new(0.0, 0.0, 1.0), ..good };
+    assert!(error(out, PLANE).contains("plane z = 0"));
+    assert!(error(good, WrenchSpace { length: 0.0, ..SPACE }).starts_with("length = 0"));
+}

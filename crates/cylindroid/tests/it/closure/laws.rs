@@ -1,0 +1,114 @@
+//! What holds for every mechanism: no work on the relation, statics from free bodies, bases.
+
+use cylindroid::Matrix;
+use cylindroid::closure::{Constraint, Motions};
+use cylindroid::linalg::{ColumnSpace, Threshold};
+
+use super::case::{case, cases};
+use crate::support::Random;
+
+/// `tau^T q_a + w^T u = 0` for every force and every motion, and nothing is missing of either.
+#[test]
+fn forces_do_no_work_and_are_all() {
+    for case in cases() {
+        let relation = Motions::of(&case.constraint()).relation();
+        let (r, f) = (relation.motions().basis(), relation.forces().basis());
+        assert_eq!(r.cols() + f.cols(), relation.joints() + relation.object(), "{}", case.name);
+        let work = &f.transpose() * &r;
+        assert!(work.max_abs() < 1e-13, "{}: {work:?}", case.name);
+        for basis in [&r, &f] {
+            let rank = ColumnSpace::of(basis, Threshold::Relative(1e-9)).rank();
+            assert_eq!(rank, basis.cols(), "{}", case.name);
+        }
+    }
+}
+
+/// The forces of the equilibrium of all bodies, `w = G t, tau = -J_a^T t, 0 = J_p^T t`, without
+/// the forces at contacts, are the same space.
+#[test]
+fn forces_are_those_of_free_bodies() {
+    for case in cases() {
+        let constraint = case.constraint();
+        let (a, d, t) = (constraint.actuated(), constraint.object(), constraint.rows());
+        let p = constraint.passive();
+        let m = constraint.matrix();
+        // Rows: object, driven joints, passive joints; unknowns (tau, w, t).
+        let statics = Matrix::from_fn(d + a + p, a + d + t, |i, j| {
+            let unit = |k: usize, l: usize| f64::from(u8::from(k == l));
+            if i < d {
+                // w - G t, and the columns of the object carry -G^T
+                if j < a + d { unit(i + a, j) } else { m[(j - a - d, a + p + i)] }
+            } else {
+                let joint = i - d;
+                if j < a {
+                    unit(joint, j)
+                } else if j < a + d {
+                    0.0
+                } else {
+                    m[(j - a - d, joint)]
+                }
+            }
+        });
+        let kernel = ColumnSpace::of(&statics.transpose(), Threshold::Relative(1e-10)).complement();
+        let projected = kernel.rows_between(0, a + d);
+        let bodies = ColumnSpace::of(&projected, Threshold::Absolute(1e-9)).basis();
+        let f = Motions::of(&constraint).relation().forces().basis();
+        assert_eq!(bodies.cols(), f.cols(), "{}", case.name);
+        let both = Matrix::beside(a + d, &[&bodies, &f]);
+        let space = ColumnSpace::of(&both, Threshold::Relative(1e-9));
+        assert_eq!(space.rank(), f.cols(), "{}", case.name);
+    }
+}
+
+/// Motions satisfy the constraint.
+#[test]
+fn motions_keep_the_constraint() {
+    for case in cases() {
+        let constraint = case.constraint();
+        let kept = &constraint.matrix() * &Motions::of(&constraint).basis();
+        assert!(kept.max_abs() < 1e-13, "{}: {kept:?}", case.name);
+    }
+}
+
+/// Other joint coordinates for the passive joints, other combinations of the rows: no difference.
+#[test]
+fn relation_does_not_depend_on_bases() {
+    let mut random = Random(72);
+    for case in cases() {
+        let constraint = case.constraint();
+        let blocks = constraint.blocks();
+        let regular = |random: &mut Random, n: usize| {
+            let noise = random.matrix(n, n);
+            Matrix::from_fn(n, n, |i, j| 0.2 * noise[(i, j)] + f64::from(u8::from(i == j)))
+        };
+        let rows = regular(&mut random, constraint.rows());
+        let columns = regular(&mut random, constraint.passive());
+        let mixed = Constraint::new(cylindroid::closure::Blocks {
+            actuated: &rows * &blocks.actuated,
+            passive: &(&rows * &blocks.passive) * &columns,
+            grasp: &blocks.grasp * &rows.transpose(),
+        })
+        .unwrap();
+        let (one, two) = (Motions::of(&constraint).relation(), Motions::of(&mixed).relation());
+        assert_eq!(one.dimensions(), two.dimensions(), "{}", case.name);
+        for (p, q) in one.finite_pairs().iter().zip(two.finite_pairs()) {
+            assert!((p.0 - q.0).abs() + (p.1 - q.1).abs() < 1e-11, "{}", case.name);
+        }
+    }
+}
+
+/// A Delta robot with real rods and one with idealised parallelograms, hyperstatic to the third
+/// degree: one relation. So a Stewart platform with rods that spin and one without.
+#[test]
+fn drawings_of_one_mechanism_have_one_relation() {
+    for (one, other) in [
+        ("delta_6xUS_rods", "delta_3xRRPaR_hyperstatic"),
+        ("stewart_6UPS_home", "stewart_6SPS_home"),
+    ] {
+        let basis = |name| Motions::of(&case(name).constraint()).relation().motions().basis();
+        let (one, other) = (basis(one), basis(other));
+        let both = Matrix::beside(one.rows(), &[&one, &other]);
+        let space = ColumnSpace::of(&both, Threshold::Relative(1e-12));
+        assert_eq!((space.rank(), one.cols()), (other.cols(), other.cols()));
+    }
+}

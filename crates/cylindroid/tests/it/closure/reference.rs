@@ -1,0 +1,89 @@
+//! The counts of the reference mechanisms, in any frame and unit.
+
+use cylindroid::closure::{Mobility, Motions, internal_forces, structural_forces};
+use cylindroid::spatial::Pose;
+
+use super::case::{Case, cases};
+use crate::support::Random;
+
+#[track_caller]
+fn check_counts(case: &Case) {
+    let constraint = case.constraint();
+    let m = Mobility::of(&constraint);
+    let kinds = m.coordinate_kinds;
+    let got = [
+        ("actuated", constraint.actuated()),
+        ("passive", constraint.passive()),
+        ("d", constraint.object()),
+        ("t", constraint.rows()),
+        ("dof", m.dof.dimension()),
+        ("redundancy", m.redundancy.dimension()),
+        ("coordinate", m.coordinate.dimension()),
+        ("indeterminacy", m.indeterminacy.dimension()),
+        ("ind_passive", m.idle.dimension()),
+        ("ind_object", m.ungrasped.dimension()),
+        ("ind_mixed", m.mixed),
+        ("coord_ap", kinds.passive),
+        ("coord_au", kinds.object),
+        ("coord_apu", kinds.both),
+        ("coord_overlap", kinds.overlap),
+        ("ker_G", internal_forces(&constraint).dimension()),
+        ("ker_JT", structural_forces(&constraint).dimension()),
+        ("hyperstatic", m.hyperstatic.dimension()),
+        ("rel_dim", m.relation.relation),
+        ("rel_coordinate", m.relation.coordinate),
+        ("rel_redundancy", m.relation.redundancy),
+        ("rel_indeterminacy", m.relation.indeterminacy),
+        ("act_internal", m.relation.internal),
+        ("zero_torque_wrenches", m.relation.zero_torque),
+    ];
+    for (name, count) in got {
+        assert_eq!(count, case.dims(name), "{name} of {}", case.name);
+    }
+    assert_eq!(m.internal.dimension(), m.relation.internal, "{}", case.name);
+    assert_eq!(m.zero_torque.dimension(), m.relation.zero_torque, "{}", case.name);
+    assert_eq!(
+        m.grubler + m.hyperstatic.dimension() as i64,
+        m.dof.dimension() as i64,
+        "{}",
+        case.name
+    );
+    assert!(m.doubts.is_empty(), "{}: {}", case.name, m.doubts[0]);
+
+    let relation = Motions::of(&constraint).relation();
+    let task = case.task.as_ref().map_or(relation.clone(), |t| relation.task(t).unwrap());
+    let counts = task.dimensions();
+    for (name, count) in [
+        ("coordinate", counts.coordinate),
+        ("redundancy", counts.redundancy),
+        ("indeterminacy", counts.indeterminacy),
+        ("act_internal", counts.internal),
+        ("zero_torque", counts.zero_torque),
+    ] {
+        assert_eq!(count, case.relation_dims(name), "{name} of the task of {}", case.name);
+    }
+}
+
+#[test]
+fn counts_are_exact() {
+    cases().iter().for_each(check_counts);
+}
+
+#[test]
+fn counts_do_not_depend_on_frame_unit_or_length() {
+    let mut random = Random(71);
+    for case in cases() {
+        for _ in 0..3 {
+            check_counts(&case.moved(case.random_frame(&mut random), 1.0));
+            check_counts(&case.redrawn(&mut random));
+        }
+        for factor in [1e3, 1e-3] {
+            check_counts(&case.moved(Pose::IDENTITY, factor));
+        }
+        for length in [0.1, 5.0] {
+            let mut scaled = case.clone();
+            scaled.length = length;
+            check_counts(&scaled);
+        }
+    }
+}

@@ -1,0 +1,4 @@
+mod metrics;
+mod polytope;
+mod reference;
+mod serial;

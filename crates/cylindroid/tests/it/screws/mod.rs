@@ -1,0 +1,12 @@
+//! Screws, screw systems and what is built on them.
+
+mod classes;
+mod curve;
+mod forms;
+mod geometry;
+mod invariance;
+mod laws;
+mod point_direction;
+mod projectors;
+mod sample;
+mod vectors;

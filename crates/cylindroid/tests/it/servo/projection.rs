@@ -1,0 +1,267 @@
+//! Servos that take on the part of a motion that a form of twists, or the task, chooses.
+
+use super::*;
+use cylindroid::control::Projection;
+use cylindroid::inverse::{self, HyperbolicDamping, HyperbolicOptions};
+use cylindroid::linalg::{Matrix, Metric};
+use cylindroid::screws::{Class, NoInverse, ScrewOptions};
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// The youBot with its tool so far below the horizontal (90: straight down).
+fn pitched(degrees: f64) -> Vec<f64> {
+    let total = (90.0 + degrees) * DEGREE;
+    vec![0.4, 0.6, 0.9, total - 1.5, 0.2]
+}
+
+fn youbot() -> Mechanism {
+    catalogue::load("youbot").unwrap()
+}
+
+/// The rates of one step for a small feed-forward twist, far from all limits.
+fn rates(robot: &Mechanism, projection: Projection, q: &[f64], twist: Twist) -> Vec<f64> {
+    rates_with(robot, q, twist, |o| o.projection = projection)
+}
+
+fn rates_with(
+    robot: &Mechanism,
+    q: &[f64],
+    twist: Twist,
+    change: impl FnOnce(&mut ServoOptions),
+) -> Vec<f64> {
+    let mut servo = servo(robot, |o| {
+        o.method = Method::Truncated { eps: 1e-9 };
+        change(o);
+    });
+    let pose = robot.state(q).unwrap().pose(robot.tool());
+    let step = servo.step(q, Target { pose, feed_forward: twist }).unwrap();
+    assert_eq!(step.saturation.scale, 1.0);
+    servo.rates().to_vec()
+}
+
+fn world_jacobian(robot: &Mechanism, q: &[f64]) -> Matrix {
+    robot.state(q).unwrap().jacobian(robot.tool(), Reference::World)
+}
+
+fn assert_rates(got: &[f64], expected: &[f64]) {
+    let size = expected.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    crate::support::assert_close("rates", got, expected, 1e-10 * size);
+}
+
+const TWIST: Twist =
+    Twist { linear: Vec3::new(1e-3, 2e-3, -1e-3), angular: Vec3::new(3e-3, 1e-3, 2e-3) };
+
+/// J+ P x is the inverse of `inverse/`, which knows nothing of servos, in another frame.
+#[test]
+fn rates_are_those_of_the_inverse() {
+    let robot = youbot();
+    let q = pitched(25.0);
+    let j = world_jacobian(&robot, &q);
+    let tool = robot.state(&q).unwrap().pose(robot.tool()).translation;
+    let seen = TWIST.at_point(-tool).to_array();
+    let length = robot.reach();
+    let scale = ScrewOptions::with_length(length);
+    for h in [0.1, -0.3, 1.0, f64::INFINITY] {
+        let expected = inverse::hyperbolic_with(
+            &j,
+            h,
+            &HyperbolicOptions { scale, ..HyperbolicOptions::default() },
+        )
+        .unwrap();
+        let got = rates(&robot, Projection::Hyperbolic { h }, &q, TWIST);
+        assert_rates(&got, &expected.matrix.mul_vec(&seen));
+    }
+    let weights = [1.0, 4.0, 2.0, 9.0, 1.0];
+    for damping in
+        [HyperbolicDamping::Invariant { mu: 0.02 }, HyperbolicDamping::Gram { lambda: 0.03 }]
+    {
+        let expected = inverse::hyperbolic_with(
+            &j,
+            0.1,
+            &HyperbolicOptions {
+                scale,
+                joint_metric: Some(Metric::diagonal("weights", &weights).unwrap()),
+                damping,
+            },
+        )
+        .unwrap();
+        let got = rates_with(&robot, &q, TWIST, |o| {
+            o.projection = Projection::DampedHyperbolic { h: 0.1, damping };
+            o.joint_weights = weights.to_vec();
+        });
+        assert_rates(&got, &expected.matrix.mul_vec(&seen));
+    }
+    // Given up: rolling about the tool's own axis, in three ways to say it.
+    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let roll = Twist { linear: Vec3::ZERO, angular: Vec3::Y };
+    let aligned = Twist { linear: Vec3::ZERO, angular: pose.rotation * Vec3::Y };
+    let world = pose.adjoint(roll);
+    let complement = Matrix::from_fn(6, 1, |i, _| world.to_array()[i]);
+    let options = HyperbolicOptions { scale, ..HyperbolicOptions::default() };
+    let expected = inverse::oblique(&j, &complement, &options).unwrap();
+    for (twist, reference) in [
+        (roll, Reference::Local),
+        (aligned, Reference::LocalWorldAligned),
+        (world, Reference::World),
+    ] {
+        let projection = Projection::Oblique { complement: vec![twist], reference };
+        assert_rates(
+            &rates(&robot, projection.clone(), &q, TWIST),
+            &expected.matrix.mul_vec(&seen),
+        );
+        let local = rates_with(&robot, &q, TWIST, |o| {
+            o.projection = projection;
+            o.task.axes = Reference::Local;
+        });
+        assert_rates(&local, &expected.matrix.mul_vec(&seen));
+    }
+}
+
+/// The characteristic length, that makes Moore-Penrose rates what they are, changes nothing.
+#[test]
+fn rates_do_not_change_with_the_length() {
+    let robot = youbot();
+    let q = pitched(25.0);
+    let with = |projection: Projection, length: f64| {
+        rates_with(&robot, &q, TWIST, |o| {
+            (o.projection, o.length) = (projection, length);
+            o.largest_projection = f64::INFINITY;
+        })
+    };
+    let reference = with(Projection::Hyperbolic { h: 0.1 }, 0.655);
+    for length in [0.1, 1.0, 655.0] {
+        assert_rates(&with(Projection::Hyperbolic { h: 0.1 }, length), &reference);
+        let (a, b) = (with(Projection::Orthogonal, length), with(Projection::Orthogonal, 0.655));
+        let difference = a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        assert!(difference > 1e-5, "length {length}: {difference}");
+    }
+}
+
+#[test]
+fn youbot_converges_25_degrees_below_the_horizontal() {
+    let robot = youbot();
+    let target = robot.state(&pitched(25.0)).unwrap().pose(robot.tool());
+    let start = [0.1, 0.5, 0.9, 0.3, -0.2];
+    for projection in [
+        Projection::Hyperbolic { h: 0.1 },
+        Projection::Hyperbolic { h: 1.0 },
+        Projection::Hyperbolic { h: f64::INFINITY },
+        Projection::Orthogonal,
+    ] {
+        let mut servo = servo(&robot, |o| o.projection = projection.clone());
+        let outcome = run_checked(&robot, &mut servo, &start, target);
+        assert_eq!(outcome.last.status, Status::Reached, "{projection:?} {:?}", servo.stall());
+        assert_eq!(servo.no_inverse(), None, "{projection:?}");
+    }
+}
+
+/// Picking from above: no hyperbolic inverse for any pitch. The arm stops and says why, or falls
+/// to what was named, and says that too.
+#[test]
+fn straight_down_there_is_none() {
+    let robot = youbot();
+    let down = pitched(90.0);
+    let mut pose = robot.state(&down).unwrap().pose(robot.tool());
+    pose.translation.z -= 0.03;
+    let projection = Projection::Hyperbolic { h: 0.1 };
+    let mut alone = servo(&robot, |o| o.projection = projection.clone());
+    let outcome = run_checked(&robot, &mut alone, &down, pose);
+    assert_eq!(outcome.last.status, Status::Stalled);
+    assert_eq!(alone.stall(), Stall::NoInverse(NoInverse::Class { class: Class::Inf, order: 5 }));
+    assert!(alone.rates().iter().all(|r| *r == 0.0));
+    assert_eq!((outcome.steps, outcome.steps_without_inverse), (0, 1));
+
+    let falling_to = |fallback: Projection| {
+        servo(&robot, |o| {
+            o.projection = projection.clone();
+            o.fallback = Some(fallback);
+        })
+    };
+    let mut plain = falling_to(Projection::Orthogonal);
+    let outcome = run_checked(&robot, &mut plain, &down, pose);
+    assert_eq!(outcome.last.status, Status::Reached, "{:?}", plain.stall());
+    assert!(outcome.no_inverse.is_some() && outcome.steps_without_inverse > 0);
+    // The damped form does not translate along the twist that is reciprocal to all joints and to
+    // itself: horizontally, in the plane of the arm.
+    let damping = HyperbolicDamping::Invariant { mu: 1e-3 };
+    let mut damped = falling_to(Projection::DampedHyperbolic { h: 0.1, damping });
+    run_checked(&robot, &mut damped, &down, pose);
+    let Stall::GivenUp { direction } = damped.stall() else { panic!("{:?}", damped.stall()) };
+    let radial = direction[0] * down[0].cos() + direction[1] * down[0].sin();
+    assert!(radial.abs() > 0.99, "{direction:?}");
+    // A fallback that does not exist either stops the arm too.
+    let mut twice = falling_to(Projection::Hyperbolic { h: 0.2 });
+    assert_eq!(run(&mut twice, &down, pose).last.status, Status::Stalled);
+}
+
+/// One degree off the vertical the inverse exists and enlarges motions by more than a thousand.
+#[test]
+fn a_projection_may_be_too_large() {
+    let robot = youbot();
+    let q = pitched(89.0);
+    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let target = Target { pose, feed_forward: TWIST };
+    let mut strict = servo(&robot, |o| o.projection = Projection::Hyperbolic { h: 0.1 });
+    assert_eq!(strict.step(&q, target).unwrap().status, Status::Stalled);
+    let Stall::NoInverse(NoInverse::TooLarge { norm }) = strict.stall() else {
+        panic!("{:?}", strict.stall())
+    };
+    assert!((1e3..1e4).contains(&norm), "{norm}");
+    let mut bold = servo(&robot, |o| {
+        o.projection = Projection::Hyperbolic { h: 0.1 };
+        o.largest_projection = f64::INFINITY;
+    });
+    bold.step(&q, target).unwrap();
+    assert_eq!(bold.no_inverse(), None);
+}
+
+/// With six independent joints every projection is the identity.
+#[test]
+fn six_joints_take_on_everything() {
+    let robot = catalogue::load("ur5e").unwrap();
+    let q = [0.3, -1.2, 1.4, -0.9, 0.7, 0.2];
+    let plain = rates(&robot, Projection::Orthogonal, &q, TWIST);
+    for projection in [
+        Projection::Hyperbolic { h: 0.2 },
+        Projection::Oblique { complement: vec![], reference: Reference::Local },
+    ] {
+        assert_rates(&rates(&robot, projection, &q, TWIST), &plain);
+    }
+}
+
+#[test]
+fn bad_projections_are_refused() {
+    let robot = youbot();
+    let refused = |change: &dyn Fn(&mut ServoOptions)| {
+        let mut options = ServoOptions::new(&robot);
+        change(&mut options);
+        Servo::new(&robot, options).unwrap_err().to_string()
+    };
+    let text = refused(&|o| o.projection = Projection::Hyperbolic { h: f64::NAN });
+    assert!(text.contains("pitch h"), "{text}");
+    let text = refused(&|o| {
+        o.projection = Projection::Hyperbolic { h: 0.1 };
+        o.task = Task::POSITION;
+    });
+    assert!(text.contains("whole poses"), "{text}");
+    let text = refused(&|o| {
+        let damping = HyperbolicDamping::Invariant { mu: -1.0 };
+        o.fallback = Some(Projection::DampedHyperbolic { h: 0.1, damping });
+    });
+    assert!(text.contains("mu"), "{text}");
+    let text = refused(&|o| o.largest_projection = 0.0);
+    assert!(text.contains("largest projection"), "{text}");
+    let zero =
+        Projection::Oblique { complement: vec![Twist::ZERO; 7], reference: Reference::Local };
+    let text = refused(&|o| o.projection = zero.clone());
+    assert!(text.contains("six"), "{text}");
+    // A complement that is a motion of the arm does not complete it.
+    let q = pitched(25.0);
+    let j = world_jacobian(&robot, &q);
+    let own = Twist::from_array(j.column(0).try_into().unwrap());
+    let own = Projection::Oblique { complement: vec![own], reference: Reference::World };
+    let mut servo = servo(&robot, |o| o.projection = own);
+    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    servo.step(&q, Target { pose, feed_forward: TWIST }).unwrap();
+    assert_eq!(servo.stall(), Stall::NoInverse(NoInverse::NotComplementary { order: 5, other: 1 }));
+}
