@@ -26,8 +26,8 @@ Exit codes: 0 done, 1 a negative answer (a target not reached), 2 an error.";
 /// Moves robots in Cartesian space and tells what they can do.
 ///
 /// SI units and radians everywhere: lengths in m, angles in rad, times in s. Twists and the rows of
-/// Jacobians are linear first. A <MODEL> is a file (.urdf, .toml) or a name of the catalogue
-/// (`cylindroid models`).
+/// Jacobians are linear first. A <MODEL> is a file (.urdf, .xml of MuJoCo, .sdf, .toml) or a
+/// name of the catalogue (`cylindroid models`).
 #[derive(Debug, Parser)]
 #[command(name = "cylindroid", version, after_help = EXAMPLES, max_term_width = 100)]
 pub(crate) struct Cli {

@@ -11,7 +11,7 @@ use super::closing::{Contact, ContactSpec, LoopJoint, LoopSpec};
 use super::held::Dimension;
 use super::joint::{Joint, Limits};
 use super::link::Link;
-use super::mechanism::{Data, Frame, FrameId, Mechanism, frame_key};
+use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
 use super::spec::JointSpec;
 use crate::error::{Error, Result};
@@ -264,7 +264,8 @@ impl Builder {
         ))
     }
 
-    /// The home configuration: the one that was set, else that of each joint, else rest.
+    /// The home configuration: the one that was set, else that of each joint, else rest; zero in a
+    /// closed chain, whose loops close there even where a limit excludes it.
     fn home_of(&self, assembly: &Assembly) -> Result<Vec<f64>> {
         let n = assembly.coordinates.len();
         if let Some(q) = &self.home {
@@ -276,7 +277,9 @@ impl Builder {
                 format!("home has {} entries, expected {n} finite numbers", q.len()),
             );
         }
-        let mut home: Vec<f64> = assembly.coordinates.iter().map(|c| rest(&c.limits)).collect();
+        let closed = !(self.loops.is_empty() && self.contacts.is_empty());
+        let still = |c: &Coordinate| if closed { 0.0 } else { rest(&c.limits) };
+        let mut home: Vec<f64> = assembly.coordinates.iter().map(still).collect();
         for (j, spec) in self.joints.iter().enumerate() {
             let Some(start) = self.starts.get(&spec.name).filter(|_| spec.mimic.is_none()) else {
                 continue;

@@ -284,6 +284,7 @@ impl Mechanism {
     }
 
     /// The home configuration: the file's, else zero, and the middle of limits that exclude zero.
+    /// A closed chain rests at zero in any case: its loops close there.
     #[must_use]
     pub fn home(&self) -> &[f64] {
         &self.data.home

@@ -29,6 +29,13 @@ fn the_format_is_told_by_extension_and_content() {
     assert_eq!(load_as("a.xml", ARM_URDF).unwrap().report().format, "URDF");
     assert_eq!(load_as("a.XML", ARM_URDF).unwrap().report().format, "URDF");
     assert_eq!(load_as("robot_description", ARM_URDF).unwrap().report().format, "URDF");
+    let mujoco = include_str!("../data/zoo.xml");
+    for name in ["m.xml", "m.mjcf", "m.urdf", "mujoco"] {
+        assert_eq!(load_as(name, mujoco).unwrap().report().format, "MJCF");
+    }
+    for name in ["s.sdf", "s.xml", "gazebo"] {
+        assert_eq!(load_as(name, include_str!("../data/bars.sdf")).unwrap().report().format, "SDF");
+    }
     assert_eq!(load_as("bom.urdf", &format!("\u{feff}{ARM_URDF}")).unwrap().n(), 3);
     assert_eq!(load_as("a.toml", ARM_TOML).unwrap().report().format, "mechanism file");
     assert_eq!(load_as("bom.toml", &format!("\u{feff}{ARM_TOML}")).unwrap().n(), 2);

@@ -12,6 +12,7 @@ mod load;
 mod mechanism_file;
 mod mjcf;
 mod mutations;
+mod sdf;
 mod urdf;
 
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! Nothing that stands in a file makes the loaders panic.
 
 use crate::mjcf::read_mjcf;
+use crate::sdf::read_sdf;
 use crate::{ARM_TOML, ARM_URDF, read_toml, read_urdf};
 
 /// Every truncation of the text, and every byte replaced by bytes that mean something.
@@ -32,6 +33,13 @@ fn mutated_urdfs_give_a_model_or_an_error() {
 fn mutated_mjcf_gives_a_model_or_an_error() {
     feed(include_str!("../data/zoo.xml"), |text| {
         let _ = read_mjcf(text).map_err(|e| e.to_string());
+    });
+}
+
+#[test]
+fn mutated_sdf_gives_a_model_or_an_error() {
+    feed(include_str!("../data/bars.sdf"), |text| {
+        let _ = read_sdf(text).map_err(|e| e.to_string());
     });
 }
 

@@ -1,7 +1,7 @@
 //! File formats: each file here reads one format and writes nothing but a [`Builder`].
 //!
 //! The format is told by the extension and by what stands in the file: `.toml` is a mechanism
-//! file, everything that begins with `<` is XML and is told by its root element.
+//! file, everything that begins with `<` is XML (URDF, MJCF, SDF) and is told by its root element.
 //!
 //! [`Builder`]: super::Builder
 
@@ -10,6 +10,7 @@ mod graph;
 mod mesh;
 pub mod mjcf;
 mod place;
+pub mod sdf;
 pub mod toml;
 pub mod urdf;
 mod xml;
@@ -89,6 +90,7 @@ fn read_xml(text: &str, path: &Path) -> Result<Mechanism> {
     let root = xml::document(&source).ok().map(|d| d.root_element().tag_name().name().to_owned());
     match root.as_deref() {
         Some("mujoco" | "mujocoinclude") => mjcf::parse(text, path),
+        Some("sdf" | "gazebo") => sdf::parse(text, path),
         _ => urdf::parse(text, path),
     }
 }

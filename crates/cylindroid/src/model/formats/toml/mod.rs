@@ -52,7 +52,7 @@ const REFERENCE: &str = "reference";
 /// `[[robot]]` tables, which are read.
 ///
 /// # Errors
-/// [`Error::File`] with line and column for broken TOML, unknown keys, values of a wrong type,
+/// [`Error::File`](crate::Error::File) with line and column for broken TOML, unknown keys, values of a wrong type,
 /// and all that the builder refuses; the errors of included files.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
     read(text, path, 0)

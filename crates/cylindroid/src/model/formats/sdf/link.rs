@@ -1,0 +1,122 @@
+//! Links of SDF: mass and shapes, kept as data.
+
+use roxmltree::Node;
+
+use crate::error::Result;
+use crate::model::formats::mesh::Packages;
+use crate::model::formats::xml::Reader;
+use crate::model::{Geometry, Inertial, Link, Visual};
+use crate::spatial::{Mat3, Pose, Vec3};
+
+impl Reader<'_> {
+    /// A link under its full name.
+    pub(super) fn sdf_link(
+        &mut self,
+        node: Node<'_, '_>,
+        name: &str,
+        packages: &Packages,
+    ) -> Result<Link> {
+        self.leftovers(node, &["name"], &["pose", "inertial", "visual", "collision"]);
+        let mut link = Link::named(name);
+        if let Some(inertial) = self.child(node, "inertial") {
+            link.inertial = self.sdf_inertial(inertial, name)?;
+        }
+        for child in node.children().filter(|c| c.has_tag_name("visual")) {
+            link.visuals.extend(self.sdf_shape(child, packages)?);
+        }
+        for child in node.children().filter(|c| c.has_tag_name("collision")) {
+            link.collisions.extend(self.sdf_shape(child, packages)?);
+        }
+        Ok(link)
+    }
+
+    /// The pose in a link; one that is relative to something else is noted.
+    fn pose_on_link(&mut self, node: Node<'_, '_>) -> Result<Pose> {
+        let Some(pose) = self.child(node, "pose") else { return Ok(Pose::IDENTITY) };
+        let given = ["relative_to", "frame"].into_iter().find_map(|a| pose.attribute(a));
+        if given.is_some_and(|f| !f.trim().is_empty()) {
+            let owner = self.owner(node).to_owned();
+            let why = "shapes and masses are taken relative to their link";
+            self.note(pose, "relative_to of shapes and masses", why, &owner);
+        }
+        self.pose_in(pose)
+    }
+
+    fn sdf_inertial(&mut self, node: Node<'_, '_>, link: &str) -> Result<Option<Inertial>> {
+        self.leftovers(node, &[], &["pose", "mass", "inertia"]);
+        let link_from_inertia = self.pose_on_link(node)?;
+        let Some(mass) = self.child_number(node, "mass")? else {
+            self.note(node, "<inertial>", "it gives no mass", link);
+            return Ok(None);
+        };
+        let mut inertia = Mat3::ZERO;
+        if let Some(child) = self.child(node, "inertia") {
+            let mut m = [0.0; 6];
+            for (slot, name) in m.iter_mut().zip(["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]) {
+                *slot = self.child_number(child, name)?.unwrap_or(0.0);
+            }
+            let [xx, xy, xz, yy, yz, zz] = m;
+            inertia = Mat3::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
+        }
+        Ok(Some(Inertial { mass, link_from_inertia, inertia }))
+    }
+
+    fn sdf_shape(&mut self, node: Node<'_, '_>, packages: &Packages) -> Result<Option<Visual>> {
+        self.leftovers(node, &["name"], &["pose", "geometry", "material"]);
+        let link_from_shape = self.pose_on_link(node)?;
+        let geometry = match self.child(node, "geometry") {
+            Some(geometry) => self.sdf_geometry(geometry, packages)?,
+            None => None,
+        };
+        let Some(geometry) = geometry else {
+            let what = format!("<{}> without a shape", node.tag_name().name());
+            let owner = self.owner(node).to_owned();
+            self.note(node, what, "there is nothing to draw", &owner);
+            return Ok(None);
+        };
+        let mut rgba = None;
+        if let Some(material) = self.child(node, "material") {
+            let colour = ["diffuse", "ambient"].into_iter().find_map(|c| self.child(material, c));
+            // Colours with three numbers are opaque.
+            rgba = colour.and_then(|c| match self.finite::<4>(c) {
+                Ok(rgba) => Some(rgba),
+                Err(_) => self.finite::<3>(c).ok().map(|[r, g, b]| [r, g, b, 1.0]),
+            });
+        }
+        let name = node.attribute("name").unwrap_or("").to_owned();
+        Ok(Some(Visual { name, link_from_shape, geometry, rgba }))
+    }
+
+    fn sdf_geometry(
+        &mut self,
+        parent: Node<'_, '_>,
+        packages: &Packages,
+    ) -> Result<Option<Geometry>> {
+        self.leftovers(parent, &[], &["box", "cylinder", "capsule", "sphere", "mesh"]);
+        let known = |n: &Node<'_, '_>| {
+            matches!(n.tag_name().name(), "box" | "cylinder" | "capsule" | "sphere" | "mesh")
+        };
+        let Some(node) = parent.children().find(known) else { return Ok(None) };
+        let radius = self.child_number(node, "radius")?;
+        let length = self.child_number(node, "length")?;
+        Ok(match (node.tag_name().name(), radius, length) {
+            ("box", ..) => self.child_vector(node, "size")?.map(|size| Geometry::Box { size }),
+            ("sphere", Some(radius), _) => Some(Geometry::Sphere { radius }),
+            ("cylinder", Some(radius), Some(length)) => Some(Geometry::Cylinder { radius, length }),
+            ("capsule", Some(radius), Some(length)) => Some(Geometry::Capsule { radius, length }),
+            ("mesh", ..) => {
+                self.leftovers(node, &[], &["uri", "scale"]);
+                let scale = self.child_vector(node, "scale")?.unwrap_or(Vec3::new(1.0, 1.0, 1.0));
+                let Some(uri) = self.child_text(node, "uri") else { return Ok(None) };
+                let path = packages.find(uri);
+                if path.is_none() {
+                    let why = "mesh not found: looked in the folders above the file, \
+                               ROS_PACKAGE_PATH and AMENT_PREFIX_PATH";
+                    self.note(node, "mesh", why, uri);
+                }
+                Some(Geometry::Mesh { uri: uri.to_owned(), path, scale })
+            }
+            _ => None,
+        })
+    }
+}

@@ -1,0 +1,255 @@
+//! SDF: models of Gazebo and Drake, versions 1.4 to 1.11.
+//!
+//! Formula  parent_from_joint = model_from_parent^-1 model_from_joint, likewise for the child: every
+//!          link keeps the frame of the file
+//! Units    m, rad (degrees where a pose says so), kg, N, N m
+//! Valid    the first model of a file, nested models included (`model::link`). Joints form a graph:
+//!          those that close loops do so. The root is `world` where a joint names it or the model
+//!          is static, else the canonical link
+//! Why so   SDF names no motors, so every joint of one coordinate counts as driven, as in URDF;
+//!          the report says so where there are loops
+//! Source   sdformat.org, specification
+//! Checked  tests/formats/sdf.rs
+
+mod frames;
+mod joint;
+mod link;
+mod text;
+mod write;
+
+use std::path::Path;
+
+use roxmltree::Node;
+
+use self::frames::{Frames, MODEL, Placed};
+use self::joint::Written;
+use super::mesh::Packages;
+use super::place::Source;
+use super::xml::{self, Reader};
+use crate::error::Result;
+use crate::model::{Link, Mechanism};
+use crate::spatial::Pose;
+
+const FORMAT: &str = "SDF";
+
+/// What is read so far.
+struct Sdf<'d> {
+    reader: Reader<'d>,
+    version: f64,
+    frames: Frames<'d>,
+    links: Vec<(Link, Node<'d, 'd>)>,
+    joints: Vec<Written<'d>>,
+    /// Full names of `<frame>` elements.
+    named: Vec<String>,
+}
+
+/// Reads the text of an SDF file. The path is used in errors and to find meshes.
+///
+/// # Errors
+/// [`Error::File`](crate::Error::File) with line and column for broken XML, a file without a
+/// model, a number that is not one, a name that is missing or unknown, frames placed in a ring,
+/// and all that the builder refuses.
+pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
+    let source = Source { format: FORMAT, path, text };
+    let document = xml::document(&source)?;
+    let root = document.root_element();
+    let tag = Reader::tag(root);
+    if !matches!(root.tag_name().name(), "sdf" | "gazebo") {
+        let message =
+            format!("the root element is <{}>, SDF begins with <sdf>", root.tag_name().name());
+        return Err(source.error(tag, message, ""));
+    }
+    let mut reader = Reader::new(source, None);
+    (reader.owners, reader.why) = (&["link", "joint", "frame", "model"], why_unused);
+    reader.leftovers(root, &["version"], &["model", "world"]);
+    let version = match root.attribute("version") {
+        None => 1.5,
+        Some(text) => {
+            text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| {
+                reader.refuse(root, "version", format!("version '{text}' is not a number"))
+            })?
+        }
+    };
+    // 1.10 and 1.11 come after 1.9.
+    let version = if version < 1.2 { 1.9 } else { version };
+    let worlds = root.children().filter(|n| n.has_tag_name("world"));
+    let places = std::iter::once(root).chain(worlds);
+    let models: Vec<Node<'_, '_>> =
+        places.flat_map(|p| p.children().filter(|n| n.has_tag_name("model"))).collect();
+    let Some((&model, others)) = models.split_first() else {
+        return Err(source.error(tag, "this SDF has no <model>", "give a file with one"));
+    };
+    for other in others {
+        let name = other.attribute("name").unwrap_or("");
+        reader.note(*other, "further <model>", "only the first model of a file is read", name);
+    }
+    if let Some(world) = model.parent_element().filter(|p| p.has_tag_name("world")) {
+        reader.leftovers(world, &["name"], &["model"]);
+    }
+    let mut it = Sdf {
+        reader,
+        version,
+        frames: Frames::default(),
+        links: Vec::new(),
+        joints: Vec::new(),
+        named: Vec::new(),
+    };
+    it.read(model)?;
+    it.write(model)
+}
+
+impl<'d> Sdf<'d> {
+    /// The model and those nested in it: frames first, then what refers to them.
+    fn read(&mut self, model: Node<'d, 'd>) -> Result<()> {
+        let packages = Packages::of(self.reader.source.path);
+        let mut joints = Vec::new();
+        let mut stack = vec![(model, String::new())];
+        while let Some((model, scope)) = stack.pop() {
+            let attributes = ["name", "canonical_link", "placement_frame"];
+            let children = ["pose", "link", "joint", "frame", "model", "static"];
+            self.reader.leftovers(model, &attributes, &children);
+            if let Some(frame) = model.attribute("placement_frame") {
+                let why = "it moves the whole model, not its parts";
+                self.reader.note(model, "placement_frame", why, frame);
+            }
+            let mut nested = Vec::new();
+            let mut first_link = None;
+            for node in model.children().filter(Node::is_element) {
+                match node.tag_name().name() {
+                    "link" => {
+                        let name = self.place(node, &scope, None)?;
+                        first_link.get_or_insert_with(|| name.clone());
+                        let link = self.reader.sdf_link(node, &name, &packages)?;
+                        self.links.push((link, node));
+                    }
+                    "joint" => {
+                        let child = self.reader.child_text(node, "child").unwrap_or("").to_owned();
+                        self.place(node, &scope, Some(child))?;
+                        joints.push((node, scope.clone()));
+                    }
+                    "frame" => {
+                        let to = node.attribute("attached_to").map(str::trim).unwrap_or("");
+                        let name = self.place(node, &scope, Some(to.to_owned()))?;
+                        self.named.push(name);
+                    }
+                    "model" => {
+                        let own = self.reader.required(node, "name")?;
+                        nested.push((node, scoped(&scope, own)));
+                    }
+                    _ => {}
+                }
+            }
+            // The frame of a model is carried by its canonical link.
+            let canonical = model.attribute("canonical_link").map(|l| scoped(&scope, l.trim()));
+            let attached_to = canonical.or(first_link).unwrap_or_default();
+            if scope.is_empty() {
+                let (relative_to, pose) = (MODEL.to_owned(), Pose::IDENTITY);
+                let placed = Placed { node: model, relative_to, pose, attached_to };
+                self.frames.insert(&self.reader, MODEL.to_owned(), placed)?;
+            } else {
+                let outer = scope.rsplit_once("::").map_or("", |s| s.0);
+                let (relative_to, pose) = self.pose_of(model, outer, MODEL)?;
+                let placed = Placed { node: model, relative_to, pose, attached_to };
+                let own = scoped(&scope, MODEL);
+                let alias = Placed {
+                    relative_to: own.clone(),
+                    pose: Pose::IDENTITY,
+                    attached_to: own.clone(),
+                    node: model,
+                };
+                self.frames.insert(&self.reader, own, placed)?;
+                self.frames.insert(&self.reader, scope.clone(), alias)?;
+            }
+            stack.extend(nested.into_iter().rev());
+        }
+        for (node, scope) in joints {
+            let joint = self.joint(node, &scope)?;
+            self.joints.extend(joint);
+        }
+        Ok(())
+    }
+
+    /// Notes where a link (which nothing else carries), a joint or a frame stands.
+    fn place(&mut self, node: Node<'d, 'd>, scope: &str, on: Option<String>) -> Result<String> {
+        let own = self.reader.required(node, "name")?.trim();
+        let name = scoped(scope, own);
+        let (attached_to, missing) = match on {
+            None => (name.clone(), MODEL.to_owned()),
+            Some(on) if on.is_empty() => (scoped(scope, MODEL), MODEL.to_owned()),
+            // A joint at the world is placed in the model.
+            Some(on) if on == "world" => (scoped(scope, MODEL), MODEL.to_owned()),
+            Some(on) => (scoped(scope, &on), on),
+        };
+        let (relative_to, pose) = self.pose_of(node, scope, &missing)?;
+        let placed = Placed { node, relative_to, pose, attached_to };
+        self.frames.insert(&self.reader, name.clone(), placed)?;
+        Ok(name)
+    }
+
+    /// The `<pose>` of an element and the full name of what it is relative to.
+    fn pose_of(
+        &mut self,
+        node: Node<'d, 'd>,
+        scope: &str,
+        missing: &str,
+    ) -> Result<(String, Pose)> {
+        let Some(pose) = self.reader.child(node, "pose") else {
+            return Ok((scoped(scope, missing), Pose::IDENTITY));
+        };
+        let known = ["relative_to", "frame", "rotation_format", "degrees"];
+        self.reader.unread_attributes(pose, &known);
+        let given = ["relative_to", "frame"].into_iter().find_map(|a| pose.attribute(a));
+        let to = given.map(str::trim).filter(|t| !t.is_empty()).unwrap_or(missing);
+        Ok((scoped(scope, to), self.reader.pose_in(pose)?))
+    }
+}
+
+/// The full name of what is called `name` in a nested model.
+fn scoped(scope: &str, name: &str) -> String {
+    if scope.is_empty() { name.to_owned() } else { format!("{scope}::{name}") }
+}
+
+fn is_true(text: &str) -> bool {
+    matches!(text.trim(), "1" | "true")
+}
+
+fn degrees() -> f64 {
+    std::f64::consts::PI / 180.0
+}
+
+fn why_unused(name: &str) -> &'static str {
+    match name {
+        "physics"
+        | "self_collide"
+        | "enable_wind"
+        | "gravity"
+        | "kinematic"
+        | "surface"
+        | "laser_retro"
+        | "must_be_base_link"
+        | "velocity_decay"
+        | "allow_auto_disable"
+        | "plugin"
+        | "sensor"
+        | "scene"
+        | "state"
+        | "audio"
+        | "atmosphere"
+        | "wind"
+        | "gui"
+        | "spherical_coordinates"
+        | "magnetic_field" => "settings of the simulator are not used",
+        "stiffness" | "dissipation" | "damping" => {
+            "springs and damping do not enter the kinematics"
+        }
+        "light" | "cast_shadows" | "transparency" | "meta" | "visibility_flags" => {
+            "it is not drawn"
+        }
+        "include" => "it is not fetched: what it would bring is missing",
+        "gearbox_ratio" | "gearbox_reference_body" => "gearboxes are not modelled",
+        "battery" | "projector" | "particle_emitter" | "gripper" => {
+            "it does not enter the kinematics"
+        }
+        _ => "not known to this reader",
+    }
+}

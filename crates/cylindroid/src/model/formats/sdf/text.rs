@@ -1,0 +1,96 @@
+//! Values that SDF writes as the text of elements.
+
+use std::ops::Range;
+
+use roxmltree::Node;
+
+use super::{degrees, is_true};
+use crate::error::{Error, Result};
+use crate::model::formats::xml::{Reader, numbers_in};
+use crate::spatial::{Pose, Quaternion, Rpy, Vec3};
+
+impl Reader<'_> {
+    /// The place of the text of an element, without blanks around it; its tag where it has none.
+    pub(super) fn text_place(node: Node<'_, '_>) -> Range<usize> {
+        let Some(child) = node.first_child().filter(Node::is_text) else { return Self::tag(node) };
+        let range = child.range();
+        let Some(text) = node.document().input_text().get(range.clone()) else { return range };
+        let start = range.start + text.len() - text.trim_start().len();
+        start..(start + text.trim().len()).max(start)
+    }
+
+    /// An error at the text of an element.
+    pub(super) fn refuse_text(&self, node: Node<'_, '_>, message: impl Into<String>) -> Error {
+        self.error(node, Self::text_place(node), message, "")
+    }
+
+    /// The text of the first child element of this name.
+    pub(super) fn child_text<'d>(&mut self, node: Node<'d, '_>, name: &str) -> Option<&'d str> {
+        Some(self.child(node, name)?.text().unwrap_or("").trim())
+    }
+
+    /// True if a child element says so; false where it is missing.
+    pub(super) fn child_flag(&mut self, node: Node<'_, '_>, name: &str) -> bool {
+        self.child_text(node, name).is_some_and(is_true)
+    }
+
+    /// The numbers that stand in an element; infinite ones pass.
+    pub(super) fn content<const N: usize>(&self, node: Node<'_, '_>) -> Result<[f64; N]> {
+        let tag = node.tag_name().name();
+        let values = numbers_in(node.text().unwrap_or(""))
+            .map_err(|word| self.refuse_text(node, format!("<{tag}>: '{word}' is not a number")))?;
+        let count = values.len();
+        <[f64; N]>::try_from(values).map_err(|_| {
+            self.refuse_text(node, format!("<{tag}> has {count} numbers, expected {N}"))
+        })
+    }
+
+    /// The finite numbers that stand in an element.
+    pub(super) fn finite<const N: usize>(&self, node: Node<'_, '_>) -> Result<[f64; N]> {
+        let values = self.content::<N>(node)?;
+        if values.iter().all(|x| x.is_finite()) {
+            return Ok(values);
+        }
+        Err(self.refuse_text(node, format!("<{}> is not finite", node.tag_name().name())))
+    }
+
+    /// The finite number in the first child element of this name.
+    pub(super) fn child_number(&mut self, node: Node<'_, '_>, name: &str) -> Result<Option<f64>> {
+        let Some(child) = self.child(node, name) else { return Ok(None) };
+        self.finite::<1>(child).map(|[x]| Some(x))
+    }
+
+    /// The vector in the first child element of this name.
+    pub(super) fn child_vector(&mut self, node: Node<'_, '_>, name: &str) -> Result<Option<Vec3>> {
+        let Some(child) = self.child(node, name) else { return Ok(None) };
+        self.finite::<3>(child).map(|v| Some(Vec3::from_array(v)))
+    }
+
+    /// The pose that an element of the kind `<pose>` holds; the identity where it is empty.
+    pub(super) fn pose_in(&self, node: Node<'_, '_>) -> Result<Pose> {
+        if node.text().unwrap_or("").trim().is_empty() {
+            return Ok(Pose::IDENTITY);
+        }
+        match node.attribute("rotation_format").map(str::trim) {
+            Some("quat_xyzw") => {
+                let [x, y, z, i, j, k, w] = self.finite::<7>(node)?;
+                let rotation = Quaternion { w, x: i, y: j, z: k }
+                    .rotation()
+                    .map_err(|e| self.refuse_text(node, e.to_string()))?;
+                Ok(Pose { rotation, translation: Vec3::new(x, y, z) })
+            }
+            None | Some("euler_rpy") => {
+                let [x, y, z, roll, pitch, yaw] = self.finite::<6>(node)?;
+                let unit =
+                    if node.attribute("degrees").is_some_and(is_true) { degrees() } else { 1.0 };
+                let rpy = Rpy { roll: roll * unit, pitch: pitch * unit, yaw: yaw * unit };
+                Ok(Pose { rotation: rpy.rotation(), translation: Vec3::new(x, y, z) })
+            }
+            Some(other) => {
+                let known = ["euler_rpy", "quat_xyzw"];
+                let unknown = Error::unknown("rotation format", other, known);
+                Err(self.refuse(node, "rotation_format", unknown.to_string()))
+            }
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! From links and joints of SDF to a mechanism: the spanning tree and what closes it.
+
+use std::collections::BTreeMap;
+
+use roxmltree::Node;
+
+use super::joint::Written;
+use super::{FORMAT, MODEL, Sdf};
+use crate::error::{Error, Result};
+use crate::model::builder::Builder;
+use crate::model::formats::graph::{Branch, span};
+use crate::model::formats::xml::Reader;
+use crate::model::{JointKind, JointSpec, Link, LoopSpec, Mechanism};
+use crate::spatial::Pose;
+
+/// The root of models that are fixed to the world.
+const WORLD: &str = "world";
+
+impl<'d> Sdf<'d> {
+    pub(super) fn write(mut self, model: Node<'d, 'd>) -> Result<Mechanism> {
+        let source = self.reader.source;
+        let stem = source.path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default();
+        let own = model.attribute("name").map(str::trim).filter(|n| !n.is_empty());
+        let mut builder = Mechanism::builder(own.unwrap_or(&stem));
+
+        let is_static = self.reader.child_flag(model, "static");
+        let at_world = self.joints.iter().any(|j| j.between.iter().any(|l| l == WORLD));
+        let world_from_model = match self.reader.child(model, "pose") {
+            Some(pose) => self.reader.pose_in(pose)?,
+            None => Pose::IDENTITY,
+        };
+        let mut names: Vec<String> = Vec::new();
+        let mut poses: Vec<Pose> = Vec::new();
+        if is_static || at_world || self.links.is_empty() {
+            names.push(WORLD.to_owned());
+            poses.push(Pose::IDENTITY);
+            builder.link(Link::named(WORLD));
+        }
+        for (link, _) in &self.links {
+            poses.push(world_from_model * self.frames.pose(&self.reader, &link.name)?);
+            names.push(link.name.clone());
+            builder.link(link.clone());
+        }
+        let index: BTreeMap<&str, usize> =
+            names.iter().enumerate().map(|(i, n)| (n.as_str(), i)).collect();
+        let root = if names[0] == WORLD {
+            0
+        } else {
+            let carrier = self.frames.link(&self.reader, MODEL)?;
+            index.get(carrier.as_str()).copied().unwrap_or(0)
+        };
+        let graph = Graph { names: &names, poses: &poses, world_from_model };
+        self.connect(&mut builder, &graph, &index, root, is_static)?;
+        self.add_frames(&mut builder, &index)?;
+
+        let report = builder.report();
+        report.format = FORMAT;
+        self.reader.report(report);
+        builder.build().map_err(|error| {
+            let Error::Model { culprit, message, .. } = error else { return error };
+            match self.frames.get(&culprit) {
+                Some(placed) => self.reader.refuse(placed.node, "name", message),
+                None => source.error(Reader::tag(model), message, ""),
+            }
+        })
+    }
+
+    /// Spans the graph; a part that hangs on nothing moves freely.
+    fn connect(
+        &mut self,
+        builder: &mut Builder,
+        graph: &Graph<'_>,
+        index: &BTreeMap<&str, usize>,
+        root: usize,
+        is_static: bool,
+    ) -> Result<()> {
+        let place = |name: &String| index.get(name.as_str()).copied().unwrap_or(root);
+        let ends: Vec<[usize; 2]> =
+            self.joints.iter().map(|j| [place(&j.between[0]), place(&j.between[1])]).collect();
+        let followed = |name: &String| {
+            self.joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == *name))
+        };
+        let weights: Vec<u8> = self
+            .joints
+            .iter()
+            .map(|j| match () {
+                () if j.mimic.is_some() || followed(&j.name) => 2,
+                () if driven(j.kind) => 1,
+                () => 0,
+            })
+            .collect();
+        let mut groups = crate::model::formats::graph::Groups::new(graph.names.len());
+        ends.iter().for_each(|[a, b]| _ = groups.join(*a, *b));
+        let mut roots = vec![root];
+        for link in 0..graph.names.len() {
+            if groups.join(root, link) {
+                let kind = if is_static { JointKind::Fixed } else { JointKind::Free };
+                let name = &graph.names[link];
+                builder.joint(JointSpec {
+                    parent_from_joint: graph.poses[root].inverse() * graph.poses[link],
+                    actuated: false,
+                    ..JointSpec::new(&format!("{name}.base"), kind, &graph.names[root], name)
+                });
+                if let Some((_, node)) = self.links.iter().find(|l| l.0.name == *name)
+                    && !is_static
+                {
+                    let why = "no joint connects it with the rest; it moves freely";
+                    self.reader.note(*node, "link without a joint", why, name);
+                }
+                roots.push(link);
+            }
+        }
+        let spanned = span(graph.names.len(), &ends, &weights, &roots);
+        for branch in &spanned.tree {
+            let joint = &self.joints[branch.joint];
+            if branch.reversed && joint.kind.dof() > 1 {
+                let why = "the tree meets its child first: its coordinates are those of the parent \
+                           relative to the child, those of a universal joint in reverse order";
+                self.reader.note(joint.node, "joint from far to near", why, &joint.name);
+            }
+            builder.joint(graph.branch(joint, branch));
+        }
+        for &j in &spanned.loops {
+            builder.close(graph.closing(&self.joints[j], ends[j]));
+        }
+        if let Some(&first) = spanned.loops.first() {
+            let node = self.joints[first].node;
+            let why = "SDF names none: every joint of one coordinate counts as driven";
+            self.reader.note(node, "motors", why, "");
+        }
+        Ok(())
+    }
+
+    fn add_frames(&mut self, builder: &mut Builder, index: &BTreeMap<&str, usize>) -> Result<()> {
+        for name in &self.named {
+            let link = self.frames.link(&self.reader, name)?;
+            if !index.contains_key(link.as_str()) {
+                continue;
+            }
+            let of = |frame: &str| self.frames.pose(&self.reader, frame);
+            let link_from_frame = of(&link)?.inverse() * of(name)?;
+            builder.frame(name, &link, link_from_frame);
+        }
+        Ok(())
+    }
+}
+
+/// True for the kinds that count as driven.
+fn driven(kind: JointKind) -> bool {
+    kind.dof() == 1
+}
+
+/// The links and where they stand.
+struct Graph<'a> {
+    names: &'a [String],
+    poses: &'a [Pose],
+    world_from_model: Pose,
+}
+
+impl Graph<'_> {
+    /// A joint of the tree, its motion that of the link farther from the root.
+    fn branch(&self, joint: &Written<'_>, branch: &Branch) -> JointSpec {
+        let world_from_joint = self.world_from_model * joint.model_from_joint;
+        let (axis, kind) = match (branch.reversed, joint.kind) {
+            (false, kind) => (joint.axis, kind),
+            // (R(a, p) R(b, q))^-1 = R(-b, q) R(-a, p)
+            (true, JointKind::Universal { second }) => {
+                (-second, JointKind::Universal { second: -joint.axis })
+            }
+            (true, kind) => (-joint.axis, kind),
+        };
+        JointSpec {
+            name: joint.name.clone(),
+            kind,
+            parent: self.names[branch.parent].clone(),
+            child: self.names[branch.child].clone(),
+            parent_from_joint: self.poses[branch.parent].inverse() * world_from_joint,
+            joint_from_child: world_from_joint.inverse() * self.poses[branch.child],
+            axis,
+            limits: joint.limits,
+            mimic: joint.mimic.clone(),
+            actuated: driven(joint.kind),
+        }
+    }
+
+    fn closing(&self, joint: &Written<'_>, [a, b]: [usize; 2]) -> LoopSpec {
+        let world_from_joint = self.world_from_model * joint.model_from_joint;
+        LoopSpec {
+            name: joint.name.clone(),
+            kind: joint.kind,
+            a: self.names[a].clone(),
+            b: self.names[b].clone(),
+            link_a_from_joint: self.poses[a].inverse() * world_from_joint,
+            link_b_from_joint: self.poses[b].inverse() * world_from_joint,
+            axis: joint.axis,
+            limits: joint.limits,
+            actuated: driven(joint.kind),
+        }
+    }
+}

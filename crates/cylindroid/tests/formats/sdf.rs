@@ -1,0 +1,305 @@
+//! SDF: frames and axes of the versions, loops, kinds, what is noted and refused.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use cylindroid::model::{Geometry, JointKind, formats};
+use cylindroid::{Mechanism, Pose, Result, Rotation, Vec3};
+
+use crate::fk::{assert_close, closed_at_home, frame};
+use crate::{pointed_at, refused, report};
+
+const BARS: &str = include_str!("../data/bars.sdf");
+
+pub(crate) fn read_sdf(text: &str) -> Result<Mechanism> {
+    formats::sdf::parse(text, Path::new("robots/test.sdf"))
+}
+
+fn read(text: &str) -> Mechanism {
+    let m = read_sdf(text).unwrap();
+    closed_at_home(&m, 1e-12);
+    m
+}
+
+#[track_caller]
+fn check(text: &str, at: &str, says: &str) {
+    let error = refused(text, read_sdf(text));
+    let all = format!("{} ({})", error.message, error.help);
+    assert!(all.contains(says), "'{says}' not in: {all}");
+    assert!(pointed_at(text, &error).starts_with(at), "{all}: {:?}", pointed_at(text, &error));
+}
+
+fn model(version: &str, inside: &str) -> String {
+    format!("<sdf version='{version}'><model name='m'>{inside}</model></sdf>")
+}
+
+fn link(name: &str, pose: &str) -> String {
+    format!("<link name='{name}'><pose>{pose}</pose></link>")
+}
+
+fn joint(kind: &str, inside: &str) -> String {
+    format!("<joint name='j' type='{kind}'><parent>a</parent><child>b</child>{inside}</joint>")
+}
+
+fn turn(axis: Vec3, angle: f64) -> Rotation {
+    Rotation::about(axis, angle).unwrap()
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(Vec3::new(x, y, z))
+}
+
+fn find<'m>(m: &'m Mechanism, name: &str) -> &'m cylindroid::model::Joint {
+    m.joints().iter().find(|j| j.name == name).unwrap()
+}
+
+/// The canonical link is the root: poses are relative to it.
+#[test]
+fn poses_follow_relative_to() {
+    let m = read(BARS);
+    assert_eq!((m.name(), m.links()[0].name.as_str()), ("bars", "base"));
+    let hub = at(0.2, 0.0, 0.0) * Pose::from_rotation(Rotation::about_z(PI / 2.0));
+    assert_close(frame(&m, m.home(), "hub"), hub, 1e-15);
+    let crank = hub * at(0.0, 0.0, 0.1) * Pose::from_rotation(turn(Vec3::X, 0.3));
+    assert_close(frame(&m, m.home(), "crank"), crank, 1e-15);
+    let coupler = crank * at(1.0, 0.0, 0.0);
+    assert_close(frame(&m, m.home(), "coupler"), coupler, 1e-15);
+    assert_close(frame(&m, m.home(), "rocker"), hub * at(2.0, 0.0, 0.0), 1e-15);
+    // The crank turns about an axis of the hub through a point of its own.
+    let mut q = m.home().to_vec();
+    q[find(&m, "turn").coordinates.start] = 0.7;
+    let world_from_joint = crank * at(0.0, 0.05, 0.0) * Pose::from_rotation(Rotation::about_z(0.2));
+    let point = world_from_joint.translation;
+    let spin = turn(hub.rotation * Vec3::Y, 0.7);
+    let about = Pose { rotation: spin, translation: point - spin * point };
+    assert_close(frame(&m, &q, "crank"), about * crank, 1e-14);
+}
+
+#[test]
+fn joints_close_loops() {
+    let m = read(BARS);
+    assert_eq!((m.n(), m.loops().len()), (1 + 2 + 1, 1));
+    let wrist = &m.loops()[0];
+    assert_eq!((wrist.name.as_str(), wrist.kind), ("wrist", JointKind::Spherical));
+    assert_eq!([wrist.a, wrist.b].map(|i| m.links()[i].name.as_str()), ["rocker", "coupler"]);
+    assert_close(wrist.link_b_from_joint, at(1.0, 0.0, 0.0), 1e-15);
+    assert_eq!(find(&m, "heel").kind, JointKind::Helical { pitch: 0.5 / (2.0 * PI) });
+    let limits = find(&m, "turn").limits;
+    assert_eq!((limits.lower, limits.upper, limits.effort), (-1.0, 2.0, 30.0));
+    assert_eq!(limits.velocity, f64::INFINITY);
+    let driven: Vec<&str> = m.actuated().map(|i| m.coordinates()[i].name.as_str()).collect();
+    assert_eq!(driven, ["turn", "heel"]);
+    let said = report(&m);
+    for what in [
+        "gearbox joint (geared)",
+        "<dynamics> (turn)",
+        "<sensor> (base): settings of the simulator",
+        "motors: SDF names none",
+    ] {
+        assert!(said.contains(what), "'{what}' not in\n{said}");
+    }
+    let base = &m.links()[0];
+    assert_eq!(base.inertial.unwrap().mass, 2.0);
+    let plate = &base.visuals[0];
+    assert_eq!(plate.geometry, Geometry::Box { size: Vec3::new(0.4, 0.2, 0.1) });
+    assert_eq!(plate.rgba, Some([1.0, 0.0, 0.0, 1.0]));
+}
+
+/// The five files of Agility's Cassie: loops, balls, gearboxes, axes in the model's frame.
+#[test]
+fn cassie_has_its_loops() {
+    let folder = crate::robots().join("cassie_description/robots");
+    for (file, loops, gearboxes) in [
+        ("cassie", 6, 10),
+        ("cassie_reduced", 4, 0),
+        ("cassie_simple", 4, 0),
+        ("cassie_v2", 4, 0),
+        ("cassie_wo_gearbox_spring", 4, 0),
+    ] {
+        let path = folder.join(format!("{file}.sdf"));
+        let m = formats::load_file(&path).unwrap();
+        assert_eq!(m.report().format, "SDF");
+        closed_at_home(&m, 1e-12);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let world = usize::from(text.contains(">world<"));
+        assert_eq!(m.links().len(), text.matches("<link name").count() + world, "{file}");
+        let joints = m.joints().len() + m.loops().len() + gearboxes;
+        assert_eq!(joints, text.matches("<joint name").count(), "{file}");
+        // A connected graph has as many loops as joints beyond a tree.
+        assert_eq!(m.joints().len(), m.links().len() - 1);
+        assert_eq!(m.loops().len(), loops, "{file}");
+        let says = report(&m).contains("gearbox joint (10 times");
+        assert_eq!(says, gearboxes > 0, "{file}");
+    }
+    // The two legs mirror one another in the plane x-z of the model.
+    let m = formats::load_file(&folder.join("cassie_v2.sdf")).unwrap();
+    let pelvis = frame(&m, m.home(), "pelvis").inverse();
+    for closing in m.loops().iter().filter(|l| l.name.starts_with("left")) {
+        let other = closing.name.replace("left", "right");
+        let right = m.loops().iter().find(|l| l.name == other).unwrap();
+        let place = |l: &cylindroid::model::LoopJoint| {
+            let link = frame(&m, m.home(), &m.links()[l.a].name);
+            (pelvis * link * l.link_a_from_joint).translation
+        };
+        let (l, r) = (place(closing), place(right));
+        let mirrored = Vec3::new(r.x, -r.y, r.z);
+        assert!((l - mirrored).norm() < 2e-3, "{}: {l:?} {r:?}", closing.name);
+    }
+}
+
+/// Up to 1.4 an axis is in the model's axes; then in the joint's, unless it says otherwise.
+#[test]
+fn joints_have_axes_by_version() {
+    let links = link("a", "0 0 0 0 0 0") + &link("b", "0 0 0 0 0 1.5707963267948966");
+    let axis = |more: &str| joint("revolute", &format!("<axis><xyz>1 0 0</xyz>{more}</axis>"));
+    let in_root = |version: &str, more: &str| {
+        let m = read(&model(version, &format!("{links}{}", axis(more))));
+        let joint = find(&m, "j");
+        joint.parent_from_joint.rotation * joint.axis
+    };
+    let close = |a: Vec3, b: Vec3| assert!((a - b).norm() < 1e-15, "{a:?}");
+    close(in_root("1.4", ""), Vec3::X);
+    close(in_root("1.5", ""), Vec3::Y);
+    close(in_root("1.6", "<use_parent_model_frame>1</use_parent_model_frame>"), Vec3::X);
+    close(in_root("1.6", "<use_parent_model_frame>false</use_parent_model_frame>"), Vec3::Y);
+    close(in_root("1.11", ""), Vec3::Y);
+    let text =
+        model("1.8", &format!("{links}{}", axis("").replace("<xyz>", "<xyz expressed_in='a'>")));
+    close(find(&read(&text), "j").axis, -Vec3::Y);
+}
+
+#[test]
+fn joints_of_all_kinds() {
+    let links = link("a", "0 0 0 0 0 0") + &link("b", "1 0 0 0 0 0");
+    let axis = "<axis><xyz>0 1 0</xyz></axis>";
+    for (kind, inside, expected) in [
+        ("revolute", axis, JointKind::Revolute),
+        ("continuous", axis, JointKind::Continuous),
+        ("prismatic", axis, JointKind::Prismatic),
+        ("fixed", "", JointKind::Fixed),
+        ("ball", "", JointKind::Spherical),
+        ("screw", "<thread_pitch>-20</thread_pitch>", JointKind::Helical { pitch: 0.05 }),
+        (
+            "universal",
+            "<axis><xyz>0 1 0</xyz></axis><axis2><xyz>1 0 0</xyz></axis2>",
+            JointKind::Universal { second: Vec3::X },
+        ),
+    ] {
+        let m = read(&model("1.7", &format!("{links}{}", joint(kind, inside))));
+        assert_eq!(find(&m, "j").kind, expected);
+        assert_eq!(m.links()[0].name, "a");
+    }
+    // A limit of 1e16 is none.
+    let limit =
+        "<axis><xyz>0 0 1</xyz><limit><lower>-1e16</lower><upper>inf</upper></limit></axis>";
+    let m = read(&model("1.7", &format!("{links}{}", joint("revolute", limit))));
+    assert_eq!(find(&m, "j").limits, cylindroid::model::Limits::NONE);
+}
+
+/// Where the tree meets the child first, the joint is the inverse motion.
+#[test]
+fn joints_from_far_to_near() {
+    let links = link("root", "0 0 0 0 0 0") + &link("far", "1 0 0 0.1 0.2 0.3");
+    let ends = "<parent>far</parent><child>root</child><pose>0.5 0 0 0 0 0.4</pose>";
+    let joint = |kind: &str, rest: &str| {
+        model("1.7", &format!("{links}<joint name='j' type='{kind}'>{ends}{rest}</joint>"))
+    };
+    let m = read(&joint("revolute", "<axis><xyz>0 1 0</xyz></axis>"));
+    let place = at(0.5, 0.0, 0.0) * Pose::from_rotation(Rotation::about_z(0.4));
+    let home = frame(&m, &[0.0], "far");
+    // The motion of the child relative to the parent is q about the axis.
+    let moved = frame(&m, &[0.6], "far").inverse() * place;
+    let still = home.inverse() * place;
+    let expected = Pose::from_rotation(turn(Vec3::Y, 0.6));
+    assert_close(still.inverse() * moved, expected, 1e-14);
+
+    let axes = "<axis><xyz>0 1 0</xyz></axis><axis2><xyz>1 0 0</xyz></axis2>";
+    let m = read(&joint("universal", axes));
+    let moved = frame(&m, &[0.3, 0.8], "far").inverse() * place;
+    let expected = Pose::from_rotation(turn(Vec3::Y, 0.8) * turn(Vec3::X, 0.3));
+    assert_close(still.inverse() * moved, expected, 1e-14);
+    assert!(report(&m).contains("joint from far to near (j)"));
+}
+
+#[test]
+fn worlds_static_models_and_loose_links() {
+    let links = link("a", "0 0 1 0 0 0") + &link("b", "1 0 0 0 0 0");
+    let fix = "<joint name='fix' type='fixed'><parent>world</parent><child>a</child></joint>";
+    let text = model("1.7", &format!("<pose>0 0 2 0 0 0</pose>{links}{fix}"));
+    let m = read(&text);
+    assert_eq!(m.links()[0].name, "world");
+    assert_close(frame(&m, m.home(), "a"), at(0.0, 0.0, 3.0), 1e-15);
+    // b hangs on nothing: a free body, and the report says so.
+    assert_eq!((m.n(), find(&m, "b.base").kind), (6, JointKind::Free));
+    assert!(report(&m).contains("link without a joint (b)"));
+    let m = read(&model("1.7", &format!("<static>true</static>{links}")));
+    assert_eq!((m.n(), m.links().len()), (0, 3));
+    let nested = format!(
+        "<sdf version='1.8'><world name='w'><light/><model name='m'>{}\
+         <model name='sub'><pose relative_to='a'>0 1 0 0 0 0</pose>{}<frame name='f'/></model>\
+         <joint name='j' type='revolute'><parent>a</parent><child>sub::c</child>\
+         <axis><xyz>0 0 1</xyz></axis></joint></model><model name='other'/></world></sdf>",
+        link("a", "0 0 1 0 0 0"),
+        link("c", "0 0 0.5 0 0 0"),
+    );
+    let m = read(&nested);
+    assert_close(frame(&m, m.home(), "sub::c"), at(0.0, 1.0, 0.5), 1e-15);
+    assert_close(frame(&m, m.home(), "sub::f"), at(0.0, 1.0, 0.0), 1e-15);
+    assert!(report(&m).contains("further <model> (other)") && report(&m).contains("<light>"));
+}
+
+#[test]
+fn mimics_are_read() {
+    let three = link("a", "0 0 0 0 0 0") + &link("b", "0 0 0 0 0 0") + &link("c", "0 0 0 0 0 0");
+    let text = model(
+        "1.11",
+        &format!(
+            "{three}{}<joint name='k' type='revolute'><parent>b</parent><child>c</child><axis>\
+             <xyz>0 0 1</xyz><mimic joint='j'><multiplier>2</multiplier><offset>0.5</offset>\
+             <reference>0.1</reference></mimic></axis></joint>",
+            joint("revolute", "<axis><xyz>0 0 1</xyz></axis>")
+        ),
+    );
+    let m = read(&text);
+    let mimic = find(&m, "k").mimic.clone().unwrap();
+    assert_eq!((m.n(), mimic.multiplier, mimic.offset), (1, 2.0, 0.3));
+}
+
+#[test]
+fn what_is_broken_is_pointed_at() {
+    check("<sdf", "", "broken XML");
+    check("<sdf version='x'/>", "x", "is not a number");
+    check("<sdf version='1.6'/>", "<sdf", "this SDF has no <model>");
+    check("<robot/>", "<robot", "SDF begins with <sdf>");
+    let links = link("a", "0 0 0 0 0 0") + &link("b", "0 0 0 0 0 0");
+    let of = |inside: &str| model("1.7", &format!("{links}{inside}"));
+    check(&of("<link/>"), "<link", "<link> has no name");
+    check(&of(&link("a", "0 0 0 0 0 0")), "a", "are named 'a'");
+    check(&of(&link("c", "0 0 0 0 0")), "0 0 0 0 0", "has 5 numbers, expected 6");
+    check(&of(&link("c", "0 0 0 0 0 x")), "0 0 0 0 0 x", "'x' is not a number");
+    check(&of(&link("c", "0 0 0 0 0 inf")), "0 0 0 0 0 inf", "not finite");
+    check(
+        &of("<link name='c'><pose relative_to='d'/></link>"),
+        "d",
+        "no link, joint or frame named 'd'",
+    );
+    let ring = "<frame name='f'><pose relative_to='g'/></frame><frame name='g'><pose relative_to='f'/></frame>";
+    check(&of(&format!("{ring}{}", joint("fixed", ""))), "g", "in a ring");
+    let ring = "<frame name='f' attached_to='g'/><frame name='g' attached_to='f'/>";
+    assert!(refused(&of(ring), read_sdf(&of(ring))).message.contains("in a ring"));
+    check(&of(&joint("hinge", "")), "hinge", "no joint type named 'hinge'");
+    check(&of(&joint("revolute", "").replace("<child>b</child>", "")), "<joint", "has no <child>");
+    check(&of(&joint("revolute", "").replace("<child>b", "<child>c")), "c", "named 'c'");
+    check(&of(&joint("revolute", "").replace("<child>b", "<child>a")), "j", "with itself");
+    check(&of(&joint("revolute", "<axis><xyz>0 0 0</xyz></axis>")), "0 0 0", "no direction");
+    check(&of(&joint("revolute", "<axis><xyz>0 0</xyz></axis>")), "0 0", "expected 3");
+    let far = "<axis><xyz expressed_in='f'>0 0 1</xyz></axis>";
+    check(&of(&joint("revolute", far)), "f", "named 'f'");
+    let limit = "<axis><limit><lower>2</lower><upper>1</upper></limit></axis>";
+    check(&of(&joint("revolute", limit)), "<limit", "above its upper limit 1");
+    check(&of(&joint("screw", "<thread_pitch>0</thread_pitch>")), "j", "0 rad/m");
+    let axes = "<axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 0 2</xyz></axis2>";
+    check(&of(&joint("universal", axes)), "j", "parallel");
+    let mimic = "<axis><mimic joint='k'/></axis>";
+    check(&of(&joint("revolute", mimic)), "j", "no joint named 'k'");
+}
