@@ -61,6 +61,15 @@ pub(crate) struct ScrewsArgs {
     #[arg(long, value_name = "H", allow_hyphen_values = true)]
     pub(crate) h: Vec<f64>,
 
+    /// Also the joint rates that move this point, fixed to the frame that is driven, along
+    /// --direction; world axes [m]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "direction")]
+    pub(crate) point: Option<Numbers<3>>,
+
+    /// Direction of the motion of --point, of any length; world axes
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "point")]
+    pub(crate) direction: Option<Numbers<3>>,
+
     /// The twists of the file are written with the angular part first
     #[arg(long)]
     pub(crate) angular_first: bool,

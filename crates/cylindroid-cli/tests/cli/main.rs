@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bad_input;
+mod closed;
 mod motion;
 mod screws;
 mod shape;

@@ -95,3 +95,18 @@ fn files_of_twists() {
     let output = cylindroid(&["screws", &path("none.csv")]);
     assert_eq!(output.status.code(), Some(2));
 }
+
+/// All rates that move a point along a line: one way, and what leaves the point at rest.
+#[test]
+fn rates_of_a_point() {
+    let command = ["screws", "youbot", "--q", BELOW, "--point", "0.4,0.2,0.2", "--direction"];
+    let report = json(&[&command[..], &["0,0,1"]].concat(), 0);
+    assert_eq!(numbers(&report["point"]["along"]).len(), 5);
+    assert_eq!(report["point"]["still"].as_array().unwrap().len(), 2);
+    let one = ["screws", "youbot", "--frame", "arm_link_1", "--point", "0.4,0,0", "--direction"];
+    let none = json(&[&one[..], &["1,0,0"]].concat(), 0);
+    assert!(none["point"]["along"].is_null());
+    assert!(text(&[&one[..], &["1,0,0"]].concat()).contains("No rates move the point"));
+    let output = cylindroid(&[&one[..], &["0,0,0"]].concat());
+    assert_eq!(output.status.code(), Some(2));
+}

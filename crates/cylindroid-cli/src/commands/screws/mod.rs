@@ -6,8 +6,9 @@ mod twists;
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::Result;
+use cylindroid::inverse::{PointDirection, point_direction};
 use cylindroid::screws::{Involution, Line, Screw, ScrewOptions, ScrewSystem, involution};
+use cylindroid::{Result, Vec3};
 
 use self::twists::Twists;
 use super::Style;
@@ -22,6 +23,8 @@ struct Found {
     screws: Vec<Option<Screw>>,
     /// Of the twists that are lines, where at least two are.
     involution: Option<Involution>,
+    /// The rates that move the point along the direction, where both were given.
+    point: Option<PointDirection>,
 }
 
 pub(crate) fn run(
@@ -49,14 +52,22 @@ fn find(args: &ScrewsArgs) -> Result<Found> {
     let twists = Twists::read(args)?;
     let options = ScrewOptions {
         length: args.length.unwrap_or(twists.length),
-        center: args.center.map(|c| cylindroid::Vec3::from_array(c.0)),
+        center: args.center.map(|c| Vec3::from_array(c.0)),
         noise: args.noise.unwrap_or(ScrewOptions::default().noise),
     };
     let system = ScrewSystem::of(&twists.twists, &options)?;
     let screws: Vec<Option<Screw>> = twists.twists.iter().map(|t| Screw::of(*t)).collect();
     let lines = lines(&screws, &system);
     let involution = if lines.len() < 2 { None } else { Some(involution(&lines, &options)?) };
-    Ok(Found { twists, system, screws, involution })
+    let point = match (args.point, args.direction) {
+        (Some(point), Some(direction)) => Some(point_direction(
+            &twists.matrix(),
+            Vec3::from_array(point.0),
+            Vec3::from_array(direction.0),
+        )?),
+        _ => None,
+    };
+    Ok(Found { twists, system, screws, involution, point })
 }
 
 /// The axes of the screws of pitch zero, to the tolerance of the system.

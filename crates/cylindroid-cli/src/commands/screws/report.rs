@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use cylindroid::Wrench;
+use cylindroid::inverse::PointDirection;
 use cylindroid::screws::{Existence, Involution, Screw, ScrewSystem, Transversals};
 use cylindroid::{Twist, Vec3};
 use serde::Serialize;
@@ -50,6 +51,17 @@ struct ScrewsJson<'a> {
     /// At the pitches of --h.
     existence: Vec<ExistenceJson>,
     involution: Option<InvolutionJson>,
+    /// With --point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    point: Option<PointJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct PointJson {
+    /// The smallest rates that move the point at 1 m/s; null if none do.
+    along: Option<Vec<f64>>,
+    /// Rates that keep it at rest, orthonormal.
+    still: Vec<Vec<f64>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -194,6 +206,10 @@ fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
         },
         existence: pitches.iter().map(|&h| existence_json(system, h)).collect(),
         involution: found.involution.as_ref().map(involution_json),
+        point: found.point.as_ref().map(|p| PointJson {
+            along: p.along.clone(),
+            still: (0..p.still.cols()).map(|j| p.still.column(j).to_vec()).collect(),
+        }),
     }
 }
 
@@ -278,6 +294,10 @@ fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<
         writeln!(out, "Reciprocal system: forces along these screws do no work")?;
         let names: Vec<String> = (1..=reciprocal.len()).map(|i| i.to_string()).collect();
         screws(out, "", names.iter().map(String::as_str).zip(reciprocal.iter().map(Some)))?;
+    }
+    if let Some(p) = &found.point {
+        writeln!(out)?;
+        point(out, &twists.names, p)?;
     }
     if !pitches.is_empty() {
         writeln!(out)?;
@@ -454,6 +474,23 @@ fn screws<'a>(
         let direction = output::entries(&s.axis.direction.to_array());
         [vec![name.to_owned(), pitch], point, vec![direction]].concat()
     });
+    Ok(output::table(out, &columns, rows)?)
+}
+
+/// Rates, a row each: all motions along the direction are the first times a speed plus the others.
+fn point(out: &mut dyn Write, names: &[String], p: &PointDirection) -> anyhow::Result<()> {
+    let mut columns = vec![("rates [rad/s or m/s]", Align::Left)];
+    columns.extend(names.iter().map(|name| (name.as_str(), Align::Right)));
+    let cells = |what: &str, rates: &[f64]| {
+        let rates = rates.iter().map(|x| output::entries(&[*x]));
+        std::iter::once(what.to_owned()).chain(rates).collect::<Vec<_>>()
+    };
+    let mut rows = Vec::new();
+    match &p.along {
+        Some(rates) => rows.push(cells("point moves at 1 m/s", rates)),
+        None => writeln!(out, "No rates move the point along this direction.")?,
+    }
+    rows.extend((0..p.still.cols()).map(|j| cells("point rests", p.still.column(j))));
     Ok(output::table(out, &columns, rows)?)
 }
 

@@ -1,0 +1,59 @@
+//! `mobility` and `manipulability`.
+
+use crate::{cylindroid, difference, json, numbers, text};
+
+#[test]
+fn mobility_counts() {
+    let stewart = json(&["mobility", "stewart"], 0);
+    assert_eq!((&stewart["dof"], &stewart["grubler"]), (&6.into(), &6.into()));
+    assert_eq!(stewart["actuated"].as_array().unwrap().len(), 6);
+    assert_eq!(stewart["joints"].as_array().unwrap().len(), 21);
+    let five_bar = json(&["mobility", "five-bar", "--actuated", "q1,q2,q3,q4,q5"], 0);
+    for (key, count) in
+        [("dof", 2), ("internal", 3), ("zero_torque", 1), ("hyperstatic", 0), ("idle", 0)]
+    {
+        assert_eq!(five_bar[key], count, "{key}");
+    }
+    assert!(five_bar["gap"]["distance"].as_f64().unwrap() < 1e-12);
+    assert!(text(&["mobility", "two-arm"]).contains("torques of driven joints that balance"));
+    // Opened by hand: said, not hidden.
+    let open = text(&["mobility", "five-bar", "--q", "0.3,0,0,0"]);
+    assert!(open.contains("loops are open by"), "{open}");
+    // A serial arm is an ordinary case.
+    assert_eq!(json(&["mobility", "panda"], 0)["redundancy"], 1);
+}
+
+/// 7 +- sqrt 41, and forces the inverses: Bicchi & Prattichizzo's case a, corrected.
+#[test]
+fn manipulability_of_the_five_bar() {
+    let report = json(&["manipulability", "five-bar", "--actuated", "q1,q5"], 0);
+    let root = 41_f64.sqrt();
+    let (large, small) = (7.0 + root, 7.0 - root);
+    assert!(difference(&numbers(&report["kinematic"]["finite"]), &[large, small]) < 1e-11);
+    let force = [1.0 / small, 1.0 / large];
+    assert!(difference(&numbers(&report["active_force"]["finite"]), &force) < 1e-11);
+    assert!(difference(&numbers(&report["passive_force"]["finite"]), &force) < 1e-11);
+    assert_eq!(report["passive_force"]["infinite"], 1);
+    assert_eq!(report["components"], serde_json::json!(["x", "y", "rz"]));
+    let text = text(&["manipulability", "five-bar", "--actuated", "q1,q5"]);
+    assert!(text.contains("13.4031") && text.contains("infinite"), "{text}");
+    let limits = json(&["manipulability", "panda", "--metric", "limits"], 0);
+    assert_eq!(limits["kinematic"]["zeros"], 1);
+}
+
+#[test]
+fn bad_requests() {
+    let refused = |arguments: &[&str]| {
+        let output = cylindroid(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    assert!(refused(&["mobility", "five-bar", "--actuated", "q9"]).contains("q1, q2"));
+    assert!(refused(&["mobility", "five-bar", "--frame", "x"]).contains("frame"));
+    assert!(refused(&["mobility", "five-bar", "--length", "0"]).contains("length"));
+    let text =
+        refused(&["manipulability", "five-bar", "--actuated", "q1,q5", "--metric", "limits"]);
+    assert!(text.contains("q5"), "{text}");
+    let text = refused(&["move", "five-bar", "--to", "1,2,0"]);
+    assert!(text.contains("loops"), "{text}");
+}
