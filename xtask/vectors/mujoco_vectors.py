@@ -20,14 +20,13 @@ def bare(path):
     root = ET.parse(path).getroot()
     for default in root.iter("default"):
         default.attrib.pop("group", None)  # robosuite writes one; MuJoCo refuses it
-    for section in ("sensor", "contact", "asset", "visual", "statistic", "actuator", "tendon", "keyframe"):
+    for section in ("sensor", "contact", "asset", "visual", "statistic", "actuator", "keyframe"):
         for node in root.findall(section):
             root.remove(node)
     for parent in root.iter():
         parent.attrib.pop("material", None)
         for node in list(parent):
-            tendon = parent.tag == "equality" and node.tag == "tendon"
-            if tendon or node.tag in ("geom", "camera", "light", "mesh", "material", "texture"):
+            if node.tag in ("geom", "camera", "light", "mesh", "material", "texture"):
                 parent.remove(node)
     ET.SubElement(root, "compiler", boundmass="0.001", boundinertia="0.001")
     return ET.tostring(root, encoding="unicode")
@@ -37,6 +36,14 @@ def couple(model, qpos):
     """Joints that equality constraints tie together linearly."""
     for _ in range(model.neq):
         for i in range(model.neq):
+            if model.eq_type[i] == mujoco.mjtEq.mjEQ_TENDON:
+                # A tendon of constant length over two joints: the second one follows.
+                start = model.tendon_adr[model.eq_obj1id[i]]
+                a, b = (model.jnt_qposadr[model.wrap_objid[start + k]] for k in (0, 1))
+                ca, cb = model.wrap_prm[start], model.wrap_prm[start + 1]
+                turn = model.eq_data[i][0] - ca * (qpos[a] - model.qpos0[a])
+                qpos[b] = model.qpos0[b] + turn / cb
+                continue
             if model.eq_type[i] != mujoco.mjtEq.mjEQ_JOINT or model.eq_obj2id[i] < 0:
                 continue
             c = model.eq_data[i]

@@ -165,6 +165,7 @@ fn contacts_hold_objects() {
     assert_eq!((c.name.as_str(), c.kind, c.friction), ("cl", ContactKind::HardFinger, Some(0.6)));
     assert_eq!([c.a, c.b].map(|i| m.links()[i].name.as_str()), ["l", "box"]);
     let object = m.joints().iter().find(|j| j.name == "box").unwrap();
+    assert_eq!(m.coordinates().last().unwrap().name, "box.angle", "objects come last");
     assert_eq!((object.kind, object.actuated), (JointKind::Planar, false));
     assert_eq!(frame(&m, m.home(), "box").translation, Vec3::new(0.5, 1.0, 0.0));
     // The normal is z, the tangent lies in the plane, (tangent, normal) is right-handed there.
@@ -374,4 +375,53 @@ fn robots_that_cannot_be_are_pointed_at() {
     let touch = "[[contact]]\nname = \"c\"\ntype = \"complete\"\npoint = [1, 0, 0]\nbetween = [\"flange\", \"ground\"]\n";
     check(&format!("{dh}{touch}"), "[\"flange\"", "its root is 'base'");
     assert!(read_toml(&format!("{dh}{}", touch.replace("ground", "base"))).is_ok());
+}
+
+/// Two robots that nobody here wrote hold one object.
+#[test]
+fn robots_of_real_files_hold_an_object() {
+    let robots = crate::robots();
+    let urdf = robots.join("ur_description/urdf/ur5_robot.urdf");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cell.toml");
+    let one = |name: &str, x: f64| {
+        robot(&format!(
+            "name = \"{name}\"\nmodel = {:?}\nbase = {{ xyz = [{x}, 0, 0] }}\n\
+             start = {{ elbow_joint = 1.2, shoulder_lift_joint = -1.0 }}",
+            urdf.to_string_lossy()
+        ))
+    };
+    let touch = |name: &str, x: f64| {
+        format!(
+            "[[contact]]\nname = \"{name}\"\ntype = \"soft_finger\"\nfriction = 0.8\n\
+             between = [\"{name}/tool0\", \"tray\"]\npoint = [{x}, 0, 0.5]\nnormal = [0, 0, 1]\n"
+        )
+    };
+    let text = one("l", 0.0) + &one("r", 1.0) + &touch("l", 0.4) + &touch("r", 0.6);
+    fs::write(&path, text).unwrap();
+    let m = cylindroid::load(&path.to_string_lossy()).unwrap();
+    closed_at_home(&m, 1e-12);
+    assert_eq!((m.n(), m.contacts().len(), m.actuated().count()), (18, 2, 12));
+    let elbow = m.coordinates().iter().position(|c| c.name == "r/elbow_joint").unwrap();
+    assert_eq!(m.home()[elbow], 1.2);
+}
+
+/// Every example of the page on mechanism files is one.
+#[test]
+fn the_page_on_mechanism_files_is_true() {
+    let page = fs::read_to_string(
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/mechanism-file.md"),
+    )
+    .unwrap();
+    let examples: Vec<&str> =
+        page.split("```toml\n").skip(1).map(|e| e.split("```").next().unwrap()).collect();
+    assert!(examples.len() > 2);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("arm.urdf"), crate::ARM_URDF).unwrap();
+    for example in examples {
+        let path = folder.path().join("example.toml");
+        fs::write(&path, example).unwrap();
+        let m = cylindroid::load(&path.to_string_lossy()).unwrap();
+        closed_at_home(&m, 1e-12);
+    }
 }

@@ -162,6 +162,23 @@ fn grippers_with_loops() {
     assert!(report(&m).contains("<general> at a tendon"), "{}", report(&m));
 }
 
+/// Fixed tendons over two joints: their coupling is what MuJoCo's vectors have in them.
+#[test]
+fn grippers_with_tendons() {
+    for (name, joints, free) in [
+        ("robotiq_gripper_140", 6, 2),
+        ("robotiq_gripper_s", 11, 4),
+        ("jaco_three_finger_gripper", 6, 3),
+    ] {
+        let m = formats::load_file(&robosuite().join(format!("grippers/{name}.xml"))).unwrap();
+        let moving = m.joints().iter().filter(|j| j.kind.dof() > 0).count();
+        assert_eq!((moving, m.n(), m.actuated().count()), (joints, free, free), "{name}");
+    }
+    let m = formats::load_file(&robosuite().join("grippers/robotiq_gripper_140.xml")).unwrap();
+    let inner = m.joints().iter().find(|j| j.name == "left_inner_finger_joint").unwrap();
+    assert!((inner.mimic.as_ref().unwrap().multiplier + 1.0 / 1.5).abs() < 1e-15);
+}
+
 #[test]
 fn home_is_the_key_frame_named_home() {
     let m = read(ZOO);
@@ -204,7 +221,7 @@ fn equality_constraints_are_loops_and_couplings() {
         "<joint> in <equality> (bent): only linear couplings",
         "<weld> that is not active (off)",
         "<general> at a tendon (m3)",
-        "<tendon>: tendons and soft bodies are not read",
+        "<fixed> in <tendon> (cable): it is not read",
         "<geom> of type ellipsoid (crank)",
         "<geom> of type plane",
         "attribute 'damping' of <joint>: springs",
@@ -323,6 +340,7 @@ fn what_is_broken_is_pointed_at() {
     check(&equality("<weld/>"), "<weld", "<weld> has no body1");
     check(&equality("<weld site1='s' site2='t'/>"), "t", "no site named 't'");
     check(&equality("<joint joint1='k' joint2='j'/>"), "k", "no joint named 'k'; nearest: j");
+    check(&equality("<tendon tendon1='t'/>"), "t", "no tendon named 't'");
     let angle = world("").replace("radian", "grad");
     check(&angle, "grad", "nearest: radian");
     check("<mujoco><compiler eulerseq='xy'/></mujoco>", "xy", "three letters");
@@ -335,7 +353,9 @@ fn couplings_that_cannot_be_followed_are_noted() {
     let couple = |equality: &str| {
         let bodies = "<body name='a'><joint name='i'/></body><body name='b'><joint name='j'/></body>\
                       <body name='c'><joint name='k' type='ball'/></body>";
-        let equality = format!("<equality>{equality}</equality></mujoco>");
+        let tendons = "<tendon><fixed name='t'><joint joint='i' coef='1'/><joint joint='j' coef='2'/></fixed>\
+                       <fixed name='u'><joint joint='i' coef='1'/></fixed></tendon>";
+        let equality = format!("{tendons}<equality>{equality}</equality></mujoco>");
         read(&world(bodies).replace("</mujoco>", &equality))
     };
     for (equality, says) in [
@@ -345,6 +365,8 @@ fn couplings_that_cannot_be_followed_are_noted() {
         ("<joint joint1='i' joint2='j'/><joint joint1='j' joint2='i'/>", "follow one another"),
         ("<joint joint1='i' joint2='j'/><joint joint1='i' joint2='j'/>", "follows another one"),
         ("<flex flex='f'/>", "<flex> in <equality>"),
+        ("<tendon tendon1='t'/><tendon tendon1='t'/>", "follows another one"),
+        ("<tendon tendon1='u'/>", "only a fixed tendon over two joints"),
     ] {
         let m = couple(equality);
         assert!(report(&m).contains(says), "{equality}: {}", report(&m));

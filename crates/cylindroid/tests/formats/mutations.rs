@@ -80,3 +80,51 @@ fn deep_and_long_files_are_answered() {
     let _ = read_mjcf(&deep).map_err(|e| e.to_string());
     assert!(read_toml(&format!("a = {}", "[".repeat(50_000))).is_err());
 }
+
+/// Whole lines taken out, doubled or exchanged: what is left is well-formed more often, and means
+/// something else.
+#[test]
+fn files_without_some_of_their_lines_give_a_model_or_an_error() {
+    let real = [
+        crate::robots().join("cassie_description/robots/cassie_v2.sdf"),
+        crate::robots().join("../../../../robosuite/models/assets/grippers/xarm7_gripper.xml"),
+        crate::robots().join("../../../../robosuite/models/assets/robots/spot/robot.xml"),
+    ];
+    let own = |name: &str| std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name);
+    let models = cylindroid::catalogue::names()
+        .iter()
+        .map(|n| own(&format!("src/model/catalogue/{n}.toml")));
+    let data = ["arm.urdf", "zoo.xml", "bars.sdf"].map(|n| own(&format!("tests/data/{n}")));
+    for path in real.into_iter().chain(models).chain(data) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let read: fn(&str) -> cylindroid::Result<cylindroid::Mechanism> =
+            match path.extension().and_then(|e| e.to_str()) {
+                Some("toml") => read_toml,
+                Some("sdf") => read_sdf,
+                Some("xml") => read_mjcf,
+                _ => read_urdf,
+            };
+        let try_it = |lines: &[&str]| {
+            if let Ok(m) = read(&lines.join("\n")) {
+                // What was read can be used.
+                m.state(m.home()).unwrap();
+            }
+        };
+        for i in 0..lines.len() {
+            let mut fewer = lines.clone();
+            fewer.remove(i);
+            try_it(&fewer);
+            let mut more = lines.clone();
+            more.insert(i, lines[i]);
+            try_it(&more);
+            let mut moved = lines.clone();
+            moved.swap(i, (i * 7 + 3) % lines.len());
+            try_it(&moved);
+            let block = i.min(lines.len())..(i + 5).min(lines.len());
+            let mut fewer = lines.clone();
+            fewer.drain(block);
+            try_it(&fewer);
+        }
+    }
+}

@@ -2,7 +2,8 @@
 //!
 //! Formula  connect: a spherical joint at `anchor` of body1 (or of site1 at site2);
 //!          weld: a fixed joint, body1_from_body2 = relpose, else as the file places them;
-//!          joint: q1 = ref1 + c0 + c1 (q2 - ref2), higher coefficients are not read
+//!          joint: q1 = ref1 + c0 + c1 (q2 - ref2), higher coefficients are not read;
+//!          tendon, fixed, of two joints: a1 (q1 - ref1) + a2 (q2 - ref2) = c0
 //! Why so   a coupled joint is a mimic joint: it needs no loop and its column goes to the other
 //! Source   mujoco.readthedocs.io, XML reference, equality
 //! Checked  tests/formats/mjcf.rs::equality_*
@@ -28,15 +29,16 @@ impl<'d> Mjcf<'d> {
             }
             let known = [
                 "name", "class", "active", "body1", "body2", "anchor", "site1", "site2", "relpose",
-                "joint1", "joint2", "polycoef",
+                "joint1", "joint2", "polycoef", "tendon1", "tendon2",
             ];
             self.reader.unread_attributes(node, &known);
             match tag {
                 "connect" | "weld" => self.close(node, tag, &name)?,
                 "joint" => self.couple(node, &name)?,
+                "tendon" => self.couple_by_tendon(node, &name)?,
                 other => {
                     let what = format!("<{other}> in <equality>");
-                    let why = "connect, weld and joint are read; this one holds nothing here";
+                    let why = "connect, weld, joint and tendon are read; this holds nothing here";
                     self.reader.note(node, what, why, &name);
                 }
             }
@@ -146,25 +148,75 @@ impl<'d> Mjcf<'d> {
         for (slot, value) in c.iter_mut().zip(polynomial.unwrap_or_default()) {
             *slot = value;
         }
-        let why = if [follower, leader].iter().any(|&j| self.joints[j].kind.dof() != 1) {
-            Some("only joints of one coordinate can follow")
-        } else if c[2..] != [0.0; 3] {
-            Some("only linear couplings are read: polycoef beyond the second is not zero")
-        } else if self.joints[follower].mimic.is_some() {
-            Some("its first joint follows another one already")
-        } else if self.follows(leader, follower) {
-            Some("the two joints would follow one another")
-        } else {
-            None
+        if c[2..] != [0.0; 3] {
+            let why = "only linear couplings are read: polycoef beyond the second is not zero";
+            self.reader.note(node, "<joint> in <equality>", why, name);
+        } else if let Some(why) = self.tie(follower, leader, c[1], c[0]) {
+            self.reader.note(node, "<joint> in <equality>", why, name);
+        }
+        Ok(())
+    }
+
+    /// A tendon of constant length over two joints ties them together.
+    fn couple_by_tendon(&mut self, node: Node<'d, 'd>, name: &str) -> Result<()> {
+        let wanted = self.reader.required(node, "tendon1")?.trim();
+        let tendons = self.files.section("tendon");
+        let Some(tendon) = tendons.iter().find(|t| t.attribute("name") == Some(wanted)) else {
+            let known = tendons.iter().filter_map(|t| t.attribute("name"));
+            let unknown = Error::unknown("tendon", wanted, known);
+            return Err(self.reader.refuse(node, "tendon1", unknown.to_string()));
+        };
+        let mut ends = Vec::new();
+        for joint in self.files.children(*tendon).into_iter().filter(|n| n.has_tag_name("joint")) {
+            let coefficient = Element::bare(joint).number(&self.reader, "coef")?.unwrap_or(0.0);
+            ends.push((self.joint_named(joint, "joint")?, coefficient));
+        }
+        let constant = Element::bare(node).list(&self.reader, "polycoef")?;
+        let constant = constant.and_then(|c| c.first().copied()).unwrap_or(0.0);
+        let why = match ends[..] {
+            [(first, a), (second, b)]
+                if tendon.has_tag_name("fixed")
+                    && !node.has_attribute("tendon2")
+                    && a * b != 0.0 =>
+            {
+                self.tied.push(wanted.to_owned());
+                // The second joint follows, unless it cannot.
+                let second_follows = self.tie(second, first, -a / b, constant / b);
+                second_follows
+                    .and_then(|why| self.tie(first, second, -b / a, constant / a).and(Some(why)))
+            }
+            _ => Some("only a fixed tendon over two joints ties them together here"),
         };
         if let Some(why) = why {
-            self.reader.note(node, "<joint> in <equality>", why, name);
-            return Ok(());
+            self.reader.note(node, "<tendon> in <equality>", why, name);
         }
-        let offset = self.reference(follower) + c[0] - c[1] * self.reference(leader);
-        let joint = self.joints[leader].name.clone();
-        self.joints[follower].mimic = Some(Mimic { joint, multiplier: c[1], offset });
         Ok(())
+    }
+
+    /// Makes a joint follow another, `q - ref = constant + slope (q' - ref')`; why not, if not.
+    fn tie(
+        &mut self,
+        follower: usize,
+        leader: usize,
+        slope: f64,
+        constant: f64,
+    ) -> Option<&'static str> {
+        if [follower, leader].iter().any(|&j| self.joints[j].kind.dof() != 1) {
+            return Some("only joints of one coordinate can follow");
+        }
+        if self.joints[follower].mimic.is_some() {
+            return Some("its first joint follows another one already");
+        }
+        if self.follows(leader, follower) {
+            return Some("the two joints would follow one another");
+        }
+        let offset = self.reference(follower) + constant - slope * self.reference(leader);
+        if !(slope.is_finite() && offset.is_finite()) {
+            return Some("its coefficients are out of range");
+        }
+        let joint = self.joints[leader].name.clone();
+        self.joints[follower].mimic = Some(Mimic { joint, multiplier: slope, offset });
+        None
     }
 
     /// True if `joint` follows `other`, through any number of joints, or is it.

@@ -4,7 +4,7 @@
 //!          vectors); home is qpos0 or the key frame "home"
 //! Units    m, kg; degrees unless `<compiler angle="radian">`
 //! Valid    bodies, joints, sites, shapes, default classes, `<frame>`, `<include>` in the model's
-//!          own folder, `<equality>` connect, weld and joint, actuators at joints. What else
+//!          own folder, `<equality>` connect, weld, joint and tendon, actuators at joints. What else
 //!          stands in the file is named in the load report
 //! Why so   equality constraints become closing joints and mimic joints, so that a gripper with
 //!          loops is the same kind of thing as a closed chain of a mechanism file
@@ -50,6 +50,8 @@ struct Mjcf<'d> {
     sites: Vec<(String, String, Pose)>,
     /// Home positions of joints; later ones count.
     starts: Vec<(String, Vec<f64>)>,
+    /// Tendons that equality constraints make into couplings.
+    tied: Vec<String>,
     /// Poses of the bodies at qpos0.
     world: BTreeMap<String, Pose>,
     link_names: BTreeSet<String>,
@@ -104,6 +106,7 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
         loops: Vec::new(),
         sites: Vec::new(),
         starts: Vec::new(),
+        tied: Vec::new(),
         world: BTreeMap::new(),
         link_names: BTreeSet::new(),
         joint_names: BTreeSet::new(),
@@ -111,12 +114,24 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
     it.assets()?;
     it.bodies()?;
     it.equalities()?;
+    it.tendons();
     it.actuators()?;
     it.key_frame()?;
     it.write(root.attribute("model"))
 }
 
 impl Mjcf<'_> {
+    /// Notes tendons that tie nothing together here.
+    fn tendons(&mut self) {
+        for tendon in self.files.section("tendon") {
+            let name = tendon.attribute("name").unwrap_or("");
+            if !self.tied.iter().any(|t| t == name) {
+                let what = format!("<{}> in <tendon>", tendon.tag_name().name());
+                self.reader.note(tendon, what, why_unused("tendon"), name);
+            }
+        }
+    }
+
     fn write(mut self, model: Option<&str>) -> Result<Mechanism> {
         let source = self.reader.source;
         let stem = source.path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default();
@@ -230,7 +245,7 @@ fn why_unused(name: &str) -> &'static str {
         | "plugin" | "actuatorfrclimited" | "user" => "settings of the simulator are not used",
         "camera" | "light" | "texture" | "hfield" | "skin" => "it is not drawn",
         "tendon" | "deformable" | "flexcomp" | "composite" => {
-            "tendons and soft bodies are not read; what they tie together is free here"
+            "it is not read; what it ties together is free here"
         }
         "replicate" | "attach" => "it is not expanded: what it would bring is missing",
         _ => "not known to this reader",

@@ -91,6 +91,7 @@ pub(super) fn write(
     let mut groups = Groups::new(names.len());
     roots.windows(2).for_each(|w| _ = groups.join(w[0], w[1]));
     ends.iter().for_each(|[a, b]| _ = groups.join(*a, *b));
+    let mut free = Vec::new();
     for link in objects(contacts, reference.map(|r| r.0), &index, &mut groups) {
         let point = match reference {
             Some((name, Some(point))) if name == names[link] => Some(point),
@@ -98,7 +99,7 @@ pub(super) fn write(
         };
         let touching = contacts.iter().find(|c| c.between.contains(&names[link])).map(|c| c.point);
         let place = Pose::from_translation(point.or(touching).unwrap_or(Vec3::ZERO));
-        world.free(names[link], place);
+        free.push(world.free(names[link], place));
         roots.push(link);
     }
 
@@ -117,6 +118,9 @@ pub(super) fn write(
     for branch in graph.tree {
         let Branch { joint, parent, child, reversed } = branch;
         branch_out(world, &joints[joint], names[parent], names[child], reversed)?;
+    }
+    for joint in free {
+        world.builder.joint(joint);
     }
     for joint in graph.loops {
         close(world, &joints[joint])?;

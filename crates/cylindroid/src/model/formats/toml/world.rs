@@ -82,20 +82,18 @@ impl<'t> World<'t> {
         self.builder.joint(joint);
     }
 
-    /// A link that hangs on nothing: free in space, or in the plane.
-    pub(super) fn free(&mut self, link: &str, world_from_link: Pose) {
+    /// A link that hangs on nothing: free in space, or in the plane. The joint is to be written
+    /// after those of the file, so that their coordinates come first.
+    pub(super) fn free(&mut self, link: &str, world_from_link: Pose) -> JointSpec {
         let root = self.links.first().map_or(tree::GROUND, |l| l.0.as_str()).to_owned();
         let kind = match self.dimension {
             Dimension::Planar => JointKind::Planar,
             Dimension::Spatial => JointKind::Free,
         };
-        self.builder.joint(JointSpec {
-            parent_from_joint: self.pose(&root).inverse() * world_from_link,
-            axis: Vec3::Z,
-            actuated: false,
-            ..JointSpec::new(link, kind, &root, link)
-        });
+        let parent_from_joint = self.pose(&root).inverse() * world_from_link;
         self.place(link, world_from_link);
+        let joint = JointSpec::new(link, kind, &root, link);
+        JointSpec { parent_from_joint, axis: Vec3::Z, actuated: false, ..joint }
     }
 
     /// Refuses a name, the value of a key, that is no link.
