@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::FrameArgs;
-use crate::values::{Joints, Numbers};
+use super::{FrameArgs, PostureArgs};
+use crate::values::Numbers;
 
 pub(crate) const ABOUT: &str = "\
 The screw system of the joints: class, pitches, frame, and which inverses exist
@@ -22,22 +22,13 @@ Examples:
   cylindroid screws youbot --q 0.4,0.6,0.9,0.5,0.2 --h 0.1 --plot screws.svg
   cylindroid screws axes.csv --length 0.5 --noise 1e-6
 
-A file of twists (.csv or .json) has six numbers for each, the linear part first: rows of a CSV, \
+In place of a model, a file of twists (.csv or .json) has six numbers for each, the linear part first: rows of a CSV, \
 or a JSON list of lists.";
 
 #[derive(Debug, Args)]
 pub(crate) struct ScrewsArgs {
-    /// A model file, a name of the catalogue, or a file of twists (.csv, .json)
-    pub(crate) model: String,
-
-    /// Configuration, in the order of `info` [rad or m]: numbers `0,-0.8,...`, or `name=value,...`
-    /// over home, or `home`, or `zero`
-    #[arg(long, value_name = "Q", default_value = "home", allow_hyphen_values = true)]
-    pub(crate) q: Joints,
-
-    /// Angles of --q are in degrees
-    #[arg(long)]
-    pub(crate) degrees: bool,
+    #[command(flatten)]
+    pub(crate) posture: PostureArgs,
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,

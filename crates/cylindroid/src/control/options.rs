@@ -141,7 +141,7 @@ impl ServoOptions {
     pub fn check(&self, mechanism: &Mechanism) -> Result<()> {
         let positive = Error::check_positive;
         mechanism.check_frame(self.end_effector.frame)?;
-        if !mechanism.is_tree() {
+        if mechanism.is_closed() {
             return Err(Error::Model {
                 model: mechanism.name().to_owned(),
                 culprit: String::new(),

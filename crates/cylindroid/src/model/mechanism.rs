@@ -271,12 +271,6 @@ impl Mechanism {
         id.frame_key == self.data.frame_key && id.index < self.data.frames.len()
     }
 
-    /// True if no joint closes a loop and nothing is in contact: coordinates are independent.
-    #[must_use]
-    pub fn is_tree(&self) -> bool {
-        self.data.loops.is_empty() && self.data.contacts.is_empty()
-    }
-
     /// The frame that is driven when none is named: the file's tool, else the last leaf link.
     #[must_use]
     pub fn tool(&self) -> FrameId {

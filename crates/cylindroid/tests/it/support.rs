@@ -69,7 +69,7 @@ impl Random {
 /// The serial robots of the catalogue.
 pub(crate) fn robots() -> Vec<Mechanism> {
     let all = cylindroid::catalogue::names().iter();
-    all.map(|name| cylindroid::catalogue::load(name).unwrap()).filter(Mechanism::is_tree).collect()
+    all.map(|name| cylindroid::catalogue::load(name).unwrap()).filter(|m| !m.is_closed()).collect()
 }
 
 #[track_caller]

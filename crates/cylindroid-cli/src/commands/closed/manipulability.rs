@@ -8,21 +8,16 @@ use cylindroid::manipulability::{Manipulability, Metrics, Spectrum};
 use cylindroid::{Error, Matrix};
 use serde::Serialize;
 
-use super::{GapJson, Posed};
+use super::{HeadJson, Posed};
 use crate::args::{ManipulabilityArgs, MetricName};
 use crate::commands::Style;
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]
 struct ManipulabilityJson<'a> {
-    model: &'a str,
-    frame: &'a str,
-    q: &'a [f64],
-    actuated: &'a [String],
-    passive: &'a [String],
-    gap: GapJson,
+    #[serde(flatten)]
+    head: HeadJson<'a>,
     metric: &'static str,
-    length: f64,
     /// Components of the reference frame's twist and wrench.
     components: &'static [&'static str],
     kinematic: SpectrumJson,
@@ -94,14 +89,8 @@ pub(crate) fn run(
         Style::Json => output::json(
             out,
             &ManipulabilityJson {
-                model: posed.mechanism.name(),
-                frame: posed.frame(),
-                q: &posed.q,
-                actuated: &chain.actuated,
-                passive: &chain.passive,
-                gap: chain.into(),
+                head: (&posed).into(),
                 metric,
-                length,
                 components: posed.components(),
                 kinematic: spectra[0].into(),
                 active_force: spectra[1].into(),

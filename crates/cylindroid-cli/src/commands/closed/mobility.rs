@@ -6,22 +6,15 @@ use std::process::ExitCode;
 use cylindroid::closure::{Mobility, Subspace};
 use serde::Serialize;
 
-use super::{GapJson, Posed};
+use super::{HeadJson, Posed};
 use crate::args::ClosedArgs;
 use crate::commands::Style;
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]
 struct MobilityJson<'a> {
-    model: &'a str,
-    frame: &'a str,
-    q: &'a [f64],
-    actuated: &'a [String],
-    passive: &'a [String],
-    /// How far loops are from closed.
-    gap: GapJson,
-    /// Characteristic length of the rank decisions [m].
-    length: f64,
+    #[serde(flatten)]
+    head: HeadJson<'a>,
     dof: usize,
     /// Of the relation between driven joints and reference frame, as the next four.
     redundancy: usize,
@@ -80,13 +73,7 @@ fn describe<'a>(posed: &'a Posed, m: &Mobility) -> MobilityJson<'a> {
     let chain = &posed.chain;
     let names = chain.actuated.iter().chain(&chain.passive);
     MobilityJson {
-        model: posed.mechanism.name(),
-        frame: posed.frame(),
-        q: &posed.q,
-        actuated: &chain.actuated,
-        passive: &chain.passive,
-        gap: chain.into(),
-        length: chain.constraint.length(),
+        head: posed.into(),
         dof: m.dof.dimension(),
         redundancy: m.relation.redundancy,
         indeterminacy: m.relation.indeterminacy,

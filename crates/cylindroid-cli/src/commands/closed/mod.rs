@@ -77,7 +77,21 @@ fn list(names: &[String]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// How far loops are from closed.
+/// What both commands say first.
+#[derive(Debug, Serialize)]
+struct HeadJson<'a> {
+    model: &'a str,
+    /// The reference.
+    frame: &'a str,
+    q: &'a [f64],
+    actuated: &'a [String],
+    passive: &'a [String],
+    /// How far loops are from closed.
+    gap: GapJson,
+    /// Characteristic length [m].
+    length: f64,
+}
+
 #[derive(Debug, Serialize)]
 struct GapJson {
     /// [m]
@@ -86,8 +100,17 @@ struct GapJson {
     angle: f64,
 }
 
-impl From<&ClosedChain> for GapJson {
-    fn from(chain: &ClosedChain) -> Self {
-        Self { distance: chain.gap.distance, angle: chain.gap.angle }
+impl<'a> From<&'a Posed> for HeadJson<'a> {
+    fn from(posed: &'a Posed) -> Self {
+        let chain = &posed.chain;
+        Self {
+            model: posed.mechanism.name(),
+            frame: posed.frame(),
+            q: &posed.q,
+            actuated: &chain.actuated,
+            passive: &chain.passive,
+            gap: GapJson { distance: chain.gap.distance, angle: chain.gap.angle },
+            length: chain.constraint.length(),
+        }
     }
 }

@@ -4,9 +4,10 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use cylindroid::kinematics::Chain;
-use cylindroid::{EndEffector, Error, Matrix, Reference, Result, Twist, Vec3};
-use cylindroid::{Pose, model::Mechanism};
+use cylindroid::model::Mechanism;
+use cylindroid::{Error, Matrix, Reference, Result, Twist, Vec3};
 
+use super::super::{configuration, end_effector};
 use crate::args::ScrewsArgs;
 
 /// Twists with names, in one frame.
@@ -23,7 +24,7 @@ pub(super) struct Twists {
 
 impl Twists {
     pub(super) fn read(args: &ScrewsArgs) -> Result<Self> {
-        let path = Path::new(&args.model);
+        let path = Path::new(&args.posture.model);
         match path.extension().and_then(OsStr::to_str) {
             Some("csv") => Self::of_file(args, csv(path)?),
             Some("json") => Self::of_file(args, json(path)?),
@@ -35,7 +36,7 @@ impl Twists {
         if args.frame.frame.is_some() || args.frame.tool.is_some() {
             return Err(Error::InvalidOption {
                 option: "--frame or --tool",
-                value: args.model.clone(),
+                value: args.posture.model.clone(),
                 reason: "a file of twists has no frames; leave the option out".to_owned(),
             });
         }
@@ -48,7 +49,7 @@ impl Twists {
         };
         Ok(Self {
             robot: None,
-            file: args.model.clone(),
+            file: args.posture.model.clone(),
             names: (1..=rows.len()).map(|i| i.to_string()).collect(),
             twists: rows.into_iter().map(twist).collect(),
             length: 1.0,
@@ -59,32 +60,25 @@ impl Twists {
         if args.angular_first {
             return Err(Error::InvalidOption {
                 option: "--angular-first",
-                value: args.model.clone(),
+                value: args.posture.model.clone(),
                 reason: "it is for files of twists (.csv, .json)".to_owned(),
             });
         }
-        let robot = cylindroid::load(&args.model)?;
-        let q = args.q.configuration(&robot, args.degrees)?;
-        robot.check_q("--q", &q)?;
-        let frame = match &args.frame.frame {
-            None => robot.tool(),
-            Some(name) => robot.frame(name)?,
-        };
-        let tool = args.frame.tool.map_or([0.0; 3], |t| t.0);
-        Error::check_finite("--tool", &tool)?;
-        let end_effector =
-            EndEffector { frame, frame_from_tool: Pose::from_translation(Vec3::from_array(tool)) };
+        let robot = cylindroid::load(&args.posture.model)?;
+        let q = configuration(&robot, &args.posture)?;
+        let end_effector = end_effector(&robot, &args.frame)?;
+        let frame = robot.frame_of(end_effector.frame).name.clone();
         // Joints that do not move the frame have no twist there.
         let chain = Chain::new(&robot, end_effector);
         let jacobian = robot.state(&q)?.jacobian(end_effector, Reference::World);
         let column = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
         let names = chain.coordinates().iter().map(|&c| robot.coordinates()[c].name.clone());
         Ok(Self {
-            file: args.model.clone(),
+            file: args.posture.model.clone(),
             names: names.collect(),
             twists: chain.coordinates().iter().map(column).collect(),
             length: robot.reach(),
-            robot: Some((robot.clone(), robot.frame_of(frame).name.clone(), q)),
+            robot: Some((robot, frame, q)),
         })
     }
 
