@@ -22,3 +22,4 @@ mod spatial;
 mod subspaces;
 mod support;
 mod svd;
+mod symmetric;

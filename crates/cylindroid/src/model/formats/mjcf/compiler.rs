@@ -5,7 +5,7 @@
 //!          of z onto it
 //! Units    degrees unless angle = "radian"; lengths in m
 //! Source   mujoco.readthedocs.io, Modeling, frame orientations and compiler
-//! Checked  tests/formats/mjcf.rs::orientations
+//! Checked  tests/formats/mjcf.rs::poses_*
 
 use super::defaults::Element;
 use super::files::Files;
