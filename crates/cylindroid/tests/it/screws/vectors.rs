@@ -443,6 +443,7 @@ fn youbot_from_five_frames() {
             ("base,mm", Vec3::ZERO, 1e3),
             ("tool,m", tool, 1.0),
             ("tool,mm", tool, 1e3),
+            ("world 5m away,m", Vec3::X * -5.0, 1.0),
         ];
         for (place, origin, unit) in places {
             let seen = |t: Twist| {
