@@ -150,3 +150,7 @@ pub const GRASP_QUALITY: f64 = 1e-3;
 /// An eigenvalue of an admittance, divided by the roots of its diagonal, may be this much below
 /// zero [-]: the rounding of a map that was moved between frames.
 pub const PASSIVE: f64 = 1e-9;
+
+/// Loops that are open by less than this times the reach, and by less than this in angle (rad),
+/// are closed: far above rounding, far below what a machine is built to [-].
+pub const CLOSED: f64 = 1e-10;

@@ -20,8 +20,8 @@ use super::constraint::{Blocks, Constraint, Unit, Units};
 use crate::error::{Error, Result};
 use crate::kinematics::{Reference, State};
 use crate::linalg::Matrix;
-use crate::model::{Dimension, FrameId, JointKind, LoopJoint, Mechanism};
-use crate::spatial::{Pose, Rotation, Twist, Vec3, Wrench};
+use crate::model::{Dimension, FrameId, JointKind, Link, LoopJoint, Mechanism};
+use crate::spatial::{Pose, Twist, Vec3, Wrench};
 
 /// A mechanism at a configuration as a constraint, with the names of what the columns are.
 #[derive(Debug, Clone)]
@@ -51,14 +51,17 @@ pub struct Gap {
 }
 
 /// A relative motion that is restricted, in world axes at the world's origin.
-struct Row {
+pub(super) struct Row {
     /// What is measured of the motion of `b` relative to `a`.
     wrench: Wrench,
     a: usize,
     b: usize,
-    unit: Unit,
+    pub(super) unit: Unit,
     /// Place among the coordinates of closing joints where it is their rate.
-    rate_of: Option<usize>,
+    pub(super) rate_of: Option<usize>,
+    /// By how much what should be held is not (m or rad); its rate is `wrench . (J_b - J_a) q`
+    /// where it is zero.
+    pub(super) residual: f64,
 }
 
 impl ClosedChain {
@@ -90,12 +93,10 @@ impl ClosedChain {
         let components: &[usize] = if planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
         let (held, d) = (rows.len(), components.len());
         let mut all = Matrix::zeros(held + d, columns.len());
-        let links: Vec<Matrix> =
-            (0..mechanism.links().len()).map(|l| link_jacobian(state, l)).collect::<Result<_>>()?;
+        let links = link_jacobians(state)?;
         for (i, row) in rows.iter().enumerate() {
             for j in 0..n {
-                let of = |link: usize| twist(&links[link], j);
-                all[(i, j)] = (of(row.b) - of(row.a)).power(row.wrench);
+                all[(i, j)] = row.rate(&links, j);
             }
             if let Some(k) = row.rate_of {
                 all[(i, n + k)] = -1.0;
@@ -141,10 +142,18 @@ fn twist(jacobian: &Matrix, column: usize) -> Twist {
     Twist::from_array(std::array::from_fn(|i| jacobian.column(column)[i]))
 }
 
-fn link_jacobian(state: &State, link: usize) -> Result<Matrix> {
+/// Of every link, seen from the world.
+pub(super) fn link_jacobians(state: &State) -> Result<Vec<Matrix>> {
     let mechanism = state.mechanism();
-    let frame = mechanism.frame(&mechanism.links()[link].name)?;
-    Ok(state.jacobian(frame, Reference::World))
+    let of = |link: &Link| Ok(state.jacobian(mechanism.frame(&link.name)?, Reference::World));
+    mechanism.links().iter().map(of).collect()
+}
+
+impl Row {
+    /// Its rate by coordinate `j` of the tree.
+    pub(super) fn rate(&self, links: &[Matrix], j: usize) -> f64 {
+        (twist(&links[self.b], j) - twist(&links[self.a], j)).power(self.wrench)
+    }
 }
 
 fn link_pose(state: &State, mechanism: &Mechanism, link: usize) -> Result<Pose> {
@@ -152,29 +161,22 @@ fn link_pose(state: &State, mechanism: &Mechanism, link: usize) -> Result<Pose> 
 }
 
 /// Rows of all closing joints and contacts, the closing joints that have a rate, and the gap.
-fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
+pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
     let mechanism = state.mechanism();
     let dimension = mechanism.dimension();
-    let (mut rows, mut rated, mut gap) = (Vec::new(), Vec::new(), Gap::default());
-    let unit = |w: &Wrench| if w.force == Vec3::ZERO { Unit::Angle } else { Unit::Length };
+    let (mut rows, mut rated) = (Vec::new(), Vec::new());
     for joint in mechanism.loops() {
-        let world_from_a = link_pose(state, mechanism, joint.a)? * joint.link_a_from_joint;
-        let world_from_b = link_pose(state, mechanism, joint.b)? * joint.link_b_from_joint;
+        let pair = Pair {
+            ends: [joint.a, joint.b],
+            world_from_a: link_pose(state, mechanism, joint.a)? * joint.link_a_from_joint,
+            world_from_b: link_pose(state, mechanism, joint.b)? * joint.link_b_from_joint,
+        };
         let mut held = joint.kind.held(joint.axis, dimension);
         if let (JointKind::Universal { second }, Dimension::Spatial) = (joint.kind, dimension) {
-            // Its moment is normal to an axis of either body, wherever they have turned.
-            let second = world_from_a.rotation.inverse() * (world_from_b.rotation * second);
-            if let (Some(row), Some(normal)) = (held.last_mut(), joint.axis.cross(second).unit(0.0))
-            {
-                row.moment = normal;
-            }
+            held.pop();
+            rows.extend(pair.crossed(joint.axis, second));
         }
-        gap.widen(&held, world_from_a.inverse() * world_from_b);
-        let mut push = |w: Wrench, rate_of| {
-            let wrench = world_from_a.coadjoint(w);
-            rows.push(Row { wrench, a: joint.a, b: joint.b, unit: unit(&w), rate_of });
-        };
-        held.into_iter().for_each(|w| push(w, None));
+        rows.extend(held.into_iter().map(|w| pair.row(w)));
         let along = joint.axis;
         let measure = match joint.kind {
             JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
@@ -185,7 +187,7 @@ fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
         };
         match measure {
             Some(w) => {
-                push(w, Some(rated.len()));
+                rows.push(Row { rate_of: Some(rated.len()), residual: 0.0, ..pair.row(w) });
                 rated.push(joint);
             }
             None if joint.actuated => {
@@ -204,27 +206,57 @@ fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
         }
     }
     for contact in mechanism.contacts() {
-        let world_from_a = link_pose(state, mechanism, contact.a)? * contact.link_a_from_contact;
-        let world_from_b = link_pose(state, mechanism, contact.b)? * contact.link_b_from_contact;
-        let held = contact.kind.held(dimension);
-        gap.widen(&held, world_from_a.inverse() * world_from_b);
-        for w in held {
-            let wrench = world_from_a.coadjoint(w);
-            rows.push(Row { wrench, a: contact.a, b: contact.b, unit: unit(&w), rate_of: None });
-        }
+        let pair = Pair {
+            ends: [contact.a, contact.b],
+            world_from_a: link_pose(state, mechanism, contact.a)? * contact.link_a_from_contact,
+            world_from_b: link_pose(state, mechanism, contact.b)? * contact.link_b_from_contact,
+        };
+        rows.extend(contact.kind.held(dimension).into_iter().map(|w| pair.row(w)));
+    }
+    let mut gap = Gap::default();
+    for row in &rows {
+        let widest = match row.unit {
+            Unit::Length => &mut gap.distance,
+            Unit::Angle => &mut gap.angle,
+        };
+        *widest = widest.max(row.residual.abs());
     }
     Ok((rows, rated, gap))
 }
 
-impl Gap {
-    /// Takes in what the frame of the second body leaves the first by along held directions.
-    fn widen(&mut self, held: &[Wrench], a_from_b: Pose) {
-        let turn = Rotation::log(a_from_b.rotation);
-        for w in held {
-            self.distance = self.distance.max(w.force.dot(a_from_b.translation).abs());
-            if w.force == Vec3::ZERO {
-                self.angle = self.angle.max(w.moment.dot(turn).abs());
-            }
+/// The two frames of a closing joint or contact.
+struct Pair {
+    ends: [usize; 2],
+    world_from_a: Pose,
+    world_from_b: Pose,
+}
+
+impl Pair {
+    /// What holds `held`, a wrench in the first frame: forces act where the second one is.
+    fn row(&self, held: Wrench) -> Row {
+        let a_from_b = self.world_from_a.inverse() * self.world_from_b;
+        let at = Pose {
+            rotation: self.world_from_a.rotation,
+            translation: self.world_from_b.translation,
+        };
+        let turn = a_from_b.rotation.log();
+        Row {
+            wrench: at.coadjoint(held),
+            a: self.ends[0],
+            b: self.ends[1],
+            unit: if held.force == Vec3::ZERO { Unit::Angle } else { Unit::Length },
+            rate_of: None,
+            residual: held.force.dot(a_from_b.translation) + held.moment.dot(turn),
         }
+    }
+
+    /// The moment of a universal joint: normal to an axis of either body, wherever they have
+    /// turned, whose angle is held.
+    fn crossed(&self, first: Vec3, second: Vec3) -> Option<Row> {
+        let turned = self.world_from_a.rotation.inverse() * (self.world_from_b.rotation * second);
+        let across = first.cross(turned);
+        let normal = across.unit(0.0)?;
+        let residual = (first.dot(second) - first.dot(turned)) / across.norm();
+        Some(Row { residual, ..self.row(Wrench { force: Vec3::ZERO, moment: normal }) })
     }
 }

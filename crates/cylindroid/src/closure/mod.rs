@@ -21,6 +21,7 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 
+mod assembly;
 mod constraint;
 mod graph;
 mod grasp;
@@ -30,6 +31,7 @@ mod relation;
 mod singularity;
 mod statics;
 
+pub use assembly::{Assembly, assemble};
 pub use constraint::{Blocks, Constraint, Unit, Units};
 pub use graph::{ClosedChain, Gap};
 pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};

@@ -1,4 +1,5 @@
 mod any_matrices;
+mod assembly;
 mod bad_input;
 pub(crate) mod case;
 mod graph;

@@ -1,0 +1,173 @@
+//! Assembly: a configuration near a guess in which all loops and contacts are closed.
+//!
+//! Formula  damped Gauss-Newton: (J^T J + l^2) dq = -J^T r, r what should be held and is not, J its
+//!          rates; the damping falls by ten when the error does, and rises by ten when it does not;
+//!          every step is cut to the position limits
+//! Shapes   r: held rows, J: held rows x free coordinates
+//! Units    rows of lengths over the reach, columns of lengths times it
+//! Valid    any guess; the answer is the last configuration and how far its loops are open. Where
+//!          the guess is near an assembly the steps are Newton's, and the error falls to rounding.
+//!          It finds one assembly, mostly the nearest; there may be others, and not to find one
+//!          proves nothing
+//! Source   Levenberg 1944, Marquardt 1963; the rows: `graph.rs`
+//! Checked  tests/it/closure/assembly.rs
+
+use super::constraint::Unit;
+use super::graph::{Gap, Row, link_jacobians, rows};
+use crate::error::{Error, Result};
+use crate::kinematics::State;
+use crate::linalg::{Matrix, Svd};
+use crate::model::Mechanism;
+use crate::tolerance::{AT_LIMIT, CLOSED};
+
+/// Steps at most: a dozen suffice where there is an assembly near.
+const MOST_STEPS: usize = 200;
+/// First damping, and the largest that is tried, relative to the largest singular value [-].
+const DAMPING: (f64, f64) = (1e-3, 1e8);
+/// Largest change of any coordinate in a step [rad, or reaches].
+const LARGEST_STEP: f64 = 0.5;
+
+/// What came of an attempt to close the loops.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assembly {
+    /// The configuration.
+    pub q: Vec<f64>,
+    /// True if every loop and contact is closed to `tolerance::CLOSED` of the reach and in angle.
+    pub closed: bool,
+    /// How far they are open.
+    pub gap: Gap,
+    /// Steps taken.
+    pub steps: usize,
+    /// Coordinates that stand at a position limit: places in `q`.
+    pub at_limit: Vec<usize>,
+}
+
+/// Closes the loops of `mechanism` from `guess`; the coordinates in `held` keep their values.
+///
+/// ```
+/// use cylindroid::closure::assemble;
+///
+/// let five_bar = cylindroid::load("five-bar")?;
+/// // The first two joints as wanted, the others follow.
+/// let assembly = assemble(&five_bar, &[0.2, -0.1, 0.0, 0.0], &[0, 1])?;
+/// assert!(assembly.closed && assembly.q[0] == 0.2);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// # Errors
+/// A guess of the wrong size or not finite; a held place that is no coordinate.
+pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<Assembly> {
+    mechanism.check_q("guess", guess)?;
+    if let Some(&place) = held.iter().find(|&&i| i >= mechanism.n()) {
+        return Err(Error::InvalidOption {
+            option: "held",
+            value: place.to_string(),
+            reason: format!("the mechanism has {} coordinates", mechanism.n()),
+        });
+    }
+    let free: Vec<usize> = (0..mechanism.n()).filter(|i| !held.contains(i)).collect();
+    let length = mechanism.reach();
+    let mut now = Closing::at(mechanism, guess, &free, length)?;
+    let mut damping = DAMPING.0;
+    let mut steps = 0;
+    while now.error > 0.0 && steps < MOST_STEPS && damping < DAMPING.1 {
+        steps += 1;
+        let q = now.step(mechanism, &free, length, damping);
+        let next = Closing::at(mechanism, &q, &free, length)?;
+        // NaN is no improvement.
+        if next.error < now.error {
+            let little = next.error > 0.5 * now.error && next.is_closed(length);
+            (now, damping) = (next, 0.1 * damping);
+            if little {
+                break; // rounding
+            }
+        } else if now.is_closed(length) {
+            break;
+        } else {
+            damping *= 10.0;
+        }
+    }
+    let at_limit = |i: &usize| {
+        let l = &mechanism.coordinates()[*i].limits;
+        now.q[*i] - l.lower < AT_LIMIT || l.upper - now.q[*i] < AT_LIMIT
+    };
+    Ok(Assembly {
+        closed: now.is_closed(length),
+        gap: now.gap,
+        at_limit: (0..mechanism.n()).filter(at_limit).collect(),
+        q: now.q,
+        steps,
+    })
+}
+
+/// A configuration with its residuals and their rates, scaled.
+struct Closing {
+    q: Vec<f64>,
+    residuals: Vec<f64>,
+    rates: Matrix,
+    error: f64,
+    gap: Gap,
+}
+
+impl Closing {
+    fn at(mechanism: &Mechanism, q: &[f64], free: &[usize], length: f64) -> Result<Self> {
+        let state = mechanism.state(q)?;
+        let (all, _, gap) = rows(&state)?;
+        let held: Vec<&Row> = all.iter().filter(|row| row.rate_of.is_none()).collect();
+        let scale = |row: &Row| if row.unit == Unit::Length { 1.0 / length } else { 1.0 };
+        let residuals: Vec<f64> = held.iter().map(|row| row.residual * scale(row)).collect();
+        let rates = scaled_rates(&state, &held, free, length, scale)?;
+        let error = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
+        Ok(Self { q: q.to_vec(), residuals, rates, error, gap })
+    }
+
+    fn is_closed(&self, length: f64) -> bool {
+        self.gap.distance <= CLOSED * length && self.gap.angle <= CLOSED
+    }
+
+    /// The configuration after a damped step, within the position limits.
+    fn step(&self, mechanism: &Mechanism, free: &[usize], length: f64, damping: f64) -> Vec<f64> {
+        let svd = Svd::of(&self.rates);
+        let mut change = vec![0.0; free.len()];
+        if !svd.is_empty() && svd.value(0) > 0.0 {
+            let l = damping * svd.value(0);
+            for i in 0..svd.len() {
+                let s = svd.value(i);
+                let along: f64 = svd.u(i).iter().zip(&self.residuals).map(|(u, r)| u * r).sum();
+                let gain = if s > 0.0 { -along / (s + l * (l / s)) } else { 0.0 };
+                change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
+            }
+        }
+        let most = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        let cut = if most > LARGEST_STEP { LARGEST_STEP / most } else { 1.0 };
+        let mut rates = vec![0.0; mechanism.n()];
+        for (&i, c) in free.iter().zip(change) {
+            rates[i] = cut * c * column_scale(mechanism, i, length);
+        }
+        let mut q = self.q.clone();
+        mechanism.integrate_in_place(&mut q, &rates, 1.0);
+        for &i in free {
+            let l = &mechanism.coordinates()[i].limits;
+            q[i] = q[i].clamp(l.lower, l.upper);
+        }
+        q
+    }
+}
+
+fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
+    if mechanism.coordinates()[i].kind.unit() == "m" { length } else { 1.0 }
+}
+
+fn scaled_rates(
+    state: &State,
+    held: &[&Row],
+    free: &[usize],
+    length: f64,
+    scale: impl Fn(&Row) -> f64,
+) -> Result<Matrix> {
+    let links = link_jacobians(state)?;
+    Ok(Matrix::from_fn(held.len(), free.len(), |i, j| {
+        let column = column_scale(state.mechanism(), free[j], length);
+        held[i].rate(&links, free[j]) * scale(held[i]) * column
+    }))
+}

@@ -1,0 +1,63 @@
+//! Closing loops from a guess.
+
+use cylindroid::catalogue;
+use cylindroid::closure::{ClosedChain, assemble};
+
+use crate::support::Random;
+
+/// Near its home every closed chain of the catalogue closes to rounding, in a few steps.
+#[test]
+fn the_catalogue_closes_near_home() {
+    let mut random = Random(91);
+    for name in catalogue::names() {
+        let mechanism = catalogue::load(name).unwrap();
+        if !mechanism.is_closed() {
+            continue;
+        }
+        for _ in 0..20 {
+            let guess: Vec<f64> =
+                mechanism.home().iter().map(|x| x + random.within(-0.1, 0.1)).collect();
+            let found = assemble(&mechanism, &guess, &[]).unwrap();
+            assert!(found.closed && found.steps < 30, "{name}: {found:?}");
+            let chain = ClosedChain::of(&mechanism.state(&found.q).unwrap(), None, None).unwrap();
+            assert!(chain.gap.distance < 1e-10 * mechanism.reach() && chain.gap.angle < 1e-10);
+        }
+    }
+}
+
+/// The five-bar with both cranks given: circles about the ends of the cranks meet at the coupler.
+#[test]
+fn five_bar_as_circles_meet() {
+    let five_bar = catalogue::load("five-bar").unwrap();
+    let coupler = five_bar.frame("rod").unwrap();
+    for turn in [0.0, 0.1, 0.25] {
+        let found = assemble(&five_bar, &[turn, 0.0, 0.0, 0.0], &[0]).unwrap();
+        assert!(found.closed, "{found:?}");
+        assert_eq!(found.q[0], turn);
+        // Joint q3 is one link of length 1 from q2 and one of sqrt 2 from q4.
+        let state = five_bar.state(&found.q).unwrap();
+        let q3 = state.pose(coupler).translation;
+        let q2 = state.pose(five_bar.frame("coupler").unwrap()).translation;
+        assert!(((q3 - q2).norm() - 1.0).abs() < 1e-9);
+        assert!((q2.norm() - 2.0).abs() < 1e-9);
+    }
+}
+
+/// Cranks turned apart so far that the links cannot meet: said, with the gap that remains.
+#[test]
+fn what_cannot_be_assembled_is_not() {
+    let five_bar = catalogue::load("five-bar").unwrap();
+    // The first crank points away from the other ground joint: 4 m apart, 1 + sqrt 2 + 1 m long.
+    let found = assemble(&five_bar, &[std::f64::consts::FRAC_PI_2, 0.0, 0.0, 0.0], &[0]).unwrap();
+    assert!(!found.closed && found.gap.distance > 0.1, "{found:?}");
+    assert_eq!(found.q[0], std::f64::consts::FRAC_PI_2);
+    // All held: nothing to do but to say how far it is open.
+    let stuck = assemble(&five_bar, &[0.3, 0.0, 0.0, 0.0], &[0, 1, 2, 3]).unwrap();
+    assert!(!stuck.closed && stuck.q == [0.3, 0.0, 0.0, 0.0]);
+    assert!(assemble(&five_bar, &[0.0; 4], &[4]).is_err());
+    assert!(assemble(&five_bar, &[0.0; 3], &[]).is_err());
+    // A tree is closed as it is.
+    let panda = catalogue::load("panda").unwrap();
+    let same = assemble(&panda, panda.home(), &[]).unwrap();
+    assert!(same.closed && same.steps == 0 && same.q == panda.home());
+}
