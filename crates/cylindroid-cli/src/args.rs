@@ -5,7 +5,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 mod closed;
 mod move_to;
 mod screws;
-pub(crate) use closed::{ClosedArgs, ManipulabilityArgs, MetricName};
+pub(crate) use closed::{AssembleArgs, ClosedArgs, ManipulabilityArgs, MetricName};
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
 };
@@ -55,6 +55,9 @@ pub(crate) enum Command {
     /// The screw system of the joints: class, pitches, frame, and which inverses exist
     #[command(long_about = screws::ABOUT, after_long_help = screws::EXAMPLES)]
     Screws(Box<ScrewsArgs>),
+    /// Close the loops of a mechanism from a guess, within its position limits
+    #[command(long_about = closed::ASSEMBLE)]
+    Assemble(Box<AssembleArgs>),
     /// Mobility of a mechanism: how it can move, what is redundant, idle or held twice
     #[command(long_about = closed::MOBILITY)]
     Mobility(Box<ClosedArgs>),

@@ -35,6 +35,22 @@ pub(crate) struct ClosedArgs {
     pub(crate) length: Option<f64>,
 }
 
+pub(crate) const ASSEMBLE: &str = "\
+Closes the loops of a mechanism from a guess, within its position limits
+
+It finds one assembly, mostly the nearest; there may be others. Exit code 0 if all loops and \
+contacts are closed, 1 if not, 2 on an error. The line q can be given to --q of other commands.";
+
+#[derive(Debug, Args)]
+pub(crate) struct AssembleArgs {
+    #[command(flatten)]
+    pub(crate) posture: PostureArgs,
+
+    /// Coordinates that keep the values of --q
+    #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
+    pub(crate) hold: Vec<String>,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct ManipulabilityArgs {
     #[command(flatten)]

@@ -33,6 +33,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Jacobian(args) => jacobian::run(args, style, out),
         Command::Move(args) => move_to::run(args, style, out),
         Command::Screws(args) => screws::run(args, style, out),
+        Command::Assemble(args) => closed::assemble::run(args, style, out),
         Command::Mobility(args) => closed::mobility::run(args, style, out),
         Command::Manipulability(args) => closed::manipulability::run(args, style, out),
     }

@@ -42,6 +42,24 @@ fn manipulability_of_the_five_bar() {
 }
 
 #[test]
+fn loops_are_closed_from_a_guess() {
+    let command = ["assemble", "five-bar", "--q", "0.2,-0.1,0,0", "--hold", "q1"];
+    let report = json(&command, 0);
+    assert_eq!((&report["closed"], &report["q"][0]), (&true.into(), &0.2.into()));
+    assert!(report["gap"]["distance"].as_f64().unwrap() < 1e-9);
+    // The line q is an argument of other commands.
+    let text = text(&command);
+    let q = text.lines().find_map(|l| l.strip_prefix("q ")).unwrap().trim().to_owned();
+    let mobility = json(&["mobility", "five-bar", "--q", &q], 0);
+    assert!(mobility["gap"]["distance"].as_f64().unwrap() < 1e-9);
+    // Too far apart: a negative answer.
+    let far = json(&["assemble", "five-bar", "--q", "1.5708,0,0,0", "--hold", "q1"], 1);
+    assert_eq!(far["closed"], false);
+    let output = cylindroid(&["assemble", "five-bar", "--hold", "q9"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
 fn bad_requests() {
     let refused = |arguments: &[&str]| {
         let output = cylindroid(arguments);

@@ -1,5 +1,6 @@
 //! What the commands on closed chains share: the mechanism at its configuration as a constraint.
 
+pub(super) mod assemble;
 pub(super) mod manipulability;
 pub(super) mod mobility;
 
@@ -61,7 +62,7 @@ impl Posed {
                 "loops are open by",
                 if open {
                     format!(
-                        "{} m, {} rad: what follows holds where they are closed",
+                        "{} m, {} rad: what follows holds where they are closed (`assemble`)",
                         number(gap.distance),
                         number(gap.angle)
                     )
