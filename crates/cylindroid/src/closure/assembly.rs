@@ -49,8 +49,8 @@ pub struct Assembly {
 ///
 /// let five_bar = cylindroid::load("five-bar")?;
 /// // The first two joints as wanted, the others follow.
-/// let assembly = assemble(&five_bar, &[0.2, -0.1, 0.0, 0.0], &[0, 1])?;
-/// assert!(assembly.closed && assembly.q[0] == 0.2);
+/// let assembly = assemble(&five_bar, &[-0.2, 0.1, 0.0, 0.0], &[0, 1])?;
+/// assert!(assembly.closed && assembly.q[..2] == [-0.2, 0.1]);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 ///
