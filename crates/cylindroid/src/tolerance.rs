@@ -154,3 +154,23 @@ pub const PASSIVE: f64 = 1e-9;
 /// Loops that are open by less than this times the reach, and by less than this in angle (rad),
 /// are closed: far above rounding, far below what a machine is built to [-].
 pub const CLOSED: f64 = 1e-10;
+
+/// Directions in which a constraint is weaker than this, relative to its strongest, take no part in
+/// closing loops again: near a singular pose the step there would be the largest, and lead away [-].
+pub const CORRECTION_RANK: f64 = 1e-6;
+
+/// A motion of which less than this belongs to the driven joints (of a motion of length one in
+/// units scaled by the reach) is no longer steered by them: passive joints move a hundred times as
+/// fast as the drives, whose errors and clearances they multiply as much [-].
+pub const LEAST_STEERED: f64 = 1e-2;
+
+/// Loops that are open by less than this times the reach, and by less than this in angle (rad),
+/// are closed by the way of a servo: measured postures are; others have to be assembled first.
+pub const NEARLY_CLOSED: f64 = 1e-2;
+
+/// Rates held at bounds that follow from each other, or contradict each other, by this [-]: above
+/// the rounding of the motions that the loops leave.
+pub const HELD_ROWS: f64 = 1e-9;
+
+/// A motion of length one (scaled) that moves the task by less than this does not move it [-].
+pub const UNSTEERED: f64 = 1e-9;

@@ -30,6 +30,7 @@ mod motions;
 mod relation;
 mod singularity;
 mod statics;
+mod steering;
 
 pub use assembly::{Assembly, assemble};
 pub use constraint::{Blocks, Constraint, Unit, Units};
@@ -42,3 +43,4 @@ pub use singularity::{Counts, Distances, Singularities, SingularityKind};
 pub use statics::{
     ContactForces, Load, Torques, contact_forces, internal_forces, joint_torques, structural_forces,
 };
+pub use steering::Steering;

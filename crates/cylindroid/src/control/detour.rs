@@ -5,7 +5,7 @@
 //!          from postures drawn evenly within the limits, until one run reaches the target. Limits
 //!          of position form a box, so the straight way there through joint space keeps them.
 //! Units    rad, m
-//! Valid    any task; arms without spherical and free joints (else `None`). `None` says that no run of so many reached it: likely, not proved,
+//! Valid    any task; trees without spherical and free joints (else `None`). `None` says that no run of so many reached it: likely, not proved,
 //!          that no posture does. The draws are the same on every run.
 //! Why so   what stops a servo is nearly always the posture it started from
 //! Checked  tests/it/servo/ways.rs::a_detour_reaches_what_the_servo_does_not
@@ -44,6 +44,9 @@ pub fn find_posture(
 ) -> Result<Option<Detour>> {
     let mechanism = servo.mechanism().clone();
     mechanism.check_q("q", q)?;
+    if mechanism.is_closed() {
+        return Ok(None); // nor through joint space where loops couple the joints
+    }
     let straight = |c: &usize| {
         matches!(mechanism.coordinates()[*c].kind, CoordinateKind::Angle | CoordinateKind::Length)
     };

@@ -5,7 +5,7 @@ use super::secondary::Secondary;
 use crate::error::{Error, Result};
 use crate::inverse::Method;
 use crate::kinematics::{EndEffector, Reference};
-use crate::model::Mechanism;
+use crate::model::{Dimension, Mechanism};
 use crate::tolerance;
 
 /// Proportional gains [1/s].
@@ -47,6 +47,11 @@ pub struct Task {
 impl Task {
     /// Position and orientation.
     pub const POSE: Self = Self { components: [true; 6], axes: Reference::LocalWorldAligned };
+    /// Position and orientation in the plane x-y.
+    pub const PLANAR: Self = Self {
+        components: [true, true, false, false, false, true],
+        axes: Reference::LocalWorldAligned,
+    };
     /// Position alone.
     pub const POSITION: Self = Self {
         components: [true, true, true, false, false, false],
@@ -108,13 +113,16 @@ pub struct ServoOptions {
 }
 
 impl ServoOptions {
-    /// The defaults for a mechanism: its tool, whole poses, 1 kHz, 5/s, the truncated inverse, the
-    /// reach as length.
+    /// The defaults for a mechanism: its tool, or the reference of a closed chain, whole poses (x,
+    /// y and rz in the plane), 1 kHz, 5/s, the truncated inverse, the reach as length.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
+        let closed = mechanism.is_closed();
+        let end_effector = if closed { mechanism.reference() } else { mechanism.tool() };
+        let planar = closed && mechanism.dimension() == Dimension::Planar;
         Self {
-            end_effector: mechanism.tool().into(),
-            task: Task::POSE,
+            end_effector: end_effector.into(),
+            task: if planar { Task::PLANAR } else { Task::POSE },
             dt: 1e-3,
             gain: Gain { position: 5.0, orientation: 5.0 },
             tolerance: Tolerance {
@@ -141,17 +149,6 @@ impl ServoOptions {
     pub fn check(&self, mechanism: &Mechanism) -> Result<()> {
         let positive = Error::check_positive;
         mechanism.check_frame(self.end_effector.frame)?;
-        if mechanism.is_closed() {
-            return Err(Error::Model {
-                model: mechanism.name().to_owned(),
-                culprit: String::new(),
-                message: format!(
-                    "'{}' has loops or contacts, which a servo of its spanning tree would break; \
-                     drive a serial or branched robot",
-                    mechanism.name()
-                ),
-            });
-        }
         if !self.end_effector.frame_from_tool.is_finite() {
             let what = "frame_from_tool of the end effector".to_owned();
             return Err(Error::NotFinite { what, value: f64::NAN });
@@ -217,6 +214,17 @@ impl ServoOptions {
             match secondary {
                 Secondary::Posture { q, .. } => mechanism.check_q("posture", q)?,
                 Secondary::LimitAvoidance { margin, .. } => positive("margin", *margin)?,
+                Secondary::Manipulability { .. } if mechanism.is_closed() => {
+                    return Err(Error::InvalidOption {
+                        option: "secondary",
+                        value: secondary.name().to_owned(),
+                        reason: format!(
+                            "'{}' has loops, in which its gradient would be that of the cut tree; \
+                             use posture, centring or limit-avoidance",
+                            mechanism.name()
+                        ),
+                    });
+                }
                 Secondary::Centring { .. } | Secondary::Manipulability { .. } => {}
             }
         }

@@ -16,7 +16,7 @@ use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, Svd};
 
 /// Below this scale a direction counts as lost and the motion is bent [-].
-const LEAST_SCALE: f64 = 0.05;
+pub(super) const LEAST_SCALE: f64 = 0.05;
 
 /// A held joint is released when its pull is above this share of the largest possible one [-]:
 /// what is left of directions that the inverse cut must not release anything.
@@ -279,15 +279,15 @@ pub(super) fn apply(svd: &Svd, gains: &[f64], x: &[f64], out: &mut [f64]) {
 
 /// Where `a + s b` keeps the bounds.
 #[derive(Debug, Clone, Copy)]
-struct Span {
+pub(super) struct Span {
     /// The largest s in [0, 1].
-    most: f64,
+    pub(super) most: f64,
     /// The limit that sets it; velocity if none does.
-    cause: LimitKind,
+    pub(super) cause: LimitKind,
 }
 
 /// The s in [0, 1] for which `a + s b` keeps the bounds; `None` if there are none.
-fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<Span> {
+pub(super) fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<Span> {
     let mut least = 0.0_f64;
     let mut span = Span { most: 1.0, cause: LimitKind::Velocity };
     for ((a, b), bound) in a.iter().zip(b).zip(bounds) {

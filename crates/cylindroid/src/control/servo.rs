@@ -7,7 +7,9 @@
 //!          acceleration limits (`limits.rs`, `saturation.rs`)
 //! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
 //! Units    m, rad, s
-//! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step.
+//! Loops    of closed chains are kept by `coupled.rs`: there the unknowns are what the drives can do
+//! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step. Closed
+//!          chains allocate
 //! Fails    on numbers that are not finite, also where the twist or the rates overflow; rates,
 //!          target and the watch for stalls stay as they were
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
@@ -15,10 +17,11 @@
 
 mod stages;
 
+use super::coupled::Coupled;
 use super::limits::{LimitKind, RateBounds};
 use super::options::ServoOptions;
 use super::projection::{Projecting, TaskFrame};
-use super::saturation::{Problem, Saturator};
+use super::saturation::Saturator;
 use super::secondary::Gradient;
 use super::stall::{Evidence, Stall, Watch, classify};
 use super::step::{Status, Step, Target};
@@ -69,6 +72,10 @@ pub struct Servo {
     bounds: Vec<RateBounds>,
     saturator: Saturator,
     gradient: Gradient,
+    /// For closed chains.
+    coupled: Option<Box<Coupled>>,
+    /// True if the last step commanded rest before a motion that the drives do not steer.
+    is_escaping: bool,
 
     rates: Vec<f64>,
     active: Vec<Option<LimitKind>>,
@@ -82,10 +89,15 @@ impl Servo {
     /// A servo at rest.
     ///
     /// # Errors
-    /// Options that make no controller; see [`ServoOptions::check`].
+    /// Options that make no controller; see [`ServoOptions::check`]. A closed chain whose loops do
+    /// not close near its home posture, or whose drives leave the end effector a motion of its own.
     pub fn new(mechanism: &Mechanism, options: ServoOptions) -> Result<Self> {
         options.check(mechanism)?;
-        let chain = Chain::new(mechanism, options.end_effector);
+        let chain = if mechanism.is_closed() {
+            Chain::whole(mechanism, options.end_effector)
+        } else {
+            Chain::new(mechanism, options.end_effector)
+        };
         let n = chain.n();
         if n == 0 {
             return Err(Error::Model {
@@ -97,11 +109,16 @@ impl Servo {
                 ),
             });
         }
-        let limits: Vec<Limits> = chain
-            .coordinates()
-            .iter()
-            .map(|&c| {
-                let mut l = mechanism.coordinates()[c].limits;
+        let closing = mechanism.loops().iter().filter(|l| l.actuated);
+        // The position of a closing joint is no coordinate.
+        let closing = closing.map(|l| {
+            let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+            Limits { lower, upper, ..l.limits }
+        });
+        let own = chain.coordinates().iter().map(|&c| mechanism.coordinates()[c].limits);
+        let limits: Vec<Limits> = own
+            .chain(closing)
+            .map(|mut l| {
                 if l.acceleration == f64::INFINITY {
                     l.acceleration = options.acceleration;
                 }
@@ -110,6 +127,15 @@ impl Servo {
             .collect();
         let space = TaskSpace::new(&options, &chain, &limits);
         let m = space.rows.len();
+        let coupled = if mechanism.is_closed() {
+            let locked = (0..n).filter(|&i| space.is_locked(i)).collect();
+            Some(Box::new(Coupled::new(mechanism, &options.joint_weights, locked, m)?))
+        } else {
+            None
+        };
+        let rates = limits.len();
+        // What is decomposed: the rates of the joints, or what the drives can do.
+        let unknowns = coupled.as_ref().map_or(n, |c| c.drives());
         let hessian = if options
             .secondary
             .iter()
@@ -127,30 +153,35 @@ impl Servo {
             options,
             space,
             limits,
-            task: Matrix::zeros(m, n),
-            svd: Svd::workspace(m, n),
-            gains: vec![0.0; m.min(n)],
-            kept: vec![false; m.min(n)],
+            task: Matrix::zeros(m, unknowns),
+            svd: Svd::workspace(m, unknowns),
+            gains: vec![0.0; m.min(unknowns)],
+            kept: vec![false; m.min(unknowns)],
             x: vec![0.0; m],
             done: vec![0.0; m],
             error: vec![0.0; m],
             possible: vec![0.0; m],
             projecting: Projecting::new(),
-            primary: vec![0.0; n],
-            wish: vec![0.0; n],
-            own_bounds: vec![RateBounds::NONE; n],
-            bounds: vec![RateBounds::NONE; n],
-            saturator: Saturator::new(m, n),
+            primary: vec![0.0; rates],
+            wish: vec![0.0; rates],
+            own_bounds: vec![RateBounds::NONE; rates],
+            bounds: vec![RateBounds::NONE; rates],
+            saturator: Saturator::new(m, unknowns),
             gradient: Gradient { hessian },
-            rates: vec![0.0; mechanism.n()],
-            active: vec![None; n],
+            rates: vec![0.0; mechanism.n().max(rates)],
+            active: vec![None; rates],
+            coupled,
+            is_escaping: false,
             at_limit: Vec::with_capacity(n),
             watch: Watch::new(),
             last_target: None,
             distance: 0.0,
             chain,
         };
-        servo.generic_rank = servo.find_generic_rank();
+        servo.generic_rank = match servo.coupled.is_some() {
+            true => servo.find_steered_rank()?,
+            false => servo.find_generic_rank(),
+        };
         Ok(servo)
     }
 
@@ -173,6 +204,26 @@ impl Servo {
             })
             .max()
             .unwrap_or(0)
+    }
+
+    /// The same for a closed chain, in postures near its home.
+    fn find_steered_rank(&mut self) -> Result<usize> {
+        let (mut rank, mut closed, mut free) = (0, 0, None);
+        for posture in 0..=GENERIC_POSTURES {
+            let Some(q) = self.nearby_posture(posture)? else { continue };
+            closed += 1;
+            self.chain.set(&q);
+            self.load_jacobian(&q)?;
+            rank = rank.max(Svd::of(&self.task).rank(GENERIC_RANK).rank);
+            match self.coupled.as_ref().and_then(|c| c.escape()) {
+                Some(escape) if escape.share == 0.0 => free = Some(escape.clone()),
+                _ => return Ok(rank),
+            }
+        }
+        let Some(escape) = free.filter(|_| closed > 0) else {
+            return Err(super::coupled::not_assembled(&self.mechanism));
+        };
+        Err(super::coupled::not_steered(&self.mechanism, &escape, self.options.task))
     }
 
     /// One step: the rates to command from now until the next step are in [`Servo::rates`].
@@ -199,7 +250,7 @@ impl Servo {
 
         let pose = self.chain.set(q);
         let wanted = target.wanted(pose, &self.options)?;
-        self.space.load(&self.chain, &mut self.task);
+        self.load_jacobian(q)?;
         Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
         let (axes, length) = (self.options.task.axes, self.options.length);
@@ -212,11 +263,8 @@ impl Servo {
         self.load_wish(wanted_rates);
 
         self.load_bounds(q);
-        let problem =
-            Problem { j: &self.task, x: &self.x, method: &self.method, bounds: &self.bounds };
-        let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
+        let saturation = self.saturate(q)?;
         Error::check_finite("joint rates", &self.primary)?;
-        self.task.mul_vec_into(&self.primary, &mut self.done);
         let effort = self.store_rates();
         self.note_limits();
 
@@ -234,7 +282,7 @@ impl Servo {
         let stalled = self.watch.stalled(scaled, effort, self.options.dt);
         let status = if near && self.settled(wanted.feed_forward) {
             Status::Reached
-        } else if stalled || self.projecting.is_stopped() {
+        } else if stalled || self.is_stopped() {
             Status::Stalled
         } else {
             Status::Moving
@@ -250,10 +298,18 @@ impl Servo {
         })
     }
 
-    /// The rates of the last step, for all n coordinates [rad/s or m/s].
+    /// The rates of the last step, for all n coordinates [rad/s or m/s]: in a closed chain driven
+    /// and passive ones.
     #[must_use]
     pub fn rates(&self) -> &[f64] {
-        &self.rates
+        &self.rates[..self.mechanism.n()]
+    }
+
+    /// The rates of driven joints that close loops, in the order of `Mechanism::loops`
+    /// [rad/s or m/s].
+    #[must_use]
+    pub fn closing_rates(&self) -> &[f64] {
+        &self.rates[self.mechanism.n()..]
     }
 
     /// The limits that set a rate in the last step: place in `q` and kind.
@@ -268,6 +324,11 @@ impl Servo {
     /// Why the last step got no nearer to the target.
     #[must_use]
     pub fn stall(&self) -> Stall {
+        let escape = self.coupled.as_ref().and_then(|c| c.escape());
+        if let Some(escape) = escape.filter(|_| self.is_escaping) {
+            let (share, direction) = (escape.share, escape.direction.clone());
+            return Stall::Uncontrolled { share, direction };
+        }
         classify(&Evidence {
             svd: &self.svd,
             gains: &self.gains,
@@ -288,10 +349,11 @@ impl Servo {
         self.projecting.reason()
     }
 
-    /// True if the last step commanded rest because neither the projection nor a fallback exists.
+    /// True if the last step commanded rest because neither the projection nor a fallback exists,
+    /// or because a motion of the object is about to escape the drives.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
-        self.projecting.is_stopped()
+        self.projecting.is_stopped() || self.is_escaping
     }
 
     /// The options.
@@ -311,14 +373,19 @@ impl Servo {
         self.rates.fill(0.0);
         self.watch = Watch::new();
         self.last_target = None;
+        self.is_escaping = false;
     }
 
-    /// Moves `q` by the rates of the last step, for simulation.
+    /// Moves `q` by the rates of the last step, for simulation; passive joints of a closed chain
+    /// go where the loops are closed.
     ///
     /// # Panics
     /// If `q` is shorter than the mechanism's.
     pub fn advance(&self, q: &mut [f64]) {
-        self.mechanism.integrate_in_place(q, &self.rates, self.options.dt);
+        self.mechanism.integrate_in_place(q, self.rates(), self.options.dt);
+        if let Some(coupled) = &self.coupled {
+            coupled.close(q);
+        }
     }
 
     /// The coordinates that move the end effector: places in `q`, ascending.

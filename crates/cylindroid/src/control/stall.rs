@@ -66,6 +66,15 @@ pub enum Stall {
         /// The remaining error as a unit vector in task space.
         direction: Vec<f64>,
     },
+    /// A motion of the object is about to escape the drives of a closed chain (type II
+    /// singularity): the servo stops before.
+    Uncontrolled {
+        /// How much of that motion still belongs to the drives, of a motion of length one in units
+        /// scaled by the reach [-].
+        share: f64,
+        /// The motion as a unit vector in task space.
+        direction: Vec<f64>,
+    },
     /// None of these: the inverse is damped so much, or the limits so tight, that progress is
     /// slower than the window.
     Slow,
@@ -82,6 +91,7 @@ impl Stall {
             Self::TooFewJoints { .. } => "too-few-joints",
             Self::NoInverse(_) => "no-inverse",
             Self::GivenUp { .. } => "given-up",
+            Self::Uncontrolled { .. } => "uncontrolled",
             Self::Slow => "slow",
         }
     }

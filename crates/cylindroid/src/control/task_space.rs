@@ -18,14 +18,14 @@ pub(super) struct TaskSpace {
     pub(super) axes: Reference,
     /// Row of the 6 x n Jacobian and its scale, for each of the m components.
     pub(super) rows: Vec<(usize, f64)>,
-    /// Scale of each of the n columns; 0 for joints that are locked.
+    /// Scale of each of the n columns, and 1 for driven closing joints; 0 for joints that are locked.
     pub(super) columns: Vec<f64>,
     /// The Jacobian before it is scaled, 6 x n.
     jacobian: Matrix,
 }
 
 impl TaskSpace {
-    /// For the joints of `chain` with these limits.
+    /// For the joints of `chain` with these limits, and driven closing joints with the others.
     pub(super) fn new(options: &ServoOptions, chain: &Chain, limits: &[Limits]) -> Self {
         let scale = |i: usize| if i < 3 { 1.0 / options.length } else { 1.0 };
         let component = |&i: &usize| options.task.components[i];
@@ -34,7 +34,13 @@ impl TaskSpace {
         Self {
             axes: options.task.axes,
             rows: (0..6).filter(component).map(|i| (i, scale(i))).collect(),
-            columns: chain.coordinates().iter().zip(limits).map(column).collect(),
+            columns: chain
+                .coordinates()
+                .iter()
+                .zip(limits)
+                .map(column)
+                .chain(limits[chain.n()..].iter().map(|_| 1.0))
+                .collect(),
             jacobian: Matrix::zeros(6, chain.n()),
         }
     }
@@ -42,7 +48,7 @@ impl TaskSpace {
     /// Writes J_task.
     pub(super) fn load(&mut self, chain: &Chain, task: &mut Matrix) {
         chain.jacobian_into(self.axes, &mut self.jacobian);
-        for (j, &weight) in self.columns.iter().enumerate() {
+        for (j, &weight) in self.columns.iter().enumerate().take(chain.n()) {
             let column = self.jacobian.column(j);
             for (t, &(row, scale)) in task.column_mut(j).iter_mut().zip(&self.rows) {
                 *t = column[row] * scale * weight;

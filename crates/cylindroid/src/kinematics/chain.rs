@@ -24,20 +24,23 @@ impl Chain {
     /// The chain to an end effector, at q = 0 of its coordinates.
     #[must_use]
     pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
-        let of = of.into();
-        let frame = mechanism.frame_of(of.frame);
-        let slot_from_tool = frame.slot_from_frame * of.frame_from_tool;
-        let mut path = Vec::new();
-        let mut slot = frame.slot;
-        while slot > 0 {
-            path.push(mechanism.nodes()[slot - 1]);
-            slot = mechanism.nodes()[slot - 1].parent;
-        }
-        path.reverse();
+        let (path, slot_from_tool) = path(mechanism, of.into());
         let mut coordinates: Vec<usize> =
             path.iter().flat_map(|n| n.coordinate..n.coordinate + n.motion.dof()).collect();
         coordinates.sort_unstable();
         coordinates.dedup();
+        Self::over(coordinates, path, slot_from_tool)
+    }
+
+    /// The same over all coordinates of the mechanism, also those that do not move the end
+    /// effector: where loops couple them.
+    #[must_use]
+    pub(crate) fn whole(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
+        let (path, slot_from_tool) = path(mechanism, of.into());
+        Self::over((0..mechanism.n()).collect(), path, slot_from_tool)
+    }
+
+    fn over(coordinates: Vec<usize>, path: Vec<Node>, slot_from_tool: Pose) -> Self {
         let mut nodes: Vec<Node> = path
             .into_iter()
             .enumerate()
@@ -173,4 +176,17 @@ impl Chain {
             world_from_tip: self.world_from_tool,
         }
     }
+}
+
+/// The nodes from the ground to an end effector, and where it sits in the last one.
+fn path(mechanism: &Mechanism, of: EndEffector) -> (Vec<Node>, Pose) {
+    let frame = mechanism.frame_of(of.frame);
+    let mut path = Vec::new();
+    let mut slot = frame.slot;
+    while slot > 0 {
+        path.push(mechanism.nodes()[slot - 1]);
+        slot = mechanism.nodes()[slot - 1].parent;
+    }
+    path.reverse();
+    (path, frame.slot_from_frame * of.frame_from_tool)
 }

@@ -1,12 +1,15 @@
 //! The stages of a servo step, in their order: task, wishes, bounds, rates.
 
 use super::super::approach;
+use super::super::coupled::CoupledProblem;
 use super::super::limits::{LimitKind, Motion1, RateBounds};
 use super::super::options::Projector;
-use super::super::saturation::{RELEASE, apply, solve};
+use super::super::saturation::{Problem, RELEASE, Saturation, apply, solve};
 use super::super::stall::Effort;
 use super::super::step::Wanted;
 use super::Servo;
+use crate::closure::assemble;
+use crate::error::Result;
 use crate::linalg::RowSpace;
 use crate::spatial::Twist;
 use crate::tolerance::AT_LIMIT;
@@ -28,6 +31,9 @@ impl Servo {
             if gain.position == gain.orientation {
                 let way = |(w, rate): (&mut f64, &f64)| *w = rate / gain.position;
                 self.wish.iter_mut().zip(&self.primary).for_each(way);
+            } else if let Some(coupled) = &mut self.coupled {
+                apply(&self.svd, &self.gains, &self.possible, &mut coupled.wish);
+                coupled.lift(&coupled.wish, &mut self.wish);
             } else {
                 apply(&self.svd, &self.gains, &self.possible, &mut self.wish);
             }
@@ -59,7 +65,60 @@ impl Servo {
 
     /// `primary = J+ x`
     pub(super) fn solve(&mut self) {
-        solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
+        if let Some(coupled) = &mut self.coupled {
+            solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut coupled.primary);
+            coupled.lift(&coupled.primary, &mut self.primary);
+        } else {
+            solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
+        }
+    }
+
+    /// Writes the Jacobian of the task: of the joints, or of what the drives of a closed chain can
+    /// do.
+    pub(super) fn load_jacobian(&mut self, q: &[f64]) -> Result<()> {
+        let Some(coupled) = &mut self.coupled else {
+            self.space.load(&self.chain, &mut self.task);
+            return Ok(());
+        };
+        self.space.load(&self.chain, &mut coupled.task);
+        coupled.load(q, &self.space.columns, self.options.dt, &mut self.task)
+    }
+
+    /// A posture near home in which the loops are closed; the first is the nearest to home.
+    pub(super) fn nearby_posture(&self, posture: usize) -> Result<Option<Vec<f64>>> {
+        let spread = if posture == 0 { 0.0 } else { 0.2 };
+        let n = self.mechanism.n();
+        let guess: Vec<f64> = (0..n)
+            .map(|i| {
+                let turn = ((posture * n + i) as f64 * 0.618_034).fract() - 0.5;
+                self.mechanism.home()[i] + spread * turn
+            })
+            .collect();
+        let found = assemble(&self.mechanism, &guess, &[])?;
+        Ok(found.closed.then_some(found.q))
+    }
+
+    /// Moves primary rates and wishes into the bounds; what the task gets of it into `done`.
+    pub(super) fn saturate(&mut self, q: &[f64]) -> Result<Saturation> {
+        let (j, x, method, bounds) = (&self.task, &self.x, &self.method, &self.bounds);
+        let Some(coupled) = &mut self.coupled else {
+            let problem = Problem { j, x, method, bounds };
+            let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
+            self.task.mul_vec_into(&self.primary, &mut self.done);
+            return Ok(saturation);
+        };
+        let columns = &self.space.columns;
+        let scaled = |(r, c): (&f64, &f64)| if *c == 0.0 { 0.0 } else { r / c };
+        let rates: Vec<f64> = self.rates.iter().zip(columns).map(scaled).collect();
+        let problem = CoupledProblem { j, x, method, bounds, rates: &rates };
+        let mut saturation = coupled.saturate(problem, &mut self.primary);
+        self.is_escaping = coupled.is_escaping(q, &self.primary, columns, self.options.dt)?;
+        if self.is_escaping {
+            coupled.brake(&problem, &mut self.primary);
+            saturation = Saturation { scale: 0.0, bent: false };
+        }
+        self.task.mul_vec_into(&coupled.y, &mut self.done);
+        Ok(saturation)
     }
 
     /// True if the tool, moved by the rates of this step, is so slow against the target that an
@@ -86,26 +145,34 @@ impl Servo {
                 &self.svd,
                 &self.space,
                 &mut self.gradient,
-                &mut self.wish,
+                &mut self.wish[..self.chain.n()],
             );
         }
-        if self.wish.iter().all(|w| *w == 0.0) {
-            return;
-        }
-        for (w, &c) in self.wish.iter_mut().zip(&self.space.columns) {
-            *w = if c == 0.0 { 0.0 } else { *w / c };
+        if let Some(coupled) = &mut self.coupled {
+            coupled.load_wish(&self.wish);
+        } else {
+            if self.wish.iter().all(|w| *w == 0.0) {
+                return;
+            }
+            for (w, &c) in self.wish.iter_mut().zip(&self.space.columns) {
+                *w = if c == 0.0 { 0.0 } else { *w / c };
+            }
         }
         let space = match self.options.projector {
             Projector::Exact => RowSpace::exact(&self.svd),
             Projector::Retained => RowSpace::retained(&self.svd, &self.kept),
         };
-        space.project_out(&mut self.wish);
+        space.project_out(match &mut self.coupled {
+            Some(coupled) => &mut coupled.wish,
+            None => &mut self.wish,
+        });
     }
 
     /// The bounds of the next rates, in weighted coordinates.
     pub(super) fn load_bounds(&mut self, q: &[f64]) {
-        for (i, &c) in self.chain.coordinates().iter().enumerate() {
-            let now = Motion1 { position: q[c], rate: self.rates[c] };
+        for i in 0..self.bounds.len() {
+            let c = self.place(i);
+            let now = Motion1 { position: q.get(c).copied().unwrap_or(0.0), rate: self.rates[c] };
             let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
             self.own_bounds[i] = bound;
             if self.space.is_locked(i) {
@@ -118,9 +185,15 @@ impl Servo {
         }
     }
 
+    /// Where the rate of the i-th joint of the servo stands among all of them.
+    fn place(&self, i: usize) -> usize {
+        self.chain.coordinates().get(i).copied().unwrap_or(i)
+    }
+
     pub(super) fn store_rates(&mut self) -> Effort {
         let mut effort = Effort::default();
-        for (i, &c) in self.chain.coordinates().iter().enumerate() {
+        for i in 0..self.primary.len() {
+            let c = self.place(i);
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             self.active[i] = if self.space.is_locked(i) { None } else { bound.met(rate) };
             // Once more: the scale leaves a rounding.
@@ -145,11 +218,24 @@ impl Servo {
         let left = |(x, done): (&f64, &f64)| x - done;
         let size = self.x.iter().zip(&self.done).map(left).map(|r| r * r).sum::<f64>().sqrt();
         let least = RELEASE * self.svd.value(0) * size;
+        // In y for closed chains: what would lessen the error most.
+        let descent: Vec<f64> = match &self.coupled {
+            None => Vec::new(),
+            Some(_) => {
+                let rest: Vec<f64> = self.x.iter().zip(&self.done).map(left).collect();
+                (0..self.task.cols()).map(|j| dot(self.task.column(j), &rest)).collect()
+            }
+        };
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             let (q, l) = (self.chain.q()[i], self.limits[i]);
-            let rest = self.x.iter().zip(&self.done).map(left);
-            let pull: f64 = self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum();
+            let pull: f64 = match &self.coupled {
+                Some(coupled) => coupled.along(i, &descent),
+                None => {
+                    let rest = self.x.iter().zip(&self.done).map(left);
+                    self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum()
+                }
+            };
             let above = l.upper - q < AT_LIMIT && rate >= bound.upper && pull > least;
             let below = q - l.lower < AT_LIMIT && rate <= bound.lower && pull < -least;
             if !self.space.is_locked(i) && (above || below) {
@@ -157,4 +243,8 @@ impl Servo {
             }
         }
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -9,3 +9,4 @@ mod mobility;
 mod reference;
 mod singularity;
 mod statics;
+mod steering;

@@ -1,7 +1,9 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
 mod hybrid;
+mod internal_force;
 mod limits;
+mod object;
 mod projection;
 mod secondary;
 mod shared;

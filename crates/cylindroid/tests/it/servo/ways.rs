@@ -39,6 +39,7 @@ fn random_starts_to_random_targets() {
                     Some(Stall::TooFewJoints { .. }) => "too few joints",
                     Some(Stall::NoInverse(_) | Stall::GivenUp { .. }) => "no inverse",
                     Some(Stall::Slow) => "slow",
+                    Some(Stall::Uncontrolled { .. }) => "uncontrolled",
                 };
                 *causes.entry(cause).or_insert(0) += 1;
             }

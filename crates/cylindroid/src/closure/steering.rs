@@ -1,0 +1,191 @@
+//! Steering: what the driven joints of a closed chain can do, and what all other joints do with them.
+//!
+//! Formula  C s = 0 for the rates s of all joints: held rows of loops and contacts, and for driven
+//!          closing joints the rows that measure their rate; ker C = [X c; Y s] Z^T, driven rows
+//!          above passive ones. Directions with c = 0 are left to themselves, the others are
+//!          steered: s = M y + s_0, driven rates = D y with |D y|_W = |y|;
+//!          s_0 = -C^+ residual is the way to where the loops are closed
+//! Shapes   C: t x (n + e), n coordinates of the tree, e driven closing joints; M: (n + e) x p;
+//!          D: a x p, orthonormal in the weighted rates of the a driven joints
+//! Units    lengths over the reach for every rank decision; rates in rad/s and m/s outside
+//! Valid    any mechanism; for a tree without passive joints M is W^(-1/2). Of the motions that
+//!          have the same driven rates it is the one in which passive joints move least (scaled)
+//! Why so   in y the loops are kept whatever y is, and the least y is the least weighted effort of
+//!          the drives, passive joints not counted
+//! Source   Bicchi & Prattichizzo 1998, eqs. 2 to 4, in coordinates of the spanning tree
+//! Checked  tests/it/closure/steering.rs
+
+use super::constraint::Unit;
+use super::graph::{Gap, Row, link_jacobians, rows};
+use crate::error::{Error, Result};
+use crate::kinematics::State;
+use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};
+use crate::model::{CoordinateKind, JointKind, LoopJoint, Mechanism};
+use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, CORRECTION_RANK};
+
+/// The motions of a closed chain by what its drives do with them.
+#[derive(Debug, Clone)]
+pub struct Steering {
+    /// M: what all joints do for each y, the n coordinates and then the driven closing joints.
+    pub motions: Matrix,
+    /// Motions with the driven joints at rest, a column each, of length one (scaled).
+    pub left: Matrix,
+    /// The steered motions one by one, of length one (scaled): how much of each belongs to the
+    /// driven joints, rising. 0 would be a motion that they do not steer.
+    pub shares: Vec<f64>,
+    /// The motions that the shares belong to, a column each.
+    pub directions: Matrix,
+    /// A change of all joints that closes the loops, to first order (rad or m).
+    pub correction: Vec<f64>,
+    /// How far the loops are open.
+    pub gap: Gap,
+    /// Places of the driven joints among the rows of `motions`, and their weights' roots.
+    drives: Vec<(usize, f64)>,
+}
+
+impl Steering {
+    /// At the configuration of `state`. `weights`: one for each coordinate of the tree, of which
+    /// those of driven joints count, or none; the coordinates `locked` stand still.
+    ///
+    /// # Errors
+    /// Weights of the wrong number or not positive; a locked place that is no coordinate; a driven
+    /// closing joint of several coordinates.
+    pub fn of(state: &State, weights: &[f64], locked: &[usize]) -> Result<Self> {
+        let mechanism = state.mechanism();
+        let n = mechanism.n();
+        if !weights.is_empty() {
+            mechanism.check_q("joint weights", weights)?;
+            weights.iter().try_for_each(|w| Error::check_positive("joint weight", *w))?;
+        }
+        if let Some(&place) = locked.iter().find(|&&i| i >= n) {
+            return Err(Error::InvalidOption {
+                option: "locked",
+                value: place.to_string(),
+                reason: format!("the mechanism has {n} coordinates"),
+            });
+        }
+        let (all, rated, gap) = rows(state)?;
+        let rates = RateRows::of(state, &all, &rated, locked)?;
+        let size = &rates.scale;
+
+        let space = ColumnSpace::of(&rates.matrix.transpose(), Threshold::Relative(CLOSURE_RANK));
+        let kernel = space.complement();
+        let driven = driven(mechanism, &rated, weights);
+        let others = (0..size.len()).filter(|i| driven.iter().all(|(d, _)| d != i));
+        let order: Vec<usize> = driven.iter().map(|(d, _)| *d).chain(others).collect();
+        let sorted = Matrix::from_fn(size.len(), kernel.cols(), |i, j| kernel[(order[i], j)]);
+        let cs = CosineSine::of(&sorted, driven.len());
+        let unscaled = &kernel * &cs.z;
+        let unscaled =
+            Matrix::from_fn(size.len(), kernel.cols(), |i, j| size[i] * unscaled[(i, j)]);
+        let free = cs.cosines.iter().take_while(|c| **c <= CLOSURE_BLOCK).count();
+        let p = kernel.cols() - free;
+
+        // D = X' S' Z'^T for the driven rates of unit directions in their weights.
+        let unit =
+            Matrix::from_fn(size.len(), p, |i, j| unscaled[(i, free + j)] / cs.cosines[free + j]);
+        let weighted = Matrix::from_fn(driven.len(), p, |i, j| {
+            let (place, root) = driven[i];
+            root * unit[(place, j)]
+        });
+        let svd = Svd::of(&weighted);
+        let turn = Matrix::from_fn(p, svd.len(), |i, j| svd.v(j)[i] / svd.value(j));
+        Ok(Self {
+            motions: &unit * &turn,
+            left: unscaled.columns_between(0, free),
+            shares: cs.cosines[free..].to_vec(),
+            directions: unscaled.columns_between(free, kernel.cols()),
+            correction: rates.correction(),
+            gap,
+            drives: driven,
+        })
+    }
+
+    /// y for wanted rates of all joints (n + e): the weighted projection of those of the drives on
+    /// what the loops let them do.
+    #[must_use]
+    pub fn project(&self, wanted: &[f64]) -> Vec<f64> {
+        let along = |j: usize| {
+            let column = self.motions.column(j);
+            self.drives.iter().map(|&(i, root)| root * root * column[i] * wanted[i]).sum()
+        };
+        (0..self.motions.cols()).map(along).collect()
+    }
+
+    /// The rates of all joints for `y`, loops kept.
+    #[must_use]
+    pub fn rates(&self, y: &[f64]) -> Vec<f64> {
+        self.motions.mul_vec(y)
+    }
+}
+
+/// Places among coordinates and driven closing joints, and the roots of the weights.
+fn driven(mechanism: &Mechanism, rated: &[&LoopJoint], weights: &[f64]) -> Vec<(usize, f64)> {
+    let n = mechanism.n();
+    let root = |i: usize| weights.get(i).map_or(1.0, |w: &f64| w.sqrt());
+    let tree = mechanism.coordinates().iter().enumerate().filter(|(_, c)| c.actuated);
+    let closing = rated.iter().filter(|l| l.actuated).count();
+    tree.map(|(i, _)| (i, root(i))).chain((n..n + closing).map(|i| (i, 1.0))).collect()
+}
+
+/// C in scaled units, with what is open.
+struct RateRows {
+    matrix: Matrix,
+    residuals: Vec<f64>,
+    /// Of each column: rate = scale * scaled rate.
+    scale: Vec<f64>,
+}
+
+impl RateRows {
+    fn of(state: &State, all: &[Row], rated: &[&LoopJoint], locked: &[usize]) -> Result<Self> {
+        let mechanism = state.mechanism();
+        let (n, length) = (mechanism.n(), mechanism.reach());
+        let is_length = |kind: CoordinateKind| kind.unit() == "m";
+        let of = |long: bool| if long { length } else { 1.0 };
+        let measured: Vec<usize> = (0..rated.len()).filter(|&k| rated[k].actuated).collect();
+        let scale: Vec<f64> = mechanism
+            .coordinates()
+            .iter()
+            .map(|c| of(is_length(c.kind)))
+            .chain(measured.iter().map(|&k| of(rated[k].kind == JointKind::Prismatic)))
+            .collect();
+        // Rates of passive closing joints say nothing.
+        let column = |k: usize| measured.iter().position(|&m| m == k).map(|e| n + e);
+        let kept: Vec<&Row> =
+            all.iter().filter(|row| row.rate_of.is_none_or(|k| column(k).is_some())).collect();
+        let links = link_jacobians(state)?;
+        let matrix = Matrix::from_fn(kept.len() + locked.len(), scale.len(), |i, j| {
+            let Some(row) = kept.get(i) else {
+                return f64::from(u8::from(locked[i - kept.len()] == j));
+            };
+            let per_length = if row.unit == Unit::Length { 1.0 / length } else { 1.0 };
+            let rate = if j < n {
+                row.rate(&links, j)
+            } else {
+                -f64::from(u8::from(row.rate_of.and_then(column) == Some(j)))
+            };
+            rate * per_length * scale[j]
+        });
+        let residual = |row: &&Row| {
+            if row.unit == Unit::Length { row.residual / length } else { row.residual }
+        };
+        let residuals = kept.iter().map(residual).chain(locked.iter().map(|_| 0.0)).collect();
+        Ok(Self { matrix, residuals, scale })
+    }
+
+    /// -C^+ residual, without directions in which loops can hardly be closed.
+    fn correction(&self) -> Vec<f64> {
+        let mut change = vec![0.0; self.scale.len()];
+        if self.residuals.iter().all(|r| *r == 0.0) {
+            return change;
+        }
+        let svd = Svd::of(&self.matrix);
+        for i in 0..svd.rank(CORRECTION_RANK).rank {
+            let along: f64 = svd.u(i).iter().zip(&self.residuals).map(|(u, r)| u * r).sum();
+            let gain = -along / svd.value(i);
+            change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
+        }
+        change.iter_mut().zip(&self.scale).for_each(|(c, s)| *c *= s);
+        change
+    }
+}
