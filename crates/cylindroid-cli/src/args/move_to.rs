@@ -18,6 +18,10 @@ goal. Where the servo, going straight at a pose, stalls although another posture
 reaches it, every joint moves straight to that posture instead (--no-detour keeps the servo's \
 motion).
 
+Mechanisms with loops or contacts are driven at their reference, through their driven joints \
+(--actuated) and with the least effort of them; passive joints follow, loops stay closed, and the \
+motion ends before one that the drives do not hold.
+
 Exit code 0 if the target was reached, 1 if not, 2 on an error.";
 
 pub(crate) const EXAMPLES: &str = "\
@@ -25,7 +29,9 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6
   cylindroid move ur5e --to -0.3,0.4,0.5 --inverse damped --damping 0.05 --out move.csv
   cylindroid move panda --to 0.45,0.15,0.35 --line --speed 0.1 --plot line.svg
-  cylindroid move youbot --to 0.35,0,0.25 --rpy 0,2,0 --inverse hyperbolic --h 0.1";
+  cylindroid move youbot --to 0.35,0,0.25 --rpy 0,2,0 --inverse hyperbolic --h 0.1
+  cylindroid move stewart --to 0.1,0.05,1.1 --rpy 0,0,0.1
+  cylindroid move five-bar --actuated q1,q5 --to 1.2,1.8,0";
 
 #[derive(Debug, Args)]
 pub(crate) struct MoveArgs {
@@ -34,6 +40,10 @@ pub(crate) struct MoveArgs {
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
+
+    /// The driven joints of a mechanism with loops, in place of those of the file
+    #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
+    pub(crate) actuated: Vec<String>,
 
     #[command(flatten)]
     pub(crate) target: TargetArgs,

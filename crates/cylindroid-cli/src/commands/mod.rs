@@ -46,22 +46,6 @@ fn configuration(robot: &Mechanism, args: &PostureArgs) -> cylindroid::Result<Ve
     Ok(q)
 }
 
-/// Refuses what only holds for trees.
-fn refuse_closed(robot: &Mechanism, command: &'static str) -> cylindroid::Result<()> {
-    if !robot.is_closed() {
-        return Ok(());
-    }
-    let (loops, contacts) = (robot.loops().len(), robot.contacts().len());
-    Err(Error::InvalidOption {
-        option: "model",
-        value: robot.name().to_owned(),
-        reason: format!(
-            "it has {loops} loops and {contacts} contacts, and '{command}' drives trees only in \
-             this version; `info` shows its graph"
-        ),
-    })
-}
-
 /// The frame and tool point that are meant.
 fn end_effector(robot: &Mechanism, args: &FrameArgs) -> cylindroid::Result<EndEffector> {
     let frame = match &args.frame {

@@ -28,11 +28,6 @@ fn unknown_names_offer_the_nearest() {
 }
 
 #[test]
-fn closed_chains_are_not_moved_as_trees() {
-    refused(&["move", "stewart", "--to", "0,0,1"], "it has 5 loops and 0 contacts");
-}
-
-#[test]
 fn configurations_must_fit() {
     refused(&["fk", "panda", "--q", "0,0"], "--q has 2 entries, expected 7");
     refused(&["fk", "panda", "--q", "0,0,nan,0,0,0,0"], "[2] (panda_joint3) is not finite");

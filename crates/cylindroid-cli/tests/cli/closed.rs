@@ -59,6 +59,28 @@ fn loops_are_closed_from_a_guess() {
     assert_eq!(output.status.code(), Some(2));
 }
 
+/// The object is driven through the drives, loops closed; its pose is that of `fk`.
+#[test]
+fn objects_are_moved() {
+    let command = ["move", "stewart", "--to", "0.1,0.05,1.1", "--rpy", "0,0,0.1"];
+    let report = json(&command, 0);
+    assert_eq!(report["reached"], true);
+    assert_eq!(report["actuated"].as_array().unwrap().len(), 6);
+    assert!(report["gap"]["distance"].as_f64().unwrap() < 1e-9);
+    assert!(report["gap"]["angle"].as_f64().unwrap() < 1e-9);
+    let q: Vec<String> = numbers(&report["q"]).iter().map(ToString::to_string).collect();
+    let fk = json(&["fk", "stewart", "--q", &q.join(",")], 0);
+    let at = numbers(&fk["pose"]["position"]);
+    assert!(difference(&at, &[0.1, 0.05, 1.1]) < 1e-5, "{at:?}");
+
+    let text = text(&["move", "five-bar", "--actuated", "q1,q5", "--to", "1.2,1.8,0"]);
+    assert!(text.contains("q1, q5") && text.contains("loops open by at most"), "{text}");
+    // Down to where its links are in line.
+    let report = json(&["move", "five-bar", "--actuated", "q1,q5", "--to", "1.2,-1,0"], 1);
+    assert_eq!(report["reason"], "uncontrolled");
+    assert!(report["explanation"].as_str().unwrap().contains("type II"));
+}
+
 #[test]
 fn bad_requests() {
     let refused = |arguments: &[&str]| {
@@ -72,6 +94,10 @@ fn bad_requests() {
     let text =
         refused(&["manipulability", "five-bar", "--actuated", "q1,q5", "--metric", "limits"]);
     assert!(text.contains("q5"), "{text}");
-    let text = refused(&["move", "five-bar", "--to", "1,2,0"]);
+    let text = refused(&["move", "five-bar", "--joint-to", "0.1,0,0,0"]);
     assert!(text.contains("loops"), "{text}");
+    let text = refused(&["move", "five-bar", "--actuated", "q1", "--to", "1,2,0"]);
+    assert!(text.contains("drive more joints"), "{text}");
+    let text = refused(&["move", "five-bar", "--q", "0.4,0,0,0", "--to", "1,2,0"]);
+    assert!(text.contains("assemble"), "{text}");
 }

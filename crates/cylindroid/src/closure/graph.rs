@@ -50,6 +50,16 @@ pub struct Gap {
     pub angle: f64,
 }
 
+impl Gap {
+    /// Of the loops and contacts of `state`.
+    ///
+    /// # Errors
+    /// A driven closing joint of several coordinates.
+    pub fn of(state: &State) -> Result<Self> {
+        Ok(rows(state)?.2)
+    }
+}
+
 /// A relative motion that is restricted, in world axes at the world's origin.
 pub(super) struct Row {
     /// What is measured of the motion of `b` relative to `a`.

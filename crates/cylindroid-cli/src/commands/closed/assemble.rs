@@ -54,7 +54,7 @@ pub(crate) fn run(
         joint_names: names.clone(),
         closed: found.closed,
         q: &found.q,
-        gap: GapJson { distance: found.gap.distance, angle: found.gap.angle },
+        gap: found.gap.into(),
         steps: found.steps,
         guess: &guess,
         held: &args.hold,

@@ -4,7 +4,7 @@ pub(super) mod assemble;
 pub(super) mod manipulability;
 pub(super) mod mobility;
 
-use cylindroid::closure::ClosedChain;
+use cylindroid::closure::{ClosedChain, Gap};
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, Result};
 use serde::Serialize;
@@ -93,12 +93,19 @@ struct HeadJson<'a> {
     length: f64,
 }
 
+/// By how much loops are open.
 #[derive(Debug, Serialize)]
-struct GapJson {
+pub(crate) struct GapJson {
     /// [m]
     distance: f64,
     /// [rad]
     angle: f64,
+}
+
+impl From<Gap> for GapJson {
+    fn from(gap: Gap) -> Self {
+        Self { distance: gap.distance, angle: gap.angle }
+    }
 }
 
 impl<'a> From<&'a Posed> for HeadJson<'a> {
@@ -110,7 +117,7 @@ impl<'a> From<&'a Posed> for HeadJson<'a> {
             q: &posed.q,
             actuated: &chain.actuated,
             passive: &chain.passive,
-            gap: GapJson { distance: chain.gap.distance, angle: chain.gap.angle },
+            gap: chain.gap.into(),
             length: chain.constraint.length(),
         }
     }

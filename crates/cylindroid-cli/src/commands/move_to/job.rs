@@ -5,7 +5,7 @@ use cylindroid::control::{
     Projector, Secondary, Task,
 };
 use cylindroid::kinematics::Chain;
-use cylindroid::model::Mechanism;
+use cylindroid::model::{Dimension, Mechanism};
 use cylindroid::spatial::{Quaternion, Rpy};
 use cylindroid::{Error, Pose, Reference, Result, Rotation, ServoOptions, Vec3};
 
@@ -50,8 +50,11 @@ pub(super) enum Goal {
 
 impl Job {
     pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
-        let robot = cylindroid::load(&args.posture.model)?;
-        crate::commands::refuse_closed(&robot, "move")?;
+        let loaded = cylindroid::load(&args.posture.model)?;
+        let robot = match args.actuated.as_slice() {
+            [] => loaded,
+            names => loaded.with_actuated(names)?,
+        };
         let degrees = args.posture.degrees;
         let start = configuration(&robot, &args.posture)?;
         within_limits(&robot, "--q", &start)?;
@@ -66,7 +69,7 @@ impl Job {
 
         let mut options = ServoOptions::new(&robot);
         options.end_effector = end_effector(&robot, &args.frame)?;
-        let (task, driven) = task(&args.target)?;
+        let (task, driven) = task(&args.target, &robot)?;
         options.task = task;
         apply(&args.servo, &mut options);
         inverse::apply(&args.inverse, &start, &robot, &mut options)?;
@@ -78,6 +81,7 @@ impl Job {
         let pose = |q: &[f64]| robot.state(q).map(|s| s.pose(options.end_effector));
         let from = pose(&start)?;
         let (target_pose, goal, driven) = if let Some(q) = &args.path.joint_to {
+            no_loops(&robot)?;
             let q = q.configuration(&robot, degrees)?;
             robot.check_q("--joint-to", &q)?;
             within_limits(&robot, "--joint-to", &q)?;
@@ -112,6 +116,19 @@ impl Job {
             defaults,
         })
     }
+}
+
+/// Joints of loops cannot all move straight.
+fn no_loops(robot: &Mechanism) -> Result<()> {
+    if !robot.is_closed() {
+        return Ok(());
+    }
+    Err(Error::InvalidOption {
+        option: "--joint-to",
+        value: robot.name().to_owned(),
+        reason: "its loops would open if every joint moved straight; give a pose (--to, --rpy)"
+            .to_owned(),
+    })
 }
 
 fn within_limits(robot: &Mechanism, option: &'static str, q: &[f64]) -> Result<()> {
@@ -155,7 +172,8 @@ fn secondary(
     if named.is_empty() {
         let components = options.task.components.iter().filter(|c| **c).count();
         let joints = Chain::new(robot, options.end_effector).n();
-        let redundant = joints > components;
+        // Where loops couple joints, a wish that they do not allow costs nothing.
+        let redundant = joints > components || robot.is_closed();
         return if redundant {
             Ok(vec![Secondary::named("limit-avoidance", start)?])
         } else {
@@ -175,7 +193,7 @@ fn secondary(
 }
 
 /// The task, and what is driven in words.
-fn task(args: &TargetArgs) -> Result<(Task, String)> {
+fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String)> {
     let position = args.to.is_some();
     let orientation =
         args.rpy.is_some() || args.quaternion.is_some() || args.rotation_vector.is_some();
@@ -192,6 +210,12 @@ fn task(args: &TargetArgs) -> Result<(Task, String)> {
         "pointing" => Task::POINTING,
         list => Task { components: components(list)?, ..Task::POSE },
     };
+    let planar = robot.is_closed() && robot.dimension() == Dimension::Planar;
+    if planar && matches!(named, "pose" | "position" | "orientation") {
+        for (on, in_plane) in task.components.iter_mut().zip(Task::PLANAR.components) {
+            *on &= in_plane;
+        }
+    }
     match args.task_axes {
         None => {}
         Some(TaskAxes::Local) => task.axes = Reference::Local,

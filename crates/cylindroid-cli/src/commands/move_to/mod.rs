@@ -10,6 +10,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Servo;
+use cylindroid::closure::Gap;
 use cylindroid::control::{JointMove, Outcome, Sample, Stall, Status, Target, drive, find_posture};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -57,9 +58,17 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
     let mut servo = Servo::new(&job.robot, job.options.clone())?;
     let turns = job.options.task.components[3..].contains(&true);
     let mut deviation: Option<Deviation> = None;
+    let mut gap: Option<Gap> = None;
     let progress = Progress::new(job.time_limit);
     let mut observe = |sample: Sample<'_>| {
         progress.show(&sample);
+        if job.robot.is_closed()
+            && let Ok(now) = job.robot.state(sample.q).and_then(|state| Gap::of(&state))
+        {
+            let most = gap.get_or_insert_default();
+            most.distance = most.distance.max(now.distance);
+            most.angle = most.angle.max(now.angle);
+        }
         if let Goal::Along(motion) = &job.goal {
             let now = motion.path().deviation(sample.step.pose);
             let most = deviation.get_or_insert_default();
@@ -86,7 +95,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
         Goal::Joints(motion) => joints::drive(&mut servo, job, motion, &mut observe)?,
     };
     drop(progress);
-    let direct = |way| Ok(Result { outcome: outcome.clone(), deviation, way });
+    let direct = |way| Ok(Result { outcome: outcome.clone(), deviation, gap, way });
     let Some(posture) = other_posture(job, &servo, &outcome)? else { return direct(Way::Direct) };
     if !job.detour {
         return direct(Way::Offered { posture });
@@ -102,7 +111,12 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
         }
     };
     let round = joints::drive(&mut servo, job, &motion, push)?;
-    Ok(Result { outcome: round, deviation: None, way: Way::Round { stalled: outcome.into() } })
+    Ok(Result {
+        outcome: round,
+        deviation: None,
+        gap: None,
+        way: Way::Round { stalled: outcome.into() },
+    })
 }
 
 /// A posture that reaches the target which the servo did not, where one can be found.

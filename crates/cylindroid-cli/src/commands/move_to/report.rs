@@ -2,12 +2,14 @@
 
 use std::io::Write;
 
+use cylindroid::closure::Gap;
 use cylindroid::control::Outcome;
 use serde::Serialize;
 
 use super::job::{Goal, Job};
 use super::{inverse, sentences};
 use crate::commands::Style;
+use crate::commands::closed::GapJson;
 use crate::output::{self, PoseJson};
 use crate::values::COMPONENTS;
 
@@ -16,6 +18,8 @@ use crate::values::COMPONENTS;
 pub(super) struct Result {
     pub(super) outcome: Outcome,
     pub(super) deviation: Option<Deviation>,
+    /// The widest gap of the loops on the way.
+    pub(super) gap: Option<Gap>,
     pub(super) way: Way,
 }
 
@@ -57,7 +61,7 @@ struct MoveJson<'a> {
     joint_names: Vec<&'a str>,
     reached: bool,
     /// "reached", "out-of-reach", "limits", "singular", "too-few-joints", "no-inverse",
-    /// "given-up", "slow", "time-limit".
+    /// "given-up", "uncontrolled", "slow", "time-limit".
     reason: &'static str,
     explanation: String,
     /// The last configuration.
@@ -73,6 +77,12 @@ struct MoveJson<'a> {
     /// Divides the linear rows for the singular values [m].
     length: f64,
     limits_hit: Vec<LimitJson<'a>>,
+    /// The driven joints of a mechanism with loops or contacts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    actuated: Option<Vec<&'a str>>,
+    /// By how much its loops were open at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gap: Option<GapJson>,
     /// The last `world_from_tool`.
     pose: PoseJson,
     /// Where the tool should be; what is not driven is as at the start.
@@ -133,7 +143,7 @@ pub(super) fn write(
 }
 
 fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
-    let Result { outcome, deviation, way } = result;
+    let Result { outcome, deviation, gap, way } = result;
     let (robot, options) = (&job.robot, &job.options);
     let names = COMPONENTS.iter().zip(options.task.components).filter(|(_, on)| *on);
     MoveJson {
@@ -159,6 +169,8 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
             .iter()
             .map(|(i, kind)| LimitJson { joint: &robot.coordinates()[*i].name, kind: kind.name() })
             .collect(),
+        actuated: robot.is_closed().then(|| drives(job)),
+        gap: gap.map(Into::into),
         pose: outcome.last.pose.into(),
         target: job.target_pose.into(),
         task: names.map(|(name, _)| *name).collect(),
@@ -185,6 +197,13 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
     }
 }
 
+/// Names of the driven joints.
+fn drives(job: &Job) -> Vec<&str> {
+    let tree = job.robot.coordinates().iter().filter(|c| c.actuated).map(|c| c.name.as_str());
+    let closing = job.robot.loops().iter().filter(|l| l.actuated).map(|l| l.name.as_str());
+    tree.chain(closing).collect()
+}
+
 fn result_word(outcome: &Outcome, way: &Way) -> &'static str {
     match (outcome.reached, way) {
         (true, Way::Round { .. }) => "reached, by way of another posture",
@@ -202,7 +221,7 @@ fn law_duration(job: &Job) -> Option<f64> {
 }
 
 fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> {
-    let Result { outcome, deviation, way } = result;
+    let Result { outcome, deviation, gap, way } = result;
     let components = job.options.task.components;
     let (linear, angular) = (components[..3].contains(&true), components[3..].contains(&true));
     let driven = |on: bool, value: f64| {
@@ -221,6 +240,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ("model", job.robot.name().to_owned()),
             ("frame", job.frame.clone()),
             ("driven", job.driven.clone()),
+            ("by", if job.robot.is_closed() { drives(job).join(", ") } else { String::new() }),
             ("result", result_word(outcome, way).to_owned()),
             (
                 "reason",
@@ -236,6 +256,12 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ("position error [m]", driven(linear, outcome.last.position_error)),
             ("orientation error [rad]", driven(angular, outcome.last.orientation_error)),
             ("largest path deviation", deviation),
+            (
+                "loops open by at most",
+                gap.map_or_else(String::new, |g| {
+                    format!("{} m, {} rad", output::number(g.distance), output::number(g.angle))
+                }),
+            ),
             (
                 "smallest singular value ratio",
                 format!(

@@ -27,6 +27,7 @@ pub(super) fn round(job: &Job, stalled: &Outcome) -> String {
         Some(Stall::Singular { .. }) => "in a singular pose".to_owned(),
         Some(Stall::NoInverse(_)) => "where the inverse does not exist".to_owned(),
         Some(Stall::GivenUp { .. }) => "left with what the inverse gives up".to_owned(),
+        Some(Stall::Uncontrolled { .. }) => "where a motion escapes the drives".to_owned(),
         Some(Stall::Slow | Stall::TooFewJoints { .. } | Stall::OutOfReach { .. }) | None => {
             "for want of progress".to_owned()
         }
@@ -87,6 +88,13 @@ pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[
             "The remaining error ({}) is what the inverse gives up; the arm itself could lessen \
              it. Choose another --h, other motions to give up, or another --inverse.",
             along(job, direction)
+        ),
+        Some(Stall::Uncontrolled { share, direction }) => format!(
+            "A motion of the object ({}) is about to escape the drives: {} of it still belongs to \
+             them (type II singularity), and beyond it passive joints would choose the way. Move \
+             on another way, or drive other joints (--actuated).",
+            along(job, direction),
+            number(*share)
         ),
         Some(Stall::Slow) => "The error fell by less than 0.1 % in the last second, and neither \
              limits nor a singular pose stop it: the inverse is damped too much or a rate limit is \

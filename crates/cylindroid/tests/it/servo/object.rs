@@ -194,7 +194,7 @@ fn unreachable_poses_end_with_a_cause() {
             };
             let mut servo = Servo::new(&mechanism, options).unwrap();
             let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
-            target.translation = target.translation + way;
+            target.translation += way;
             let mut widest: f64 = 0.0;
             let outcome = drive(
                 &mut servo,

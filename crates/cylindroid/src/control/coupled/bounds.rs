@@ -1,0 +1,322 @@
+//! Rates of coupled joints inside their bounds: the task is scaled first, then bent.
+//!
+//! Formula  scaled: the largest s in [0, 1] with M y(s) + s_0 in bounds, rates at a bound held one
+//!          by one while the rest can still do the task;
+//!          bent: from rest towards the task, along bounds where they are met
+//! Shapes   M: rates x a, y: a, J M: m x a, bounds: one for each rate
+//! Valid    any M. Without loops M is the identity, and what is scaled is what `saturation.rs`
+//!          gives; what is bent is a way of descent, not its least squares
+//! Source   Flacco, De Luca & Khatib 2015, algorithm 1, for bounds on combinations of rates
+//! Checked  tests in this file (against `saturation.rs`), tests/it/servo/object.rs
+
+use super::super::limits::{LimitKind, RateBounds};
+use super::super::saturation::{LEAST_SCALE, Saturation, interval, solve};
+use super::{Coupled, norm};
+use crate::inverse::{Method, is_kept};
+use crate::linalg::{Matrix, RowSpace, Svd};
+use crate::tolerance::HELD_ROWS;
+
+/// The task in y, and what holds for the rates.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct CoupledProblem<'a> {
+    /// J M
+    pub(in super::super) j: &'a Matrix,
+    pub(in super::super) x: &'a [f64],
+    pub(in super::super) method: &'a Method,
+    pub(in super::super) bounds: &'a [RateBounds],
+    /// Of the last step.
+    pub(in super::super) rates: &'a [f64],
+}
+
+impl Coupled {
+    /// Moves primary and wish into the bounds: weighted rates into `out`.
+    pub(in super::super) fn saturate(
+        &mut self,
+        p: CoupledProblem<'_>,
+        out: &mut [f64],
+    ) -> Saturation {
+        let n = out.len();
+        let clamped = |a: &[f64], b: &[f64], s: f64, out: &mut [f64]| {
+            for (((o, a), b), bound) in out.iter_mut().zip(a).zip(b).zip(p.bounds) {
+                *o = bound.clamp(a + s * b);
+            }
+        };
+        let (mut direct, mut wished) = (vec![0.0; n], vec![0.0; n]);
+        self.lift(&self.primary, &mut direct);
+        self.lift(&self.wish, &mut wished);
+        // At a limit the way to closed loops ends, too.
+        for (x, bound) in self.correction.iter_mut().zip(p.bounds) {
+            *x = bound.clamp(*x);
+        }
+        let start = self.correction.clone();
+        let both: Vec<f64> = start.iter().zip(&direct).map(|(a, b)| a + b).collect();
+        if let Some(span) = interval(&both, &wished, p.bounds) {
+            clamped(&both, &wished, span.most, out);
+            self.set_y(span.most, 1.0);
+            return Saturation { scale: 1.0, bent: false };
+        }
+        if let Some(span) = interval(&start, &direct, p.bounds)
+            && span.most > 0.0
+            && span.cause == LimitKind::Acceleration
+        {
+            clamped(&start, &direct, span.most, out);
+            self.set_y(0.0, span.most);
+            return Saturation { scale: span.most, bent: false };
+        }
+        let (scale, cause) = self.scaled(&p, out);
+        if scale >= LEAST_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
+            return Saturation { scale, bent: false };
+        }
+        if !self.bend(&p, out) {
+            self.brake(&p, out);
+        }
+        Saturation { scale: 0.0, bent: true }
+    }
+
+    fn set_y(&mut self, wish: f64, primary: f64) {
+        for ((y, p), w) in self.y.iter_mut().zip(&self.primary).zip(&self.wish) {
+            *y = primary * p + wish * w;
+        }
+    }
+
+    /// The largest feasible scale, its rates and y, and what limits it.
+    fn scaled(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) -> (f64, LimitKind) {
+        let n = out.len();
+        let mut held = Held::default();
+        let (mut best, mut cause) = (0.0, LimitKind::Position);
+        let mut possible = 0;
+        for round in 0..n {
+            let Some(free) = self.hold(&held, p) else { break };
+            if round == 0 {
+                possible = free.rank;
+            } else if free.rank < possible {
+                break; // the rest can no longer do the task
+            }
+            let done = p.j.mul_vec(&free.y);
+            let rest: Vec<f64> = done.iter().map(|d| -d).collect();
+            let (mut particular, direction) = (free.solve(p, &rest), free.solve(p, p.x));
+            particular.iter_mut().zip(&free.y).for_each(|(a, h)| *a += h);
+            let (mut a, mut b) = (vec![0.0; n], vec![0.0; n]);
+            self.lift(&particular, &mut a);
+            a.iter_mut().zip(&self.correction).for_each(|(a, c)| *a += c);
+            self.lift(&direction, &mut b);
+            for &(i, rate) in &held.rows {
+                (a[i], b[i]) = (rate, 0.0);
+            }
+            if let Some(span) = interval(&a, &b, p.bounds)
+                && span.most > best
+            {
+                (best, cause) = (span.most, span.cause);
+                for (((o, a), b), bound) in out.iter_mut().zip(&a).zip(&b).zip(p.bounds) {
+                    *o = bound.clamp(a + best * b);
+                }
+                for ((y, a), b) in self.y.iter_mut().zip(&particular).zip(&direction) {
+                    *y = a + best * b;
+                }
+            }
+            if best >= 1.0 {
+                break;
+            }
+            let excess = |i: usize| {
+                let rate = a[i] + b[i];
+                (rate - p.bounds[i].clamp(rate)).abs()
+            };
+            let worst = (0..n).filter(|&i| !held.has(i)).map(|i| (excess(i), i));
+            let worst = worst.max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, i)) = worst.filter(|(e, _)| *e > 0.0) else { break };
+            held.rows.push((i, p.bounds[i].clamp(a[i] + b[i])));
+        }
+        (best, cause)
+    }
+
+    /// A bent way: from rest towards the task, along bounds where they are met. False where not
+    /// even rest is within them.
+    fn bend(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) -> bool {
+        let n = out.len();
+        if !self.correction.iter().zip(p.bounds).all(|(r, b)| b.contains(*r)) {
+            return false;
+        }
+        let mut held = Held::default();
+        let mut y = vec![0.0; self.drives];
+        let mut rates = self.correction.clone();
+        for _ in 0..n {
+            let Some(free) = self.hold(&held, p) else { break };
+            let done = p.j.mul_vec(&free.y);
+            let rest: Vec<f64> = p.x.iter().zip(done).map(|(x, d)| x - d).collect();
+            let mut goal = free.solve(p, &rest);
+            goal.iter_mut().zip(&free.y).for_each(|(g, h)| *g += h);
+            let way: Vec<f64> = goal.iter().zip(&y).map(|(g, y)| g - y).collect();
+            let mut moved = vec![0.0; n];
+            self.lift(&way, &mut moved);
+            let mut first = (1.0, None);
+            for i in (0..n).filter(|&i| !held.has(i)) {
+                let bound = p.bounds[i];
+                let end = if moved[i] > 0.0 { bound.upper } else { bound.lower };
+                if moved[i] != 0.0 && !bound.contains(rates[i] + moved[i]) {
+                    let share = ((end - rates[i]) / moved[i]).clamp(0.0, 1.0);
+                    if share < first.0 || first.1.is_none() {
+                        first = (share, Some((i, end)));
+                    }
+                }
+            }
+            y.iter_mut().zip(&way).for_each(|(y, w)| *y += first.0 * w);
+            rates.iter_mut().zip(&moved).for_each(|(r, m)| *r += first.0 * m);
+            let Some(row) = first.1 else { break };
+            held.rows.push(row);
+        }
+        for ((o, r), bound) in out.iter_mut().zip(&rates).zip(p.bounds) {
+            *o = bound.clamp(*r);
+        }
+        self.y.copy_from_slice(&y);
+        true
+    }
+
+    /// The last rates, slowed together as far as the bounds allow.
+    pub(in super::super) fn brake(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) {
+        // rates (1 - s): from the last ones towards rest.
+        let slower: Vec<f64> = p.rates.iter().map(|r| -r).collect();
+        let share = interval(p.rates, &slower, p.bounds).map_or(1.0, |span| span.most);
+        for ((o, r), bound) in out.iter_mut().zip(p.rates).zip(p.bounds) {
+            *o = bound.clamp(r * (1.0 - share));
+        }
+        self.y.fill(0.0);
+    }
+
+    /// The y that keeps the held rates with the least effort, and the task in what they leave
+    /// free; nothing where they contradict each other.
+    fn hold(&self, held: &Held, p: &CoupledProblem<'_>) -> Option<Free> {
+        let row = |k: usize, j: usize| self.motions[(held.rows[k].0, j)];
+        let rows = Matrix::from_fn(held.rows.len(), self.drives, row);
+        let svd = Svd::of(&rows);
+        let rank = svd.rank(HELD_ROWS).rank;
+        let asked: Vec<f64> =
+            held.rows.iter().map(|&(i, rate)| rate - self.correction[i]).collect();
+        let mut y = vec![0.0; self.drives];
+        for i in 0..rank {
+            let along: f64 = svd.u(i).iter().zip(&asked).map(|(u, a)| u * a).sum();
+            y.iter_mut().zip(svd.v(i)).for_each(|(y, v)| *y += along / svd.value(i) * v);
+        }
+        let kept = rows.mul_vec(&y);
+        let off = kept.iter().zip(&asked).map(|(k, a)| (k - a).abs()).fold(0.0, f64::max);
+        if off > HELD_ROWS * (1.0 + norm(&asked)) {
+            return None;
+        }
+        let mut reduced = p.j.transpose();
+        let space = RowSpace::first(&svd, rank);
+        for i in 0..reduced.cols() {
+            space.project_out(reduced.column_mut(i));
+        }
+        if reduced.max_abs() <= HELD_ROWS * p.j.max_abs() {
+            reduced.as_mut_slice().fill(0.0); // rounding is no way to do a task
+        }
+        let svd = Svd::of(&reduced.transpose());
+        let mut gains = vec![0.0; svd.len()];
+        p.method.gains(&svd, p.x, &mut gains);
+        let rank = gains.iter().zip(svd.values()).filter(|(g, s)| is_kept(**g * s)).count();
+        Some(Free { y, svd, rank })
+    }
+}
+
+/// Rates that are held at a bound.
+#[derive(Debug, Clone, Default)]
+struct Held {
+    rows: Vec<(usize, f64)>,
+}
+
+impl Held {
+    fn has(&self, row: usize) -> bool {
+        self.rows.iter().any(|(i, _)| *i == row)
+    }
+}
+
+/// What held rates leave of the task.
+struct Free {
+    y: Vec<f64>,
+    svd: Svd,
+    rank: usize,
+}
+
+impl Free {
+    fn solve(&self, p: &CoupledProblem<'_>, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.y.len()];
+        solve(&self.svd, p.method, &mut vec![0.0; self.svd.len()], x, &mut out);
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::saturation::{Problem, Saturator};
+    use super::*;
+    use crate::kinematics::Reference;
+
+    /// Without loops it is the saturation of a tree: the same scale and rates where the direction
+    /// is kept; where it is bent, rates within the bounds that are no better than the best.
+    #[test]
+    fn without_loops_it_is_the_saturation_of_a_tree() {
+        let mut state = 5_u64;
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        let panda = crate::model::catalogue::load("panda").unwrap();
+        let drives = (0..panda.n()).filter(|&i| panda.coordinates()[i].actuated).count();
+        let method = Method::Truncated { eps: 1e-9 };
+        let (mut kept, mut bent) = (0, 0);
+        for _ in 0..300 {
+            let q: Vec<f64> = panda.home().iter().map(|x| x + next()).collect();
+            let mut coupled = Coupled::new(&panda, &[], Vec::new(), 6).unwrap();
+            coupled.task =
+                panda.state(&q).unwrap().jacobian(panda.tool(), Reference::LocalWorldAligned);
+            let columns = vec![1.0; panda.n()];
+            let mut reduced = Matrix::zeros(6, drives);
+            coupled.load(&q, &columns, 1e-3, &mut reduced).unwrap();
+            let x: Vec<f64> = (0..6).map(|_| next()).collect();
+            let bounds: Vec<RateBounds> = (0..panda.n())
+                .map(|_| RateBounds {
+                    lower: -0.7 * next().abs(),
+                    upper: 0.7 * next().abs(),
+                    lower_cause: LimitKind::Position,
+                    upper_cause: LimitKind::Position,
+                })
+                .collect();
+            let solved = |j: &Matrix, n: usize| {
+                let svd = Svd::of(j);
+                let mut y = vec![0.0; n];
+                solve(&svd, &method, &mut vec![0.0; svd.len()], &x, &mut y);
+                y
+            };
+            let task = coupled.task.clone();
+            let mut rates = solved(&task, panda.n());
+            let problem = Problem { j: &task, x: &x, method: &method, bounds: &bounds };
+            let mut saturator = Saturator::new(6, panda.n());
+            let expected = saturator.apply(problem, &vec![0.0; panda.n()], &mut rates);
+
+            coupled.primary = solved(&reduced, drives);
+            let last = vec![0.0; panda.n()];
+            let (j, rates_before) = (&reduced, &last[..]);
+            let problem =
+                CoupledProblem { j, x: &x, method: &method, bounds: &bounds, rates: rates_before };
+            let mut found = vec![0.0; panda.n()];
+            let saturation = coupled.saturate(problem, &mut found);
+            assert_eq!(saturation.bent, expected.bent);
+            assert!(found.iter().zip(&bounds).all(|(r, b)| b.contains(*r)));
+            let left = |rates: &[f64]| -> f64 {
+                let done = task.mul_vec(rates);
+                done.iter().zip(&x).map(|(d, x)| (d - x) * (d - x)).sum()
+            };
+            if saturation.bent {
+                bent += 1;
+                assert!(left(&found) >= left(&rates) - 1e-9);
+                assert!(left(&found) <= left(&last) + 1e-9);
+            } else {
+                kept += 1;
+                assert!((saturation.scale - expected.scale).abs() < 1e-9);
+                for (a, b) in found.iter().zip(&rates) {
+                    assert!((a - b).abs() < 1e-8, "{found:?} {rates:?}");
+                }
+            }
+        }
+        assert!(kept > 50 && bent > 5, "{kept} kept, {bent} bent");
+    }
+}
