@@ -154,3 +154,12 @@ pub const PASSIVE: f64 = 1e-9;
 /// Loops that are open by less than this times the reach, and by less than this in angle (rad),
 /// are closed: far above rounding, far below what a machine is built to [-].
 pub const CLOSED: f64 = 1e-10;
+
+/// What rounding leaves open of loops that were closed by Newton's method: rows of lengths over the
+/// reach and of angles, of a hundred roundings and some [-].
+pub const LOOP_ROUNDING: f64 = 1e-13;
+
+/// Step by which closed postures beside a posture are looked for, in scaled coordinates [rad, or
+/// reaches]: a resistance of second order then shows as 1e-4, of fourth order as 1e-8, far above
+/// rounding.
+pub const FINITE_STEP: f64 = 1e-2;

@@ -22,7 +22,9 @@
 //! ```
 
 mod assembly;
+mod branches;
 mod constraint;
+mod finite;
 mod graph;
 mod grasp;
 mod mobility;
@@ -30,9 +32,11 @@ mod motions;
 mod relation;
 mod singularity;
 mod statics;
+mod vicinity;
 
 pub use assembly::{Assembly, assemble};
 pub use constraint::{Blocks, Constraint, Unit, Units};
+pub use finite::{Branch, Evidence, FiniteMobility};
 pub use graph::{ClosedChain, Gap};
 pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};
 pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
