@@ -292,7 +292,8 @@ fn morse(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<usize>> {
         }
     }
     let svd = Svd::of(&hessian);
-    if !(svd.value(k - 1) > 10.0 * h * svd.value(0)) {
+    // Right to h^2.
+    if !(svd.value(k - 1) > h * svd.value(0)) {
         return Ok(None);
     }
     let trace: f64 = (0..k).map(|i| hessian[(i, i)]).sum();
