@@ -271,25 +271,23 @@ fn morse(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<usize>> {
     // Both sides of the posture: what is of third order cancels.
     let even = |x: &[f64]| -> Result<Option<f64>> {
         let mut sum = 0.0;
-        for side in [0.5 * h, -0.5 * h] {
-            let Some(near) = vicinity.step(&times(x, 2.0 * side))? else { return Ok(None) };
-            sum += 0.5 * near.left.iter().zip(along.column(0)).map(|(g, a)| g * a).sum::<f64>();
+        for side in [h, -h] {
+            let Some(near) = vicinity.step(&times(x, side))? else { return Ok(None) };
+            sum += near.left.iter().zip(along.column(0)).map(|(g, a)| g * a).sum::<f64>();
         }
-        Ok(Some(2.0 * sum / (h * h)))
+        Ok(Some(sum / (h * h)))
     };
     let mut hessian = Matrix::zeros(k, k);
-    for i in 0..k {
-        for j in 0..=i {
-            let mut x = vec![0.0; k];
-            x[i] = 1.0;
-            if i != j {
-                x[j] = 1.0;
-            }
-            let Some(value) = even(&x)? else { return Ok(None) };
-            let off = 0.5 * (value - hessian[(i, i)] - hessian[(j, j)]);
-            hessian[(i, j)] = if i == j { value } else { off };
-            hessian[(j, i)] = hessian[(i, j)];
-        }
+    // The diagonal first: the other entries are found from sums.
+    let pairs = (0..k).map(|i| (i, i)).chain((0..k).flat_map(|i| (0..i).map(move |j| (i, j))));
+    for (i, j) in pairs {
+        let mut x = vec![0.0; k];
+        x[i] = 1.0;
+        x[j] = 1.0;
+        let Some(value) = even(&x)? else { return Ok(None) };
+        let off = 0.5 * (value - hessian[(i, i)] - hessian[(j, j)]);
+        hessian[(i, j)] = if i == j { value } else { off };
+        hessian[(j, i)] = hessian[(i, j)];
     }
     let svd = Svd::of(&hessian);
     // Right to h^2.

@@ -114,7 +114,7 @@ fn a_folded_parallelogram_goes_two_ways() {
 fn quadrics_are_told_by_their_signs() {
     let stretched = at_home(&ring("five", &flat(&[0.0, 1.0, 2.0, 3.0, 4.0]), Dimension::Planar));
     assert_eq!((stretched.infinitesimal, stretched.finite), (3, Some(0)));
-    assert!(stretched.certain && stretched.shaky.cols() == 3);
+    assert!(stretched.certain && stretched.shaky.cols() == 3, "{stretched:?}");
     let folded = at_home(&ring("five", &flat(&[0.0, 2.0, 1.0, 2.5, 1.5]), Dimension::Planar));
     assert_eq!((folded.infinitesimal, folded.finite), (3, Some(2)), "{folded:?}");
     assert!(folded.certain && folded.shaky.cols() == 0);

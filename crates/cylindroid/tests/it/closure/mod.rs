@@ -2,6 +2,7 @@ mod any_matrices;
 mod assembly;
 mod bad_input;
 pub(crate) mod case;
+mod diagnosis;
 mod finite;
 mod graph;
 mod grasp;
