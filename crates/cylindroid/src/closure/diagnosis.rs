@@ -32,10 +32,12 @@ use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};
 use crate::model::FrameId;
-use crate::screws::{Screw, ScrewOptions, ScrewSystem};
+use crate::screws::{Line, Screw, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3, Wrench};
 use crate::tolerance::CLOSURE_BLOCK;
 
+/// What the limit of generic spaces is right to [-].
+const LIMIT: f64 = 1e-6;
 /// A joint whose share in motions of length one is below this stands still: above what the limit
 /// of generic motions is wrong by [-].
 const STILL: f64 = 1e-5;
@@ -116,13 +118,15 @@ impl Diagnosis {
         let redundant = beyond(&Posture::redundant, s.redundancy);
         let idle = beyond(&Posture::idle, s.idle);
         let point = state.pose(here.chain.reference).translation;
+        let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { LIMIT };
+        let (of_wrenches, of_gains) = (accuracy(s.zero_torque), accuracy(s.indeterminacy));
         let wrenches = here.columns(&blocked, |d, x| x / d).map(|x| ray(wrench(&x, point)));
         let lost = here.columns(&blocked, |d, x| x * d).map(|x| twist(&x, point));
         let gains = here.columns(&gained, |d, x| x * d).map(|x| twist(&x, point));
         Ok(Self {
-            blocked: screws(&wrenches.collect::<Vec<_>>(), length)?,
-            lost: screws(&lost.collect::<Vec<_>>(), length)?,
-            gained: screws(&gains.collect::<Vec<_>>(), length)?,
+            blocked: screws(&wrenches.collect::<Vec<_>>(), length, of_wrenches)?,
+            lost: screws(&lost.collect::<Vec<_>>(), length, of_wrenches)?,
+            gained: screws(&gains.collect::<Vec<_>>(), length, of_gains)?,
             redundant: movers(&redundant, &here.chain.actuated),
             idle: movers(&idle, &here.chain.passive),
             singularities,
@@ -241,26 +245,35 @@ fn ray(wrench: Wrench) -> Twist {
     Twist { linear: wrench.moment, angular: wrench.force }
 }
 
-/// One screw as it is, several as the principal screws of their system; all of amplitude one.
-fn screws(twists: &[Twist], length: f64) -> Result<Vec<Screw>> {
-    let unit = |s: Screw| Screw { amplitude: 1.0, ..s };
-    if let [one] = twists {
-        return Ok(Screw::of(tidy(*one, length)).map(unit).into_iter().collect());
-    }
-    let system = ScrewSystem::of(twists, &ScrewOptions::with_length(length))?;
-    let principal = system.principal_screws();
-    if principal.len() == twists.len() {
-        return Ok(principal.iter().copied().map(unit).collect());
-    }
-    Ok(system.basis().into_iter().filter_map(|t| Screw::of(tidy(t, length))).map(unit).collect())
-}
-
-/// A turn that is rounding beside the translation is none.
-fn tidy(twist: Twist, length: f64) -> Twist {
-    if twist.angular.norm() * length <= CLOSURE_BLOCK * twist.linear.norm() {
-        return Twist { angular: Vec3::ZERO, ..twist };
-    }
-    twist
+/// One screw as it is, several as the principal screws of their system; all of amplitude one,
+/// along the direction whose largest component is positive.
+fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
+    let of = |twist: Twist| {
+        // A turn that is no more than the error of the twist is none.
+        let turns = twist.angular.norm() * length > accuracy * twist.linear.norm();
+        let twist = if turns { twist } else { Twist { angular: Vec3::ZERO, ..twist } };
+        let screw = Screw::of(twist)?;
+        let d = screw.axis.direction;
+        let largest = [d.x, d.y, d.z].into_iter().fold(0.0, |most: f64, x| {
+            if x.abs() > most.abs() * (1.0 + accuracy) { x } else { most }
+        });
+        let axis = Line { direction: if largest < 0.0 { -d } else { d }, ..screw.axis };
+        Some(Screw { axis, amplitude: 1.0, ..screw })
+    };
+    let twists = match twists {
+        [] | [_] => twists.to_vec(),
+        _ => {
+            let options = ScrewOptions { noise: accuracy, ..ScrewOptions::with_length(length) };
+            let system = ScrewSystem::of(twists, &options)?;
+            let principal = system.principal_screws();
+            if principal.len() == twists.len() {
+                principal.iter().map(Screw::twist).collect()
+            } else {
+                system.basis()
+            }
+        }
+    };
+    Ok(twists.into_iter().filter_map(of).collect())
 }
 
 /// The names of those that take part.

@@ -26,8 +26,9 @@ use crate::tolerance::{CLOSURE_RANK, FINITE_STEP};
 
 /// How often a step that Newton's method does not follow is halved.
 const HALVINGS: usize = 8;
-/// How much nearer than the step the postures beside a posture are.
-const BESIDE: f64 = 1.0 / 64.0;
+/// How much nearer than the step the postures beside a posture are: spaces there, the mean of both
+/// sides, are those here but for 1e-10 times their curvature.
+const BESIDE: f64 = 1e-3;
 /// Motions whose part outside all branches is below this belong to them [-].
 const WITHIN: f64 = 1e-3;
 
