@@ -94,8 +94,8 @@ pub(in crate::model) fn describe(
     robot::include(&file, &mut world, depth)?;
     let joints = tree::joints(&file, planar)?;
     let contacts = contact::contacts(&file, planar)?;
-    let named = |link: &str| joints.iter().any(|j| j.between.contains(&link));
-    contact::check(&contacts, &world, named)?;
+    let joined: Vec<&str> = joints.iter().flat_map(|j| j.between).collect();
+    contact::check(&contacts, &world, &joined)?;
 
     let reference = file.string("reference")?;
     let point = file.vector("reference_point", planar)?;
