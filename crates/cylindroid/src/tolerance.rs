@@ -183,3 +183,10 @@ pub const LOOP_ROUNDING: f64 = 1e-13;
 /// reaches]: a resistance of second order then shows as 1e-4, of fourth order as 1e-8, far above
 /// rounding.
 pub const FINITE_STEP: f64 = 1e-2;
+
+/// Position error at which inverse kinematics counts a target as reached, by default (m): what
+/// others call exact, a tenth of what arms repeat.
+pub const IK_POSITION: f64 = 1e-6;
+
+/// The same of the orientation (rad).
+pub const IK_ORIENTATION: f64 = 1e-6;
