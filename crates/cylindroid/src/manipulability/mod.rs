@@ -22,10 +22,12 @@
 
 mod efficiency;
 mod index;
+mod inertia;
 mod metrics;
 mod polytope;
 
 pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
 pub use index::Index;
+pub use inertia::body_inertia;
 pub use metrics::Metrics;
-pub use polytope::{Polytope, force_polytope, velocity_polytope};
+pub use polytope::{Polytope, force_polytope, force_range, velocity_polytope, velocity_range};
