@@ -154,3 +154,12 @@ pub const PASSIVE: f64 = 1e-9;
 /// Loops that are open by less than this times the reach, and by less than this in angle (rad),
 /// are closed: far above rounding, far below what a machine is built to [-].
 pub const CLOSED: f64 = 1e-10;
+
+/// Efficiencies that differ by less than this, relative to each other, count as equal where a
+/// derivative is asked for: nearer ones turn their directions by rounding alone [-].
+pub const REPEATED: f64 = 1e-7;
+
+/// Step in scaled coordinates at which matrices of constraints are compared for their derivative
+/// [rad]: the fifth-order error of four of them and the rounding of their entries are then alike,
+/// about 1e-12.
+pub const MATRIX_STEP: f64 = 1e-3;

@@ -23,6 +23,7 @@
 
 mod assembly;
 mod constraint;
+mod fingers;
 mod graph;
 mod grasp;
 mod mobility;
@@ -30,9 +31,11 @@ mod motions;
 mod relation;
 mod singularity;
 mod statics;
+mod transmitted;
 
 pub use assembly::{Assembly, assemble};
 pub use constraint::{Blocks, Constraint, Unit, Units};
+pub use fingers::{Touch, fingers_on};
 pub use graph::{ClosedChain, Gap};
 pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};
 pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
@@ -42,3 +45,4 @@ pub use singularity::{Counts, Distances, Singularities, SingularityKind};
 pub use statics::{
     ContactForces, Load, Torques, contact_forces, internal_forces, joint_torques, structural_forces,
 };
+pub use transmitted::{Transmitted, row_compliance, transmitted};

@@ -150,6 +150,14 @@ impl Metric {
         self.len() == 0
     }
 
+    /// `y <- M y`.
+    pub fn apply(&self, y: &mut [f64]) {
+        self.whiten(y);
+        for i in (0..self.len()).rev() {
+            y[i] = (0..=i).map(|k| self.l[(i, k)] * y[k]).sum();
+        }
+    }
+
     /// `y <- L^T y`: to coordinates in which the metric is the identity.
     pub fn whiten(&self, y: &mut [f64]) {
         let n = self.len();
