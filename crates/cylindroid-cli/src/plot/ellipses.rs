@@ -38,10 +38,10 @@ const ROW: (u32, u32) = (333, 320);
 const TITLE: u32 = 44;
 const LINE: u32 = 18;
 /// Width of a character of running text [px].
-const CHARACTER: f64 = 6.5;
+const CHARACTER: f64 = 6.4;
 const TEXT: u32 = 13;
 /// Size of the shapes over that of the mechanism.
-const SHARE: f64 = 0.32;
+const SHARE: f64 = 0.36;
 
 /// A shape in a plane: semi-axes of an ellipse, and directions without end.
 #[derive(Debug, Clone)]
@@ -125,7 +125,7 @@ pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
     let reference = drawing.state.pose(drawing.chain.reference).translation;
     let skeleton = Skeleton::new(drawing.state, (frame.link, reference))?;
     let title = format!(
-        "{}: velocity and force of {}, driven at {}",
+        "{}: velocity and force at '{}', driven by {}",
         mechanism.name(),
         frame.name,
         driven(&drawing.chain.actuated)
@@ -161,6 +161,23 @@ fn figure(
     let room = if alone { ALONE.0 } else { WIDTH } - 40;
     let legends = blocks.each_ref().map(|b| b.legend(size, room));
     let lines = legends.iter().map(|l| l.iter().map(|e| e.lines.len()).sum::<usize>()).max();
+    // A metre is as long in every panel.
+    let metre = blocks
+        .iter()
+        .flat_map(|block| {
+            let scales = block.scales(size);
+            let panel = move |view| Panel {
+                block,
+                view,
+                skeleton,
+                reference,
+                scales,
+                size: (width, height),
+                metre: 0.0,
+            };
+            block.views.iter().map(move |view| panel(view).needs())
+        })
+        .fold(0.0, f64::max);
     let captions = blocks
         .each_ref()
         .map(|b| b.views.iter().map(|v| wrap(&b.caption(v), width - 60)).collect::<Vec<_>>());
@@ -187,7 +204,8 @@ fn figure(
         let (charts, notes) = (charts.split_evenly((1, count)), notes.split_evenly((1, count)));
         for (j, view) in block.views.iter().enumerate() {
             let scales = block.scales(size);
-            let shown = Panel { block, view, skeleton, reference, scales, size: (width, height) };
+            let shown =
+                Panel { block, view, skeleton, reference, scales, size: (width, height), metre };
             panel(&charts[j], &shown)?;
             for (k, line) in captions[i][j].iter().enumerate() {
                 let y = i32::try_from(k).unwrap_or(0) * LINE as i32 + 2;
@@ -259,11 +277,12 @@ impl Entry {
     }
 }
 
-/// How much of a quantity one metre of the drawing is: for ellipses, and for polygons.
+/// How much of a quantity one metre of the drawing is: for ellipses, and for polygons; `None` for
+/// those of no size.
 #[derive(Debug, Clone, Copy)]
 struct Scales {
-    ellipse: f64,
-    polygon: f64,
+    ellipse: Option<f64>,
+    polygon: Option<f64>,
 }
 
 impl Block<'_> {
@@ -275,20 +294,19 @@ impl Block<'_> {
         let polygon = widest(&mut corners.map(|c| c[0].hypot(c[1])));
         let of = |most: f64| round_up(most / (SHARE * size));
         let together = ellipse.max(polygon);
-        // Nothing to draw has any scale.
-        let scales = Scales {
-            ellipse: if ellipse > 0.0 { of(ellipse) } else { 1.0 },
-            polygon: if polygon > 0.0 { of(polygon) } else { 1.0 },
-        };
-        if ellipse.min(polygon) > 0.25 * together {
-            return Scales { ellipse: of(together), polygon: of(together) };
+        let own = |most: f64| (most > 0.0).then(|| of(most));
+        if ellipse.min(polygon) > 0.4 * together {
+            return Scales { ellipse: own(together), polygon: own(together) };
         }
-        scales
+        Scales { ellipse: own(ellipse), polygon: own(polygon) }
     }
 
     fn legend(&self, size: f64, room: u32) -> Vec<Entry> {
         let scales = self.scales(size);
-        let drawn = |scale: f64| format!("(1 m is drawn for {} {})", number(scale), self.unit);
+        let drawn = |scale: Option<f64>| match scale {
+            Some(scale) => format!("; scale {} {} to 1 m", number(scale), self.unit),
+            None => ": none".to_owned(),
+        };
         let joints = if self.force { "torques" } else { "rates" };
         let of_size = match self.drawing.metric {
             "limits" if !self.force => "rates over their limits of size 1".to_owned(),
@@ -298,20 +316,20 @@ impl Block<'_> {
             |pen, colour, text: String| Entry { pen, colour, lines: wrap(&text, room - 40) };
         let mut entries = Vec::new();
         if self.force {
-            let text = format!("forces exerted by {of_size} {}", drawn(scales.ellipse));
+            let text = format!("exerted by {of_size}{}", drawn(scales.ellipse));
             entries.push(entry(Pen::Solid, self.colour, text));
-            let text = "forces resisted with as much, the structure helping".to_owned();
+            let text = "resisted with as much, the structure helping".to_owned();
             entries.push(entry(Pen::Dashed, COLOURS[2], text));
         } else {
-            let text = format!("velocities by {of_size} {}", drawn(scales.ellipse));
+            let text = format!("by {of_size}{}", drawn(scales.ellipse));
             entries.push(entry(Pen::Solid, self.colour, text));
             if self.views.iter().any(|v| !v.ellipse.endless.is_empty()) {
-                let text = "velocities that the drives do not control".to_owned();
+                let text = "not controlled by the drives: without end".to_owned();
                 entries.push(entry(Pen::Dashed, COLOURS[3], text));
             }
         }
         if self.views.iter().any(|v| v.polygon.is_some()) {
-            let text = format!("within the limits of {joints} {}", drawn(scales.polygon));
+            let text = format!("within the limits of {joints}{}", drawn(scales.polygon));
             entries.push(entry(Pen::Filled, self.colour, text));
         }
         entries
@@ -354,10 +372,11 @@ impl Block<'_> {
     }
 }
 
-/// The next of 1, 2, 5 times a power of ten.
+/// The next number with one digit, or 1.5 times a power of ten.
 fn round_up(x: f64) -> f64 {
     let power = 10_f64.powf(x.log10().floor());
-    [1.0, 2.0, 5.0].map(|m| m * power).into_iter().find(|r| *r >= x).unwrap_or(10.0 * power)
+    let steps = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0];
+    steps.map(|m| m * power).into_iter().find(|r| *r >= x).unwrap_or(10.0 * power)
 }
 
 fn wrap(text: &str, width: u32) -> Vec<String> {

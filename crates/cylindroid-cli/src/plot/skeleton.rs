@@ -21,8 +21,6 @@ pub(crate) struct Spot {
     pub(crate) point: Vec3,
     pub(crate) mark: Mark,
     pub(crate) driven: bool,
-    /// True where one of its links is the ground.
-    pub(crate) grounded: bool,
 }
 
 /// Points of links and joints in world (m).
@@ -33,6 +31,26 @@ pub(crate) struct Skeleton {
     /// What slides, from one link to the other.
     pub(crate) slides: Vec<[Vec3; 2]>,
     pub(crate) spots: Vec<Spot>,
+    /// Where the ground holds something.
+    pub(crate) bases: Vec<Vec3>,
+}
+
+/// The points of each link, no point twice.
+struct Points {
+    of: Vec<Vec<Vec3>>,
+    near: f64,
+}
+
+impl Points {
+    fn add(&mut self, link: usize, point: Vec3) {
+        if !self.of[link].iter().any(|p| (*p - point).norm() < self.near) {
+            self.of[link].push(point);
+        }
+    }
+}
+
+fn slides(kind: JointKind) -> bool {
+    matches!(kind, JointKind::Prismatic | JointKind::Cylindrical)
 }
 
 impl Skeleton {
@@ -46,26 +64,11 @@ impl Skeleton {
             .collect::<Result<_>>()?;
         let is_child = |i: usize| mechanism.joints().iter().any(|j| j.child == i);
         let ground: Vec<bool> = (0..poses.len()).map(|i| !is_child(i)).collect();
-        let mut points: Vec<Vec<Vec3>> = vec![Vec::new(); poses.len()];
         let near = 1e-6 * mechanism.reach();
-        let mut add = |link: usize, point: Vec3| {
-            if !points[link].iter().any(|p| (*p - point).norm() < near) {
-                points[link].push(point);
-            }
-        };
-        let mut skeleton = Self { links: Vec::new(), slides: Vec::new(), spots: Vec::new() };
-        let mut spot =
-            |name: &str, [a, b]: [Vec3; 2], kind: JointKind, driven: bool, grounded: bool| {
-                let mark = match kind {
-                    JointKind::Prismatic | JointKind::Cylindrical => Mark::Sliding,
-                    _ => Mark::Turning,
-                };
-                if (a - b).norm() > near {
-                    skeleton.slides.push([a, b]);
-                }
-                let name = name.to_owned();
-                skeleton.spots.push(Spot { name, point: a, mark, driven, grounded });
-            };
+        let mut points = Points { of: vec![Vec::new(); poses.len()], near };
+        let mut sliders = Vec::new();
+        let mut skeleton =
+            Self { links: Vec::new(), slides: Vec::new(), spots: Vec::new(), bases: Vec::new() };
         for joint in mechanism.joints() {
             // A free body hangs on nothing that could be drawn.
             if matches!(joint.kind, JointKind::Free | JointKind::Planar) {
@@ -74,44 +77,81 @@ impl Skeleton {
             let Joint { parent, child, .. } = *joint;
             let a = (poses[parent] * joint.parent_from_joint).translation;
             let b = (poses[child] * joint.joint_from_child.inverse()).translation;
-            add(parent, a);
-            add(child, b);
+            points.add(parent, a);
+            points.add(child, b);
+            if ground[parent] {
+                skeleton.bases.push(a);
+            }
             if joint.kind.dof() > 0 {
-                let (kind, driven) = (joint.kind, joint.actuated);
-                spot(&joint.name, [a, b], kind, driven, ground[parent]);
+                if slides(joint.kind) {
+                    sliders.push((skeleton.spots.len(), parent));
+                }
+                skeleton.joint([a, b], joint.kind, near, |mark| Spot {
+                    name: joint.name.clone(),
+                    point: a,
+                    mark,
+                    driven: joint.actuated,
+                });
             }
         }
         for joint in mechanism.loops() {
             let a = (poses[joint.a] * joint.link_a_from_joint).translation;
             let b = (poses[joint.b] * joint.link_b_from_joint).translation;
-            add(joint.a, a);
-            add(joint.b, b);
-            let grounded = ground[joint.a] || ground[joint.b];
-            spot(&joint.name, [a, b], joint.kind, joint.actuated, grounded);
+            points.add(joint.a, a);
+            points.add(joint.b, b);
+            skeleton.joint([a, b], joint.kind, near, |mark| Spot {
+                name: joint.name.clone(),
+                point: a,
+                mark,
+                driven: joint.actuated,
+            });
+            if ground[joint.a] || ground[joint.b] {
+                skeleton.bases.push(a);
+            }
         }
         for contact in mechanism.contacts() {
             let point = (poses[contact.b] * contact.link_b_from_contact).translation;
-            add(contact.a, (poses[contact.a] * contact.link_a_from_contact).translation);
-            add(contact.b, point);
+            points.add(contact.a, (poses[contact.a] * contact.link_a_from_contact).translation);
+            points.add(contact.b, point);
             skeleton.spots.push(Spot {
                 name: contact.name.clone(),
                 point,
                 mark: Mark::Contact,
                 driven: false,
-                grounded: ground[contact.a] || ground[contact.b],
             });
+            if ground[contact.a] || ground[contact.b] {
+                skeleton.bases.push(point);
+            }
         }
-        if !ground[link] {
-            add(link, reference);
+        // A link with an outline shows where it is; others end in the reference.
+        if !ground[link] && points.of[link].len() < 3 {
+            points.add(link, reference);
         }
-        let moving = points.into_iter().zip(&ground).filter(|(p, ground)| !**ground && p.len() > 1);
+        // A slide that starts in another joint is marked on the way.
+        for (i, link) in sliders {
+            let at = skeleton.spots[i].point;
+            let others = skeleton.spots.iter().enumerate();
+            let hidden = others.clone().any(|(j, s)| j != i && (s.point - at).norm() < near);
+            if let (true, [a, b]) = (hidden, points.of[link].as_slice()) {
+                skeleton.spots[i].point = (*a + *b) * 0.5;
+            }
+        }
+        let moving =
+            points.of.into_iter().zip(&ground).filter(|(p, ground)| !**ground && p.len() > 1);
         skeleton.links = moving.map(|(p, _)| p).collect();
         Ok(skeleton)
+    }
+
+    fn joint(&mut self, ends: [Vec3; 2], kind: JointKind, near: f64, spot: impl Fn(Mark) -> Spot) {
+        if (ends[0] - ends[1]).norm() > near {
+            self.slides.push(ends);
+        }
+        self.spots.push(spot(if slides(kind) { Mark::Sliding } else { Mark::Turning }));
     }
 
     /// All points that are drawn.
     pub(crate) fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
         let links = self.links.iter().flatten().copied();
-        links.chain(self.spots.iter().map(|s| s.point))
+        links.chain(self.spots.iter().map(|s| s.point)).chain(self.bases.iter().copied())
     }
 }

@@ -10,11 +10,12 @@
 //! Source   Bicchi & Prattichizzo 1998, table 1, for the kinds
 //! Checked  tests/it/closure/grasp.rs::fingers_*
 
-use super::grasp::{FingerContact, Friction};
+use super::grasp::{FingerContact, Friction, WrenchSpace};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::model::{Contact, ContactKind, Dimension, FrameId};
 use crate::spatial::{Pose, Vec3};
+use crate::tolerance::CLOSED;
 
 /// What is known of a contact beside its kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,5 +101,22 @@ fn friction(
              fingers at its corners",
             other.name()
         )),
+    }
+}
+
+impl WrenchSpace {
+    /// At the origin of `object` in world axes, moments over the distance to the farthest of
+    /// these fingers (the reach of the mechanism where all are at the origin).
+    ///
+    /// # Errors
+    /// A frame of another mechanism.
+    pub fn about(state: &State, object: FrameId, fingers: &[FingerContact]) -> Result<Self> {
+        let mechanism = state.mechanism();
+        mechanism.check_frame(object)?;
+        let point = state.pose(object).translation;
+        let farthest = fingers.iter().map(|f| (f.point - point).norm()).fold(0.0, f64::max);
+        let length =
+            if farthest > CLOSED * mechanism.reach() { farthest } else { mechanism.reach() };
+        Ok(Self { point, length, planar: mechanism.dimension() == Dimension::Planar })
     }
 }

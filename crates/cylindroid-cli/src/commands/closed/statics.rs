@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::{HeadJson, Posed, measured};
 use crate::args::StaticsArgs;
 use crate::commands::Style;
-use crate::output::{self, Align, number};
+use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
 struct StaticsJson<'a> {
@@ -213,7 +213,8 @@ fn forces(out: &mut dyn Write, title: &str, all: &[TransmittedJson]) -> anyhow::
     columns.extend(right.map(|n| (n, Align::Right)));
     let rows = all.iter().map(|t| {
         let numbers = t.force.iter().chain(&t.moment).map(|x| output::entries(&[*x]));
-        let contact = [t.normal, t.tangential].map(|x| x.map_or_else(|| "-".to_owned(), number));
+        let contact = [t.normal, t.tangential]
+            .map(|x| x.map_or_else(|| "-".to_owned(), |x| output::entries(&[x])));
         std::iter::once(t.name.clone()).chain(numbers).chain(contact).collect()
     });
     Ok(output::table(out, &columns, rows)?)

@@ -242,8 +242,10 @@ fn fingers_of_a_mechanism() {
     assert!((fingers[0].1.point - Vec3::new(-1.0, y, 0.0)).norm() < 1e-15);
     assert!((fingers[0].1.normal - Vec3::X).norm() < 1e-15);
     assert!((fingers[1].1.normal + Vec3::X).norm() < 1e-15);
-    let space = WrenchSpace { point: Vec3::new(0.0, y, 0.0), ..SPACE };
     let grasp: Vec<FingerContact> = fingers.into_iter().map(|f| f.1).collect();
+    let space = WrenchSpace::about(&state, m.reference(), &grasp).unwrap();
+    assert_eq!((space.point, space.planar), (Vec3::new(0.0, y, 0.0), false));
+    assert!((space.length - 1.0).abs() < 1e-15);
     assert!(grasp_quality(&grasp, space, Effort::Each).unwrap().closed);
     // No torsion: said. In the plane none is needed.
     let none =
