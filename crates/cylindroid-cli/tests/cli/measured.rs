@@ -114,8 +114,8 @@ fn polytopes() {
     assert_eq!(one["polytope"]["velocity"]["limits"][1], serde_json::json!([0.0, 2.0]));
     assert!(one["polytope"]["force"].is_null());
     assert!(one["polytope"]["notes"][0].as_str().unwrap().contains("'q5' has no effort limit"));
-    let text = refused(&with(&["--polytope"]));
-    assert!(text.contains("--rate-limits") && text.contains("--torque-limits"), "{text}");
+    let both = refused(&with(&["--polytope"]));
+    assert!(both.contains("--rate-limits") && both.contains("--torque-limits"), "{both}");
     assert!(refused(&with(&["--rate-limits", "1"])).contains("rate limit has 1 entries"));
     assert!(refused(&with(&["--rate-limits", "1,2:3"])).contains("zero between them"));
     // In space: ranges, and corners of a task.
