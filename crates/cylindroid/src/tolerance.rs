@@ -159,7 +159,7 @@ pub const CLOSED: f64 = 1e-10;
 /// derivative is asked for: nearer ones turn their directions by rounding alone [-].
 pub const REPEATED: f64 = 1e-7;
 
-/// Step in scaled coordinates at which matrices of constraints are compared for their derivative
-/// [rad]: the fifth-order error of four of them and the rounding of their entries are then alike,
-/// about 1e-12.
+/// Step in scaled coordinates (rad) at which matrices of constraints are compared for their
+/// derivative: the fourth-order error of four of them and the rounding of their entries are then
+/// alike, about 1e-12.
 pub const MATRIX_STEP: f64 = 1e-3;

@@ -13,8 +13,8 @@
 //!          among them (orthogonal in units scaled by the characteristic length). A smallest or
 //!          largest efficiency that is repeated has none, which is said; their volume has
 //! Error    of trees: rounding, dM is the Hessian. Of closed chains dM comes from four matrices at
-//!          steps of `tolerance::MATRIX_STEP`, of fifth order: the error is estimated by the
-//!          difference to two of them, and given
+//!          steps of `tolerance::MATRIX_STEP`, with an error of fourth order; the difference to what
+//!          two of them give, of second order, is an estimate from above, and given
 //! Why so   the motion and the forces t that the duality gives are at hand; differences of the
 //!          index itself would need loops closed again at every step and lose half the digits
 //! Source   the derivative of a stationary value (Lagrange multipliers t); Yoshikawa 1985 for v
@@ -68,7 +68,8 @@ pub enum Gradient {
         value: f64,
         /// Its gradient, an entry for each coordinate.
         gradient: Vec<f64>,
-        /// Estimated error of the entries: zero for trees, where only rounding is left.
+        /// Estimate from above of the error of a slope along a motion of scaled length one: zero
+        /// for trees, where only rounding is left.
         error: f64,
     },
     /// Several efficiencies are equal: the measure has a kink.

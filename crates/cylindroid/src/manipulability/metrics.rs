@@ -139,9 +139,11 @@ impl Metrics {
         self.with_object(&inertia).map_err(|_| refuse("can turn without inertia"))
     }
 
-    /// The same metrics for the task `T u` (see [`Relation::task`]): task velocities are measured
-    /// by the least twist behind them, task forces by the wrench `T^T f` that they are. Metrics of
+    /// The same metrics for the task `T u` of [`Relation::task`]: task velocities are measured by
+    /// the least twist behind them, task forces by the wrench `T^T f` that they are. Metrics of
     /// joints stay.
+    ///
+    /// [`Relation::task`]: crate::closure::Relation::task
     ///
     /// # Errors
     /// A map that has not a column for each component, is not finite, or has dependent rows.
