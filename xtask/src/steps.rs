@@ -133,6 +133,18 @@ pub(crate) fn figures() -> Result<()> {
     for command in [
         &["move", "panda", "--to", to, "--rpy", rpy, "--plot", "docs/move-panda.svg"][..],
         &["screws", "youbot", "--frame", "arm_link_2", "--plot", "docs/screws-youbot.svg"],
+        &[
+            "manipulability",
+            "five-bar",
+            "--actuated",
+            "q2,q4",
+            "--rate-limits",
+            "1,1",
+            "--torque-limits",
+            "1,1",
+            "--plot",
+            "docs/ellipses-five-bar.svg",
+        ],
     ] {
         let run_it = ["run", "--release", "--quiet", "--package", "cylindroid-cli", "--"];
         run(&mut cargo(&[&run_it, command].concat()))?;

@@ -5,7 +5,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 mod closed;
 mod move_to;
 mod screws;
-pub(crate) use closed::{AssembleArgs, ClosedArgs, ManipulabilityArgs, MetricName};
+pub(crate) use closed::{
+    AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, StaticsArgs,
+};
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
 };
@@ -21,7 +23,7 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --plot move.svg
   cylindroid screws youbot
 
-Exit codes: 0 done, 1 a negative answer (a target not reached), 2 an error.";
+Exit codes: 0 done, 1 a negative answer (a target not reached, a grasp not closed), 2 an error.";
 
 /// Moves robots in Cartesian space and tells what they can do.
 ///
@@ -64,6 +66,12 @@ pub(crate) enum Command {
     /// How well motion and force go from the driven joints to the reference frame
     #[command(long_about = closed::MANIPULABILITY)]
     Manipulability(Box<ManipulabilityArgs>),
+    /// Joint torques that hold a wrench, and the forces in loops and contacts
+    #[command(long_about = closed::STATICS)]
+    Statics(Box<StaticsArgs>),
+    /// Force closure of the contacts on an object, and its quality
+    #[command(long_about = closed::GRASP)]
+    Grasp(Box<GraspArgs>),
 }
 
 #[derive(Debug, Args)]

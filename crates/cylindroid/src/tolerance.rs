@@ -190,3 +190,12 @@ pub const IK_POSITION: f64 = 1e-6;
 
 /// The same of the orientation (rad).
 pub const IK_ORIENTATION: f64 = 1e-6;
+
+/// Efficiencies that differ by less than this, relative to each other, count as equal where a
+/// derivative is asked for: nearer ones turn their directions by rounding alone [-].
+pub const REPEATED: f64 = 1e-7;
+
+/// Step in scaled coordinates (rad) at which matrices of constraints are compared for their
+/// derivative: the fourth-order error of four of them and the rounding of their entries are then
+/// alike, about 1e-12.
+pub const MATRIX_STEP: f64 = 1e-3;

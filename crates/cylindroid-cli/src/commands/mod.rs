@@ -36,6 +36,8 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Assemble(args) => closed::assemble::run(args, style, out),
         Command::Mobility(args) => closed::mobility::run(args, style, out),
         Command::Manipulability(args) => closed::manipulability::run(args, style, out),
+        Command::Statics(args) => closed::statics::run(args, style, out),
+        Command::Grasp(args) => closed::grasp::run(args, style, out),
     }
 }
 

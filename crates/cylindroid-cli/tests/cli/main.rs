@@ -4,9 +4,11 @@
 
 mod bad_input;
 mod closed;
+mod measured;
 mod motion;
 mod screws;
 mod shape;
+mod statics;
 
 use std::process::{Command, Output};
 

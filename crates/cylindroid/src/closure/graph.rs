@@ -63,7 +63,9 @@ impl Gap {
 /// A relative motion that is restricted, in world axes at the world's origin.
 pub(super) struct Row {
     /// What is measured of the motion of `b` relative to `a`.
-    wrench: Wrench,
+    pub(super) wrench: Wrench,
+    /// Place of its joint or contact: closing joints, then contacts.
+    pub(super) pair: usize,
     a: usize,
     b: usize,
     pub(super) unit: Unit,
@@ -175,8 +177,9 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
     let mechanism = state.mechanism();
     let dimension = mechanism.dimension();
     let (mut rows, mut rated) = (Vec::new(), Vec::new());
-    for joint in mechanism.loops() {
+    for (place, joint) in mechanism.loops().iter().enumerate() {
         let pair = Pair {
+            place,
             ends: [joint.a, joint.b],
             world_from_a: link_pose(state, mechanism, joint.a)? * joint.link_a_from_joint,
             world_from_b: link_pose(state, mechanism, joint.b)? * joint.link_b_from_joint,
@@ -215,8 +218,9 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
             None => {}
         }
     }
-    for contact in mechanism.contacts() {
+    for (place, contact) in mechanism.contacts().iter().enumerate() {
         let pair = Pair {
+            place: mechanism.loops().len() + place,
             ends: [contact.a, contact.b],
             world_from_a: link_pose(state, mechanism, contact.a)? * contact.link_a_from_contact,
             world_from_b: link_pose(state, mechanism, contact.b)? * contact.link_b_from_contact,
@@ -236,6 +240,7 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
 
 /// The two frames of a closing joint or contact.
 struct Pair {
+    place: usize,
     ends: [usize; 2],
     world_from_a: Pose,
     world_from_b: Pose,
@@ -273,6 +278,7 @@ impl Pair {
         let turn = a_from_b.rotation.log();
         Row {
             wrench: at.coadjoint(held),
+            pair: self.place,
             a: self.ends[0],
             b: self.ends[1],
             unit: if held.force == Vec3::ZERO { Unit::Angle } else { Unit::Length },

@@ -25,6 +25,7 @@ mod assembly;
 mod branches;
 mod constraint;
 mod diagnosis;
+mod fingers;
 mod finite;
 mod generic;
 mod graph;
@@ -35,11 +36,13 @@ mod relation;
 mod singularity;
 mod statics;
 mod steering;
+mod transmitted;
 mod vicinity;
 
 pub use assembly::{Assembly, assemble};
 pub use constraint::{Blocks, Constraint, Unit, Units};
 pub use diagnosis::Diagnosis;
+pub use fingers::{Touch, fingers_on};
 pub use finite::{Branch, Evidence, FiniteMobility};
 pub use generic::Generic;
 pub use graph::{ClosedChain, Gap};
@@ -52,3 +55,4 @@ pub use statics::{
     ContactForces, Load, Torques, contact_forces, internal_forces, joint_torques, structural_forces,
 };
 pub use steering::Steering;
+pub use transmitted::{Transmitted, row_compliance, transmitted};

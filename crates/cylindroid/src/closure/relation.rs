@@ -242,9 +242,10 @@ impl Relation {
         Qr::plain(attained).complement()
     }
 
-    /// Joint torques that balance the wrench with the least scaled norm, and the part of the
-    /// wrench that nothing balances (both in the units of the constraint).
-    pub(super) fn balance(&self, wrench: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// Joint torques that balance the wrench with the least scaled norm, and the parts of the
+    /// wrench that the structure holds and that nothing balances (all in the units of the
+    /// constraint).
+    pub(super) fn balance(&self, wrench: &[f64]) -> Balance {
         // w' = A^T w, since w^T u = w'^T u'.
         let scaled = self.scale.twist.transpose().mul_vec(wrench);
         let along =
@@ -255,12 +256,23 @@ impl Relation {
             torque.iter_mut().zip(self.cs.x.column(j)).for_each(|(t, x)| *t += share * x);
         }
         torque.iter_mut().zip(&self.joint_scale).for_each(|(t, s)| *t /= s);
-        let mut left = vec![0.0; self.object()];
-        for j in 0..self.infinite {
-            let share = along(j);
-            left.iter_mut().zip(self.cs.y.column(j)).for_each(|(l, y)| *l += share * y);
+        let mut unbalanced = vec![0.0; self.object()];
+        let mut structural = scaled.clone();
+        for j in 0..self.cs.len() - self.zero {
+            let (share, y) = (along(j), self.cs.y.column(j));
+            structural.iter_mut().zip(y).for_each(|(s, y)| *s -= share * y);
+            if j < self.infinite {
+                unbalanced.iter_mut().zip(y).for_each(|(l, y)| *l += share * y);
+            }
         }
-        (torque, self.scale.wrench.mul_vec(&left))
+        if self.dimensions().zero_torque == 0 {
+            structural.fill(0.0); // only rounding is left
+        }
+        Balance {
+            torques: torque,
+            structural: self.scale.wrench.mul_vec(&structural),
+            unbalanced: self.scale.wrench.mul_vec(&unbalanced),
+        }
     }
 
     fn parts(&self, kinds: &Kinds) -> Parts {
@@ -278,6 +290,13 @@ impl Relation {
             object: object * &kinds.object,
         }
     }
+}
+
+/// What balances a wrench.
+pub(super) struct Balance {
+    pub(super) torques: Vec<f64>,
+    pub(super) structural: Vec<f64>,
+    pub(super) unbalanced: Vec<f64>,
 }
 
 /// Parts in scaled coordinates.
