@@ -11,6 +11,7 @@ mod lax;
 mod load;
 mod mechanism_file;
 mod mjcf;
+mod mujoco;
 mod mutations;
 mod sdf;
 mod urdf;
