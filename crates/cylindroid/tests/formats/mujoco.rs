@@ -1,15 +1,16 @@
 //! The constraint of closed chains against MuJoCo's own: its equality rows leave the motions that
 //! ours leave, in configurations that meet both.
 
-use cylindroid::closure::{ClosedChain, Mobility, Motions};
+use cylindroid::closure::{ClosedChain, Mobility};
 use cylindroid::linalg::{ColumnSpace, Matrix, Threshold};
 use cylindroid::model::{Joint, JointKind, formats};
 use cylindroid::{Mechanism, State};
 
 use crate::mjcf::{LOOPS, coordinates, numbers, read_mjcf, robosuite, vectors};
+use crate::motions_of;
 
 /// MuJoCo closes its loops to 1e-13 before it writes them.
-const ANGLE: f64 = 1e-11;
+const ANGLE: f64 = 1e-13;
 
 /// The coordinate that a joint of one coordinate reads, and how many times.
 fn leader(m: &Mechanism, joint: &Joint) -> (usize, f64) {
@@ -55,18 +56,6 @@ fn qvel_from_rates(state: &State) -> Matrix {
     map
 }
 
-/// All motions of the tree that our constraint leaves, a column each.
-fn motions(chain: &ClosedChain, m: &Mechanism) -> Matrix {
-    let basis = Motions::of(&chain.constraint).basis();
-    let names: Vec<&String> = chain.actuated.iter().chain(&chain.passive).collect();
-    let rows: Vec<usize> = m
-        .coordinates()
-        .iter()
-        .map(|c| names.iter().position(|name| **name == c.name).unwrap())
-        .collect();
-    Matrix::from_fn(m.n(), basis.cols(), |i, j| basis[(rows[i], j)])
-}
-
 fn against_mujoco(name: &str, m: &Mechanism, expected_dof: usize) {
     let vectors = vectors(name);
     let joints: Vec<&str> =
@@ -80,7 +69,8 @@ fn against_mujoco(name: &str, m: &Mechanism, expected_dof: usize) {
         let state = m.state(&coordinates(m, &case["q"])).unwrap();
         let chain = ClosedChain::of(&state, None, None).unwrap();
         assert!(chain.gap.distance < 1e-12 && chain.gap.angle < 1e-12, "{name}: {:?}", chain.gap);
-        let ours = &qvel_from_rates(&state) * &motions(&chain, m);
+        let names: Vec<&str> = m.coordinates().iter().map(|c| c.name.as_str()).collect();
+        let ours = &qvel_from_rates(&state) * &motions_of(&chain, &names);
         let ours = ColumnSpace::of(&ours, Threshold::Relative(1e-9)).basis();
         let rows: Vec<Vec<f64>> =
             case["jacobian"].as_array().unwrap().iter().map(numbers).collect();
