@@ -103,14 +103,15 @@ pub(crate) fn vectors() -> Result<()> {
         "-r",
         "xtask/vectors/requirements.txt",
     ]))?;
-    run(Command::new(&python).args([
-        "xtask/vectors/pinocchio_vectors.py",
-        "--out",
-        "crates/cylindroid/tests/vectors/pinocchio",
-    ]))?;
+    for (script, folder) in [("pinocchio", "pinocchio"), ("closed_chain", "closed_chains")] {
+        let script = format!("xtask/vectors/{script}_vectors.py");
+        let folder = format!("crates/cylindroid/tests/vectors/{folder}");
+        run(Command::new(&python).args([&script, "--out", &folder]))?;
+    }
     models::fetch()?;
     let assets = "target/test-data/models/robosuite/models/assets";
-    let mut files = vec!["crates/cylindroid/tests/data/zoo.xml".to_owned()];
+    let mut files =
+        ["zoo", "loops"].map(|name| format!("crates/cylindroid/tests/data/{name}.xml")).to_vec();
     for robot in MUJOCO_ROBOTS {
         files.push(format!("{assets}/robots/{robot}/robot.xml"));
     }

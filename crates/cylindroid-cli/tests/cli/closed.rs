@@ -1,4 +1,6 @@
-//! `mobility` and `manipulability`.
+//! `mobility`, `manipulability`, `assemble`.
+
+use std::path::{Path, PathBuf};
 
 use crate::{cylindroid, difference, json, numbers, text};
 
@@ -178,4 +180,40 @@ fn strange_mechanisms() {
     assert_eq!(output.status.code(), Some(2));
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(error.contains("lift") && error.contains("left"), "{error}");
+}
+
+/// The robot files that `cargo xtask setup` fetches.
+fn robots() -> PathBuf {
+    let fetched = "../../target/test-data/models/cmeel.prefix/share/example-robot-data/robots";
+    let folder = std::env::var_os("CYLINDROID_TEST_ROBOTS")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(fetched), PathBuf::from);
+    assert!(folder.is_dir(), "no robot files in {}: run `cargo xtask setup`", folder.display());
+    folder
+}
+
+/// Two UR5 of a URDF hold a box; the efficiencies are those of Pinocchio's Jacobians.
+#[test]
+fn two_arms_of_real_files_hold_a_box() {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cylindroid/tests");
+    let read = |path: &str| std::fs::read_to_string(tests.join(path)).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("two_ur5.toml");
+    let file = read("data/two_ur5.toml").replace("ROBOTS", &robots().to_string_lossy());
+    std::fs::write(&path, file).unwrap();
+    let path = path.to_string_lossy();
+    let mobility = json(&["mobility", &path], 0);
+    for (key, count) in
+        [("dof", 6), ("redundancy", 0), ("internal", 6), ("zero_torque", 0), ("hyperstatic", 0)]
+    {
+        assert_eq!(mobility[key], count, "{key}");
+    }
+    assert_eq!(mobility["actuated"].as_array().unwrap().len(), 12);
+    let vectors: serde_json::Value =
+        serde_json::from_str(&read("vectors/closed_chains/two_arms.json")).unwrap();
+    let expected = numbers(&vectors["cases"][0]["kinematic"]);
+    let report = json(&["manipulability", &path], 0);
+    assert!(difference(&numbers(&report["kinematic"]["finite"]), &expected) < 1e-11);
+    assert_eq!(report["active_force"]["zeros"], 6);
+    let table = text(&["mobility", &path]);
+    assert!(table.contains("left/shoulder_pan_joint"), "{table}");
 }

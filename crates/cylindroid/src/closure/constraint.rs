@@ -110,7 +110,8 @@ impl Constraint {
         let columns = units.actuated.iter().chain(&units.passive).chain(&units.object);
         self.column_scale = columns.map(scale).collect();
         self.length = length;
-        check_finite("constraint scaled by the length, transposed,", &self.scaled_transpose())?;
+        let scaled = self.scaled_transpose();
+        check_finite("constraint scaled by the length, transposed,", &scaled)?;
         Ok(self)
     }
 
@@ -179,10 +180,26 @@ impl Constraint {
 
     /// Its transpose in scaled coordinates, `D_c M^T D_r`.
     pub(super) fn scaled_transpose(&self) -> Matrix {
-        let m = self.matrix();
-        Matrix::from_fn(m.cols(), m.rows(), |j, i| {
-            self.row_scale[i] * m[(i, j)] * self.column_scale[j]
-        })
+        let (t, a, p) = (self.rows(), self.actuated(), self.passive());
+        let mut scaled = Matrix::zeros(self.column_scale.len(), t);
+        for (i, r) in self.row_scale.iter().enumerate() {
+            let column = scaled.column_mut(i);
+            let (driven, others) = column.split_at_mut(a);
+            let (passive, object) = others.split_at_mut(p);
+            for (j, x) in driven.iter_mut().enumerate() {
+                *x = self.blocks.actuated[(i, j)];
+            }
+            for (j, x) in passive.iter_mut().enumerate() {
+                *x = self.blocks.passive[(i, j)];
+            }
+            for (x, g) in object.iter_mut().zip(self.blocks.grasp.column(i)) {
+                *x = -g;
+            }
+            for (x, c) in column.iter_mut().zip(&self.column_scale) {
+                *x = r * *x * c;
+            }
+        }
+        scaled
     }
 
     /// D_r: a force at a contact is this times its scaled value.

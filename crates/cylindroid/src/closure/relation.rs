@@ -84,12 +84,12 @@ pub struct Relation {
 impl Relation {
     /// Of the span of the columns of `span` (scaled), driven joints first.
     pub(super) fn from_scaled(
-        span: &Matrix,
+        span: Matrix,
         joint_scale: Vec<f64>,
         scale: ObjectScale,
         tolerance: f64,
     ) -> Self {
-        let space = ColumnSpace::of(span, Threshold::Absolute(tolerance));
+        let space = ColumnSpace::cut_of(span, Threshold::Absolute(tolerance));
         let cs = CosineSine::of(&space.basis(), joint_scale.len());
         let count = |kind| (0..cs.len()).filter(|&j| cs.kind(j, tolerance) == kind).count();
         Self {
@@ -210,7 +210,7 @@ impl Relation {
         let joint = weighted(&self.cs.x, &self.cs.cosines);
         let object = &reduce.transpose() * &weighted(&self.cs.y, &self.cs.sines);
         Ok(Self::from_scaled(
-            &Matrix::above(columns, &[&joint, &object]),
+            Matrix::above(columns, &[&joint, &object]),
             self.joint_scale.clone(),
             ObjectScale { wrench, twist: r.transpose() },
             self.tolerance,

@@ -5,6 +5,7 @@ mod box_program;
 mod column_space;
 mod cs;
 mod hull;
+mod lanes;
 mod matrix;
 mod metric;
 mod null_space;
