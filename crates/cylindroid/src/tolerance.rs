@@ -154,3 +154,8 @@ pub const PASSIVE: f64 = 1e-9;
 /// Loops that are open by less than this times the reach, and by less than this in angle (rad),
 /// are closed: far above rounding, far below what a machine is built to [-].
 pub const CLOSED: f64 = 1e-10;
+
+/// Two assemblies whose joints stand nearer than this, in lengths over the reach and in angle, are
+/// one: far above the rounding that ends a search, 1e-8 at a double root, far below what tells two
+/// assemblies apart [-].
+pub const SAME_ASSEMBLY: f64 = 1e-6;

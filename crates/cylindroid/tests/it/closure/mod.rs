@@ -6,6 +6,7 @@ mod graph;
 mod grasp;
 mod laws;
 mod mobility;
+mod modes;
 mod reference;
 mod singularity;
 mod statics;
