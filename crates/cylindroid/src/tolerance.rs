@@ -199,3 +199,8 @@ pub const REPEATED: f64 = 1e-7;
 /// derivative: the fourth-order error of four of them and the rounding of their entries are then
 /// alike, about 1e-12.
 pub const MATRIX_STEP: f64 = 1e-3;
+
+/// Two assemblies whose joints stand nearer than this, in lengths over the reach and in angle, are
+/// one: far above the rounding that ends a search, 1e-8 at a double root, far below what tells two
+/// assemblies apart [-].
+pub const SAME_ASSEMBLY: f64 = 1e-6;

@@ -8,6 +8,7 @@ mod graph;
 mod grasp;
 mod laws;
 mod mobility;
+mod modes;
 mod reference;
 mod rings;
 mod singularity;
