@@ -3,11 +3,13 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 mod closed;
+mod ik;
 mod move_to;
 mod screws;
 pub(crate) use closed::{
     AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, StaticsArgs,
 };
+pub(crate) use ik::IkArgs;
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
 };
@@ -51,6 +53,9 @@ pub(crate) enum Command {
     Fk(FkArgs),
     /// The Jacobian of a frame, its singular values and rank
     Jacobian(JacobianArgs),
+    /// Inverse kinematics: configurations that put a frame at a target, within all limits
+    #[command(long_about = ik::ABOUT, after_long_help = ik::EXAMPLES)]
+    Ik(Box<IkArgs>),
     /// Cartesian control: drive a frame to a target and say whether and how it got there
     #[command(long_about = move_to::ABOUT, after_long_help = move_to::EXAMPLES)]
     Move(Box<MoveArgs>),

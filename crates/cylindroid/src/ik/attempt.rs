@@ -70,6 +70,8 @@ pub(super) struct Problem {
     a: Vec<f64>,
     e: Vec<f64>,
     d: Vec<f64>,
+    /// Coordinates that keep their values, and those that a step holds at a limit as well.
+    pub(super) fixed: Vec<bool>,
     held: Vec<bool>,
     rates: Vec<f64>,
     damped: Damped,
@@ -112,6 +114,7 @@ impl Problem {
             a: vec![0.0; m * n],
             e: vec![0.0; m],
             d: vec![0.0; n],
+            fixed: coordinates.iter().map(|c| options.fixed.contains(c)).collect(),
             held: vec![false; n],
             rates: vec![0.0; mechanism.n()],
             damped: Damped::new(m, n),
@@ -173,8 +176,8 @@ impl Problem {
         self.load_rates();
         let size = self.a.iter().map(|x| x * x).sum::<f64>();
         let damping = DAMPING * squared + LEAST_DAMPING * size;
-        self.held.fill(false);
-        for _ in 0..self.coordinates.len() {
+        self.held.copy_from_slice(&self.fixed);
+        for _ in 0..=self.coordinates.len() {
             if !self.damped.solve(&self.a, &self.e, &self.held, damping, &mut self.d) {
                 self.d.fill(0.0);
                 return;
@@ -302,9 +305,9 @@ impl Problem {
             self.load_rates();
             let size = self.a.iter().map(|x| x * x).sum::<f64>();
             // wish - A+ A wish, with joints at a limit that it would leave held.
-            self.held.fill(false);
+            self.held.copy_from_slice(&self.fixed);
             let wish: Vec<f64> = self.coordinates.iter().map(|&c| start[c] - q[c]).collect();
-            for _ in 0..self.coordinates.len() {
+            for _ in 0..=self.coordinates.len() {
                 let free = |(w, h): (&f64, &bool)| if *h { 0.0 } else { *w };
                 let wished: Vec<f64> = wish.iter().zip(&self.held).map(free).collect();
                 let done: Vec<f64> = (0..self.m)

@@ -24,6 +24,8 @@ pub struct IkOptions {
     pub orientation_tolerance: f64,
     /// Where to start: all n coordinates, moved into the limits; `None`: home.
     pub start: Option<Vec<f64>>,
+    /// Coordinates that keep the values of the start: their places.
+    pub fixed: Vec<usize>,
     /// Prefer the answer that is nearest to the start over the one that is found first.
     pub nearest: bool,
     /// Of the postures that are drawn where the start leads nowhere: the same seed gives the same
@@ -41,6 +43,7 @@ impl Default for IkOptions {
             position_tolerance: tolerance::IK_POSITION,
             orientation_tolerance: tolerance::IK_ORIENTATION,
             start: None,
+            fixed: Vec::new(),
             nearest: false,
             seed: 0,
             budget: Budget { iterations: 20_000, time: None },
@@ -59,6 +62,13 @@ impl IkOptions {
         }
         if let Some(start) = &self.start {
             mechanism.check_q("start", start)?;
+        }
+        if let Some(&place) = self.fixed.iter().find(|&&i| i >= mechanism.n()) {
+            return Err(Error::InvalidOption {
+                option: "fixed",
+                value: place.to_string(),
+                reason: format!("the mechanism has {} coordinates", mechanism.n()),
+            });
         }
         if self.budget.iterations == 0 {
             return Err(Error::InvalidOption {

@@ -197,7 +197,7 @@ impl Solver {
     /// A posture drawn within the limits, anywhere or near the start.
     fn draw(&self, q: &mut [f64], near: bool, random: &mut u64) {
         let p = &self.problem;
-        for (i, &c) in p.coordinates.iter().enumerate() {
+        for (i, &c) in p.coordinates.iter().enumerate().filter(|(i, _)| !p.fixed[*i]) {
             let (middle, spread) = if near { (self.start[c], NEARBY) } else { (0.0, PI) };
             let (lower, upper) = (p.lower[i].max(middle - spread), p.upper[i].min(middle + spread));
             // Limits that exclude [-pi, pi] leave one end of it.
@@ -222,7 +222,11 @@ impl Solver {
             let turns = ((self.start[c] - q[c]) / (2.0 * PI)).round();
             let turned = q[c] + 2.0 * PI * turns;
             let within = (self.problem.lower[i]..=self.problem.upper[i]).contains(&turned);
-            if turns == 0.0 || !within || self.mechanism.coordinates()[c].kind.unit() != "rad" {
+            if self.problem.fixed[i]
+                || turns == 0.0
+                || !within
+                || self.mechanism.coordinates()[c].kind.unit() != "rad"
+            {
                 continue;
             }
             let before = std::mem::replace(&mut q[c], turned);
