@@ -61,8 +61,9 @@ pub(super) struct ObjectScale {
 
 impl ObjectScale {
     pub(super) fn diagonal(scale: &[f64]) -> Self {
-        let inverse: Vec<f64> = scale.iter().map(|s| 1.0 / s).collect();
-        Self { twist: Matrix::diagonal(scale), wrench: Matrix::diagonal(&inverse) }
+        let (twist, mut wrench) = (Matrix::diagonal(scale), Matrix::diagonal(scale));
+        (0..scale.len()).for_each(|i| wrench[(i, i)] = 1.0 / scale[i]);
+        Self { twist, wrench }
     }
 }
 

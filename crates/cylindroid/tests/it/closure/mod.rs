@@ -7,5 +7,6 @@ mod grasp;
 mod laws;
 mod mobility;
 mod reference;
+mod scaling;
 mod singularity;
 mod statics;
