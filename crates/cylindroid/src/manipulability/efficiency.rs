@@ -192,11 +192,11 @@ impl Manipulability {
         let principal = Principal::of(relation.motions(), joint, object);
         let finite = principal.directions(joint, object);
         let force = if metrics.is_dual() {
-            let forces = relation.forces();
+            let (internal, structural) = relation.internal_and_structural();
             Spectrum {
                 finite: principal.dual_directions(joint, object),
-                zeros: coloured(torque, orthonormal(whitened(torque, forces.zero))),
-                infinite: coloured(wrench, orthonormal(whitened(wrench, forces.infinite))),
+                zeros: coloured(torque, orthonormal(whitened(torque, internal))),
+                infinite: coloured(wrench, orthonormal(whitened(wrench, structural))),
             }
         } else {
             Spectrum::of(relation.forces(), torque, wrench)
@@ -262,6 +262,9 @@ fn coloured(metric: Option<&Metric>, mut a: Matrix) -> Matrix {
 
 /// An orthonormal basis of the span of independent columns.
 fn orthonormal(mut a: Matrix) -> Matrix {
+    if a.cols() == 0 {
+        return a;
+    }
     for j in 0..a.cols() {
         let column = a.column_mut(j);
         let size = column.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
