@@ -110,8 +110,10 @@ impl Constraint {
         let columns = units.actuated.iter().chain(&units.passive).chain(&units.object);
         self.column_scale = columns.map(scale).collect();
         self.length = length;
-        let scaled = self.scaled_transpose();
-        check_finite("constraint scaled by the length, transposed,", &scaled)?;
+        if !self.is_finite_scaled() {
+            let scaled = self.scaled_transpose();
+            check_finite("constraint scaled by the length, transposed,", &scaled)?;
+        }
         Ok(self)
     }
 
@@ -176,6 +178,16 @@ impl Constraint {
                 -self.blocks.grasp[(j - a - p, i)]
             }
         })
+    }
+
+    /// True where lengths in the characteristic length do not overflow: no entry does that has the
+    /// largest size and both largest scales.
+    fn is_finite_scaled(&self) -> bool {
+        let Blocks { actuated, passive, grasp } = &self.blocks;
+        let size = actuated.max_abs().max(passive.max_abs()).max(grasp.max_abs());
+        let largest = |scale: &[f64]| scale.iter().fold(0.0, |m: f64, s| m.max(*s));
+        let (row, column) = (largest(&self.row_scale), largest(&self.column_scale));
+        (row * size * column).is_finite() && (row * size).is_finite()
     }
 
     /// Its transpose in scaled coordinates, `D_c M^T D_r`.

@@ -174,7 +174,7 @@ impl Mobility {
             let others = ColumnSpace::of(&others, tolerance);
             space(&(others.complement(), others.cut()))
         };
-        let forces = relation.forces();
+        let (internal, structural) = relation.internal_and_structural();
         let [span, joint_rank, object_rank] = relation.cuts();
         let mut report = Self {
             dof: Subspace { basis: motions.basis(), cut: motions.cut() },
@@ -191,8 +191,8 @@ impl Mobility {
             indeterminacy: space(&indeterminacy),
             idle: space(&idle),
             ungrasped: space(&ungrasped),
-            internal: Subspace { basis: forces.zero, cut: joint_rank },
-            zero_torque: Subspace { basis: forces.infinite, cut: object_rank },
+            internal: Subspace { basis: internal, cut: joint_rank },
+            zero_torque: Subspace { basis: structural, cut: object_rank },
             hyperstatic: statics::undetermined(constraint, motions),
             relation: relation.dimensions(),
             grubler: motions.grubler(),

@@ -61,8 +61,9 @@ pub(super) struct ObjectScale {
 
 impl ObjectScale {
     pub(super) fn diagonal(scale: &[f64]) -> Self {
-        let inverse: Vec<f64> = scale.iter().map(|s| 1.0 / s).collect();
-        Self { twist: Matrix::diagonal(scale), wrench: Matrix::diagonal(&inverse) }
+        let (twist, mut wrench) = (Matrix::diagonal(scale), Matrix::diagonal(scale));
+        (0..scale.len()).for_each(|i| wrench[(i, i)] = 1.0 / scale[i]);
+        Self { twist, wrench }
     }
 }
 
@@ -170,6 +171,15 @@ impl Relation {
         })
     }
 
+    /// Internal torques and zero-torque wrenches, those of [`Relation::forces`] alone.
+    pub(crate) fn internal_and_structural(&self) -> (Matrix, Matrix) {
+        let (mut torques, wrenches) = (self.internal_scaled(), self.zero_torque_scaled());
+        for j in 0..torques.cols() {
+            torques.column_mut(j).iter_mut().zip(&self.joint_scale).for_each(|(t, s)| *t /= s);
+        }
+        (torques, &self.scale.wrench * &wrenches)
+    }
+
     /// The relation between driven joints and the task `T u`.
     ///
     /// # Errors
@@ -232,14 +242,12 @@ impl Relation {
 
     /// What is orthogonal to all attainable joint rates.
     fn internal_scaled(&self) -> Matrix {
-        let attained = self.cs.x.columns_between(self.infinite, self.cs.len());
-        Qr::plain(attained).complement()
+        complement(self.cs.x.columns_between(self.infinite, self.cs.len()))
     }
 
     /// What is orthogonal to all attainable twists.
     fn zero_torque_scaled(&self) -> Matrix {
-        let attained = self.cs.y.columns_between(0, self.cs.len() - self.zero);
-        Qr::plain(attained).complement()
+        complement(self.cs.y.columns_between(0, self.cs.len() - self.zero))
     }
 
     /// Joint torques that balance the wrench with the least scaled norm, and the parts of the
@@ -297,6 +305,14 @@ pub(super) struct Balance {
     pub(super) torques: Vec<f64>,
     pub(super) structural: Vec<f64>,
     pub(super) unbalanced: Vec<f64>,
+}
+
+/// What is orthogonal to independent columns.
+fn complement(columns: Matrix) -> Matrix {
+    if columns.cols() == columns.rows() {
+        return Matrix::zeros(columns.rows(), 0);
+    }
+    Qr::plain(columns).complement()
 }
 
 /// Parts in scaled coordinates.

@@ -175,6 +175,13 @@ impl Metric {
         }
     }
 
+    /// `y <- L y`: a force in the coordinates that [`Metric::whiten`] gives motions, to its own.
+    pub fn colour_force(&self, y: &mut [f64]) {
+        for i in (0..self.len()).rev() {
+            y[i] = (0..=i).map(|k| self.l[(i, k)] * y[k]).sum();
+        }
+    }
+
     /// `a <- A L^-T` : the columns of A measured in whitened joint coordinates.
     pub fn colour_columns(&self, a: &mut Matrix) {
         // Row r of A L^-T solves L z = row^T.

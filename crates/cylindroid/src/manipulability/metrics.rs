@@ -157,10 +157,14 @@ impl Metrics {
         Ok(Self { object: Some(object.of_images("task", map)?), wrench, ..self.clone() })
     }
 
-    /// True if wrenches and torques are measured by the duals of the metrics of motions.
+    /// True if wrenches and torques are measured by the duals of the metrics of motions: none of
+    /// their own given, or just these.
     #[must_use]
     pub fn is_dual(&self) -> bool {
-        self.wrench.is_none() && self.torque.is_none()
+        let dual = |given: &Option<Metric>, of: &Option<Metric>| {
+            given.is_none() || *given == of.as_ref().map(Metric::dual)
+        };
+        dual(&self.wrench, &self.object) && dual(&self.torque, &self.joint)
     }
 
     /// How lopsided the metrics of motions are.

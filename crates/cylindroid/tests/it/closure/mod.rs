@@ -11,6 +11,7 @@ mod mobility;
 mod modes;
 mod reference;
 mod rings;
+mod scaling;
 mod singularity;
 mod statics;
 mod steering;
