@@ -22,7 +22,9 @@
 //! ```
 
 mod assembly;
+mod branch;
 mod constraint;
+mod continuation;
 mod graph;
 mod grasp;
 mod loops;
@@ -36,6 +38,7 @@ mod statics;
 
 pub use assembly::{Assembly, assemble, recover_passive};
 pub use constraint::{Blocks, Constraint, Unit, Units};
+pub use continuation::{FollowOptions, Followed, PathEnd, PathPoint, PathSingularity, follow};
 pub use graph::{ClosedChain, Gap};
 pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};
 pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
