@@ -1,7 +1,7 @@
 //! Continuation: the held coordinates go straight to their goal, the loops stay closed on the branch
 //! where they are, and the way ends before a singularity or at a limit.
 //!
-//! Formula  predictor and corrector of `branch.rs`; distance = smallest singular value that counts
+//! Formula  predictor and corrector of `way.rs`; distance = smallest singular value that counts
 //!          over the largest, of the rates by which the free coordinates open the loops
 //! Units    shares of the way from 0 to 1; distances have none: lengths are over the reach
 //! Valid    any mechanism. The distance depends, within a factor, on where the loops are cut; that
@@ -13,10 +13,10 @@
 use std::fmt;
 
 use super::assembly::assemble;
-use super::branch::{Branch, Point, Refusal, Stride};
+use super::coordinates::{free_places, unit_of};
 use super::graph::Gap;
-use super::loops::{free_places, unit_of};
 use super::singularity::SingularityKind;
+use super::way::{Point, Refusal, Stride, Way};
 use crate::error::{Error, Result};
 use crate::kinematics::Reference;
 use crate::linalg::Matrix;
@@ -189,57 +189,57 @@ pub fn follow(
             end: PathEnd::Open,
         });
     }
-    let branch = Branch::from(mechanism, &assembly.q, (held, free), goal)?;
-    let mut here = branch.at(assembly.q)?;
-    let mut path = vec![path_point(&branch, &here, 0.0)];
-    let (share, end) = walk(&branch, &mut here, &mut path, options)?;
-    Ok(Followed { gap: here.loops.gap, q: here.q, share, path, end })
+    let way = Way::from(mechanism, &assembly.q, (held, free), goal)?;
+    let mut here = way.at(&assembly.q)?;
+    let mut path = vec![path_point(&way, &here, 0.0)];
+    let (share, end) = walk(&way, &mut here, &mut path, options)?;
+    Ok(Followed { gap: here.closing.gap, q: here.closing.q, share, path, end })
 }
 
-fn path_point(branch: &Branch<'_>, point: &Point, share: f64) -> PathPoint {
-    PathPoint { share, q: point.q.clone(), distance: branch.distance(point) }
+fn path_point(way: &Way<'_>, point: &Point, share: f64) -> PathPoint {
+    PathPoint { share, q: point.closing.q.clone(), distance: way.distance(point) }
 }
 
 /// Steps along the branch until it ends: the share of the way and why.
 fn walk(
-    branch: &Branch<'_>,
+    way: &Way<'_>,
     here: &mut Point,
     path: &mut Vec<PathPoint>,
     options: FollowOptions,
 ) -> Result<(f64, PathEnd)> {
-    if branch.distance(here) < NEAREST {
-        return Ok((0.0, PathEnd::Singular(Box::new(in_sight(branch, here)?))));
+    if way.distance(here) < NEAREST {
+        return Ok((0.0, PathEnd::Singular(Box::new(in_sight(way, here)?))));
     }
-    if let Some(coordinate) = branch.outside(&here.q) {
+    if let Some(coordinate) = way.outside(&here.closing.q) {
         return Ok((0.0, PathEnd::Limit { coordinate }));
     }
     let (mut share, mut step) = (0.0, 1.0_f64);
-    let (mut tangent, mut possible) = branch.tangent(here);
+    let (mut tangent, mut possible) = way.tangent(here);
     for _ in 0..MOST_STEPS {
         if !possible {
             return Ok((share, PathEnd::Contradiction));
         }
-        step = step.min(options.step / branch.speed(&tangent)).min(1.0 - share);
+        step = step.min(options.step / way.speed(&tangent)).min(1.0 - share);
         // To the goal itself, without the rounding of a sum.
         let to = if step >= 1.0 - share { 1.0 } else { share + step };
         // From where it is already nearer, only away.
-        let least = options.least_distance.min(branch.distance(here));
-        match branch.step(here, &tangent, Stride { step, to, least })? {
+        let least = options.least_distance.min(way.distance(here));
+        match way.step(here, &tangent, Stride { step, to, least })? {
             Ok(next) => {
                 share = to;
                 *here = next;
-                path.push(path_point(branch, here, share));
+                path.push(path_point(way, here, share));
                 if share >= 1.0 {
                     return Ok((share, PathEnd::Reached));
                 }
-                (tangent, possible) = branch.tangent(here);
+                (tangent, possible) = way.tangent(here);
                 step *= 2.0;
             }
             Err(why) => {
                 step *= 0.5;
                 if step < SHARE_FOUND {
                     let end = match why {
-                        Refusal::Singular => PathEnd::Singular(Box::new(in_sight(branch, here)?)),
+                        Refusal::Singular => PathEnd::Singular(Box::new(in_sight(way, here)?)),
                         Refusal::Limit(coordinate) => PathEnd::Limit { coordinate },
                         Refusal::Far => PathEnd::Lost,
                     };
@@ -252,14 +252,13 @@ fn walk(
 }
 
 /// The motion that is gained where the distance falls to zero.
-fn in_sight(branch: &Branch<'_>, point: &Point) -> Result<PathSingularity> {
-    let mechanism = branch.mechanism();
-    let distance = branch.distance(point);
-    let (motion, taken) =
-        branch.nearly_free(point).unwrap_or_else(|| (vec![0.0; mechanism.n()], 0.0));
+fn in_sight(way: &Way<'_>, point: &Point) -> Result<PathSingularity> {
+    let mechanism = way.mechanism();
+    let distance = way.distance(point);
+    let (motion, taken) = way.nearly_free(point).unwrap_or_else(|| (vec![0.0; mechanism.n()], 0.0));
     let rates: Vec<f64> =
         motion.iter().enumerate().map(|(i, x)| x * unit_of(mechanism, i)).collect();
-    let state = mechanism.state(&point.q)?;
+    let state = mechanism.state(&point.closing.q)?;
     let twist = |at: Reference| {
         let jacobian: Matrix = state.jacobian(mechanism.reference(), at);
         let of = jacobian.mul_vec(&rates);

@@ -22,12 +22,11 @@
 //! ```
 
 mod assembly;
-mod branch;
 mod constraint;
 mod continuation;
+mod coordinates;
 mod graph;
 mod grasp;
-mod loops;
 mod marks;
 mod mobility;
 mod modes;
@@ -35,6 +34,7 @@ mod motions;
 mod relation;
 mod singularity;
 mod statics;
+mod way;
 
 pub use assembly::{Assembly, assemble, recover_passive};
 pub use constraint::{Blocks, Constraint, Unit, Units};

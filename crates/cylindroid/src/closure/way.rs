@@ -4,7 +4,7 @@
 //! Formula  r(h, f) = 0, h(s) = h0 + s d given: predictor J_f f' = -J_h d, corrector J_f df = -r
 //!          with h at s + ds, both of least norm at the rank that the branch has in general
 //! Shapes   J_f: held rows x free coordinates, J_h: the columns of the held ones
-//! Units    none: lengths over the reach (`loops.rs`)
+//! Units    none: lengths over the reach (`assembly.rs`)
 //! Valid    a step is taken if |J_f' - J_f| <= (s + s') / 2, s the smallest singular value that
 //!          counts, and the corrector moved less than half as far as the predictor. By Weyl's
 //!          inequality s then stays above a quarter of s + s' between the two points where J_f
@@ -16,8 +16,8 @@
 //! Source   Allgower & Georg 1990, chapters 3 and 6
 //! Checked  tests/it/closure/continuation.rs
 
-use super::assembly::assemble;
-use super::loops::{Loops, moved, unit_of};
+use super::assembly::{Closing, assemble};
+use super::coordinates::{closing, columns, moved, unit_of};
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd};
 use crate::model::{Mechanism, Motion};
@@ -39,10 +39,9 @@ const NEIGHBOURS: usize = 3;
 const NEAR: f64 = 0.05;
 
 /// A configuration with closed loops.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Point {
-    pub(super) q: Vec<f64>,
-    pub(super) loops: Loops,
+    pub(super) closing: Closing,
     /// J_f and its decomposition.
     by_free: Matrix,
     svd: Svd,
@@ -50,7 +49,7 @@ pub(super) struct Point {
 
 /// The coordinates, and where the held ones go.
 #[derive(Debug, Clone)]
-pub(super) struct Branch<'a> {
+pub(super) struct Way<'a> {
     mechanism: &'a Mechanism,
     held: &'a [usize],
     free: Vec<usize>,
@@ -84,7 +83,7 @@ pub(super) enum Refusal {
     Far,
 }
 
-impl<'a> Branch<'a> {
+impl<'a> Way<'a> {
     /// From an assembly, whose held coordinates go to `goal`.
     pub(super) fn from(
         mechanism: &'a Mechanism,
@@ -93,9 +92,9 @@ impl<'a> Branch<'a> {
         goal: &'a [f64],
     ) -> Result<Self> {
         let along = displacement(mechanism, q, held, goal);
-        let mut branch = Self { mechanism, held, free, from: q.to_vec(), goal, along, rank: 0 };
-        branch.rank = branch.generic_rank()?;
-        Ok(branch)
+        let mut way = Self { mechanism, held, free, from: q.to_vec(), goal, along, rank: 0 };
+        way.rank = way.generic_rank()?;
+        Ok(way)
     }
 
     pub(super) fn mechanism(&self) -> &'a Mechanism {
@@ -104,8 +103,7 @@ impl<'a> Branch<'a> {
 
     /// The largest rank of J_f here and nearby.
     fn generic_rank(&self) -> Result<usize> {
-        let rank =
-            |q: &[f64]| -> Result<usize> { Ok(self.at(q.to_vec())?.svd.rank(CLOSURE_RANK).rank) };
+        let rank = |q: &[f64]| -> Result<usize> { Ok(self.at(q)?.svd.rank(CLOSURE_RANK).rank) };
         let mut most = rank(&self.from)?;
         let all: Vec<usize> = (0..self.mechanism.n()).collect();
         let mut random = 0;
@@ -121,11 +119,11 @@ impl<'a> Branch<'a> {
         Ok(most)
     }
 
-    pub(super) fn at(&self, q: Vec<f64>) -> Result<Point> {
-        let loops = Loops::at(self.mechanism, &q)?;
-        let by_free = loops.rates_by(&self.free);
+    pub(super) fn at(&self, q: &[f64]) -> Result<Point> {
+        let closing = closing(self.mechanism, q)?;
+        let by_free = columns(&closing.rates, &self.free);
         let svd = Svd::of(&by_free);
-        Ok(Point { q, loops, by_free, svd })
+        Ok(Point { closing, by_free, svd })
     }
 
     /// Smallest singular value that counts over the largest: zero at a singularity, infinite where
@@ -151,14 +149,14 @@ impl<'a> Branch<'a> {
         for (&i, v) in self.free.iter().zip(point.svd.v(last)) {
             motion[i] = *v;
         }
-        let by_held = point.loops.rates_by(self.held);
+        let by_held = columns(&point.closing.rates, self.held);
         let taken = by_held.transpose().mul_vec(point.svd.u(last));
         Some((motion, norm(&taken) / point.svd.value(0).max(f64::MIN_POSITIVE)))
     }
 
     /// f', and true if the free coordinates can follow the held ones at all.
     pub(super) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
-        let opened = point.loops.rates_by(self.held).mul_vec(&self.along);
+        let opened = columns(&point.closing.rates, self.held).mul_vec(&self.along);
         let follow = self.solve(point, &opened);
         let left: Vec<f64> =
             point.by_free.mul_vec(&follow).iter().zip(&opened).map(|(a, b)| a + b).collect();
@@ -179,7 +177,7 @@ impl<'a> Branch<'a> {
         Stride { step, to, least }: Stride,
     ) -> Result<std::result::Result<Point, Refusal>> {
         let change: Vec<f64> = tangent.iter().map(|x| step * x).collect();
-        let mut guess = moved(self.mechanism, &here.q, &self.free, &change);
+        let mut guess = moved(self.mechanism, &here.closing.q, &self.free, &change);
         self.put_held(&mut guess, to);
         let Some((there, corrected)) = self.corrected(guess)? else {
             return Ok(Err(Refusal::Far));
@@ -198,20 +196,20 @@ impl<'a> Branch<'a> {
         if self.distance(&there) < least {
             return Ok(Err(Refusal::Singular));
         }
-        if let Some(i) = self.outside(&there.q) {
+        if let Some(i) = self.outside(&there.closing.q) {
             return Ok(Err(Refusal::Limit(i)));
         }
         // Beyond a limit by rounding is at it.
-        let beyond: Vec<usize> = self.mechanism.outside_limits(&there.q).collect();
+        let beyond: Vec<usize> = self.mechanism.outside_limits(&there.closing.q).collect();
         if beyond.is_empty() {
             return Ok(Ok(there));
         }
-        let mut q = there.q;
+        let mut q = there.closing.q;
         for i in beyond {
             let l = &self.mechanism.coordinates()[i].limits;
             q[i] = q[i].clamp(l.lower, l.upper);
         }
-        Ok(Ok(self.at(q)?))
+        Ok(Ok(self.at(&q)?))
     }
 
     /// The first coordinate outside its limits by more than rounding.
@@ -233,25 +231,25 @@ impl<'a> Branch<'a> {
 
     /// Newton with the held coordinates at rest: the point and how far it is from the guess.
     fn corrected(&self, guess: Vec<f64>) -> Result<Option<(Point, f64)>> {
-        let mut now = self.at(guess)?;
+        let mut now = self.at(&guess)?;
         let mut moved_by = 0.0;
         for _ in 0..MOST_CORRECTIONS {
-            if now.loops.error <= SETTLED {
+            if now.closing.error <= SETTLED {
                 break;
             }
-            let change = self.solve(&now, &now.loops.residuals);
-            let q = moved(self.mechanism, &now.q, &self.free, &change);
+            let change = self.solve(&now, &now.closing.residuals);
+            let q = moved(self.mechanism, &now.closing.q, &self.free, &change);
             if q.iter().any(|x| !x.is_finite()) {
                 return Ok(None);
             }
-            let next = self.at(q)?;
-            if !(next.loops.error < 0.5 * now.loops.error) {
+            let next = self.at(&q)?;
+            if !(next.closing.error < 0.5 * now.closing.error) {
                 break;
             }
             moved_by += norm(&change);
             now = next;
         }
-        Ok(now.loops.is_closed().then_some((now, moved_by)))
+        Ok(now.closing.is_closed(self.mechanism.reach()).then_some((now, moved_by)))
     }
 
     /// The least change of the free coordinates that takes `opened` back.

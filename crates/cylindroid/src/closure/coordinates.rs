@@ -1,63 +1,29 @@
-//! The loops of a mechanism at a configuration, as numbers without unit: by how much they are open,
-//! and how every coordinate opens them.
+//! Lists of coordinates: those that are free, what a change of some of them does, limits.
 //!
-//! Formula  r(q), and J with dr = J dq where r = 0
-//! Shapes   r: held rows, J: held rows x n; a list of coordinates picks its columns
-//! Units    rows of lengths over the reach, columns of lengths times it
-//! Valid    any mechanism; a tree has no rows. Limits and motors of closing joints do not enter:
-//!          these joints have no coordinate
-//! Source   the rows: `graph.rs`
-//! Checked  tests/it/closure/assembly.rs
+//! Units    changes have none: lengths are over the reach
+//! Valid    any mechanism; numbers of balls and free bodies are not moved one by one
+//! Checked  tests/it/closure/assembly.rs, tests/it/closure/modes.rs
 
-use super::constraint::Unit;
-use super::graph::{Gap, Row, link_jacobians, rows};
+use super::assembly::{Closing, column_scale};
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Motion};
-use crate::tolerance::{AT_LIMIT, CLOSED};
+use crate::tolerance::AT_LIMIT;
 
-/// Residuals of all loops and contacts, and their rates by all coordinates.
-#[derive(Debug, Clone)]
-pub(super) struct Loops {
-    pub(super) residuals: Vec<f64>,
-    pub(super) rates: Matrix,
-    pub(super) gap: Gap,
-    /// |r|
-    pub(super) error: f64,
-    closed: bool,
+/// The loops at `q` with their rates by all coordinates.
+pub(super) fn closing(mechanism: &Mechanism, q: &[f64]) -> Result<Closing> {
+    let all: Vec<usize> = (0..mechanism.n()).collect();
+    Closing::at(mechanism, q, &all, mechanism.reach())
 }
 
-impl Loops {
-    pub(super) fn at(mechanism: &Mechanism, q: &[f64]) -> Result<Self> {
-        let state = mechanism.state(q)?;
-        let length = mechanism.reach();
-        let (all, _, gap) = rows(&state)?;
-        let held: Vec<&Row> = all.iter().filter(|row| row.rate_of.is_none()).collect();
-        let scale = |row: &Row| if row.unit == Unit::Length { 1.0 / length } else { 1.0 };
-        let residuals: Vec<f64> = held.iter().map(|row| row.residual * scale(row)).collect();
-        let links = if held.is_empty() { Vec::new() } else { link_jacobians(&state)? };
-        let rates = Matrix::from_fn(held.len(), mechanism.n(), |i, j| {
-            held[i].rate(&links, j) * scale(held[i]) * unit_of(mechanism, j)
-        });
-        let error = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
-        let closed = gap.distance <= CLOSED * length && gap.angle <= CLOSED;
-        Ok(Self { residuals, rates, gap, error, closed })
-    }
-
-    /// True if every loop and contact is closed to [`CLOSED`].
-    pub(super) fn is_closed(&self) -> bool {
-        self.closed
-    }
-
-    /// The columns of some coordinates.
-    pub(super) fn rates_by(&self, places: &[usize]) -> Matrix {
-        Matrix::from_fn(self.rates.rows(), places.len(), |i, j| self.rates[(i, places[j])])
-    }
+/// The columns of some coordinates.
+pub(super) fn columns(rates: &Matrix, places: &[usize]) -> Matrix {
+    Matrix::from_fn(rates.rows(), places.len(), |i, j| rates[(i, places[j])])
 }
 
 /// What a change of 1 means at coordinate `i` (m or rad).
 pub(super) fn unit_of(mechanism: &Mechanism, i: usize) -> f64 {
-    if mechanism.coordinates()[i].kind.unit() == "m" { mechanism.reach() } else { 1.0 }
+    column_scale(mechanism, i, mechanism.reach())
 }
 
 /// The coordinates that are not held.
