@@ -63,7 +63,7 @@ pub(crate) enum Command {
     #[command(long_about = screws::ABOUT, after_long_help = screws::EXAMPLES)]
     Screws(Box<ScrewsArgs>),
     /// Close the loops of a mechanism from a guess, within its position limits
-    #[command(long_about = closed::ASSEMBLE)]
+    #[command(long_about = closed::ASSEMBLE, after_long_help = closed::ASSEMBLE_EXAMPLES)]
     Assemble(Box<AssembleArgs>),
     /// Mobility of a mechanism: how it can move, what is redundant, idle or held twice
     #[command(long_about = closed::MOBILITY)]

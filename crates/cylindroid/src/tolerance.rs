@@ -204,3 +204,11 @@ pub const MATRIX_STEP: f64 = 1e-3;
 /// one: far above the rounding that ends a search, 1e-8 at a double root, far below what tells two
 /// assemblies apart [-].
 pub const SAME_ASSEMBLY: f64 = 1e-6;
+
+/// Default least distance to a singularity on a way through closed configurations: smallest over
+/// largest singular value of the rates of the loops [-].
+pub const PATH_SINGULAR: f64 = 1e-3;
+
+/// Where a way through closed configurations ends is found to this share of it [-]: a fold is
+/// then a distance of about its root away, 1e-6, or nearer.
+pub const SHARE_FOUND: f64 = 1e-12;

@@ -16,8 +16,8 @@
 
 use std::fmt;
 
+use super::assembly::Closing;
 use super::branches::{branches, direction};
-use super::loops::Loops;
 use super::vicinity::Vicinity;
 use crate::error::Result;
 use crate::kinematics::State;
@@ -108,6 +108,7 @@ impl FiniteMobility {
         let mechanism = state.mechanism();
         let length = length.unwrap_or_else(|| mechanism.reach());
         crate::error::Error::check_positive("length", length)?;
+        let all: Vec<usize> = (0..mechanism.n()).collect();
         let vicinity = Vicinity::of(mechanism, state.q(), length, CLOSURE_RANK)?;
         let k = vicinity.motions();
         let mut report = Self {
@@ -121,7 +122,7 @@ impl FiniteMobility {
             left_open: 0.0,
             beside: Vec::new(),
         };
-        if !Loops::with_length(mechanism, state.q(), length)?.is_closed() {
+        if !Closing::at(mechanism, state.q(), &all, length)?.is_closed(length) {
             return Ok(report);
         }
         if k == 0 || vicinity.superfluous() == 0 {

@@ -11,9 +11,8 @@
 //!          Grubler's count is wrong for whatever is overconstrained
 //! Checked  tests/it/closure/diagnosis.rs
 
-use super::assembly::assemble;
+use super::assembly::{assemble, column_scale};
 use super::graph::ClosedChain;
-use super::loops::column_scale;
 use super::motions::Motions;
 use super::singularity::Counts;
 use crate::error::Result;

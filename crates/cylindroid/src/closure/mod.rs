@@ -24,13 +24,14 @@
 mod assembly;
 mod branches;
 mod constraint;
+mod continuation;
+mod coordinates;
 mod diagnosis;
 mod fingers;
 mod finite;
 mod generic;
 mod graph;
 mod grasp;
-mod loops;
 mod marks;
 mod mobility;
 mod modes;
@@ -41,9 +42,11 @@ mod statics;
 mod steering;
 mod transmitted;
 mod vicinity;
+mod way;
 
 pub use assembly::{Assembly, assemble, recover_passive};
 pub use constraint::{Blocks, Constraint, Unit, Units};
+pub use continuation::{FollowOptions, Followed, PathEnd, PathPoint, PathSingularity, follow};
 pub use diagnosis::Diagnosis;
 pub use fingers::{Touch, fingers_on};
 pub use finite::{Branch, Evidence, FiniteMobility};

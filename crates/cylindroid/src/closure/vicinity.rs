@@ -14,7 +14,7 @@
 //! Source   Lyapunov-Schmidt reduction; Golubitsky & Schaeffer 1985, chapter VII
 //! Checked  tests/it/closure/finite.rs
 
-use super::loops::{Loops, column_scale};
+use super::assembly::{Closing, column_scale};
 use crate::error::Result;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, solve_upper};
 use crate::model::Mechanism;
@@ -28,6 +28,7 @@ pub(super) struct Vicinity<'a> {
     mechanism: &'a Mechanism,
     length: f64,
     q: Vec<f64>,
+    free: Vec<usize>,
     kernel: Matrix,
     across: Matrix,
     held: Matrix,
@@ -60,7 +61,8 @@ impl<'a> Vicinity<'a> {
         length: f64,
         threshold: f64,
     ) -> Result<Self> {
-        let start = Loops::with_length(mechanism, q, length)?;
+        let free: Vec<usize> = (0..mechanism.n()).collect();
+        let start = Closing::at(mechanism, q, &free, length)?;
         let rows = ColumnSpace::of(&start.rates.transpose(), Threshold::Relative(threshold));
         let (kernel, across) = (rows.complement(), rows.basis());
         // The range as the image of N: of the same rank, whatever the threshold cut off.
@@ -69,7 +71,7 @@ impl<'a> Vicinity<'a> {
         let at_start = rest.transpose().mul_vec(&start.residuals);
         let noise = LOOP_ROUNDING.max(10.0 * start.error);
         let q = q.to_vec();
-        Ok(Self { mechanism, length, q, kernel, across, held, rest, at_start, noise })
+        Ok(Self { mechanism, length, q, free, kernel, across, held, rest, at_start, noise })
     }
 
     /// Number k of motions to first order.
@@ -115,7 +117,7 @@ impl<'a> Vicinity<'a> {
         let mut q = self.moved(&self.q, &self.kernel.mul_vec(x));
         let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            let now = Loops::with_length(self.mechanism, &q, self.length)?;
+            let now = Closing::at(self.mechanism, &q, &self.free, self.length)?;
             let open = self.held.transpose().mul_vec(&now.residuals);
             let error = norm(&open);
             let across = Qr::plain(&self.held.transpose() * &(&now.rates * &self.across));
