@@ -70,7 +70,7 @@ fn modes_are_listed() {
     assert_eq!((&report["continuum"], &report["chance_of_more"]), (&0.into(), &0.0.into()));
     let command = ["assemble", "stewart", "--hold", "driven", "--modes", "40"];
     let legs = json(&command, 0);
-    assert!(legs["modes"].as_array().unwrap().len() % 2 == 0 && legs["held"][5] == "leg6");
+    assert!(legs["modes"].as_array().unwrap().len().is_multiple_of(2) && legs["held"][5] == "leg6");
     // The same seed, the same answer; another, other starts.
     assert_eq!(legs, json(&command, 0));
     let seeded = [&command[..], &["--seed", "9"]].concat();

@@ -172,7 +172,7 @@ fn stewart_platform_comes_in_mirror_pairs() {
     assert!(found.modes[0].distance < 1e-12);
     assert!(found.continuum() == 0 && found.closed > 100);
     let mirror = Mat3::from_rows([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]);
-    assert!(poses.len() >= 2 && poses.len() % 2 == 0 && poses.len() <= 40);
+    assert!(poses.len() >= 2 && poses.len().is_multiple_of(2) && poses.len() <= 40);
     for (i, a) in poses.iter().enumerate() {
         let image = (mirror * a.translation, mirror * a.rotation.matrix() * mirror);
         let stands = |b: &&Pose| {
@@ -225,7 +225,7 @@ fn delta_where_three_spheres_meet() {
         .map(|p| p.translation)
         .collect();
     assert_same_points(&straight, &[centre + normal * height, centre - normal * height], 1e-8);
-    assert!((found.modes[0].distance < 1e-12) && found.modes.len() % 2 == 0);
+    assert!((found.modes[0].distance < 1e-12) && found.modes.len().is_multiple_of(2));
 }
 
 /// At its dead point a four-bar's two modes are one: a double root, not a motion.
