@@ -1,11 +1,15 @@
 //! How long the parts of a control step take: `cargo bench -p cylindroid`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use cylindroid::closure::{Blocks, ClosedChain, Constraint, Mobility, Motions};
+use std::f64::consts::PI;
+
+use cylindroid::closure::{Blocks, ClosedChain, Constraint, Mobility, Motions, assemble};
+use cylindroid::ik::{Goal, IkOptions, Solver};
 use cylindroid::inverse::{self, Method};
 use cylindroid::kinematics::Chain;
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics};
+use cylindroid::model::Coordinate;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, catalogue};
 use divan::{Bencher, black_box};
@@ -277,4 +281,55 @@ fn report(constraint: &Constraint) -> (Mobility, Manipulability) {
     let relation = motions.relation();
     let mobility = Mobility::from_parts(constraint, &motions, &relation);
     (mobility, Manipulability::of(&relation, &Metrics::UNIT).unwrap())
+}
+
+/// A step of a servo that drives the object of a closed chain.
+#[divan::bench(args = ["five-bar", "stewart", "two-arm"])]
+fn object_servo_step(bencher: Bencher<'_, '_>, name: &str) {
+    let mechanism = robot(name);
+    let mut servo = Servo::new(&mechanism, ServoOptions::new(&mechanism)).unwrap();
+    let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
+    let here = mechanism.state(&q).unwrap().pose(mechanism.reference());
+    let mut i = 0.0;
+    bencher.bench_local(|| {
+        i = 1.0 - i;
+        let mut target = here;
+        target.translation.x += 1e-3 * i;
+        black_box(servo.step(&q, target).unwrap());
+    });
+}
+
+/// Random reachable targets to 1e-5 from random starts, in turn.
+#[divan::bench(args = ["panda", "ur5e", "iiwa14", "puma560"], sample_count = 2000)]
+fn inverse_kinematics(bencher: Bencher<'_, '_>, name: &str) {
+    let robot = robot(name);
+    let mut state = 9_u64;
+    let mut draw = || -> Vec<f64> {
+        let mut one = |c: &Coordinate| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let share = (state >> 11) as f64 / (1_u64 << 53) as f64;
+            let (lower, upper) = (c.limits.lower.max(-PI), c.limits.upper.min(PI));
+            lower + (upper - lower) * share
+        };
+        robot.coordinates().iter().map(&mut one).collect()
+    };
+    let tasks: Vec<(Vec<f64>, Goal)> = (0..2000)
+        .map(|_| {
+            let target = robot.state(&draw()).unwrap().pose(robot.tool());
+            (draw(), Goal::pose(robot.tool(), target))
+        })
+        .collect();
+    let options =
+        IkOptions { position_tolerance: 1e-5, orientation_tolerance: 1e-5, ..IkOptions::default() };
+    let mut solver = Solver::new(&robot, &[tasks[0].1], &options).unwrap();
+    let mut i = 0;
+    bencher.bench_local(|| {
+        i = (i + 1) % tasks.len();
+        solver.start_at(&tasks[i].0).unwrap();
+        let found = solver.solve(&[tasks[i].1]).unwrap();
+        assert!(found.success);
+        black_box(found)
+    });
 }
