@@ -1,0 +1,32 @@
+//! The Python package `cylindroid`: the library for numpy, without mathematics of its own.
+//!
+//! Numbers come in without a copy where the layout allows it, results are one allocation, and the
+//! interpreter is free while batches run. Errors of the library become exceptions, one class for
+//! each kind. The documentation of every function is that of the Python user.
+
+mod arrays;
+mod error;
+mod inverse;
+mod mechanism;
+mod table;
+
+use pyo3::prelude::*;
+
+/// The compiled part of `cylindroid`.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::inverse::{
+        PyDropped, PyInverse, PyPointDirection, damped, hyperbolic, inverse_by_name, oblique, pinv,
+        point_direction, selectively_damped,
+    };
+    #[pymodule_export]
+    use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism, catalogue, load, parse};
+
+    use super::*;
+
+    #[pymodule_init]
+    fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
+        m.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
