@@ -265,6 +265,16 @@ pub(crate) fn matrix<'py>(py: Python<'py>, m: &Matrix) -> Result<Array<'py>> {
     written(py, None, &[m.rows(), m.cols()], |out| put_rows(m, out))
 }
 
+/// The columns of a matrix, each a row: a list of vectors as one array.
+pub(crate) fn columns<'py>(py: Python<'py>, m: &Matrix) -> Result<Array<'py>> {
+    written(py, None, &[m.cols(), m.rows()], |out| out.copy_from_slice(m.as_slice()))
+}
+
+/// A pose as a matrix of 4 x 4.
+pub(crate) fn pose<'py>(py: Python<'py>, pose: Pose) -> Result<Array<'py>> {
+    written(py, None, &[4, 4], |out| put_pose(pose, out))
+}
+
 pub(crate) fn put_rows(m: &Matrix, out: &mut [f64]) {
     let cols = m.cols();
     for j in 0..cols {

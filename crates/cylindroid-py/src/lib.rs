@@ -8,6 +8,9 @@ mod arrays;
 mod error;
 mod inverse;
 mod mechanism;
+mod motion;
+mod options;
+mod servo;
 mod table;
 
 use pyo3::prelude::*;
@@ -22,6 +25,11 @@ mod _core {
     };
     #[pymodule_export]
     use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism, catalogue, load, parse};
+
+    #[pymodule_export]
+    use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw};
+    #[pymodule_export]
+    use crate::servo::{PyOutcome, PyServo, PyStall, PyTrajectory};
 
     use super::*;
 

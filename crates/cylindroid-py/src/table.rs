@@ -64,3 +64,9 @@ pub(crate) fn list(values: &[f64]) -> String {
     let all: Vec<String> = values.iter().map(|x| number(*x)).collect();
     format!("[{}]", all.join(", "))
 }
+
+/// Names, or "none".
+pub(crate) fn names<S: AsRef<str>>(names: &[S]) -> String {
+    let all: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    if all.is_empty() { "none".to_owned() } else { all.join(", ") }
+}
