@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
+use cylindroid::screws::Screw;
 use cylindroid::spatial::{Quaternion, Rpy};
 use cylindroid::{Mechanism, Pose};
 use serde::Serialize;
@@ -110,6 +111,29 @@ fn wrap(text: &str, width: usize) -> Vec<String> {
         }
     }
     lines
+}
+
+/// A screw, seen from the world.
+#[derive(Debug, Serialize)]
+pub(crate) struct ScrewJson {
+    /// Point of the axis nearest to the origin; null for a translation.
+    point: Option<[f64; 3]>,
+    direction: [f64; 3],
+    /// [m/rad]; null for a translation.
+    pitch: f64,
+    /// [rad/s], of a translation [m/s].
+    amplitude: f64,
+}
+
+impl From<&Screw> for ScrewJson {
+    fn from(s: &Screw) -> Self {
+        Self {
+            point: (!s.is_translation()).then(|| s.axis.point.to_array()),
+            direction: s.axis.direction.to_array(),
+            pitch: s.pitch,
+            amplitude: s.amplitude,
+        }
+    }
 }
 
 /// A matrix with names for its rows and columns.

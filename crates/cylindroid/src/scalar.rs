@@ -1,4 +1,5 @@
-//! Sine and cosine as a pair, branch-free, the same on every platform.
+//! Sine and cosine as a pair, branch-free, the same on every platform; and a fixed sequence of
+//! numbers for guesses.
 //!
 //! Formula  reduce by multiples of pi/2 (three-part Cody-Waite), then the fdlibm kernels
 //! Valid    |x| <= 1e5; beyond it (and for NaN and infinity) the standard library is called
@@ -95,6 +96,15 @@ fn small_sin_cos(x: f64, fused: bool) -> (f64, f64) {
     let sin_sign = (quadrant & 2) << 62;
     let cos_sign = (quadrant.wrapping_add(1) & 2) << 62;
     (f64::from_bits(s.to_bits() ^ sin_sign), f64::from_bits(c.to_bits() ^ cos_sign))
+}
+
+/// The next number in [0, 1) of a fixed sequence (SplitMix64); `state` is where it stands.
+pub(crate) fn uniform(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 #[cfg(test)]

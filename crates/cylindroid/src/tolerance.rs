@@ -174,3 +174,12 @@ pub const HELD_ROWS: f64 = 1e-9;
 
 /// A motion of length one (scaled) that moves the task by less than this does not move it [-].
 pub const UNSTEERED: f64 = 1e-9;
+
+/// What rounding leaves open of loops that were closed by Newton's method: rows of lengths over the
+/// reach and of angles, of a hundred roundings and some [-].
+pub const LOOP_ROUNDING: f64 = 1e-13;
+
+/// Step by which closed postures beside a posture are looked for, in scaled coordinates [rad, or
+/// reaches]: a resistance of second order then shows as 1e-4, of fourth order as 1e-8, far above
+/// rounding.
+pub const FINITE_STEP: f64 = 1e-2;

@@ -8,7 +8,10 @@ pub(crate) const MOBILITY: &str = "\
 Mobility of a mechanism: how it can move, what is redundant, idle or held twice
 
 Counts come from ranks at this configuration, with their gap; Grubler's formula is given beside \
-them. Loops and contacts are taken as closed: the gap by which they are open is printed.";
+them, and so is what remains of the motions when the loops are closed after a step (finite motion). \
+The pose is compared with other closed postures of the mechanism: where it is singular, the wrench \
+that blocks and the motion lost or gained are named as screws, seen from the world. Loops and \
+contacts are taken as closed: the gap by which they are open is printed.";
 
 pub(crate) const MANIPULABILITY: &str = "\
 How well motion and force go from the driven joints to the reference frame

@@ -101,3 +101,81 @@ fn bad_requests() {
     let text = refused(&["move", "five-bar", "--q", "0.4,0,0,0", "--to", "1,2,0"]);
     assert!(text.contains("assemble"), "{text}");
 }
+
+/// Mechanisms of the library's tests.
+fn file(name: &str) -> String {
+    format!("../cylindroid/tests/data/mechanisms/{name}.toml")
+}
+
+#[test]
+fn singular_postures_are_named() {
+    let stewart = json(&["mobility", "stewart"], 0);
+    assert_eq!(
+        (&stewart["finite_dof"], &stewart["singularity"]["regular"]),
+        (&6.into(), &true.into())
+    );
+    assert!(stewart["singularity"]["compared_with"].as_u64().unwrap() > 3);
+    let page = text(&["mobility", "stewart"]);
+    assert!(page.contains("none: the pose is regular") && page.contains("all of it"), "{page}");
+
+    let turned = json(&["mobility", &file("stewart-turned")], 0);
+    let gained = &turned["singularity"]["gained"][0];
+    assert!(difference(&numbers(&gained["direction"]), &[0.0, 0.0, 1.0]) < 1e-9);
+    let kind = turned["singularity"]["kinds"][0].as_str().unwrap();
+    assert!(kind.starts_with("type II "), "{kind}");
+    assert_eq!(turned["singularity"]["distances"]["type_ii"], 0.0);
+    let page = text(&["mobility", &file("stewart-turned")]);
+    assert!(page.contains("a screw of pitch -0.459627 m/rad"), "{page}");
+
+    let page = text(&["mobility", &file("five-bar-dead")]);
+    assert!(page.contains("a force along the line through (0, 0) m, direction (1, 0)"), "{page}");
+    let page = text(&["mobility", &file("five-bar-stretched")]);
+    assert!(page.contains("a rotation about the point (0, 1) m"), "{page}");
+    let arm = text(&["mobility", "ur5e", "--q", "zero"]);
+    assert!(arm.contains("a couple about (1, 0, 0)"), "{arm}");
+}
+
+#[test]
+fn finite_motion_is_told_from_first_order() {
+    let folded = json(&["mobility", &file("folded-parallelogram")], 0);
+    assert_eq!((&folded["dof"], &folded["finite_dof"]), (&2.into(), &1.into()));
+    assert_eq!(folded["finite"]["branches"].as_array().unwrap().len(), 2);
+    assert_eq!(folded["finite"]["certain"], true);
+    assert!(text(&["mobility", &file("folded-parallelogram")]).contains("2 motions cross"));
+    let pair = json(&["mobility", &file("stretched-pair")], 0);
+    assert_eq!((&pair["dof"], &pair["finite_dof"]), (&1.into(), &0.into()));
+    assert!(text(&["mobility", &file("stretched-pair")]).contains("shaky"));
+    let spatial = json(&["mobility", &file("spatial-four-bar")], 0);
+    assert_eq!((&spatial["grubler"], &spatial["finite_dof"]), (&(-2).into(), &1.into()));
+    assert_eq!(
+        (&spatial["hyperstatic"], &spatial["singularity"]["regular"]),
+        (&3.into(), &true.into())
+    );
+    // Open loops: nothing is said.
+    let open = json(&["mobility", "five-bar", "--q", "0.3,0,0,0"], 0);
+    assert!(open["finite_dof"].is_null());
+}
+
+/// Each has an answer or one clear error.
+#[test]
+fn strange_mechanisms() {
+    let all = json(&["mobility", "five-bar", "--actuated", "q1,q2,q3,q4,q5"], 0);
+    assert_eq!(all["singularity"]["regular"], true);
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let pair = std::fs::read_to_string(file("stretched-pair")).unwrap();
+    // Nothing driven.
+    let idle = json(&["mobility", &write("idle.toml", &pair.replace("actuated = true", ""))], 0);
+    assert_eq!((&idle["actuated"], &idle["finite_dof"]), (&serde_json::json!([]), &0.into()));
+    // A contact on a missing link.
+    let contact = "\n[[contact]]\nname = \"c1\"\ntype = \"hard_finger\"\nbetween = [\"lift\", \
+                   \"ground\"]\npoint = [1.0, 0.0]\nnormal = [0.0, 1.0]\n";
+    let output = cylindroid(&["mobility", &write("missing.toml", &(pair + contact))]);
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(error.contains("lift") && error.contains("left"), "{error}");
+}

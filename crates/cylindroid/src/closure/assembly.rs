@@ -101,16 +101,21 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<
 }
 
 /// A configuration with its residuals and their rates, scaled.
-struct Closing {
+pub(super) struct Closing {
     q: Vec<f64>,
-    residuals: Vec<f64>,
-    rates: Matrix,
-    error: f64,
+    pub(super) residuals: Vec<f64>,
+    pub(super) rates: Matrix,
+    pub(super) error: f64,
     gap: Gap,
 }
 
 impl Closing {
-    fn at(mechanism: &Mechanism, q: &[f64], free: &[usize], length: f64) -> Result<Self> {
+    pub(super) fn at(
+        mechanism: &Mechanism,
+        q: &[f64],
+        free: &[usize],
+        length: f64,
+    ) -> Result<Self> {
         let state = mechanism.state(q)?;
         let (all, _, gap) = rows(&state)?;
         let held: Vec<&Row> = all.iter().filter(|row| row.rate_of.is_none()).collect();
@@ -121,7 +126,7 @@ impl Closing {
         Ok(Self { q: q.to_vec(), residuals, rates, error, gap })
     }
 
-    fn is_closed(&self, length: f64) -> bool {
+    pub(super) fn is_closed(&self, length: f64) -> bool {
         self.gap.distance <= CLOSED * length && self.gap.angle <= CLOSED
     }
 
@@ -154,7 +159,7 @@ impl Closing {
     }
 }
 
-fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
+pub(super) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
     if mechanism.coordinates()[i].kind.unit() == "m" { length } else { 1.0 }
 }
 

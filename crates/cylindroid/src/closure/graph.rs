@@ -186,7 +186,7 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
             held.pop();
             rows.extend(pair.crossed(joint.axis, second));
         }
-        rows.extend(held.into_iter().map(|w| pair.row(w)));
+        rows.extend(pair.rows(&held));
         let along = joint.axis;
         let measure = match joint.kind {
             JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
@@ -221,7 +221,7 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
             world_from_a: link_pose(state, mechanism, contact.a)? * contact.link_a_from_contact,
             world_from_b: link_pose(state, mechanism, contact.b)? * contact.link_b_from_contact,
         };
-        rows.extend(contact.kind.held(dimension).into_iter().map(|w| pair.row(w)));
+        rows.extend(pair.rows(&contact.kind.held(dimension)));
     }
     let mut gap = Gap::default();
     for row in &rows {
@@ -242,6 +242,27 @@ struct Pair {
 }
 
 impl Pair {
+    /// The rows of all that is held. Where two moments are, they hold the direction of the axis
+    /// across them, and residuals about them are those of the shortest turn of that axis: rates of
+    /// the whole turn would be right only where the joint is at zero.
+    fn rows(&self, held: &[Wrench]) -> Vec<Row> {
+        let moments: Vec<Vec3> =
+            held.iter().filter(|w| w.force == Vec3::ZERO).map(|w| w.moment).collect();
+        let mut rows: Vec<Row> = held.iter().map(|w| self.row(*w)).collect();
+        if let [first, second] = moments[..] {
+            let axis = first.cross(second);
+            let turned = self.world_from_a.rotation.inverse() * (self.world_from_b.rotation * axis);
+            let across = axis.cross(turned);
+            if let Some(about) = across.unit(0.0) {
+                let tilt = about * across.norm().atan2(axis.dot(turned));
+                for (row, w) in rows.iter_mut().zip(held).filter(|(_, w)| w.force == Vec3::ZERO) {
+                    row.residual = w.moment.dot(tilt);
+                }
+            }
+        }
+        rows
+    }
+
     /// What holds `held`, a wrench in the first frame: forces act where the second one is.
     fn row(&self, held: Wrench) -> Row {
         let a_from_b = self.world_from_a.inverse() * self.world_from_b;

@@ -12,7 +12,8 @@
 //! Shapes   motions: (q_a + q_p + d) x n, torques: q_a x n, wrenches: d x n, contact forces: t x n
 //! Units    of the constraint; bases are orthonormal in units scaled by the characteristic length
 //! Valid    any constraint. Counts come from ranks, never from Grubler's formula, which is given
-//!          beside them. Infinitesimal: a motion counted here may have no finite one behind it.
+//!          beside them. Infinitesimal: a motion counted here may have no finite one behind it, see
+//!          `finite.rs`.
 //! Source   Bicchi & Prattichizzo 1998, eqs. 3 to 5; the counts of its eq. 5 modulo redundancy and
 //!          indeterminacy, where alone they are unique
 //! Checked  tests/it/closure/reference.rs, tests/it/closure/mobility.rs

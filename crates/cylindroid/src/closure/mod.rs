@@ -22,7 +22,11 @@
 //! ```
 
 mod assembly;
+mod branches;
 mod constraint;
+mod diagnosis;
+mod finite;
+mod generic;
 mod graph;
 mod grasp;
 mod mobility;
@@ -31,9 +35,13 @@ mod relation;
 mod singularity;
 mod statics;
 mod steering;
+mod vicinity;
 
 pub use assembly::{Assembly, assemble};
 pub use constraint::{Blocks, Constraint, Unit, Units};
+pub use diagnosis::Diagnosis;
+pub use finite::{Branch, Evidence, FiniteMobility};
+pub use generic::Generic;
 pub use graph::{ClosedChain, Gap};
 pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};
 pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};

@@ -11,7 +11,8 @@
 //!          reference point), the smallest value of the kernel without passive joints, and the
 //!          smallest singular value kept of the scaled constraint over the largest. The last
 //!          depends on where contacts are drawn; that each is zero does not depend on anything.
-//! Valid    relative to generic counts, which [`Counts::generic`] takes from several poses: a
+//! Valid    relative to generic counts, which [`Counts::generic`] takes from several poses
+//!          (`Generic` finds them for a mechanism, `Diagnosis` names what is lost and gained): a
 //!          mechanism may hold wrenches by its structure, or spin idly, in every pose
 //! Source   Gosselin & Angeles 1990 (I, II, III); Park & Kim 1999 and Zlatanov et al. 1995
 //!          (configuration space, passive)

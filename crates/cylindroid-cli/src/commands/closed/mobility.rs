@@ -3,10 +3,12 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::closure::{Mobility, Subspace};
+use cylindroid::Matrix;
+use cylindroid::closure::{Counts, Diagnosis, JointMobility, Mobility};
 use serde::Serialize;
 
-use super::{HeadJson, Posed};
+use super::singularity::{self, FiniteJson, SingularityJson};
+use super::{HeadJson, Posed, list};
 use crate::args::ClosedArgs;
 use crate::commands::Style;
 use crate::output::{self, Align, number};
@@ -16,6 +18,10 @@ struct MobilityJson<'a> {
     #[serde(flatten)]
     head: HeadJson<'a>,
     dof: usize,
+    /// Of finite motion; null where the loops are open.
+    finite_dof: Option<usize>,
+    finite: FiniteJson,
+    singularity: SingularityJson,
     /// Of the relation between driven joints and reference frame, as the next four.
     redundancy: usize,
     indeterminacy: usize,
@@ -57,24 +63,32 @@ pub(crate) fn run(
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
     let posed = Posed::new(args)?;
-    let mobility = Mobility::of(&posed.chain.constraint);
+    let chain = &posed.chain;
+    let mobility = Mobility::of(&chain.constraint);
+    let state = posed.mechanism.state(&posed.q)?;
+    let length = chain.constraint.length();
+    let diagnosis = Diagnosis::of(&state, Some(chain.reference), Some(length))?;
     match style {
-        Style::Json => output::json(out, &describe(&posed, &mobility))?,
-        Style::Table => print(out, &posed, &mobility)?,
+        Style::Json => output::json(out, &describe(&posed, &mobility, &diagnosis))?,
+        Style::Table => print(out, &posed, &mobility, &diagnosis)?,
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn vectors(space: &Subspace) -> Vec<Vec<f64>> {
-    (0..space.basis.cols()).map(|j| space.basis.column(j).to_vec()).collect()
+/// The columns.
+pub(super) fn vectors(basis: &Matrix) -> Vec<Vec<f64>> {
+    (0..basis.cols()).map(|j| basis.column(j).to_vec()).collect()
 }
 
-fn describe<'a>(posed: &'a Posed, m: &Mobility) -> MobilityJson<'a> {
+fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJson<'a> {
     let chain = &posed.chain;
     let names = chain.actuated.iter().chain(&chain.passive);
     MobilityJson {
         head: posed.into(),
         dof: m.dof.dimension(),
+        finite_dof: found.finite.finite,
+        finite: (&found.finite).into(),
+        singularity: found.into(),
         redundancy: m.relation.redundancy,
         indeterminacy: m.relation.indeterminacy,
         coordinate: m.relation.coordinate,
@@ -84,10 +98,10 @@ fn describe<'a>(posed: &'a Posed, m: &Mobility) -> MobilityJson<'a> {
         idle: m.idle.dimension(),
         grubler: m.grubler,
         rank_gap: m.dof.cut.rank.gap,
-        dof_basis: vectors(&m.dof),
-        idle_basis: vectors(&m.idle),
-        internal_basis: vectors(&m.internal),
-        zero_torque_basis: vectors(&m.zero_torque),
+        dof_basis: vectors(&m.dof.basis),
+        idle_basis: vectors(&m.idle.basis),
+        internal_basis: vectors(&m.internal.basis),
+        zero_torque_basis: vectors(&m.zero_torque.basis),
         joints: names
             .zip(&m.joints)
             .map(|(joint, j)| JointJson {
@@ -102,66 +116,122 @@ fn describe<'a>(posed: &'a Posed, m: &Mobility) -> MobilityJson<'a> {
     }
 }
 
-fn print(out: &mut dyn Write, posed: &Posed, m: &Mobility) -> anyhow::Result<()> {
-    let mut lines = posed.heading();
+fn print(
+    out: &mut dyn Write,
+    posed: &Posed,
+    m: &Mobility,
+    found: &Diagnosis,
+) -> anyhow::Result<()> {
+    output::pairs(out, posed.heading())?;
+    writeln!(out)?;
     let gap = m.dof.cut.rank.gap;
-    let gap = if gap.is_infinite() { "clear".to_owned() } else { format!("gap {}", number(gap)) };
-    lines.push(("degrees of freedom", format!("{} ({gap})", m.dof.dimension())));
-    lines.push(("Grubler's formula", grubler(m)));
+    let gap = if gap.is_infinite() {
+        "a clear rank".to_owned()
+    } else {
+        format!("rank gap {}", number(gap))
+    };
+    let mut lines = vec![
+        ("degrees of freedom", format!("{} to first order ({gap})", m.dof.dimension())),
+        ("finite motion", singularity::finite(posed, &found.finite)),
+        ("Grubler's formula", grubler(m)),
+    ];
+    lines.extend(singularity::lines(posed, found));
+    lines.extend(joints(posed, &m.joints));
     output::pairs(out, lines)?;
     writeln!(out)?;
+    counts(out, m, &found.generic.counts)?;
+    singularity::ways(out, posed, &found.finite)?;
+    if !m.doubts.is_empty() {
+        writeln!(out)?;
+    }
+    for doubt in &m.doubts {
+        writeln!(out, "doubtful: {doubt}")?;
+    }
+    Ok(())
+}
+
+/// What is counted, here and in ordinary postures.
+fn counts(out: &mut dyn Write, m: &Mobility, generic: &Counts) -> anyhow::Result<()> {
     let r = &m.relation;
-    let rows: [(&str, usize, &str); 7] = [
-        ("coordinate", r.coordinate, "motions of the reference frame that the driven joints set"),
+    let rows: [(&str, usize, Option<usize>, &str); 7] = [
+        (
+            "coordinate",
+            r.coordinate,
+            None,
+            "motions of the reference frame that the driven joints set",
+        ),
         (
             "redundancy",
             r.redundancy,
+            Some(generic.redundancy),
             "motions of driven joints that leave the reference frame at rest",
         ),
         (
             "indeterminacy",
             r.indeterminacy,
+            Some(generic.indeterminacy),
             "motions of the reference frame with driven joints at rest",
         ),
-        ("idle", m.idle.dimension(), "motions of passive joints alone"),
-        ("internal", m.internal.dimension(), "torques of driven joints that balance each other"),
+        ("idle", m.idle.dimension(), Some(generic.idle), "motions of passive joints alone"),
+        (
+            "internal",
+            m.internal.dimension(),
+            None,
+            "torques of driven joints that balance each other",
+        ),
         (
             "zero_torque",
             m.zero_torque.dimension(),
+            Some(generic.zero_torque),
             "wrenches on the reference frame held without torque",
         ),
         (
             "hyperstatic",
             m.hyperstatic.dimension(),
+            None,
             "forces in loops and contacts that nothing determines",
         ),
     ];
-    let columns = [("kind", Align::Left), ("count", Align::Right), ("what it counts", Align::Left)];
-    let rows = rows.map(|(name, n, what)| vec![name.to_owned(), n.to_string(), what.to_owned()]);
-    output::table(out, &columns, rows)?;
-    writeln!(out)?;
     let columns = [
-        ("joint", Align::Left),
-        ("driven", Align::Left),
-        ("moves", Align::Left),
-        ("with the drives at rest", Align::Left),
+        ("kind", Align::Left),
+        ("here", Align::Right),
+        ("generic", Align::Right),
+        ("what it counts", Align::Left),
     ];
-    let chain = &posed.chain;
-    let names = chain.actuated.iter().chain(&chain.passive).enumerate();
-    let yes = |b: bool| if b { "yes" } else { "no" }.to_owned();
-    let joints = names.zip(&m.joints).map(|((i, name), j)| {
-        let rest = match (j.idle, j.free_of_actuators) {
-            (true, _) => "spins alone",
-            (false, true) => "moves",
-            (false, false) => "rests",
-        };
-        vec![name.clone(), yes(i < chain.actuated.len()), yes(j.moves), rest.to_owned()]
+    let rows = rows.map(|(name, n, generic, what)| {
+        let generic = generic.map_or_else(String::new, |n| n.to_string());
+        vec![name.to_owned(), n.to_string(), generic, what.to_owned()]
     });
-    output::table(out, &columns, joints)?;
-    for doubt in &m.doubts {
-        writeln!(out, "doubtful: {doubt}")?;
-    }
-    Ok(())
+    Ok(output::table(out, &columns, rows)?)
+}
+
+/// Which joints move, in all motions and with the drives at rest.
+fn joints(posed: &Posed, mobility: &[JointMobility]) -> [(&'static str, String); 4] {
+    let chain = &posed.chain;
+    let names: Vec<&String> = chain.actuated.iter().chain(&chain.passive).collect();
+    let those = |of: &dyn Fn(&JointMobility) -> bool| -> Vec<String> {
+        let all = names.iter().zip(mobility);
+        all.filter(|(_, j)| of(j)).map(|(name, _)| (*name).clone()).collect()
+    };
+    let some = |names: Vec<String>| if names.is_empty() { String::new() } else { list(&names) };
+    let moving = those(&|j| j.moves);
+    let all = moving.len() == names.len();
+    let with_drives_at_rest = those(&|j| j.free_of_actuators);
+    [
+        ("joints that move", if all { format!("all {}", names.len()) } else { list(&moving) }),
+        ("locked by geometry", some(those(&|j| !j.moves))),
+        (
+            "with drives at rest",
+            if with_drives_at_rest.is_empty() {
+                "no joint moves".to_owned()
+            } else if with_drives_at_rest.len() == chain.passive.len() {
+                format!("all {} passive joints still move", chain.passive.len())
+            } else {
+                format!("{} still move", list(&with_drives_at_rest))
+            },
+        ),
+        ("spinning alone", some(those(&|j| j.idle))),
+    ]
 }
 
 /// The formula, and what the geometry adds to it.

@@ -3,6 +3,7 @@
 pub(super) mod assemble;
 pub(super) mod manipulability;
 pub(super) mod mobility;
+mod singularity;
 
 use cylindroid::closure::{ClosedChain, Gap};
 use cylindroid::model::Mechanism;
@@ -55,7 +56,7 @@ impl Posed {
         vec![
             ("model", self.mechanism.name().to_owned()),
             ("reference frame", self.frame().to_owned()),
-            ("q [rad or m]", output::entries(&self.q)),
+            ("q [rad or m]", posture(&self.q)),
             ("driven", list(&self.chain.actuated)),
             ("passive", list(&self.chain.passive)),
             (
@@ -72,6 +73,14 @@ impl Posed {
             ),
         ]
     }
+}
+
+/// In full where there is something to read.
+fn posture(q: &[f64]) -> String {
+    if q.len() > 1 && q.iter().all(|x| *x == 0.0) {
+        return format!("all {} at zero", q.len());
+    }
+    output::entries(q)
 }
 
 fn list(names: &[String]) -> String {

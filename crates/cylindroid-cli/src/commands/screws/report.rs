@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::Found;
 use crate::commands::Style;
-use crate::output::{self, Align, PoseJson, number};
+use crate::output::{self, Align, PoseJson, ScrewJson, number};
 
 #[derive(Debug, Serialize)]
 struct ScrewsJson<'a> {
@@ -62,17 +62,6 @@ struct PointJson {
     along: Option<Vec<f64>>,
     /// Rates that keep it at rest, orthonormal.
     still: Vec<Vec<f64>>,
-}
-
-#[derive(Debug, Serialize)]
-struct ScrewJson {
-    /// Point of the axis nearest to the origin; null for a translation.
-    point: Option<[f64; 3]>,
-    direction: [f64; 3],
-    /// [m/rad]; null for a translation.
-    pitch: f64,
-    /// [rad/s], of a translation [m/s].
-    amplitude: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -138,17 +127,6 @@ struct TransversalsJson {
 struct LineJson {
     point: [f64; 3],
     direction: [f64; 3],
-}
-
-impl From<&Screw> for ScrewJson {
-    fn from(s: &Screw) -> Self {
-        Self {
-            point: (!s.is_translation()).then(|| s.axis.point.to_array()),
-            direction: s.axis.direction.to_array(),
-            pitch: s.pitch,
-            amplitude: s.amplitude,
-        }
-    }
 }
 
 pub(super) fn write(

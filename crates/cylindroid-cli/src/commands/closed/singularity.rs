@@ -1,0 +1,297 @@
+//! What `mobility` says about singular postures and finite motion.
+
+use std::io::Write;
+
+use cylindroid::closure::{Counts, Diagnosis, Evidence, FiniteMobility, SingularityKind};
+use cylindroid::model::Dimension;
+use cylindroid::screws::Screw;
+use serde::Serialize;
+
+use super::mobility::vectors;
+use super::{Posed, list};
+use crate::output::{self, Align, ScrewJson, number};
+
+#[derive(Debug, Serialize)]
+pub(super) struct SingularityJson {
+    regular: bool,
+    /// In words.
+    kinds: Vec<String>,
+    distances: DistancesJson,
+    generic: CountsJson,
+    /// Other closed postures that the generic counts come from.
+    compared_with: usize,
+    /// Wrenches held without torque, as screws; those beyond the generic ones.
+    blocked: Vec<ScrewJson>,
+    /// Motions of the reference frame.
+    lost: Vec<ScrewJson>,
+    gained: Vec<ScrewJson>,
+    /// Driven joints that move with the reference frame at rest, beyond the generic ones.
+    redundant: Vec<String>,
+    /// Passive coordinates that move alone, beyond the generic ones.
+    idle: Vec<String>,
+    /// False where what is generic could not be told from what is not.
+    separated: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct DistancesJson {
+    type_i: f64,
+    type_ii: f64,
+    configuration_space: f64,
+    passive: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct CountsJson {
+    rank: usize,
+    idle: usize,
+    redundancy: usize,
+    indeterminacy: usize,
+    zero_torque: usize,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct FiniteJson {
+    evidence: String,
+    certain: bool,
+    /// [rad, or characteristic lengths]
+    step: f64,
+    left_open: f64,
+    branches: Vec<BranchJson>,
+    /// Motions to first order that do not exist: rates of q.
+    shaky: Vec<Vec<f64>>,
+}
+
+#[derive(Debug, Serialize)]
+struct BranchJson {
+    dimension: usize,
+    /// Rates of q, a list each.
+    motions: Vec<Vec<f64>>,
+}
+
+impl From<&Diagnosis> for SingularityJson {
+    fn from(d: &Diagnosis) -> Self {
+        let at = &d.singularities.distances;
+        let Counts { rank, idle, redundancy, indeterminacy, zero_torque } = d.generic.counts;
+        let screws = |of: &[Screw]| of.iter().map(Into::into).collect();
+        Self {
+            regular: d.singularities.is_regular(),
+            kinds: d.singularities.kinds.iter().map(ToString::to_string).collect(),
+            distances: DistancesJson {
+                type_i: at.type_i,
+                type_ii: at.type_ii,
+                configuration_space: at.configuration_space,
+                passive: at.passive,
+            },
+            generic: CountsJson { rank, idle, redundancy, indeterminacy, zero_torque },
+            compared_with: d.generic.others,
+            blocked: screws(&d.blocked),
+            lost: screws(&d.lost),
+            gained: screws(&d.gained),
+            redundant: d.redundant.clone(),
+            idle: d.idle.clone(),
+            separated: d.separated,
+        }
+    }
+}
+
+impl From<&FiniteMobility> for FiniteJson {
+    fn from(f: &FiniteMobility) -> Self {
+        let branch = |b: &cylindroid::closure::Branch| BranchJson {
+            dimension: b.dimension,
+            motions: vectors(&b.motions),
+        };
+        Self {
+            evidence: f.evidence.to_string(),
+            certain: f.certain,
+            step: f.step,
+            left_open: f.left_open,
+            branches: f.branches.iter().map(branch).collect(),
+            shaky: vectors(&f.shaky),
+        }
+    }
+}
+
+/// Finite beside infinitesimal mobility, in a line.
+pub(super) fn finite(posed: &Posed, f: &FiniteMobility) -> String {
+    let step = number(f.step);
+    let Some(dof) = f.finite else {
+        return match f.evidence {
+            Evidence::Nothing if f.step == 0.0 => {
+                "not known: the loops are open here; close them first (`assemble`)".to_owned()
+            }
+            _ => "not known: no step away from here could be followed".to_owned(),
+        };
+    };
+    let unsure = if f.certain { "" } else { "; from a search, which may have missed a branch" };
+    match f.evidence {
+        _ if f.infinitesimal == 0 => "none: it is a structure".to_owned(),
+        Evidence::Independent if !posed.mechanism.is_closed() => {
+            format!("{dof}: all of it, for there are no loops")
+        }
+        Evidence::Independent => format!("{dof}: all of it, for the loops are independent"),
+        Evidence::Steps => format!(
+            "{dof}: all of it; loops ask for the same thing twice here, and still close after \
+             steps of {step} in every direction"
+        ),
+        _ if dof == 0 => {
+            format!("none: it gives to first order and does not move (shaky){unsure}")
+        }
+        _ => format!(
+            "{dof} of {}: {}{unsure}",
+            f.infinitesimal,
+            match f.branches.len() {
+                1 => "the others give to first order and do not move (shaky)".to_owned(),
+                n => format!("{n} motions cross in this pose, and no sum of them exists"),
+            }
+        ),
+    }
+}
+
+/// The verdict, what is lost and gained, and the distances.
+pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)> {
+    let found = &d.singularities;
+    let planar = posed.mechanism.dimension() == Dimension::Planar;
+    let others = d.generic.others;
+    let verdict = if found.is_regular() {
+        "none: the pose is regular".to_owned()
+    } else {
+        let kinds: Vec<String> = found.kinds.iter().map(ToString::to_string).collect();
+        kinds.join("; ")
+    };
+    let mut lines = vec![
+        ("singularity", verdict),
+        (
+            "compared with",
+            match others {
+                0 => "nothing: no other posture closes".to_owned(),
+                1 => "only one other posture of the mechanism".to_owned(),
+                _ => format!("{others} other postures of the mechanism"),
+            },
+        ),
+    ];
+    let mut named = |name, screws: &[Screw], word: &dyn Fn(&Screw, bool) -> String| {
+        let words: Vec<String> = screws.iter().map(|s| word(s, planar)).collect();
+        lines.push((name, words.join("; ")));
+    };
+    named("blocked", &d.blocked, &|s, planar| {
+        format!("{} is held without torque", wrench_in_words(s, planar))
+    });
+    named("lost", &d.lost, &motion_in_words);
+    named("gained", &d.gained, &motion_in_words);
+    let of = |names: &[String]| if names.is_empty() { String::new() } else { list(names) };
+    if found.kinds.contains(&SingularityKind::TypeI) || !d.blocked.is_empty() {
+        lines.push(("drives without effect", of(&d.redundant)));
+    }
+    lines.push(("gaining idle motion", of(&d.idle)));
+    if !d.separated {
+        lines.push((
+            "mind",
+            "what is held or free in every pose could not be told from what is so here alone: all \
+             is listed"
+                .to_owned(),
+        ));
+    }
+    let at = &found.distances;
+    let closed = posed.mechanism.is_closed();
+    let distances: Vec<String> = [
+        ("type I", at.type_i, true),
+        ("type II", at.type_ii, closed),
+        ("configuration space", at.configuration_space, closed),
+        ("passive", at.passive, !posed.chain.passive.is_empty()),
+    ]
+    .into_iter()
+    .filter(|(_, x, told)| x.is_finite() && *told)
+    .map(|(name, x, _)| format!("{name} {}", number(x)))
+    .collect();
+    lines.push(("distances, 0 to 1", distances.join(", ")));
+    lines
+}
+
+fn point(screw: &Screw, planar: bool) -> String {
+    let p = screw.axis.point;
+    coordinates(&[p.x, p.y, p.z], planar)
+}
+
+/// Rounding, and what spaces of postures beside this one are right to, shown as zero.
+fn coordinates(all: &[f64; 3], planar: bool) -> String {
+    let clean = all.map(|x| if x.abs() < 1e-9 { 0.0 } else { x });
+    format!("({})", output::entries(if planar { &clean[..2] } else { &clean }))
+}
+
+fn direction(screw: &Screw, planar: bool) -> String {
+    let d = screw.axis.direction;
+    coordinates(&[d.x, d.y, d.z], planar)
+}
+
+/// As zero where it is rounding.
+fn pitch(screw: &Screw) -> Option<String> {
+    let text = output::entries(&[screw.pitch]);
+    (text != "0").then_some(text)
+}
+
+fn motion_in_words(s: &Screw, planar: bool) -> String {
+    let along = direction(s, planar);
+    if s.is_translation() {
+        return format!("a translation along {along}");
+    }
+    let at = point(s, planar);
+    match pitch(s) {
+        _ if planar => format!("a rotation about the point {at} m"),
+        None => format!("a rotation about the line through {at} m along {along}"),
+        Some(pitch) => {
+            format!("a screw of pitch {pitch} m/rad about the line through {at} m along {along}")
+        }
+    }
+}
+
+fn wrench_in_words(s: &Screw, planar: bool) -> String {
+    let along = direction(s, planar);
+    if s.is_translation() {
+        return if planar { "a moment".to_owned() } else { format!("a couple about {along}") };
+    }
+    let at = point(s, planar);
+    match pitch(s) {
+        None => format!("a force along the line through {at} m, direction {along}"),
+        Some(pitch) => {
+            format!("a wrench of pitch {pitch} m along the line through {at} m, direction {along}")
+        }
+    }
+}
+
+/// The branches and what is shaky, joint by joint, where first order does not tell all.
+pub(super) fn ways(out: &mut dyn Write, posed: &Posed, f: &FiniteMobility) -> anyhow::Result<()> {
+    if f.evidence != Evidence::Search {
+        return Ok(());
+    }
+    // The largest rate is one, the first not negative.
+    let scaled = |motion: Vec<f64>| -> Vec<f64> {
+        let largest = motion.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let first = motion.iter().find(|x| x.abs() > 1e-3 * largest).copied().unwrap_or(1.0);
+        motion.iter().map(|x| x / largest.copysign(first)).collect()
+    };
+    let mut names = Vec::new();
+    let mut motions = Vec::new();
+    for (i, branch) in f.branches.iter().enumerate() {
+        for (j, motion) in vectors(&branch.motions).into_iter().enumerate() {
+            let more =
+                if branch.motions.cols() > 1 { format!(".{}", j + 1) } else { String::new() };
+            names.push(format!("way {}{more}", i + 1));
+            motions.push(scaled(motion));
+        }
+    }
+    for (i, motion) in vectors(&f.shaky).into_iter().enumerate() {
+        names.push(format!("shaky {}", i + 1));
+        motions.push(scaled(motion));
+    }
+    writeln!(out)?;
+    writeln!(out, "Rates of the joints on the ways out of this pose, and of what is only shaky")?;
+    let mut columns = vec![("joint", Align::Left)];
+    columns.extend(names.iter().map(|n| (n.as_str(), Align::Right)));
+    let rows = posed.mechanism.coordinates().iter().enumerate().map(|(i, c)| {
+        let mut row = vec![c.name.clone()];
+        row.extend(motions.iter().map(|m| output::entries(&[m[i]])));
+        row
+    });
+    Ok(output::table(out, &columns, rows)?)
+}

@@ -1,0 +1,300 @@
+//! The ways out of a posture where not every motion to first order can be followed.
+//!
+//! Method   on the sphere |x| = h of motions to first order, zeros of the reduced loops g (see
+//!          `vicinity.rs`) are looked for by damped Gauss-Newton from starts at random. A zero
+//!          whose own motions can be followed lies on a branch; it is carried inwards, to both
+//!          sides of the posture, and the motions there give the branch's tangent
+//! Shapes   x: k, a tangent: k x dimension
+//! Units    none (scaled)
+//! Valid    finds what it hits: branches of dimension k - 1 surely, thin ones among many motions
+//!          perhaps not; the caller says so. Where g is one function with a Hessian of full rank,
+//!          its zeros are those of the quadric (Morse), and the count is proved
+//! Why so   zeros of the quadratic part alone would name branches that third order destroys
+//! Checked  tests/it/closure/finite.rs
+
+use super::vicinity::{Near, Vicinity, norm};
+use crate::error::Result;
+use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold};
+use crate::model::Mechanism;
+use crate::scalar::uniform;
+
+/// Steps of a search at most.
+const MOST_STEPS: usize = 60;
+/// How much nearer the tangent is taken.
+const INWARDS: f64 = 1.0 / 64.0;
+/// Part of the distance below which a singular value at a zero counts as none [-].
+const SMALL: f64 = 1e-3;
+/// Sine of the angle below which two tangents are one; they are right to 1e-6.
+const SAME: f64 = 1e-3;
+/// Steps that can be followed span a direction if they spread along it by more than this [-].
+const SPREAD: f64 = 0.1;
+/// Cosine of the angle by which a branch may turn on its way inwards.
+const NEARLY: f64 = 0.9;
+/// More tangents of one dimension than this are those of a cone.
+const MOST_TANGENTS: usize = 3;
+
+/// A branch in coordinates of the motions to first order.
+pub(super) struct Tangent {
+    pub(super) dimension: usize,
+    /// Orthonormal columns; more than the dimension where the branch is a cone.
+    pub(super) directions: Matrix,
+    /// Closed postures on it, on either side.
+    pub(super) postures: Vec<Vec<f64>>,
+}
+
+/// What a search found.
+pub(super) struct Found {
+    pub(super) tangents: Vec<Tangent>,
+    /// True if nothing else can be there.
+    pub(super) complete: bool,
+}
+
+/// A direction at random, of length one.
+pub(super) fn direction(k: usize, random: &mut u64) -> Vec<f64> {
+    let x: Vec<f64> = (0..k).map(|_| uniform(random) - 0.5).collect();
+    let size = norm(&x);
+    x.iter().map(|x| if size > 0.0 { x / size } else { 1.0 / (k as f64).sqrt() }).collect()
+}
+
+fn times(x: &[f64], factor: f64) -> Vec<f64> {
+    x.iter().map(|x| factor * x).collect()
+}
+
+/// The branches through the posture of `vicinity`, looked for at the distance `h`.
+pub(super) fn branches(
+    mechanism: &Mechanism,
+    length: f64,
+    vicinity: &Vicinity<'_>,
+    h: f64,
+) -> Result<Found> {
+    let k = vicinity.motions();
+    let mut random = 1;
+    let starts: Vec<Vec<f64>> = match k {
+        1 => vec![vec![1.0], vec![-1.0]],
+        _ => (0..(16 + 8 * k).min(64)).map(|_| direction(k, &mut random)).collect(),
+    };
+    let mut tangents: Vec<Tangent> = Vec::new();
+    let mut sound = true;
+    for start in starts {
+        let Some((x, near)) = zero(vicinity, &times(&start, h), h)? else { continue };
+        let Some(here) = Here::of(mechanism, &near.q, length, h)? else {
+            sound = false;
+            continue;
+        };
+        sound &= here.clear;
+        if here.motions.cols() == 0 {
+            continue;
+        }
+        let Some(tangent) = tangent(mechanism, length, vicinity, (&x, h), &here)? else {
+            sound = false;
+            continue;
+        };
+        if !tangents.iter().any(|t| same(t, &tangent)) {
+            tangents.push(tangent);
+        }
+    }
+    let tangents = merged(tangents, k);
+    let largest = tangents.first().map_or(0, |t| t.dimension);
+    let proved = k == 1 || morse(vicinity, h)? == Some(largest);
+    Ok(Found { tangents, complete: sound && proved })
+}
+
+/// The motions of a branch at one of its postures, scaled.
+struct Here {
+    motions: Matrix,
+    /// True if they are all those of first order.
+    clear: bool,
+}
+
+impl Here {
+    /// At `q`, which is `h` away from where branches meet; none where no step can be followed.
+    fn of(mechanism: &Mechanism, q: &[f64], length: f64, h: f64) -> Result<Option<Self>> {
+        let at = Vicinity::of(mechanism, q, length, SMALL * h)?;
+        match followed(&at, h * SMALL.sqrt())? {
+            None => Ok(None),
+            Some(true) => Ok(Some(Self { motions: at.kernel().clone(), clear: true })),
+            Some(false) => {
+                // Shaky all along the branch: what steps can be followed spans its motions.
+                let (k, mut random, h) = (at.motions(), 6, 0.25 * h);
+                let mut found = Matrix::zeros(k, 0);
+                for _ in 0..4 * k + 4 {
+                    let start = times(&direction(k, &mut random), h);
+                    if let Some((x, _)) = zero(&at, &start, h)? {
+                        found = Matrix::beside(k, &[&found, &column(&times(&x, 1.0 / h))]);
+                    }
+                }
+                let space = ColumnSpace::of(&found, Threshold::Absolute(SPREAD));
+                Ok(Some(Self { motions: at.kernel() * &space.basis(), clear: false }))
+            }
+        }
+    }
+}
+
+fn column(x: &[f64]) -> Matrix {
+    Matrix::from_fn(x.len(), 1, |i, _| x[i])
+}
+
+/// Whether steps along all motions can be followed; none where Newton's method fails.
+fn followed(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<bool>> {
+    if vicinity.superfluous() == 0 {
+        return Ok(Some(true));
+    }
+    let mut random = 2;
+    let k = vicinity.motions();
+    for _ in 0..2 * k {
+        let Some(near) = vicinity.step(&times(&direction(k, &mut random), h))? else {
+            return Ok(None);
+        };
+        if near.error() > vicinity.noise() {
+            return Ok(Some(false));
+        }
+    }
+    Ok(Some(true))
+}
+
+/// A zero of g at the distance `h`, from `start`.
+fn zero(vicinity: &Vicinity<'_>, start: &[f64], h: f64) -> Result<Option<(Vec<f64>, Near)>> {
+    let mut x = start.to_vec();
+    let Some(mut now) = vicinity.step(&x)? else { return Ok(None) };
+    let mut damping = 1e-3;
+    for _ in 0..MOST_STEPS {
+        // On the sphere: without the part along x.
+        let k = x.len();
+        let outwards = now.rates.mul_vec(&x);
+        let rates = Matrix::from_fn(now.rates.rows(), k, |i, j| {
+            now.rates[(i, j)] - outwards[i] * x[j] / (h * h)
+        });
+        let svd = Svd::of(&rates);
+        if svd.is_empty() || !(svd.value(0) > 0.0) || damping > 1e6 {
+            break;
+        }
+        let mut next = x.clone();
+        for i in 0..svd.len() {
+            let s = svd.value(i);
+            let along: f64 = svd.u(i).iter().zip(&now.left).map(|(u, g)| u * g).sum();
+            let l = damping * svd.value(0);
+            let gain = if s > 0.0 { along / (s + l * (l / s)) } else { 0.0 };
+            next.iter_mut().zip(svd.v(i)).for_each(|(x, v)| *x -= gain * v);
+        }
+        let size = norm(&next);
+        let next = times(&next, h / size);
+        match vicinity.step(&next)? {
+            Some(near) if near.error() < now.error() => {
+                let little = near.error() > 0.5 * now.error();
+                (x, now) = (next, near);
+                damping *= 0.1;
+                if little && now.error() <= vicinity.noise() {
+                    break; // rounding
+                }
+            }
+            _ if now.error() <= vicinity.noise() => break,
+            _ => damping = 10.0 * damping.max(1e-6),
+        }
+    }
+    Ok((now.error() <= vicinity.noise()).then_some((x, now)))
+}
+
+/// The motions of a branch as it comes to the posture: those of postures on both sides of it.
+fn tangent(
+    mechanism: &Mechanism,
+    length: f64,
+    vicinity: &Vicinity<'_>,
+    (x, h): (&[f64], f64),
+    there: &Here,
+) -> Result<Option<Tangent>> {
+    let inwards = if there.clear { INWARDS } else { 0.25 };
+    let small = h * inwards;
+    let mut sides = Vec::new();
+    let mut postures = Vec::new();
+    for side in [inwards, -inwards] {
+        let Some((near_x, near)) = zero(vicinity, &times(x, side), small)? else { continue };
+        let along: f64 = near_x.iter().zip(x).map(|(a, b)| a * b).sum();
+        if along * side.signum() < NEARLY * small * h {
+            continue;
+        }
+        let Some(here) = Here::of(mechanism, &near.q, length, small)? else { continue };
+        if here.motions.cols() == there.motions.cols() {
+            sides.push(&vicinity.kernel().transpose() * &here.motions);
+            postures.push(near.q);
+        }
+    }
+    if sides.is_empty() {
+        return Ok(None);
+    }
+    let dimension = there.motions.cols();
+    let both = Matrix::beside(x.len(), &sides.iter().collect::<Vec<_>>());
+    let svd = Svd::of(&both);
+    let directions = Matrix::from_fn(x.len(), dimension, |i, j| svd.u(j)[i]);
+    Ok(Some(Tangent { dimension, directions, postures }))
+}
+
+fn same(a: &Tangent, b: &Tangent) -> bool {
+    a.dimension == b.dimension && {
+        let between = Svd::of(&(&a.directions.transpose() * &b.directions));
+        between.value(between.len() - 1) > 1.0 - SAME * SAME
+    }
+}
+
+/// Largest first; tangents of one dimension that are too many to be branches are those of a cone.
+fn merged(mut tangents: Vec<Tangent>, k: usize) -> Vec<Tangent> {
+    let mut merged: Vec<Tangent> = Vec::new();
+    for dimension in (1..=k).rev() {
+        let (mut of, others): (Vec<_>, Vec<_>) =
+            tangents.into_iter().partition(|t| t.dimension == dimension);
+        tangents = others;
+        if dimension > 1 && of.len() > MOST_TANGENTS {
+            let all = Matrix::beside(k, &of.iter().map(|t| &t.directions).collect::<Vec<_>>());
+            of.truncate(1);
+            of[0].directions = ColumnSpace::of(&all, Threshold::Absolute(SAME)).basis();
+        }
+        merged.extend(of);
+    }
+    merged
+}
+
+/// The dimension of the zeros of g where it is one function whose Hessian has full rank.
+fn morse(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<usize>> {
+    let k = vicinity.motions();
+    let mut random = 3;
+    let mut samples = Matrix::zeros(vicinity.superfluous(), 2 * k + 2);
+    for j in 0..samples.cols() {
+        let Some(near) = vicinity.step(&times(&direction(k, &mut random), h))? else {
+            return Ok(None);
+        };
+        samples.column_mut(j).copy_from_slice(&near.left);
+    }
+    let space = ColumnSpace::of(&samples, Threshold::Absolute(vicinity.noise()));
+    if space.rank() != 1 {
+        return Ok(None);
+    }
+    let along = space.basis();
+    // Both sides of the posture: what is of third order cancels.
+    let even = |x: &[f64]| -> Result<Option<f64>> {
+        let mut sum = 0.0;
+        for side in [h, -h] {
+            let Some(near) = vicinity.step(&times(x, side))? else { return Ok(None) };
+            sum += near.left.iter().zip(along.column(0)).map(|(g, a)| g * a).sum::<f64>();
+        }
+        Ok(Some(sum / (h * h)))
+    };
+    let mut hessian = Matrix::zeros(k, k);
+    // The diagonal first: the other entries are found from sums.
+    let pairs = (0..k).map(|i| (i, i)).chain((0..k).flat_map(|i| (0..i).map(move |j| (i, j))));
+    for (i, j) in pairs {
+        let mut x = vec![0.0; k];
+        x[i] = 1.0;
+        x[j] = 1.0;
+        let Some(value) = even(&x)? else { return Ok(None) };
+        let off = 0.5 * (value - hessian[(i, i)] - hessian[(j, j)]);
+        hessian[(i, j)] = if i == j { value } else { off };
+        hessian[(j, i)] = hessian[(i, j)];
+    }
+    let svd = Svd::of(&hessian);
+    // Right to h^2.
+    if !(svd.value(k - 1) > h * svd.value(0)) {
+        return Ok(None);
+    }
+    let trace: f64 = (0..k).map(|i| hessian[(i, i)]).sum();
+    let definite = trace.abs() > (1.0 - 1e-6) * svd.values().sum::<f64>();
+    Ok(Some(if definite { 0 } else { k - 1 }))
+}

@@ -1,0 +1,283 @@
+//! What is singular about a posture of a mechanism, with the motions lost and gained as screws.
+//!
+//! Formula  type I    blocked: zero-torque wrenches (ran R)^perp beyond the generic ones;
+//!                    lost: the twists that do work on them and are orthogonal to ran R (scaled)
+//!          type II   gained: twists of the object with the driven joints at rest, beyond the
+//!                    generic ones
+//!          passive   idle motions beyond the generic ones
+//!          configuration space: the branches of [`FiniteMobility`]
+//! Shapes   screws of amplitude one, as many as the count exceeds the generic one
+//! Units    points m, pitches m/rad
+//! Frame    world
+//! Valid    where the generic count is zero, all there is is beyond it, and blocked wrenches and
+//!          gained twists do not depend on point, length or frame. Otherwise the generic part is
+//!          the limit of that of closed postures to both sides, on a motion in which all degrees
+//!          of freedom take part, and what is beyond it is orthogonal to the limit (scaled, at the
+//!          reference point): right to 1e-6, and dependent on that choice. Where no such postures
+//!          are found all is given, and [`Diagnosis::separated`] is false. Lost twists depend on
+//!          point and length always: only the wrench that blocks them is geometry
+//! Why so   of several, the principal screws of their system are given, which need no basis; where
+//!          a system has none, twists that span it
+//! Source   Gosselin & Angeles 1990; Zlatanov et al. 1995; Ball 1900 for the principal screws
+//! Checked  tests/it/closure/diagnosis.rs
+
+use super::constraint::Unit;
+use super::finite::FiniteMobility;
+use super::generic::Generic;
+use super::graph::ClosedChain;
+use super::motions::{Motions, Rows};
+use super::relation::Relation;
+use super::singularity::{Counts, Singularities, SingularityKind};
+use crate::error::Result;
+use crate::kinematics::State;
+use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};
+use crate::model::FrameId;
+use crate::screws::{Line, Screw, ScrewOptions, ScrewSystem};
+use crate::spatial::{Twist, Vec3, Wrench};
+use crate::tolerance::CLOSURE_BLOCK;
+
+/// What the limit of generic spaces is right to [-].
+const LIMIT: f64 = 1e-6;
+/// A joint whose share in motions of length one is below this stands still: above what the limit
+/// of generic motions is wrong by [-].
+const STILL: f64 = 1e-5;
+
+/// The singularities of a posture, named.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diagnosis {
+    /// The kinds, and the distances to them.
+    pub singularities: Singularities,
+    /// The counts of this posture ...
+    pub counts: Counts,
+    /// ... and those that it is measured by.
+    pub generic: Generic,
+    /// What can be done of the motions to first order.
+    pub finite: FiniteMobility,
+    /// Wrenches that are held without torque here and not elsewhere, each as the screw of its
+    /// axis (pitch: moment over force; infinite for a couple).
+    pub blocked: Vec<Screw>,
+    /// Motions of the reference frame that are lost.
+    pub lost: Vec<Screw>,
+    /// Motions of the reference frame that the driven joints do not hold here.
+    pub gained: Vec<Screw>,
+    /// Driven joints that move with the reference frame at rest, here and not elsewhere.
+    pub redundant: Vec<String>,
+    /// Passive coordinates that move alone, here and not elsewhere.
+    pub idle: Vec<String>,
+    /// False where what is generic could not be told from what is not.
+    pub separated: bool,
+}
+
+impl Diagnosis {
+    /// Of a posture, for the mechanism's reference frame or another, at its reach as
+    /// characteristic length or another (m).
+    ///
+    /// ```
+    /// use cylindroid::closure::{Diagnosis, SingularityKind};
+    ///
+    /// // The elbow straight: a 6R arm cannot move along the line from wrist to shoulder.
+    /// let arm = cylindroid::load("ur5e")?;
+    /// let found = Diagnosis::of(&arm.state(&[0.0, -0.6, 0.0, 0.4, 1.0, 0.0])?, None, None)?;
+    /// assert_eq!(found.singularities.kinds, [SingularityKind::TypeI]);
+    /// assert_eq!(found.blocked.len(), 1);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ClosedChain::of`].
+    pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
+        let mechanism = state.mechanism();
+        let here = Posture::of(state, reference, length)?;
+        let length = here.chain.constraint.length();
+        let generic = Generic::of(state, reference, Some(length))?;
+        let finite = FiniteMobility::of(state, Some(length))?;
+        let beside: Vec<Posture> = finite
+            .beside()
+            .iter()
+            .map(|q| Posture::of(&mechanism.state(q)?, reference, Some(length)))
+            .collect::<Result<_>>()?;
+        let counts = Counts::of(&here.motions, &here.relation);
+        let mut singularities = Singularities::of(&here.motions, &here.relation, &generic.counts);
+        let fold = SingularityKind::ConfigurationSpace;
+        // Nothing to compare with, but motions that do not exist: the rank is lost here.
+        let shaky = finite.finite.is_some_and(|f| f < finite.infinitesimal);
+        if generic.others == 0 && shaky && !singularities.kinds.contains(&fold) {
+            singularities.kinds.push(fold);
+            singularities.kinds.sort_unstable();
+            singularities.distances.configuration_space = 0.0;
+        }
+        let mut separated = true;
+        let mut beyond = |space: &dyn Fn(&Posture) -> Matrix, generic: usize| {
+            let (part, clear) = beyond(&space(&here), &beside, space, generic);
+            separated &= clear;
+            part
+        };
+        let s = generic.counts;
+        let blocked = beyond(&Posture::zero_torque, s.zero_torque);
+        let gained = beyond(&Posture::indeterminate, s.indeterminacy);
+        let redundant = beyond(&Posture::redundant, s.redundancy);
+        let idle = beyond(&Posture::idle, s.idle);
+        let point = state.pose(here.chain.reference).translation;
+        let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { LIMIT };
+        let (of_wrenches, of_gains) = (accuracy(s.zero_torque), accuracy(s.indeterminacy));
+        let wrenches = here.columns(&blocked, |d, x| x / d).map(|x| ray(wrench(&x, point)));
+        let lost = here.columns(&blocked, |d, x| x * d).map(|x| twist(&x, point));
+        let gains = here.columns(&gained, |d, x| x * d).map(|x| twist(&x, point));
+        Ok(Self {
+            blocked: screws(&wrenches.collect::<Vec<_>>(), length, of_wrenches)?,
+            lost: screws(&lost.collect::<Vec<_>>(), length, of_wrenches)?,
+            gained: screws(&gains.collect::<Vec<_>>(), length, of_gains)?,
+            redundant: movers(&redundant, &here.chain.actuated),
+            idle: movers(&idle, &here.chain.passive),
+            singularities,
+            counts,
+            generic,
+            finite,
+            separated,
+        })
+    }
+}
+
+/// A posture with its spaces, orthonormal in scaled units.
+struct Posture {
+    chain: ClosedChain,
+    motions: Motions,
+    relation: Relation,
+}
+
+impl Posture {
+    fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
+        let chain = ClosedChain::of(state, reference, length)?;
+        let motions = Motions::of(&chain.constraint);
+        let relation = motions.relation();
+        Ok(Self { chain, motions, relation })
+    }
+
+    fn size(&self, unit: Unit) -> f64 {
+        if unit == Unit::Length { self.chain.constraint.length() } else { 1.0 }
+    }
+
+    /// Columns of twists (of wrenches, where `dual`) or rates, scaled and made orthonormal.
+    fn scaled(&self, columns: &Matrix, units: &[Unit], dual: bool) -> Matrix {
+        let scaled = Matrix::from_fn(columns.rows(), columns.cols(), |i, j| {
+            let size = self.size(units[i]);
+            columns[(i, j)] * if dual { size } else { 1.0 / size }
+        });
+        ColumnSpace::of(&scaled, Threshold::Absolute(CLOSURE_BLOCK)).basis()
+    }
+
+    fn zero_torque(&self) -> Matrix {
+        self.scaled(&self.relation.forces().infinite, &self.chain.units.object, true)
+    }
+
+    fn indeterminate(&self) -> Matrix {
+        self.scaled(&self.relation.motions().infinite, &self.chain.units.object, false)
+    }
+
+    fn redundant(&self) -> Matrix {
+        self.scaled(&self.relation.motions().zero, &self.chain.units.actuated, false)
+    }
+
+    fn idle(&self) -> Matrix {
+        let still = Rows { actuated: true, passive: false, object: true };
+        let all = self.motions.standing(still);
+        let a = self.motions.actuated();
+        let passive = all.rows_between(a, a + self.motions.passive());
+        self.scaled(&passive, &self.chain.units.passive, false)
+    }
+
+    /// The columns with every entry and the size of its unit put together.
+    fn columns<'a>(
+        &'a self,
+        space: &'a Matrix,
+        put: impl Fn(f64, f64) -> f64 + 'a,
+    ) -> impl Iterator<Item = Vec<f64>> + 'a {
+        let units = &self.chain.units.object;
+        (0..space.cols()).map(move |j| {
+            space.column(j).iter().zip(units).map(|(x, u)| put(self.size(*u), *x)).collect()
+        })
+    }
+}
+
+/// The part of `now` orthogonal to the limit of the spaces beside it, and whether there was one.
+fn beyond(
+    now: &Matrix,
+    beside: &[Posture],
+    space: &dyn Fn(&Posture) -> Matrix,
+    generic: usize,
+) -> (Matrix, bool) {
+    let extra = now.cols().saturating_sub(generic);
+    if extra == 0 {
+        return (Matrix::zeros(now.rows(), 0), true);
+    }
+    let near: Vec<Matrix> = beside.iter().map(space).filter(|s| s.cols() == generic).collect();
+    if generic == 0 {
+        return (now.clone(), true);
+    }
+    if near.is_empty() {
+        return (now.clone(), false);
+    }
+    let near = Matrix::beside(now.rows(), &near.iter().collect::<Vec<_>>());
+    let limit = Svd::of(&(&now.transpose() * &near));
+    let kept = Matrix::from_fn(now.cols(), generic, |i, j| limit.u(j)[i]);
+    (now * &Qr::plain(kept).complement(), true)
+}
+
+/// Entries of the object, in the plane (x, y, turn), as six.
+fn six(x: &[f64]) -> [f64; 6] {
+    match x {
+        [x, y, turn] => [*x, *y, 0.0, 0.0, 0.0, *turn],
+        _ => std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)),
+    }
+}
+
+/// At the world's origin, where `x` is at `point`.
+fn twist(x: &[f64], point: Vec3) -> Twist {
+    Twist::from_array(six(x)).at_point(-point)
+}
+
+fn wrench(x: &[f64], point: Vec3) -> Wrench {
+    Wrench::from_array(six(x)).at_point(-point)
+}
+
+/// A wrench as the twist of the same screw: the force turns, the moment moves.
+fn ray(wrench: Wrench) -> Twist {
+    Twist { linear: wrench.moment, angular: wrench.force }
+}
+
+/// One screw as it is, several as the principal screws of their system; all of amplitude one,
+/// along the direction whose largest component is positive.
+fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
+    let of = |twist: Twist| {
+        // A turn that is no more than the error of the twist is none.
+        let turns = twist.angular.norm() * length > accuracy * twist.linear.norm();
+        let twist = if turns { twist } else { Twist { angular: Vec3::ZERO, ..twist } };
+        let screw = Screw::of(twist)?;
+        let d = screw.axis.direction;
+        let largest = [d.x, d.y, d.z].into_iter().fold(0.0, |most: f64, x| {
+            if x.abs() > most.abs() * (1.0 + accuracy) { x } else { most }
+        });
+        let axis = Line { direction: if largest < 0.0 { -d } else { d }, ..screw.axis };
+        Some(Screw { axis, amplitude: 1.0, ..screw })
+    };
+    let twists = match twists {
+        [] | [_] => twists.to_vec(),
+        _ => {
+            let options = ScrewOptions { noise: accuracy, ..ScrewOptions::with_length(length) };
+            let system = ScrewSystem::of(twists, &options)?;
+            let principal = system.principal_screws();
+            if principal.len() == twists.len() {
+                principal.iter().map(Screw::twist).collect()
+            } else {
+                system.basis()
+            }
+        }
+    };
+    Ok(twists.into_iter().filter_map(of).collect())
+}
+
+/// The names of those that take part.
+fn movers(motions: &Matrix, names: &[String]) -> Vec<String> {
+    let share = |i: usize| (0..motions.cols()).map(|j| motions[(i, j)].powi(2)).sum::<f64>().sqrt();
+    names.iter().enumerate().filter(|(i, _)| share(*i) > STILL).map(|(_, n)| n.clone()).collect()
+}

@@ -1,0 +1,165 @@
+//! The closed postures near a closed posture, reduced to what decides whether they exist.
+//!
+//! Formula  loops f(q) = 0 with rates C = df/dq of rank r; K = ker C, N = (ker C)^perp,
+//!          P = ran C, R = (ran C)^perp. For every small x the equation P^T f(q0 + K x + N y) = 0
+//!          has one y(x); what is left of the loops is g(x) = R^T f, with g(0) = 0, dg(0) = 0.
+//!          Near q0 the closed postures are the zeros of g
+//! Shapes   K: n x k, N: n x r, P: t x r, R: t x (t - r); x: k, g: t - r
+//! Units    scaled as in `assembly.rs`: none
+//! Valid    steps x that Newton's method follows; the caller shortens those that fail. Position
+//!          limits are left out: this is geometry
+//! Why so   the directions N are the only ones in which the loops resist to first order, so a
+//!          step along K is never undone by closing them; least squares over all coordinates would
+//!          slide back to where the loops close and report that as success
+//! Source   Lyapunov-Schmidt reduction; Golubitsky & Schaeffer 1985, chapter VII
+//! Checked  tests/it/closure/finite.rs
+
+use super::assembly::{Closing, column_scale};
+use crate::error::Result;
+use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, solve_upper};
+use crate::model::Mechanism;
+use crate::tolerance::LOOP_ROUNDING;
+
+/// Newton steps at most: four are the rule.
+const MOST_STEPS: usize = 30;
+
+/// A posture with what its loops allow and hold to first order.
+pub(super) struct Vicinity<'a> {
+    mechanism: &'a Mechanism,
+    length: f64,
+    q: Vec<f64>,
+    free: Vec<usize>,
+    kernel: Matrix,
+    across: Matrix,
+    held: Matrix,
+    rest: Matrix,
+    at_start: Vec<f64>,
+    noise: f64,
+}
+
+/// A posture near it in which all loops are closed but for `left`.
+pub(super) struct Near {
+    pub(super) q: Vec<f64>,
+    /// g.
+    pub(super) left: Vec<f64>,
+    /// dg/dx, (t - r) x k.
+    pub(super) rates: Matrix,
+}
+
+impl Near {
+    pub(super) fn error(&self) -> f64 {
+        norm(&self.left)
+    }
+}
+
+impl<'a> Vicinity<'a> {
+    /// Of the posture `q`, singular values of C at or below `threshold` times the largest being
+    /// zero.
+    pub(super) fn of(
+        mechanism: &'a Mechanism,
+        q: &[f64],
+        length: f64,
+        threshold: f64,
+    ) -> Result<Self> {
+        let free: Vec<usize> = (0..mechanism.n()).collect();
+        let start = Closing::at(mechanism, q, &free, length)?;
+        let rows = ColumnSpace::of(&start.rates.transpose(), Threshold::Relative(threshold));
+        let (kernel, across) = (rows.complement(), rows.basis());
+        // The range as the image of N: of the same rank, whatever the threshold cut off.
+        let image = Qr::plain(&start.rates * &across);
+        let (held, rest) = (image.basis(), image.complement());
+        let at_start = rest.transpose().mul_vec(&start.residuals);
+        let noise = LOOP_ROUNDING.max(10.0 * start.error);
+        let q = q.to_vec();
+        Ok(Self { mechanism, length, q, free, kernel, across, held, rest, at_start, noise })
+    }
+
+    /// Number k of motions to first order.
+    pub(super) fn motions(&self) -> usize {
+        self.kernel.cols()
+    }
+
+    /// Number t - r of equations that the others make superfluous, to first order.
+    pub(super) fn superfluous(&self) -> usize {
+        self.rest.cols()
+    }
+
+    /// K, scaled.
+    pub(super) fn kernel(&self) -> &Matrix {
+        &self.kernel
+    }
+
+    /// What rounding, and loops that are open a little from the start, make of a zero of g.
+    pub(super) fn noise(&self) -> f64 {
+        self.noise
+    }
+
+    /// Scaled rates in the units of the coordinates.
+    pub(super) fn unscaled(&self, rates: &Matrix) -> Matrix {
+        Matrix::from_fn(rates.rows(), rates.cols(), |i, j| {
+            column_scale(self.mechanism, i, self.length) * rates[(i, j)]
+        })
+    }
+
+    fn moved(&self, q: &[f64], scaled: &[f64]) -> Vec<f64> {
+        let rates: Vec<f64> = scaled
+            .iter()
+            .enumerate()
+            .map(|(i, x)| column_scale(self.mechanism, i, self.length) * x)
+            .collect();
+        let mut q = q.to_vec();
+        self.mechanism.integrate_in_place(&mut q, &rates, 1.0);
+        q
+    }
+
+    /// The posture at `x`; none where Newton's method does not find it.
+    pub(super) fn step(&self, x: &[f64]) -> Result<Option<Near>> {
+        let mut q = self.moved(&self.q, &self.kernel.mul_vec(x));
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let now = Closing::at(self.mechanism, &q, &self.free, self.length)?;
+            let open = self.held.transpose().mul_vec(&now.residuals);
+            let error = norm(&open);
+            let across = Qr::plain(&self.held.transpose() * &(&now.rates * &self.across));
+            if error <= self.noise && !(error < 0.5 * last) || error == 0.0 {
+                let along = &now.rates * &self.kernel;
+                let follow = solve(&across, &(&self.held.transpose() * &along));
+                let swept = &now.rates * &(&self.across * &follow);
+                let rates = &self.rest.transpose()
+                    * &Matrix::from_fn(along.rows(), along.cols(), |i, j| {
+                        along[(i, j)] - swept[(i, j)]
+                    });
+                let mut left = self.rest.transpose().mul_vec(&now.residuals);
+                left.iter_mut().zip(&self.at_start).for_each(|(l, s)| *l -= s);
+                return Ok(rates.is_finite().then_some(Near { q, left, rates }));
+            }
+            // NaN is no progress.
+            if !(error < 2.0 * last) {
+                return Ok(None);
+            }
+            last = error;
+            let mut back = solve(&across, &Matrix::from_fn(open.len(), 1, |i, _| -open[i]));
+            if !back.is_finite() || back.max_abs() > 1.0 {
+                return Ok(None);
+            }
+            q = self.moved(&q, &self.across.mul_vec(back.column_mut(0)));
+        }
+        Ok(None)
+    }
+}
+
+/// `A^-1 B` for a square A that was decomposed without pivots.
+fn solve(qr: &Qr, b: &Matrix) -> Matrix {
+    let r = qr.r();
+    let mut x = b.clone();
+    for j in 0..x.cols() {
+        qr.apply_transposed(x.column_mut(j));
+        let column = solve_upper(&r, x.column(j));
+        x.column_mut(j).copy_from_slice(&column);
+    }
+    x
+}
+
+pub(super) fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
