@@ -5,11 +5,13 @@
 //! each kind. The documentation of every function is that of the Python user.
 
 mod arrays;
+mod closed;
 mod error;
 mod inverse;
 mod mechanism;
 mod motion;
 mod options;
+mod screws;
 mod servo;
 mod table;
 
@@ -18,6 +20,12 @@ use pyo3::prelude::*;
 /// The compiled part of `cylindroid`.
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use crate::closed::{
+        PyAssembly, PyBranch, PyConstraint, PyContactForces, PyDirection, PyFingerContact,
+        PyFiniteMobility, PyGap, PyGraspQuality, PyJointMobility, PyManipulability, PyMobility,
+        PyPolytope, PySingularity, PySpectrum, PyTorques, grasp_quality,
+    };
     #[pymodule_export]
     use crate::inverse::{
         PyDropped, PyInverse, PyPointDirection, damped, hyperbolic, inverse_by_name, oblique, pinv,
@@ -28,6 +36,11 @@ mod _core {
 
     #[pymodule_export]
     use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw};
+    #[pymodule_export]
+    use crate::screws::{
+        PyExistence, PyInvolution, PyMargin, PyScrew, PyScrewSystem, PyTransversals, adjoint,
+        involution, projector, transversals,
+    };
     #[pymodule_export]
     use crate::servo::{PyOutcome, PyServo, PyStall, PyTrajectory};
 

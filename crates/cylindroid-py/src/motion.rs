@@ -1,10 +1,10 @@
 //! Paths, moves and time laws.
 
+use cylindroid::Vec3;
 use cylindroid::control::{
     Bounds, CartesianBounds, CartesianMove, CartesianPath, JointDefaults, JointMove, JointSample,
     TimeLaw, Turn,
 };
-use cylindroid::Vec3;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
@@ -302,10 +302,7 @@ impl PyCartesianMove {
     #[pyo3(signature = (t, dt))]
     fn target<'py>(&self, py: Python<'py>, t: f64, dt: f64) -> Result<(Array<'py>, Array<'py>)> {
         let target = self.inner.target(t, dt);
-        Ok((
-            arrays::pose(py, target.pose)?,
-            arrays::vector(py, &target.feed_forward.to_array()),
-        ))
+        Ok((arrays::pose(py, target.pose)?, arrays::vector(py, &target.feed_forward.to_array())))
     }
 
     fn __repr__(&self) -> String {
@@ -348,7 +345,6 @@ impl PyJointMove {
     #[new]
     #[pyo3(signature = (mechanism, q, to, speed = None, acceleration = None, jerk = None,
         duration = None))]
-    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         mechanism: PyRef<'_, PyMechanism>,
         q: Numbers<'_>,

@@ -197,9 +197,9 @@ pub(crate) fn secondary(
         return if name == "none" { Ok(Vec::new()) } else { Ok(vec![named(&name, None)?]) };
     }
     if let Ok(gains) = wanted.cast::<PyDict>() {
-        let each = gains.iter().map(|(name, gain)| {
-            named(&name.extract::<String>()?, Some(gain.extract::<f64>()?))
-        });
+        let each = gains
+            .iter()
+            .map(|(name, gain)| named(&name.extract::<String>()?, Some(gain.extract::<f64>()?)));
         return each.collect();
     }
     let words = "secondary is a name, a list of names, or a dict of gains by name";
@@ -229,9 +229,7 @@ pub(crate) fn speed(of: &Numbers<'_>) -> Result<Speed> {
 pub(crate) fn twists(name: &'static str, of: &Bound<'_, PyAny>) -> Result<Vec<Twist>> {
     if let Ok(names) = of.extract::<Vec<String>>() {
         let one = |name: &String| match COMPONENTS.iter().position(|c| c == name) {
-            Some(i) => {
-                Ok(Twist::from_array(std::array::from_fn(|k| f64::from(u8::from(k == i)))))
-            }
+            Some(i) => Ok(Twist::from_array(std::array::from_fn(|k| f64::from(u8::from(k == i))))),
             None => Err(Error::unknown("component", name, COMPONENTS).into()),
         };
         return names.iter().map(one).collect();

@@ -192,7 +192,10 @@ impl PyStall {
             }
             Stall::Singular { ratio, direction } => {
                 new.direction = Some(direction.clone());
-                format!("a singular pose: smallest singular value {} of the largest", number(*ratio))
+                format!(
+                    "a singular pose: smallest singular value {} of the largest",
+                    number(*ratio)
+                )
             }
             Stall::TooFewJoints { rank, task, direction } => {
                 new.direction = Some(direction.clone());
@@ -418,7 +421,7 @@ impl PyServo {
     ) -> Result<PyOutcome> {
         Error::check_positive("duration", duration)?;
         let goal = match target.extract::<PyRef<'_, PyCartesianMove>>() {
-            Ok(motion) => Goal::Along(motion.inner),
+            Ok(motion) => Goal::Along(Box::new(motion.inner)),
             Err(_) => Goal::Pose(target.extract::<Numbers<'_>>()?.pose("target")?),
         };
         let q = q.vector("q")?;
@@ -574,7 +577,7 @@ impl PyServo {
 /// Where a motion goes.
 enum Goal {
     Pose(Pose),
-    Along(cylindroid::control::CartesianMove),
+    Along(Box<cylindroid::control::CartesianMove>),
 }
 
 /// How a motion ended.
@@ -700,11 +703,14 @@ impl PyOutcome {
             table.row("reason", "time-limit");
         }
         let number = table::number;
-        table.row("errors", format!(
-            "{} m, {} rad",
-            number(o.last.position_error),
-            number(o.last.orientation_error)
-        ));
+        table.row(
+            "errors",
+            format!(
+                "{} m, {} rad",
+                number(o.last.position_error),
+                number(o.last.orientation_error)
+            ),
+        );
         table.row("time", format!("{} s, {} steps", number(o.time), o.steps));
         table.row("singular ratio", format!("{} at the least", number(o.min_singular_ratio)));
         let limits: Vec<String> =

@@ -51,7 +51,7 @@ pub(crate) fn number(x: f64) -> String {
     if x != 0.0 && x.is_finite() && !(1e-4..1e6).contains(&x.abs()) {
         return format!("{x:.3e}");
     }
-    let text = format!("{x:.5}");
+    let text = format!("{:.5}", if x.abs() < 5e-6 { 0.0 } else { x });
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {

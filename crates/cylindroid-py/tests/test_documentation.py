@@ -3,6 +3,7 @@
 import doctest
 import inspect
 import pathlib
+import re
 import tomllib
 
 import pytest
@@ -44,6 +45,21 @@ def test_signatures_are_documented():
         for parameter in inspect.signature(thing).parameters:
             if parameter != "self":
                 assert parameter in text, f"{name} does not document {parameter}"
+
+
+def test_attributes_are_documented():
+    """The docstring of a class lists exactly the attributes that its objects have."""
+    for name, thing in documented():
+        if not inspect.isclass(thing) or issubclass(thing, BaseException):
+            continue
+        kinds = {"getset_descriptor", "member_descriptor"}
+        own = {k for k, v in vars(thing).items() if type(v).__name__ in kinds}
+        section = re.search(r"Attributes\n-+\n(.*?)(\n\n|\Z)", inspect.getdoc(thing), re.S)
+        listed = set()
+        for line in section.group(1).split("\n") if section else []:
+            if line.strip() and not line.startswith(" "):
+                listed |= {part.strip() for part in line.split(" : ")[0].split(",")}
+        assert listed == own, f"{name}: {listed ^ own}"
 
 
 def test_the_two_project_files_are_one():
