@@ -104,14 +104,15 @@ pub(crate) fn vectors() -> Result<()> {
         "-r",
         "xtask/vectors/requirements.txt",
     ]))?;
-    run(Command::new(&python).args([
-        "xtask/vectors/pinocchio_vectors.py",
-        "--out",
-        "crates/cylindroid/tests/vectors/pinocchio",
-    ]))?;
+    for (script, folder) in [("pinocchio", "pinocchio"), ("closed_chain", "closed_chains")] {
+        let script = format!("xtask/vectors/{script}_vectors.py");
+        let folder = format!("crates/cylindroid/tests/vectors/{folder}");
+        run(Command::new(&python).args([&script, "--out", &folder]))?;
+    }
     models::fetch()?;
     let assets = "target/test-data/models/robosuite/models/assets";
-    let mut files = vec!["crates/cylindroid/tests/data/zoo.xml".to_owned()];
+    let mut files =
+        ["zoo", "loops"].map(|name| format!("crates/cylindroid/tests/data/{name}.xml")).to_vec();
     for robot in MUJOCO_ROBOTS {
         files.push(format!("{assets}/robots/{robot}/robot.xml"));
     }
@@ -134,6 +135,18 @@ pub(crate) fn figures() -> Result<()> {
     for command in [
         &["move", "panda", "--to", to, "--rpy", rpy, "--plot", "docs/move-panda.svg"][..],
         &["screws", "youbot", "--frame", "arm_link_2", "--plot", "docs/screws-youbot.svg"],
+        &[
+            "manipulability",
+            "five-bar",
+            "--actuated",
+            "q2,q4",
+            "--rate-limits",
+            "1,1",
+            "--torque-limits",
+            "1,1",
+            "--plot",
+            "docs/ellipses-five-bar.svg",
+        ],
     ] {
         let run_it = ["run", "--release", "--quiet", "--package", "cylindroid-cli", "--"];
         run(&mut cargo(&[&run_it, command].concat()))?;

@@ -1,7 +1,15 @@
-"""Reference vectors of MuJoCo: poses of bodies and sites for the MJCF loader.
+"""Reference vectors of MuJoCo: poses of bodies and sites for the MJCF loader, and the Jacobian of
+the equality constraints for closed chains.
 
 Shapes, meshes and sensors are taken out before MuJoCo reads a file: they do not move anything,
 and MuJoCo refuses a model whose meshes are not there.
+
+`closed` holds configurations in which all equality constraints are met to 1e-13 (Newton's steps
+with MuJoCo's own Jacobian, from a configuration at random); `jacobian` is what MuJoCo has in
+`efc_J` for the rows of its equality constraints, a column for each entry of its qvel, and `rank`
+numpy's. The entries of qvel are those of the joints in the order of `joints`: one for a hinge or
+slide, the angular velocity in the axes of the body for a ball, and for a free body its linear
+velocity in the axes of the world before that.
 
     python mujoco_vectors.py --out FOLDER FILE.xml ...
 """
@@ -53,6 +61,44 @@ def couple(model, qpos):
             qpos[a] = model.qpos0[a] + c[0] + c[1] * (qpos[b] - model.qpos0[b])
 
 
+def of_joints(model, qpos):
+    """In the order of the joints, some of which have no name."""
+    sizes = ({0: 7, 1: 4}.get(int(kind), 1) for kind in model.jnt_type)
+    return [qpos[start : start + size].tolist() for start, size in zip(model.jnt_qposadr, sizes)]
+
+
+def equality(model, data, qpos):
+    """Residuals of the equality constraints and their Jacobian."""
+    data.qpos[:] = qpos
+    mujoco.mj_fwdPosition(model, data)
+    rows = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+    return data.efc_pos[rows].copy(), data.efc_J.reshape(-1, model.nv)[rows].copy()
+
+
+def closed(model, data, random):
+    """Configurations in which all equality constraints are met."""
+    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    cases = []
+    for _ in range(20):
+        qpos = model.qpos0.copy()
+        mujoco.mj_integratePos(model, qpos, random.uniform(-1, 1, model.nv), 0.3)
+        for _ in range(60):
+            residual, jacobian = equality(model, data, qpos)
+            if not len(residual) or np.abs(residual).max() < 1e-15:
+                break
+            step = -np.linalg.pinv(jacobian, 1e-9) @ residual
+            mujoco.mj_integratePos(model, qpos, step, min(1.0, 0.3 / np.abs(step).max()))
+        if not len(residual):
+            break
+        if np.abs(residual).max() < 1e-13:
+            rank = int(np.linalg.matrix_rank(jacobian, rtol=1e-9))
+            q = of_joints(model, qpos)
+            cases.append({"q": q, "rank": rank, "jacobian": (jacobian + 0.0).tolist()})
+        if len(cases) == 3:
+            break
+    return cases
+
+
 def vectors(path, random):
     model = mujoco.MjModel.from_xml_string(bare(path))
     data = mujoco.MjData(model)
@@ -65,11 +111,7 @@ def vectors(path, random):
         couple(model, qpos)
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
-        q = []  # in the order of the joints, some of which have no name
-        for j in range(model.njnt):
-            size = {0: 7, 1: 4}.get(int(model.jnt_type[j]), 1)
-            start = model.jnt_qposadr[j]
-            q.append(qpos[start : start + size].tolist())
+        q = of_joints(model, qpos)
         frames = {}
         for i in range(1, model.nbody):
             if model.body(i).name:
@@ -87,7 +129,12 @@ def vectors(path, random):
         if model.jnt_limited[j] and model.jnt_type[j] >= 2
     }
     loops = int(sum(t in (0, 1) and a for t, a in zip(model.eq_type, model.eq_active0)))
-    return {"mujoco": mujoco.__version__, "limits": limits, "loops": loops, "cases": cases}
+    result = {"mujoco": mujoco.__version__, "limits": limits, "loops": loops, "cases": cases}
+    chains = closed(model, data, random)
+    if chains:
+        joints = [model.joint(j).name for j in range(model.njnt)]
+        result |= {"joints": joints, "closed": chains}
+    return result
 
 
 def main():
@@ -100,7 +147,9 @@ def main():
         name = path.parent.name if path.name == "robot.xml" else path.stem
         result = vectors(path, np.random.default_rng(1))
         (options.out / f"{name}.json").write_text(json.dumps(result) + "\n")
-        print(name, len(result["cases"][0]["q"]), "joints", result["loops"], "loops")
+        ranks = [case["rank"] for case in result.get("closed", [])]
+        joints = len(result["cases"][0]["q"])
+        print(name, joints, "joints", result["loops"], "loops, ranks", ranks)
 
 
 if __name__ == "__main__":

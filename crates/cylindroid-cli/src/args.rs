@@ -3,9 +3,13 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 mod closed;
+mod ik;
 mod move_to;
 mod screws;
-pub(crate) use closed::{AssembleArgs, ClosedArgs, ManipulabilityArgs, MetricName};
+pub(crate) use closed::{
+    AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, StaticsArgs,
+};
+pub(crate) use ik::IkArgs;
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
 };
@@ -21,7 +25,7 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --plot move.svg
   cylindroid screws youbot
 
-Exit codes: 0 done, 1 a negative answer (a target not reached), 2 an error.";
+Exit codes: 0 done, 1 a negative answer (a target not reached, a grasp not closed), 2 an error.";
 
 /// Moves robots in Cartesian space and tells what they can do.
 ///
@@ -49,6 +53,9 @@ pub(crate) enum Command {
     Fk(FkArgs),
     /// The Jacobian of a frame, its singular values and rank
     Jacobian(JacobianArgs),
+    /// Inverse kinematics: configurations that put a frame at a target, within all limits
+    #[command(long_about = ik::ABOUT, after_long_help = ik::EXAMPLES)]
+    Ik(Box<IkArgs>),
     /// Cartesian control: drive a frame to a target and say whether and how it got there
     #[command(long_about = move_to::ABOUT, after_long_help = move_to::EXAMPLES)]
     Move(Box<MoveArgs>),
@@ -56,7 +63,7 @@ pub(crate) enum Command {
     #[command(long_about = screws::ABOUT, after_long_help = screws::EXAMPLES)]
     Screws(Box<ScrewsArgs>),
     /// Close the loops of a mechanism from a guess, within its position limits
-    #[command(long_about = closed::ASSEMBLE)]
+    #[command(long_about = closed::ASSEMBLE, after_long_help = closed::ASSEMBLE_EXAMPLES)]
     Assemble(Box<AssembleArgs>),
     /// Mobility of a mechanism: how it can move, what is redundant, idle or held twice
     #[command(long_about = closed::MOBILITY)]
@@ -64,6 +71,12 @@ pub(crate) enum Command {
     /// How well motion and force go from the driven joints to the reference frame
     #[command(long_about = closed::MANIPULABILITY)]
     Manipulability(Box<ManipulabilityArgs>),
+    /// Joint torques that hold a wrench, and the forces in loops and contacts
+    #[command(long_about = closed::STATICS)]
+    Statics(Box<StaticsArgs>),
+    /// Force closure of the contacts on an object, and its quality
+    #[command(long_about = closed::GRASP)]
+    Grasp(Box<GraspArgs>),
 }
 
 #[derive(Debug, Args)]

@@ -5,6 +5,7 @@
 mod args;
 mod commands;
 mod diagnostic;
+mod number_file;
 mod output;
 mod plot;
 mod trajectory;

@@ -96,7 +96,8 @@ pub(crate) fn pairs(
 /// The widest line of running text.
 const WIDTH: usize = 98;
 
-fn wrap(text: &str, width: usize) -> Vec<String> {
+/// Lines of running text, at most this many characters wide.
+pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
         let last = lines.len() - 1;

@@ -1,6 +1,8 @@
 //! The motion of `move` as an SVG: joints, errors and singular value ratio over time.
 
+pub(crate) mod ellipses;
 pub(crate) mod screws;
+mod skeleton;
 
 use std::ops::Range;
 use std::path::Path;

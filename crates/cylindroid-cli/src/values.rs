@@ -1,7 +1,9 @@
 //! The values that users type: lists of numbers, configurations, names with a number.
 
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use cylindroid::linalg::Interval;
 use cylindroid::model::CoordinateKind;
 use cylindroid::{Error, Mechanism};
 
@@ -37,6 +39,93 @@ impl FromStr for Pair {
             [linear] => Ok(Self { linear, angular: None }),
             [linear, angular] => Ok(Self { linear, angular: Some(angular) }),
             ref list => Err(format!("{} numbers where one or two are needed", list.len())),
+        }
+    }
+}
+
+/// A list of numbers of any length.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct List(pub(crate) Vec<f64>);
+
+impl FromStr for List {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        numbers(text).map(Self)
+    }
+}
+
+/// A matrix: numbers on its diagonal, or the name of a file of rows (.csv, .json).
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Weights {
+    Diagonal(Vec<f64>),
+    File(PathBuf),
+}
+
+impl FromStr for Weights {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let path = Path::new(text.trim());
+        if path.extension().is_some_and(|e| e == "csv" || e == "json") {
+            return Ok(Self::File(path.to_owned()));
+        }
+        let file =
+            |why: String| format!("{why}; a metric is a list of weights or a .csv or .json file");
+        numbers(text).map(Self::Diagonal).map_err(file)
+    }
+}
+
+/// Intervals `1.5,-2:3,...`: a number alone holds both ways.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Intervals(pub(crate) Vec<Interval>);
+
+impl FromStr for Intervals {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let interval = |text: &str| match text.split_once(':') {
+            Some((lower, upper)) => Ok(Interval { lower: number(lower)?, upper: number(upper)? }),
+            None => number(text).map(Interval::symmetric),
+        };
+        text.split(',').map(interval).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+/// A number for all (`0.5`), for some by name (`left=0.4`), or both, separated by commas.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct ByName {
+    all: Option<f64>,
+    named: Vec<(String, f64)>,
+}
+
+impl FromStr for ByName {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut read = Self::default();
+        for entry in text.split(',') {
+            if entry.contains('=') {
+                read.named.push(assignment(entry)?);
+            } else if read.all.replace(number(entry)?).is_some() {
+                return Err("two numbers without a name; write name=number for one of them".into());
+            }
+        }
+        Ok(read)
+    }
+}
+
+impl ByName {
+    /// The number for a name, if there is one.
+    pub(crate) fn of(&self, name: &str) -> Option<f64> {
+        self.named.iter().rev().find(|(n, _)| n == name).map(|(_, x)| *x).or(self.all)
+    }
+
+    /// Refuses names that are not among `known`.
+    pub(crate) fn check(&self, what: &'static str, known: &[&str]) -> cylindroid::Result<()> {
+        match self.named.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+            Some((name, _)) => Err(Error::unknown(what, name, known)),
+            None => Ok(()),
         }
     }
 }
@@ -212,6 +301,20 @@ mod tests {
         assert_eq!(refused("1,2"), "2 numbers where 3 are needed");
         assert_eq!(refused("1,,3"), "a number is missing between two commas");
         assert_eq!(refused("1,x,3"), "'x' is not a number");
+    }
+
+    #[test]
+    fn intervals_and_numbers_by_name() {
+        let read: Intervals = "2,-1:3,0:1".parse().unwrap();
+        let pairs: Vec<(f64, f64)> = read.0.iter().map(|i| (i.lower, i.upper)).collect();
+        assert_eq!(pairs, [(-2.0, 2.0), (-1.0, 3.0), (0.0, 1.0)]);
+        assert!("1:".parse::<Intervals>().is_err());
+        let read: ByName = "0.5, left=0.4".parse().unwrap();
+        assert_eq!((read.of("left"), read.of("right")), (Some(0.4), Some(0.5)));
+        assert!(read.check("contact", &["right"]).is_err());
+        assert!("0.5,0.4".parse::<ByName>().is_err());
+        assert_eq!("w.csv".parse(), Ok(Weights::File("w.csv".into())));
+        assert!("one,two".parse::<Weights>().is_err());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! How long the parts of a control step take: `cargo bench -p cylindroid`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use cylindroid::closure::{Blocks, Constraint, Mobility, Motions};
+use cylindroid::closure::{Blocks, ClosedChain, Constraint, Mobility, Motions};
 use cylindroid::inverse::{self, Method};
 use cylindroid::kinematics::Chain;
 use cylindroid::linalg::Svd;
@@ -235,4 +235,46 @@ fn closed_chain_manipulability(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(|| {
         black_box(Manipulability::of(black_box(&relation), &Metrics::UNIT).unwrap())
     });
+}
+
+/// Mechanisms of the catalogue with loops and contacts.
+const MECHANISMS: [&str; 3] = ["five-bar", "stewart", "two-arm"];
+
+/// From joint positions to the constraint.
+#[divan::bench(args = MECHANISMS)]
+fn mechanism_constraint(bencher: Bencher<'_, '_>, name: &str) {
+    let mechanism = robot(name);
+    let mut state = mechanism.state(mechanism.home()).unwrap();
+    bencher.bench_local(|| {
+        state.set(black_box(mechanism.home())).unwrap();
+        black_box(ClosedChain::of(&state, None, None).unwrap())
+    });
+}
+
+/// From the constraint to the mobility report and the three spectra.
+#[divan::bench(args = MECHANISMS)]
+fn mechanism_report(bencher: Bencher<'_, '_>, name: &str) {
+    let mechanism = robot(name);
+    let state = mechanism.state(mechanism.home()).unwrap();
+    let constraint = ClosedChain::of(&state, None, None).unwrap().constraint;
+    bencher.bench_local(|| black_box(report(black_box(&constraint))));
+}
+
+/// All of it, from joint positions.
+#[divan::bench(args = MECHANISMS)]
+fn mechanism_mobility_and_manipulability(bencher: Bencher<'_, '_>, name: &str) {
+    let mechanism = robot(name);
+    let mut state = mechanism.state(mechanism.home()).unwrap();
+    bencher.bench_local(|| {
+        state.set(black_box(mechanism.home())).unwrap();
+        let chain = ClosedChain::of(&state, None, None).unwrap();
+        black_box(report(&chain.constraint))
+    });
+}
+
+fn report(constraint: &Constraint) -> (Mobility, Manipulability) {
+    let motions = Motions::of(constraint);
+    let relation = motions.relation();
+    let mobility = Mobility::from_parts(constraint, &motions, &relation);
+    (mobility, Manipulability::of(&relation, &Metrics::UNIT).unwrap())
 }

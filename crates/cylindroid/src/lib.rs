@@ -24,6 +24,7 @@
 pub mod closure;
 pub mod control;
 pub mod error;
+pub mod ik;
 pub mod inverse;
 pub mod kinematics;
 pub mod linalg;

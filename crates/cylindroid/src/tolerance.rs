@@ -183,3 +183,32 @@ pub const LOOP_ROUNDING: f64 = 1e-13;
 /// reaches]: a resistance of second order then shows as 1e-4, of fourth order as 1e-8, far above
 /// rounding.
 pub const FINITE_STEP: f64 = 1e-2;
+
+/// Position error at which inverse kinematics counts a target as reached, by default (m): what
+/// others call exact, a tenth of what arms repeat.
+pub const IK_POSITION: f64 = 1e-6;
+
+/// The same of the orientation (rad).
+pub const IK_ORIENTATION: f64 = 1e-6;
+
+/// Efficiencies that differ by less than this, relative to each other, count as equal where a
+/// derivative is asked for: nearer ones turn their directions by rounding alone [-].
+pub const REPEATED: f64 = 1e-7;
+
+/// Step in scaled coordinates (rad) at which matrices of constraints are compared for their
+/// derivative: the fourth-order error of four of them and the rounding of their entries are then
+/// alike, about 1e-12.
+pub const MATRIX_STEP: f64 = 1e-3;
+
+/// Two assemblies whose joints stand nearer than this, in lengths over the reach and in angle, are
+/// one: far above the rounding that ends a search, 1e-8 at a double root, far below what tells two
+/// assemblies apart [-].
+pub const SAME_ASSEMBLY: f64 = 1e-6;
+
+/// Default least distance to a singularity on a way through closed configurations: smallest over
+/// largest singular value of the rates of the loops [-].
+pub const PATH_SINGULAR: f64 = 1e-3;
+
+/// Where a way through closed configurations ends is found to this share of it [-]: a fold is
+/// then a distance of about its root away, 1e-6, or nearer.
+pub const SHARE_FOUND: f64 = 1e-12;

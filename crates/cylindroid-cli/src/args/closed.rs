@@ -1,8 +1,12 @@
-//! The arguments of `mobility` and `manipulability`.
+//! The arguments of the commands on closed chains.
+
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
 use super::PostureArgs;
+use crate::values::Joints;
+use crate::values::{ByName, Intervals, List, Weights};
 
 pub(crate) const MOBILITY: &str = "\
 Mobility of a mechanism: how it can move, what is redundant, idle or held twice
@@ -41,17 +45,49 @@ pub(crate) struct ClosedArgs {
 pub(crate) const ASSEMBLE: &str = "\
 Closes the loops of a mechanism from a guess, within its position limits
 
-It finds one assembly, mostly the nearest; there may be others. Exit code 0 if all loops and \
-contacts are closed, 1 if not, 2 on an error. The line q can be given to --q of other commands.";
+It finds one assembly, mostly the nearest; there may be others, which --modes looks for. With --to, \
+coordinates go from there straight to other values while the loops stay closed in the same assembly \
+mode; the way ends before a singularity and at position limits, and says which.
+
+Exit code 0 if all loops and contacts are closed (with --modes: in one mode at least; with --to: at \
+the goal), 1 if not, 2 on an error. The line q can be given to --q of other commands. Joints that \
+close loops have no coordinate: they cannot be held, and their limits do not count.";
+
+pub(crate) const ASSEMBLE_EXAMPLES: &str = "\
+Examples:
+  cylindroid assemble five-bar --q 0.2,-0.1,0,0 --hold q1
+  cylindroid assemble stewart --hold driven --modes 200
+  cylindroid assemble four-bar --to q1=6.283185307
+  cylindroid assemble stewart --to leg1=0.2,leg2=0.2";
 
 #[derive(Debug, Args)]
 pub(crate) struct AssembleArgs {
     #[command(flatten)]
     pub(crate) posture: PostureArgs,
 
-    /// Coordinates that keep the values of --q
+    /// Coordinates that keep the values of --q: names of coordinates or joints, or `driven` for
+    /// all that are driven (the passive ones follow)
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
     pub(crate) hold: Vec<String>,
+
+    /// Look for all ways in which the loops close, from this many starts: the guess, then random
+    /// ones within limits. Some may be missed; how often each was found is printed
+    #[arg(long, value_name = "STARTS", conflicts_with = "to")]
+    pub(crate) modes: Option<usize>,
+
+    /// Other random starts for --modes
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "modes")]
+    pub(crate) seed: u64,
+
+    /// Move these coordinates from --q (assembled) to these values [rad or m], those of --hold at
+    /// rest, all others following: `name=value,...`
+    #[arg(long, value_name = "NAME=VALUE,...", allow_hyphen_values = true)]
+    pub(crate) to: Option<Joints>,
+
+    /// How near to a singularity --to goes [-]: smallest over largest singular value of the rates
+    /// at which the others open the loops, 1e-5 to 1 [default: 0.001]
+    #[arg(long, value_name = "D", allow_hyphen_values = true, requires = "to")]
+    pub(crate) least_distance: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -60,9 +96,61 @@ pub(crate) struct ManipulabilityArgs {
     pub(crate) closed: ClosedArgs,
 
     /// How motions are measured: `unit` (m beside rad, as they are), `length` (lengths over the
-    /// characteristic length), `limits` (lengths so, joint rates over their limits)
+    /// characteristic length), `limits` (lengths so, joint rates over their limits), `inertia`
+    /// (twists by the kinetic energy of the body of the reference frame)
     #[arg(long, value_name = "NAME", default_value = "unit")]
     pub(crate) metric: MetricName,
+
+    /// Metric of twists (of the task with --task): weights, or a .csv or .json file with the rows
+    /// of a symmetric positive definite matrix; in place of that of --metric
+    #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
+    pub(crate) wu: Option<Weights>,
+
+    /// Metric of the rates of the driven joints, likewise
+    #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
+    pub(crate) wq: Option<Weights>,
+
+    /// Metric of wrenches [default: the inverse of that of twists]
+    #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
+    pub(crate) ww: Option<Weights>,
+
+    /// Metric of the torques of the driven joints [default: the inverse of that of rates]
+    #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
+    pub(crate) wtau: Option<Weights>,
+
+    /// Components of the motion that matter, of x, y, z, rx, ry, rz (in the plane x, y, rz)
+    #[arg(long, value_name = "COMPONENTS", value_delimiter = ',')]
+    pub(crate) task: Vec<String>,
+
+    /// A task that is not components: a .csv or .json file with a row for each of its numbers,
+    /// linear in the twist
+    #[arg(long, value_name = "FILE", conflicts_with = "task")]
+    pub(crate) task_map: Option<PathBuf>,
+
+    /// Also all velocities and forces within the limits of the drives: corners up to three
+    /// components, ranges of each component always
+    #[arg(long)]
+    pub(crate) polytope: bool,
+
+    /// Rate limits of the driven joints in place of the model's [rad/s or m/s]: `2,-1:3,...`, one
+    /// or two numbers for each
+    #[arg(long, value_name = "LIMITS", allow_hyphen_values = true)]
+    pub(crate) rate_limits: Option<Intervals>,
+
+    /// Torque limits of the driven joints in place of the model's [N m or N], likewise; a cable
+    /// that pulls is `-5:0` or `0:5`
+    #[arg(long, value_name = "LIMITS", allow_hyphen_values = true)]
+    pub(crate) torque_limits: Option<Intervals>,
+
+    /// Also the gradient of a measure of motion with respect to q: `volume` (Yoshikawa's),
+    /// `smallest`, `largest`, `anisotropy`
+    #[arg(long, value_name = "MEASURE")]
+    pub(crate) gradient: Option<MeasureName>,
+
+    /// Draw the mechanism with its ellipses of velocity and force and, where limits are known,
+    /// polytopes; projections of the linear part for mechanisms in space
+    #[arg(long, value_name = "FILE.svg", conflicts_with_all = ["task", "task_map"])]
+    pub(crate) plot: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -73,4 +161,95 @@ pub(crate) enum MetricName {
     Length,
     /// Lengths so, joint rates over their limits
     Limits,
+    /// Twists by kinetic energy
+    Inertia,
+}
+
+impl MetricName {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Unit => "unit",
+            Self::Length => "length",
+            Self::Limits => "limits",
+            Self::Inertia => "inertia",
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MeasureName {
+    /// Product of the roots of the finite efficiencies
+    Volume,
+    /// Smallest finite efficiency
+    Smallest,
+    /// Largest finite efficiency
+    Largest,
+    /// Largest over smallest
+    Anisotropy,
+}
+
+pub(crate) const STATICS: &str = "\
+Joint torques that hold a wrench, what the structure holds, and the forces in loops and contacts
+
+The wrench is what acts on the reference frame from outside, at its origin and in world axes: N, \
+then N m. The torques are what the drives exert so that nothing moves: for every motion, torques \
+times rates plus wrench times twist is zero. They are the least in size; internal torques, which \
+balance each other, may be added. What a joint or contact transmits is the wrench by which its \
+first link acts on its second; a contact that pushes has a positive normal force.";
+
+#[derive(Debug, Args)]
+pub(crate) struct StaticsArgs {
+    #[command(flatten)]
+    pub(crate) closed: ClosedArgs,
+
+    /// The wrench on the reference frame [N, N m]: fx,fy,fz,mx,my,mz, in the plane fx,fy,mz
+    #[arg(long, value_name = "WRENCH", allow_hyphen_values = true)]
+    pub(crate) wrench: List,
+
+    /// Metric in which torques are the least: weights of the driven joints or a file
+    #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
+    pub(crate) wtau: Option<Weights>,
+
+    /// Elastic forces where several are possible: how far closing joints and contacts give way to
+    /// forces [m/N], a number for all, `name=number` for some; to moments by this over the square
+    /// of the characteristic length
+    #[arg(long, value_name = "M/N", allow_hyphen_values = true)]
+    pub(crate) compliance: Option<ByName>,
+}
+
+pub(crate) const GRASP: &str = "\
+Force closure: whether contacts with friction hold every wrench on the object, and how well
+
+The quality epsilon is the least wrench, in its worst direction, that is more than the fingers \
+hold: between two bounds (Ferrari and Canny), with moments over the characteristic length. \
+Fingers push along their normals, into the object. Only contacts at points count: \
+point_frictionless, hard_finger, soft_finger. Exit code 0 if the grasp is closed, 1 if not.";
+
+#[derive(Debug, Args)]
+pub(crate) struct GraspArgs {
+    #[command(flatten)]
+    pub(crate) posture: PostureArgs,
+
+    /// A frame of the object; moments are about its origin [default: the reference of the file]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) frame: Option<String>,
+
+    /// Coefficient of friction, in place of the file's: a number for all contacts, `name=number`
+    /// for some
+    #[arg(long, value_name = "MU", allow_hyphen_values = true)]
+    pub(crate) mu: Option<ByName>,
+
+    /// Largest moment about the normal over the normal force, of soft fingers [m], likewise
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) torsion: Option<ByName>,
+
+    /// Largest normal force of each finger [N], likewise; without it, the normal forces of all
+    /// fingers sum to 1 N
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) strength: Option<ByName>,
+
+    /// Characteristic length that moments are divided by [m] [default: from the origin of the
+    /// frame to the farthest contact]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) length: Option<f64>,
 }

@@ -2,11 +2,13 @@
 
 mod closed;
 mod fk;
+mod ik;
 mod info;
 mod jacobian;
 mod models;
 mod move_to;
 mod screws;
+mod target;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -31,11 +33,14 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Info(args) => info::run(args, style, out),
         Command::Fk(args) => fk::run(args, style, out),
         Command::Jacobian(args) => jacobian::run(args, style, out),
+        Command::Ik(args) => ik::run(args, style, out),
         Command::Move(args) => move_to::run(args, style, out),
         Command::Screws(args) => screws::run(args, style, out),
         Command::Assemble(args) => closed::assemble::run(args, style, out),
         Command::Mobility(args) => closed::mobility::run(args, style, out),
         Command::Manipulability(args) => closed::manipulability::run(args, style, out),
+        Command::Statics(args) => closed::statics::run(args, style, out),
+        Command::Grasp(args) => closed::grasp::run(args, style, out),
     }
 }
 

@@ -1,4 +1,6 @@
-//! `mobility` and `manipulability`.
+//! `mobility`, `manipulability`, `assemble`.
+
+use std::path::{Path, PathBuf};
 
 use crate::{cylindroid, difference, json, numbers, text};
 
@@ -81,6 +83,65 @@ fn objects_are_moved() {
     assert!(report["explanation"].as_str().unwrap().contains("type II"));
 }
 
+/// Two circles meet in two points; a Stewart platform has mirror pairs; motions are said.
+#[test]
+fn modes_are_listed() {
+    let report = json(&["assemble", "five-bar", "--hold", "q1,q2", "--modes", "20"], 0);
+    let modes = report["modes"].as_array().unwrap();
+    assert_eq!((modes.len(), &report["closed_starts"]), (2, &20.into()));
+    assert!(difference(&numbers(&modes[0]["q"]), &[0.0; 4]) < 1e-12);
+    assert_eq!(modes[0]["found"].as_u64().unwrap() + modes[1]["found"].as_u64().unwrap(), 20);
+    assert_eq!((&report["continuum"], &report["chance_of_more"]), (&0.into(), &0.0.into()));
+    let command = ["assemble", "stewart", "--hold", "driven", "--modes", "40"];
+    let legs = json(&command, 0);
+    assert!(legs["modes"].as_array().unwrap().len().is_multiple_of(2) && legs["held"][5] == "leg6");
+    // The same seed, the same answer; another, other starts.
+    assert_eq!(legs, json(&command, 0));
+    let seeded = [&command[..], &["--seed", "9"]].concat();
+    assert_ne!(legs["modes"][0]["found"], json(&seeded, 0)["modes"][0]["found"]);
+    let free = text(&["assemble", "four-bar", "--modes", "4"]);
+    assert!(free.contains("1 degree of freedom"), "{free}");
+    let none = ["assemble", "five-bar", "--q", "1.5708,0,0,0", "--hold", "q1", "--modes", "4"];
+    let none = json(&none, 1);
+    assert!(none["closed"] == false && none["guess_gap"]["distance"].as_f64().unwrap() > 0.1);
+    let table = text(&["assemble", "five-bar", "--hold", "q1,q2", "--modes", "20"]);
+    assert!(table.contains("2 modes from 20") && table.contains("q of mode 2"), "{table}");
+}
+
+#[test]
+fn coordinates_go_where_they_are_sent() {
+    // Round once, in the same mode.
+    let round = json(&["assemble", "four-bar", "--to", "q1=360", "--degrees"], 0);
+    let turn = std::f64::consts::TAU;
+    assert!(difference(&numbers(&round["q"]), &[turn, -turn, 0.0]) < 1e-9);
+    assert_eq!((&round["end"], &round["share"]), (&"reached".into(), &1.0.into()));
+    assert!(round["path"].as_array().unwrap().len() > 20);
+    // The links of q3 and q4 stretch; the reference frame rests with the drives.
+    let stopped = json(&["assemble", "five-bar", "--to", "q1=0.5,q2=-1.2"], 1);
+    assert_eq!((&stopped["end"], &stopped["reached"]), (&"singular".into(), &false.into()));
+    let sight = &stopped["singularity"];
+    assert_eq!((&sight["kind"], &sight["screw"]), (&"passive".into(), &serde_json::Value::Null));
+    assert!((sight["distance"].as_f64().unwrap() - 1e-3).abs() < 1e-6);
+    let share = stopped["share"].as_f64().unwrap();
+    assert!((stopped["q"][0].as_f64().unwrap() - 0.5 * share).abs() < 1e-12);
+    let wider = ["assemble", "five-bar", "--to", "q1=0.5,q2=-1.2", "--least-distance", "0.05"];
+    assert!(json(&wider, 1)["share"].as_f64().unwrap() < share);
+    // A limit of the leg that goes, the others held.
+    let limit = json(&["assemble", "stewart", "--to", "leg1=0.5", "--hold", "driven"], 1);
+    assert_eq!((&limit["end"], &limit["limit"]), (&"limit".into(), &"leg1".into()));
+    assert!((limit["share"].as_f64().unwrap() - 0.8).abs() < 1e-9);
+    assert_eq!(limit["goal"].as_array().unwrap().len(), 6);
+    let over = json(&["assemble", "five-bar", "--to", "q1=1", "--hold", "q2,q3"], 1);
+    assert_eq!(over["end"], "contradiction");
+    let open = json(&["assemble", "five-bar", "--q", "q1=1.5708", "--to", "q1=0"], 1);
+    assert_eq!(open["end"], "open");
+    let table = cylindroid(&["assemble", "five-bar", "--to", "q1=0.5,q2=-1.2"]);
+    assert_eq!(table.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&table.stdout).contains("stopped before a singularity"));
+    let tree = json(&["assemble", "panda", "--to", "panda_joint1=0.5"], 0);
+    assert_eq!(tree["path"][0]["distance"], serde_json::Value::Null);
+}
+
 #[test]
 fn bad_requests() {
     let refused = |arguments: &[&str]| {
@@ -94,6 +155,15 @@ fn bad_requests() {
     let text =
         refused(&["manipulability", "five-bar", "--actuated", "q1,q5", "--metric", "limits"]);
     assert!(text.contains("q5"), "{text}");
+    assert!(refused(&["assemble", "five-bar", "--modes", "0"]).contains("starts"));
+    assert!(refused(&["assemble", "five-bar", "--modes", "2", "--to", "q1=1"]).contains("--to"));
+    assert!(refused(&["assemble", "five-bar", "--to", "1,2,3,4"]).contains("name the coordinates"));
+    assert!(refused(&["assemble", "five-bar", "--to", "q9=1"]).contains("q1, q2"));
+    assert!(refused(&["assemble", "five-bar", "--to", "q1=1,q1=2"]).contains("twice"));
+    assert!(refused(&["assemble", "stewart", "--hold", "s1.rx"]).contains("hold all"));
+    assert!(refused(&["assemble", "stewart", "--hold", "nobody"]).contains("coordinate"));
+    let far = ["assemble", "five-bar", "--to", "q1=1", "--least-distance", "2"];
+    assert!(refused(&far).contains("least_distance"));
     let text = refused(&["move", "five-bar", "--joint-to", "0.1,0,0,0"]);
     assert!(text.contains("loops"), "{text}");
     let text = refused(&["move", "five-bar", "--actuated", "q1", "--to", "1,2,0"]);
@@ -178,4 +248,40 @@ fn strange_mechanisms() {
     assert_eq!(output.status.code(), Some(2));
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(error.contains("lift") && error.contains("left"), "{error}");
+}
+
+/// The robot files that `cargo xtask setup` fetches.
+fn robots() -> PathBuf {
+    let fetched = "../../target/test-data/models/cmeel.prefix/share/example-robot-data/robots";
+    let folder = std::env::var_os("CYLINDROID_TEST_ROBOTS")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(fetched), PathBuf::from);
+    assert!(folder.is_dir(), "no robot files in {}: run `cargo xtask setup`", folder.display());
+    folder
+}
+
+/// Two UR5 of a URDF hold a box; the efficiencies are those of Pinocchio's Jacobians.
+#[test]
+fn two_arms_of_real_files_hold_a_box() {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cylindroid/tests");
+    let read = |path: &str| std::fs::read_to_string(tests.join(path)).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("two_ur5.toml");
+    let file = read("data/two_ur5.toml").replace("ROBOTS", &robots().to_string_lossy());
+    std::fs::write(&path, file).unwrap();
+    let path = path.to_string_lossy();
+    let mobility = json(&["mobility", &path], 0);
+    for (key, count) in
+        [("dof", 6), ("redundancy", 0), ("internal", 6), ("zero_torque", 0), ("hyperstatic", 0)]
+    {
+        assert_eq!(mobility[key], count, "{key}");
+    }
+    assert_eq!(mobility["actuated"].as_array().unwrap().len(), 12);
+    let vectors: serde_json::Value =
+        serde_json::from_str(&read("vectors/closed_chains/two_arms.json")).unwrap();
+    let expected = numbers(&vectors["cases"][0]["kinematic"]);
+    let report = json(&["manipulability", &path], 0);
+    assert!(difference(&numbers(&report["kinematic"]["finite"]), &expected) < 1e-11);
+    assert_eq!(report["active_force"]["zeros"], 6);
+    let table = text(&["mobility", &path]);
+    assert!(table.contains("left/shoulder_pan_joint"), "{table}");
 }

@@ -4,9 +4,12 @@
 
 mod bad_input;
 mod closed;
+mod ik;
+mod measured;
 mod motion;
 mod screws;
 mod shape;
+mod statics;
 
 use std::process::{Command, Output};
 

@@ -13,12 +13,13 @@
 //! Checked  tests/it/closure/assembly.rs
 
 use super::constraint::Unit;
+use super::coordinates::{at_limit, free_places, moved};
 use super::graph::{Gap, Row, link_jacobians, rows};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
-use crate::tolerance::{AT_LIMIT, CLOSED};
+use crate::tolerance::CLOSED;
 
 /// Steps at most: a dozen suffice where there is an assembly near.
 const MOST_STEPS: usize = 200;
@@ -42,7 +43,9 @@ pub struct Assembly {
     pub at_limit: Vec<usize>,
 }
 
-/// Closes the loops of `mechanism` from `guess`; the coordinates in `held` keep their values.
+/// Closes the loops of `mechanism` from `guess`; the coordinates in `held` keep their values, the
+/// others their position limits. Closing joints have no coordinate: their limits do not count, and
+/// one that is driven cannot be held.
 ///
 /// ```
 /// use cylindroid::closure::assemble;
@@ -55,24 +58,18 @@ pub struct Assembly {
 /// ```
 ///
 /// # Errors
-/// A guess of the wrong size or not finite; a held place that is no coordinate.
+/// A guess of the wrong size or not finite; a held place that is no coordinate, or one of a
+/// spherical or free joint that is not held as a whole.
 pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<Assembly> {
     mechanism.check_q("guess", guess)?;
-    if let Some(&place) = held.iter().find(|&&i| i >= mechanism.n()) {
-        return Err(Error::InvalidOption {
-            option: "held",
-            value: place.to_string(),
-            reason: format!("the mechanism has {} coordinates", mechanism.n()),
-        });
-    }
-    let free: Vec<usize> = (0..mechanism.n()).filter(|i| !held.contains(i)).collect();
+    let free = free_places(mechanism, held)?;
     let length = mechanism.reach();
     let mut now = Closing::at(mechanism, guess, &free, length)?;
     let mut damping = DAMPING.0;
     let mut steps = 0;
     while now.error > 0.0 && steps < MOST_STEPS && damping < DAMPING.1 {
         steps += 1;
-        let q = now.step(mechanism, &free, length, damping);
+        let q = now.step(mechanism, &free, damping);
         let next = Closing::at(mechanism, &q, &free, length)?;
         // NaN is no improvement.
         if next.error < now.error {
@@ -87,26 +84,38 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<
             damping *= 10.0;
         }
     }
-    let at_limit = |i: &usize| {
-        let l = &mechanism.coordinates()[*i].limits;
-        now.q[*i] - l.lower < AT_LIMIT || l.upper - now.q[*i] < AT_LIMIT
-    };
     Ok(Assembly {
         closed: now.is_closed(length),
         gap: now.gap,
-        at_limit: (0..mechanism.n()).filter(at_limit).collect(),
+        at_limit: at_limit(mechanism, &now.q),
         q: now.q,
         steps,
     })
 }
 
+/// The passive joints for given driven ones: [`assemble`] with the driven coordinates held.
+///
+/// A driven joint that closes a loop has no coordinate whose value could be given, so that it does
+/// not hold: a mechanism with such joints keeps their motions, and the nearest of its assemblies is
+/// returned. Where there are more drives than degrees of freedom, their values may contradict each
+/// other: then the result is not closed, its gap is what remains, shared out by least squares, and
+/// the driven values stand as given.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn recover_passive(mechanism: &Mechanism, guess: &[f64]) -> Result<Assembly> {
+    let driven: Vec<usize> = mechanism.actuated().collect();
+    assemble(mechanism, guess, &driven)
+}
+
 /// A configuration with its residuals and their rates, scaled.
+#[derive(Debug)]
 pub(super) struct Closing {
-    q: Vec<f64>,
+    pub(super) q: Vec<f64>,
     pub(super) residuals: Vec<f64>,
     pub(super) rates: Matrix,
     pub(super) error: f64,
-    gap: Gap,
+    pub(super) gap: Gap,
 }
 
 impl Closing {
@@ -131,7 +140,7 @@ impl Closing {
     }
 
     /// The configuration after a damped step, within the position limits.
-    fn step(&self, mechanism: &Mechanism, free: &[usize], length: f64, damping: f64) -> Vec<f64> {
+    fn step(&self, mechanism: &Mechanism, free: &[usize], damping: f64) -> Vec<f64> {
         let svd = Svd::of(&self.rates);
         let mut change = vec![0.0; free.len()];
         if !svd.is_empty() && svd.value(0) > 0.0 {
@@ -145,12 +154,8 @@ impl Closing {
         }
         let most = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         let cut = if most > LARGEST_STEP { LARGEST_STEP / most } else { 1.0 };
-        let mut rates = vec![0.0; mechanism.n()];
-        for (&i, c) in free.iter().zip(change) {
-            rates[i] = cut * c * column_scale(mechanism, i, length);
-        }
-        let mut q = self.q.clone();
-        mechanism.integrate_in_place(&mut q, &rates, 1.0);
+        change.iter_mut().for_each(|c| *c *= cut);
+        let mut q = moved(mechanism, &self.q, free, &change);
         for &i in free {
             let l = &mechanism.coordinates()[i].limits;
             q[i] = q[i].clamp(l.lower, l.upper);

@@ -110,7 +110,10 @@ impl Constraint {
         let columns = units.actuated.iter().chain(&units.passive).chain(&units.object);
         self.column_scale = columns.map(scale).collect();
         self.length = length;
-        check_finite("constraint scaled by the length, transposed,", &self.scaled_transpose())?;
+        if !self.is_finite_scaled() {
+            let scaled = self.scaled_transpose();
+            check_finite("constraint scaled by the length, transposed,", &scaled)?;
+        }
         Ok(self)
     }
 
@@ -177,12 +180,38 @@ impl Constraint {
         })
     }
 
+    /// True where lengths in the characteristic length do not overflow: no entry does that has the
+    /// largest size and both largest scales.
+    fn is_finite_scaled(&self) -> bool {
+        let Blocks { actuated, passive, grasp } = &self.blocks;
+        let size = actuated.max_abs().max(passive.max_abs()).max(grasp.max_abs());
+        let largest = |scale: &[f64]| scale.iter().fold(0.0, |m: f64, s| m.max(*s));
+        let (row, column) = (largest(&self.row_scale), largest(&self.column_scale));
+        (row * size * column).is_finite() && (row * size).is_finite()
+    }
+
     /// Its transpose in scaled coordinates, `D_c M^T D_r`.
     pub(super) fn scaled_transpose(&self) -> Matrix {
-        let m = self.matrix();
-        Matrix::from_fn(m.cols(), m.rows(), |j, i| {
-            self.row_scale[i] * m[(i, j)] * self.column_scale[j]
-        })
+        let (t, a, p) = (self.rows(), self.actuated(), self.passive());
+        let mut scaled = Matrix::zeros(self.column_scale.len(), t);
+        for (i, r) in self.row_scale.iter().enumerate() {
+            let column = scaled.column_mut(i);
+            let (driven, others) = column.split_at_mut(a);
+            let (passive, object) = others.split_at_mut(p);
+            for (j, x) in driven.iter_mut().enumerate() {
+                *x = self.blocks.actuated[(i, j)];
+            }
+            for (j, x) in passive.iter_mut().enumerate() {
+                *x = self.blocks.passive[(i, j)];
+            }
+            for (x, g) in object.iter_mut().zip(self.blocks.grasp.column(i)) {
+                *x = -g;
+            }
+            for (x, c) in column.iter_mut().zip(&self.column_scale) {
+                *x = r * *x * c;
+            }
+        }
+        scaled
     }
 
     /// D_r: a force at a contact is this times its scaled value.

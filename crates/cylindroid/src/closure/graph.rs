@@ -20,7 +20,7 @@ use super::constraint::{Blocks, Constraint, Unit, Units};
 use crate::error::{Error, Result};
 use crate::kinematics::{Reference, State};
 use crate::linalg::Matrix;
-use crate::model::{Dimension, FrameId, JointKind, Link, LoopJoint, Mechanism};
+use crate::model::{Dimension, FrameId, JointKind, LoopJoint, Mechanism};
 use crate::spatial::{Pose, Twist, Vec3, Wrench};
 
 /// A mechanism at a configuration as a constraint, with the names of what the columns are.
@@ -63,7 +63,9 @@ impl Gap {
 /// A relative motion that is restricted, in world axes at the world's origin.
 pub(super) struct Row {
     /// What is measured of the motion of `b` relative to `a`.
-    wrench: Wrench,
+    pub(super) wrench: Wrench,
+    /// Place of its joint or contact: closing joints, then contacts.
+    pub(super) pair: usize,
     a: usize,
     b: usize,
     pub(super) unit: Unit,
@@ -87,64 +89,103 @@ impl ClosedChain {
         mechanism.check_frame(reference)?;
         let planar = mechanism.dimension() == Dimension::Planar;
         let (rows, loops, gap) = rows(state)?;
-
-        // Columns: coordinates of the tree, then those of closing joints; driven ones first.
-        let n = mechanism.n();
-        let tree = mechanism.coordinates().iter().map(|c| {
-            let unit = if c.kind.unit() == "m" { Unit::Length } else { Unit::Angle };
-            (c.name.clone(), unit, c.actuated)
-        });
-        let closing = loops.iter().map(|l| {
-            let unit = if l.kind == JointKind::Prismatic { Unit::Length } else { Unit::Angle };
-            (l.name.clone(), unit, l.actuated)
-        });
-        let columns: Vec<(String, Unit, bool)> = tree.chain(closing).collect();
-
+        let columns = Columns::of(mechanism, &loops);
         let components: &[usize] = if planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
         let (held, d) = (rows.len(), components.len());
-        let mut all = Matrix::zeros(held + d, columns.len());
-        let links = link_jacobians(state)?;
-        for (i, row) in rows.iter().enumerate() {
-            for j in 0..n {
-                all[(i, j)] = row.rate(&links, j);
-            }
-            if let Some(k) = row.rate_of {
-                all[(i, n + k)] = -1.0;
-            }
-        }
-        let target = state.jacobian(reference, Reference::LocalWorldAligned);
-        for (i, &c) in components.iter().enumerate() {
-            for j in 0..n {
-                all[(held + i, j)] = target[(c, j)];
-            }
-        }
-        let pick = |driven: bool| -> Vec<usize> {
-            (0..columns.len()).filter(|&j| columns[j].2 == driven).collect()
+        let mut blocks = Blocks {
+            actuated: Matrix::zeros(held + d, columns.actuated.len()),
+            passive: Matrix::zeros(held + d, columns.passive.len()),
+            grasp: Matrix::zeros(d, held + d),
         };
-        let (driven, passive) = (pick(true), pick(false));
-        let block = |of: &[usize]| Matrix::from_fn(held + d, of.len(), |i, j| all[(i, of[j])]);
-        let named = |of: &[usize]| of.iter().map(|&j| columns[j].0.clone()).collect();
-        let of_units = |of: &[usize]| of.iter().map(|&j| columns[j].1).collect();
+        let mut add = |i: usize, coordinate: usize, rate: f64| {
+            let (driven, j) = columns.places[coordinate];
+            let block = if driven { &mut blocks.actuated } else { &mut blocks.passive };
+            block[(i, j)] += rate;
+        };
+        // The rows of a pair stand together: its two links are walked once, and up to where they
+        // meet, since what moves both does not open the pair.
+        let mut from = 0;
+        for pair in rows.chunk_by(|x, y| (x.a, x.b) == (y.a, y.b)) {
+            let tip = |link| state.tip(mechanism.link_frame(link).into());
+            let (a, b) = (tip(pair[0].a), tip(pair[0].b));
+            let common = a.common_slot(&b);
+            for (link, sign) in [(a, -1.0), (b, 1.0)] {
+                link.for_each_column_above(common, Vec3::ZERO, |_, c, twist| {
+                    for (i, row) in pair.iter().enumerate() {
+                        add(from + i, c, sign * twist.power(row.wrench));
+                    }
+                });
+            }
+            for (i, row) in pair.iter().enumerate() {
+                if let Some(k) = row.rate_of {
+                    add(from + i, mechanism.n() + k, -1.0);
+                }
+            }
+            from += pair.len();
+        }
+        let target = state.tip(reference.into());
+        target.for_each_column(target.world_from_tip.translation, |_, c, twist| {
+            let twist = twist.to_array();
+            for (i, &component) in components.iter().enumerate() {
+                add(held + i, c, twist[component]);
+            }
+        });
+        for i in 0..d {
+            blocks.grasp[(i, held + i)] = 1.0;
+        }
         let object: Vec<Unit> =
             components.iter().map(|&c| if c < 3 { Unit::Length } else { Unit::Angle }).collect();
         let units = Units {
             rows: rows.iter().map(|r| r.unit).chain(object.iter().copied()).collect(),
-            actuated: of_units(&driven),
-            passive: of_units(&passive),
+            actuated: columns.actuated_units,
+            passive: columns.passive_units,
             object,
         };
-        let grasp = Matrix::from_fn(d, held + d, |i, j| f64::from(u8::from(j == held + i)));
-        let constraint =
-            Constraint::new(Blocks { actuated: block(&driven), passive: block(&passive), grasp })?
-                .with_length(&units, length.unwrap_or_else(|| mechanism.reach()))?;
+        let constraint = Constraint::new(blocks)?
+            .with_length(&units, length.unwrap_or_else(|| mechanism.reach()))?;
         Ok(Self {
             constraint,
-            actuated: named(&driven),
-            passive: named(&passive),
+            actuated: columns.actuated,
+            passive: columns.passive,
             units,
             reference,
             gap,
         })
+    }
+}
+
+/// The coordinates of the tree, then those of closing joints, as driven and passive columns.
+#[derive(Default)]
+struct Columns {
+    actuated: Vec<String>,
+    passive: Vec<String>,
+    actuated_units: Vec<Unit>,
+    passive_units: Vec<Unit>,
+    /// Of every coordinate: whether it is driven, and its column among those of its sort.
+    places: Vec<(bool, usize)>,
+}
+
+impl Columns {
+    fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {
+        let mut columns = Self::default();
+        columns.places.reserve(mechanism.n() + loops.len());
+        let mut add = |name: &String, length: bool, driven: bool| {
+            let (names, units) = if driven {
+                (&mut columns.actuated, &mut columns.actuated_units)
+            } else {
+                (&mut columns.passive, &mut columns.passive_units)
+            };
+            columns.places.push((driven, names.len()));
+            names.push(name.clone());
+            units.push(if length { Unit::Length } else { Unit::Angle });
+        };
+        for c in mechanism.coordinates() {
+            add(&c.name, c.kind.unit() == "m", c.actuated);
+        }
+        for l in loops {
+            add(&l.name, l.kind == JointKind::Prismatic, l.actuated);
+        }
+        columns
     }
 }
 
@@ -155,8 +196,8 @@ fn twist(jacobian: &Matrix, column: usize) -> Twist {
 /// Of every link, seen from the world.
 pub(super) fn link_jacobians(state: &State) -> Result<Vec<Matrix>> {
     let mechanism = state.mechanism();
-    let of = |link: &Link| Ok(state.jacobian(mechanism.frame(&link.name)?, Reference::World));
-    mechanism.links().iter().map(of).collect()
+    let of = |link| Ok(state.jacobian(mechanism.link_frame(link), Reference::World));
+    (0..mechanism.links().len()).map(of).collect()
 }
 
 impl Row {
@@ -166,21 +207,19 @@ impl Row {
     }
 }
 
-fn link_pose(state: &State, mechanism: &Mechanism, link: usize) -> Result<Pose> {
-    Ok(state.pose(mechanism.frame(&mechanism.links()[link].name)?))
-}
-
 /// Rows of all closing joints and contacts, the closing joints that have a rate, and the gap.
 pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
     let mechanism = state.mechanism();
     let dimension = mechanism.dimension();
+    let pose = |link| state.pose(mechanism.link_frame(link));
     let (mut rows, mut rated) = (Vec::new(), Vec::new());
-    for joint in mechanism.loops() {
-        let pair = Pair {
-            ends: [joint.a, joint.b],
-            world_from_a: link_pose(state, mechanism, joint.a)? * joint.link_a_from_joint,
-            world_from_b: link_pose(state, mechanism, joint.b)? * joint.link_b_from_joint,
-        };
+    for (place, joint) in mechanism.loops().iter().enumerate() {
+        let pair = Pair::new(
+            place,
+            [joint.a, joint.b],
+            pose(joint.a) * joint.link_a_from_joint,
+            pose(joint.b) * joint.link_b_from_joint,
+        );
         let mut held = joint.kind.held(joint.axis, dimension);
         if let (JointKind::Universal { second }, Dimension::Spatial) = (joint.kind, dimension) {
             held.pop();
@@ -215,12 +254,13 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
             None => {}
         }
     }
-    for contact in mechanism.contacts() {
-        let pair = Pair {
-            ends: [contact.a, contact.b],
-            world_from_a: link_pose(state, mechanism, contact.a)? * contact.link_a_from_contact,
-            world_from_b: link_pose(state, mechanism, contact.b)? * contact.link_b_from_contact,
-        };
+    for (place, contact) in mechanism.contacts().iter().enumerate() {
+        let pair = Pair::new(
+            mechanism.loops().len() + place,
+            [contact.a, contact.b],
+            pose(contact.a) * contact.link_a_from_contact,
+            pose(contact.b) * contact.link_b_from_contact,
+        );
         rows.extend(pair.rows(&contact.kind.held(dimension)));
     }
     let mut gap = Gap::default();
@@ -236,12 +276,22 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
 
 /// The two frames of a closing joint or contact.
 struct Pair {
+    place: usize,
     ends: [usize; 2],
     world_from_a: Pose,
     world_from_b: Pose,
+    /// Where the second frame is, and how it is turned, seen from the first.
+    offset: Vec3,
+    turn: Vec3,
 }
 
 impl Pair {
+    fn new(place: usize, ends: [usize; 2], world_from_a: Pose, world_from_b: Pose) -> Self {
+        let a_from_b = world_from_a.inverse() * world_from_b;
+        let (offset, turn) = (a_from_b.translation, a_from_b.rotation.log());
+        Self { place, ends, world_from_a, world_from_b, offset, turn }
+    }
+
     /// The rows of all that is held. Where two moments are, they hold the direction of the axis
     /// across them, and residuals about them are those of the shortest turn of that axis: rates of
     /// the whole turn would be right only where the joint is at zero.
@@ -265,19 +315,18 @@ impl Pair {
 
     /// What holds `held`, a wrench in the first frame: forces act where the second one is.
     fn row(&self, held: Wrench) -> Row {
-        let a_from_b = self.world_from_a.inverse() * self.world_from_b;
         let at = Pose {
             rotation: self.world_from_a.rotation,
             translation: self.world_from_b.translation,
         };
-        let turn = a_from_b.rotation.log();
         Row {
             wrench: at.coadjoint(held),
+            pair: self.place,
             a: self.ends[0],
             b: self.ends[1],
             unit: if held.force == Vec3::ZERO { Unit::Angle } else { Unit::Length },
             rate_of: None,
-            residual: held.force.dot(a_from_b.translation) + held.moment.dot(turn),
+            residual: held.force.dot(self.offset) + held.moment.dot(self.turn),
         }
     }
 

@@ -14,6 +14,8 @@
 //! Valid    any constraint. Counts come from ranks, never from Grubler's formula, which is given
 //!          beside them. Infinitesimal: a motion counted here may have no finite one behind it, see
 //!          `finite.rs`.
+//! Why so   every count has its own rank decision; three of the eight follow from the others, see
+//!          [`Motions`]
 //! Source   Bicchi & Prattichizzo 1998, eqs. 3 to 5; the counts of its eq. 5 modulo redundancy and
 //!          indeterminacy, where alone they are unique
 //! Checked  tests/it/closure/reference.rs, tests/it/closure/mobility.rs
@@ -145,17 +147,13 @@ impl Mobility {
         const U: Rows = Rows { actuated: false, passive: false, object: true };
         let k = motions.dof();
         let tolerance = Threshold::Absolute(motions.tolerance());
-        let still = |rows| motions.still(rows);
         let space = |(part, cut): &(Matrix, Cut)| Subspace {
             basis: motions.unscaled(&(motions.kernel() * part)),
             cut: *cut,
         };
-        let redundancy = still(Rows { actuated: false, passive: true, object: true });
-        let indeterminacy = still(A);
-        let idle = still(Rows { passive: false, actuated: true, object: true });
-        let ungrasped = still(Rows { object: false, actuated: true, passive: true });
-        let joints_only = still(U);
-        let object_only = still(P);
+        let [indeterminacy, redundancy] = motions.still_and_others(A);
+        let [object_only, idle] = motions.still_and_others(P);
+        let [joints_only, ungrasped] = motions.still_and_others(U);
         let (r, i) = (redundancy.0.cols(), indeterminacy.0.cols());
         let (i_p, i_u) = (idle.0.cols(), ungrasped.0.cols());
         let c = k.saturating_sub(r + i);
@@ -176,7 +174,7 @@ impl Mobility {
             let others = ColumnSpace::of(&others, tolerance);
             space(&(others.complement(), others.cut()))
         };
-        let forces = relation.forces();
+        let (internal, structural) = relation.internal_and_structural();
         let [span, joint_rank, object_rank] = relation.cuts();
         let mut report = Self {
             dof: Subspace { basis: motions.basis(), cut: motions.cut() },
@@ -193,8 +191,8 @@ impl Mobility {
             indeterminacy: space(&indeterminacy),
             idle: space(&idle),
             ungrasped: space(&ungrasped),
-            internal: Subspace { basis: forces.zero, cut: joint_rank },
-            zero_torque: Subspace { basis: forces.infinite, cut: object_rank },
+            internal: Subspace { basis: internal, cut: joint_rank },
+            zero_torque: Subspace { basis: structural, cut: object_rank },
             hyperstatic: statics::undetermined(constraint, motions),
             relation: relation.dimensions(),
             grubler: motions.grubler(),

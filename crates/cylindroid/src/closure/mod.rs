@@ -24,27 +24,37 @@
 mod assembly;
 mod branches;
 mod constraint;
+mod continuation;
+mod coordinates;
 mod diagnosis;
+mod fingers;
 mod finite;
 mod generic;
 mod graph;
 mod grasp;
+mod marks;
 mod mobility;
+mod modes;
 mod motions;
 mod relation;
 mod singularity;
 mod statics;
 mod steering;
+mod transmitted;
 mod vicinity;
+mod way;
 
-pub use assembly::{Assembly, assemble};
+pub use assembly::{Assembly, assemble, recover_passive};
 pub use constraint::{Blocks, Constraint, Unit, Units};
+pub use continuation::{FollowOptions, Followed, PathEnd, PathPoint, PathSingularity, follow};
 pub use diagnosis::Diagnosis;
+pub use fingers::{Touch, fingers_on};
 pub use finite::{Branch, Evidence, FiniteMobility};
 pub use generic::Generic;
 pub use graph::{ClosedChain, Gap};
 pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};
 pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
+pub use modes::{AssemblyModes, Mode, ModeOptions, assembly_modes};
 pub use motions::{Motions, Rows};
 pub use relation::{Parts, Relation, RelationDimensions};
 pub use singularity::{Counts, Distances, Singularities, SingularityKind};
@@ -52,3 +62,4 @@ pub use statics::{
     ContactForces, Load, Torques, contact_forces, internal_forces, joint_torques, structural_forces,
 };
 pub use steering::Steering;
+pub use transmitted::{Transmitted, row_compliance, transmitted};

@@ -7,13 +7,18 @@
 //! Valid    any constraint. One relative threshold decides the rank of M'; every part is decided
 //!          by an absolute one, since K has columns of length one: relative to a block that only
 //!          rounding filled, rounding would have full rank.
+//! Why so   of the six groups of rows that the mobility report asks for three are the others of the
+//!          other three: what a motion has at most in one group it has not in the others
 //! Source   Bicchi & Prattichizzo 1998, eqs. 3 and 4, whose bases these are
 //! Checked  tests/it/closure/reference.rs (31 mechanisms), tests/it/closure/mobility.rs
 
 use super::constraint::Constraint;
 use super::relation::{ObjectScale, Relation};
-use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
+use crate::linalg::{ColumnSpace, Cut, Matrix, Rank, Threshold};
 use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING};
+
+/// A share of a motion that no rounding takes away: `sqrt(1 - s^2)` is right to 1e-13 from here on.
+const CLEARLY: f64 = 0.01;
 
 /// Groups of rows of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -51,8 +56,9 @@ impl Motions {
     /// With singular values at or below `threshold` times the largest taken as zero.
     #[must_use]
     pub fn with_threshold(constraint: &Constraint, threshold: f64) -> Self {
-        let space = ColumnSpace::of(&constraint.scaled_transpose(), Threshold::Relative(threshold));
-        let largest = space.values().first().copied().unwrap_or(0.0);
+        let space =
+            ColumnSpace::cut_of(constraint.scaled_transpose(), Threshold::Relative(threshold));
+        let largest = space.largest();
         let conditioning = if space.rank() == 0 { 1.0 } else { largest / space.cut().kept };
         Self {
             actuated: constraint.actuated(),
@@ -121,12 +127,15 @@ impl Motions {
     /// Relation between driven joints and object: what is left when passive joints are forgotten.
     #[must_use]
     pub fn relation(&self) -> Relation {
-        let (a, n) = (self.actuated, self.kernel.rows());
-        let k = self.kernel.cols();
-        let (joints, object) =
-            (self.kernel.rows_between(0, a), self.kernel.rows_between(a + self.passive, n));
+        let a = self.actuated;
+        let mut span = Matrix::zeros(a + self.object, self.kernel.cols());
+        for j in 0..span.cols() {
+            let (from, to) = (self.kernel.column(j), span.column_mut(j));
+            to[..a].copy_from_slice(&from[..a]);
+            to[a..].copy_from_slice(&from[a + self.passive..]);
+        }
         Relation::from_scaled(
-            &Matrix::above(k, &[&joints, &object]),
+            span,
             self.scale[..a].to_vec(),
             ObjectScale::diagonal(&self.scale[a + self.passive..]),
             self.tolerance,
@@ -136,22 +145,45 @@ impl Motions {
     /// The combinations of kernel columns (k entries each) whose entries in `rows` vanish, and the
     /// rank of the kernel in these rows.
     pub(super) fn still(&self, rows: Rows) -> (Matrix, Cut) {
-        let (a, p) = (self.actuated, self.passive);
-        let chosen: Vec<usize> = (0..self.kernel.rows())
-            .filter(|&i| {
-                if i < a {
-                    rows.actuated
-                } else if i < a + p {
-                    rows.passive
-                } else {
-                    rows.object
-                }
-            })
-            .collect();
-        let block =
-            Matrix::from_fn(self.kernel.cols(), chosen.len(), |j, i| self.kernel[(chosen[i], j)]);
-        let space = ColumnSpace::of(&block, Threshold::Absolute(self.tolerance));
+        let space = self.space_of(rows);
         (space.complement(), space.cut())
+    }
+
+    /// The same for `rows` and for all others. The columns of the kernel have length one, so that
+    /// what a motion has in `rows` at most leaves it `sqrt(1 - s^2)` at least in the others: where
+    /// that is far from nothing, none of them is still in the others.
+    pub(super) fn still_and_others(&self, rows: Rows) -> [(Matrix, Cut); 2] {
+        let space = self.space_of(rows);
+        let k = self.dof();
+        let s = space.largest().min(1.0);
+        let least = ((1.0 - s) * (1.0 + s)).sqrt();
+        let others = if k > 0 && least > CLEARLY.max(self.tolerance) {
+            let threshold = self.tolerance;
+            let rank = Rank { rank: k, threshold, gap: f64::INFINITY };
+            (Matrix::zeros(k, 0), Cut { rank, kept: least, dropped: 0.0 })
+        } else {
+            let Rows { actuated, passive, object } = rows;
+            self.still(Rows { actuated: !actuated, passive: !passive, object: !object })
+        };
+        [(space.complement(), space.cut()), others]
+    }
+
+    /// What the chosen rows of the kernel span, in k dimensions.
+    fn space_of(&self, rows: Rows) -> ColumnSpace {
+        let (a, n) = (self.actuated, self.kernel.rows());
+        let ranges = [
+            (rows.actuated, 0..a),
+            (rows.passive, a..a + self.passive),
+            (rows.object, a + self.passive..n),
+        ];
+        let chosen = || ranges.iter().filter(|r| r.0).flat_map(|r| r.1.clone());
+        let mut block = Matrix::zeros(self.kernel.cols(), chosen().count());
+        for (j, i) in chosen().enumerate() {
+            for (l, x) in block.column_mut(j).iter_mut().enumerate() {
+                *x = self.kernel[(i, l)];
+            }
+        }
+        ColumnSpace::cut_of(block, Threshold::Absolute(self.tolerance))
     }
 
     /// The motions in which `rows` stand still: a basis, a column `(q_a, q_p, u)` each.
@@ -167,7 +199,11 @@ impl Motions {
 
     /// From scaled coordinates.
     pub(super) fn unscaled(&self, motions: &Matrix) -> Matrix {
-        Matrix::from_fn(motions.rows(), motions.cols(), |i, j| self.scale[i] * motions[(i, j)])
+        let mut given = motions.clone();
+        for j in 0..given.cols() {
+            given.column_mut(j).iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        }
+        given
     }
 
     /// Number of driven joints.

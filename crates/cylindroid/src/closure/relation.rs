@@ -61,8 +61,9 @@ pub(super) struct ObjectScale {
 
 impl ObjectScale {
     pub(super) fn diagonal(scale: &[f64]) -> Self {
-        let inverse: Vec<f64> = scale.iter().map(|s| 1.0 / s).collect();
-        Self { twist: Matrix::diagonal(scale), wrench: Matrix::diagonal(&inverse) }
+        let (twist, mut wrench) = (Matrix::diagonal(scale), Matrix::diagonal(scale));
+        (0..scale.len()).for_each(|i| wrench[(i, i)] = 1.0 / scale[i]);
+        Self { twist, wrench }
     }
 }
 
@@ -84,12 +85,12 @@ pub struct Relation {
 impl Relation {
     /// Of the span of the columns of `span` (scaled), driven joints first.
     pub(super) fn from_scaled(
-        span: &Matrix,
+        span: Matrix,
         joint_scale: Vec<f64>,
         scale: ObjectScale,
         tolerance: f64,
     ) -> Self {
-        let space = ColumnSpace::of(span, Threshold::Absolute(tolerance));
+        let space = ColumnSpace::cut_of(span, Threshold::Absolute(tolerance));
         let cs = CosineSine::of(&space.basis(), joint_scale.len());
         let count = |kind| (0..cs.len()).filter(|&j| cs.kind(j, tolerance) == kind).count();
         Self {
@@ -170,6 +171,15 @@ impl Relation {
         })
     }
 
+    /// Internal torques and zero-torque wrenches, those of [`Relation::forces`] alone.
+    pub(crate) fn internal_and_structural(&self) -> (Matrix, Matrix) {
+        let (mut torques, wrenches) = (self.internal_scaled(), self.zero_torque_scaled());
+        for j in 0..torques.cols() {
+            torques.column_mut(j).iter_mut().zip(&self.joint_scale).for_each(|(t, s)| *t /= s);
+        }
+        (torques, &self.scale.wrench * &wrenches)
+    }
+
     /// The relation between driven joints and the task `T u`.
     ///
     /// # Errors
@@ -210,7 +220,7 @@ impl Relation {
         let joint = weighted(&self.cs.x, &self.cs.cosines);
         let object = &reduce.transpose() * &weighted(&self.cs.y, &self.cs.sines);
         Ok(Self::from_scaled(
-            &Matrix::above(columns, &[&joint, &object]),
+            Matrix::above(columns, &[&joint, &object]),
             self.joint_scale.clone(),
             ObjectScale { wrench, twist: r.transpose() },
             self.tolerance,
@@ -232,19 +242,18 @@ impl Relation {
 
     /// What is orthogonal to all attainable joint rates.
     fn internal_scaled(&self) -> Matrix {
-        let attained = self.cs.x.columns_between(self.infinite, self.cs.len());
-        Qr::plain(attained).complement()
+        complement(self.cs.x.columns_between(self.infinite, self.cs.len()))
     }
 
     /// What is orthogonal to all attainable twists.
     fn zero_torque_scaled(&self) -> Matrix {
-        let attained = self.cs.y.columns_between(0, self.cs.len() - self.zero);
-        Qr::plain(attained).complement()
+        complement(self.cs.y.columns_between(0, self.cs.len() - self.zero))
     }
 
-    /// Joint torques that balance the wrench with the least scaled norm, and the part of the
-    /// wrench that nothing balances (both in the units of the constraint).
-    pub(super) fn balance(&self, wrench: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// Joint torques that balance the wrench with the least scaled norm, and the parts of the
+    /// wrench that the structure holds and that nothing balances (all in the units of the
+    /// constraint).
+    pub(super) fn balance(&self, wrench: &[f64]) -> Balance {
         // w' = A^T w, since w^T u = w'^T u'.
         let scaled = self.scale.twist.transpose().mul_vec(wrench);
         let along =
@@ -255,12 +264,23 @@ impl Relation {
             torque.iter_mut().zip(self.cs.x.column(j)).for_each(|(t, x)| *t += share * x);
         }
         torque.iter_mut().zip(&self.joint_scale).for_each(|(t, s)| *t /= s);
-        let mut left = vec![0.0; self.object()];
-        for j in 0..self.infinite {
-            let share = along(j);
-            left.iter_mut().zip(self.cs.y.column(j)).for_each(|(l, y)| *l += share * y);
+        let mut unbalanced = vec![0.0; self.object()];
+        let mut structural = scaled.clone();
+        for j in 0..self.cs.len() - self.zero {
+            let (share, y) = (along(j), self.cs.y.column(j));
+            structural.iter_mut().zip(y).for_each(|(s, y)| *s -= share * y);
+            if j < self.infinite {
+                unbalanced.iter_mut().zip(y).for_each(|(l, y)| *l += share * y);
+            }
         }
-        (torque, self.scale.wrench.mul_vec(&left))
+        if self.dimensions().zero_torque == 0 {
+            structural.fill(0.0); // only rounding is left
+        }
+        Balance {
+            torques: torque,
+            structural: self.scale.wrench.mul_vec(&structural),
+            unbalanced: self.scale.wrench.mul_vec(&unbalanced),
+        }
     }
 
     fn parts(&self, kinds: &Kinds) -> Parts {
@@ -278,6 +298,21 @@ impl Relation {
             object: object * &kinds.object,
         }
     }
+}
+
+/// What balances a wrench.
+pub(super) struct Balance {
+    pub(super) torques: Vec<f64>,
+    pub(super) structural: Vec<f64>,
+    pub(super) unbalanced: Vec<f64>,
+}
+
+/// What is orthogonal to independent columns.
+fn complement(columns: Matrix) -> Matrix {
+    if columns.cols() == columns.rows() {
+        return Matrix::zeros(columns.rows(), 0);
+    }
+    Qr::plain(columns).complement()
 }
 
 /// Parts in scaled coordinates.

@@ -16,7 +16,7 @@
 use super::constraint::Constraint;
 use super::mobility::Subspace;
 use super::motions::Motions;
-use super::relation::Relation;
+use super::relation::{Balance, Relation};
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold};
 use crate::tolerance::CLOSURE_RANK;
@@ -27,8 +27,11 @@ pub struct Torques {
     /// The torques of least norm, an entry for each driven joint. Any combination of the internal
     /// torques of the mobility report may be added.
     pub torques: Vec<f64>,
+    /// The part of the wrench that the structure holds without torques: along the zero-torque
+    /// wrenches, orthogonal to all others in units scaled by the characteristic length.
+    pub structural: Vec<f64>,
     /// The part of the wrench that no torque and no structure balances: zero, or along motions of
-    /// the object that the driven joints do not hold.
+    /// the object that the driven joints do not hold. The torques balance what both parts leave.
     pub unbalanced: Vec<f64>,
 }
 
@@ -63,7 +66,7 @@ pub fn joint_torques(
 ) -> Result<Torques> {
     Error::check_len("wrench", relation.object(), wrench.len())?;
     Error::check_finite("wrench", wrench)?;
-    let (mut torques, unbalanced) = relation.balance(wrench);
+    let Balance { mut torques, structural, unbalanced } = relation.balance(wrench);
     if let Some(metric) = metric {
         Error::check_len("torque metric", relation.joints(), metric.len())?;
         let mut internal = relation.forces().zero;
@@ -76,7 +79,7 @@ pub fn joint_torques(
         }
         metric.colour(&mut torques);
     }
-    Ok(Torques { torques, unbalanced })
+    Ok(Torques { torques, structural, unbalanced })
 }
 
 /// The contact forces under a load: the ones of least norm, or with a compliance the elastic ones.

@@ -15,9 +15,9 @@ mod bounds;
 
 pub(super) use bounds::CoupledProblem;
 
-use super::options::Task;
 use crate::closure::{Gap, Steering, assemble};
 use crate::error::{Error, Result};
+use crate::ik::Task;
 use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::tolerance::{LEAST_STEERED, NEARLY_CLOSED, UNSTEERED};

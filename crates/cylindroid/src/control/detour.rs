@@ -1,82 +1,67 @@
 //! A way round: a posture within all limits that reaches a target which the servo, moving straight
 //! at it, does not.
 //!
-//! Method   runs the servo, freed of speed and acceleration limits, from the home posture and then
-//!          from postures drawn evenly within the limits, until one run reaches the target. Limits
-//!          of position form a box, so the straight way there through joint space keeps them.
+//! Method   inverse kinematics from the present posture, of several answers the nearest. Limits of
+//!          position form a box, so the straight way there through joint space keeps them.
 //! Units    rad, m
-//! Valid    any task; trees without spherical and free joints (else `None`). `None` says that no run of so many reached it: likely, not proved,
-//!          that no posture does. The draws are the same on every run.
+//! Valid    any task; trees without spherical and free joints (else `None`). `None` says that no
+//!          attempt of so many reached it: likely, not proved, that no posture does. The attempts
+//!          are the same on every run.
 //! Why so   what stops a servo is nearly always the posture it started from
 //! Checked  tests/it/servo/ways.rs::a_detour_reaches_what_the_servo_does_not
 
 use super::servo::Servo;
-use super::step::{Status, Target};
 use crate::error::Result;
+use crate::ik::{Budget, Goal, IkOptions, solve};
 use crate::model::CoordinateKind;
-use crate::scalar::uniform;
 use crate::spatial::Pose;
 
-/// Steps of one run: far more than a converging run takes.
-const STEPS: usize = 400;
-/// Period and gain of the runs: the error halves with every step.
-const DT: f64 = 0.02;
-const GAIN: f64 = 25.0;
+/// Steps of an attempt that are counted on.
+const STEPS: usize = 60;
+/// Share of the servo's tolerance within which the posture reaches the target [-].
+const WITHIN: f64 = 0.5;
 
 /// A posture that reaches the target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detour {
     /// The posture, all n coordinates.
     pub q: Vec<f64>,
-    /// Runs it took to find it.
+    /// Attempts it took to find it, and to look for nearer ones.
     pub runs: usize,
 }
 
-/// A posture within the limits from which the servo's end effector is at `target`; coordinates
+/// A posture within the limits in which the servo's end effector is at `target`; coordinates
 /// that do not move the end effector, and those that a limit locks, keep their values of `q`.
 ///
 /// # Errors
-/// A `q` of the wrong size or not finite, and as [`Servo::step`].
+/// A `q` of the wrong size or not finite; a target that is not finite.
 pub fn find_posture(
     servo: &Servo,
     q: &[f64],
     target: Pose,
     most_runs: usize,
 ) -> Result<Option<Detour>> {
-    let mechanism = servo.mechanism().clone();
+    let mechanism = servo.mechanism();
     mechanism.check_q("q", q)?;
-    if mechanism.is_closed() {
-        return Ok(None); // nor through joint space where loops couple the joints
-    }
     let straight = |c: &usize| {
         matches!(mechanism.coordinates()[*c].kind, CoordinateKind::Angle | CoordinateKind::Length)
     };
-    if !servo.coordinates().iter().all(straight) {
-        return Ok(None); // there is no straight way for spherical and free joints
+    if mechanism.is_closed() || !servo.coordinates().iter().all(straight) {
+        return Ok(None); // there is no straight way for spherical and free joints, nor in loops
     }
-    let mut search = servo.unhurried(DT, GAIN)?;
-    let mut random = 0_u64;
-    for run in 0..most_runs {
-        let mut posture = q.to_vec();
-        for c in servo.free_coordinates() {
-            let limits = &mechanism.coordinates()[c].limits;
-            let (lower, upper) =
-                (limits.lower.max(-std::f64::consts::PI), limits.upper.min(std::f64::consts::PI));
-            posture[c] = if run == 0 {
-                mechanism.home()[c].clamp(limits.lower, limits.upper)
-            } else {
-                // Limits that exclude [-pi, pi] leave one end of it.
-                (lower + (upper - lower) * uniform(&mut random)).clamp(limits.lower, limits.upper)
-            };
-        }
-        search.reset();
-        for _ in 0..STEPS {
-            match search.step(&posture, Target::from(target))?.status {
-                Status::Reached => return Ok(Some(Detour { q: posture, runs: run + 1 })),
-                Status::Stalled => break,
-                Status::Moving => search.advance(&mut posture),
-            }
-        }
-    }
-    Ok(None)
+    let options = servo.options();
+    let free: Vec<usize> = servo.free_coordinates().collect();
+    let ik = IkOptions {
+        position_tolerance: WITHIN * options.tolerance.position,
+        orientation_tolerance: WITHIN * options.tolerance.orientation,
+        start: Some(q.to_vec()),
+        fixed: (0..mechanism.n()).filter(|c| !free.contains(c)).collect(),
+        nearest: true,
+        seed: 0,
+        budget: Budget { iterations: STEPS * most_runs.max(1), time: None },
+        length: Some(options.length),
+    };
+    let goal = Goal { end_effector: options.end_effector, target, task: options.task };
+    let found = solve(mechanism, &[goal], &ik)?;
+    Ok(found.success.then_some(Detour { q: found.q, runs: found.attempts }))
 }

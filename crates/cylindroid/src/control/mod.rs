@@ -31,6 +31,7 @@ mod step;
 mod task_space;
 mod time_law;
 
+pub use crate::ik::Task;
 pub use admittance::{Admittance, AdmittanceGain};
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
 pub use detour::{Detour, find_posture};
@@ -40,7 +41,7 @@ pub use internal_force::{InternalForceCommand, InternalForceLaw};
 pub use joint_move::{JointDefaults, JointMove, JointPath, JointSample};
 pub use limits::{LimitKind, Motion1, RateBounds};
 pub use operator_share::{OperatorShare, ShareTimes};
-pub use options::{Gain, Projector, ServoOptions, Speed, Task, Tolerance};
+pub use options::{Gain, Projector, ServoOptions, Speed, Tolerance};
 pub use path::{CartesianPath, Deviation, Turn};
 pub use projection::Projection;
 pub use saturation::Saturation;

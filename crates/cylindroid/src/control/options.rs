@@ -3,8 +3,9 @@
 use super::projection::Projection;
 use super::secondary::Secondary;
 use crate::error::{Error, Result};
+use crate::ik::Task;
 use crate::inverse::Method;
-use crate::kinematics::{EndEffector, Reference};
+use crate::kinematics::EndEffector;
 use crate::model::{Dimension, Mechanism};
 use crate::tolerance;
 
@@ -33,38 +34,6 @@ pub struct Speed {
     pub linear: f64,
     /// Of the tool [rad/s].
     pub angular: f64,
-}
-
-/// The components of the end effector's motion that matter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Task {
-    /// Translation along x, y, z and rotation about x, y, z.
-    pub components: [bool; 6],
-    /// The axes of the components: `Local` (the tool's) or `LocalWorldAligned` (the world's).
-    pub axes: Reference,
-}
-
-impl Task {
-    /// Position and orientation.
-    pub const POSE: Self = Self { components: [true; 6], axes: Reference::LocalWorldAligned };
-    /// Position and orientation in the plane x-y.
-    pub const PLANAR: Self = Self {
-        components: [true, true, false, false, false, true],
-        axes: Reference::LocalWorldAligned,
-    };
-    /// Position alone.
-    pub const POSITION: Self = Self {
-        components: [true, true, true, false, false, false],
-        axes: Reference::LocalWorldAligned,
-    };
-    /// Orientation alone.
-    pub const ORIENTATION: Self = Self {
-        components: [false, false, false, true, true, true],
-        axes: Reference::LocalWorldAligned,
-    };
-    /// Position and the direction of the tool's z axis: a task for five joints.
-    pub const POINTING: Self =
-        Self { components: [true, true, true, true, true, false], axes: Reference::Local };
 }
 
 /// Which motions the secondary tasks may use.
@@ -188,21 +157,7 @@ impl ServoOptions {
                 });
             }
         }
-        if !self.task.components.contains(&true) {
-            return Err(Error::InvalidOption {
-                option: "task",
-                value: "no components".to_owned(),
-                reason: "name at least one of x, y, z, rx, ry, rz".to_owned(),
-            });
-        }
-        if self.task.axes == Reference::World {
-            return Err(Error::InvalidOption {
-                option: "task axes",
-                value: "world".to_owned(),
-                reason: "the error is taken at the tool; use local or local_world_aligned"
-                    .to_owned(),
-            });
-        }
+        self.task.check()?;
         if !self.joint_weights.is_empty() {
             mechanism.check_q("joint weights", &self.joint_weights)?;
             for &w in &self.joint_weights {

@@ -19,6 +19,7 @@ use super::task_space::TaskSpace;
 use crate::error::{Error, Result};
 use crate::kinematics::Chain;
 use crate::linalg::{Matrix, Svd};
+use crate::manipulability::log_volume_slope;
 use crate::model::{CoordinateKind, Mechanism};
 use crate::spatial::{Rotation, Vec3};
 
@@ -141,22 +142,11 @@ impl Secondary {
                 let w: f64 = svd.values().product();
                 for (k, rate) in out.iter_mut().enumerate() {
                     let h = &gradient.hessian[k];
-                    let mut sum = 0.0;
-                    for i in 0..rank {
-                        let (u, v) = (svd.u(i), svd.v(i));
-                        let mut along = 0.0;
-                        for (j, (vj, cj)) in v.iter().zip(&task.columns).enumerate() {
-                            let column = h.column(j);
-                            let turned: f64 = u
-                                .iter()
-                                .zip(&task.rows)
-                                .map(|(ui, (row, scale))| ui * scale * column[*row])
-                                .sum();
-                            along += vj * cj * turned;
-                        }
-                        sum += along / svd.value(i);
-                    }
-                    *rate += gain * w * sum;
+                    let entry = |i: usize, j: usize| {
+                        let (row, scale) = task.rows[i];
+                        scale * h[(row, j)] * task.columns[j]
+                    };
+                    *rate += gain * w * log_volume_slope(svd, rank, entry);
                 }
             }
         }

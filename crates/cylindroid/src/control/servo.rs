@@ -400,25 +400,6 @@ impl Servo {
         self.coordinates().iter().enumerate().filter(free).map(|(_, &c)| c)
     }
 
-    /// The same servo at rest, with position limits alone and another period and gain [1/s]; what
-    /// is locked stays so.
-    pub(super) fn unhurried(&self, dt: f64, gain: f64) -> Result<Self> {
-        let mut options = self.options.clone();
-        options.dt = dt;
-        options.gain = super::Gain { position: gain, orientation: gain };
-        options.speed = super::Speed { linear: f64::INFINITY, angular: f64::INFINITY };
-        // Only the posture at the end counts, not the way.
-        options.projection = super::Projection::Orthogonal;
-        // Half a radian a step at most, and exact near the target also where it is nearly singular.
-        options.method = Method::SelectivelyDamped { max_rate: 0.5 / dt };
-        let mut servo = Self::new(&self.mechanism, options)?;
-        for limits in &mut servo.limits {
-            limits.velocity = f64::INFINITY;
-            limits.acceleration = f64::INFINITY;
-        }
-        Ok(servo)
-    }
-
     fn check_input(&self, q: &[f64], target: &Target, wanted_rates: &[f64]) -> Result<()> {
         self.mechanism.check_q("q", q)?;
         if !wanted_rates.is_empty() {

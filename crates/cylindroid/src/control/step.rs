@@ -3,7 +3,6 @@
 use super::options::ServoOptions;
 use super::saturation::Saturation;
 use crate::error::{Error, Result};
-use crate::kinematics::Reference;
 use crate::spatial::{Pose, Twist};
 
 /// A moving target.
@@ -35,20 +34,7 @@ impl Target {
     pub(super) fn wanted(&self, pose: Pose, options: &ServoOptions) -> Result<Wanted> {
         let error = pose.error_to(self.pose);
         let gain = options.gain;
-        let r = pose.rotation.matrix();
-        let seen = |t: Twist| {
-            let t = match options.task.axes {
-                Reference::Local => {
-                    Twist { linear: r.tr_mul(t.linear), angular: r.tr_mul(t.angular) }
-                }
-                Reference::World | Reference::LocalWorldAligned => t,
-            };
-            let mut v = t.to_array();
-            for (x, keep) in v.iter_mut().zip(options.task.components) {
-                *x *= f64::from(u8::from(keep));
-            }
-            Twist::from_array(v)
-        };
+        let seen = |t: Twist| options.task.seen(pose, t);
         let wanted = Wanted {
             error: seen(error),
             feedback: seen(Twist {

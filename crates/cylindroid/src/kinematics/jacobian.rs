@@ -63,10 +63,22 @@ impl Tip<'_> {
     /// the tip to the root; the twist in world axes at the point `p`. Coordinates of one node
     /// share a depth; a larger depth is nearer the root.
     #[inline]
-    pub(crate) fn for_each_column(&self, p: Vec3, mut f: impl FnMut(usize, usize, Twist)) {
+    pub(crate) fn for_each_column(&self, p: Vec3, f: impl FnMut(usize, usize, Twist)) {
+        self.for_each_column_above(0, p, f);
+    }
+
+    /// [`Tip::for_each_column`] up to the slot `end` on the way to the root, whose own joints are
+    /// left out.
+    #[inline]
+    pub(crate) fn for_each_column_above(
+        &self,
+        end: usize,
+        p: Vec3,
+        mut f: impl FnMut(usize, usize, Twist),
+    ) {
         let mut slot = self.slot;
         let mut depth = 0;
-        while slot > 0 {
+        while slot > end {
             let node = &self.nodes[slot - 1];
             let here = &self.slots[slot];
             let z = here.z_axis();
@@ -92,6 +104,17 @@ impl Tip<'_> {
             slot = node.parent;
             depth += 1;
         }
+    }
+
+    /// The last slot that the ways of two tips to the root share.
+    pub(crate) fn common_slot(&self, other: &Self) -> usize {
+        let (mut a, mut b) = (self.slot, other.slot);
+        while a != b {
+            // A parent has a smaller slot than its children.
+            let later = if a > b { &mut a } else { &mut b };
+            *later = self.nodes[*later - 1].parent;
+        }
+        a
     }
 
     /// The Jacobian, into `out` (6 x n).

@@ -1,7 +1,7 @@
 //! The farthest point of an image of a box cut by a plane: a small linear program.
 //!
-//! Formula  max c^T z  over  |A z| <= b
-//! Shapes   A: n x m of rank m <= n, b: n entries > 0, c: m entries
+//! Formula  max c^T z  over  lower <= A z <= upper, with lower <= 0 <= upper
+//! Shapes   A: n x m of rank m <= n, bounds: n entries, c: m entries
 //! Units    any
 //! Method   from z = 0 go along what the active rows leave of c until the next row stops it; where
 //!          nothing is left, let go a row whose multiplier has the wrong sign; at the optimum go
@@ -17,12 +17,43 @@ use super::matrix::Matrix;
 use super::qr::{Qr, solve_upper};
 use crate::tolerance::BOX_PROGRAM;
 
-/// `|A z| <= b`.
+/// What a row may be: from `lower` to `upper`, zero among it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// At least this, not positive.
+    pub lower: f64,
+    /// At most this, not negative.
+    pub upper: f64,
+}
+
+impl Interval {
+    /// From `-most` to `most`.
+    #[must_use]
+    pub fn symmetric(most: f64) -> Self {
+        Self { lower: -most, upper: most }
+    }
+
+    /// True for finite bounds with zero between them, or at one of them, and room to move.
+    #[must_use]
+    pub fn is_around_zero(&self) -> bool {
+        let finite = self.lower.is_finite() && self.upper.is_finite();
+        finite && self.lower <= 0.0 && self.upper >= 0.0 && self.lower < self.upper
+    }
+
+    /// The larger of both bounds.
+    fn size(&self) -> f64 {
+        self.upper.max(-self.lower)
+    }
+}
+
+/// `lower <= A z <= upper`.
 #[derive(Debug, Clone)]
 pub struct BoxProgram {
-    /// A^T with rows divided by b: column i is the normal of the pair of bounds `|a_i z| <= 1`.
+    /// A^T with columns divided by the larger bound of each.
     normals: Matrix,
-    /// Columns of (A / b)^-1, when A is square.
+    /// Bounds divided by the same.
+    bounds: Vec<Interval>,
+    /// Columns of the inverse of the scaled A, when it is square.
     inverse: Option<Matrix>,
 }
 
@@ -36,16 +67,18 @@ pub struct Pull<'a> {
 }
 
 impl BoxProgram {
-    /// Of A (n x m, rank m) and positive bounds b.
+    /// Of A (n x m, rank m) and bounds around zero.
     ///
     /// # Panics
     /// If there is not a bound for each row.
     #[must_use]
-    pub fn new(a: &Matrix, bounds: &[f64]) -> Self {
+    pub fn new(a: &Matrix, bounds: &[Interval]) -> Self {
         assert_eq!(a.rows(), bounds.len(), "a bound for each row");
-        let normals = Matrix::from_fn(a.cols(), a.rows(), |j, i| a[(i, j)] / bounds[i]);
+        let normals = Matrix::from_fn(a.cols(), a.rows(), |j, i| a[(i, j)] / bounds[i].size());
         let inverse = (a.rows() == a.cols()).then(|| inverse(&normals.transpose()));
-        Self { normals, inverse }
+        let scaled =
+            |b: &Interval| Interval { lower: b.lower / b.size(), upper: b.upper / b.size() };
+        Self { normals, bounds: bounds.iter().map(scaled).collect(), inverse }
     }
 
     /// A corner of largest `first . z`, and among these of largest `second . z`.
@@ -54,16 +87,17 @@ impl BoxProgram {
         match &self.inverse {
             Some(inverse) => {
                 let n = inverse.cols();
-                let mut signs = vec![0.0; n];
+                let mut corner = vec![0.0; n];
                 let size = norm(pull.first);
-                for (j, sign) in signs.iter_mut().enumerate() {
+                for (j, value) in corner.iter_mut().enumerate() {
                     let column = inverse.column(j);
                     let first = dot(column, pull.first);
                     let tie = first.abs() <= BOX_PROGRAM * size * norm(column);
-                    *sign = if tie { dot(column, pull.second) } else { first };
-                    *sign = if *sign < 0.0 { -1.0 } else { 1.0 };
+                    let pulled = if tie { dot(column, pull.second) } else { first };
+                    let Interval { lower, upper } = self.bounds[j];
+                    *value = if pulled < 0.0 { lower } else { upper };
                 }
-                inverse.mul_vec(&signs)
+                inverse.mul_vec(&corner)
             }
             None => self.active_set(pull),
         }
@@ -118,7 +152,9 @@ impl BoxProgram {
             if rate.abs() <= BOX_PROGRAM * size * norm(normal) {
                 continue;
             }
-            let step = ((1.0 - now * rate.signum()) / rate.abs()).max(0.0);
+            let Interval { lower, upper } = self.bounds[i];
+            let bound = if rate > 0.0 { upper } else { lower };
+            let step = ((bound - now) / rate).max(0.0);
             if first.is_none_or(|f| step < f.0) {
                 first = Some((step, i, rate.signum()));
             }

@@ -13,7 +13,7 @@
 
 use super::matrix::Matrix;
 use super::qr::Qr;
-use super::singular_values::singular_values;
+use super::singular_values::{extreme_singular_values, singular_values};
 use super::svd::{Rank, Svd};
 use crate::tolerance::{AMBIGUOUS, MACHINE_RANK};
 
@@ -75,18 +75,44 @@ impl ColumnSpace {
     /// Of the columns of `a`, singular values at or below the threshold counting as zero.
     #[must_use]
     pub fn of(a: &Matrix, threshold: Threshold) -> Self {
+        Self::decompose(a.clone(), threshold, true)
+    }
+
+    /// [`ColumnSpace::of`] where of the singular values only the cut and the largest are wanted:
+    /// those between may be missing. A third of the time.
+    pub(crate) fn cut_of(a: Matrix, threshold: Threshold) -> Self {
+        Self::decompose(a, threshold, false)
+    }
+
+    fn decompose(mut a: Matrix, threshold: Threshold, all: bool) -> Self {
+        let (rows, longest) = (a.rows(), a.rows().max(a.cols()));
         let largest = a.max_abs();
         let scale = if largest > 0.0 && largest.is_finite() { largest } else { 1.0 };
-        let mut scaled = a.clone();
-        scaled.as_mut_slice().iter_mut().for_each(|x| *x /= scale);
-        let qr = Qr::pivoted(scaled);
-        let machine = MACHINE_RANK * a.rows().max(a.cols()) as f64;
+        a.as_mut_slice().iter_mut().for_each(|x| *x /= scale);
+        let qr = Qr::pivoted(a);
+        let machine = MACHINE_RANK * longest as f64;
         let dust = match threshold {
             Threshold::Relative(_) => machine * qr.first_pivot(),
             Threshold::Absolute(_) => machine / scale,
         };
+        let absolute = |first: f64| match threshold {
+            Threshold::Relative(eps) => eps.max(machine) * first,
+            Threshold::Absolute(t) => t.max(machine * first),
+        };
+        let (regular, rest) = regular_rows(&qr, dust);
+        if !all
+            && let Some([first, last]) = extreme_singular_values(qr.r_transposed(regular))
+            && last > dust
+            && last * scale > absolute(first * scale)
+        {
+            let (first, kept, dropped) = (first * scale, last * scale, rest * scale);
+            let gap = if dropped == 0.0 { f64::INFINITY } else { kept / dropped };
+            let rank = Rank { rank: regular, threshold: absolute(first), gap };
+            let cut = Cut { rank, kept, dropped };
+            return Self { rows, qr, svd: None, values: vec![first, kept], cut };
+        }
         let r = qr.r();
-        let (svd, mut values) = match clear_values(&r, dust) {
+        let (svd, mut values) = match clear_values(&qr, regular, rest, dust) {
             Some(values) => (None, values),
             None => {
                 let svd = Svd::of(&r);
@@ -95,20 +121,21 @@ impl ColumnSpace {
             }
         };
         values.iter_mut().for_each(|s| *s *= scale);
-        let first = values.first().copied().unwrap_or(0.0);
-        let threshold = match threshold {
-            Threshold::Relative(eps) => eps.max(machine) * first,
-            Threshold::Absolute(t) => t.max(machine * first),
-        };
+        let threshold = absolute(values.first().copied().unwrap_or(0.0));
         let cut = Cut::of(&values, threshold);
         if svd.is_none() && cut.dropped > dust * scale {
             // The cut goes through values that are no rounding: their directions are needed.
             let svd = Svd::of(&r);
             let values: Vec<f64> = svd.values().map(|s| s * scale).collect();
             let cut = Cut::of(&values, threshold);
-            return Self { rows: a.rows(), qr, svd: Some(svd), values, cut };
+            return Self { rows, qr, svd: Some(svd), values, cut };
         }
-        Self { rows: a.rows(), qr, svd, values, cut }
+        Self { rows, qr, svd, values, cut }
+    }
+
+    /// The largest singular value, 0 for a matrix without entries.
+    pub(crate) fn largest(&self) -> f64 {
+        self.values.first().copied().unwrap_or(0.0)
     }
 
     /// Dimension of the space.
@@ -153,31 +180,34 @@ impl ColumnSpace {
                 }
                 _ => column[j] = 1.0,
             }
-            self.qr.apply(column);
         }
+        self.qr.apply_to_columns(&mut basis);
         basis
     }
 }
 
-/// The singular values where all that comes after some pivot is rounding, with that rounding as
-/// one value: the first columns of Q then span the columns, to rounding.
-fn clear_values(r: &Matrix, dust: f64) -> Option<Vec<f64>> {
-    let k = r.rows();
-    let mut rank = k;
+/// The number of rows of R before those that are all rounding, and the size of these.
+fn regular_rows(qr: &Qr, dust: f64) -> (usize, f64) {
+    let mut rank = qr.len();
     let mut rest = 0.0;
     while rank > 0 {
-        let row = (rank - 1..r.cols()).map(|j| r[(rank - 1, j)].powi(2)).sum::<f64>();
+        let row = qr.square_of_row(rank - 1);
         if !(rest + row <= dust * dust) {
             break;
         }
         rest += row;
         rank -= 1;
     }
-    let regular = Matrix::from_fn(r.cols(), rank, |j, i| r[(i, j)]);
-    let mut values = singular_values(regular)?;
-    if rank < k && values.last().is_some_and(|&s| s <= dust) {
+    (rank, rest.sqrt())
+}
+
+/// The singular values where all that comes after some pivot is rounding, with that rounding as
+/// one value: the first columns of Q then span the columns, to rounding.
+fn clear_values(qr: &Qr, regular: usize, rest: f64, dust: f64) -> Option<Vec<f64>> {
+    let mut values = singular_values(qr.r_transposed(regular))?;
+    if regular < qr.len() && values.last().is_some_and(|&s| s <= dust) {
         return None;
     }
-    values.extend((rank..k).map(|i| if i == rank { rest.sqrt() } else { 0.0 }));
+    values.extend((regular..qr.len()).map(|i| if i == regular { rest } else { 0.0 }));
     Some(values)
 }

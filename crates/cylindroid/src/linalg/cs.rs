@@ -64,17 +64,18 @@ impl CosineSine {
         for (j, cosine) in cosines.iter_mut().enumerate().skip(large) {
             *cosine = normalise(x.column_mut(j));
         }
-        let inner = Complete::of(&x.columns_between(0, large));
-        // Largest cosine last.
-        let turn = Matrix::from_fn(large, large, |i, j| inner.z[(i, large - 1 - j)]);
-        let turned = &z.columns_between(0, large) * &turn;
-        let by = &b * &turned;
-        for j in 0..large {
-            cosines[j] = inner.values[large - 1 - j];
-            x.column_mut(j).copy_from_slice(inner.y.column(large - 1 - j));
-            z.column_mut(j).copy_from_slice(turned.column(j));
-            y.column_mut(j).copy_from_slice(by.column(j));
-            sines[j] = normalise(y.column_mut(j));
+        if large > 0 {
+            let inner = Complete::of(&x.columns_between(0, large));
+            // Largest cosine last.
+            let turn = Matrix::from_fn(large, large, |i, j| inner.z[(i, large - 1 - j)]);
+            let turned = &z.columns_between(0, large) * &turn;
+            for j in 0..large {
+                cosines[j] = inner.values[large - 1 - j];
+                x.column_mut(j).copy_from_slice(inner.y.column(large - 1 - j));
+                z.column_mut(j).copy_from_slice(turned.column(j));
+                b.mul_vec_into(turned.column(j), y.column_mut(j));
+                sines[j] = normalise(y.column_mut(j));
+            }
         }
         // Both change a small cosine or sine times its direction by rounding only.
         for j in 0..large {
@@ -86,7 +87,7 @@ impl CosineSine {
             normalise(y.column_mut(j));
         }
         for (c, s) in cosines.iter_mut().zip(&mut sines) {
-            let norm = c.hypot(*s);
+            let norm = (*c * *c + *s * *s).sqrt();
             debug_assert!((norm - 1.0).abs() < 1e-9, "columns of the split are not orthonormal");
             (*c, *s) = (*c / norm, *s / norm);
         }
@@ -148,9 +149,11 @@ impl Complete {
         let (m, k) = (b.rows(), b.cols());
         if m >= k {
             // A row of zeros makes a square matrix tall: its right vectors are then all there.
-            let rows = m.max(k + 1);
-            let svd =
-                Svd::of(&Matrix::from_fn(rows, k, |i, j| if i < m { b[(i, j)] } else { 0.0 }));
+            let svd = if m > k {
+                Svd::of(b)
+            } else {
+                Svd::of(&Matrix::above(k, &[b, &Matrix::zeros(1, k)]))
+            };
             return Self {
                 values: svd.values().collect(),
                 y: Matrix::from_fn(m, k, |i, j| svd.u(j)[i]),

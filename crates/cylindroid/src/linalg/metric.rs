@@ -3,7 +3,8 @@
 //! Formula  |x|^2 = x^T M x = |L^T x|^2 with M = L L^T
 //! Shapes   M: n x n
 //! Fails    `Error::InvalidOption` when M is not square, not symmetric or not positive definite
-//! Checked  tests/it/inverse.rs::weighted_*, tests/it/subspaces.rs::dual_metric
+//! Checked  tests/it/inverse.rs::weighted_*, tests/it/subspaces.rs::dual_metric,
+//!          tests/it/manipulability/metrics.rs::metrics_of_tasks
 
 use super::matrix::Matrix;
 use super::qr::Qr;
@@ -86,14 +87,47 @@ impl Metric {
                 x[i] = (x[i] - sum) / self.l[(i, i)];
             }
         }
-        let r = Qr::plain(inverse).r();
-        Self {
-            l: Matrix::from_fn(
-                n,
-                n,
-                |i, j| if i >= j { r[(j, i)] * r[(j, j)].signum() } else { 0.0 },
-            ),
+        Self::of_upper(&Qr::plain(inverse).r())
+    }
+
+    /// `B^T M B`: how coordinates y of a subspace are measured, `x = B y`.
+    ///
+    /// # Errors
+    /// A basis that has not n rows, is not finite, or whose columns are dependent.
+    pub fn restricted(&self, name: &'static str, basis: &Matrix) -> Result<Self> {
+        Error::check_len(name, self.len(), basis.rows())?;
+        let refuse = |reason: &str| Error::InvalidOption {
+            option: name,
+            value: format!("{} x {} matrix", basis.rows(), basis.cols()),
+            reason: reason.to_owned(),
+        };
+        if !basis.is_finite() {
+            return Err(refuse("its entries must be finite"));
         }
+        if basis.cols() > basis.rows() {
+            return Err(refuse("it has more columns than can be independent"));
+        }
+        let mut whitened = basis.clone();
+        self.whiten_rows(&mut whitened);
+        let metric = Self::of_upper(&Qr::plain(whitened).r());
+        if (0..metric.len()).any(|i| !(metric.l[(i, i)] > 0.0)) {
+            return Err(refuse("its columns are dependent; leave out those that follow"));
+        }
+        Ok(metric)
+    }
+
+    /// `(T M^-1 T^T)^-1`: how images `y = T x` are measured by the least x behind them.
+    ///
+    /// # Errors
+    /// A map that has not n columns, is not finite, or whose rows are dependent.
+    pub fn of_images(&self, name: &'static str, map: &Matrix) -> Result<Self> {
+        Ok(self.dual().restricted(name, &map.transpose())?.dual())
+    }
+
+    /// The metric `R^T R` of an upper triangular R.
+    fn of_upper(r: &Matrix) -> Self {
+        let entry = |i: usize, j: usize| if i >= j { r[(j, i)] * r[(j, j)].signum() } else { 0.0 };
+        Self { l: Matrix::from_fn(r.cols(), r.cols(), entry) }
     }
 
     /// Largest over smallest diagonal entry of the factor: how lopsided the metric is, 1 at least.
@@ -116,6 +150,14 @@ impl Metric {
         self.len() == 0
     }
 
+    /// `y <- M y`.
+    pub fn apply(&self, y: &mut [f64]) {
+        self.whiten(y);
+        for i in (0..self.len()).rev() {
+            y[i] = (0..=i).map(|k| self.l[(i, k)] * y[k]).sum();
+        }
+    }
+
     /// `y <- L^T y`: to coordinates in which the metric is the identity.
     pub fn whiten(&self, y: &mut [f64]) {
         let n = self.len();
@@ -130,6 +172,13 @@ impl Metric {
         for i in (0..n).rev() {
             let sum: f64 = (i + 1..n).map(|k| self.l[(k, i)] * y[k]).sum();
             y[i] = (y[i] - sum) / self.l[(i, i)];
+        }
+    }
+
+    /// `y <- L y`: a force in the coordinates that [`Metric::whiten`] gives motions, to its own.
+    pub fn colour_force(&self, y: &mut [f64]) {
+        for i in (0..self.len()).rev() {
+            y[i] = (0..=i).map(|k| self.l[(i, k)] * y[k]).sum();
         }
     }
 

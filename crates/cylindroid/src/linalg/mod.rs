@@ -5,6 +5,7 @@ mod box_program;
 mod column_space;
 mod cs;
 mod hull;
+mod lanes;
 mod matrix;
 mod metric;
 mod null_space;
@@ -13,7 +14,7 @@ mod singular_values;
 mod svd;
 mod symmetric;
 
-pub use box_program::{BoxProgram, Pull};
+pub use box_program::{BoxProgram, Interval, Pull};
 pub use column_space::{ColumnSpace, Cut, Threshold};
 pub use cs::{CosineSine, PairKind};
 pub use hull::{Facet, Hull, HullGoal, HullOptions};

@@ -11,6 +11,7 @@
 //!          of a Jacobi decomposition Drmac & Veselic 2008
 //! Checked  tests/it/subspaces.rs::qr_*
 
+use super::lanes::dot;
 use super::matrix::Matrix;
 
 /// A decomposition, the reflections below the diagonal of R.
@@ -40,7 +41,8 @@ impl Qr {
         let k = m.min(n);
         let mut factors = vec![0.0; k];
         let mut order: Vec<usize> = (0..n).collect();
-        let mut sizes: Vec<f64> = (0..n).map(|j| square(a.column(j))).collect();
+        let mut sizes: Vec<f64> =
+            if pivot { (0..n).map(|j| square(a.column(j))).collect() } else { Vec::new() };
         for j in 0..k {
             if pivot {
                 let largest =
@@ -51,7 +53,7 @@ impl Qr {
                     order.swap(j, largest);
                 }
             }
-            let norm = sizes[j].sqrt();
+            let norm = if pivot { sizes[j] } else { square(&a.column(j)[j..]) }.sqrt();
             if norm == 0.0 {
                 continue;
             }
@@ -69,12 +71,10 @@ impl Qr {
                 let (top, bottom) = column[j..].split_at_mut(1);
                 let along = factors[j] * (top[0] + dot(below, bottom));
                 top[0] -= along;
-                let mut size = 0.0;
-                for (x, y) in bottom.iter_mut().zip(below) {
-                    *x -= along * y;
-                    size += *x * *x;
+                bottom.iter_mut().zip(below).for_each(|(x, y)| *x -= along * y);
+                if pivot {
+                    sizes[j + 1 + l] = square(bottom);
                 }
-                sizes[j + 1 + l] = size;
             }
         }
         Self { packed: a, factors, order }
@@ -83,9 +83,30 @@ impl Qr {
     /// R with its columns in the order taken: k x n.
     #[must_use]
     pub fn r(&self) -> Matrix {
-        Matrix::from_fn(self.factors.len(), self.packed.cols(), |i, j| {
-            if i <= j { self.packed[(i, j)] } else { 0.0 }
-        })
+        let k = self.factors.len();
+        let mut r = Matrix::zeros(k, self.packed.cols());
+        for j in 0..r.cols() {
+            let rows = k.min(j + 1);
+            r.column_mut(j)[..rows].copy_from_slice(&self.packed.column(j)[..rows]);
+        }
+        r
+    }
+
+    /// The first `rows` rows of R, transposed.
+    pub(super) fn r_transposed(&self, rows: usize) -> Matrix {
+        let n = self.packed.cols();
+        let mut t = Matrix::zeros(n, rows);
+        for i in 0..rows {
+            for (j, x) in t.column_mut(i).iter_mut().enumerate().skip(i) {
+                *x = self.packed[(i, j)];
+            }
+        }
+        t
+    }
+
+    /// The square of the length of row `i` of R.
+    pub(super) fn square_of_row(&self, i: usize) -> f64 {
+        (i..self.packed.cols()).map(|j| self.packed[(i, j)].powi(2)).sum()
     }
 
     /// The first k columns of Q: for independent columns of A an orthonormal basis of their span.
@@ -104,11 +125,25 @@ impl Qr {
     fn columns(&self, from: usize, to: usize) -> Matrix {
         let mut basis = Matrix::zeros(self.packed.rows(), to - from);
         for j in from..to {
-            let column = basis.column_mut(j - from);
-            column[j] = 1.0;
-            self.apply(column);
+            basis.column_mut(j - from)[j] = 1.0;
         }
+        self.apply_to_columns(&mut basis);
         basis
+    }
+
+    /// `A <- Q A`, m rows.
+    pub(super) fn apply_to_columns(&self, a: &mut Matrix) {
+        // Column after column under one reflection: none waits for the last.
+        for j in (0..self.factors.len()).rev() {
+            for l in 0..a.cols() {
+                self.reflect(j, a.column_mut(l));
+            }
+        }
+    }
+
+    /// Number k of reflections.
+    pub(super) fn len(&self) -> usize {
+        self.factors.len()
     }
 
     /// Size of the first entry of the diagonal: with pivots, the size of the largest column.
@@ -137,6 +172,7 @@ impl Qr {
         }
     }
 
+    #[inline]
     fn reflect(&self, j: usize, x: &mut [f64]) {
         let below = &self.packed.column(j)[j + 1..];
         let (top, bottom) = x[j..].split_at_mut(1);
@@ -154,10 +190,6 @@ pub(crate) fn solve_upper(r: &Matrix, y: &[f64]) -> Vec<f64> {
         x[i] = (x[i] - sum) / r[(i, i)];
     }
     x
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn square(a: &[f64]) -> f64 {

@@ -1,21 +1,33 @@
 //! Singular values alone, without vectors: two-sided reflections to a bidiagonal matrix, then
-//! shifted QR steps.
+//! shifted QR steps; for the largest and the smallest alone Laguerre's steps.
 //!
-//! Formula  A = U B V^T with B upper bidiagonal; QR steps on B^T B without forming it
+//! Formula  A = U B V^T with B upper bidiagonal; QR steps on B^T B without forming it; Laguerre's
+//!          steps on det(B^T B - t) from outside all its zeros
 //! Shapes   A: m x n, m >= n; n values
 //! Valid    matrices of finite numbers whose squares neither overflow nor vanish. Values are right
 //!          to rounding times the largest.
 //! Fails    `None` where the steps do not come to an end (a zero on the diagonal): the caller has
 //!          the Jacobi decomposition, which never does
 //! Why so   ranks of closed chains need values of 18 x 18 matrices that are nearly always
-//!          regular; with vectors, by Jacobi rotations, that is three times the work
-//! Source   Golub & Van Loan, Matrix Computations, 4th ed., sections 5.4.8 and 8.6.3
-//! Checked  tests/it/subspaces.rs (values against the Jacobi decomposition)
+//!          regular; with vectors, by Jacobi rotations, that is three times the work. A rank needs
+//!          the two at the ends: a fifth of the QR steps' time, which are products and quotients of
+//!          numbers that wait for one another
+//! Source   Golub & Van Loan, Matrix Computations, 4th ed., sections 5.4.8 and 8.6.3; Wilkinson, The
+//!          Algebraic Eigenvalue Problem, ch. 7 (Laguerre); Dhillon & Parlett 2004 (the pivots of
+//!          B^T B - t without forming it)
+//! Checked  tests/it/subspaces.rs and below (values against the Jacobi decomposition)
 
+use super::lanes::dot;
 use super::matrix::Matrix;
 
 /// QR steps for each value before giving up; two or three are usual.
 const STEPS: usize = 12;
+
+/// So many values come sooner all than the two at the ends alone.
+const FEW: usize = 3;
+
+/// Laguerre's steps before giving up; six are usual.
+const MOST_STEPS: usize = 40;
 
 /// The singular values of `a`, largest first.
 pub(super) fn singular_values(a: Matrix) -> Option<Vec<f64>> {
@@ -26,12 +38,109 @@ pub(super) fn singular_values(a: Matrix) -> Option<Vec<f64>> {
     Some(values)
 }
 
+/// The largest and the smallest singular value of `a`, without those between; `None` where the
+/// steps do not settle.
+pub(super) fn extreme_singular_values(a: Matrix) -> Option<[f64; 2]> {
+    if a.cols() <= FEW {
+        let values = singular_values(a)?;
+        return Some([*values.first()?, *values.last()?]);
+    }
+    let (mut d, mut e) = bidiagonal(a);
+    d.iter_mut().chain(&mut e).for_each(|x| *x *= *x);
+    if !d.iter().chain(&e).all(|x| x.is_finite()) {
+        return None;
+    }
+    // Gershgorin's bound for the largest value of B^T B.
+    let above = |i: usize| if i == 0 { 0.0 } else { e[i - 1] };
+    let beside = |i: usize| (d[i] * e.get(i).copied().unwrap_or(0.0)).sqrt();
+    let before = |i: usize| if i == 0 { 0.0 } else { beside(i - 1) };
+    let bound = (0..d.len()).map(|i| d[i] + above(i) + beside(i) + before(i)).fold(0.0, f64::max);
+    let largest = extreme(&d, &e, bound * (1.0 + 1e-12))?;
+    let smallest = extreme(&d, &e, 0.0)?;
+    Some([largest.sqrt(), smallest.sqrt()])
+}
+
+/// The eigenvalue of B^T B nearest to `start`, which lies outside all of them, by Laguerre's steps:
+/// they come near it with the third power of the distance and would never pass it. Where several
+/// values seem one, the first steps are those to a multiple one, and may pass it; then the way back
+/// is sought in steps that grow from rounding.
+fn extreme(d: &[f64], e: &[f64], start: f64) -> Option<f64> {
+    const ROUNDING: f64 = 4.0 * f64::EPSILON;
+    let n = d.len() as f64;
+    let side = if start > 0.0 { -1.0 } else { 1.0 };
+    // `passed` is the nearest place known to be too far, `back` the last step from one.
+    let (mut t, mut before, mut back) = (start, start, 0.0_f64);
+    let mut passed = None;
+    // How near to a whole number what seems that many values must come.
+    let mut near_whole = 0.05;
+    for _ in 0..MOST_STEPS {
+        let Some((g, h)) = logarithmic_derivatives(d, e, t, side) else {
+            if t == start {
+                return t.is_finite().then_some(t);
+            }
+            passed = Some(t);
+            near_whole *= if back == 0.0 { 0.01 } else { 1.0 };
+            back = (30.0 * back).max(ROUNDING * t);
+            let near = t - side * back;
+            t = if side * (near - before) > 0.0 { near } else { 0.5 * (t + before) };
+            continue;
+        };
+        (before, back) = (t, 0.0);
+        let seem = g * g / h;
+        let whole = seem.round().clamp(1.0, n);
+        let m = if (seem - whole).abs() < near_whole { whole } else { 1.0 };
+        let root = ((n - m) / m * (n * h - g * g)).max(0.0).sqrt();
+        let step = n / (g + root.copysign(g));
+        t -= step;
+        if step.abs() <= 0.5 * ROUNDING * t {
+            return Some(t);
+        }
+        if let Some(passed) = passed {
+            if side * (passed - before) <= 2.0 * ROUNDING * before {
+                return Some(before);
+            }
+            if side * (passed - t) <= 0.0 {
+                t = 0.5 * (before + passed);
+            }
+        }
+    }
+    None
+}
+
+/// First and second derivative by t of log |det(B^T B - t)|, the second with the other sign; `None`
+/// where t is not on that side of all eigenvalues.
+///
+/// `B^T B - t = L D L^T` has `D_i = d_i^2 + s_i`, `s_1 = -t`, `s_{i+1} = (e_i^2 / D_i) s_i - t`; the
+/// derivatives are the sums of those of `log |D_i|`.
+fn logarithmic_derivatives(d: &[f64], e: &[f64], t: f64, side: f64) -> Option<(f64, f64)> {
+    // s, its first and its second derivative.
+    let (mut s, mut s1, mut s2) = (-t, -1.0, 0.0);
+    let (mut g_sum, mut h_sum) = (0.0, 0.0);
+    for (i, &q) in d.iter().enumerate() {
+        let pivot = q + s;
+        if !(side * pivot > 0.0) {
+            return None;
+        }
+        let inverse = 1.0 / pivot;
+        let g = s1 * inverse;
+        let h = g * g - s2 * inverse;
+        g_sum += g;
+        h_sum += h;
+        if let Some(e) = e.get(i) {
+            let p = e * inverse;
+            let turned = s1 - s * g;
+            (s, s1, s2) = (p * s - t, p * turned - 1.0, p * (s2 - s1 * g + s * h - g * turned));
+        }
+    }
+    Some((g_sum, h_sum))
+}
+
 /// Diagonal and superdiagonal of B.
 fn bidiagonal(mut a: Matrix) -> (Vec<f64>, Vec<f64>) {
     let (m, n) = (a.rows(), a.cols());
     let (mut d, mut e) = (vec![0.0; n], vec![0.0; n.saturating_sub(1)]);
-    let mut row = vec![0.0; n];
-    let mut product = vec![0.0; m];
+    let mut scratch = vec![0.0; n + m];
+    let (row, product) = scratch.split_at_mut(n);
     for j in 0..n {
         let (head, rest) = a.as_mut_slice().split_at_mut((j + 1) * m);
         let v = &mut head[j * m + j..];
@@ -130,7 +239,60 @@ fn rotation(y: f64, z: f64) -> (f64, f64, f64) {
     if r == 0.0 { (1.0, 0.0, 0.0) } else { (y / r, z / r, r) }
 }
 
-#[inline]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Svd;
+
+    fn check(what: &str, diagonal: &[f64], above: &[f64], settled: bool) {
+        let n = diagonal.len();
+        let b = Matrix::from_fn(n, n, |i, j| match j.checked_sub(i) {
+            Some(0) => diagonal[i],
+            Some(1) => above[i],
+            _ => 0.0,
+        });
+        let svd = Svd::of(&b);
+        let expected = [svd.value(0), svd.value(n - 1)];
+        let Some(got) = extreme_singular_values(b) else {
+            assert!(!settled, "{what}: {diagonal:?} {above:?}");
+            return;
+        };
+        for (g, e) in got.iter().zip(expected) {
+            assert!(
+                (g - e).abs() <= 8e-15 * expected[0],
+                "{what}: {got:?} instead of {expected:?}"
+            );
+        }
+    }
+
+    /// Against the Jacobi decomposition: values all over the place, clusters of any width, zeros.
+    #[test]
+    fn extremes_are_those_of_the_decomposition() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+        };
+        for round in 0..2000 {
+            let n = 1 + round % 21;
+            let width = 10.0_f64.powi(-(round as i32 / 21 % 17));
+            let spread: Vec<f64> = (0..n).map(|_| random()).collect();
+            let small: Vec<f64> = (1..n).map(|_| width * random()).collect();
+            check("spread", &spread, &small, true);
+            let narrow: Vec<f64> = (0..n).map(|_| 0.7 * (1.0 + width * random())).collect();
+            check("one cluster", &narrow, &small, false);
+            let two: Vec<f64> =
+                (0..n).map(|i| (1.0 + (i % 2) as f64) * (1.0 + width * random())).collect();
+            check("two clusters", &two, &small, false);
+            let graded: Vec<f64> = (0..n).map(|_| 10.0_f64.powf(8.0 * random() - 8.0)).collect();
+            let above: Vec<f64> = (1..n).map(|i| graded[i] * random()).collect();
+            check("graded", &graded, &above, true);
+        }
+        check("double", &[1.0; 6], &[0.0; 5], true);
+        check("singular", &[1.0, 0.0, 2.0, 1.0], &[0.5; 3], true);
+        check("nothing", &[0.0; 4], &[0.0; 3], true);
+        assert!(extreme_singular_values(Matrix::diagonal(&[1.0, 2.0, f64::NAN, 1.0])).is_none());
+    }
 }

@@ -3,7 +3,8 @@
 //! Formula  kinematic  R = min over u' of |u|^2 / min over q' of |q|^2, u' and q' moving freely
 //!          force      the same for F, the wrenches and torques that do no work on R
 //!          Whiten, take q orthogonal to r', u to i', make [Q; U] orthonormal; then
-//!          [Q; U] = [X C; Y S] Z^T and the efficiencies are s_j^2 / c_j^2
+//!          [Q; U] = [X C; Y S] Z^T and the efficiencies are s_j^2 / c_j^2; in dual metrics those
+//!          of forces are (-X S, Y C) in the same coordinates
 //! Shapes   finite: c' of both kinds; kinematic: r' zeros, i' infinite; force: h zeros, s infinite
 //! Units    `|u|^2 / |q|^2`, `|w|^2 / |tau|^2` in the metrics given
 //! Frame    that of the object's twist
@@ -11,7 +12,7 @@
 //!          directions are zero or infinite is the relation's decision, taken in scaled units, so
 //!          no metric, however lopsided, turns one into the other. With dual metrics the finite
 //!          efficiencies of force are the inverses of the kinematic ones, largest for smallest
-//!          (not equal, as section 4.3 says): checked in debug builds.
+//!          (not equal, as section 4.3 says): debug builds check it against the forces alone.
 //! Why so   eqs. 15 and 16 leave out cross terms and depend on the basis, even on where a contact
 //!          is drawn on its link; eq. 9 loses half the digits by squaring
 //! Source   Bicchi & Prattichizzo 1998, sections 3 and 4, as corrected above
@@ -89,50 +90,82 @@ impl Spectrum {
     }
 
     fn of(parts: Parts, joint: Option<&Metric>, object: Option<&Metric>) -> Self {
-        let whiten = |metric: Option<&Metric>, mut a: Matrix| {
-            if let Some(metric) = metric {
-                metric.whiten_rows(&mut a);
-            }
-            a
-        };
-        let colour = |metric: Option<&Metric>, x: &mut [f64]| {
-            if let Some(metric) = metric {
-                metric.colour(x);
-            }
-        };
-        let mut zeros = orthonormal(whiten(joint, parts.zero));
-        let mut infinite = orthonormal(whiten(object, parts.infinite));
-        let q = without(whiten(joint, parts.joint), &zeros);
-        let mut u = without(whiten(object, parts.object), &infinite);
-        // A common factor between the two spaces changes all efficiencies alike: taken out, it
-        // costs no digits.
+        let principal = Principal::of(parts, joint, object);
+        Self {
+            finite: principal.directions(joint, object),
+            zeros: coloured(joint, principal.zeros),
+            infinite: coloured(object, principal.infinite),
+        }
+    }
+}
+
+/// Principal directions in whitened coordinates.
+struct Principal {
+    cs: CosineSine,
+    /// A common factor between the two spaces, taken out of the sines.
+    balance: f64,
+    zeros: Matrix,
+    infinite: Matrix,
+}
+
+impl Principal {
+    fn of(parts: Parts, joint: Option<&Metric>, object: Option<&Metric>) -> Self {
+        let zeros = orthonormal(whitened(joint, parts.zero));
+        let infinite = orthonormal(whitened(object, parts.infinite));
+        let q = without(whitened(joint, parts.joint), &zeros);
+        let mut u = without(whitened(object, parts.object), &infinite);
+        // Taken out, the factor changes all efficiencies alike and costs no digits.
         let balance = if u.cols() == 0 { 1.0 } else { u.frobenius_norm() / q.frobenius_norm() };
         u.as_mut_slice().iter_mut().for_each(|x| *x /= balance);
         let stack = Matrix::above(q.cols(), &[&q, &u]);
         let cs = CosineSine::of(&orthonormal(stack), q.rows());
-        let finite = (0..cs.len())
-            .map(|j| {
-                let (s, c) = (balance * cs.sines[j], cs.cosines[j]);
-                let norm = s.hypot(c);
-                let pair = Pair { output: s / norm, input: c / norm };
-                let times = |x: &[f64], size: f64| x.iter().map(|a| a * size).collect();
-                let mut direction = Direction {
-                    pair,
-                    joint: times(cs.x.column(j), pair.input),
-                    object: times(cs.y.column(j), pair.output),
-                };
-                colour(joint, &mut direction.joint);
-                colour(object, &mut direction.object);
-                direction
-            })
-            .collect();
-        for j in 0..zeros.cols() {
-            colour(joint, zeros.column_mut(j));
+        Self { cs, balance, zeros, infinite }
+    }
+
+    fn pair(&self, j: usize) -> Pair {
+        let (s, c) = (self.balance * self.cs.sines[j], self.cs.cosines[j]);
+        let norm = s.hypot(c);
+        Pair { output: s / norm, input: c / norm }
+    }
+
+    fn direction(&self, j: usize, pair: Pair, sign: f64) -> Direction {
+        let times = |x: &[f64], size: f64| x.iter().map(|a| a * size).collect();
+        Direction {
+            pair,
+            joint: times(self.cs.x.column(j), sign * pair.input),
+            object: times(self.cs.y.column(j), pair.output),
         }
-        for j in 0..infinite.cols() {
-            colour(object, infinite.column_mut(j));
-        }
-        Self { finite, zeros, infinite }
+    }
+
+    fn directions(&self, joint: Option<&Metric>, object: Option<&Metric>) -> Vec<Direction> {
+        let of = |j| {
+            let mut direction = self.direction(j, self.pair(j), 1.0);
+            if let Some(metric) = joint {
+                metric.colour(&mut direction.joint);
+            }
+            if let Some(metric) = object {
+                metric.colour(&mut direction.object);
+            }
+            direction
+        };
+        (0..self.cs.len()).map(of).collect()
+    }
+
+    /// The directions (-X S, Y C) of the forces, largest efficiency first: in whitened coordinates
+    /// the complement of (X C, Y S), with the metrics of motions given.
+    fn dual_directions(&self, joint: Option<&Metric>, object: Option<&Metric>) -> Vec<Direction> {
+        let of = |j| {
+            let Pair { output, input } = self.pair(j);
+            let mut direction = self.direction(j, Pair { output: input, input: output }, -1.0);
+            if let Some(metric) = joint {
+                metric.colour_force(&mut direction.joint);
+            }
+            if let Some(metric) = object {
+                metric.colour_force(&mut direction.object);
+            }
+            direction
+        };
+        (0..self.cs.len()).rev().map(of).collect()
     }
 }
 
@@ -153,13 +186,31 @@ impl Manipulability {
     /// Metrics of the wrong size.
     pub fn of(relation: &Relation, metrics: &Metrics) -> Result<Self> {
         metrics.check(relation.joints(), relation.object())?;
-        let kinematic =
-            Spectrum::of(relation.motions(), metrics.joint.as_ref(), metrics.object.as_ref());
+        let (joint, object) = (metrics.joint.as_ref(), metrics.object.as_ref());
         let (torque, wrench) = (metrics.of_torque(), metrics.of_wrench());
-        let force = Spectrum::of(relation.forces(), torque.as_ref(), wrench.as_ref());
+        let (torque, wrench) = (torque.as_ref(), wrench.as_ref());
+        let principal = Principal::of(relation.motions(), joint, object);
+        let finite = principal.directions(joint, object);
+        let force = if metrics.is_dual() {
+            let (internal, structural) = relation.internal_and_structural();
+            Spectrum {
+                finite: principal.dual_directions(joint, object),
+                zeros: coloured(torque, orthonormal(whitened(torque, internal))),
+                infinite: coloured(wrench, orthonormal(whitened(wrench, structural))),
+            }
+        } else {
+            Spectrum::of(relation.forces(), torque, wrench)
+        };
+        let kinematic = Spectrum {
+            finite,
+            zeros: coloured(joint, principal.zeros),
+            infinite: coloured(object, principal.infinite),
+        };
         let all = Self { kinematic, force };
         debug_assert!(
-            !metrics.is_dual() || metrics.spread() > LOPSIDED || all.is_dual(),
+            !metrics.is_dual()
+                || metrics.spread() > LOPSIDED
+                || all.is_dual_to(&Spectrum::of(relation.forces(), torque, wrench)),
             "forces are not dual: {all:?}"
         );
         Ok(all)
@@ -181,19 +232,39 @@ impl Manipulability {
         Spectrum { zeros: none, ..self.force.clone() }
     }
 
-    /// Efficiencies of force are inverse to those of motion, up to what rounding does to the pairs.
-    fn is_dual(&self) -> bool {
-        let (motion, force) = (&self.kinematic.finite, &self.force.finite);
-        motion.len() == force.len()
-            && motion.iter().zip(force.iter().rev()).all(|(m, f)| {
+    /// Efficiencies of force, found from the forces alone, are inverse to those of motion, up to
+    /// what rounding does to the pairs.
+    fn is_dual_to(&self, force: &Spectrum) -> bool {
+        let motion = &self.kinematic.finite;
+        motion.len() == force.finite.len()
+            && motion.iter().zip(force.finite.iter().rev()).all(|(m, f)| {
                 (m.pair.output - f.pair.input).abs() < DUALITY
                     && (m.pair.input - f.pair.output).abs() < DUALITY
             })
     }
 }
 
+fn whitened(metric: Option<&Metric>, mut a: Matrix) -> Matrix {
+    if let Some(metric) = metric {
+        metric.whiten_rows(&mut a);
+    }
+    a
+}
+
+fn coloured(metric: Option<&Metric>, mut a: Matrix) -> Matrix {
+    if let Some(metric) = metric {
+        for j in 0..a.cols() {
+            metric.colour(a.column_mut(j));
+        }
+    }
+    a
+}
+
 /// An orthonormal basis of the span of independent columns.
 fn orthonormal(mut a: Matrix) -> Matrix {
+    if a.cols() == 0 {
+        return a;
+    }
     for j in 0..a.cols() {
         let column = a.column_mut(j);
         let size = column.iter().fold(0.0, |m: f64, x| m.max(x.abs()));

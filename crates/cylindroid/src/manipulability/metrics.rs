@@ -12,9 +12,12 @@
 //!
 //! [`Relation::task`]: crate::closure::Relation::task
 
+use super::inertia::body_inertia;
 use crate::closure::{Unit, Units};
 use crate::error::{Error, Result};
+use crate::kinematics::State;
 use crate::linalg::{Matrix, Metric};
+use crate::model::FrameId;
 
 /// Metrics of twists, joint rates, wrenches and joint torques. `None` is the identity for twists
 /// and rates, and the dual for wrenches and torques.
@@ -113,10 +116,55 @@ impl Metrics {
         Ok(self)
     }
 
-    /// True if wrenches and torques are measured by the duals of the metrics of motions.
+    /// With W_u the inertia of the body that carries `frame` at the state, about the frame's
+    /// origin and in world axes: twists are measured by twice their kinetic energy, wrenches by
+    /// the accelerations that they give the free body.
+    ///
+    /// # Errors
+    /// A frame of another mechanism; a body without mass, or whose inertia about some axis is
+    /// zero.
+    pub fn with_inertia(self, state: &State, frame: FrameId) -> Result<Self> {
+        let mechanism = state.mechanism();
+        mechanism.check_frame(frame)?;
+        let link = &mechanism.links()[mechanism.frame_of(frame).link].name;
+        let refuse = |what: &str| Error::Model {
+            model: mechanism.name().to_owned(),
+            culprit: link.clone(),
+            message: format!(
+                "link '{link}' {what}; write mass and inertia into the file ([[link]] in mechanism \
+                 files), or measure twists by a metric Wu of your own"
+            ),
+        };
+        let inertia = body_inertia(state, frame).ok_or_else(|| refuse("has no mass"))?;
+        self.with_object(&inertia).map_err(|_| refuse("can turn without inertia"))
+    }
+
+    /// The same metrics for the task `T u` of [`Relation::task`]: task velocities are measured by
+    /// the least twist behind them, task forces by the wrench `T^T f` that they are. Metrics of
+    /// joints stay.
+    ///
+    /// [`Relation::task`]: crate::closure::Relation::task
+    ///
+    /// # Errors
+    /// A map that has not a column for each component, is not finite, or has dependent rows.
+    pub fn for_task(&self, map: &Matrix) -> Result<Self> {
+        let unit = || Metric::diagonal("Wu", &vec![1.0; map.cols()]);
+        let object = self.object.clone().map_or_else(unit, Ok)?;
+        let wrench = match &self.wrench {
+            Some(wrench) => Some(wrench.restricted("task", &map.transpose())?),
+            None => None,
+        };
+        Ok(Self { object: Some(object.of_images("task", map)?), wrench, ..self.clone() })
+    }
+
+    /// True if wrenches and torques are measured by the duals of the metrics of motions: none of
+    /// their own given, or just these.
     #[must_use]
     pub fn is_dual(&self) -> bool {
-        self.wrench.is_none() && self.torque.is_none()
+        let dual = |given: &Option<Metric>, of: &Option<Metric>| {
+            given.is_none() || *given == of.as_ref().map(Metric::dual)
+        };
+        dual(&self.wrench, &self.object) && dual(&self.torque, &self.joint)
     }
 
     /// How lopsided the metrics of motions are.

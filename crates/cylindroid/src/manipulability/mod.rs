@@ -1,4 +1,5 @@
-//! What a mechanism can do, in numbers: efficiencies of motion and force, indices, polytopes.
+//! What a mechanism can do, in numbers: efficiencies of motion and force, indices and their
+//! gradients, polytopes.
 //!
 //! Serial arms and closed chains go through the same code: both are a [`Relation`] between driven
 //! joints and object. For a serial arm the finite kinematic efficiencies are the squares of the
@@ -21,11 +22,16 @@
 //! [`Relation`]: crate::closure::Relation
 
 mod efficiency;
+mod gradient;
 mod index;
+mod inertia;
 mod metrics;
 mod polytope;
 
 pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
+pub(crate) use gradient::log_volume_slope;
+pub use gradient::{Goal, Gradient, Measure, gradient};
 pub use index::Index;
+pub use inertia::body_inertia;
 pub use metrics::Metrics;
-pub use polytope::{Polytope, force_polytope, velocity_polytope};
+pub use polytope::{Polytope, force_polytope, force_range, velocity_polytope, velocity_range};

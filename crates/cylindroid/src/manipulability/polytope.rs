@@ -1,10 +1,12 @@
 //! Polytopes of velocity and force: all that the limits of the driven joints allow.
 //!
-//! Formula  velocity {u: (q, u) in R, |q_i| <= limit_i}, force {w: (tau, w) in F, |tau_i| <= limit_i}
-//! Shapes   limits: q_a entries; vertices: d entries
+//! Formula  velocity {u: (q, u) in R, lower <= q <= upper}, force {w: (tau, w) in F, lower <= tau <=
+//!          upper}; the range of a component is from its smallest to its largest value on it
+//! Shapes   limits: q_a intervals; vertices: d entries
 //! Units    of the object's twist or wrench
 //! Frame    that of the object's twist
-//! Valid    any relation. Directions in which nothing limits the object (motions that the drives
+//! Valid    any relation, limits around zero (a cable pulls: from 0 to its strength). Directions in
+//!          which nothing limits the object (motions that the drives
 //!          do not control, wrenches that the structure holds) are listed apart; the polytope is
 //!          then the cross-section orthogonal to them in scaled units. More than three dimensions
 //!          have many facets: take a task first. The velocity polytope of a task is the shadow of
@@ -17,10 +19,10 @@
 
 use crate::closure::{Parts, Relation};
 use crate::error::{Error, Result};
-use crate::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Matrix, Pull};
-use crate::tolerance::{HULL, MOST_FACETS};
+use crate::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Interval, Matrix, Pull};
+use crate::tolerance::{CLOSURE_BLOCK, HULL, MOST_FACETS};
 
-/// A polytope of twists or wrenches, about zero.
+/// A polytope of twists or wrenches; zero is in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polytope {
     /// Corners and facets. Flat where fewer directions than components can be reached.
@@ -33,51 +35,103 @@ pub struct Polytope {
 /// joints.
 ///
 /// # Errors
-/// A limit that is not positive and finite, or not one for each driven joint.
-pub fn velocity_polytope(relation: &Relation, rate_limits: &[f64]) -> Result<Polytope> {
-    polytope(relation, relation.motions(), "rate limit", rate_limits)
+/// Limits that are not finite or not around zero, or not one for each driven joint.
+pub fn velocity_polytope(relation: &Relation, rate_limits: &[Interval]) -> Result<Polytope> {
+    Ok(Body::new(relation.motions(), "rate limit", rate_limits)?.polytope())
 }
 
 /// All wrenches on the object (or forces of the task) that torques within their limits balance.
 ///
 /// # Errors
-/// A limit that is not positive and finite, or not one for each driven joint.
-pub fn force_polytope(relation: &Relation, torque_limits: &[f64]) -> Result<Polytope> {
-    polytope(relation, relation.forces(), "torque limit", torque_limits)
+/// As [`velocity_polytope`].
+pub fn force_polytope(relation: &Relation, torque_limits: &[Interval]) -> Result<Polytope> {
+    Ok(Body::new(relation.forces(), "torque limit", torque_limits)?.polytope())
 }
 
-fn polytope(
-    relation: &Relation,
+/// From the smallest to the largest value of each component of the twist within the rate limits,
+/// infinite where nothing limits it.
+///
+/// # Errors
+/// As [`velocity_polytope`].
+pub fn velocity_range(relation: &Relation, rate_limits: &[Interval]) -> Result<Vec<Interval>> {
+    Ok(Body::new(relation.motions(), "rate limit", rate_limits)?.range())
+}
+
+/// From the smallest to the largest value of each component of the wrench that torques within
+/// their limits balance, infinite where the structure holds it. The other components take any
+/// values.
+///
+/// # Errors
+/// As [`velocity_polytope`].
+pub fn force_range(relation: &Relation, torque_limits: &[Interval]) -> Result<Vec<Interval>> {
+    Ok(Body::new(relation.forces(), "torque limit", torque_limits)?.range())
+}
+
+/// q = joint y + zero z, u = object y + infinite x; the limits bind q alone.
+struct Body {
     parts: Parts,
-    option: &'static str,
-    limits: &[f64],
-) -> Result<Polytope> {
-    Error::check_len(option, relation.joints(), limits.len())?;
-    if let Some(limit) = limits.iter().find(|l| !(l.is_finite() && **l > 0.0)) {
-        return Err(Error::InvalidOption {
-            option,
-            value: limit.to_string(),
-            reason: "limits are positive and finite; give one for each driven joint".to_owned(),
-        });
+    program: BoxProgram,
+}
+
+impl Body {
+    fn new(parts: Parts, option: &'static str, limits: &[Interval]) -> Result<Self> {
+        let joints = parts.joint.rows();
+        Error::check_len(option, joints, limits.len())?;
+        if let Some(limit) = limits.iter().find(|l| !l.is_around_zero()) {
+            return Err(Error::InvalidOption {
+                option,
+                value: format!("{} to {}", limit.lower, limit.upper),
+                reason: "limits are finite, with zero between them or one of them zero; give a \
+                         pair for each driven joint"
+                    .to_owned(),
+            });
+        }
+        let all = Matrix::beside(joints, &[&parts.joint, &parts.zero]);
+        Ok(Self { program: BoxProgram::new(&all, limits), parts })
     }
-    // q = joint y + zero z, u = object y; the limits bind q alone.
-    let (c, d) = (parts.joint.cols(), relation.object());
-    let joints = Matrix::beside(relation.joints(), &[&parts.joint, &parts.zero]);
-    let program = BoxProgram::new(&joints, limits);
-    let pull = |n: &[f64]| {
-        let mut goal = vec![0.0; joints.cols()];
-        parts.object.tr_mul_vec_into(n, &mut goal[..c]);
+
+    /// What a direction of the object asks of y and z.
+    fn pull(&self, n: &[f64]) -> Vec<f64> {
+        let c = self.parts.joint.cols();
+        let mut goal = vec![0.0; c + self.parts.zero.cols()];
+        self.parts.object.tr_mul_vec_into(n, &mut goal[..c]);
         goal
-    };
-    // Where a whole face is farthest, a direction of no pattern picks one of its corners.
-    let second = pull(&(0..d).map(|i| ((i + 1) as f64).sqrt().fract() + 0.1).collect::<Vec<_>>());
-    let hull = Hull::of(
-        d,
-        |n| {
-            let corner = program.farthest(Pull { first: &pull(n), second: &second });
-            parts.object.mul_vec(&corner[..c])
-        },
-        HullOptions { goal: HullGoal::Whole, tolerance: HULL, most_facets: MOST_FACETS },
-    );
-    Ok(Polytope { hull, unbounded: parts.infinite })
+    }
+
+    /// A corner farthest along `n`; `second` picks one where a whole face is farthest.
+    fn farthest(&self, n: &[f64], second: &[f64]) -> Vec<f64> {
+        let corner = self.program.farthest(Pull { first: &self.pull(n), second });
+        self.parts.object.mul_vec(&corner[..self.parts.joint.cols()])
+    }
+
+    fn polytope(self) -> Polytope {
+        let d = self.parts.object.rows();
+        // A direction of no pattern.
+        let odd: Vec<f64> = (0..d).map(|i| ((i + 1) as f64).sqrt().fract() + 0.1).collect();
+        let second = self.pull(&odd);
+        let hull = Hull::of(
+            d,
+            |n| self.farthest(n, &second),
+            HullOptions { goal: HullGoal::Whole, tolerance: HULL, most_facets: MOST_FACETS },
+        );
+        Polytope { hull, unbounded: self.parts.infinite }
+    }
+
+    fn range(&self) -> Vec<Interval> {
+        let d = self.parts.object.rows();
+        let largest = self.parts.infinite.max_abs();
+        (0..d)
+            .map(|i| {
+                let infinite = &self.parts.infinite;
+                if (0..infinite.cols()).any(|j| infinite[(i, j)].abs() > CLOSURE_BLOCK * largest) {
+                    return Interval::symmetric(f64::INFINITY);
+                }
+                let end = |sign: f64| {
+                    let n: Vec<f64> = (0..d).map(|l| if l == i { sign } else { 0.0 }).collect();
+                    self.farthest(&n, &self.pull(&n))[i]
+                };
+                Interval { lower: end(-1.0), upper: end(1.0) }
+            })
+            .collect()
+    }
 }

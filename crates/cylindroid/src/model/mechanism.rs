@@ -242,6 +242,11 @@ impl Mechanism {
         Ok(FrameId { index, frame_key: self.data.frame_key })
     }
 
+    /// The frame of a link: those of the links come first.
+    pub(crate) fn link_frame(&self, link: usize) -> FrameId {
+        FrameId { index: link, frame_key: self.data.frame_key }
+    }
+
     /// The frame of an id.
     ///
     /// # Panics

@@ -350,6 +350,43 @@ fn robots_of_files_and_their_passive_joints() {
     assert!(broken.to_string().contains("broken.toml:2:9: cannot read"), "{broken}");
 }
 
+/// Masses stand in world axes at home; links keep their order and the rest of the file its meaning.
+#[test]
+fn links_have_masses() {
+    let plain = five_bar([true, true, false, false, false]);
+    let mass = "[[link]]\nname = \"c\"\nmass = 2\ncenter = [1.5, 1.5]\ninertia = 0.3\n";
+    let m = read(&format!("{plain}{mass}"));
+    let root = m.links().iter().position(|l| l.name == "ground").unwrap();
+    assert!(m.joints().iter().all(|j| j.child != root));
+    let link = m.links().iter().find(|l| l.name == "c").unwrap();
+    let inertial = link.inertial.unwrap();
+    // The frame of c is at q3, (1, 2).
+    let center = Pose::from_translation(Vec3::new(0.5, -0.5, 0.0));
+    assert_close(inertial.link_from_inertia, center, 1e-15);
+    assert_eq!((inertial.mass, inertial.inertia.cols[2].z), (2.0, 0.3));
+    assert!(m.links().iter().filter(|l| l.name != "c").all(|l| l.inertial.is_none()));
+    let spatial = "[[joint]]\nname = \"q\"\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\n\
+                   origin = [0, 0, 1]\naxis = [0, 0, 1]\n[[link]]\nname = \"a\"\nmass = 1\n\
+                   center = [1, 0, 1]\ninertia = [1, 2, 3, 0.1, 0.2, 0.3]\n";
+    let m = read(spatial);
+    let inertial = m.links().iter().find(|l| l.name == "a").unwrap().inertial.unwrap();
+    let rows = [[1.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 3.0]];
+    assert_eq!(inertial.inertia.to_rows(), rows);
+    for (text, at, message) in [
+        (mass.replace("\"c\"", "\"z\""), "\"z\"", "no link named 'z'"),
+        (mass.replace("mass = 2", "mass = -2"), "-2", "mass = -2"),
+        (mass.replace("mass = 2\n", ""), "[[link]]", "no mass"),
+        (mass.replace("center = [1.5, 1.5]\n", ""), "[[link]]", "no center"),
+        (mass.replace("0.3", "-0.3"), "-0.3", "negative"),
+    ] {
+        let text = format!("{plain}{text}");
+        let error = refused(&text, read_toml(&text));
+        assert!(error.message.contains(message), "{}", error.message);
+        let place = text.rfind(at).unwrap();
+        assert!(error.span.start <= place + at.len() && place <= error.span.end, "{message}");
+    }
+}
+
 #[test]
 fn robots_that_cannot_be_are_pointed_at() {
     check(&robot("name = \"r\"\nmodel = \"pandda\""), "\"pandda\"", "nearest: panda");

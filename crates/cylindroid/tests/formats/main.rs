@@ -11,14 +11,17 @@ mod lax;
 mod load;
 mod mechanism_file;
 mod mjcf;
+mod mujoco;
 mod mutations;
+mod real_chains;
 mod sdf;
 mod urdf;
 
 use std::path::{Path, PathBuf};
 
+use cylindroid::closure::{ClosedChain, Motions};
 use cylindroid::model::formats;
-use cylindroid::{Error, FileError, Mechanism, Result};
+use cylindroid::{Error, FileError, Matrix, Mechanism, Result};
 
 const ARM_URDF: &str = include_str!("../data/arm.urdf");
 const ARM_TOML: &str = include_str!("../data/arm.toml");
@@ -58,6 +61,15 @@ fn refused(text: &str, result: Result<Mechanism>) -> FileError {
 /// The text that an error points at.
 fn pointed_at<'t>(text: &'t str, error: &FileError) -> &'t str {
     &text[error.span.clone()]
+}
+
+/// The rates of these coordinates in all motions that a constraint leaves, a column each.
+fn motions_of(chain: &ClosedChain, names: &[&str]) -> Matrix {
+    let basis = Motions::of(&chain.constraint).basis();
+    let all: Vec<&String> = chain.actuated.iter().chain(&chain.passive).collect();
+    let row = |name: &&str| all.iter().position(|n| n == name).unwrap();
+    let rows: Vec<usize> = names.iter().map(row).collect();
+    Matrix::from_fn(rows.len(), basis.cols(), |i, j| basis[(rows[i], j)])
 }
 
 /// The report, one line for each entry.

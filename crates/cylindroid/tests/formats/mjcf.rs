@@ -12,6 +12,7 @@ use crate::fk::{assert_close, closed_at_home, frame, tool};
 use crate::{pointed_at, refused, report};
 
 const ZOO: &str = include_str!("../data/zoo.xml");
+pub(crate) const LOOPS: &str = include_str!("../data/loops.xml");
 
 pub(crate) fn read_mjcf(text: &str) -> Result<Mechanism> {
     formats::mjcf::parse(text, Path::new("robots/test.xml"))
@@ -34,13 +35,13 @@ fn world(inside: &str) -> String {
     format!("<mujoco><compiler angle='radian'/><worldbody>{inside}</worldbody></mujoco>")
 }
 
-fn robosuite() -> PathBuf {
+pub(crate) fn robosuite() -> PathBuf {
     let models = crate::robots().join("../../../../robosuite/models/assets");
     assert!(models.is_dir(), "no MJCF files in {}: run `cargo xtask setup`", models.display());
     models
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
@@ -49,25 +50,36 @@ fn rotation(quaternion: &[f64]) -> cylindroid::Rotation {
     Quaternion { w, x, y, z }.rotation().unwrap()
 }
 
+/// What MuJoCo says about a model.
+pub(crate) fn vectors(name: &str) -> Value {
+    let path = format!("{}/tests/vectors/mujoco/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// Our `q` of MuJoCo's qpos, joint by joint.
+pub(crate) fn coordinates(m: &Mechanism, qpos: &Value) -> Vec<f64> {
+    let mut q = vec![0.0; m.n()];
+    let moving = m.joints().iter().filter(|j| j.kind.dof() > 0);
+    for (joint, given) in moving.zip(qpos.as_array().unwrap()) {
+        if joint.mimic.is_some() {
+            continue;
+        }
+        let given = numbers(given);
+        let own = match joint.kind {
+            JointKind::Spherical => rotation(&given).log().to_array().to_vec(),
+            JointKind::Free => [&given[..3], &rotation(&given[3..]).log().to_array()].concat(),
+            _ => given,
+        };
+        q[joint.coordinates.clone()].copy_from_slice(&own);
+    }
+    q
+}
+
 /// Poses of bodies and sites at three configurations, limits and loops, as MuJoCo says.
 fn against_mujoco(name: &str, m: &Mechanism) {
-    let path = format!("{}/tests/vectors/mujoco/{name}.json", env!("CARGO_MANIFEST_DIR"));
-    let vectors: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let vectors = vectors(name);
     for case in vectors["cases"].as_array().unwrap() {
-        let mut q = vec![0.0; m.n()];
-        let moving = m.joints().iter().filter(|j| j.kind.dof() > 0);
-        for (joint, given) in moving.zip(case["q"].as_array().unwrap()) {
-            if joint.mimic.is_some() {
-                continue;
-            }
-            let given = numbers(given);
-            let own = match joint.kind {
-                JointKind::Spherical => rotation(&given).log().to_array().to_vec(),
-                JointKind::Free => [&given[..3], &rotation(&given[3..]).log().to_array()].concat(),
-                _ => given,
-            };
-            q[joint.coordinates.clone()].copy_from_slice(&own);
-        }
+        let q = coordinates(m, &case["q"]);
         let mut compared = 0;
         for (frame_name, pose) in case["frames"].as_object().unwrap() {
             let pose = numbers(pose);
@@ -92,6 +104,7 @@ fn against_mujoco(name: &str, m: &Mechanism) {
 #[test]
 fn poses_are_those_of_mujoco() {
     against_mujoco("zoo", &read(ZOO));
+    against_mujoco("loops", &read(LOOPS));
 }
 
 #[test]

@@ -1,12 +1,16 @@
 //! Hulls by farthest points, corners of boxes.
 
 use cylindroid::Matrix;
-use cylindroid::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Pull};
+use cylindroid::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Interval, Pull};
 
 use crate::support::{Random, assert_close};
 
 const WHOLE: HullOptions =
     HullOptions { goal: HullGoal::Whole, tolerance: 1e-9, most_facets: 10_000 };
+
+fn symmetric(bounds: &[f64]) -> Vec<Interval> {
+    bounds.iter().map(|b| Interval::symmetric(*b)).collect()
+}
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
@@ -121,26 +125,39 @@ fn box_program_finds_the_best_corner() {
             } else {
                 random.matrix(n, m)
             };
-            let bounds: Vec<f64> = (0..n).map(|_| random.within(0.3, 2.0)).collect();
+            // The same both ways, different, and some zero.
+            let bounds: Vec<Interval> = (0..n)
+                .map(|i| {
+                    let upper = random.within(0.3, 2.0);
+                    let lower = match round % 3 {
+                        0 => -upper,
+                        2 if i % 2 == 0 => 0.0,
+                        _ => -random.within(0.1, 2.0),
+                    };
+                    Interval { lower, upper }
+                })
+                .collect();
             let program = BoxProgram::new(&a, &bounds);
             let (c, second) = (random.vector(m), random.vector(m));
             let z = program.farthest(Pull { first: &c, second: &second });
             let az = a.mul_vec(&z);
-            assert!(az.iter().zip(&bounds).all(|(x, b)| x.abs() <= b * (1.0 + 1e-9)), "{az:?}");
+            let room = az.iter().zip(&bounds).map(|(x, b)| (x - b.lower).min(b.upper - x));
+            assert!(room.clone().all(|r| r > -1e-9), "{az:?}");
             // A corner: as many bounds met as there are unknowns.
-            let met = az.iter().zip(&bounds).filter(|(x, b)| x.abs() > *b * (1.0 - 1e-9)).count();
+            let met = room.filter(|r| *r < 1e-9).count();
             assert!(met >= m, "{n} {m}: {met}");
-            // Weak duality: c = A^T y with |y| . b equal to the value proves it best.
+            // Weak duality: c = A^T y, and y times its bounds equal to the value proves it best.
             let value = dot(&c, &z);
             let mut upper = f64::INFINITY;
             corners(n, m, &mut |rows| {
                 let square = Matrix::from_fn(m, m, |i, j| a[(rows[j], i)]);
                 if let Some(y) = solve(&square, &c) {
-                    let bound: f64 = y.iter().zip(rows).map(|(y, r)| y.abs() * bounds[*r]).sum();
+                    let end = |y: f64, b: Interval| y * if y > 0.0 { b.upper } else { b.lower };
+                    let bound: f64 = y.iter().zip(rows).map(|(y, r)| end(*y, bounds[*r])).sum();
                     upper = upper.min(bound);
                 }
             });
-            assert!((value - upper).abs() < 1e-8 * upper, "{n} {m}: {value} {upper}");
+            assert!((value - upper).abs() < 1e-8 * (1.0 + upper), "{n} {m}: {value} {upper}");
         }
     }
 }
@@ -170,7 +187,7 @@ fn solve(a: &Matrix, b: &[f64]) -> Option<Vec<f64>> {
 fn box_program_breaks_ties() {
     for n in [2, 3] {
         let a = Matrix::from_fn(n, 2, |i, j| f64::from(u8::from(i % 2 == j)));
-        let program = BoxProgram::new(&a, &vec![1.0; n]);
+        let program = BoxProgram::new(&a, &symmetric(&vec![1.0; n]));
         assert_close(
             "up",
             &program.farthest(Pull { first: &[1.0, 0.0], second: &[0.3, 0.5] }),

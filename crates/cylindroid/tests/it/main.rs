@@ -11,6 +11,7 @@ mod closure;
 mod graph;
 mod hull;
 mod hyperbolic;
+mod ik;
 mod inverse;
 mod kinematics;
 mod manipulability;

@@ -1,10 +1,14 @@
-//! `assemble`: closes the loops of a mechanism from a guess.
+//! `assemble`: closes the loops of a mechanism from a guess, looks for all ways to close them, and
+//! moves coordinates while they stay closed.
+
+mod follow;
+mod modes;
 
 use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Error;
-use cylindroid::closure::{Assembly, assemble};
+use cylindroid::closure::{Assembly, Gap, ModeOptions, assemble};
 use cylindroid::model::Mechanism;
 use serde::Serialize;
 
@@ -12,6 +16,7 @@ use super::GapJson;
 use crate::args::AssembleArgs;
 use crate::commands::{Style, configuration};
 use crate::output::{self, Align, number};
+use crate::values::Joints;
 
 #[derive(Debug, Serialize)]
 struct AssembleJson<'a> {
@@ -23,7 +28,7 @@ struct AssembleJson<'a> {
     gap: GapJson,
     steps: usize,
     guess: &'a [f64],
-    held: &'a [String],
+    held: Vec<&'a str>,
     /// Coordinates that stand at a position limit.
     at_limit: Vec<&'a str>,
 }
@@ -31,40 +36,116 @@ struct AssembleJson<'a> {
 /// Exit code of loops that do not close.
 const NOT_CLOSED: u8 = 1;
 
+/// What is asked for: a mechanism, a guess, the coordinates that keep their values.
+struct Job<'a> {
+    mechanism: &'a Mechanism,
+    names: Vec<&'a str>,
+    guess: Vec<f64>,
+    held: Vec<usize>,
+}
+
+impl Job<'_> {
+    fn names_of(&self, places: &[usize]) -> Vec<&str> {
+        places.iter().map(|&i| self.names[i]).collect()
+    }
+}
+
 pub(crate) fn run(
     args: &AssembleArgs,
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
     let mechanism = cylindroid::load(&args.posture.model)?;
-    let guess = configuration(&mechanism, &args.posture)?;
-    let names = output::joint_names(&mechanism);
-    let held = args
-        .hold
-        .iter()
-        .map(|name| {
-            let place = names.iter().position(|n| n == name);
-            place.ok_or_else(|| Error::unknown("coordinate", name, &names))
-        })
-        .collect::<Result<Vec<usize>, Error>>()?;
-    let found = assemble(&mechanism, &guess, &held)?;
-    let at_limit = found.at_limit.iter().map(|&i| names[i]).collect();
+    let job = Job {
+        names: output::joint_names(&mechanism),
+        guess: configuration(&mechanism, &args.posture)?,
+        held: held(&mechanism, &args.hold)?,
+        mechanism: &mechanism,
+    };
+    if let Some(starts) = args.modes {
+        return modes::run(&job, ModeOptions { starts, seed: args.seed }, style, out);
+    }
+    if let Some(to) = &args.to {
+        let goal = goal(&job, to, args.posture.degrees)?;
+        return follow::run(&job, &goal, args.least_distance, style, out);
+    }
+    let found = assemble(&mechanism, &job.guess, &job.held)?;
     let report = AssembleJson {
         model: mechanism.name(),
-        joint_names: names.clone(),
+        joint_names: job.names.clone(),
         closed: found.closed,
         q: &found.q,
         gap: found.gap.into(),
         steps: found.steps,
-        guess: &guess,
-        held: &args.hold,
-        at_limit,
+        guess: &job.guess,
+        held: job.names_of(&job.held),
+        at_limit: job.names_of(&found.at_limit),
     };
     match style {
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &mechanism, &found, &report)?,
     }
     Ok(if found.closed { ExitCode::SUCCESS } else { ExitCode::from(NOT_CLOSED) })
+}
+
+/// The places of coordinates by their names, by those of their joints, or `driven`.
+fn held(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>, Error> {
+    let coordinates = mechanism.coordinates();
+    let mut held: Vec<usize> = Vec::new();
+    for name in names {
+        let joint = mechanism.joints().iter().find(|j| j.name == *name && j.mimic.is_none());
+        let places: Vec<usize> = if let Some(i) = coordinates.iter().position(|c| c.name == *name) {
+            vec![i]
+        } else if let Some(joint) = joint.filter(|j| !j.coordinates.is_empty()) {
+            joint.coordinates.clone().collect()
+        } else if name == DRIVEN {
+            mechanism.actuated().collect()
+        } else {
+            let known = coordinates.iter().map(|c| c.name.as_str()).chain([DRIVEN]);
+            return Err(Error::unknown("coordinate", name, known));
+        };
+        held.extend(places);
+    }
+    held.sort_unstable();
+    held.dedup();
+    Ok(held)
+}
+
+/// All that are driven, where a name is expected.
+const DRIVEN: &str = "driven";
+
+/// The way of `--to`: the named coordinates to their values, those of `--hold` at rest.
+fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<follow::Goal, Error> {
+    let Joints::Some(pairs) = to else {
+        return Err(Error::InvalidOption {
+            option: "--to",
+            value: "a list".to_owned(),
+            reason: format!("name the coordinates that go: --to {}=0.5", job.names.join("=0.5,")),
+        });
+    };
+    // What is not named stays as guessed.
+    let target = to.configuration(job.mechanism, degrees)?;
+    let mut goal = follow::Goal { places: Vec::new(), values: Vec::new() };
+    for (name, _) in pairs {
+        let place = job.names.iter().position(|n| n == name);
+        let place = place.ok_or_else(|| Error::unknown("joint", name, &job.names))?;
+        goal.places.push(place);
+        goal.values.push(target[place]);
+    }
+    for &place in job.held.iter().filter(|i| !goal.places.contains(i)).collect::<Vec<_>>() {
+        goal.places.push(place);
+        goal.values.push(job.guess[place]);
+    }
+    Ok(goal)
+}
+
+fn open_by(gap: Gap) -> String {
+    format!("{} m, {} rad", number(gap.distance), number(gap.angle))
+}
+
+/// An argument for `--q`, in full.
+fn q_line(q: &[f64]) -> String {
+    q.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
 }
 
 fn print(
@@ -74,7 +155,7 @@ fn print(
     report: &AssembleJson<'_>,
 ) -> anyhow::Result<()> {
     let (loops, contacts) = (mechanism.loops().len(), mechanism.contacts().len());
-    let gap = format!("{} m, {} rad", number(found.gap.distance), number(found.gap.angle));
+    let gap = open_by(found.gap);
     let result = if found.closed {
         format!("closed: {loops} loops and {contacts} contacts to {gap}")
     } else {
@@ -91,7 +172,7 @@ fn print(
             ("steps", found.steps.to_string()),
             ("held", report.held.join(", ")),
             ("at a limit", report.at_limit.join(", ")),
-            ("q", found.q.iter().map(f64::to_string).collect::<Vec<_>>().join(",")),
+            ("q", q_line(&found.q)),
         ],
     )?;
     writeln!(out)?;

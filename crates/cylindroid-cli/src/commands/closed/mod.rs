@@ -1,13 +1,16 @@
 //! What the commands on closed chains share: the mechanism at its configuration as a constraint.
 
 pub(super) mod assemble;
+pub(super) mod grasp;
 pub(super) mod manipulability;
+mod measured;
 pub(super) mod mobility;
 mod singularity;
+pub(super) mod statics;
 
 use cylindroid::closure::{ClosedChain, Gap};
 use cylindroid::model::Mechanism;
-use cylindroid::{Error, Result};
+use cylindroid::{Error, Result, State};
 use serde::Serialize;
 
 use super::configuration;
@@ -37,8 +40,18 @@ impl Posed {
         Ok(Self { mechanism, q, chain })
     }
 
+    fn state(&self) -> Result<State> {
+        self.mechanism.state(&self.q)
+    }
+
     fn frame(&self) -> &str {
         &self.mechanism.frame_of(self.chain.reference).name
+    }
+
+    /// Names of the closing joints, then of the contacts.
+    fn closings(&self) -> Vec<&str> {
+        let loops = self.mechanism.loops().iter().map(|l| l.name.as_str());
+        loops.chain(self.mechanism.contacts().iter().map(|c| c.name.as_str())).collect()
     }
 
     /// Names of the components of the reference's twist.

@@ -153,7 +153,9 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
     let found = &d.singularities;
     let planar = posed.mechanism.dimension() == Dimension::Planar;
     let others = d.generic.others;
-    let verdict = if found.is_regular() {
+    let verdict = if found.is_regular() && others == 0 {
+        "none is seen, with nothing to measure by".to_owned()
+    } else if found.is_regular() {
         "none: the pose is regular".to_owned()
     } else {
         let kinds: Vec<String> = found.kinds.iter().map(ToString::to_string).collect();

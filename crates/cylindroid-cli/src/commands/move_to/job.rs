@@ -2,17 +2,17 @@
 
 use cylindroid::control::{
     Bounds, CartesianBounds, CartesianMove, CartesianPath, Gain, JointDefaults, JointMove,
-    Projector, Secondary, Task,
+    Projector, Secondary,
 };
 use cylindroid::kinematics::Chain;
-use cylindroid::model::{Dimension, Mechanism};
-use cylindroid::spatial::{Quaternion, Rpy};
-use cylindroid::{Error, Pose, Reference, Result, Rotation, ServoOptions, Vec3};
+use cylindroid::model::Mechanism;
+use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
+use super::super::target::{target_pose, task};
 use super::super::{configuration, end_effector};
 use super::{inverse, joints};
-use crate::args::{LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes};
-use crate::values::{COMPONENTS, Named};
+use crate::args::{LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs};
+use crate::values::Named;
 
 /// Speeds on a path where none are given [m/s], [rad/s].
 pub(super) const PATH_SPEED: (f64, f64) = (0.25, 1.0);
@@ -190,112 +190,6 @@ fn secondary(
         Ok(n.number.map_or(secondary.clone(), |gain| secondary.with_gain(gain)))
     };
     named.iter().map(build).collect()
-}
-
-/// The task, and what is driven in words.
-fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String)> {
-    let position = args.to.is_some();
-    let orientation =
-        args.rpy.is_some() || args.quaternion.is_some() || args.rotation_vector.is_some();
-    let named = match (&args.task, position, orientation) {
-        (Some(task), ..) => task.as_str(),
-        (None, true, false) => "position",
-        (None, false, true) => "orientation",
-        (None, ..) => "pose",
-    };
-    let mut task = match named {
-        "pose" => Task::POSE,
-        "position" => Task::POSITION,
-        "orientation" => Task::ORIENTATION,
-        "pointing" => Task::POINTING,
-        list => Task { components: components(list)?, ..Task::POSE },
-    };
-    let planar = robot.is_closed() && robot.dimension() == Dimension::Planar;
-    if planar && matches!(named, "pose" | "position" | "orientation") {
-        for (on, in_plane) in task.components.iter_mut().zip(Task::PLANAR.components) {
-            *on &= in_plane;
-        }
-    }
-    match args.task_axes {
-        None => {}
-        Some(TaskAxes::Local) => task.axes = Reference::Local,
-        Some(TaskAxes::World) => task.axes = Reference::LocalWorldAligned,
-    }
-    let driven = match (&args.task, named) {
-        (None, "position") => {
-            "position only (--rpy, --quaternion or --rotation-vector give an orientation)".into()
-        }
-        (None, "orientation") => "orientation only (--to gives a position)".into(),
-        (None, _) => "position and orientation".into(),
-        (_, "pose") if !orientation => {
-            "position and orientation, the orientation held as at the start".into()
-        }
-        (_, "pose") if !position => {
-            "position and orientation, the position held as at the start".into()
-        }
-        (_, "pose") => "position and orientation".into(),
-        _ => {
-            let names = COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
-            let names: Vec<&str> = names.map(|(name, _)| *name).collect();
-            let axes = if task.axes == Reference::Local { "tool" } else { "world" };
-            format!("{} along and about the axes of the {axes}", names.join(", "))
-        }
-    };
-    Ok((task, driven))
-}
-
-fn components(list: &str) -> Result<[bool; 6]> {
-    let mut components = [false; 6];
-    for name in list.split(',').map(str::trim) {
-        match COMPONENTS.iter().position(|c| *c == name) {
-            Some(i) => components[i] = true,
-            None => {
-                let known = ["pose", "position", "orientation", "pointing"];
-                return Err(Error::unknown(
-                    "task or task component",
-                    name,
-                    known.iter().chain(&COMPONENTS),
-                ));
-            }
-        }
-    }
-    Ok(components)
-}
-
-/// What is given of the target, the rest as at the start.
-fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> anyhow::Result<Pose> {
-    let si = |x: f64| if degrees { x.to_radians() } else { x };
-    let mut pose = from;
-    let mut given = false;
-    if let Some(to) = args.to {
-        Error::check_finite("--to", &to.0)?;
-        pose.translation = Vec3::from_array(to.0);
-        given = true;
-    }
-    let rotation = if let Some(rpy) = args.rpy {
-        Error::check_finite("--rpy", &rpy.0)?;
-        let [roll, pitch, yaw] = rpy.0.map(si);
-        Some(Rpy { roll, pitch, yaw }.rotation())
-    } else if let Some(vector) = args.rotation_vector {
-        Error::check_finite("--rotation-vector", &vector.0)?;
-        Some(Rotation::exp(Vec3::from_array(vector.0.map(si))))
-    } else if let Some(quaternion) = args.quaternion {
-        let [w, x, y, z] = quaternion.0;
-        Some(Quaternion { w, x, y, z }.rotation()?)
-    } else {
-        None
-    };
-    if let Some(rotation) = rotation {
-        pose.rotation = rotation;
-        given = true;
-    }
-    if given {
-        return Ok(pose);
-    }
-    anyhow::bail!(
-        "no target: say where to move with --to x,y,z, with an orientation (--rpy, --quaternion, \
-         --rotation-vector) or with --joint-to q"
-    )
 }
 
 fn path(args: &PathArgs, from: Pose, to: Pose) -> Result<Option<CartesianPath>> {

@@ -9,6 +9,7 @@ use cylindroid::{Error, Matrix, Reference, Result, Twist, Vec3};
 
 use super::super::{configuration, end_effector};
 use crate::args::ScrewsArgs;
+use crate::number_file::{self, Row};
 
 /// Twists with names, in one frame.
 #[derive(Debug)]
@@ -26,8 +27,11 @@ impl Twists {
     pub(super) fn read(args: &ScrewsArgs) -> Result<Self> {
         let path = Path::new(&args.posture.model);
         match path.extension().and_then(OsStr::to_str) {
-            Some("csv") => Self::of_file(args, csv(path)?),
-            Some("json") => Self::of_file(args, json(path)?),
+            Some("csv" | "json") => {
+                let rows = number_file::rows(path)?;
+                let twists = rows.iter().map(|row| six(path, row)).collect::<Result<_>>()?;
+                Self::of_file(args, twists)
+            }
             _ => Self::of_robot(args),
         }
     }
@@ -96,49 +100,11 @@ impl Twists {
     }
 }
 
-fn csv(path: &Path) -> Result<Vec<[f64; 6]>> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .flexible(true)
-        .from_path(path)
-        .map_err(|e| cannot_read(path, &e.to_string()))?;
-    let mut rows = Vec::new();
-    for (i, record) in reader.records().enumerate() {
-        let record = record.map_err(|e| cannot_read(path, &e.to_string()))?;
-        let line = record.position().map_or(i as u64 + 1, csv::Position::line);
-        let numbers: std::result::Result<Vec<f64>, _> =
-            record.iter().map(str::parse::<f64>).collect();
-        match numbers {
-            Ok(row) => rows.push(six(path, &format!("line {line}"), &row)?),
-            // A first line that is no numbers names the columns.
-            Err(_) if i == 0 => {}
-            Err(_) => {
-                let text = record.iter().collect::<Vec<_>>().join(",");
-                let message = format!("line {line} is not six numbers: {text}");
-                return Err(cannot_read(path, &message));
-            }
-        }
-    }
-    Ok(rows)
-}
-
-fn json(path: &Path) -> Result<Vec<[f64; 6]>> {
-    let text = std::fs::read_to_string(path).map_err(|e| cannot_read(path, &e.to_string()))?;
-    let rows: Vec<Vec<f64>> = serde_json::from_str(&text)
-        .map_err(|e| cannot_read(path, &format!("not a list of lists of six numbers: {e}")))?;
-    rows.iter().enumerate().map(|(i, row)| six(path, &format!("twist {}", i + 1), row)).collect()
-}
-
-fn six(path: &Path, place: &str, row: &[f64]) -> Result<[f64; 6]> {
-    row.try_into().map_err(|_| {
+fn six(path: &Path, row: &Row) -> Result<[f64; 6]> {
+    row.numbers.as_slice().try_into().map_err(|_| {
+        let (place, given) = (&row.place, row.numbers.len());
         let message =
-            format!("{place} has {} numbers; a twist has six, the linear part first", row.len());
-        cannot_read(path, &message)
+            format!("{place} has {given} numbers; a twist has six, the linear part first");
+        number_file::cannot_read(path, &message)
     })
-}
-
-fn cannot_read(path: &Path, message: &str) -> Error {
-    Error::Io { path: path.to_owned(), action: "read", message: message.to_owned() }
 }

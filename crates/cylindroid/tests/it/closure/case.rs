@@ -207,13 +207,28 @@ impl Case {
         }
     }
 
-    /// Contacts that hold everything, drawn elsewhere on the rigid links they join.
+    /// Contacts drawn elsewhere on the rigid links they join, as far as that is the same contact: one
+    /// that holds everything anywhere in any frame, a hard finger at its point in any frame, a hinge
+    /// along and about its axis, a point without friction along its normal, a soft finger about it.
     pub(crate) fn redrawn(&self, random: &mut Random) -> Self {
         let mut redrawn = self.clone();
-        for contact in redrawn.contacts.iter_mut().filter(|c| c.kind == "complete") {
+        for contact in &mut redrawn.contacts {
             let way = self.random_frame(random);
-            contact.point += way.translation * 0.2;
-            contact.axes = contact.axes.map(|a| way.rotation * a);
+            let [_, normal, z] = contact.axes;
+            let along = random.within(-0.4, 0.4);
+            let turn = Rotation::about(z, random.within(-3.0, 3.0)).unwrap();
+            let (shift, turn) = match (contact.kind.as_str(), self.planar) {
+                ("complete", _) => (way.translation * 0.2, way.rotation),
+                ("point_frictionless", true) => (normal * along, Rotation::IDENTITY),
+                ("point_frictionless" | "revolute", false) => (z * along, turn),
+                ("hard_finger", false) => (Vec3::ZERO, way.rotation),
+                // In the plane these three hold the point.
+                ("hard_finger" | "soft_finger" | "revolute", true) => (Vec3::ZERO, way.rotation),
+                ("soft_finger", false) => (Vec3::ZERO, turn),
+                (other, _) => panic!("no contact '{other}'"),
+            };
+            contact.point += shift;
+            contact.axes = contact.axes.map(|a| turn * a);
         }
         redrawn
     }
@@ -222,6 +237,16 @@ impl Case {
     fn ancestors(&self, body: Body) -> Vec<usize> {
         let Body::Limb(last) = body else { return Vec::new() };
         std::iter::successors(Some(last), |&j| self.joints[j].parent).collect()
+    }
+
+    /// Its matrices with its metrics and task.
+    pub(crate) fn problem(&self) -> Problem {
+        Problem {
+            constraint: self.constraint(),
+            wu: self.wu.clone(),
+            wq: self.wq.clone(),
+            task: self.task.clone(),
+        }
     }
 
     pub(crate) fn constraint(&self) -> Constraint {
@@ -296,6 +321,41 @@ impl Case {
                 self.length,
             )
             .unwrap()
+    }
+}
+
+/// A constraint with the metrics and the task that belong to its coordinates.
+pub(crate) struct Problem {
+    pub(crate) constraint: Constraint,
+    pub(crate) wu: Matrix,
+    pub(crate) wq: Matrix,
+    pub(crate) task: Option<Matrix>,
+}
+
+impl Problem {
+    /// Other combinations of the rows, other coordinates of driven joints, passive joints and
+    /// object; metrics and task go along.
+    pub(crate) fn rebased(&self, random: &mut Random) -> Self {
+        let mut regular = |n: usize| {
+            let noise = random.matrix(n, n);
+            Matrix::from_fn(n, n, |i, j| 0.2 * noise[(i, j)] + f64::from(u8::from(i == j)))
+        };
+        let (c, blocks) = (&self.constraint, self.constraint.blocks());
+        let (rows, passive) = (regular(c.rows()), regular(c.passive()));
+        let (driven, object) = (regular(c.actuated()), regular(c.object()));
+        let within = |w: &Matrix, basis: &Matrix| &(&basis.transpose() * w) * basis;
+        let constraint = Constraint::new(Blocks {
+            actuated: &(&rows * &blocks.actuated) * &driven,
+            passive: &(&rows * &blocks.passive) * &passive,
+            grasp: &(&object.transpose() * &blocks.grasp) * &rows.transpose(),
+        })
+        .unwrap();
+        Self {
+            constraint,
+            wu: if self.task.is_some() { self.wu.clone() } else { within(&self.wu, &object) },
+            wq: within(&self.wq, &driven),
+            task: self.task.as_ref().map(|t| t * &object),
+        }
     }
 }
 

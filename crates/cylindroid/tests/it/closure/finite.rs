@@ -152,7 +152,7 @@ fn overconstrained_loops_move() {
         let mut q = linkage.home().to_vec();
         q[0] = turn;
         let closed = assemble(&linkage, &q, &[0]).unwrap();
-        assert!(closed.closed && closed.steps < 25, "{turn}: {closed:?}");
+        assert!(closed.closed && closed.steps < 12, "{turn}: {closed:?}");
         let state = linkage.state(&closed.q).unwrap();
         let there = FiniteMobility::of(&state, None).unwrap();
         assert_eq!((there.infinitesimal, there.finite), (1, Some(1)), "{turn}");

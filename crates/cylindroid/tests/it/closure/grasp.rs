@@ -1,9 +1,11 @@
 //! Force closure and the quality of grasps.
 
 use cylindroid::closure::{
-    Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality,
+    Effort, FingerContact, Friction, GraspQuality, Touch, WrenchSpace, fingers_on, grasp_quality,
 };
-use cylindroid::spatial::Vec3;
+use cylindroid::model::{ContactKind, ContactSpec, Dimension, JointKind, JointSpec};
+use cylindroid::spatial::{Pose, Rotation, Vec3};
+use cylindroid::{Error, Mechanism};
 
 use crate::support::Random;
 
@@ -188,4 +190,75 @@ fn contacts_that_are_none() {
     let out = FingerContact { point: Vec3::new(0.0, 0.0, 1.0), ..good };
     assert!(error(out, PLANE).contains("plane z = 0"));
     assert!(error(good, WrenchSpace { length: 0.0, ..SPACE }).starts_with("length = 0"));
+}
+
+/// A ball between a finger and the ground; the second contact names the ball first.
+fn held_ball(kinds: [ContactKind; 2], dimension: Dimension) -> Mechanism {
+    let mut b = Mechanism::builder("held");
+    b.dimension(dimension);
+    b.joint(JointSpec {
+        axis: Vec3::X,
+        ..JointSpec::new("push", JointKind::Prismatic, "ground", "finger")
+    });
+    let free = if dimension == Dimension::Planar { JointKind::Planar } else { JointKind::Free };
+    b.joint(JointSpec { actuated: false, ..JointSpec::new("ball", free, "ground", "ball") });
+    let at = |x: f64| Pose {
+        rotation: Rotation::z_to(Vec3::X).unwrap(),
+        translation: Vec3::new(x, 0.0, 0.0),
+    };
+    for (name, kind, [a, b_], x) in
+        [("near", kinds[0], ["finger", "ball"], -1.0), ("far", kinds[1], ["ball", "ground"], 1.0)]
+    {
+        b.contact(ContactSpec {
+            link_a_from_contact: at(x),
+            link_b_from_contact: at(x),
+            friction: (name == "near").then_some(0.4),
+            ..ContactSpec::new(name, kind, a, b_)
+        });
+    }
+    b.reference("ball");
+    b.build().unwrap()
+}
+
+/// Points and normals in world, into the object whichever link the file names first.
+#[test]
+fn fingers_of_a_mechanism() {
+    let soft = ContactKind::SoftFinger;
+    let m = held_ball([soft, ContactKind::HardFinger], Dimension::Spatial);
+    let q: Vec<f64> =
+        m.coordinates().iter().map(|c| f64::from(u8::from(c.name == "ball.y"))).collect();
+    let state = m.state(&q).unwrap();
+    let touch = Touch { mu: None, torsion: Some(0.02), strength: 5.0 };
+    // The second one has no coefficient in the file.
+    let error = fingers_on(&state, m.reference(), |_| touch).unwrap_err();
+    assert!(matches!(&error, Error::Model { culprit, .. } if culprit == "far"), "{error}");
+    let own =
+        |c: &cylindroid::model::Contact| Touch { mu: (c.name == "far").then_some(0.7), ..touch };
+    let fingers = fingers_on(&state, m.reference(), own).unwrap();
+    let y = fingers[0].1.point.y;
+    assert_eq!(fingers.iter().map(|f| f.0).collect::<Vec<_>>(), [0, 1]);
+    assert_eq!(fingers[0].1.friction, Friction::Soft { mu: 0.4, torsion: 0.02 });
+    assert_eq!(fingers[1].1.friction, Friction::Hard { mu: 0.7 });
+    assert!((fingers[0].1.point - Vec3::new(-1.0, y, 0.0)).norm() < 1e-15);
+    assert!((fingers[0].1.normal - Vec3::X).norm() < 1e-15);
+    assert!((fingers[1].1.normal + Vec3::X).norm() < 1e-15);
+    let grasp: Vec<FingerContact> = fingers.into_iter().map(|f| f.1).collect();
+    let space = WrenchSpace::about(&state, m.reference(), &grasp).unwrap();
+    assert_eq!((space.point, space.planar), (Vec3::new(0.0, y, 0.0), false));
+    assert!((space.length - 1.0).abs() < 1e-15);
+    assert!(grasp_quality(&grasp, space, Effort::Each).unwrap().closed);
+    // No torsion: said. In the plane none is needed.
+    let none =
+        |_: &cylindroid::model::Contact| Touch { mu: Some(0.3), torsion: None, strength: 1.0 };
+    let error = fingers_on(&state, m.reference(), none).unwrap_err().to_string();
+    assert!(error.contains("soft finger"), "{error}");
+    let plane = held_ball([soft, soft], Dimension::Planar);
+    let state = plane.state(&vec![0.0; plane.n()]).unwrap();
+    let fingers = fingers_on(&state, plane.reference(), none).unwrap();
+    assert_eq!(fingers[0].1.friction, Friction::Hard { mu: 0.3 });
+    // Firm contacts are no points.
+    let firm = held_ball([ContactKind::Complete, soft], Dimension::Spatial);
+    let state = firm.state(&vec![0.0; firm.n()]).unwrap();
+    let error = fingers_on(&state, firm.reference(), none).unwrap_err().to_string();
+    assert!(error.contains("'near' is complete"), "{error}");
 }

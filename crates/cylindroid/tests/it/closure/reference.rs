@@ -1,15 +1,20 @@
-//! The counts of the reference mechanisms, in any frame and unit.
+//! The counts of the reference mechanisms, in any frame, unit and basis, wherever contacts are drawn.
 
 use cylindroid::closure::{Mobility, Motions, internal_forces, structural_forces};
 use cylindroid::spatial::Pose;
 
-use super::case::{Case, cases};
+use super::case::{Case, Problem, cases};
 use crate::support::Random;
 
 #[track_caller]
 fn check_counts(case: &Case) {
-    let constraint = case.constraint();
-    let m = Mobility::of(&constraint);
+    check_problem(case, &case.problem());
+}
+
+#[track_caller]
+fn check_problem(case: &Case, problem: &Problem) {
+    let constraint = &problem.constraint;
+    let m = Mobility::of(constraint);
     let kinds = m.coordinate_kinds;
     let got = [
         ("actuated", constraint.actuated()),
@@ -27,8 +32,8 @@ fn check_counts(case: &Case) {
         ("coord_au", kinds.object),
         ("coord_apu", kinds.both),
         ("coord_overlap", kinds.overlap),
-        ("ker_G", internal_forces(&constraint).dimension()),
-        ("ker_JT", structural_forces(&constraint).dimension()),
+        ("ker_G", internal_forces(constraint).dimension()),
+        ("ker_JT", structural_forces(constraint).dimension()),
         ("hyperstatic", m.hyperstatic.dimension()),
         ("rel_dim", m.relation.relation),
         ("rel_coordinate", m.relation.coordinate),
@@ -50,8 +55,8 @@ fn check_counts(case: &Case) {
     );
     assert!(m.doubts.is_empty(), "{}: {}", case.name, m.doubts[0]);
 
-    let relation = Motions::of(&constraint).relation();
-    let task = case.task.as_ref().map_or(relation.clone(), |t| relation.task(t).unwrap());
+    let relation = Motions::of(constraint).relation();
+    let task = problem.task.as_ref().map_or(relation.clone(), |t| relation.task(t).unwrap());
     let counts = task.dimensions();
     for (name, count) in [
         ("coordinate", counts.coordinate),
@@ -84,6 +89,31 @@ fn counts_do_not_depend_on_frame_unit_or_length() {
             let mut scaled = case.clone();
             scaled.length = length;
             check_counts(&scaled);
+        }
+    }
+}
+
+#[test]
+fn counts_do_not_depend_on_bases() {
+    let mut random = Random(73);
+    for case in cases() {
+        for _ in 0..3 {
+            check_problem(&case, &case.problem().rebased(&mut random));
+        }
+    }
+}
+
+/// Frame, unit, drawing and basis all at once.
+#[test]
+fn counts_do_not_depend_on_anything() {
+    let mut random = Random(74);
+    for case in cases() {
+        for _ in 0..5 {
+            let factor = 10_f64.powf(random.within(-3.0, 3.0));
+            let drawn = case.redrawn(&mut random);
+            let moved = drawn.moved(case.random_frame(&mut random), factor);
+            check_counts(&moved);
+            check_problem(&moved, &moved.problem().rebased(&mut random));
         }
     }
 }

@@ -1,8 +1,14 @@
 //! Torques for a wrench, forces at contacts, elastic forces.
 
-use cylindroid::Matrix;
-use cylindroid::closure::{Load, Mobility, Motions, Relation, contact_forces, joint_torques};
+use cylindroid::catalogue;
+use cylindroid::closure::{
+    ClosedChain, Load, Mobility, Motions, Relation, Transmitted, contact_forces, joint_torques,
+    row_compliance, transmitted,
+};
 use cylindroid::linalg::Metric;
+use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec};
+use cylindroid::spatial::{Pose, Vec3, Wrench};
+use cylindroid::{Matrix, Mechanism};
 
 use super::case::{Case, case, cases};
 use crate::support::{Random, assert_close};
@@ -49,6 +55,14 @@ fn torques_balance_the_wrench() {
                     .sum();
                 assert!(weighted.abs() < 1e-12 * size, "{}: {weighted}", case.name);
             }
+            // What the structure holds is along zero-torque wrenches, and asks no torque alone.
+            let alone = joint_torques(&relation, &found.structural, metric).unwrap();
+            assert_close("alone", &alone.torques, &vec![0.0; alone.torques.len()], 1e-11 * size);
+            assert_close("again", &alone.structural, &found.structural, 1e-12);
+            let rest: Vec<f64> = held.iter().zip(&found.structural).map(|(h, s)| h - s).collect();
+            let other = joint_torques(&relation, &rest, metric).unwrap();
+            assert_close("rest", &other.torques, &found.torques, 1e-11 * size);
+            assert_close("none", &other.structural, &vec![0.0; wrench.len()], 1e-12);
             if relation.dimensions().indeterminacy == 0 {
                 assert_close("left", &found.unbalanced, &vec![0.0; wrench.len()], 1e-14);
             }
@@ -134,4 +148,92 @@ fn contradiction_is_reported() {
     // The singular five-bar does not hold a force across its stretched links.
     let found = joint_torques(&relation, gained.column(0), None).unwrap();
     assert_close("left", &found.unbalanced, gained.column(0), 1e-12);
+}
+
+/// The wrenches through joints and contacts of a mechanism under a load; a compliance for each.
+fn through(m: &Mechanism, wrench: &[f64], compliance: Option<&[f64]>) -> Vec<Transmitted> {
+    let state = m.state(m.home()).unwrap();
+    let chain = ClosedChain::of(&state, None, None).unwrap();
+    let motions = Motions::of(&chain.constraint);
+    let relation = motions.relation();
+    let torques = joint_torques(&relation, wrench, None).unwrap().torques;
+    let metric = compliance.map(|c| row_compliance(&state, &chain, c).unwrap());
+    let load = Load { torques: &torques, wrench };
+    let found = contact_forces(&chain.constraint, &motions, load, metric.as_ref()).unwrap();
+    assert!(found.unbalanced < 1e-10);
+    transmitted(&state, &chain, &found.forces).unwrap()
+}
+
+/// Two arms hold a box: what they exert and the load are in balance, about any point.
+#[test]
+fn transmitted_wrenches_balance_the_load() {
+    let m = catalogue::load("two-arm").unwrap();
+    let origin = m.state(m.home()).unwrap().pose(m.reference()).translation;
+    let load = Wrench::from_array([1.0, -2.0, -30.0, 0.5, 0.2, -0.1]);
+    // About the world's origin.
+    let about = |w: Wrench, point: Vec3| w.at_point(Vec3::ZERO - point);
+    for compliance in [None, Some(&[1e-6, 1e-6][..]), Some(&[1e-6, 1e-3])] {
+        let found = through(&m, &load.to_array(), compliance);
+        assert_eq!(found.iter().map(|t| t.name.as_str()).collect::<Vec<_>>(), ["left", "right"]);
+        let sum = found.iter().fold(about(load, origin), |s, t| s + about(t.wrench, t.point));
+        assert_close("sum", &sum.to_array(), &[0.0; 6], 1e-10);
+        for t in &found {
+            let (normal, across) = (t.normal.unwrap(), t.tangential().unwrap());
+            assert!((normal.hypot(across) - t.wrench.force.norm()).abs() < 1e-10);
+        }
+        // The torques of all drives are given: they decide, whatever gives way.
+        let plain = through(&m, &load.to_array(), None);
+        let difference = found[0].wrench - plain[0].wrench;
+        assert_close("same", &difference.to_array(), &[0.0; 6], 1e-9);
+    }
+}
+
+/// A box clamped at both ends: the stiffer clamp takes more of a force along the line through both,
+/// and of a moment about it.
+#[test]
+fn stiffer_clamp_takes_more() {
+    let mut b = Mechanism::builder("clamped");
+    b.joint(JointSpec::new("box", JointKind::Free, "ground", "box"));
+    for (name, x) in [("left", -0.4), ("right", 0.4)] {
+        let at = Pose::from_translation(Vec3::new(x, 0.0, 0.0));
+        b.contact(ContactSpec {
+            link_a_from_contact: at,
+            link_b_from_contact: at,
+            ..ContactSpec::new(name, ContactKind::Complete, "ground", "box")
+        });
+    }
+    b.reference("box");
+    let m = b.build().unwrap().with_actuated::<&str>(&[]).unwrap();
+    let state = m.state(&[0.0; 6]).unwrap();
+    let chain = ClosedChain::of(&state, None, None).unwrap();
+    let motions = Motions::of(&chain.constraint);
+    assert_eq!(motions.hyperstatic(), 6);
+    let load = Load { torques: &[], wrench: &[3.0, 0.0, 0.0, 6.0, 0.0, 0.0] };
+    let metric = row_compliance(&state, &chain, &[1e-6, 2e-6]).unwrap();
+    let found = contact_forces(&chain.constraint, &motions, load, Some(&metric)).unwrap();
+    let all = transmitted(&state, &chain, &found.forces).unwrap();
+    assert_close("left", &all[0].wrench.to_array(), &[-2.0, 0.0, 0.0, -4.0, 0.0, 0.0], 1e-12);
+    assert_close("right", &all[1].wrench.to_array(), &[-1.0, 0.0, 0.0, -2.0, 0.0, 0.0], 1e-12);
+}
+
+/// Driven at q1 and q5 the five-bar's rod turns freely at both ends: what goes through the ground
+/// joint q5 points along it, and its motor's torque goes with it.
+#[test]
+fn transmitted_by_closing_joints() {
+    let m = catalogue::load("five-bar").unwrap().with_actuated(&["q1", "q5"]).unwrap();
+    let load = [3.0, -1.0, 0.2];
+    let found = through(&m, &load, None);
+    assert_eq!((found.len(), found[0].name.as_str(), found[0].normal), (1, "q5", None));
+    let (force, moment) = (found[0].wrench.force, found[0].wrench.moment);
+    let rod = Vec3::new(1.0, -1.0, 0.0);
+    assert!(force.norm() > 0.5 && force.cross(rod).norm() < 1e-12, "{force:?}");
+    let chain = ClosedChain::of(&m.state(m.home()).unwrap(), None, None).unwrap();
+    let relation = Motions::of(&chain.constraint).relation();
+    let torques = joint_torques(&relation, &load, None).unwrap().torques;
+    assert!((moment.z - torques[1]).abs() < 1e-12, "{moment:?} {torques:?}");
+    let state = m.state(m.home()).unwrap();
+    let chain = ClosedChain::of(&state, None, None).unwrap();
+    assert!(transmitted(&state, &chain, &[0.0]).is_err());
+    assert!(row_compliance(&state, &chain, &[]).is_err());
+    assert!(row_compliance(&state, &chain, &[0.0]).is_err());
 }

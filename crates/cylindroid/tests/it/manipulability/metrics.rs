@@ -3,7 +3,10 @@
 use cylindroid::Matrix;
 use cylindroid::closure::{Constraint, Motions, Relation, Unit, Units};
 use cylindroid::linalg::Metric;
-use cylindroid::manipulability::{Manipulability, Metrics};
+use cylindroid::manipulability::{Manipulability, Metrics, body_inertia};
+use cylindroid::model::{Dimension, Inertial, JointKind, JointSpec, Link};
+use cylindroid::spatial::{Mat3, Pose, Vec3};
+use cylindroid::{Mechanism, Reference};
 
 use crate::closure::case::{case, cases};
 use crate::support::{Random, assert_close};
@@ -150,4 +153,114 @@ fn metrics_of_the_wrong_size() {
     let semi = Matrix::diagonal(&[1.0, 0.0]);
     assert!(Metrics::UNIT.with_object(&semi).is_err() && Metrics::UNIT.with_joint(&semi).is_err());
     assert!(Metrics::UNIT.with_wrench(&semi).is_err() && Metrics::UNIT.with_torque(&semi).is_err());
+}
+
+/// A metric carried to a task measures images by the least behind them, forces by what they are;
+/// for components of a diagonal metric these are its entries.
+#[test]
+fn metrics_of_tasks() {
+    let mut random = Random(97);
+    let relation = relation("fivebar_sec5_case_c");
+    let w = spd(&mut random, 3);
+    let map = random.matrix(2, 3);
+    let metrics = Metrics::UNIT.with_object(&w).unwrap();
+    let task = metrics.for_task(&map).unwrap();
+    let own = metrics.with_wrench(&w).unwrap().for_task(&map).unwrap();
+    let (least, of_force) = (task.object.unwrap(), own.wrench.unwrap());
+    for _ in 0..20 {
+        // Of all x + kernel the least has the length of the image.
+        let x = random.vector(3);
+        let mut y = map.mul_vec(&x);
+        least.whiten(&mut y);
+        let mut whole = x.clone();
+        Metric::new("w", &w).unwrap().whiten(&mut whole);
+        let norm = |v: &[f64]| v.iter().map(|a| a * a).sum::<f64>();
+        assert!(norm(&y) <= norm(&whole) * (1.0 + 1e-12));
+        let mut f = random.vector(2);
+        let mut wrench = map.transpose().mul_vec(&f);
+        of_force.whiten(&mut f);
+        Metric::new("w", &w).unwrap().whiten(&mut wrench);
+        assert!((norm(&f) - norm(&wrench)).abs() < 1e-12);
+    }
+    // And least it is: x = W^-1 T^T (T W^-1 T^T)^-1 y attains it, so that duals agree.
+    let diagonal = Metrics::UNIT.with_object(&Matrix::diagonal(&[4.0, 9.0, 16.0])).unwrap();
+    let pick = Matrix::from_rows(&[[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]).unwrap();
+    let picked = diagonal.for_task(&pick).unwrap().object.unwrap();
+    assert_eq!(picked, Metric::diagonal("w", &[16.0, 4.0]).unwrap());
+    let all = Manipulability::of(&relation, &diagonal).unwrap();
+    let same = relation.task(&Matrix::identity(3)).unwrap();
+    let same =
+        Manipulability::of(&same, &diagonal.for_task(&Matrix::identity(3)).unwrap()).unwrap();
+    assert_close("identity", &same.kinematic.values(), &all.kinematic.values(), 1e-12);
+    for bad in [Matrix::zeros(2, 3), Matrix::identity(2), Matrix::zeros(4, 3)] {
+        assert!(diagonal.for_task(&bad).is_err());
+    }
+}
+
+/// A link of 2 kg on a hinge, its centre of mass off the axis; a plate screwed to it counts too.
+fn massive(dimension: Dimension) -> Mechanism {
+    let inertial = |mass, center| {
+        Some(Inertial {
+            mass,
+            link_from_inertia: Pose::from_translation(center),
+            inertia: Mat3::from_rows([[0.3, 0.0, 0.0], [0.0, 0.4, 0.0], [0.0, 0.0, 0.5]]),
+        })
+    };
+    let mut b = Mechanism::builder("massive");
+    b.dimension(dimension);
+    b.link(Link { inertial: inertial(2.0, Vec3::new(0.1, -0.2, 0.0)), ..Link::named("arm") });
+    b.link(Link { inertial: inertial(1.0, Vec3::new(0.0, 0.3, 0.0)), ..Link::named("plate") });
+    b.joint(JointSpec::new("turn", JointKind::Revolute, "ground", "arm"));
+    b.joint(JointSpec {
+        parent_from_joint: Pose::from_translation(Vec3::new(0.5, 0.0, 0.0)),
+        ..JointSpec::new("screw", JointKind::Fixed, "arm", "plate")
+    });
+    b.build().unwrap()
+}
+
+/// `u^T W u` is twice the energy of both links, their own turning included.
+#[test]
+fn inertia_is_kinetic_energy() {
+    let mut random = Random(98);
+    let m = massive(Dimension::Spatial);
+    let state = m.state(&[0.7]).unwrap();
+    let frame = m.frame("plate").unwrap();
+    let w = body_inertia(&state, frame).unwrap();
+    for _ in 0..10 {
+        let u = random.twist();
+        let pose = state.pose(frame);
+        let mut twice = 0.0;
+        for link in ["arm", "plate"] {
+            let id = m.frame(link).unwrap();
+            let inertial = m.links()[m.frame_of(id).link].inertial.unwrap();
+            let at = state.pose(id) * inertial.link_from_inertia;
+            let v = u.linear + u.angular.cross(at.translation - pose.translation);
+            let turn = at.rotation.inverse() * u.angular;
+            twice += inertial.mass * v.dot(v) + turn.dot(inertial.inertia * turn);
+        }
+        let array = u.to_array();
+        let energy: f64 = w.mul_vec(&array).iter().zip(array).map(|(a, b)| a * b).sum();
+        assert!((energy - twice).abs() < 1e-12 * twice);
+    }
+    // As a metric: the efficiency of the turning joint is its moment of inertia about the axis.
+    let j = state.jacobian(frame, Reference::LocalWorldAligned);
+    let relation = Motions::of(&Constraint::serial(&j).unwrap()).relation();
+    let metrics = Metrics::UNIT.with_inertia(&state, frame).unwrap();
+    let value = Manipulability::of(&relation, &metrics).unwrap().kinematic.values()[0];
+    let about = 0.5 + 0.5 + 2.0 * (0.01 + 0.04) + (0.25 + 0.09);
+    assert!((value - about).abs() < 1e-12, "{value} {about}");
+    let plane = massive(Dimension::Planar);
+    let w = body_inertia(&plane.state(&[0.7]).unwrap(), plane.frame("arm").unwrap()).unwrap();
+    assert_eq!((w.rows(), w[(0, 0)]), (3, 3.0));
+    assert!((w[(2, 2)] - about).abs() < 1e-12);
+}
+
+#[test]
+fn inertia_that_is_not_there() {
+    let m = crate::support::planar(2);
+    let state = m.state(&[0.0, 0.0]).unwrap();
+    let frame = m.frame("link2").unwrap();
+    assert!(body_inertia(&state, frame).is_none());
+    let error = Metrics::UNIT.with_inertia(&state, frame).unwrap_err().to_string();
+    assert!(error.contains("link 'link2' has no mass"), "{error}");
 }

@@ -1,3 +1,4 @@
+mod gradient;
 mod metrics;
 mod polytope;
 mod reference;

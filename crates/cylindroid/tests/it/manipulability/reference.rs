@@ -1,23 +1,23 @@
 //! The spectra of the reference mechanisms to 1e-9, in any frame, basis and unit.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Blocks, Constraint, Motions, Relation};
+use cylindroid::closure::{Motions, Relation};
 use cylindroid::manipulability::{Index, Manipulability, Metrics};
 use cylindroid::spatial::Pose;
 
-use crate::closure::case::{Case, case, cases, numbers};
+use crate::closure::case::{Case, Problem, case, cases, numbers};
 use crate::support::{Random, assert_close};
 
 /// Relative.
 const TOLERANCE: f64 = 1e-9;
 
-fn relation(case: &Case, constraint: &Constraint) -> Relation {
-    let relation = Motions::of(constraint).relation();
-    case.task.as_ref().map_or(relation.clone(), |t| relation.task(t).unwrap())
+fn relation(problem: &Problem) -> Relation {
+    let relation = Motions::of(&problem.constraint).relation();
+    problem.task.as_ref().map_or(relation.clone(), |t| relation.task(t).unwrap())
 }
 
-fn metrics(case: &Case) -> Metrics {
-    Metrics::UNIT.with_object(&case.wu).unwrap().with_joint(&case.wq).unwrap()
+fn metrics(problem: &Problem) -> Metrics {
+    Metrics::UNIT.with_object(&problem.wu).unwrap().with_joint(&problem.wq).unwrap()
 }
 
 #[track_caller]
@@ -29,12 +29,12 @@ fn assert_relative(what: &str, got: &[f64], expected: &[f64]) {
 
 #[track_caller]
 fn check(case: &Case) {
-    check_relation(case, &relation(case, &case.constraint()));
+    check_problem(case, &case.problem());
 }
 
 #[track_caller]
-fn check_relation(case: &Case, relation: &Relation) {
-    let m = Manipulability::of(relation, &metrics(case)).unwrap();
+fn check_problem(case: &Case, problem: &Problem) {
+    let m = Manipulability::of(&relation(problem), &metrics(problem)).unwrap();
     for (kind, spectrum) in [
         ("kinematic", m.kinematic.clone()),
         ("active_force", m.active_force()),
@@ -88,25 +88,29 @@ fn spectra_do_not_depend_on_where_a_contact_is_drawn() {
     }
 }
 
-/// Other combinations of the rows, other coordinates of the passive joints.
+/// Other combinations of the rows, other coordinates of joints and object, metrics moved along.
 #[test]
 fn spectra_do_not_depend_on_bases() {
     let mut random = Random(83);
     for case in cases() {
-        let constraint = case.constraint();
-        let b = constraint.blocks();
-        let mut regular = |n: usize| {
-            let noise = random.matrix(n, n);
-            Matrix::from_fn(n, n, |i, j| 0.2 * noise[(i, j)] + f64::from(u8::from(i == j)))
-        };
-        let (rows, columns) = (regular(constraint.rows()), regular(constraint.passive()));
-        let mixed = Constraint::new(Blocks {
-            actuated: &rows * &b.actuated,
-            passive: &(&rows * &b.passive) * &columns,
-            grasp: &b.grasp * &rows.transpose(),
-        })
-        .unwrap();
-        check_relation(&case, &relation(&case, &mixed));
+        for _ in 0..3 {
+            check_problem(&case, &case.problem().rebased(&mut random));
+        }
+    }
+}
+
+/// Frame, unit, drawing and basis all at once.
+#[test]
+fn spectra_do_not_depend_on_anything() {
+    let mut random = Random(84);
+    for case in cases() {
+        for _ in 0..5 {
+            let factor = 10_f64.powf(random.within(-3.0, 3.0));
+            let drawn = case.redrawn(&mut random);
+            let moved = drawn.moved(case.random_frame(&mut random), factor);
+            check(&moved);
+            check_problem(&moved, &moved.problem().rebased(&mut random));
+        }
     }
 }
 
@@ -121,7 +125,7 @@ fn five_bar_exactly() {
     ];
     for (name, values) in exact {
         let case = case(&format!("fivebar_sec5_case_{name}"));
-        let m = Manipulability::of(&relation(&case, &case.constraint()), &Metrics::UNIT).unwrap();
+        let m = Manipulability::of(&relation(&case.problem()), &Metrics::UNIT).unwrap();
         let inverse = [1.0 / values[1], 1.0 / values[0]];
         let close = |what: &str, got: &[f64], expected: &[f64]| {
             let ratio: Vec<f64> = got.iter().zip(expected).map(|(g, e)| g / e).collect();
@@ -136,8 +140,8 @@ fn five_bar_exactly() {
 #[test]
 fn directions_are_what_they_say() {
     for case in cases() {
-        let relation = relation(&case, &case.constraint());
-        let m = Manipulability::of(&relation, &metrics(&case)).unwrap();
+        let relation = relation(&case.problem());
+        let m = Manipulability::of(&relation, &metrics(&case.problem())).unwrap();
         let forces = relation.forces().basis();
         let norm = |w: &Matrix, x: &[f64]| -> f64 {
             let wx = w.mul_vec(x);
@@ -168,7 +172,7 @@ fn directions_are_what_they_say() {
 #[test]
 fn six_indices() {
     let case = case("fivebar_typeII");
-    let m = Manipulability::of(&relation(&case, &case.constraint()), &Metrics::UNIT).unwrap();
+    let m = Manipulability::of(&relation(&case.problem()), &Metrics::UNIT).unwrap();
     let infinite = f64::INFINITY;
     let expected: [&[f64]; 6] =
         [&[0.5], &[0.5], &[infinite, 0.5], &[2.0], &[2.0, 0.0], &[infinite, 2.0]];

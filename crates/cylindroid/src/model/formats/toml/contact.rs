@@ -83,11 +83,7 @@ fn axes(table: &Table<'_>, kind: ContactKind, planar: bool) -> Result<Rotation> 
 
 /// Refuses a contact whose first link nobody else names: only what is touched (the second link)
 /// may be an object that exists by its contacts alone.
-pub(super) fn check(
-    contacts: &[Touch<'_>],
-    world: &World<'_>,
-    in_joint: impl Fn(&str) -> bool,
-) -> Result<()> {
+pub(super) fn check(contacts: &[Touch<'_>], world: &World<'_>, joined: &[&str]) -> Result<()> {
     let is_object = |link: &str| contacts.iter().any(|c| c.between[1] == link);
     for contact in contacts {
         let [a, b] = contact.between;
@@ -95,8 +91,12 @@ pub(super) fn check(
             let message = format!("contact '{}' connects link '{a}' with itself", contact.name);
             return Err(contact.table.refuse("between", message, "name two links"));
         }
-        if !(world.has(a) || in_joint(a) || is_object(a)) {
-            let unknown = Error::unknown("link", a, world.placed());
+        if !(world.has(a) || joined.contains(&a) || is_object(a)) {
+            let mut links = world.placed();
+            links.extend(joined.iter().map(|link| (*link).to_owned()));
+            links.sort();
+            links.dedup();
+            let unknown = Error::unknown("link", a, links);
             let help = "the first link of a contact is one that a joint or a robot brings, the \
                         second may be an object";
             return Err(contact.table.refuse("between", unknown.to_string(), help));

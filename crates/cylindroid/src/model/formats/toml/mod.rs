@@ -2,8 +2,8 @@
 //! other files, or a table of Denavit-Hartenberg rows.
 //!
 //! Keys     name, description, source, dimension (2 or 3), reference, reference_point, home, tool;
-//!          `[[joint]]`, or `[dh]` with convention, rows, base, flange; `[[contact]]`, `[[robot]]`,
-//!          `[[frame]]`
+//!          `[[joint]]`, or `[dh]` with convention, rows, base, flange; `[[link]]`, `[[contact]]`,
+//!          `[[robot]]`, `[[frame]]`
 //! Units    m, rad, N, N m; pitch in m/rad
 //! Valid    any graph that hangs together. Home is q = 0 but for included robots, whose start
 //!          configuration it is; a joint between links that are already connected closes a loop
@@ -11,6 +11,7 @@
 //!          tests/formats/catalogue.rs
 
 mod arm;
+mod body;
 mod contact;
 mod robot;
 mod tree;
@@ -29,7 +30,7 @@ use crate::error::Result;
 use crate::model::{Dimension, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "name",
     "description",
     "source",
@@ -39,6 +40,7 @@ const KEYS: [&str; 13] = [
     "home",
     "tool",
     "joint",
+    "link",
     "dh",
     "frame",
     "contact",
@@ -91,16 +93,19 @@ pub(in crate::model) fn describe(
         world.place(GROUND, Pose::IDENTITY);
     }
     world.arm(arm);
+    let own = world.placed();
     robot::include(&file, &mut world, depth)?;
+    let brought: Vec<String> = world.placed().into_iter().filter(|l| !own.contains(l)).collect();
     let joints = tree::joints(&file, planar)?;
     let contacts = contact::contacts(&file, planar)?;
-    let named = |link: &str| joints.iter().any(|j| j.between.contains(&link));
-    contact::check(&contacts, &world, named)?;
+    let joined: Vec<&str> = joints.iter().flat_map(|j| j.between).collect();
+    contact::check(&contacts, &world, &joined)?;
 
     let reference = file.string("reference")?;
     let point = file.vector("reference_point", planar)?;
     tree::write(&mut world, &joints, &contacts, reference.map(|r| (r, point)))?;
     contact::write(&mut world, &contacts);
+    body::write(&file, &mut world, &brought)?;
 
     for frame in file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])? {
         let name = frame.required_string("name")?;

@@ -1,0 +1,250 @@
+//! `assemble --to`: held coordinates go to their goal, the loops stay closed.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::closure::{
+    FollowOptions, Followed, PathEnd, PathSingularity, SingularityKind, follow,
+};
+use cylindroid::model::Dimension;
+use cylindroid::screws::Screw;
+use serde::Serialize;
+
+use super::{Job, NOT_CLOSED, open_by, q_line};
+use crate::commands::Style;
+use crate::commands::closed::GapJson;
+use crate::output::{self, Align, ScrewJson, number};
+
+#[derive(Debug, Serialize)]
+struct FollowJson<'a> {
+    model: &'a str,
+    joint_names: &'a [&'a str],
+    reached: bool,
+    /// "reached", "singular", "limit", "open", "contradiction", "lost".
+    end: String,
+    explanation: String,
+    /// Of the way, 0 to 1.
+    share: f64,
+    q: &'a [f64],
+    gap: GapJson,
+    start: &'a [f64],
+    /// Names and values that were asked for; held ones at rest too.
+    goal: Vec<GoalJson<'a>>,
+    least_distance: f64,
+    /// The coordinate at whose limit it ended.
+    limit: Option<&'a str>,
+    singularity: Option<SightJson<'a>>,
+    path: Vec<PointJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct GoalJson<'a> {
+    joint: &'a str,
+    value: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct SightJson<'a> {
+    /// "type-ii", "configuration-space", "passive".
+    kind: &'static str,
+    distance: f64,
+    /// Of all coordinates, in the motion that is gained.
+    rates: &'a [f64],
+    /// Of the reference frame, linear first, at its origin, world axes.
+    twist: [f64; 6],
+    /// Seen from the world; null where the reference frame rests.
+    screw: Option<ScrewJson>,
+    /// The reference frame.
+    frame: &'a str,
+}
+
+#[derive(Debug, Serialize)]
+struct PointJson<'a> {
+    share: f64,
+    q: &'a [f64],
+    /// To the next singularity; null where nothing can be lost.
+    distance: f64,
+}
+
+/// The way that is asked for.
+pub(super) struct Goal {
+    pub(super) places: Vec<usize>,
+    pub(super) values: Vec<f64>,
+}
+
+pub(super) fn run(
+    job: &Job<'_>,
+    goal: &Goal,
+    least_distance: Option<f64>,
+    style: Style,
+    out: &mut dyn Write,
+) -> anyhow::Result<ExitCode> {
+    let mut options = FollowOptions::default();
+    if let Some(least) = least_distance {
+        options.least_distance = least;
+    }
+    let way = follow(job.mechanism, &job.guess, &goal.places, &goal.values, options)?;
+    match style {
+        Style::Json => output::json(out, &describe(job, goal, options, &way))?,
+        Style::Table => print(out, job, goal, &way)?,
+    }
+    let reached = way.end == PathEnd::Reached;
+    Ok(if reached { ExitCode::SUCCESS } else { ExitCode::from(NOT_CLOSED) })
+}
+
+fn start<'a>(job: &'a Job<'_>, way: &'a Followed) -> &'a [f64] {
+    way.path.first().map_or(&job.guess, |p| &p.q)
+}
+
+fn describe<'a>(
+    job: &'a Job<'_>,
+    goal: &Goal,
+    options: FollowOptions,
+    way: &'a Followed,
+) -> FollowJson<'a> {
+    let asked = goal.places.iter().zip(&goal.values);
+    let sight = match &way.end {
+        PathEnd::Singular(s) => Some(SightJson {
+            kind: kind(s.kind),
+            distance: s.distance,
+            rates: &s.rates,
+            twist: s.twist.to_array(),
+            screw: s.screw.as_ref().map(Into::into),
+            frame: reference(job),
+        }),
+        _ => None,
+    };
+    let limit = match way.end {
+        PathEnd::Limit { coordinate } => Some(job.names[coordinate]),
+        _ => None,
+    };
+    FollowJson {
+        model: job.mechanism.name(),
+        joint_names: &job.names,
+        reached: way.end == PathEnd::Reached,
+        end: way.end.to_string(),
+        explanation: explain(job, goal, way),
+        share: way.share,
+        q: &way.q,
+        gap: way.gap.into(),
+        start: start(job, way),
+        goal: asked.map(|(&i, &value)| GoalJson { joint: job.names[i], value }).collect(),
+        least_distance: options.least_distance,
+        limit,
+        singularity: sight,
+        path: way
+            .path
+            .iter()
+            .map(|p| PointJson { share: p.share, q: &p.q, distance: p.distance })
+            .collect(),
+    }
+}
+
+fn kind(kind: SingularityKind) -> &'static str {
+    match kind {
+        SingularityKind::TypeI => "type-i",
+        SingularityKind::TypeII => "type-ii",
+        SingularityKind::TypeIII => "type-iii",
+        SingularityKind::ConfigurationSpace => "configuration-space",
+        SingularityKind::Passive => "passive",
+    }
+}
+
+fn reference<'a>(job: &'a Job<'_>) -> &'a str {
+    &job.mechanism.frame_of(job.mechanism.reference()).name
+}
+
+/// Why it ended and what to try.
+fn explain(job: &Job<'_>, goal: &Goal, way: &Followed) -> String {
+    let names = job.names_of(&goal.places).join(", ");
+    match &way.end {
+        PathEnd::Reached => format!("reached: {names} where they should be, in the same mode"),
+        PathEnd::Singular(s) => format!(
+            "stopped before a singularity, {}: with {names} at rest {} (distance {}); go another \
+             way round, or hold other coordinates",
+            s.kind,
+            gained(job, s),
+            number(s.distance)
+        ),
+        PathEnd::Limit { coordinate } => {
+            let l = &job.mechanism.coordinates()[*coordinate].limits;
+            format!(
+                "stopped at the position limit of {} ({} to {})",
+                job.names[*coordinate],
+                number(l.lower),
+                number(l.upper)
+            )
+        }
+        PathEnd::Open => format!(
+            "the loops do not close from the start with {names} where they are: open by {}; give \
+             another --q",
+            open_by(way.gap)
+        ),
+        PathEnd::Contradiction => format!(
+            "{names} contradict each other: no motion of the others keeps the loops closed; move \
+             or hold fewer of them"
+        ),
+        PathEnd::Lost => {
+            "the branch could not be followed further: no singularity and no limit was met"
+                .to_owned()
+        }
+    }
+}
+
+fn gained(job: &Job<'_>, s: &PathSingularity) -> String {
+    match s.screw {
+        None => "the reference frame rests and other links gain a motion".to_owned(),
+        Some(screw) => {
+            let planar = job.mechanism.dimension() == Dimension::Planar;
+            format!("the reference frame gains {}", motion_in_words(&screw, planar))
+        }
+    }
+}
+
+fn motion_in_words(screw: &Screw, planar: bool) -> String {
+    let coordinates = |all: [f64; 3]| output::entries(if planar { &all[..2] } else { &all });
+    let along = coordinates(screw.axis.direction.to_array());
+    let at = coordinates(screw.axis.point.to_array());
+    match output::entries(&[screw.pitch]).as_str() {
+        _ if screw.is_translation() => format!("a translation along ({along})"),
+        _ if planar => format!("a rotation about the point ({at}) m"),
+        "0" => format!("a rotation about the line through ({at}) m along ({along})"),
+        pitch => {
+            format!(
+                "a screw of pitch {pitch} m/rad about the line through ({at}) m along ({along})"
+            )
+        }
+    }
+}
+
+fn print(out: &mut dyn Write, job: &Job<'_>, goal: &Goal, way: &Followed) -> anyhow::Result<()> {
+    let walked = way.path.iter().filter(|p| p.distance.is_finite() && way.share > 0.0);
+    let nearest = walked.min_by(|a, b| a.distance.total_cmp(&b.distance));
+    let nearest = nearest.map_or_else(String::new, |p| {
+        format!("{} at {} of the way (0: singular)", number(p.distance), number(p.share))
+    });
+    output::pairs(
+        out,
+        [
+            ("model", job.mechanism.name().to_owned()),
+            ("result", explain(job, goal, way)),
+            ("share of the way", number(way.share)),
+            ("least distance", nearest),
+            ("q", q_line(&way.q)),
+        ],
+    )?;
+    writeln!(out)?;
+    let columns = [
+        ("coordinate", Align::Left),
+        ("start", Align::Right),
+        ("end", Align::Right),
+        ("goal", Align::Right),
+    ];
+    let cell = |x: f64| output::entries(&[x]);
+    let rows = job.names.iter().enumerate().map(|(i, name)| {
+        let asked = goal.places.iter().position(|&p| p == i);
+        let asked = asked.map_or_else(String::new, |k| cell(goal.values[k]));
+        vec![(*name).to_owned(), cell(start(job, way)[i]), cell(way.q[i]), asked]
+    });
+    Ok(output::table(out, &columns, rows)?)
+}

@@ -1,0 +1,146 @@
+//! `assemble --modes`: the ways in which the loops close.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::closure::{AssemblyModes, Mode, ModeOptions, assembly_modes};
+use serde::Serialize;
+
+use super::{Job, NOT_CLOSED, open_by, q_line};
+use crate::commands::Style;
+use crate::commands::closed::GapJson;
+use crate::output::{self, Align, number};
+
+#[derive(Debug, Serialize)]
+struct ModesJson<'a> {
+    model: &'a str,
+    joint_names: &'a [&'a str],
+    /// True if the loops closed in one mode at least.
+    closed: bool,
+    /// Nearest to the guess first.
+    modes: Vec<ModeJson<'a>>,
+    starts: usize,
+    closed_starts: usize,
+    seed: u64,
+    /// Degrees of freedom that the held coordinates leave.
+    continuum: usize,
+    /// Estimated chance that another start which closes finds another mode.
+    chance_of_more: f64,
+    /// Of the guess itself.
+    guess_gap: GapJson,
+    guess: &'a [f64],
+    held: Vec<&'a str>,
+}
+
+#[derive(Debug, Serialize)]
+struct ModeJson<'a> {
+    q: &'a [f64],
+    /// Starts that led here.
+    found: usize,
+    /// From the guess [-].
+    distance: f64,
+    continuum: usize,
+    gap: GapJson,
+    at_limit: Vec<&'a str>,
+}
+
+pub(super) fn run(
+    job: &Job<'_>,
+    options: ModeOptions,
+    style: Style,
+    out: &mut dyn Write,
+) -> anyhow::Result<ExitCode> {
+    let found = assembly_modes(job.mechanism, &job.guess, &job.held, options)?;
+    match style {
+        Style::Json => output::json(out, &describe(job, options, &found))?,
+        Style::Table => print(out, job, &found)?,
+    }
+    Ok(if found.modes.is_empty() { ExitCode::from(NOT_CLOSED) } else { ExitCode::SUCCESS })
+}
+
+fn describe<'a>(job: &'a Job<'_>, options: ModeOptions, found: &'a AssemblyModes) -> ModesJson<'a> {
+    let mode = |m: &'a Mode| ModeJson {
+        q: &m.assembly.q,
+        found: m.found,
+        distance: m.distance,
+        continuum: m.continuum,
+        gap: m.assembly.gap.into(),
+        at_limit: job.names_of(&m.assembly.at_limit),
+    };
+    ModesJson {
+        model: job.mechanism.name(),
+        joint_names: &job.names,
+        closed: !found.modes.is_empty(),
+        modes: found.modes.iter().map(mode).collect(),
+        starts: found.starts,
+        closed_starts: found.closed,
+        seed: options.seed,
+        continuum: found.continuum(),
+        chance_of_more: found.chance_of_more(),
+        guess_gap: found.first.gap.into(),
+        guess: &job.guess,
+        held: job.names_of(&job.held),
+    }
+}
+
+fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::Result<()> {
+    let (modes, closed, starts) = (found.modes.len(), found.closed, found.starts);
+    let plural = if modes == 1 { "" } else { "s" };
+    let result = if modes == 0 {
+        format!(
+            "none found: no start closed, the guess stays open by {}; that none was found proves \
+             nothing",
+            open_by(found.first.gap)
+        )
+    } else {
+        format!("{modes} mode{plural} from {closed} of {starts} starts that closed")
+    };
+    let once = found.modes.iter().filter(|m| m.found == 1).count();
+    let more = match (modes, once) {
+        (0, _) => String::new(),
+        (_, 0) => "there may be, but every mode was found more than once".to_owned(),
+        _ => format!(
+            "likely: {once} found only once; about {} of further starts that close would find a \
+             new one",
+            number(found.chance_of_more())
+        ),
+    };
+    let continuum = match found.continuum() {
+        0 => String::new(),
+        n => format!(
+            "{n} degree{} of freedom: such modes are no points but motions, and each stands for all \
+             that agree in what those motions leave at rest; hold more coordinates (--hold)",
+            if n == 1 { "" } else { "s" }
+        ),
+    };
+    output::pairs(
+        out,
+        [
+            ("model", job.mechanism.name().to_owned()),
+            ("result", result),
+            ("others", more),
+            ("left to move", continuum),
+            ("held", job.names_of(&job.held).join(", ")),
+        ],
+    )?;
+    if found.modes.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    let columns = [
+        ("mode", Align::Right),
+        ("found", Align::Right),
+        ("distance", Align::Right),
+        ("left to move", Align::Right),
+    ];
+    let rows = found.modes.iter().enumerate().map(|(i, m)| {
+        let count = |n: usize| n.to_string();
+        vec![count(i + 1), count(m.found), output::entries(&[m.distance]), count(m.continuum)]
+    });
+    output::table(out, &columns, rows)?;
+    writeln!(out)?;
+    for (i, m) in found.modes.iter().enumerate() {
+        writeln!(out, "q of mode {}  {}", i + 1, q_line(&m.assembly.q))?;
+    }
+    Ok(())
+}

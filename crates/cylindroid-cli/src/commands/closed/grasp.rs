@@ -1,0 +1,220 @@
+//! `grasp`: force closure of the contacts on an object.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::closure::{
+    Effort, FingerContact, Friction, GraspQuality, Touch, WrenchSpace, fingers_on, grasp_quality,
+};
+use cylindroid::model::Mechanism;
+use cylindroid::{Error, FrameId, Result};
+use serde::Serialize;
+
+use crate::args::GraspArgs;
+use crate::commands::{Style, configuration};
+use crate::output::{self, Align, number};
+
+/// Exit code of a grasp that is open.
+const OPEN: u8 = 1;
+
+#[derive(Debug, Serialize)]
+struct GraspJson<'a> {
+    model: &'a str,
+    /// Moments are about its origin, in world axes.
+    frame: &'a str,
+    q: &'a [f64],
+    /// True if every wrench can be held.
+    closed: bool,
+    epsilon: BoundsJson,
+    /// "shared": the normal forces sum to 1 N; "each": every finger up to its strength.
+    effort: &'static str,
+    components: &'static [&'static str],
+    /// Unit vector, moments over the length: the direction in which least is held.
+    weakest: &'a [f64],
+    /// Characteristic length [m].
+    length: f64,
+    contacts: Vec<ContactJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct BoundsJson {
+    lower: f64,
+    upper: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ContactJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    /// [m], world.
+    point: [f64; 3],
+    /// Into the object.
+    normal: [f64; 3],
+    mu: f64,
+    /// [m]; null for hard fingers.
+    torsion: Option<f64>,
+    /// Largest normal force [N]; null where all share 1 N.
+    strength: Option<f64>,
+}
+
+pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let mechanism = cylindroid::load(&args.posture.model)?;
+    let q = configuration(&mechanism, &args.posture)?;
+    let object = match &args.frame {
+        Some(name) => mechanism.frame(name)?,
+        None => mechanism.reference(),
+    };
+    let state = mechanism.state(&q)?;
+    let (places, fingers): (Vec<usize>, Vec<FingerContact>) =
+        fingers(&mechanism, &state, object, args)?.into_iter().unzip();
+    let mut space = WrenchSpace::about(&state, object, &fingers)?;
+    if let Some(length) = args.length {
+        Error::check_positive("--length", length)?;
+        space.length = length;
+    }
+    let (effort, word) = match args.strength {
+        Some(_) => (Effort::Each, "each"),
+        None => (Effort::Shared, "shared"),
+    };
+    let quality = grasp_quality(&fingers, space, effort)?;
+    let contacts = places.iter().zip(&fingers).map(|(&i, finger)| {
+        let contact = &mechanism.contacts()[i];
+        let (mu, torsion) = match finger.friction {
+            Friction::None => (0.0, None),
+            Friction::Hard { mu } => (mu, None),
+            Friction::Soft { mu, torsion } => (mu, Some(torsion)),
+        };
+        ContactJson {
+            name: &contact.name,
+            kind: contact.kind.name(),
+            point: finger.point.to_array(),
+            normal: finger.normal.to_array(),
+            mu,
+            torsion,
+            strength: args.strength.is_some().then_some(finger.strength),
+        }
+    });
+    let report = GraspJson {
+        model: mechanism.name(),
+        frame: &mechanism.frame_of(object).name,
+        q: &q,
+        closed: quality.closed,
+        epsilon: BoundsJson { lower: quality.epsilon.0, upper: quality.epsilon.1 },
+        effort: word,
+        components: if space.planar {
+            &["x", "y", "rz"]
+        } else {
+            &["x", "y", "z", "rx", "ry", "rz"]
+        },
+        weakest: &quality.weakest,
+        length: space.length,
+        contacts: contacts.collect(),
+    };
+    match style {
+        Style::Json => output::json(out, &report)?,
+        Style::Table => print(out, &report, &quality)?,
+    }
+    Ok(if quality.closed { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
+}
+
+/// The contacts on the object; an error where there are none.
+fn fingers(
+    mechanism: &Mechanism,
+    state: &cylindroid::State,
+    object: FrameId,
+    args: &GraspArgs,
+) -> Result<Vec<(usize, FingerContact)>> {
+    let names: Vec<&str> = mechanism.contacts().iter().map(|c| c.name.as_str()).collect();
+    let options = [&args.mu, &args.torsion, &args.strength];
+    for given in options.into_iter().flatten() {
+        given.check("contact", &names)?;
+    }
+    let found = fingers_on(state, object, |contact| {
+        let of = |i: usize| options[i].as_ref().and_then(|given| given.of(&contact.name));
+        Touch { mu: of(0), torsion: of(1), strength: of(2).unwrap_or(1.0) }
+    })?;
+    let weak = |i: usize| {
+        let name = &mechanism.contacts()[i].name;
+        args.strength.as_ref().is_some_and(|given| given.of(name).is_none())
+    };
+    if let Some((i, _)) = found.iter().find(|(i, _)| weak(*i)) {
+        return Err(Error::InvalidOption {
+            option: "--strength",
+            value: mechanism.contacts()[*i].name.clone(),
+            reason: "it has none; give a number for all, or name=number for each".to_owned(),
+        });
+    }
+    if found.is_empty() {
+        let link = &mechanism.links()[mechanism.frame_of(object).link].name;
+        return Err(Error::InvalidOption {
+            option: "--frame",
+            value: mechanism.frame_of(object).name.clone(),
+            reason: if names.is_empty() {
+                format!("'{}' has no contacts; write [[contact]] tables", mechanism.name())
+            } else {
+                format!("no contact touches link '{link}'; name a frame of the object")
+            },
+        });
+    }
+    Ok(found)
+}
+
+fn print(
+    out: &mut dyn Write,
+    report: &GraspJson<'_>,
+    quality: &GraspQuality,
+) -> anyhow::Result<()> {
+    let result = if report.closed {
+        "closed: the fingers hold every wrench, with enough effort".to_owned()
+    } else {
+        "open: wrenches along the weakest direction are not held at any effort".to_owned()
+    };
+    let effort = match report.effort {
+        "each" => "every finger up to its strength",
+        _ => "normal forces that sum to 1 N",
+    };
+    output::pairs(
+        out,
+        [
+            ("model", report.model.to_owned()),
+            ("object frame", report.frame.to_owned()),
+            ("q [rad or m]", output::entries(report.q)),
+            ("result", result),
+            (
+                "epsilon [N]",
+                format!("{} to {}", number(quality.epsilon.0), number(quality.epsilon.1)),
+            ),
+            ("effort", effort.to_owned()),
+            ("length [m]", number(report.length)),
+        ],
+    )?;
+    writeln!(out)?;
+    let mut columns = vec![("weakest direction", Align::Left)];
+    columns.extend(report.components.iter().map(|c| (*c, Align::Right)));
+    let cells = report.weakest.iter().map(|x| output::entries(&[*x]));
+    let row = std::iter::once("moments over the length".to_owned()).chain(cells).collect();
+    output::table(out, &columns, [row])?;
+    writeln!(out)?;
+    let columns = [
+        ("contact", Align::Left),
+        ("kind", Align::Left),
+        ("point [m]", Align::Left),
+        ("normal", Align::Left),
+        ("mu", Align::Right),
+        ("torsion [m]", Align::Right),
+        ("strength [N]", Align::Right),
+    ];
+    let given = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), number);
+    let rows = report.contacts.iter().map(|c| {
+        vec![
+            c.name.to_owned(),
+            c.kind.to_owned(),
+            output::entries(&c.point),
+            output::entries(&c.normal),
+            number(c.mu),
+            given(c.torsion),
+            given(c.strength),
+        ]
+    });
+    Ok(output::table(out, &columns, rows)?)
+}

@@ -1,0 +1,221 @@
+//! `statics`: torques for a wrench, and the forces in loops and contacts.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::closure::{
+    Load, Mobility, Motions, Transmitted, contact_forces, joint_torques, row_compliance,
+    transmitted,
+};
+use cylindroid::{Error, Matrix, Result};
+use serde::Serialize;
+
+use super::{HeadJson, Posed, measured};
+use crate::args::StaticsArgs;
+use crate::commands::Style;
+use crate::output::{self, Align};
+
+#[derive(Debug, Serialize)]
+struct StaticsJson<'a> {
+    #[serde(flatten)]
+    head: HeadJson<'a>,
+    /// The components of wrenches.
+    components: &'static [&'static str],
+    wrench: &'a [f64],
+    /// Of the driven joints, the least in size.
+    torques: Vec<f64>,
+    /// The part of the wrench that the structure holds without torques.
+    structural: Vec<f64>,
+    /// The part that nothing balances.
+    unbalanced: Vec<f64>,
+    /// True if forces of loops and contacts are elastic, else they are the least in size.
+    elastic: bool,
+    /// Under the wrench (less what is unbalanced) and the torques.
+    forces: Vec<TransmittedJson>,
+    /// Torques in balance without a wrench, with the forces that go with each.
+    internal: Vec<InternalJson>,
+    /// Forces that neither torques nor the wrench determine, one entry for each.
+    hyperstatic: Vec<Vec<TransmittedJson>>,
+    /// Wrenches held without torques.
+    zero_torque_basis: Vec<Vec<f64>>,
+}
+
+#[derive(Debug, Serialize)]
+struct InternalJson {
+    torques: Vec<f64>,
+    forces: Vec<TransmittedJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct TransmittedJson {
+    /// Closing joint or contact.
+    name: String,
+    /// Where it is [m].
+    point: [f64; 3],
+    /// Of its first link on its second [N], world axes.
+    force: [f64; 3],
+    /// About the point [N m].
+    moment: [f64; 3],
+    /// Of contacts: the force along the normal, positive where it pushes, and across it [N].
+    normal: Option<f64>,
+    tangential: Option<f64>,
+}
+
+impl From<Transmitted> for TransmittedJson {
+    fn from(t: Transmitted) -> Self {
+        Self {
+            point: t.point.to_array(),
+            force: t.wrench.force.to_array(),
+            moment: t.wrench.moment.to_array(),
+            normal: t.normal,
+            tangential: t.tangential(),
+            name: t.name,
+        }
+    }
+}
+
+pub(crate) fn run(
+    args: &StaticsArgs,
+    style: Style,
+    out: &mut dyn Write,
+) -> anyhow::Result<ExitCode> {
+    let posed = Posed::new(&args.closed)?;
+    let report = find(&posed, args)?;
+    match style {
+        Style::Json => output::json(out, &report)?,
+        Style::Table => print(out, &posed, &report)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> {
+    let components = posed.components();
+    let wrench = args.wrench.0.as_slice();
+    if wrench.len() != components.len() {
+        return Err(Error::Dimension {
+            what: "--wrench".to_owned(),
+            expected: components.len(),
+            got: wrench.len(),
+            hint: match components.len() {
+                3 => "in the plane: fx, fy, mz".to_owned(),
+                _ => "forces, then moments: fx, fy, fz, mx, my, mz".to_owned(),
+            },
+        });
+    }
+    let chain = &posed.chain;
+    let constraint = &chain.constraint;
+    let motions = Motions::of(constraint);
+    let relation = motions.relation();
+    let mobility = Mobility::from_parts(constraint, &motions, &relation);
+    let weights = args.wtau.as_ref();
+    let weights = weights.map(|w| measured::metric("--wtau", w, &chain.actuated)).transpose()?;
+    let found = joint_torques(&relation, wrench, weights.as_ref())?;
+
+    let state = posed.state()?;
+    let closings: Vec<&str> = posed.closings();
+    let compliance = match &args.compliance {
+        None => None,
+        Some(given) => {
+            given.check("closing joint or contact", &closings)?;
+            let of = |name: &&str| {
+                given.of(name).ok_or_else(|| Error::InvalidOption {
+                    option: "--compliance",
+                    value: (*name).to_owned(),
+                    reason: "it has none; give a number for all, or name=number for each"
+                        .to_owned(),
+                })
+            };
+            let all: Vec<f64> = closings.iter().map(of).collect::<Result<_>>()?;
+            Some(row_compliance(&state, chain, &all)?)
+        }
+    };
+    let held: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, u)| w - u).collect();
+    let through = |torques: &[f64], wrench: &[f64]| -> Result<Vec<TransmittedJson>> {
+        let load = Load { torques, wrench };
+        let forces = contact_forces(constraint, &motions, load, compliance.as_ref())?.forces;
+        Ok(transmitted(&state, chain, &forces)?.into_iter().map(Into::into).collect())
+    };
+    let columns = |m: &Matrix| (0..m.cols()).map(|j| m.column(j).to_vec()).collect::<Vec<_>>();
+    let nothing = vec![0.0; components.len()];
+    let internal = columns(&mobility.internal.basis)
+        .into_iter()
+        .map(|torques| Ok(InternalJson { forces: through(&torques, &nothing)?, torques }))
+        .collect::<Result<_>>()?;
+    let hyperstatic = columns(&mobility.hyperstatic.basis)
+        .iter()
+        .map(|t| Ok(transmitted(&state, chain, t)?.into_iter().map(Into::into).collect()))
+        .collect::<Result<_>>()?;
+    Ok(StaticsJson {
+        head: posed.into(),
+        components,
+        wrench,
+        forces: through(&found.torques, &held)?,
+        torques: found.torques,
+        structural: found.structural,
+        unbalanced: found.unbalanced,
+        elastic: compliance.is_some(),
+        internal,
+        hyperstatic,
+        zero_torque_basis: columns(&mobility.zero_torque.basis),
+    })
+}
+
+fn print(out: &mut dyn Write, posed: &Posed, report: &StaticsJson<'_>) -> anyhow::Result<()> {
+    let mut lines = posed.heading();
+    let left = report.unbalanced.iter().any(|x| x.abs() > 0.0);
+    if left {
+        let text = "a part of the wrench: the reference frame gives way to it (unbalanced below)";
+        lines.push(("nothing holds", text.to_owned()));
+    }
+    output::pairs(out, lines)?;
+    writeln!(out)?;
+    let mut columns = vec![("[N, N m]", Align::Left)];
+    columns.extend(report.components.iter().map(|c| (*c, Align::Right)));
+    let row = |name: &str, w: &[f64]| {
+        let cells = w.iter().map(|x| output::entries(&[*x]));
+        std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
+    };
+    let mut rows = vec![
+        row("wrench on the frame", report.wrench),
+        row("held by the structure", &report.structural),
+        row("unbalanced", &report.unbalanced),
+    ];
+    rows.extend(report.zero_torque_basis.iter().map(|w| row("zero-torque wrench (basis)", w)));
+    output::table(out, &columns, rows)?;
+    writeln!(out)?;
+    let mut columns = vec![("driven joint", Align::Left), ("torque", Align::Right)];
+    let names: Vec<String> = (1..=report.internal.len()).map(|i| format!("internal {i}")).collect();
+    columns.extend(names.iter().map(|n| (n.as_str(), Align::Right)));
+    let joints = posed.chain.actuated.iter().enumerate().map(|(i, name)| {
+        let mut cells = vec![name.clone(), output::entries(&[report.torques[i]])];
+        cells.extend(report.internal.iter().map(|h| output::entries(&[h.torques[i]])));
+        cells
+    });
+    output::table(out, &columns, joints)?;
+    if report.forces.is_empty() {
+        return Ok(());
+    }
+    let title = if report.elastic { "elastic forces" } else { "least forces" };
+    forces(out, title, &report.forces)?;
+    for (i, internal) in report.internal.iter().enumerate() {
+        forces(out, &format!("with internal {}", i + 1), &internal.forces)?;
+    }
+    for (i, undetermined) in report.hyperstatic.iter().enumerate() {
+        forces(out, &format!("undetermined {}", i + 1), undetermined)?;
+    }
+    Ok(())
+}
+
+fn forces(out: &mut dyn Write, title: &str, all: &[TransmittedJson]) -> anyhow::Result<()> {
+    writeln!(out)?;
+    let right = ["fx", "fy", "fz", "mx", "my", "mz", "normal", "tangential"];
+    let mut columns = vec![(title, Align::Left)];
+    columns.extend(right.map(|n| (n, Align::Right)));
+    let rows = all.iter().map(|t| {
+        let numbers = t.force.iter().chain(&t.moment).map(|x| output::entries(&[*x]));
+        let contact = [t.normal, t.tangential]
+            .map(|x| x.map_or_else(|| "-".to_owned(), |x| output::entries(&[x])));
+        std::iter::once(t.name.clone()).chain(numbers).chain(contact).collect()
+    });
+    Ok(output::table(out, &columns, rows)?)
+}

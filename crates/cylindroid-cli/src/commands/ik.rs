@@ -1,0 +1,142 @@
+//! `ik`: configurations that put a frame at a target.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::Mechanism;
+use cylindroid::ik::{Budget, Goal, IkOptions, Solution, solve, solve_several};
+use serde::Serialize;
+
+use super::target::{target_pose, task};
+use super::{Style, configuration, end_effector};
+use crate::args::IkArgs;
+use crate::output::{self, Align, PoseJson, number};
+
+/// Exit code of a target that was not reached.
+const NOT_REACHED: u8 = 1;
+
+#[derive(Debug, Serialize)]
+struct IkJson<'a> {
+    model: &'a str,
+    frame: &'a str,
+    /// The tool point, in axes of the frame [m].
+    tool: [f64; 3],
+    joint_names: Vec<&'a str>,
+    success: bool,
+    /// The first answer; without success the nearest posture that was found.
+    q: &'a [f64],
+    position_error: f64,
+    orientation_error: f64,
+    iterations: usize,
+    attempts: usize,
+    /// How far the target is from the first joint and how long the arm is from there [m], where
+    /// that proves that nothing reaches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    out_of_reach: Option<ReachJson>,
+    /// All answers.
+    solutions: Vec<&'a [f64]>,
+    start: &'a [f64],
+    target: PoseJson,
+}
+
+#[derive(Debug, Serialize)]
+struct ReachJson {
+    distance: f64,
+    length: f64,
+}
+
+pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let robot = cylindroid::load(&args.posture.model)?;
+    let start = configuration(&robot, &args.posture)?;
+    let end_effector = end_effector(&robot, &args.frame)?;
+    let (task, what) = task(&args.target, &robot)?;
+    let from = robot.state(&start)?.pose(end_effector);
+    let target = target_pose(&args.target, from, args.posture.degrees)?;
+    let options = IkOptions {
+        position_tolerance: args.tolerance_position,
+        orientation_tolerance: args.tolerance_orientation,
+        start: Some(start.clone()),
+        nearest: args.nearest,
+        seed: args.seed,
+        budget: Budget { iterations: args.iterations, time: None },
+        ..IkOptions::default()
+    };
+    let goals = [Goal { end_effector, target, task }];
+    let found = match args.all {
+        None => vec![solve(&robot, &goals, &options)?],
+        Some(count) => match solve_several(&robot, &goals, &options, count.max(1))? {
+            none if none.is_empty() => vec![solve(&robot, &goals, &options)?],
+            some => some,
+        },
+    };
+    let Some(first) = found.first() else { anyhow::bail!("no posture was looked at") };
+    let frame = robot.frame_of(end_effector.frame).name.as_str();
+    let report = IkJson {
+        model: robot.name(),
+        frame,
+        tool: end_effector.frame_from_tool.translation.to_array(),
+        joint_names: output::joint_names(&robot),
+        success: first.success,
+        q: &first.q,
+        position_error: first.position_error,
+        orientation_error: first.orientation_error,
+        iterations: first.iterations,
+        attempts: first.attempts,
+        out_of_reach: first.out_of_reach.map(|(distance, length)| ReachJson { distance, length }),
+        solutions: found.iter().filter(|s| s.success).map(|s| s.q.as_slice()).collect(),
+        start: &start,
+        target: target.into(),
+    };
+    match style {
+        Style::Json => output::json(out, &report)?,
+        Style::Table => print(out, &robot, &report, &what, &found)?,
+    }
+    Ok(if first.success { ExitCode::SUCCESS } else { ExitCode::from(NOT_REACHED) })
+}
+
+fn print(
+    out: &mut dyn Write,
+    robot: &Mechanism,
+    report: &IkJson<'_>,
+    what: &str,
+    found: &[Solution],
+) -> anyhow::Result<()> {
+    let result = match (&report.out_of_reach, report.success, found.len()) {
+        (_, true, 1) => "reached".to_owned(),
+        (_, true, several) => format!("reached by {several} postures, the nearest to --q first"),
+        (Some(reach), ..) => format!(
+            "out of reach: the target is {} m from the first joint, the arm {} m long from there; \
+             the nearest posture follows",
+            number(reach.distance),
+            number(reach.length)
+        ),
+        (None, ..) => "not reached in so many attempts, which proves nothing: try more \
+                       (--iterations), another --seed, or leave components free (--task); the \
+                       nearest posture follows"
+            .to_owned(),
+    };
+    output::pairs(
+        out,
+        [
+            ("model", robot.name().to_owned()),
+            ("frame", report.frame.to_owned()),
+            ("asked for", what.to_owned()),
+            ("result", result),
+            ("position error [m]", number(report.position_error)),
+            ("orientation error [rad]", number(report.orientation_error)),
+            ("attempts", format!("{}, {} steps", report.attempts, report.iterations)),
+            ("q [rad or m]", output::list(report.q)),
+        ],
+    )?;
+    if found.len() > 1 {
+        writeln!(out)?;
+        let names = report.joint_names.iter().map(|name| (*name, Align::Right));
+        let columns: Vec<_> = std::iter::once(("answer", Align::Left)).chain(names).collect();
+        let rows = found.iter().enumerate().map(|(i, s)| {
+            let entries = s.q.iter().map(|x| number(*x));
+            std::iter::once((i + 1).to_string()).chain(entries).collect::<Vec<_>>()
+        });
+        output::table(out, &columns, rows)?;
+    }
+    Ok(())
+}

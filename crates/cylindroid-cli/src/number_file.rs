@@ -1,0 +1,66 @@
+//! Files of rows of numbers: CSV, or JSON lists of lists.
+
+use std::path::Path;
+
+use cylindroid::{Error, Matrix, Result};
+
+/// A row and where it stands in its file.
+#[derive(Debug)]
+pub(crate) struct Row {
+    pub(crate) place: String,
+    pub(crate) numbers: Vec<f64>,
+}
+
+/// The rows of a file; CSV unless its name ends in .json. A first line of CSV that is no numbers
+/// names the columns.
+pub(crate) fn rows(path: &Path) -> Result<Vec<Row>> {
+    if path.extension().is_some_and(|e| e == "json") { json(path) } else { csv(path) }
+}
+
+/// The rows of a file as a matrix of `columns` columns.
+pub(crate) fn matrix(path: &Path, columns: usize) -> Result<Matrix> {
+    let rows = rows(path)?;
+    if let Some(row) = rows.iter().find(|row| row.numbers.len() != columns) {
+        let (place, given) = (&row.place, row.numbers.len());
+        return Err(cannot_read(path, &format!("{place} has {given} numbers, not {columns}")));
+    }
+    Ok(Matrix::from_fn(rows.len(), columns, |i, j| rows[i].numbers[j]))
+}
+
+fn csv(path: &Path) -> Result<Vec<Row>> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_path(path)
+        .map_err(|e| cannot_read(path, &e.to_string()))?;
+    let mut rows = Vec::new();
+    for (i, record) in reader.records().enumerate() {
+        let record = record.map_err(|e| cannot_read(path, &e.to_string()))?;
+        let line = record.position().map_or(i as u64 + 1, csv::Position::line);
+        let numbers: std::result::Result<Vec<f64>, _> =
+            record.iter().map(str::parse::<f64>).collect();
+        match numbers {
+            Ok(numbers) => rows.push(Row { place: format!("line {line}"), numbers }),
+            Err(_) if i == 0 => {}
+            Err(_) => {
+                let text = record.iter().collect::<Vec<_>>().join(",");
+                return Err(cannot_read(path, &format!("line {line} is not all numbers: {text}")));
+            }
+        }
+    }
+    Ok(rows)
+}
+
+fn json(path: &Path) -> Result<Vec<Row>> {
+    let text = std::fs::read_to_string(path).map_err(|e| cannot_read(path, &e.to_string()))?;
+    let rows: Vec<Vec<f64>> = serde_json::from_str(&text)
+        .map_err(|e| cannot_read(path, &format!("not a list of lists of numbers: {e}")))?;
+    let row = |(i, numbers)| Row { place: format!("row {}", i + 1), numbers };
+    Ok(rows.into_iter().enumerate().map(row).collect())
+}
+
+pub(crate) fn cannot_read(path: &Path, message: &str) -> Error {
+    Error::Io { path: path.to_owned(), action: "read", message: message.to_owned() }
+}

@@ -1,0 +1,384 @@
+//! A mechanism with its ellipses and polytopes of velocity and force, drawn at the reference point:
+//! in the plane x-y, or for mechanisms in space in the three planes of the world.
+
+mod panel;
+
+use std::path::Path;
+
+use cylindroid::closure::{ClosedChain, Motions};
+use cylindroid::linalg::Interval;
+use cylindroid::manipulability::{
+    Manipulability, Metrics, Polytope, Spectrum, force_polytope, velocity_polytope,
+};
+use cylindroid::{Matrix, Result, State, Vec3};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use self::panel::{Panel, panel};
+use super::skeleton::Skeleton;
+use super::{COLOURS, Drawn, FONT};
+use crate::output::number;
+use crate::trajectory::cannot_write;
+
+/// What is drawn.
+pub(crate) struct Drawing<'a> {
+    pub(crate) state: &'a State,
+    pub(crate) chain: &'a ClosedChain,
+    /// Of the whole twist.
+    pub(crate) metrics: &'a Metrics,
+    pub(crate) metric: &'a str,
+    pub(crate) rate_limits: Option<Vec<Interval>>,
+    pub(crate) torque_limits: Option<Vec<Interval>>,
+}
+
+/// Width of the figure, and size of a panel with axes: one in each block, or three [px].
+const WIDTH: u32 = 1000;
+const ALONE: (u32, u32) = (500, 470);
+const ROW: (u32, u32) = (333, 320);
+const TITLE: u32 = 44;
+const LINE: u32 = 18;
+/// Width of a character of running text [px].
+const CHARACTER: f64 = 6.4;
+const TEXT: u32 = 13;
+/// Size of the shapes over that of the mechanism.
+const SHARE: f64 = 0.36;
+
+/// A shape in a plane: semi-axes of an ellipse, and directions without end.
+#[derive(Debug, Clone)]
+struct Ellipse {
+    axes: Vec<[f64; 2]>,
+    endless: Vec<[f64; 2]>,
+}
+
+impl Ellipse {
+    fn of(spectrum: &Spectrum) -> Self {
+        let pairs = |m: &Matrix| (0..m.cols()).map(|j| [m[(0, j)], m[(1, j)]]).collect();
+        let axes = pairs(&spectrum.semi_axes());
+        let unit = |d: [f64; 2]| {
+            let size = d[0].hypot(d[1]);
+            [d[0] / size, d[1] / size]
+        };
+        let endless: Vec<[f64; 2]> = pairs(&spectrum.infinite);
+        Self { axes, endless: endless.into_iter().map(unit).collect() }
+    }
+
+    fn size(&self) -> f64 {
+        self.axes.iter().map(|a| a[0].hypot(a[1])).fold(0.0, f64::max)
+    }
+}
+
+/// What is shown of motion or of force in one plane.
+#[derive(Debug, Clone)]
+struct View {
+    plane: [usize; 2],
+    ellipse: Ellipse,
+    polygon: Option<Vec<[f64; 2]>>,
+}
+
+/// Motion or force, in all planes.
+struct Block<'a> {
+    title: &'static str,
+    unit: &'static str,
+    force: bool,
+    colour: RGBColor,
+    views: Vec<View>,
+    drawing: &'a Drawing<'a>,
+}
+
+/// Draws.
+pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
+    let planar = drawing.chain.constraint.object() == 3;
+    let planes: &[[usize; 2]] = if planar { &[[0, 1]] } else { &[[0, 1], [0, 2], [1, 2]] };
+    let relation = Motions::of(&drawing.chain.constraint).relation();
+    let (mut motion, mut force) = (Vec::new(), Vec::new());
+    for &plane in planes {
+        let map = Matrix::from_fn(2, relation.object(), |i, j| f64::from(u8::from(plane[i] == j)));
+        let seen = relation.task(&map)?;
+        let m = Manipulability::of(&seen, &drawing.metrics.for_task(&map)?)?;
+        let corners = |p: Polytope| p.hull.polygon().iter().map(|v| [v[0], v[1]]).collect();
+        let rates = drawing.rate_limits.as_deref();
+        let torques = drawing.torque_limits.as_deref();
+        motion.push(View {
+            plane,
+            ellipse: Ellipse::of(&m.kinematic),
+            polygon: rates.map(|l| velocity_polytope(&seen, l)).transpose()?.map(corners),
+        });
+        force.push(View {
+            plane,
+            ellipse: Ellipse::of(&m.force),
+            polygon: torques.map(|l| force_polytope(&seen, l)).transpose()?.map(corners),
+        });
+    }
+    let blocks = [
+        Block {
+            title: "velocity",
+            unit: "m/s",
+            force: false,
+            colour: COLOURS[0],
+            views: motion,
+            drawing,
+        },
+        Block { title: "force", unit: "N", force: true, colour: COLOURS[1], views: force, drawing },
+    ];
+    let mechanism = drawing.state.mechanism();
+    let frame = mechanism.frame_of(drawing.chain.reference);
+    let reference = drawing.state.pose(drawing.chain.reference).translation;
+    let skeleton = Skeleton::new(drawing.state, (frame.link, reference))?;
+    let title = format!(
+        "{}: velocity and force at '{}', driven by {}",
+        mechanism.name(),
+        frame.name,
+        driven(&drawing.chain.actuated)
+    );
+    let mut svg = String::new();
+    figure(&title, &blocks, &skeleton, reference, &mut svg)
+        .map_err(|error| cannot_write(path, &error))?;
+    std::fs::write(path, svg).map_err(|error| cannot_write(path, &error))
+}
+
+/// Names while there are few.
+fn driven(names: &[String]) -> String {
+    /// Most characters of a list.
+    const MOST: usize = 40;
+    let list = names.join(", ");
+    match names.len() {
+        0 => "no joint".to_owned(),
+        _ if list.len() <= MOST => list,
+        n => format!("{n} joints"),
+    }
+}
+
+fn figure(
+    title: &str,
+    blocks: &[Block<'_>; 2],
+    skeleton: &Skeleton,
+    reference: Vec3,
+    svg: &mut String,
+) -> Drawn {
+    let alone = blocks[0].views.len() == 1;
+    let (width, height) = if alone { ALONE } else { ROW };
+    let size = skeleton_size(skeleton, reference);
+    let room = if alone { ALONE.0 } else { WIDTH } - 40;
+    let legends = blocks.each_ref().map(|b| b.legend(size, room));
+    let lines = legends.iter().map(|l| l.iter().map(|e| e.lines.len()).sum::<usize>()).max();
+    // A metre is as long in every panel.
+    let metre = blocks
+        .iter()
+        .flat_map(|block| {
+            let scales = block.scales(size);
+            let panel = move |view| Panel {
+                block,
+                view,
+                skeleton,
+                reference,
+                scales,
+                size: (width, height),
+                metre: 0.0,
+            };
+            block.views.iter().map(move |view| panel(view).needs())
+        })
+        .fold(0.0, f64::max);
+    let captions = blocks
+        .each_ref()
+        .map(|b| b.views.iter().map(|v| wrap(&b.caption(v), width - 60)).collect::<Vec<_>>());
+    let deepest = captions.iter().flatten().map(Vec::len).max().unwrap_or(0);
+    let head = 30 + LINE * u32::try_from(lines.unwrap_or(0)).unwrap_or(0);
+    let foot = 12 + LINE * u32::try_from(deepest).unwrap_or(0);
+    let block_height = head + height + foot;
+    let total = TITLE + block_height * if alone { 1 } else { 2 } + 34;
+    let root = SVGBackend::with_string(svg, (WIDTH, total)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let (top, rest) = root.split_vertically(TITLE);
+    top.draw(&Text::new(title.to_owned(), (20, 14), (FONT, 20)))?;
+    let (body, bottom) = rest.split_vertically(total - TITLE - 34);
+    let areas = if alone { body.split_evenly((1, 2)) } else { body.split_evenly((2, 1)) };
+    for (i, (block, area)) in blocks.iter().zip(&areas).enumerate() {
+        let (above, below) = area.split_vertically(head);
+        above.draw(&Text::new(block.title, (20, 2), (FONT, 16)))?;
+        let mut y = 26;
+        for entry in &legends[i] {
+            entry.draw(&above, &mut y)?;
+        }
+        let (charts, notes) = below.split_vertically(height);
+        let count = block.views.len();
+        let (charts, notes) = (charts.split_evenly((1, count)), notes.split_evenly((1, count)));
+        for (j, view) in block.views.iter().enumerate() {
+            let scales = block.scales(size);
+            let shown =
+                Panel { block, view, skeleton, reference, scales, size: (width, height), metre };
+            panel(&charts[j], &shown)?;
+            for (k, line) in captions[i][j].iter().enumerate() {
+                let y = i32::try_from(k).unwrap_or(0) * LINE as i32 + 2;
+                notes[j].draw(&Text::new(line.clone(), (58, y), (FONT, TEXT)))?;
+            }
+        }
+    }
+    panel::symbols(&bottom)?;
+    root.present()?;
+    drop((top, rest, body, bottom, areas, root));
+    Ok(())
+}
+
+/// The widest side of the mechanism (m).
+fn skeleton_size(skeleton: &Skeleton, reference: Vec3) -> f64 {
+    let all: Vec<Vec3> = skeleton.points().chain([reference]).collect();
+    let side = |of: fn(&Vec3) -> f64| {
+        let (low, high) = all
+            .iter()
+            .map(of)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        high - low
+    };
+    let widest = side(|p| p.x).max(side(|p| p.y)).max(side(|p| p.z));
+    if widest > 0.0 { widest } else { 1.0 }
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pen {
+    Solid,
+    Dashed,
+    Filled,
+}
+
+/// A line of the legend.
+struct Entry {
+    pen: Pen,
+    colour: RGBColor,
+    lines: Vec<String>,
+}
+
+impl Entry {
+    fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>, y: &mut i32) -> Drawn {
+        let middle = *y + 8;
+        match self.pen {
+            Pen::Solid => {
+                let line =
+                    PathElement::new([(20, middle), (50, middle)], self.colour.stroke_width(3));
+                area.draw(&line)?;
+            }
+            Pen::Dashed => {
+                for x in [20, 32, 44] {
+                    let dash = [(x, middle), (x + 7, middle)];
+                    area.draw(&PathElement::new(dash, self.colour.stroke_width(3)))?;
+                }
+            }
+            Pen::Filled => {
+                let corners = [(20, middle - 6), (50, middle + 6)];
+                area.draw(&Rectangle::new(corners, self.colour.mix(0.15).filled()))?;
+                area.draw(&Rectangle::new(corners, self.colour.stroke_width(1)))?;
+            }
+        }
+        for line in &self.lines {
+            area.draw(&Text::new(line.clone(), (60, *y + 1), (FONT, TEXT)))?;
+            *y += LINE as i32;
+        }
+        Ok(())
+    }
+}
+
+/// How much of a quantity one metre of the drawing is: for ellipses, and for polygons; `None` for
+/// those of no size.
+#[derive(Debug, Clone, Copy)]
+struct Scales {
+    ellipse: Option<f64>,
+    polygon: Option<f64>,
+}
+
+impl Block<'_> {
+    /// Round numbers that give the shapes their share; one for both where they fit together.
+    fn scales(&self, size: f64) -> Scales {
+        let widest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
+        let ellipse = widest(&mut self.views.iter().map(|v| v.ellipse.size()));
+        let corners = self.views.iter().flat_map(|v| v.polygon.iter().flatten());
+        let polygon = widest(&mut corners.map(|c| c[0].hypot(c[1])));
+        let of = |most: f64| round_up(most / (SHARE * size));
+        let together = ellipse.max(polygon);
+        let own = |most: f64| (most > 0.0).then(|| of(most));
+        if ellipse.min(polygon) > 0.4 * together {
+            return Scales { ellipse: own(together), polygon: own(together) };
+        }
+        Scales { ellipse: own(ellipse), polygon: own(polygon) }
+    }
+
+    fn legend(&self, size: f64, room: u32) -> Vec<Entry> {
+        let scales = self.scales(size);
+        let drawn = |scale: Option<f64>| match scale {
+            Some(scale) => format!("; scale {} {} to 1 m", number(scale), self.unit),
+            None => ": none".to_owned(),
+        };
+        let joints = if self.force { "torques" } else { "rates" };
+        let of_size = match self.drawing.metric {
+            "limits" if !self.force => "rates over their limits of size 1".to_owned(),
+            metric => format!("{joints} of size 1, metric {metric}"),
+        };
+        let entry =
+            |pen, colour, text: String| Entry { pen, colour, lines: wrap(&text, room - 40) };
+        let mut entries = Vec::new();
+        if self.force {
+            let text = format!("exerted by {of_size}{}", drawn(scales.ellipse));
+            entries.push(entry(Pen::Solid, self.colour, text));
+            let text = "resisted with as much, the structure helping".to_owned();
+            entries.push(entry(Pen::Dashed, COLOURS[2], text));
+        } else {
+            let text = format!("by {of_size}{}", drawn(scales.ellipse));
+            entries.push(entry(Pen::Solid, self.colour, text));
+            if self.views.iter().any(|v| !v.ellipse.endless.is_empty()) {
+                let text = "not controlled by the drives: without end".to_owned();
+                entries.push(entry(Pen::Dashed, COLOURS[3], text));
+            }
+        }
+        if self.views.iter().any(|v| v.polygon.is_some()) {
+            let text = format!("within the limits of {joints}{}", drawn(scales.polygon));
+            entries.push(entry(Pen::Filled, self.colour, text));
+        }
+        entries
+    }
+
+    /// What the picture says, in words and numbers.
+    fn caption(&self, view: &View) -> String {
+        let along = |d: &[f64; 2]| {
+            // One of both signs, the same everywhere.
+            let sign = if d[0] < -1e-9 || (d[0] < 1e-9 && d[1] < 0.0) { -1.0 } else { 1.0 };
+            let part = |x: f64| number((sign * x * 1000.0).round() / 1000.0 + 0.0);
+            format!("({}, {})", part(d[0]), part(d[1]))
+        };
+        let Ellipse { axes, endless } = &view.ellipse;
+        let three = |x: f64| {
+            let digits = 10_f64.powf(2.0 - x.log10().floor());
+            number((x * digits).round() / digits)
+        };
+        let sizes: Vec<String> = axes.iter().map(|a| three(a[0].hypot(a[1]))).collect();
+        let (what, unit) = (self.title, self.unit);
+        match (sizes.as_slice(), endless.as_slice()) {
+            ([], []) if self.force => "no force is held in this plane".to_owned(),
+            ([], []) => "nothing moves in this plane".to_owned(),
+            ([a], []) if self.force => {
+                format!("a line of {a} {unit} each way: forces across it are not held")
+            }
+            ([a], []) => format!("a line of {a} {unit} each way: no velocity across it"),
+            ([], [d]) if self.force => {
+                format!("forces along {} need no torque, others are not held", along(d))
+            }
+            ([], [d]) => format!("moves freely along {}, not at all across", along(d)),
+            ([a], [d]) if self.force => {
+                format!("{a} {unit} across; forces along {} need no torque", along(d))
+            }
+            ([a], [d]) => format!("{a} {unit} across; free along {}", along(d)),
+            ([], _) if self.force => "all forces are held without torque".to_owned(),
+            ([], _) => "moves freely in this plane".to_owned(),
+            (all, _) => format!("semi-axes of the {what} ellipse {} {unit}", all.join(" and ")),
+        }
+    }
+}
+
+/// The next number with one digit, or 1.5 times a power of ten.
+fn round_up(x: f64) -> f64 {
+    let power = 10_f64.powf(x.log10().floor());
+    let steps = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0];
+    steps.map(|m| m * power).into_iter().find(|r| *r >= x).unwrap_or(10.0 * power)
+}
+
+fn wrap(text: &str, width: u32) -> Vec<String> {
+    crate::output::wrap(text, (f64::from(width) / CHARACTER) as usize)
+}

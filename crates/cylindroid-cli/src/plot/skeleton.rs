@@ -1,0 +1,157 @@
+//! A mechanism as lines through its joints: what a picture shows of it.
+
+use cylindroid::model::{Joint, JointKind};
+use cylindroid::{Pose, Result, State, Vec3};
+
+/// How a joint is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mark {
+    /// Turns, about one axis or several.
+    Turning,
+    /// Slides.
+    Sliding,
+    /// A contact.
+    Contact,
+}
+
+/// A joint or contact.
+#[derive(Debug, Clone)]
+pub(crate) struct Spot {
+    pub(crate) name: String,
+    pub(crate) point: Vec3,
+    pub(crate) mark: Mark,
+    pub(crate) driven: bool,
+}
+
+/// Points of links and joints in world (m).
+#[derive(Debug, Clone)]
+pub(crate) struct Skeleton {
+    /// Of every link that moves, where its joints are; no point twice.
+    pub(crate) links: Vec<Vec<Vec3>>,
+    /// What slides, from one link to the other.
+    pub(crate) slides: Vec<[Vec3; 2]>,
+    pub(crate) spots: Vec<Spot>,
+    /// Where the ground holds something.
+    pub(crate) bases: Vec<Vec3>,
+}
+
+/// The points of each link, no point twice.
+struct Points {
+    of: Vec<Vec<Vec3>>,
+    near: f64,
+}
+
+impl Points {
+    fn add(&mut self, link: usize, point: Vec3) {
+        if !self.of[link].iter().any(|p| (*p - point).norm() < self.near) {
+            self.of[link].push(point);
+        }
+    }
+}
+
+fn slides(kind: JointKind) -> bool {
+    matches!(kind, JointKind::Prismatic | JointKind::Cylindrical)
+}
+
+impl Skeleton {
+    /// Of a mechanism; `reference` is a point on the link of that index.
+    pub(crate) fn new(state: &State, (link, reference): (usize, Vec3)) -> Result<Self> {
+        let mechanism = state.mechanism();
+        let poses: Vec<Pose> = mechanism
+            .links()
+            .iter()
+            .map(|l| Ok(state.pose(mechanism.frame(&l.name)?)))
+            .collect::<Result<_>>()?;
+        let is_child = |i: usize| mechanism.joints().iter().any(|j| j.child == i);
+        let ground: Vec<bool> = (0..poses.len()).map(|i| !is_child(i)).collect();
+        let near = 1e-6 * mechanism.reach();
+        let mut points = Points { of: vec![Vec::new(); poses.len()], near };
+        let mut sliders = Vec::new();
+        let mut skeleton =
+            Self { links: Vec::new(), slides: Vec::new(), spots: Vec::new(), bases: Vec::new() };
+        for joint in mechanism.joints() {
+            // A free body hangs on nothing that could be drawn.
+            if matches!(joint.kind, JointKind::Free | JointKind::Planar) {
+                continue;
+            }
+            let Joint { parent, child, .. } = *joint;
+            let a = (poses[parent] * joint.parent_from_joint).translation;
+            let b = (poses[child] * joint.joint_from_child.inverse()).translation;
+            points.add(parent, a);
+            points.add(child, b);
+            if ground[parent] {
+                skeleton.bases.push(a);
+            }
+            if joint.kind.dof() > 0 {
+                if slides(joint.kind) {
+                    sliders.push((skeleton.spots.len(), parent));
+                }
+                skeleton.joint([a, b], joint.kind, near, |mark| Spot {
+                    name: joint.name.clone(),
+                    point: a,
+                    mark,
+                    driven: joint.actuated,
+                });
+            }
+        }
+        for joint in mechanism.loops() {
+            let a = (poses[joint.a] * joint.link_a_from_joint).translation;
+            let b = (poses[joint.b] * joint.link_b_from_joint).translation;
+            points.add(joint.a, a);
+            points.add(joint.b, b);
+            skeleton.joint([a, b], joint.kind, near, |mark| Spot {
+                name: joint.name.clone(),
+                point: a,
+                mark,
+                driven: joint.actuated,
+            });
+            if ground[joint.a] || ground[joint.b] {
+                skeleton.bases.push(a);
+            }
+        }
+        for contact in mechanism.contacts() {
+            let point = (poses[contact.b] * contact.link_b_from_contact).translation;
+            points.add(contact.a, (poses[contact.a] * contact.link_a_from_contact).translation);
+            points.add(contact.b, point);
+            skeleton.spots.push(Spot {
+                name: contact.name.clone(),
+                point,
+                mark: Mark::Contact,
+                driven: false,
+            });
+            if ground[contact.a] || ground[contact.b] {
+                skeleton.bases.push(point);
+            }
+        }
+        // A link with an outline shows where it is; others end in the reference.
+        if !ground[link] && points.of[link].len() < 3 {
+            points.add(link, reference);
+        }
+        // A slide that starts in another joint is marked on the way.
+        for (i, link) in sliders {
+            let at = skeleton.spots[i].point;
+            let others = skeleton.spots.iter().enumerate();
+            let hidden = others.clone().any(|(j, s)| j != i && (s.point - at).norm() < near);
+            if let (true, [a, b]) = (hidden, points.of[link].as_slice()) {
+                skeleton.spots[i].point = (*a + *b) * 0.5;
+            }
+        }
+        let moving =
+            points.of.into_iter().zip(&ground).filter(|(p, ground)| !**ground && p.len() > 1);
+        skeleton.links = moving.map(|(p, _)| p).collect();
+        Ok(skeleton)
+    }
+
+    fn joint(&mut self, ends: [Vec3; 2], kind: JointKind, near: f64, spot: impl Fn(Mark) -> Spot) {
+        if (ends[0] - ends[1]).norm() > near {
+            self.slides.push(ends);
+        }
+        self.spots.push(spot(if slides(kind) { Mark::Sliding } else { Mark::Turning }));
+    }
+
+    /// All points that are drawn.
+    pub(crate) fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let links = self.links.iter().flatten().copied();
+        links.chain(self.spots.iter().map(|s| s.point)).chain(self.bases.iter().copied())
+    }
+}

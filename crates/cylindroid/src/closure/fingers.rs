@@ -1,0 +1,122 @@
+//! The contacts of a mechanism on an object, as the fingers of a grasp.
+//!
+//! Formula  point and normal from the contact frame on the object at the pose of the state; where
+//!          the file names the object first, the normal is turned into it
+//! Units    mu has none, torsion is a length (m): largest moment about the normal over the normal
+//!          force
+//! Frame    world
+//! Valid    contacts at points: `point_frictionless`, `hard_finger`, `soft_finger` (in the plane a
+//!          hard one). Lines, faces and firm grasps press at places that the model does not give
+//! Source   Bicchi & Prattichizzo 1998, table 1, for the kinds
+//! Checked  tests/it/closure/grasp.rs::fingers_*
+
+use super::grasp::{FingerContact, Friction, WrenchSpace};
+use crate::error::{Error, Result};
+use crate::kinematics::State;
+use crate::model::{Contact, ContactKind, Dimension, FrameId};
+use crate::spatial::{Pose, Vec3};
+use crate::tolerance::CLOSED;
+
+/// What is known of a contact beside its kind.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Coefficient of friction in place of the file's [-].
+    pub mu: Option<f64>,
+    /// Largest moment about the normal over the normal force (m), of soft fingers.
+    pub torsion: Option<f64>,
+    /// Largest normal force (N).
+    pub strength: f64,
+}
+
+/// The contacts on the link that carries `object`, with their places in the mechanism's list;
+/// `touch` says what is known of each.
+///
+/// # Errors
+/// A frame of another mechanism; a contact on it that is no point, or whose coefficients nobody
+/// gives.
+pub fn fingers_on(
+    state: &State,
+    object: FrameId,
+    touch: impl Fn(&Contact) -> Touch,
+) -> Result<Vec<(usize, FingerContact)>> {
+    let mechanism = state.mechanism();
+    mechanism.check_frame(object)?;
+    let link = mechanism.frame_of(object).link;
+    let world_from_link = state.pose(mechanism.frame(&mechanism.links()[link].name)?);
+    let mut fingers = Vec::new();
+    for (place, contact) in mechanism.contacts().iter().enumerate() {
+        let (link_from_contact, sign): (Pose, f64) = if contact.b == link {
+            (contact.link_b_from_contact, 1.0)
+        } else if contact.a == link {
+            (contact.link_a_from_contact, -1.0)
+        } else {
+            continue;
+        };
+        let at = world_from_link * link_from_contact;
+        let known = touch(contact);
+        let normal: Vec3 = at.rotation.z_axis() * sign;
+        let friction =
+            friction(contact, known, mechanism.dimension()).map_err(|message| Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: contact.name.clone(),
+                message,
+            })?;
+        let finger =
+            FingerContact { point: at.translation, normal, friction, strength: known.strength };
+        fingers.push((place, finger));
+    }
+    Ok(fingers)
+}
+
+fn friction(
+    contact: &Contact,
+    known: Touch,
+    dimension: Dimension,
+) -> std::result::Result<Friction, String> {
+    let name = &contact.name;
+    let mu = || {
+        known.mu.or(contact.friction).ok_or_else(|| {
+            format!(
+                "contact '{name}' has no coefficient of friction; write friction = ... or give mu"
+            )
+        })
+    };
+    match contact.kind {
+        ContactKind::PointFrictionless => Ok(Friction::None),
+        ContactKind::HardFinger => Ok(Friction::Hard { mu: mu()? }),
+        ContactKind::SoftFinger if dimension == Dimension::Planar => {
+            Ok(Friction::Hard { mu: mu()? })
+        }
+        ContactKind::SoftFinger => {
+            let torsion = known.torsion.ok_or_else(|| {
+                format!(
+                    "contact '{name}' is a soft finger; give torsion, its largest moment about \
+                     the normal over the normal force (m)"
+                )
+            })?;
+            Ok(Friction::Soft { mu: mu()?, torsion })
+        }
+        other => Err(format!(
+            "contact '{name}' is {}: force closure is of points; write it as several hard or soft \
+             fingers at its corners",
+            other.name()
+        )),
+    }
+}
+
+impl WrenchSpace {
+    /// At the origin of `object` in world axes, moments over the distance to the farthest of
+    /// these fingers (the reach of the mechanism where all are at the origin).
+    ///
+    /// # Errors
+    /// A frame of another mechanism.
+    pub fn about(state: &State, object: FrameId, fingers: &[FingerContact]) -> Result<Self> {
+        let mechanism = state.mechanism();
+        mechanism.check_frame(object)?;
+        let point = state.pose(object).translation;
+        let farthest = fingers.iter().map(|f| (f.point - point).norm()).fold(0.0, f64::max);
+        let length =
+            if farthest > CLOSED * mechanism.reach() { farthest } else { mechanism.reach() };
+        Ok(Self { point, length, planar: mechanism.dimension() == Dimension::Planar })
+    }
+}

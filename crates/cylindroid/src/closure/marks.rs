@@ -1,0 +1,156 @@
+//! Marks on the links by which two configurations are told apart: where the joints stand.
+//!
+//! Formula  a mark is p / L or d in world axes, its rate (v + w x p) / L or w x d: p the point of a
+//!          joint or contact, d its axis or normal; x and y of the reference frame, of links at the
+//!          end of a branch and of free bodies, which stand as a whole
+//! Shapes   marks: 3 numbers each; rates: 3 rows each, a column for each coordinate
+//! Units    none: L is the reach, rates by coordinates without unit
+//! Valid    any mechanism
+//! Why so   whole poses of all links would tell a rod between a universal and a ball joint from the
+//!          same rod turned half about itself: 64 names for one pose of a Stewart platform. The
+//!          coordinates would tell an angle from one a whole turn on, and a rotation vector from its
+//!          other half
+//! Checked  tests/it/closure/modes.rs
+
+use super::coordinates::unit_of;
+use super::graph::link_jacobians;
+use crate::error::Result;
+use crate::kinematics::State;
+use crate::linalg::Matrix;
+use crate::model::{JointKind, Mechanism};
+use crate::spatial::{Pose, Twist, Vec3};
+
+/// The marks of a mechanism.
+#[derive(Debug, Clone)]
+pub(super) struct Marks {
+    marks: Vec<Mark>,
+    length: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Mark {
+    link: usize,
+    /// In the axes of the link.
+    vector: Vec3,
+    kind: Kind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Point,
+    Direction,
+}
+
+impl Marks {
+    pub(super) fn of(mechanism: &Mechanism) -> Self {
+        let mut marks = Vec::new();
+        let mut add = |link: usize, pose: Pose, directions: &[Vec3]| {
+            marks.push(Mark { link, vector: pose.translation, kind: Kind::Point });
+            marks.extend(directions.iter().map(|d| Mark {
+                link,
+                vector: pose.rotation * *d,
+                kind: Kind::Direction,
+            }));
+        };
+        let mut touched = vec![0; mechanism.links().len()];
+        for joint in mechanism.joints() {
+            add(joint.parent, joint.parent_from_joint, axis_of(joint.kind, &joint.axis));
+            touched[joint.parent] += 1;
+            touched[joint.child] += 1;
+            if joint.kind == JointKind::Free {
+                add(joint.child, Pose::IDENTITY, &WHOLE);
+            }
+        }
+        for joint in mechanism.loops() {
+            add(joint.a, joint.link_a_from_joint, axis_of(joint.kind, &joint.axis));
+            touched[joint.a] += 1;
+            touched[joint.b] += 1;
+        }
+        for contact in mechanism.contacts() {
+            add(contact.a, contact.link_a_from_contact, &[Vec3::Z]);
+            add(contact.b, contact.link_b_from_contact, &[Vec3::Z]);
+            touched[contact.a] += 1;
+            touched[contact.b] += 1;
+        }
+        let reference = mechanism.frame_of(mechanism.reference());
+        add(reference.link, reference.link_from_frame, &WHOLE);
+        for (link, _) in touched.iter().enumerate().filter(|(_, touched)| **touched == 1) {
+            add(link, Pose::IDENTITY, &WHOLE);
+        }
+        Self { marks, length: mechanism.reach() }
+    }
+
+    /// Number of marks.
+    pub(super) fn len(&self) -> usize {
+        self.marks.len()
+    }
+
+    /// Where they are with the links at `links`.
+    pub(super) fn at(&self, links: &[Pose]) -> Vec<Vec3> {
+        self.marks.iter().map(|m| self.place(m, links[m.link])).collect()
+    }
+
+    fn place(&self, mark: &Mark, world_from_link: Pose) -> Vec3 {
+        match mark.kind {
+            Kind::Point => (world_from_link * mark.vector) * (1.0 / self.length),
+            Kind::Direction => world_from_link.rotation * mark.vector,
+        }
+    }
+
+    /// True for each mark that none of `motions` moves by more than `tolerance`: a column each,
+    /// changes of the coordinates `places` without unit.
+    pub(super) fn resting(
+        &self,
+        state: &State,
+        places: &[usize],
+        motions: &Matrix,
+        tolerance: f64,
+    ) -> Result<Vec<bool>> {
+        let links = link_jacobians(state)?;
+        let now = self.at(&link_poses(state)?);
+        let mechanism = state.mechanism();
+        let rests = |mark: &Mark, at: &Vec3| {
+            (0..motions.cols()).all(|k| {
+                let mut link = [0.0; 6];
+                for (&j, x) in places.iter().zip(motions.column(k)) {
+                    let rate = x * unit_of(mechanism, j);
+                    let column = links[mark.link].column(j);
+                    link.iter_mut().zip(column).for_each(|(l, c)| *l += c * rate);
+                }
+                let twist = Twist::from_array(link);
+                let turned = twist.angular.cross(*at);
+                let rate = match mark.kind {
+                    Kind::Point => twist.linear * (1.0 / self.length) + turned,
+                    Kind::Direction => turned,
+                };
+                rate.norm() <= tolerance
+            })
+        };
+        Ok(self.marks.iter().zip(&now).map(|(mark, at)| rests(mark, at)).collect())
+    }
+}
+
+/// The poses of all links.
+pub(super) fn link_poses(state: &State) -> Result<Vec<Pose>> {
+    let mechanism = state.mechanism();
+    mechanism.links().iter().map(|l| Ok(state.pose(mechanism.frame(&l.name)?))).collect()
+}
+
+const WHOLE: [Vec3; 2] = [Vec3::X, Vec3::Y];
+
+/// The axis by which a joint is told apart: none where it leaves the second link more than one
+/// way to turn.
+fn axis_of(kind: JointKind, axis: &Vec3) -> &[Vec3] {
+    match kind {
+        JointKind::Universal { .. } | JointKind::Spherical | JointKind::Free | JointKind::Fixed => {
+            &[]
+        }
+        _ => std::slice::from_ref(axis),
+    }
+}
+
+/// The farthest that any of the chosen marks is from its other place [-]; zero without any.
+pub(super) fn apart(a: &[Vec3], b: &[Vec3], chosen: impl Fn(usize) -> bool) -> f64 {
+    let pairs = a.iter().zip(b).enumerate().filter(|(i, _)| chosen(*i));
+    pairs.fold(0.0, |most: f64, (_, (a, b))| most.max((*a - *b).norm()))
+}

@@ -1,0 +1,319 @@
+//! Assembly modes: the ways in which the loops close, the held coordinates being what they are.
+//!
+//! Formula  assemblies from the guess and from random configurations within limits; two are one
+//!          where all joints and the reference frame stand alike (`marks.rs`)
+//! Units    none: lengths over the reach
+//! Valid    any mechanism. It may miss modes: each is found by chance, the more rarely the fewer
+//!          starts lead there. The share of finds that were made once only estimates the chance that
+//!          the next start which closes finds a new one ([`AssemblyModes::chance_of_more`]).
+//!          Where the held coordinates leave a motion the assemblies are no points: they are told
+//!          apart by what no such motion moves, and one is listed for all that agree there: of two
+//!          branches of a motion that takes everything along, one
+//! Why so   solving the closure for all its roots by elimination needs a derivation for every kind
+//!          of mechanism and does not know limits; homotopies follow complex roots by the thousand
+//! Source   Good 1953 for the chance; a motion is told from a double root by a step along it
+//! Checked  tests/it/closure/modes.rs
+
+use std::f64::consts::{PI, TAU};
+
+use super::assembly::{Assembly, assemble};
+use super::coordinates::{at_limit, closing, columns, free_places, moved};
+use super::marks::{Marks, apart, link_poses};
+use crate::error::{Error, Result};
+use crate::linalg::{ColumnSpace, Matrix, Threshold};
+use crate::model::{CoordinateKind, JointKind, Mechanism, Motion};
+use crate::scalar::uniform;
+use crate::spatial::{Pose, Quaternion, Vec3};
+use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING, SAME_ASSEMBLY};
+
+/// Length of the step by which a motion is tried [rad, or reaches], and how far links have to have
+/// moved after it: from a double root the loops come back to where they were.
+const TRIAL: f64 = 0.05;
+const TRIAL_MOVED: f64 = 1e-3;
+
+/// How modes are looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModeOptions {
+    /// Number of starts, the guess included; at least 1.
+    pub starts: usize,
+    /// The same seed gives the same starts, on every machine.
+    pub seed: u64,
+}
+
+impl Default for ModeOptions {
+    fn default() -> Self {
+        Self { starts: 64, seed: 0 }
+    }
+}
+
+/// One way in which the loops close.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mode {
+    /// The assembly, angles turned to within pi of the guess where limits let them; where there is
+    /// a continuum the nearest to the guess that was found.
+    pub assembly: Assembly,
+    /// Number of starts that led here.
+    pub found: usize,
+    /// How far its joints are from where the guess has them: the largest distance over the reach,
+    /// or the largest chord between unit axes [-].
+    pub distance: f64,
+    /// Degrees of freedom that the held coordinates leave: zero for an isolated assembly.
+    pub continuum: usize,
+}
+
+/// What came of a search for assembly modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AssemblyModes {
+    /// The modes that were found, nearest to the guess first. There may be others.
+    pub modes: Vec<Mode>,
+    /// What came of the guess, closed or not.
+    pub first: Assembly,
+    /// Number of starts.
+    pub starts: usize,
+    /// Number of starts from which the loops closed.
+    pub closed: usize,
+}
+
+impl AssemblyModes {
+    /// The most degrees of freedom that the held coordinates leave at any mode.
+    #[must_use]
+    pub fn continuum(&self) -> usize {
+        self.modes.iter().map(|m| m.continuum).max().unwrap_or(0)
+    }
+
+    /// Estimate of the chance that another start which closes finds a new mode: the share of such
+    /// starts whose mode no other start found. 1 where nothing closed.
+    #[must_use]
+    pub fn chance_of_more(&self) -> f64 {
+        if self.closed == 0 {
+            return 1.0;
+        }
+        let once = self.modes.iter().filter(|m| m.found == 1).count();
+        once as f64 / self.closed as f64
+    }
+}
+
+/// Looks for the ways in which the loops of `mechanism` close with the coordinates in `held` at
+/// their values in `guess`.
+///
+/// ```
+/// use cylindroid::closure::{ModeOptions, assembly_modes};
+///
+/// // A four-bar with its crank held: the coupler's end is on one side or on the other.
+/// let four_bar = cylindroid::load("four-bar")?;
+/// let found = assembly_modes(&four_bar, &[0.3, 0.0, 0.0], &[0], ModeOptions::default())?;
+/// assert_eq!(found.modes.len(), 2);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`super::assemble`]; no starts.
+pub fn assembly_modes(
+    mechanism: &Mechanism,
+    guess: &[f64],
+    held: &[usize],
+    options: ModeOptions,
+) -> Result<AssemblyModes> {
+    if options.starts == 0 {
+        return Err(Error::InvalidOption {
+            option: "starts",
+            value: "0".to_owned(),
+            reason: "the guess is the first start: at least 1".to_owned(),
+        });
+    }
+    let first = assemble(mechanism, guess, held)?;
+    let free = free_places(mechanism, held)?;
+    let mut random = options.seed;
+    let marks = Marks::of(mechanism);
+    let mut search = Search { mechanism, held, free: &free, marks, modes: Vec::new() };
+    let guessed = search.places(guess)?;
+    let mut closed = 0;
+    for start in 0..options.starts {
+        let found = if start == 0 {
+            first.clone()
+        } else {
+            assemble(mechanism, &start_at_random(mechanism, guess, &free, &mut random), held)?
+        };
+        if found.closed {
+            closed += 1;
+            search.add(turned_near(mechanism, guess, &free, found), &guessed)?;
+        }
+    }
+    let mut modes: Vec<Mode> = search.modes.into_iter().map(|seen| seen.mode).collect();
+    modes.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    Ok(AssemblyModes { modes, first, starts: options.starts, closed })
+}
+
+struct Search<'a> {
+    mechanism: &'a Mechanism,
+    held: &'a [usize],
+    free: &'a [usize],
+    marks: Marks,
+    modes: Vec<Seen>,
+}
+
+/// A mode, where its marks are, and which of them no motion that is left moves.
+struct Seen {
+    mode: Mode,
+    places: Vec<Vec3>,
+    resting: Vec<bool>,
+}
+
+impl Search<'_> {
+    fn places(&self, q: &[f64]) -> Result<Vec<Vec3>> {
+        Ok(self.marks.at(&link_poses(&self.mechanism.state(q)?)?))
+    }
+
+    fn add(&mut self, assembly: Assembly, guessed: &[Vec3]) -> Result<()> {
+        let places = self.places(&assembly.q)?;
+        let distance = apart(&places, guessed, |_| true);
+        let isolated = |seen: &&mut Seen| {
+            seen.mode.continuum == 0 && apart(&places, &seen.places, |_| true) <= SAME_ASSEMBLY
+        };
+        if let Some(known) = self.modes.iter_mut().find(isolated) {
+            known.mode.found += 1;
+            return Ok(());
+        }
+        let (continuum, resting) = self.continuum(&assembly.q)?;
+        let same = |seen: &&mut Seen| {
+            let both = |i: usize| seen.resting[i] && resting[i];
+            seen.mode.continuum == continuum && apart(&places, &seen.places, both) <= SAME_ASSEMBLY
+        };
+        if let Some(known) = self.modes.iter_mut().find(same) {
+            known.mode.found += 1;
+            if distance < known.mode.distance {
+                known.mode = Mode { assembly, distance, ..known.mode.clone() };
+                known.places = places;
+            }
+        } else {
+            let mode = Mode { assembly, found: 1, distance, continuum };
+            self.modes.push(Seen { mode, places, resting });
+        }
+        Ok(())
+    }
+
+    /// Degrees of freedom left at an assembly, and the marks that they do not move.
+    fn continuum(&self, q: &[f64]) -> Result<(usize, Vec<bool>)> {
+        let mechanism = self.mechanism;
+        let isolated = (0, vec![true; self.marks.len()]);
+        let (kernel, _) = self.motions(q)?;
+        if kernel.cols() == 0 {
+            return Ok(isolated);
+        }
+        let before = link_poses(&mechanism.state(q)?)?;
+        let mut random = 0;
+        let weights: Vec<f64> = (0..kernel.cols()).map(|_| uniform(&mut random) - 0.5).collect();
+        let along = kernel.mul_vec(&weights);
+        let most = along.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        for step in [TRIAL / most, -TRIAL / most] {
+            let change: Vec<f64> = along.iter().map(|x| step * x).collect();
+            let mut guess = moved(mechanism, q, self.free, &change);
+            for &i in self.free {
+                let l = &mechanism.coordinates()[i].limits;
+                guess[i] = guess[i].clamp(l.lower, l.upper);
+            }
+            let near = assemble(mechanism, &guess, self.held)?;
+            let state = mechanism.state(&near.q)?;
+            if near.closed && farthest(&link_poses(&state)?, &before, mechanism) > TRIAL_MOVED {
+                let (kernel, tolerance) = self.motions(&near.q)?;
+                let resting = self.marks.resting(&state, self.free, &kernel, tolerance)?;
+                return Ok((kernel.cols(), resting));
+            }
+        }
+        Ok(isolated) // infinitesimal: a double root, or between limits
+    }
+
+    /// The motions of free coordinates that keep the loops closed, a column each (orthonormal,
+    /// without unit), and what counts as zero in them.
+    fn motions(&self, q: &[f64]) -> Result<(Matrix, f64)> {
+        let rates = columns(&closing(self.mechanism, q)?.rates, self.free);
+        let space = ColumnSpace::of(&rates.transpose(), Threshold::Relative(CLOSURE_RANK));
+        let largest = space.values().first().copied().unwrap_or(0.0);
+        let conditioning = if space.rank() == 0 { 1.0 } else { largest / space.cut().kept };
+        Ok((space.complement(), CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)))
+    }
+}
+
+/// The farthest that a link is from its other place: distance over the reach, or angle.
+fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
+    a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
+        let distance = (a.translation - b.translation).norm() / mechanism.reach();
+        most.max(distance).max(a.rotation.angle_to(b.rotation))
+    })
+}
+
+/// Angles in (-pi, pi], slides in the reach, rotations evenly among all, within the limits.
+fn start_at_random(
+    mechanism: &Mechanism,
+    guess: &[f64],
+    free: &[usize],
+    random: &mut u64,
+) -> Vec<f64> {
+    let mut q = guess.to_vec();
+    for &i in free {
+        let coordinate = &mechanism.coordinates()[i];
+        let span = match coordinate.kind {
+            CoordinateKind::Angle => PI,
+            CoordinateKind::Length | CoordinateKind::Position => mechanism.reach(),
+            CoordinateKind::RotationVector => continue,
+        };
+        // Limits beyond one turn are cut to it, wherever they are.
+        let l = &coordinate.limits;
+        let lower = l.lower.max((-span).min(l.upper - 2.0 * span));
+        let upper = l.upper.min(span.max(l.lower + 2.0 * span));
+        q[i] = upper - (upper - lower) * uniform(random);
+    }
+    for node in mechanism.nodes() {
+        let at = match node.motion {
+            Motion::Spherical => node.coordinate,
+            Motion::Free => node.coordinate + 3,
+            _ => continue,
+        };
+        if free.contains(&at) {
+            q[at..at + 3].copy_from_slice(&rotation_at_random(random));
+        }
+    }
+    q
+}
+
+/// A rotation vector, all rotations alike (Shoemake 1992).
+fn rotation_at_random(random: &mut u64) -> [f64; 3] {
+    let (share, a, b) = (uniform(random), TAU * uniform(random), TAU * uniform(random));
+    let (first, second) = ((1.0 - share).sqrt(), share.sqrt());
+    let quaternion = Quaternion {
+        w: first * a.cos(),
+        x: first * a.sin(),
+        y: second * b.cos(),
+        z: second * b.sin(),
+    };
+    quaternion.rotation().map_or([0.0; 3], |r| r.log().to_array())
+}
+
+/// The same assembly with angles whole turns nearer to the guess, where limits allow them and no
+/// other joint reads the number.
+fn turned_near(
+    mechanism: &Mechanism,
+    guess: &[f64],
+    free: &[usize],
+    mut assembly: Assembly,
+) -> Assembly {
+    for &i in free {
+        let coordinate = &mechanism.coordinates()[i];
+        let joint = &mechanism.joints()[coordinate.joint];
+        let read = mechanism
+            .joints()
+            .iter()
+            .any(|j| j.mimic.as_ref().is_some_and(|mimic| mimic.joint == joint.name));
+        let advances = matches!(joint.kind, JointKind::Helical { .. });
+        if coordinate.kind != CoordinateKind::Angle || read || advances {
+            continue;
+        }
+        let turns = ((assembly.q[i] - guess[i]) / TAU).round();
+        let near = assembly.q[i] - turns * TAU;
+        if turns != 0.0 && near >= coordinate.limits.lower && near <= coordinate.limits.upper {
+            assembly.q[i] = near;
+        }
+    }
+    assembly.at_limit = at_limit(mechanism, &assembly.q);
+    assembly
+}

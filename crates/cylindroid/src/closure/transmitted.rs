@@ -1,0 +1,109 @@
+//! What closing joints and contacts transmit, as wrenches: forces of rows put together again.
+//!
+//! Formula  wrench of a joint or contact = sum of t_i h_i over its rows h_i, moved to its point
+//! Shapes   t: one force for each row of the [`ClosedChain`] (its last rows are the wrench on the
+//!          object itself and belong to no joint)
+//! Units    N and N m; compliances m/N, of moments those of forces over the square of the
+//!          characteristic length
+//! Frame    at the origin of the joint (contact) on the second link, world axes; the wrench by
+//!          which the first link acts on the second. The normal of a contact points into the
+//!          second link, so that pushing is positive
+//! Valid    forces of [`contact_forces`] in the same pose. Joints of the spanning tree are not
+//!          among them: the constraint is written without their forces
+//! Checked  tests/it/closure/statics.rs::transmitted_*
+//!
+//! [`contact_forces`]: super::contact_forces
+
+use super::constraint::Unit;
+use super::graph::{ClosedChain, Row, rows};
+use crate::error::{Error, Result};
+use crate::kinematics::State;
+use crate::linalg::Metric;
+use crate::spatial::{Pose, Vec3, Wrench};
+
+/// The wrench that a closing joint or a contact transmits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transmitted {
+    /// Name of the joint or contact.
+    pub name: String,
+    /// Where it is (m).
+    pub point: Vec3,
+    /// By which the first link acts on the second, at the point.
+    pub wrench: Wrench,
+    /// Of a contact: the force along the normal (N), positive where it pushes.
+    pub normal: Option<f64>,
+}
+
+impl Transmitted {
+    /// Size of the force across the normal (N), of contacts.
+    #[must_use]
+    pub fn tangential(&self) -> Option<f64> {
+        let normal = self.normal?;
+        let force = self.wrench.force.norm();
+        Some(((force - normal.abs()) * (force + normal.abs())).max(0.0).sqrt())
+    }
+}
+
+/// The wrenches of all closing joints, then of all contacts, from the forces of the rows.
+///
+/// # Errors
+/// Forces of the wrong number or not finite.
+pub fn transmitted(state: &State, chain: &ClosedChain, forces: &[f64]) -> Result<Vec<Transmitted>> {
+    Error::check_len("contact forces", chain.constraint.rows(), forces.len())?;
+    Error::check_finite("contact forces", forces)?;
+    let mechanism = state.mechanism();
+    let rows = pairs(state, chain)?;
+    let pose = |link: usize| -> Result<Pose> {
+        Ok(state.pose(mechanism.frame(&mechanism.links()[link].name)?))
+    };
+    let sum = |place: usize, point: Vec3| {
+        let own = rows.iter().zip(forces).filter(|(row, _)| row.pair == place);
+        own.fold(Wrench::ZERO, |sum, (row, t)| sum + row.wrench * *t).at_point(point)
+    };
+    let mut all = Vec::new();
+    for joint in mechanism.loops() {
+        let point = (pose(joint.b)? * joint.link_b_from_joint).translation;
+        let wrench = sum(all.len(), point);
+        all.push(Transmitted { name: joint.name.clone(), point, wrench, normal: None });
+    }
+    for contact in mechanism.contacts() {
+        let point = (pose(contact.b)? * contact.link_b_from_contact).translation;
+        let axes = (pose(contact.a)? * contact.link_a_from_contact).rotation;
+        let wrench = sum(all.len(), point);
+        let normal = axes.z_axis().dot(wrench.force);
+        all.push(Transmitted { name: contact.name.clone(), point, wrench, normal: Some(normal) });
+    }
+    Ok(all)
+}
+
+/// The compliance of the rows where each closing joint and contact, in this order, gives way by
+/// `compliances` (m/N) to forces, and to moments by this over the square of the characteristic
+/// length (rad/(N m)).
+///
+/// # Errors
+/// Compliances of the wrong number, or not positive and finite.
+pub fn row_compliance(state: &State, chain: &ClosedChain, compliances: &[f64]) -> Result<Metric> {
+    let mechanism = state.mechanism();
+    let pairs_there = mechanism.loops().len() + mechanism.contacts().len();
+    Error::check_len("compliances", pairs_there, compliances.len())?;
+    let length = chain.constraint.length();
+    let rows = pairs(state, chain)?;
+    let mut weights: Vec<f64> = rows
+        .iter()
+        .map(|row| match row.unit {
+            Unit::Length => compliances[row.pair],
+            Unit::Angle => compliances[row.pair] / (length * length),
+        })
+        .collect();
+    // The wrench on the object is given: how stiff its rows are changes nothing.
+    weights.resize(chain.constraint.rows(), 1.0);
+    Metric::diagonal("compliance", &weights)
+}
+
+/// The rows of joints and contacts.
+fn pairs(state: &State, chain: &ClosedChain) -> Result<Vec<Row>> {
+    let (rows, ..) = rows(state)?;
+    let expected = chain.constraint.rows() - chain.constraint.object();
+    Error::check_len("closed chain (its rows; of another state?)", rows.len(), expected)?;
+    Ok(rows)
+}

@@ -1,0 +1,296 @@
+//! One branch of the configurations in which the loops are closed, followed in small steps while
+//! the held coordinates move.
+//!
+//! Formula  r(h, f) = 0, h(s) = h0 + s d given: predictor J_f f' = -J_h d, corrector J_f df = -r
+//!          with h at s + ds, both of least norm at the rank that the branch has in general
+//! Shapes   J_f: held rows x free coordinates, J_h: the columns of the held ones
+//! Units    none: lengths over the reach (`assembly.rs`)
+//! Valid    a step is taken if |J_f' - J_f| <= (s + s') / 2, s the smallest singular value that
+//!          counts, and the corrector moved less than half as far as the predictor. By Weyl's
+//!          inequality s then stays above a quarter of s + s' between the two points where J_f
+//!          changes evenly: no singular pose is stepped over, and by Newton and Kantorovich the
+//!          solution is the one of this branch
+//! Why so   a sign change of det J_f shows a crossing too, but needs J_f square and misses two at
+//!          once; following by arc length would go round the fold onto the other branch, which no
+//!          drive does
+//! Source   Allgower & Georg 1990, chapters 3 and 6
+//! Checked  tests/it/closure/continuation.rs
+
+use super::assembly::{Closing, assemble};
+use super::coordinates::{closing, columns, moved, unit_of};
+use crate::error::Result;
+use crate::linalg::{Matrix, Svd};
+use crate::model::{Mechanism, Motion};
+use crate::scalar::uniform;
+use crate::spatial::{Pose, Rotation, Vec3, log};
+use crate::tolerance::{CLOSURE_RANK, LIMIT_MET};
+
+/// Corrections at most: three are usual.
+const MOST_CORRECTIONS: usize = 12;
+/// Residuals at which a correction ends: far below `CLOSED`, above rounding.
+const SETTLED: f64 = 1e-13;
+/// Corrections below this are rounding, whatever the step [-].
+const ROUNDING: f64 = 1e-9;
+/// What is left of a motion of the held coordinates that the free ones should follow, relative to
+/// it, where they cannot: far above rounding at the conditioning of the worst pose on a path.
+const CONTRADICTION: f64 = 1e-6;
+/// Neighbours that are asked for their rank, and how far away they are [rad, or reaches].
+const NEIGHBOURS: usize = 3;
+const NEAR: f64 = 0.05;
+
+/// A configuration with closed loops.
+#[derive(Debug)]
+pub(super) struct Point {
+    pub(super) closing: Closing,
+    /// J_f and its decomposition.
+    by_free: Matrix,
+    svd: Svd,
+}
+
+/// The coordinates, and where the held ones go.
+#[derive(Debug, Clone)]
+pub(super) struct Way<'a> {
+    mechanism: &'a Mechanism,
+    held: &'a [usize],
+    free: Vec<usize>,
+    from: Vec<f64>,
+    goal: &'a [f64],
+    /// d, of the held coordinates.
+    along: Vec<f64>,
+    /// Rank of J_f where nothing is singular.
+    rank: usize,
+}
+
+/// A step along the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stride {
+    /// Its length, as a share of the way.
+    pub(super) step: f64,
+    /// Where it ends, 0 to 1.
+    pub(super) to: f64,
+    /// Distance to singularities that it keeps.
+    pub(super) least: f64,
+}
+
+/// Why a step was not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// The point is nearer to a singularity than allowed.
+    Singular,
+    /// A coordinate would leave its limits.
+    Limit(usize),
+    /// Too far for the corrector, or for its result to be certain.
+    Far,
+}
+
+impl<'a> Way<'a> {
+    /// From an assembly, whose held coordinates go to `goal`.
+    pub(super) fn from(
+        mechanism: &'a Mechanism,
+        q: &[f64],
+        (held, free): (&'a [usize], Vec<usize>),
+        goal: &'a [f64],
+    ) -> Result<Self> {
+        let along = displacement(mechanism, q, held, goal);
+        let mut way = Self { mechanism, held, free, from: q.to_vec(), goal, along, rank: 0 };
+        way.rank = way.generic_rank()?;
+        Ok(way)
+    }
+
+    pub(super) fn mechanism(&self) -> &'a Mechanism {
+        self.mechanism
+    }
+
+    /// The largest rank of J_f here and nearby.
+    fn generic_rank(&self) -> Result<usize> {
+        let rank = |q: &[f64]| -> Result<usize> { Ok(self.at(q)?.svd.rank(CLOSURE_RANK).rank) };
+        let mut most = rank(&self.from)?;
+        let all: Vec<usize> = (0..self.mechanism.n()).collect();
+        let mut random = 0;
+        for _ in 0..NEIGHBOURS {
+            let change: Vec<f64> =
+                all.iter().map(|_| NEAR * (2.0 * uniform(&mut random) - 1.0)).collect();
+            let near =
+                assemble(self.mechanism, &moved(self.mechanism, &self.from, &all, &change), &[])?;
+            if near.closed {
+                most = most.max(rank(&near.q)?);
+            }
+        }
+        Ok(most)
+    }
+
+    pub(super) fn at(&self, q: &[f64]) -> Result<Point> {
+        let closing = closing(self.mechanism, q)?;
+        let by_free = columns(&closing.rates, &self.free);
+        let svd = Svd::of(&by_free);
+        Ok(Point { closing, by_free, svd })
+    }
+
+    /// Smallest singular value that counts over the largest: zero at a singularity, infinite where
+    /// nothing can be lost.
+    pub(super) fn distance(&self, point: &Point) -> f64 {
+        match self.rank {
+            0 => f64::INFINITY,
+            // All zero: as singular as can be.
+            _ => (self.smallest(point) / point.svd.value(0).max(f64::MIN_POSITIVE)).min(1.0),
+        }
+    }
+
+    fn smallest(&self, point: &Point) -> f64 {
+        if self.rank == 0 { f64::INFINITY } else { point.svd.value(self.rank - 1) }
+    }
+
+    /// The motion, of all coordinates and without unit, that is nearest to leaving the loops closed
+    /// with the held ones at rest, and how much of what it would break the held ones could take up,
+    /// relative to the largest singular value. `None` where nothing can be lost.
+    pub(super) fn nearly_free(&self, point: &Point) -> Option<(Vec<f64>, f64)> {
+        let last = self.rank.checked_sub(1)?;
+        let mut motion = vec![0.0; self.mechanism.n()];
+        for (&i, v) in self.free.iter().zip(point.svd.v(last)) {
+            motion[i] = *v;
+        }
+        let by_held = columns(&point.closing.rates, self.held);
+        let taken = by_held.transpose().mul_vec(point.svd.u(last));
+        Some((motion, norm(&taken) / point.svd.value(0).max(f64::MIN_POSITIVE)))
+    }
+
+    /// f', and true if the free coordinates can follow the held ones at all.
+    pub(super) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
+        let opened = columns(&point.closing.rates, self.held).mul_vec(&self.along);
+        let follow = self.solve(point, &opened);
+        let left: Vec<f64> =
+            point.by_free.mul_vec(&follow).iter().zip(&opened).map(|(a, b)| a + b).collect();
+        let possible = norm(&left) <= CONTRADICTION * norm(&opened).max(CONTRADICTION);
+        (follow, possible)
+    }
+
+    /// The largest change of any coordinate, for the whole way at this rate.
+    pub(super) fn speed(&self, tangent: &[f64]) -> f64 {
+        self.along.iter().chain(tangent).fold(0.0, |m: f64, x| m.max(x.abs()))
+    }
+
+    /// The point at the end of a stride.
+    pub(super) fn step(
+        &self,
+        here: &Point,
+        tangent: &[f64],
+        Stride { step, to, least }: Stride,
+    ) -> Result<std::result::Result<Point, Refusal>> {
+        let change: Vec<f64> = tangent.iter().map(|x| step * x).collect();
+        let mut guess = moved(self.mechanism, &here.closing.q, &self.free, &change);
+        self.put_held(&mut guess, to);
+        let Some((there, corrected)) = self.corrected(guess)? else {
+            return Ok(Err(Refusal::Far));
+        };
+        let predicted = norm(&change) + step * norm(&self.along);
+        let (rows, columns) = (here.by_free.rows(), here.by_free.cols());
+        let turned = Svd::of(&Matrix::from_fn(rows, columns, |i, j| {
+            there.by_free[(i, j)] - here.by_free[(i, j)]
+        }));
+        let turned = turned.values().next().unwrap_or(0.0);
+        if corrected > 0.5 * predicted + ROUNDING
+            || turned > 0.5 * (self.smallest(here) + self.smallest(&there))
+        {
+            return Ok(Err(Refusal::Far));
+        }
+        if self.distance(&there) < least {
+            return Ok(Err(Refusal::Singular));
+        }
+        if let Some(i) = self.outside(&there.closing.q) {
+            return Ok(Err(Refusal::Limit(i)));
+        }
+        // Beyond a limit by rounding is at it.
+        let beyond: Vec<usize> = self.mechanism.outside_limits(&there.closing.q).collect();
+        if beyond.is_empty() {
+            return Ok(Ok(there));
+        }
+        let mut q = there.closing.q;
+        for i in beyond {
+            let l = &self.mechanism.coordinates()[i].limits;
+            q[i] = q[i].clamp(l.lower, l.upper);
+        }
+        Ok(Ok(self.at(&q)?))
+    }
+
+    /// The first coordinate outside its limits by more than rounding.
+    pub(super) fn outside(&self, q: &[f64]) -> Option<usize> {
+        self.mechanism.outside_limits(q).find(|&i| {
+            let l = &self.mechanism.coordinates()[i].limits;
+            (l.lower - q[i]).max(q[i] - l.upper) > LIMIT_MET * (1.0 + q[i].abs())
+        })
+    }
+
+    /// The held coordinates as they are at a share of the way, the goal itself at the end.
+    fn put_held(&self, q: &mut [f64], share: f64) {
+        let change: Vec<f64> = self.along.iter().map(|x| share * x).collect();
+        let there = moved(self.mechanism, &self.from, self.held, &change);
+        for (&i, goal) in self.held.iter().zip(self.goal) {
+            q[i] = if share >= 1.0 { *goal } else { there[i] };
+        }
+    }
+
+    /// Newton with the held coordinates at rest: the point and how far it is from the guess.
+    fn corrected(&self, guess: Vec<f64>) -> Result<Option<(Point, f64)>> {
+        let mut now = self.at(&guess)?;
+        let mut moved_by = 0.0;
+        for _ in 0..MOST_CORRECTIONS {
+            if now.closing.error <= SETTLED {
+                break;
+            }
+            let change = self.solve(&now, &now.closing.residuals);
+            let q = moved(self.mechanism, &now.closing.q, &self.free, &change);
+            if q.iter().any(|x| !x.is_finite()) {
+                return Ok(None);
+            }
+            let next = self.at(&q)?;
+            if !(next.closing.error < 0.5 * now.closing.error) {
+                break;
+            }
+            moved_by += norm(&change);
+            now = next;
+        }
+        Ok(now.closing.is_closed(self.mechanism.reach()).then_some((now, moved_by)))
+    }
+
+    /// The least change of the free coordinates that takes `opened` back.
+    fn solve(&self, point: &Point, opened: &[f64]) -> Vec<f64> {
+        let mut change = vec![0.0; self.free.len()];
+        for i in 0..self.rank {
+            let s = point.svd.value(i);
+            let along: f64 = point.svd.u(i).iter().zip(opened).map(|(u, r)| u * r).sum();
+            if s > 0.0 {
+                change.iter_mut().zip(point.svd.v(i)).for_each(|(c, v)| *c -= along / s * v);
+            }
+        }
+        change
+    }
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// What moves the held coordinates from `q` to `goal`, without unit: differences, for balls and
+/// free bodies the screw in axes of the child.
+fn displacement(mechanism: &Mechanism, q: &[f64], held: &[usize], goal: &[f64]) -> Vec<f64> {
+    let mut target = q.to_vec();
+    held.iter().zip(goal).for_each(|(&i, x)| target[i] = *x);
+    let mut rates: Vec<f64> = target.iter().zip(q).map(|(a, b)| a - b).collect();
+    let vector = |x: &[f64], i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
+    for node in mechanism.nodes() {
+        let c = node.coordinate;
+        let pose = |x: &[f64]| match node.motion {
+            Motion::Spherical => Some(Pose::from_rotation(Rotation::exp(vector(x, c)))),
+            Motion::Free => {
+                Some(Pose { rotation: Rotation::exp(vector(x, c + 3)), translation: vector(x, c) })
+            }
+            _ => None,
+        };
+        if let (Some(here), Some(there)) = (pose(q), pose(&target)) {
+            let twist = log(here.inverse() * there).to_array();
+            let skip = 6 - node.motion.dof(); // balls only turn
+            rates[c..c + node.motion.dof()].copy_from_slice(&twist[skip..]);
+        }
+    }
+    held.iter().map(|&i| rates[i] / unit_of(mechanism, i)).collect()
+}

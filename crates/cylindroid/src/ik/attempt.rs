@@ -1,0 +1,352 @@
+//! One attempt: from a posture downhill to the goals, within the position limits.
+//!
+//! Formula  d = least |A d - e|^2 + l |d|^2 with q + d within the limits, l = DAMPING |e|^2;
+//!          e the errors of all goals, positions over the characteristic length, A their rates
+//! Shapes   A: m x n by columns, m components of all goals, n coordinates that move them
+//! Valid    any tree. Joints at a limit that would leave it are held, a step is cut at the others.
+//!          Orientation errors are rotation vectors in the world, whose rate near the goal is the
+//!          angular velocity
+//! Why so   damping that falls with the squared error is Newton's method near the goal and a
+//!          cautious one far from it, with nothing to tune; every step is taken, since attempts
+//!          that lead nowhere cost less to abandon than to rescue
+//! Source   Sugihara 2011 (damping by the error); projected Newton steps: Bertsekas 1982
+//! Checked  tests/it/ik.rs
+
+use super::damped::Damped;
+use super::goal::Goal;
+use super::options::IkOptions;
+use crate::kinematics::Chain;
+use crate::linalg::Matrix;
+use crate::model::{CoordinateKind, Mechanism};
+
+/// Damping over the squared error [-].
+const DAMPING: f64 = 0.03;
+/// Damping at the least, relative to the size of A squared: keeps the matrix positive definite.
+const LEAST_DAMPING: f64 = 1e-14;
+/// Steps within which the squared error must fall to a quarter, or the attempt is abandoned.
+const PATIENCE: usize = 4;
+/// Steps towards the start at most, and their damping, relative to the size of A squared.
+const APPROACHES: usize = 60;
+const APPROACH_DAMPING: f64 = 1e-9;
+/// Largest change of a coordinate in a step [rad, or lengths].
+const LARGEST_STEP: f64 = 1.5;
+
+/// The errors of a posture: the largest of all goals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Errors {
+    /// (m)
+    pub(super) position: f64,
+    /// (rad)
+    pub(super) orientation: f64,
+    /// Scaled, squared, of all together [-].
+    pub(super) squared: f64,
+}
+
+/// A goal with its chain.
+#[derive(Debug, Clone)]
+struct Part {
+    goal: Goal,
+    chain: Chain,
+    jacobian: Matrix,
+    /// Places of the chain's coordinates among those of the problem.
+    places: Vec<usize>,
+    /// Components that matter, and the scale of their rows.
+    rows: Vec<(usize, f64)>,
+}
+
+/// The goals of a mechanism with memory to work at them.
+#[derive(Debug, Clone)]
+pub(super) struct Problem {
+    mechanism: Mechanism,
+    parts: Vec<Part>,
+    /// The coordinates that move the end effectors: places in `q`, ascending.
+    pub(super) coordinates: Vec<usize>,
+    /// Limits of these coordinates.
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+    /// True if all are angles and lengths, whose changes are their rates.
+    simple: bool,
+    m: usize,
+    a: Vec<f64>,
+    e: Vec<f64>,
+    d: Vec<f64>,
+    /// Coordinates that keep their values, and those that a step holds at a limit as well.
+    pub(super) fixed: Vec<bool>,
+    held: Vec<bool>,
+    rates: Vec<f64>,
+    damped: Damped,
+}
+
+impl Problem {
+    pub(super) fn new(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Self {
+        let length = options.length.unwrap_or_else(|| mechanism.reach());
+        let chains: Vec<Chain> =
+            goals.iter().map(|g| Chain::new(mechanism, g.end_effector)).collect();
+        let mut coordinates: Vec<usize> =
+            chains.iter().flat_map(|c| c.coordinates().iter().copied()).collect();
+        coordinates.sort_unstable();
+        coordinates.dedup();
+        let parts: Vec<Part> = goals
+            .iter()
+            .zip(chains)
+            .map(|(goal, chain)| {
+                let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
+                let rows = (0..6).filter(|&i| goal.task.components[i]).map(|i| (i, scale(i)));
+                let place = |c: &usize| coordinates.partition_point(|x| x < c);
+                Part {
+                    goal: *goal,
+                    jacobian: Matrix::zeros(6, chain.n()),
+                    places: chain.coordinates().iter().map(place).collect(),
+                    rows: rows.collect(),
+                    chain,
+                }
+            })
+            .collect();
+        let m: usize = parts.iter().map(|p| p.rows.len()).sum();
+        let n = coordinates.len();
+        let all = mechanism.coordinates();
+        let simple =
+            |&c: &usize| matches!(all[c].kind, CoordinateKind::Angle | CoordinateKind::Length);
+        Self {
+            simple: coordinates.iter().all(simple),
+            lower: coordinates.iter().map(|&c| all[c].limits.lower).collect(),
+            upper: coordinates.iter().map(|&c| all[c].limits.upper).collect(),
+            a: vec![0.0; m * n],
+            e: vec![0.0; m],
+            d: vec![0.0; n],
+            fixed: coordinates.iter().map(|c| options.fixed.contains(c)).collect(),
+            held: vec![false; n],
+            rates: vec![0.0; mechanism.n()],
+            damped: Damped::new(m, n),
+            mechanism: mechanism.clone(),
+            parts,
+            coordinates,
+            m,
+        }
+    }
+
+    /// Other targets for the same end effectors.
+    pub(super) fn aim(&mut self, goals: &[Goal]) {
+        for (part, goal) in self.parts.iter_mut().zip(goals) {
+            part.goal.target = goal.target;
+        }
+    }
+
+    /// Forward kinematics at `q`; writes the errors, scaled.
+    pub(super) fn look(&mut self, q: &[f64]) -> Errors {
+        let mut errors = Errors { position: 0.0, orientation: 0.0, squared: 0.0 };
+        let mut row = 0;
+        for part in &mut self.parts {
+            let pose = part.chain.set(q);
+            let error = part.goal.task.error(pose, part.goal.target);
+            errors.position = errors.position.max(error.linear.norm());
+            errors.orientation = errors.orientation.max(error.angular.norm());
+            let error = error.to_array();
+            for &(i, scale) in &part.rows {
+                self.e[row] = error[i] * scale;
+                errors.squared += self.e[row] * self.e[row];
+                row += 1;
+            }
+        }
+        errors
+    }
+
+    /// Writes A at the posture that was looked at last.
+    fn load_rates(&mut self) {
+        let m = self.m;
+        if self.parts.len() > 1 {
+            self.a.fill(0.0);
+        }
+        let mut first = 0;
+        for part in &mut self.parts {
+            part.chain.jacobian_into(part.goal.task.axes, &mut part.jacobian);
+            for (j, &place) in part.places.iter().enumerate() {
+                let column = part.jacobian.column(j);
+                let out = &mut self.a[place * m + first..][..part.rows.len()];
+                for (x, &(i, scale)) in out.iter_mut().zip(&part.rows) {
+                    *x = column[i] * scale;
+                }
+            }
+            first += part.rows.len();
+        }
+    }
+
+    /// One step from `q`, which was looked at with these errors.
+    pub(super) fn step(&mut self, q: &mut [f64], squared: f64) {
+        self.load_rates();
+        let size = self.a.iter().map(|x| x * x).sum::<f64>();
+        let damping = DAMPING * squared + LEAST_DAMPING * size;
+        self.held.copy_from_slice(&self.fixed);
+        for _ in 0..=self.coordinates.len() {
+            if !self.damped.solve(&self.a, &self.e, &self.held, damping, &mut self.d) {
+                self.d.fill(0.0);
+                return;
+            }
+            if !self.hold(q) {
+                break;
+            }
+        }
+        self.advance(q);
+    }
+
+    /// Holds joints at a limit that the step would leave; true if there were any.
+    fn hold(&mut self, q: &[f64]) -> bool {
+        let mut any = false;
+        for (i, &c) in self.coordinates.iter().enumerate() {
+            let out = (q[c] <= self.lower[i] && self.d[i] < 0.0)
+                || (q[c] >= self.upper[i] && self.d[i] > 0.0);
+            if out && !self.held[i] {
+                self.held[i] = true;
+                any = true;
+            }
+        }
+        any
+    }
+
+    fn advance(&mut self, q: &mut [f64]) {
+        let most = self.d.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+        let cut = if most > LARGEST_STEP { LARGEST_STEP / most } else { 1.0 };
+        if self.simple {
+            for (i, &c) in self.coordinates.iter().enumerate() {
+                q[c] = (q[c] + cut * self.d[i]).clamp(self.lower[i], self.upper[i]);
+            }
+            return;
+        }
+        self.rates.fill(0.0);
+        for (&c, d) in self.coordinates.iter().zip(&self.d) {
+            self.rates[c] = cut * d;
+        }
+        self.mechanism.integrate_in_place(q, &self.rates, 1.0);
+        self.clamp(q);
+    }
+
+    /// Moves `q` into the limits.
+    pub(super) fn clamp(&self, q: &mut [f64]) {
+        for (i, &c) in self.coordinates.iter().enumerate() {
+            q[c] = q[c].clamp(self.lower[i], self.upper[i]);
+        }
+    }
+
+    /// From `q` until the goals are reached, no progress is made or `most` steps are taken.
+    pub(super) fn run(
+        &mut self,
+        q: &mut [f64],
+        options: &IkOptions,
+        most: usize,
+    ) -> (Errors, usize) {
+        let mut errors = self.look(q);
+        let (mut mark, mut since) = (errors.squared, 0);
+        for steps in 0..most {
+            if is_reached(errors, options) {
+                return (errors, steps);
+            }
+            self.step(q, errors.squared);
+            errors = self.look(q);
+            since += 1;
+            if errors.squared < 0.25 * mark {
+                (mark, since) = (errors.squared, 0);
+            } else if since >= PATIENCE || !errors.squared.is_finite() {
+                return (errors, steps + 1);
+            }
+        }
+        (errors, most)
+    }
+
+    /// Number of goals.
+    pub(super) fn goals(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// A goal that is farther from the first joint of its chain than the chain is long: both (m).
+    pub(super) fn out_of_reach(&self) -> Option<(f64, f64)> {
+        self.parts.iter().find_map(|part| {
+            let whole = part.goal.task.components[..3] == [true; 3];
+            let far = (part.goal.target.translation - part.chain.first_origin()).norm();
+            let length = part.chain.length_after_first_joint(&self.mechanism);
+            (whole && far > length * (1.0 + 1e-12)).then_some((far, length))
+        })
+    }
+
+    /// As near as it goes from `q`: steps that lessen the error are taken, the others damped more.
+    pub(super) fn settle(&mut self, q: &mut [f64], most: usize) -> Errors {
+        let mut errors = self.look(q);
+        let (mut next, mut extra) = (q.to_vec(), 1.0);
+        for _ in 0..most {
+            next.copy_from_slice(q);
+            self.step(&mut next, extra * errors.squared);
+            let then = self.look(&next);
+            if then.squared < errors.squared {
+                let little = then.squared > errors.squared * (1.0 - 1e-12);
+                q.copy_from_slice(&next);
+                (errors, extra) = (then, 0.3 * extra);
+                if little {
+                    break;
+                }
+            } else {
+                extra *= 10.0;
+                if extra > 1e12 {
+                    break;
+                }
+            }
+            self.look(q);
+        }
+        self.look(q)
+    }
+
+    /// Along the postures that keep the goals, towards `start`, as near as that goes.
+    pub(super) fn approach(&mut self, q: &mut [f64], start: &[f64], options: &IkOptions) {
+        let (mut next, mut share) = (q.to_vec(), 0.5);
+        let distance = |coordinates: &[usize], q: &[f64]| -> f64 {
+            coordinates.iter().map(|&c| (q[c] - start[c]).powi(2)).sum()
+        };
+        let mut far = distance(&self.coordinates, q);
+        for _ in 0..APPROACHES {
+            self.look(q);
+            self.load_rates();
+            let size = self.a.iter().map(|x| x * x).sum::<f64>();
+            // wish - A+ A wish, with joints at a limit that it would leave held.
+            self.held.copy_from_slice(&self.fixed);
+            let wish: Vec<f64> = self.coordinates.iter().map(|&c| start[c] - q[c]).collect();
+            for _ in 0..=self.coordinates.len() {
+                let free = |(w, h): (&f64, &bool)| if *h { 0.0 } else { *w };
+                let wished: Vec<f64> = wish.iter().zip(&self.held).map(free).collect();
+                let done: Vec<f64> = (0..self.m)
+                    .map(|i| (0..wished.len()).map(|j| self.a[j * self.m + i] * wished[j]).sum())
+                    .collect();
+                let damping = APPROACH_DAMPING * size;
+                if !self.damped.solve(&self.a, &done, &self.held, damping, &mut self.d) {
+                    return;
+                }
+                self.d.iter_mut().zip(&wished).for_each(|(d, w)| *d = w - *d);
+                if !self.hold(q) {
+                    break;
+                }
+            }
+            self.d.iter_mut().for_each(|d| *d *= share);
+            next.copy_from_slice(q);
+            self.advance(&mut next);
+            let (errors, _) = self.run(&mut next, options, 8);
+            let then = distance(&self.coordinates, &next);
+            if is_reached(errors, options) && then < far {
+                let little = then > far * (1.0 - 1e-9);
+                q.copy_from_slice(&next);
+                far = then;
+                share = (2.0 * share).min(1.0);
+                if little {
+                    return;
+                }
+            } else {
+                share *= 0.25;
+                if share < 1e-3 {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// True where all errors are within tolerance.
+pub(super) fn is_reached(errors: Errors, options: &IkOptions) -> bool {
+    errors.position <= options.position_tolerance
+        && errors.orientation <= options.orientation_tolerance
+}

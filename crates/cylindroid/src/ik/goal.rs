@@ -1,0 +1,113 @@
+//! What an end effector shall do: a pose, or the components of it that matter.
+
+use crate::error::{Error, Result};
+use crate::kinematics::{EndEffector, Reference};
+use crate::model::Mechanism;
+use crate::spatial::{Pose, Twist};
+
+/// The components of an end effector's motion that matter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Task {
+    /// Translation along x, y, z and rotation about x, y, z.
+    pub components: [bool; 6],
+    /// The axes of the components: `Local` (the tool's) or `LocalWorldAligned` (the world's).
+    pub axes: Reference,
+}
+
+impl Task {
+    /// Position and orientation.
+    pub const POSE: Self = Self { components: [true; 6], axes: Reference::LocalWorldAligned };
+    /// Position and orientation in the plane x-y.
+    pub const PLANAR: Self = Self {
+        components: [true, true, false, false, false, true],
+        axes: Reference::LocalWorldAligned,
+    };
+    /// Position alone.
+    pub const POSITION: Self = Self {
+        components: [true, true, true, false, false, false],
+        axes: Reference::LocalWorldAligned,
+    };
+    /// Orientation alone.
+    pub const ORIENTATION: Self = Self {
+        components: [false, false, false, true, true, true],
+        axes: Reference::LocalWorldAligned,
+    };
+    /// Position and the direction of the tool's z axis: a task for five joints.
+    pub const POINTING: Self =
+        Self { components: [true, true, true, true, true, false], axes: Reference::Local };
+
+    /// Refuses a task without components, and axes at the world's origin.
+    pub(crate) fn check(self) -> Result<()> {
+        if !self.components.contains(&true) {
+            return Err(Error::InvalidOption {
+                option: "task",
+                value: "no components".to_owned(),
+                reason: "name at least one of x, y, z, rx, ry, rz".to_owned(),
+            });
+        }
+        if self.axes == Reference::World {
+            return Err(Error::InvalidOption {
+                option: "task axes",
+                value: "world".to_owned(),
+                reason: "the error is taken at the tool; use local or local_world_aligned"
+                    .to_owned(),
+            });
+        }
+        Ok(())
+    }
+
+    /// The error from `pose` to `target` in the axes of the task, zero in components that do not
+    /// matter.
+    pub(crate) fn error(self, pose: Pose, target: Pose) -> Twist {
+        self.seen(pose, pose.error_to(target))
+    }
+
+    /// A twist of the tool in world axes as the task sees it.
+    pub(crate) fn seen(self, pose: Pose, twist: Twist) -> Twist {
+        let r = pose.rotation.matrix();
+        let twist = match self.axes {
+            Reference::Local => {
+                Twist { linear: r.tr_mul(twist.linear), angular: r.tr_mul(twist.angular) }
+            }
+            Reference::World | Reference::LocalWorldAligned => twist,
+        };
+        let mut v = twist.to_array();
+        for (x, keep) in v.iter_mut().zip(self.components) {
+            *x *= f64::from(u8::from(keep));
+        }
+        Twist::from_array(v)
+    }
+}
+
+/// An end effector, where it shall be, and what of that matters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// The frame and tool point.
+    pub end_effector: EndEffector,
+    /// `world_from_tool` as it should be.
+    pub target: Pose,
+    /// The components that matter.
+    pub task: Task,
+}
+
+impl Goal {
+    /// The whole pose.
+    #[must_use]
+    pub fn pose(end_effector: impl Into<EndEffector>, target: Pose) -> Self {
+        Self { end_effector: end_effector.into(), target, task: Task::POSE }
+    }
+
+    /// Refuses frames of other mechanisms and numbers that are not finite.
+    pub(super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
+        mechanism.check_frame(self.end_effector.frame)?;
+        if !self.end_effector.frame_from_tool.is_finite() {
+            let what = "frame_from_tool of the end effector".to_owned();
+            return Err(Error::NotFinite { what, value: f64::NAN });
+        }
+        Error::check_finite("target position", &self.target.translation.to_array())?;
+        if !self.target.is_finite() {
+            return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
+        }
+        self.task.check()
+    }
+}

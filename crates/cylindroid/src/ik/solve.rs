@@ -1,0 +1,276 @@
+//! Inverse kinematics: attempts from the start and from drawn postures, until one reaches.
+//!
+//! Method   the first attempt starts at the given posture, the others at postures drawn evenly
+//!          within the limits (in [-pi, pi] where there are none), the same on every run. What an
+//!          attempt reaches is an answer: within the limits, and within tolerance by forward
+//!          kinematics
+//! Valid    any tree. To find nothing proves nothing, but where the target is farther from the
+//!          first joint than the chain is long
+//! Source   restarts: Beeson & Ames 2015 (TRAC-IK)
+//! Checked  tests/it/ik.rs
+
+use std::f64::consts::PI;
+use std::time::Instant;
+
+use super::attempt::{Errors, Problem, is_reached};
+use super::goal::Goal;
+use super::options::IkOptions;
+use crate::error::{Error, Result};
+use crate::model::Mechanism;
+use crate::scalar::uniform;
+
+/// Steps of one attempt at most.
+const STEPS: usize = 60;
+/// Steps by which the nearest failure is brought as near as it goes.
+const LAST_STEPS: usize = 200;
+/// Attempts after the first answer where the nearest is asked for.
+const NEARER: usize = 48;
+/// How far from the start every other of them begins at most [rad, lengths].
+const NEARBY: f64 = 1.0;
+/// Answers whose coordinates differ by less than this, whole turns apart, are one [rad, lengths].
+const SAME: f64 = 1e-3;
+
+/// What came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// True if all goals are reached within tolerance.
+    pub success: bool,
+    /// The configuration, all n coordinates; without success the nearest that was found.
+    pub q: Vec<f64>,
+    /// Largest position error of all goals, of the components that matter (m).
+    pub position_error: f64,
+    /// Largest orientation error of all goals, of the components that matter (rad).
+    pub orientation_error: f64,
+    /// Steps of all attempts.
+    pub iterations: usize,
+    /// Attempts.
+    pub attempts: usize,
+    /// A proof that nothing can reach: how far the target is from the first joint, and how long
+    /// the chain is from there (m).
+    pub out_of_reach: Option<(f64, f64)>,
+}
+
+/// A solver for one mechanism and end effectors; a loop keeps it, since nothing is allocated in
+/// further calls but the answer.
+#[derive(Debug, Clone)]
+pub struct Solver {
+    problem: Problem,
+    mechanism: Mechanism,
+    options: IkOptions,
+    start: Vec<f64>,
+}
+
+/// A configuration that reaches all `goals`.
+///
+/// # Errors
+/// No goals, frames of another mechanism, numbers that are not finite, a mechanism with loops.
+pub fn solve(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Solution> {
+    Solver::new(mechanism, goals, options)?.solve(goals)
+}
+
+/// Up to `count` distinct configurations that reach all `goals`, the nearest to the start first;
+/// fewer where no more are found within the budget. Of arms with more joints than the goals need
+/// there are infinitely many: these are some.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_several(
+    mechanism: &Mechanism,
+    goals: &[Goal],
+    options: &IkOptions,
+    count: usize,
+) -> Result<Vec<Solution>> {
+    Solver::new(mechanism, goals, options)?.solve_several(goals, count)
+}
+
+impl Solver {
+    /// For goals of these end effectors and tasks.
+    ///
+    /// # Errors
+    /// As [`solve`].
+    pub fn new(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Self> {
+        options.check(mechanism)?;
+        check(mechanism, goals)?;
+        let problem = Problem::new(mechanism, goals, options);
+        let mut start = options.start.clone().unwrap_or_else(|| mechanism.home().to_vec());
+        problem.clamp(&mut start);
+        Ok(Self { problem, mechanism: mechanism.clone(), options: options.clone(), start })
+    }
+
+    /// Starts the next call at `q`.
+    ///
+    /// # Errors
+    /// A `q` of the wrong size or not finite.
+    pub fn start_at(&mut self, q: &[f64]) -> Result<()> {
+        self.mechanism.check_q("start", q)?;
+        self.start.copy_from_slice(q);
+        self.problem.clamp(&mut self.start);
+        Ok(())
+    }
+
+    /// A configuration that reaches `goals`, which name the same end effectors and tasks as those
+    /// of [`Solver::new`].
+    ///
+    /// # Errors
+    /// Goals of another number, numbers that are not finite.
+    pub fn solve(&mut self, goals: &[Goal]) -> Result<Solution> {
+        if self.options.nearest {
+            let mut found = self.search(goals, NEARER, |answers| answers >= NEARER)?;
+            return Ok(found.swap_remove(0));
+        }
+        let mut found = self.search(goals, usize::MAX, |answers| answers >= 1)?;
+        Ok(found.swap_remove(0))
+    }
+
+    /// Several of them: see [`solve_several`].
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn solve_several(&mut self, goals: &[Goal], count: usize) -> Result<Vec<Solution>> {
+        let mut found = self.search(goals, usize::MAX, |answers| answers >= count)?;
+        found.retain(|s| s.success);
+        Ok(found)
+    }
+
+    /// Answers, the nearest to the start first, or one failure.
+    fn search(
+        &mut self,
+        goals: &[Goal],
+        after_first: usize,
+        enough: impl Fn(usize) -> bool,
+    ) -> Result<Vec<Solution>> {
+        Error::check_len("goals", self.problem.goals(), goals.len())?;
+        check(&self.mechanism, goals)?;
+        self.problem.aim(goals);
+        let out_of_reach = self.problem.out_of_reach();
+        let begin = Instant::now();
+        let mut random = self.options.seed;
+        let (mut iterations, mut attempts, mut since_first) = (0, 0, 0);
+        let mut answers: Vec<(f64, Vec<f64>, Errors)> = Vec::new();
+        let mut best: Option<(Vec<f64>, Errors)> = None;
+        let mut q = self.start.clone();
+        let budget = self.options.budget;
+        let in_time = |begin: Instant| budget.time.is_none_or(|most| begin.elapsed() < most);
+        loop {
+            let left = budget.iterations.saturating_sub(iterations).min(STEPS);
+            let (errors, steps) = self.problem.run(&mut q, &self.options, left);
+            iterations += steps.max(1);
+            attempts += 1;
+            if is_reached(errors, &self.options) {
+                self.unwind(&mut q);
+                self.approach(&mut q);
+                if !answers.iter().any(|(_, other, _)| self.is_same(other, &q)) {
+                    let errors = self.problem.look(&q);
+                    answers.push((self.distance(&q), q.clone(), errors));
+                }
+            } else if best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared) {
+                best = Some((q.clone(), errors));
+            }
+            since_first += usize::from(!answers.is_empty());
+            let over = iterations >= budget.iterations || !in_time(begin);
+            let hopeless = out_of_reach.is_some() && attempts >= NEARER;
+            if enough(answers.len()) || since_first > after_first || over || hopeless {
+                break;
+            }
+            let near = self.options.nearest && attempts % 2 == 1;
+            self.draw(&mut q, near, &mut random);
+        }
+        let solution = |success: bool, q: Vec<f64>, errors: Errors| Solution {
+            success,
+            q,
+            position_error: errors.position,
+            orientation_error: errors.orientation,
+            iterations,
+            attempts,
+            out_of_reach,
+        };
+        if answers.is_empty() {
+            let (mut q, _) =
+                best.unwrap_or_else(|| (self.start.clone(), self.problem.look(&self.start)));
+            let errors = self.problem.settle(&mut q, LAST_STEPS);
+            return Ok(vec![solution(false, q, errors)]);
+        }
+        answers.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(answers.into_iter().map(|(_, q, errors)| solution(true, q, errors)).collect())
+    }
+
+    /// A posture drawn within the limits, anywhere or near the start.
+    fn draw(&self, q: &mut [f64], near: bool, random: &mut u64) {
+        let p = &self.problem;
+        for (i, &c) in p.coordinates.iter().enumerate().filter(|(i, _)| !p.fixed[*i]) {
+            let (middle, spread) = if near { (self.start[c], NEARBY) } else { (0.0, PI) };
+            let (lower, upper) = (p.lower[i].max(middle - spread), p.upper[i].min(middle + spread));
+            // Limits that exclude [-pi, pi] leave one end of it.
+            q[c] = (lower + (upper - lower) * uniform(random)).clamp(p.lower[i], p.upper[i]);
+        }
+    }
+
+    /// Where the nearest is asked for: along the answers of one posture towards the start.
+    fn approach(&mut self, q: &mut [f64]) {
+        if self.options.nearest {
+            self.problem.approach(q, &self.start, &self.options);
+        }
+    }
+
+    /// Where the nearest is asked for: whole turns of joints that can make them, towards the start.
+    fn unwind(&mut self, q: &mut [f64]) {
+        if !self.options.nearest {
+            return;
+        }
+        for i in 0..self.problem.coordinates.len() {
+            let c = self.problem.coordinates[i];
+            let turns = ((self.start[c] - q[c]) / (2.0 * PI)).round();
+            let turned = q[c] + 2.0 * PI * turns;
+            let within = (self.problem.lower[i]..=self.problem.upper[i]).contains(&turned);
+            if self.problem.fixed[i]
+                || turns == 0.0
+                || !within
+                || self.mechanism.coordinates()[c].kind.unit() != "rad"
+            {
+                continue;
+            }
+            let before = std::mem::replace(&mut q[c], turned);
+            // A joint that others follow, or a screw, is somewhere else then.
+            if !is_reached(self.problem.look(q), &self.options) {
+                q[c] = before;
+            }
+        }
+    }
+
+    fn distance(&self, q: &[f64]) -> f64 {
+        let far = |&c: &usize| (q[c] - self.start[c]).powi(2);
+        self.problem.coordinates.iter().map(far).sum::<f64>().sqrt()
+    }
+
+    fn is_same(&self, a: &[f64], b: &[f64]) -> bool {
+        let all = self.mechanism.coordinates();
+        self.problem.coordinates.iter().all(|&c| {
+            let apart = a[c] - b[c];
+            let turns =
+                if all[c].kind.unit() == "rad" { (apart / (2.0 * PI)).round() } else { 0.0 };
+            (apart - 2.0 * PI * turns).abs() < SAME
+        })
+    }
+}
+
+fn check(mechanism: &Mechanism, goals: &[Goal]) -> Result<()> {
+    if goals.is_empty() {
+        return Err(Error::InvalidOption {
+            option: "goals",
+            value: "none".to_owned(),
+            reason: "name an end effector and where it shall be".to_owned(),
+        });
+    }
+    if mechanism.is_closed() {
+        return Err(Error::Model {
+            model: mechanism.name().to_owned(),
+            culprit: String::new(),
+            message: format!(
+                "'{}' has loops or contacts, which inverse kinematics of its spanning tree would \
+                 open; move its reference with a servo, or assemble it with driven joints held",
+                mechanism.name()
+            ),
+        });
+    }
+    goals.iter().try_for_each(|goal| goal.check(mechanism))
+}

@@ -1,0 +1,58 @@
+//! The inertia of a body about a point: the metric of twists that is their kinetic energy.
+//!
+//! Formula  [m 1, -m S(c); m S(c), I_c - m S(c)^2], c from the point to the centre of mass, summed
+//!          over all links that are fixed to each other
+//! Shapes   6 x 6; 3 x 3 in the plane (x, y and the turn about z)
+//! Units    kg, kg m, kg m^2: `u^T W u` is twice the kinetic energy [J]
+//! Frame    at the origin of the frame, world axes, as the object's twist
+//! Valid    any mechanism; links of which the file gives no mass count nothing
+//! Source   Featherstone, Rigid Body Dynamics Algorithms, 2008, eq. 2.63 (linear first here)
+//! Checked  tests/it/manipulability/metrics.rs::inertia_*
+
+use crate::kinematics::State;
+use crate::linalg::Matrix;
+use crate::model::{Dimension, FrameId};
+use crate::spatial::Mat3;
+
+/// The inertia of the body that carries `frame`, about the frame's origin in world axes; `None`
+/// where the file gives no mass of it.
+///
+/// # Panics
+/// If the frame is of another mechanism.
+#[must_use]
+pub fn body_inertia(state: &State, frame: FrameId) -> Option<Matrix> {
+    let mechanism = state.mechanism();
+    let slot = mechanism.frame_of(frame).slot;
+    let origin = state.pose(frame).translation;
+    let mut sum = Matrix::zeros(6, 6);
+    let mut total = 0.0;
+    for (link, own) in mechanism.links().iter().zip(mechanism.frames()) {
+        let (Some(inertial), true) = (&link.inertial, own.slot == slot) else { continue };
+        let Ok(id) = mechanism.frame(&link.name) else { continue };
+        let world_from_inertia = state.pose(id) * inertial.link_from_inertia;
+        let mass = inertial.mass;
+        let arm = Mat3::skew(world_from_inertia.translation - origin);
+        let turn = world_from_inertia.rotation.matrix();
+        let about = turn * inertial.inertia * turn.transpose() - arm * arm * mass;
+        let entry = |m: Mat3, i: usize, j: usize| m.cols[j][i];
+        for i in 0..3 {
+            sum[(i, i)] += mass;
+            for j in 0..3 {
+                sum[(i, 3 + j)] -= mass * entry(arm, i, j);
+                sum[(3 + i, j)] += mass * entry(arm, i, j);
+                sum[(3 + i, 3 + j)] += entry(about, i, j);
+            }
+        }
+        total += mass;
+    }
+    if !(total > 0.0) {
+        return None;
+    }
+    Some(match mechanism.dimension() {
+        Dimension::Spatial => sum,
+        Dimension::Planar => Matrix::from_fn(3, 3, |i, j| sum[(PLANE[i], PLANE[j])]),
+    })
+}
+
+/// The components of a planar body.
+const PLANE: [usize; 3] = [0, 1, 5];

@@ -1,0 +1,296 @@
+//! Inverse kinematics against forward kinematics.
+
+use cylindroid::ik::{Budget, Goal, IkOptions, Solution, Task, solve, solve_several};
+use cylindroid::model::Mechanism;
+use cylindroid::{Pose, Vec3, catalogue};
+
+use crate::support::{Random, robots};
+
+/// What is claimed is true: within the limits, and as near by forward kinematics.
+fn checked(robot: &Mechanism, goals: &[Goal], options: &IkOptions, found: &Solution) {
+    assert_eq!(robot.outside_limits(&found.q).next(), None, "{}: {found:?}", robot.name());
+    let state = robot.state(&found.q).unwrap();
+    let (mut position, mut orientation) = (0.0_f64, 0.0_f64);
+    for goal in goals {
+        let pose = state.pose(goal.end_effector);
+        let error = pose.error_to(goal.target);
+        if goal.task == Task::POSE {
+            position = position.max(error.linear.norm());
+            orientation = orientation.max(error.angular.norm());
+        } else if goal.task == Task::POSITION {
+            position = position.max(error.linear.norm());
+        } else {
+            return;
+        }
+    }
+    assert!((position - found.position_error).abs() < 1e-12);
+    assert!((orientation - found.orientation_error).abs() < 1e-12);
+    let within =
+        position <= options.position_tolerance && orientation <= options.orientation_tolerance;
+    assert_eq!(found.success, within);
+}
+
+/// Every reachable pose of every arm of the catalogue is found, from anywhere, at both tolerances.
+#[test]
+fn reachable_poses_are_reached() {
+    let mut random = Random(61);
+    for robot in robots() {
+        for tolerance in [1e-5, 1e-9] {
+            let mut options = IkOptions {
+                position_tolerance: tolerance,
+                orientation_tolerance: tolerance,
+                ..IkOptions::default()
+            };
+            for _ in 0..200 {
+                let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool());
+                options.start = Some(random.q(&robot));
+                let goals = [Goal::pose(robot.tool(), target)];
+                let found = solve(&robot, &goals, &options).unwrap();
+                checked(&robot, &goals, &options, &found);
+                assert!(found.success, "{} at {tolerance}: {found:?}", robot.name());
+                assert_eq!(found, solve(&robot, &goals, &options).unwrap());
+            }
+        }
+    }
+}
+
+/// Singular targets, limits of the joints themselves among them, are ordinary ones.
+#[test]
+fn singular_and_extreme_poses_are_reached() {
+    for robot in robots() {
+        let zero = vec![0.0; robot.n()];
+        let end = |pick: fn(&cylindroid::model::Limits) -> f64| -> Vec<f64> {
+            robot.coordinates().iter().map(|c| pick(&c.limits).clamp(-3.0, 3.0)).collect()
+        };
+        for q in [zero, end(|l| l.lower), end(|l| l.upper), robot.home().to_vec()] {
+            if robot.outside_limits(&q).next().is_some() {
+                continue;
+            }
+            let target = robot.state(&q).unwrap().pose(robot.tool());
+            let goals = [Goal::pose(robot.tool(), target)];
+            let start: Vec<f64> = q.iter().map(|x| x + 0.4).collect();
+            let options = IkOptions { start: Some(start), ..IkOptions::default() };
+            let found = solve(&robot, &goals, &options).unwrap();
+            checked(&robot, &goals, &options, &found);
+            assert!(found.success, "{}: {found:?}", robot.name());
+        }
+    }
+}
+
+/// Components that do not matter are left free.
+#[test]
+fn parts_of_poses() {
+    let panda = catalogue::load("panda").unwrap();
+    let mut random = Random(62);
+    let options = IkOptions::default();
+    for task in [Task::POSITION, Task::ORIENTATION, Task::POINTING] {
+        for _ in 0..50 {
+            let target = panda.state(&random.q(&panda)).unwrap().pose(panda.tool());
+            let goals = [Goal { task, ..Goal::pose(panda.tool(), target) }];
+            let found = solve(&panda, &goals, &options).unwrap();
+            assert!(found.success, "{task:?}");
+            checked(&panda, &goals, &options, &found);
+            let pose = panda.state(&found.q).unwrap().pose(panda.tool());
+            if task == Task::POINTING {
+                let z = |p: Pose| p.rotation.matrix().cols[2];
+                assert!((z(pose) - z(target)).norm() < 1e-5, "{pose:?}");
+                assert!((pose.translation - target.translation).norm() < 1e-5);
+            }
+            if task == Task::ORIENTATION {
+                assert!(pose.rotation.angle_to(target.rotation) < 1e-5);
+            }
+        }
+    }
+}
+
+/// Two arms on one base, each with a goal; then a goal that both arms share a joint for.
+#[test]
+fn several_end_effectors() {
+    let text = r#"
+name = "pair"
+[[robot]]
+name = "left"
+model = "panda"
+[[robot]]
+name = "right"
+model = "ur5e"
+base = { xyz = [0.0, 1.0, 0.0] }
+"#;
+    let pair =
+        cylindroid::model::formats::toml::parse(text, std::path::Path::new("text.toml")).unwrap();
+    let tools = ["left/hand_tcp", "right/tool0"].map(|name| pair.frame(name).unwrap());
+    let mut random = Random(63);
+    let options = IkOptions::default();
+    for _ in 0..30 {
+        let state = pair.state(&random.q(&pair)).unwrap();
+        let goals = tools.map(|tool| Goal::pose(tool, state.pose(tool)));
+        let found = solve(&pair, &goals, &options).unwrap();
+        checked(&pair, &goals, &options, &found);
+        assert!(found.success);
+    }
+    // Two points of one arm.
+    let panda = catalogue::load("panda").unwrap();
+    for _ in 0..30 {
+        let state = panda.state(&random.q(&panda)).unwrap();
+        let goals = ["link4", "hand_tcp"].map(|name| {
+            let frame = panda.frame(name).unwrap();
+            Goal { task: Task::POSITION, ..Goal::pose(frame, state.pose(frame)) }
+        });
+        let found = solve(&panda, &goals, &options).unwrap();
+        checked(&panda, &goals, &options, &found);
+        assert!(found.success);
+    }
+}
+
+/// Beyond reach: said with the proof, and the posture that comes nearest: no small change of the
+/// joints within the limits comes nearer.
+#[test]
+fn out_of_reach_ends_with_the_nearest_pose() {
+    let panda = catalogue::load("panda").unwrap();
+    let mut target = panda.state(panda.home()).unwrap().pose(panda.tool());
+    target.translation = Vec3::new(1.4, 0.5, 0.6);
+    let goals = [Goal { task: Task::POSITION, ..Goal::pose(panda.tool(), target) }];
+    let options = IkOptions::default();
+    let found = solve(&panda, &goals, &options).unwrap();
+    checked(&panda, &goals, &options, &found);
+    let (distance, length) = found.out_of_reach.unwrap();
+    assert!(!found.success && distance > length && found.iterations < 20_000);
+    let far = |q: &[f64]| {
+        (panda.state(q).unwrap().pose(panda.tool()).translation - target.translation).norm()
+    };
+    for i in 0..panda.n() {
+        for step in [-1e-3, 1e-3] {
+            let mut q = found.q.clone();
+            q[i] += step;
+            let l = panda.coordinates()[i].limits;
+            q[i] = q[i].clamp(l.lower, l.upper);
+            assert!(far(&q) >= found.position_error - 1e-9, "joint {i}: {}", far(&q));
+        }
+    }
+    // Within the sphere, but not within the limits: no proof, the budget ends it.
+    target.translation = Vec3::new(0.0, 0.0, 0.34);
+    let goals = [Goal::pose(panda.tool(), target)];
+    let budget = Budget { iterations: 500, time: None };
+    let found = solve(&panda, &goals, &IkOptions { budget, ..options }).unwrap();
+    assert!(!found.success && found.out_of_reach.is_none() && found.iterations <= 510);
+    assert!(found.position_error < 0.3, "{found:?}");
+}
+
+/// The nearest answer is no farther than one that is known, and a redundant arm slides to it.
+#[test]
+fn the_nearest_answer() {
+    let mut random = Random(64);
+    for name in ["panda", "ur5e"] {
+        let robot = catalogue::load(name).unwrap();
+        for _ in 0..40 {
+            let known = random.q(&robot);
+            let start: Vec<f64> = known.iter().map(|x| x + random.within(-0.5, 0.5)).collect();
+            let goals = [Goal::pose(robot.tool(), robot.state(&known).unwrap().pose(robot.tool()))];
+            let options =
+                IkOptions { start: Some(start.clone()), nearest: true, ..IkOptions::default() };
+            let found = solve(&robot, &goals, &options).unwrap();
+            checked(&robot, &goals, &options, &found);
+            // The start is moved into the limits first, which brings it nearer to all answers.
+            let far = |q: &[f64]| -> f64 {
+                let clamped = start.iter().zip(robot.coordinates());
+                let clamped = clamped.map(|(s, c)| s.clamp(c.limits.lower, c.limits.upper));
+                q.iter().zip(clamped).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+            };
+            assert!(far(&found.q) <= far(&known) * (1.0 + 1e-3) + 1e-4, "{name}: {found:?}");
+        }
+    }
+}
+
+/// A 6R arm has up to eight postures for a pose: distinct, true, sorted by distance.
+#[test]
+fn several_answers() {
+    let ur5e = catalogue::load("ur5e").unwrap();
+    let q = [0.3, -1.1, 1.4, 0.2, 1.0, 0.4];
+    let goals = [Goal::pose(ur5e.tool(), ur5e.state(&q).unwrap().pose(ur5e.tool()))];
+    let options = IkOptions { start: Some(q.to_vec()), ..IkOptions::default() };
+    let found = solve_several(&ur5e, &goals, &options, 20).unwrap();
+    assert_eq!(found.len(), 8);
+    let mut before = 0.0;
+    for one in &found {
+        checked(&ur5e, &goals, &options, one);
+        let far = one.q.iter().zip(&q).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+        assert!(far >= before);
+        before = far;
+    }
+}
+
+/// Ball joints and free bodies turn by their own rules.
+#[test]
+fn ball_joints_and_free_bodies() {
+    let text = r#"
+name = "balls"
+[[joint]]
+name = "shoulder"
+type = "spherical"
+between = ["ground", "arm"]
+origin = [0.0, 0.0, 0.0]
+[[joint]]
+name = "elbow"
+type = "revolute"
+between = ["arm", "forearm"]
+origin = [0.0, 0.0, 0.5]
+axis = [0.0, 1.0, 0.0]
+[[joint]]
+name = "wrist"
+type = "spherical"
+between = ["forearm", "hand"]
+origin = [0.0, 0.0, 0.9]
+"#;
+    let robot =
+        cylindroid::model::formats::toml::parse(text, std::path::Path::new("text.toml")).unwrap();
+    let hand = robot.frame("hand").unwrap();
+    let mut random = Random(65);
+    for _ in 0..50 {
+        let q: Vec<f64> = (0..robot.n()).map(|_| random.within(-1.5, 1.5)).collect();
+        let goals = [Goal::pose(hand, robot.state(&q).unwrap().pose(hand))];
+        let options = IkOptions::default();
+        let found = solve(&robot, &goals, &options).unwrap();
+        checked(&robot, &goals, &options, &found);
+        assert!(found.success, "{found:?}");
+    }
+}
+
+/// A joint of several turns is left in the turn that it is in.
+#[test]
+fn the_nearest_answer_does_not_unwind() {
+    let ur5e = catalogue::load("ur5e").unwrap();
+    let start = vec![0.3, -1.1, 1.4, 0.2, 1.0, 5.9];
+    let mut target = ur5e.state(&start).unwrap().pose(ur5e.tool());
+    target.translation.z += 0.01;
+    let options = IkOptions { start: Some(start.clone()), nearest: true, ..IkOptions::default() };
+    let found = solve(&ur5e, &[Goal::pose(ur5e.tool(), target)], &options).unwrap();
+    assert!(found.success && (found.q[5] - 5.9).abs() < 0.2, "{found:?}");
+}
+
+#[test]
+fn bad_requests_are_named() {
+    let panda = catalogue::load("panda").unwrap();
+    let goal = Goal::pose(panda.tool(), Pose::IDENTITY);
+    let options = IkOptions::default();
+    let refused = |goals: &[Goal], options: &IkOptions, word: &str| {
+        let error = solve(&panda, goals, options).unwrap_err().to_string();
+        assert!(error.contains(word), "{error}");
+    };
+    refused(&[], &options, "goals");
+    let nan = Pose::from_translation(Vec3::new(f64::NAN, 0.0, 0.0));
+    refused(&[Goal::pose(panda.tool(), nan)], &options, "target");
+    refused(&[goal], &IkOptions { position_tolerance: 0.0, ..options.clone() }, "tolerance");
+    refused(&[goal], &IkOptions { start: Some(vec![0.0]), ..options.clone() }, "start");
+    let none = Task { components: [false; 6], ..Task::POSE };
+    refused(&[Goal { task: none, ..goal }], &options, "components");
+    let stewart = catalogue::load("stewart").unwrap();
+    let goal = Goal::pose(stewart.reference(), Pose::IDENTITY);
+    let error = solve(&stewart, &[goal], &options).unwrap_err().to_string();
+    assert!(error.contains("loops"), "{error}");
+    // A frame that nothing moves: reached where it is, else not.
+    let base = panda.frame("base").unwrap();
+    let here = panda.state(panda.home()).unwrap().pose(base);
+    assert!(solve(&panda, &[Goal::pose(base, here)], &options).unwrap().success);
+    let there = Pose::from_translation(Vec3::new(1.0, 0.0, 0.0));
+    assert!(!solve(&panda, &[Goal::pose(base, there)], &options).unwrap().success);
+}
