@@ -7,8 +7,11 @@ mod diagnosis;
 mod grasp;
 mod mobility;
 mod statics;
+mod ways;
 
-use cylindroid::closure::{Blocks, ClosedChain, Constraint, Gap, Motions, Unit, Units, assemble};
+use cylindroid::closure::{
+    Assembly, Blocks, ClosedChain, Constraint, Gap, Motions, Unit, Units, assemble,
+};
 use cylindroid::kinematics::State;
 use cylindroid::linalg::Metric;
 use cylindroid::{Error, FrameId, Matrix, Mechanism};
@@ -26,6 +29,7 @@ pub(crate) use diagnosis::{PyBranch, PyFiniteMobility, PySingularity};
 pub(crate) use grasp::{PyFingerContact, PyGraspQuality, grasp_quality};
 pub(crate) use mobility::{PyJointMobility, PyMobility};
 pub(crate) use statics::{PyContactForces, PyTorques};
+pub(crate) use ways::{PyAssemblyModes, PyFollowed};
 
 /// How far loops and contacts are from being closed.
 ///
@@ -365,8 +369,8 @@ impl PyConstraint {
     ///
     /// Parameters
     /// ----------
-    /// limits : array_like, (a,), optional
-    ///     Largest rates [rad/s or m/s]. Default: those of the mechanism.
+    /// limits : array_like, (a,) or (a, 2), optional
+    ///     Largest rates [rad/s or m/s], or pairs around zero. Default: those of the mechanism.
     /// task : str, list of str or array_like, (k, d), optional
     ///     Components of the twist, or a map; with more than three there are many facets.
     ///
@@ -387,8 +391,8 @@ impl PyConstraint {
     ///
     /// Parameters
     /// ----------
-    /// limits : array_like, (a,), optional
-    ///     Largest torques [N m or N]. Default: those of the mechanism.
+    /// limits : array_like, (a,) or (a, 2), optional
+    ///     Largest torques [N m or N], or pairs around zero. Default: those of the mechanism.
     /// task : str, list of str or array_like, (k, d), optional
     ///
     /// Returns
@@ -505,6 +509,18 @@ pub(crate) struct PyAssembly {
     steps: usize,
     #[pyo3(get)]
     at_limit: Vec<String>,
+}
+
+impl PyAssembly {
+    fn new(found: &Assembly, names: &[String]) -> Self {
+        Self {
+            q: found.q.clone(),
+            closed: found.closed,
+            gap: found.gap.into(),
+            steps: found.steps,
+            at_limit: found.at_limit.iter().map(|&i| names[i].clone()).collect(),
+        }
+    }
 }
 
 #[pymethods]
@@ -749,20 +765,9 @@ impl PyMechanism {
             None => m.home(),
             Some(guess) => guess.vector("guess")?,
         };
-        let names: Vec<&str> = m.coordinates().iter().map(|c| c.name.as_str()).collect();
-        let place = |name: &String| {
-            let place = names.iter().position(|n| n == name);
-            place.ok_or_else(|| Error::unknown("coordinate", name, &names))
-        };
-        let held = hold.unwrap_or_default();
-        let held = held.iter().map(place).collect::<cylindroid::Result<Vec<usize>>>()?;
+        let held = self.places(&hold.unwrap_or_default())?;
         let found = py.detach(|| assemble(m, guess, &held))?;
-        Ok(PyAssembly {
-            q: found.q,
-            closed: found.closed,
-            gap: found.gap.into(),
-            steps: found.steps,
-            at_limit: found.at_limit.iter().map(|&i| names[i].to_owned()).collect(),
-        })
+        let names: Vec<String> = m.coordinates().iter().map(|c| c.name.clone()).collect();
+        Ok(PyAssembly::new(&found, &names))
     }
 }

@@ -7,6 +7,7 @@
 mod arrays;
 mod closed;
 mod error;
+mod ik;
 mod inverse;
 mod mechanism;
 mod motion;
@@ -22,10 +23,13 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use crate::closed::{
-        PyAssembly, PyBranch, PyConstraint, PyContactForces, PyDirection, PyFingerContact,
-        PyFiniteMobility, PyGap, PyGraspQuality, PyJointMobility, PyManipulability, PyMobility,
-        PyPolytope, PySingularity, PySpectrum, PyTorques, grasp_quality,
+        PyAssembly, PyAssemblyModes, PyBranch, PyConstraint, PyContactForces, PyDirection,
+        PyFingerContact, PyFiniteMobility, PyFollowed, PyGap, PyGraspQuality, PyJointMobility,
+        PyManipulability, PyMobility, PyPolytope, PySingularity, PySpectrum, PyTorques,
+        grasp_quality,
     };
+    #[pymodule_export]
+    use crate::ik::PySolution;
     #[pymodule_export]
     use crate::inverse::{
         PyDropped, PyInverse, PyPointDirection, damped, hyperbolic, inverse_by_name, oblique, pinv,

@@ -237,6 +237,16 @@ impl PyMechanism {
         Ok(EndEffector { frame, frame_from_tool })
     }
 
+    /// The places of coordinates by their names.
+    pub(crate) fn places(&self, names: &[String]) -> Result<Vec<usize>> {
+        let known: Vec<&str> = self.inner.coordinates().iter().map(|c| c.name.as_str()).collect();
+        let place = |name: &String| {
+            let place = known.iter().position(|k| k == name);
+            place.ok_or_else(|| Error::unknown("coordinate", name, &known).into())
+        };
+        names.iter().map(place).collect()
+    }
+
     fn limits<'py>(
         &self,
         py: Python<'py>,

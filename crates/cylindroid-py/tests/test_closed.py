@@ -238,3 +238,32 @@ def test_held_coordinates_stay():
 def test_reports_are_kept_apart_from_copies():
     r = cy.load("five-bar")
     assert copy.deepcopy(r).mobility().dof == r.mobility().dof
+
+
+def test_modes_and_ways():
+    r = cy.load("four-bar")
+    crank = r.joint_names[0]
+    found = r.assembly_modes([0.3, 0.0, 0.0], hold=[crank])
+    assert len(found) == 2 == len(found.modes) and found.continuum == [0, 0]
+    assert sum(found.found) == found.closed <= found.starts and found.chance_of_more < 0.5
+    for mode in found.modes:
+        assert mode.closed and mode.q[0] == 0.3
+        assert r.constraint(mode.q).gap.distance < 1e-9
+    way = r.follow(r.home, {crank: 0.2})
+    assert way.reached and way.end == "reached" and way.share == 1.0 and way.screw is None
+    assert way.path.shape == (len(way.shares), 3) and (np.diff(way.shares) > 0).all()
+    np.testing.assert_array_equal(way.path[-1], way.q)
+    assert abs(way.q[0] - 0.2) < 1e-12 and (way.distances > 0).all()
+    with pytest.raises(cy.UnknownNameError):
+        r.follow(r.home, {"x": 0.2})
+
+
+def test_limits_that_are_not_symmetric():
+    c = cy.load("ur5e").constraint()
+    one = c.velocity_polytope(np.ones(6), task="x,y")
+    pairs = c.velocity_polytope(np.tile([-1.0, 1.0], (6, 1)), task="x,y")
+    np.testing.assert_allclose(np.sort(one.offsets), np.sort(pairs.offsets), atol=1e-12)
+    half = c.velocity_polytope(np.tile([0.0, 1.0], (6, 1)), task="x,y")
+    assert half.offsets.min() < one.offsets.min()
+    with pytest.raises(cy.InvalidOptionError):
+        c.velocity_polytope(-np.ones(6), task="x,y")

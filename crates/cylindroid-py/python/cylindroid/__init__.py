@@ -16,6 +16,7 @@ reference: ``'local'``, ``'world'`` or ``'local_world_aligned'``. Every q may be
 
 from ._core import (
     Assembly,
+    AssemblyModes,
     Branch,
     CartesianMove,
     CartesianPath,
@@ -26,6 +27,7 @@ from ._core import (
     Existence,
     FingerContact,
     FiniteMobility,
+    Followed,
     Gap,
     GraspQuality,
     Inverse,
@@ -45,6 +47,7 @@ from ._core import (
     ScrewSystem,
     Servo,
     Singularity,
+    Solution,
     Spectrum,
     Stall,
     TimeLaw,
@@ -82,6 +85,7 @@ from ._errors import (
 
 __all__ = [
     "Assembly",
+    "AssemblyModes",
     "Branch",
     "CartesianMove",
     "CartesianPath",
@@ -94,6 +98,7 @@ __all__ = [
     "Existence",
     "FingerContact",
     "FiniteMobility",
+    "Followed",
     "Gap",
     "GraspQuality",
     "InvalidOptionError",
@@ -118,6 +123,7 @@ __all__ = [
     "ScrewSystem",
     "Servo",
     "Singularity",
+    "Solution",
     "Spectrum",
     "Stall",
     "TimeLaw",

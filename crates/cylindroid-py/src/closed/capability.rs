@@ -1,7 +1,7 @@
 //! Manipulability: efficiencies of motion and force, polytopes.
 
 use cylindroid::closure::{Motions, Unit, Units};
-use cylindroid::linalg::Hull;
+use cylindroid::linalg::{Hull, Interval};
 use cylindroid::manipulability::{
     Direction, Index, Manipulability, Metrics, Polytope, Spectrum, force_polytope,
     velocity_polytope,
@@ -389,9 +389,16 @@ impl PyPolytope {
         task: Option<&Bound<'_, PyAny>>,
         force: bool,
     ) -> Result<Self> {
-        let limits = match given {
-            Some(given) => given.vector("limits")?.to_vec(),
-            None => limits(constraint, force)?,
+        let symmetric = |all: &[f64]| all.iter().map(|l| Interval::symmetric(*l)).collect();
+        let limits: Vec<Interval> = match given {
+            None => symmetric(&limits(constraint, force)?),
+            Some(given) => match given.values().as_chunks().0 {
+                pairs if given.shape() == [pairs.len(), 2] => pairs
+                    .iter()
+                    .map(|[lower, upper]| Interval { lower: *lower, upper: *upper })
+                    .collect(),
+                _ => symmetric(given.vector("limits")?),
+            },
         };
         let relation = constraint.relation(task)?;
         let dimension = relation.object();
