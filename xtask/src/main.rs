@@ -3,6 +3,7 @@
 
 mod layers;
 mod models;
+mod python;
 mod steps;
 
 use std::process::ExitCode;
@@ -16,6 +17,7 @@ cargo xtask <task>
   ci        the same
   quick     formatting, layers, lints: what to run before a push
   setup     fetches the robot files that tests read (from PyPI, once)
+  python    builds the Python package, installs and tests it (needs Python 3 and PyPI)
   layers    checks that the library's modules import only those before them
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
   bench     runs the benchmarks of the kernels
@@ -37,6 +39,7 @@ fn run() -> Result<()> {
         Some("test" | "ci") => steps::test(),
         Some("quick") => steps::quick(),
         Some("setup") => models::fetch().map(|path| println!("robot files in {}", path.display())),
+        Some("python") => python::test(),
         Some("layers") => layers::check(),
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{layers, models};
+use crate::{layers, models, python};
 
 /// The workspace.
 pub(crate) fn root() -> PathBuf {
@@ -70,7 +70,8 @@ pub(crate) fn test() -> Result<()> {
     })?;
     step("tests", || {
         run(cargo(&["test", "--quiet", "--workspace"]).env("CYLINDROID_TEST_ROBOTS", &robots))
-    })
+    })?;
+    step("Python package", python::test)
 }
 
 /// The models whose vectors MuJoCo makes.

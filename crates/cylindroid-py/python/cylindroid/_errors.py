@@ -1,0 +1,75 @@
+"""The exceptions of cylindroid.
+
+Every one is a :class:`CylindroidError`, and also what a Python user would catch for its kind. The
+fields of an error are attributes.
+"""
+
+from __future__ import annotations
+
+
+class CylindroidError(Exception):
+    """What every error of cylindroid is.
+
+    Degeneracy (a lost rank, an inverse that does not exist, a target out of reach) is never an
+    error but a value in a report. Errors are for input that has no answer.
+    """
+
+    def __str__(self) -> str:
+        # KeyError would print the repr of the message.
+        return str(self.args[0]) if self.args else ""
+
+
+class ModelFileError(CylindroidError, ValueError):
+    """A model file that cannot be understood, with the place."""
+
+    format: str
+    path: str
+    line: int
+    column: int
+    help: str
+
+
+class UnreadableFileError(CylindroidError, OSError):
+    """A file that cannot be read."""
+
+
+class MissingFileError(UnreadableFileError, FileNotFoundError):
+    """A file that is not there."""
+
+
+class UnknownNameError(CylindroidError, KeyError):
+    """A name that the model or the library does not know; `similar` holds the nearest ones."""
+
+    what: str
+    name: str
+    similar: list[str]
+
+
+class DimensionError(CylindroidError, ValueError):
+    """A vector or matrix of the wrong size."""
+
+    what: str
+    expected: int
+    got: int
+
+
+class NotFiniteError(CylindroidError, ValueError):
+    """NaN or infinity where a number is needed."""
+
+    what: str
+    value: float
+
+
+class InvalidOptionError(CylindroidError, ValueError):
+    """An argument outside its domain: which, its value, and what can be used instead."""
+
+    option: str
+    value: str
+    reason: str
+
+
+class ModelError(CylindroidError, ValueError):
+    """A model that contradicts itself, or that cannot do what is asked."""
+
+    model: str
+    culprit: str

@@ -1,0 +1,289 @@
+//! Numbers between numpy and the library: borrowed on the way in where the layout allows it, one
+//! allocation on the way out.
+//!
+//! Batches have the axis of the configurations first: `(N, n)` in, `(N, ...)` out.
+
+use cylindroid::model::Mechanism;
+use cylindroid::{Error, Matrix, Pose};
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{Failure, Result};
+
+/// An array on its way out.
+pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// More numbers than this are asked of numpy itself, which has an exception for memory that there
+/// is not.
+const MANY: usize = 1 << 20;
+/// Configurations from which on the interpreter is free for other threads.
+const LONG: usize = 4;
+
+/// Numbers of an argument: C-contiguous, aligned, f64. Borrowed where the array is that already.
+#[derive(Debug)]
+pub(crate) struct Numbers<'py>(PyReadonlyArrayDyn<'py, f64>);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Numbers<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
+            && array.is_c_contiguous()
+            && array.is_aligned()
+        {
+            return Ok(Self(array.try_readonly()?));
+        }
+        let py = object.py();
+        let numpy = py.import(intern!(py, "numpy"))?;
+        let array = numpy.call_method1(intern!(py, "asarray"), (object,))?;
+        let kind: String =
+            array.getattr(intern!(py, "dtype"))?.getattr(intern!(py, "kind"))?.extract()?;
+        // Lists that are empty, and numbers: what becomes f64 without losing a part.
+        if !matches!(kind.as_str(), "b" | "i" | "u" | "f") {
+            let dtype = array.getattr(intern!(py, "dtype"))?;
+            return Err(Failure::kind(format!("real numbers are needed, not dtype {dtype}")).into());
+        }
+        let options = PyDict::new(py);
+        options.set_item(intern!(py, "dtype"), intern!(py, "float64"))?;
+        options.set_item(intern!(py, "requirements"), ["C", "A"])?;
+        let array = numpy.call_method(intern!(py, "require"), (array,), Some(&options))?;
+        Ok(Self(array.cast::<PyArrayDyn<f64>>()?.try_readonly()?))
+    }
+}
+
+impl Numbers<'_> {
+    pub(crate) fn shape(&self) -> &[usize] {
+        self.0.shape()
+    }
+
+    pub(crate) fn values(&self) -> &[f64] {
+        // Contiguous by construction.
+        self.0.as_slice().unwrap_or_default()
+    }
+
+    fn shape_text(&self) -> String {
+        let sizes: Vec<String> = self.shape().iter().map(ToString::to_string).collect();
+        format!(
+            "an array of shape ({}{})",
+            sizes.join(", "),
+            if sizes.len() == 1 { "," } else { "" }
+        )
+    }
+
+    /// The numbers of a vector.
+    pub(crate) fn vector(&self, name: &'static str) -> Result<&[f64]> {
+        match self.shape() {
+            [_] => Ok(self.values()),
+            _ => Err(Failure::option(name, self.shape_text(), "a vector has one axis")),
+        }
+    }
+
+    /// The numbers of a vector of `N` entries.
+    pub(crate) fn entries<const N: usize>(&self, name: &'static str) -> Result<[f64; N]> {
+        let vector = self.vector(name)?;
+        <[f64; N]>::try_from(vector).map_err(|_| {
+            let (expected, got) = (N, vector.len());
+            Error::Dimension { what: name.to_owned(), expected, got, hint: String::new() }.into()
+        })
+    }
+
+    /// A matrix.
+    pub(crate) fn matrix(&self, name: &'static str) -> Result<Matrix> {
+        match *self.shape() {
+            [rows, cols] => Ok(matrix_of(self.values(), rows, cols)),
+            _ => Err(Failure::option(name, self.shape_text(), "a matrix has two axes")),
+        }
+    }
+
+    /// One matrix or a stack of them.
+    pub(crate) fn matrices(&self, name: &'static str) -> Result<Many<Matrix>> {
+        match *self.shape() {
+            [rows, cols] => Ok(Many::One(matrix_of(self.values(), rows, cols))),
+            [n, rows, cols] => {
+                let size = rows * cols;
+                let at = |i: usize| matrix_of(&self.values()[i * size..(i + 1) * size], rows, cols);
+                Ok(Many::All((0..n).map(at).collect()))
+            }
+            _ => {
+                let reason = "a matrix has two axes, a stack of matrices three, the first of them \
+                              that of the stack";
+                Err(Failure::option(name, self.shape_text(), reason))
+            }
+        }
+    }
+
+    /// A pose from a 4 x 4 matrix.
+    pub(crate) fn pose(&self, name: &'static str) -> Result<Pose> {
+        match (self.shape(), self.values().as_chunks().0) {
+            ([4, 4], [a, b, c, d]) => Ok(Pose::from_matrix([*a, *b, *c, *d])?),
+            _ => Err(Failure::option(name, self.shape_text(), "a pose is a matrix of 4 x 4")),
+        }
+    }
+}
+
+fn matrix_of(values: &[f64], rows: usize, cols: usize) -> Matrix {
+    Matrix::from_fn(rows, cols, |i, j| values[i * cols + j])
+}
+
+/// One thing, or a batch.
+#[derive(Debug, Clone)]
+pub(crate) enum Many<T> {
+    One(T),
+    All(Vec<T>),
+}
+
+impl<T> Many<T> {
+    pub(crate) fn as_slice(&self) -> &[T] {
+        match self {
+            Self::One(x) => std::slice::from_ref(x),
+            Self::All(all) => all,
+        }
+    }
+
+    /// Number of things in a batch.
+    pub(crate) fn count(&self) -> Option<usize> {
+        match self {
+            Self::One(_) => None,
+            Self::All(all) => Some(all.len()),
+        }
+    }
+
+    pub(crate) fn try_map<U, E>(
+        &self,
+        mut f: impl FnMut(&T) -> std::result::Result<U, E>,
+    ) -> std::result::Result<Many<U>, E> {
+        Ok(match self {
+            Self::One(x) => Many::One(f(x)?),
+            Self::All(all) => Many::All(all.iter().map(f).collect::<std::result::Result<_, E>>()?),
+        })
+    }
+}
+
+/// Configurations (or rates) of a mechanism: `(n,)` or `(N, n)`, all finite.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rows<'a> {
+    pub(crate) values: &'a [f64],
+    pub(crate) width: usize,
+    /// Of a batch; `None` for one configuration.
+    pub(crate) count: Option<usize>,
+}
+
+impl<'a> Rows<'a> {
+    pub(crate) fn of(
+        mechanism: &Mechanism,
+        name: &'static str,
+        numbers: &'a Numbers<'_>,
+    ) -> Result<Self> {
+        let n = mechanism.n();
+        let (width, count) = match *numbers.shape() {
+            [width] => (width, None),
+            [count, width] => (width, Some(count)),
+            _ => {
+                let reason = format!("give ({n},) for one configuration or (N, {n}) for many");
+                return Err(Failure::option(name, numbers.shape_text(), reason));
+            }
+        };
+        if width != n {
+            mechanism.check_q(name, &vec![0.0; width])?;
+        }
+        let rows = Self { values: numbers.values(), width, count };
+        for i in 0..rows.len() {
+            let row = rows.row(i);
+            if count.is_some() && !row.iter().all(|x| x.is_finite()) {
+                mechanism.check_q(&format!("{name}[{i}]"), row)?;
+            }
+            mechanism.check_q(name, row)?;
+        }
+        Ok(rows)
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.count.unwrap_or(1)
+    }
+
+    pub(crate) fn row(&self, i: usize) -> &'a [f64] {
+        &self.values[i * self.width..(i + 1) * self.width]
+    }
+}
+
+/// An array of `shape`, with the axis of a batch in front, written by `write`; while that is long
+/// other threads of Python run.
+pub(crate) fn written<'py>(
+    py: Python<'py>,
+    count: Option<usize>,
+    shape: &[usize],
+    write: impl FnOnce(&mut [f64]) + Send,
+) -> Result<Array<'py>> {
+    let mut sizes = [0; 4];
+    let lead = usize::from(count.is_some());
+    sizes[0] = count.unwrap_or(0);
+    sizes[lead..lead + shape.len()].copy_from_slice(shape);
+    let sizes = &sizes[..lead + shape.len()];
+    let array = zeros(py, sizes)?;
+    let mut out = array.try_readwrite().map_err(PyErr::from)?;
+    let values = out.as_slice_mut().map_err(PyErr::from)?;
+    if count.is_some_and(|n| n >= LONG) {
+        py.detach(|| write(values));
+    } else {
+        write(values);
+    }
+    drop(out);
+    Ok(array)
+}
+
+fn zeros<'py>(py: Python<'py>, sizes: &[usize]) -> Result<Array<'py>> {
+    let total = sizes.iter().try_fold(1_usize, |a, b| a.checked_mul(*b));
+    if total.is_some_and(|t| t <= MANY) {
+        return Ok(PyArrayDyn::zeros(py, sizes, false));
+    }
+    let shape = pyo3::types::PyTuple::new(py, sizes)?;
+    let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "zeros"), (shape,))?;
+    Ok(array.cast_into().map_err(PyErr::from)?)
+}
+
+/// A vector.
+pub(crate) fn vector<'py>(py: Python<'py>, values: &[f64]) -> Array<'py> {
+    numpy::PyArray1::from_slice(py, values).to_dyn().clone()
+}
+
+/// A vector of a number for each thing, or that number.
+pub(crate) fn numbers<'py, T>(
+    py: Python<'py>,
+    all: &Many<T>,
+    f: impl Fn(&T) -> f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match all {
+        Many::One(x) => f(x).into_pyobject(py)?.into_any(),
+        Many::All(all) => all.iter().map(f).collect::<Vec<f64>>().into_pyarray(py).into_any(),
+    })
+}
+
+/// A matrix as rows.
+pub(crate) fn matrix<'py>(py: Python<'py>, m: &Matrix) -> Result<Array<'py>> {
+    written(py, None, &[m.rows(), m.cols()], |out| put_rows(m, out))
+}
+
+/// The columns of a matrix, each a row: a list of vectors as one array.
+pub(crate) fn columns<'py>(py: Python<'py>, m: &Matrix) -> Result<Array<'py>> {
+    written(py, None, &[m.cols(), m.rows()], |out| out.copy_from_slice(m.as_slice()))
+}
+
+/// A pose as a matrix of 4 x 4.
+pub(crate) fn pose<'py>(py: Python<'py>, pose: Pose) -> Result<Array<'py>> {
+    written(py, None, &[4, 4], |out| put_pose(pose, out))
+}
+
+pub(crate) fn put_rows(m: &Matrix, out: &mut [f64]) {
+    let cols = m.cols();
+    for j in 0..cols {
+        for (i, x) in m.column(j).iter().enumerate() {
+            out[i * cols + j] = *x;
+        }
+    }
+}
+
+pub(crate) fn put_pose(pose: Pose, out: &mut [f64]) {
+    out.copy_from_slice(pose.to_matrix().as_flattened());
+}

@@ -1,0 +1,308 @@
+//! Singular postures and finite mobility.
+
+use cylindroid::Matrix;
+use cylindroid::closure::{Branch, Diagnosis, FiniteMobility, SingularityKind};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{self, Array};
+use crate::error::Result;
+use crate::screws::{PyScrew, screw_list};
+use crate::table::{self, Table};
+
+/// What is singular about a posture, with the motions lost and gained as screws (world frame).
+///
+/// Attributes
+/// ----------
+/// regular : bool
+/// kinds : list of str
+///     'type I' (the object loses motion), 'type II' (it gains motion that the drives do not
+///     hold), 'type III' (both), 'configuration space' (the mechanism gains a motion), 'passive'
+///     (passive joints gain one of their own).
+/// descriptions : list of str
+///     The same in words.
+/// distances : dict
+///     How far the posture is from each kind: 0 at a singularity, at most 1 elsewhere, infinite
+///     where there is nothing to lose. Keys 'type_i', 'type_ii', 'configuration_space', 'passive'.
+/// generic : dict
+///     Counts of the mechanism where nothing is special about its posture.
+/// compared_with : int
+///     Other closed postures that these come from.
+/// blocked : list of Screw
+///     Wrenches held without torque, beyond the generic ones.
+/// lost, gained : list of Screw
+///     Motions of the reference frame.
+/// redundant : list of str
+///     Driven joints that move with the reference frame at rest, beyond the generic ones.
+/// idle : list of str
+///     Passive coordinates that move alone, beyond the generic ones.
+/// separated : bool
+///     False where what is generic could not be told from what is not.
+#[pyclass(frozen, name = "Singularity", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PySingularity {
+    inner: Diagnosis,
+}
+
+impl From<&Diagnosis> for PySingularity {
+    fn from(inner: &Diagnosis) -> Self {
+        Self { inner: inner.clone() }
+    }
+}
+
+fn kind_name(kind: SingularityKind) -> &'static str {
+    match kind {
+        SingularityKind::TypeI => "type I",
+        SingularityKind::TypeII => "type II",
+        SingularityKind::TypeIII => "type III",
+        SingularityKind::ConfigurationSpace => "configuration space",
+        SingularityKind::Passive => "passive",
+    }
+}
+
+#[pymethods]
+impl PySingularity {
+    #[getter]
+    fn regular(&self) -> bool {
+        self.inner.singularities.is_regular()
+    }
+
+    #[getter]
+    fn kinds(&self) -> Vec<&'static str> {
+        self.inner.singularities.kinds.iter().map(|k| kind_name(*k)).collect()
+    }
+
+    #[getter]
+    fn descriptions(&self) -> Vec<String> {
+        self.inner.singularities.kinds.iter().map(ToString::to_string).collect()
+    }
+
+    #[getter]
+    fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let d = &self.inner.singularities.distances;
+        let all = PyDict::new(py);
+        all.set_item("type_i", d.type_i)?;
+        all.set_item("type_ii", d.type_ii)?;
+        all.set_item("configuration_space", d.configuration_space)?;
+        all.set_item("passive", d.passive)?;
+        Ok(all)
+    }
+
+    #[getter]
+    fn generic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let c = &self.inner.generic.counts;
+        let all = PyDict::new(py);
+        all.set_item("rank", c.rank)?;
+        all.set_item("idle", c.idle)?;
+        all.set_item("redundancy", c.redundancy)?;
+        all.set_item("indeterminacy", c.indeterminacy)?;
+        all.set_item("zero_torque", c.zero_torque)?;
+        Ok(all)
+    }
+
+    #[getter]
+    fn compared_with(&self) -> usize {
+        self.inner.generic.others
+    }
+
+    #[getter]
+    fn blocked(&self) -> Vec<PyScrew> {
+        screw_list(&self.inner.blocked)
+    }
+
+    #[getter]
+    fn lost(&self) -> Vec<PyScrew> {
+        screw_list(&self.inner.lost)
+    }
+
+    #[getter]
+    fn gained(&self) -> Vec<PyScrew> {
+        screw_list(&self.inner.gained)
+    }
+
+    #[getter]
+    fn redundant(&self) -> Vec<String> {
+        self.inner.redundant.clone()
+    }
+
+    #[getter]
+    fn idle(&self) -> Vec<String> {
+        self.inner.idle.clone()
+    }
+
+    #[getter]
+    fn separated(&self) -> bool {
+        self.inner.separated
+    }
+
+    /// True for a singular posture.
+    fn __bool__(&self) -> bool {
+        !self.regular()
+    }
+
+    fn __repr__(&self) -> String {
+        self.table().text()
+    }
+
+    fn _repr_html_(&self) -> String {
+        self.table().html()
+    }
+}
+
+impl PySingularity {
+    fn table(&self) -> Table {
+        let mut table =
+            Table::new(if self.regular() { "Regular posture" } else { "Singular posture" });
+        for description in self.descriptions() {
+            table.row("kind", description);
+        }
+        let d = &self.inner.singularities.distances;
+        for (name, distance) in [
+            ("to type I", d.type_i),
+            ("to type II", d.type_ii),
+            ("to configuration space", d.configuration_space),
+            ("to passive", d.passive),
+        ] {
+            table.row(name, table::number(distance));
+        }
+        let screws = |screws: &[cylindroid::Screw]| -> Vec<String> {
+            let text = |s: &cylindroid::Screw| {
+                format!(
+                    "along {} through {}, pitch {}",
+                    table::list(&s.axis.direction.to_array()),
+                    table::list(&s.axis.point.to_array()),
+                    table::number(s.pitch)
+                )
+            };
+            screws.iter().map(text).collect()
+        };
+        for (name, all) in [
+            ("blocked wrench", &self.inner.blocked),
+            ("lost motion", &self.inner.lost),
+            ("gained motion", &self.inner.gained),
+        ] {
+            for text in screws(all) {
+                table.row(name, text);
+            }
+        }
+        if !self.inner.redundant.is_empty() {
+            table.row("redundant", table::names(&self.inner.redundant));
+        }
+        if !self.inner.idle.is_empty() {
+            table.row("idle", table::names(&self.inner.idle));
+        }
+        table
+    }
+}
+
+/// How a mechanism can move from a posture beyond first order.
+///
+/// Attributes
+/// ----------
+/// dof : int or None
+///     Degrees of freedom of finite motion: those of the largest branch; None where unknown.
+/// infinitesimal : int
+///     Motions to first order.
+/// branches : list of Branch
+///     Two and more: the mechanism can go different ways from here.
+/// shaky : ndarray, (n, k)
+///     Rates of q that exist to first order and lead nowhere.
+/// evidence : str
+/// certain : bool
+///     False where branches may have been missed.
+/// step : float
+///     [rad, or characteristic lengths]
+/// left_open : float
+#[pyclass(frozen, name = "FiniteMobility", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyFiniteMobility {
+    inner: FiniteMobility,
+}
+
+impl From<&FiniteMobility> for PyFiniteMobility {
+    fn from(inner: &FiniteMobility) -> Self {
+        Self { inner: inner.clone() }
+    }
+}
+
+#[pymethods]
+impl PyFiniteMobility {
+    #[getter]
+    fn dof(&self) -> Option<usize> {
+        self.inner.finite
+    }
+
+    #[getter]
+    fn infinitesimal(&self) -> usize {
+        self.inner.infinitesimal
+    }
+
+    #[getter]
+    fn branches(&self) -> Vec<PyBranch> {
+        self.inner.branches.iter().map(PyBranch::from).collect()
+    }
+
+    #[getter]
+    fn shaky<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &self.inner.shaky)
+    }
+
+    #[getter]
+    fn evidence(&self) -> String {
+        self.inner.evidence.to_string()
+    }
+
+    #[getter]
+    fn certain(&self) -> bool {
+        self.inner.certain
+    }
+
+    #[getter]
+    fn step(&self) -> f64 {
+        self.inner.step
+    }
+
+    #[getter]
+    fn left_open(&self) -> f64 {
+        self.inner.left_open
+    }
+
+    fn __repr__(&self) -> String {
+        let dof = self.inner.finite.map_or_else(|| "unknown".to_owned(), |f| f.to_string());
+        format!("<FiniteMobility: {dof} of {}, {}>", self.inner.infinitesimal, self.inner.evidence)
+    }
+}
+
+/// A set of closed postures through the posture in question.
+///
+/// Attributes
+/// ----------
+/// dimension : int
+///     Its finite degrees of freedom.
+/// motions : ndarray, (n, k)
+///     Rates of q along it.
+#[pyclass(frozen, name = "Branch", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyBranch {
+    #[pyo3(get)]
+    dimension: usize,
+    motions: Matrix,
+}
+
+impl From<&Branch> for PyBranch {
+    fn from(branch: &Branch) -> Self {
+        Self { dimension: branch.dimension, motions: branch.motions.clone() }
+    }
+}
+
+#[pymethods]
+impl PyBranch {
+    #[getter]
+    fn motions<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &self.motions)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Branch of dimension {}>", self.dimension)
+    }
+}

@@ -1,0 +1,169 @@
+//! Force closure of grasps.
+
+use cylindroid::closure::{self, Effort, FingerContact, Friction, GraspQuality, WrenchSpace};
+use cylindroid::{Error, Vec3};
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::table;
+
+/// A finger on an object.
+///
+/// Parameters
+/// ----------
+/// point : array_like, (3,)
+///     Where it touches (m).
+/// normal : array_like, (3,)
+///     Unit normal into the object: the direction in which the finger pushes.
+/// mu : float
+///     Coefficient of friction; 0 for a contact without friction.
+/// torsion : float
+///     Largest moment about the normal over the normal force (m); 0 for a hard finger.
+/// strength : float
+///     Largest normal force (N), for the effort 'each'.
+#[pyclass(frozen, name = "FingerContact", module = "cylindroid")]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PyFingerContact {
+    inner: FingerContact,
+}
+
+#[pymethods]
+impl PyFingerContact {
+    #[new]
+    #[pyo3(signature = (point, normal, mu = 0.0, torsion = 0.0, strength = 1.0))]
+    fn new(
+        point: Numbers<'_>,
+        normal: Numbers<'_>,
+        mu: f64,
+        torsion: f64,
+        strength: f64,
+    ) -> Result<Self> {
+        let friction = match (mu, torsion) {
+            (0.0, 0.0) => Friction::None,
+            (mu, 0.0) => Friction::Hard { mu },
+            (mu, torsion) => Friction::Soft { mu, torsion },
+        };
+        let inner = FingerContact {
+            point: Vec3::from_array(point.entries("point")?),
+            normal: Vec3::from_array(normal.entries("normal")?),
+            friction,
+            strength,
+        };
+        Ok(Self { inner })
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "FingerContact(point={}, normal={}, {:?})",
+            table::list(&self.inner.point.to_array()),
+            table::list(&self.inner.normal.to_array()),
+            self.inner.friction
+        )
+    }
+}
+
+/// How well a grasp holds.
+///
+/// Attributes
+/// ----------
+/// closed : bool
+///     True if every wrench can be held with enough effort.
+/// epsilon : (float, float)
+///     Bounds of the least wrench, in its worst direction, that is more than the effort holds.
+/// weakest : ndarray, (d,)
+///     The direction in which least is held, moments over the length.
+#[pyclass(frozen, name = "GraspQuality", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyGraspQuality {
+    inner: GraspQuality,
+}
+
+#[pymethods]
+impl PyGraspQuality {
+    #[getter]
+    fn closed(&self) -> bool {
+        self.inner.closed
+    }
+
+    #[getter]
+    fn epsilon(&self) -> (f64, f64) {
+        self.inner.epsilon
+    }
+
+    #[getter]
+    fn weakest<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.weakest)
+    }
+
+    fn __repr__(&self) -> String {
+        let (lower, upper) = self.inner.epsilon;
+        format!(
+            "<GraspQuality: {}, epsilon {} to {}>",
+            if self.inner.closed { "force closure" } else { "no force closure" },
+            table::number(lower),
+            table::number(upper)
+        )
+    }
+}
+
+/// The quality of a grasp by fingers with friction: is there force closure, and how much of it.
+///
+/// Parameters
+/// ----------
+/// contacts : list of FingerContact
+/// point : array_like, (3,), optional
+///     Where moments are taken (m). Default: the origin.
+/// length : float
+///     Characteristic length that moments are divided by (m).
+/// planar : bool
+///     True for objects in the plane x-y.
+/// effort : str
+///     'shared' (the normal forces of all fingers sum to 1) or 'each' (that of each finger is at
+///     most its strength).
+///
+/// Returns
+/// -------
+/// GraspQuality
+///
+/// Raises
+/// ------
+/// InvalidOptionError, NotFiniteError, UnknownNameError
+///
+/// Notes
+/// -----
+/// Ferrari and Canny 1992; round cones, not pyramids.
+///
+/// Examples
+/// --------
+/// Two fingers that press a disc between them:
+///
+/// >>> import cylindroid as cy
+/// >>> left = cy.FingerContact([-1, 0, 0], [1, 0, 0], mu=0.5)
+/// >>> right = cy.FingerContact([1, 0, 0], [-1, 0, 0], mu=0.5)
+/// >>> cy.grasp_quality([left, right], planar=True).closed
+/// True
+#[pyfunction]
+#[pyo3(signature = (contacts, point = None, length = 1.0, planar = false, effort = "shared"))]
+pub(crate) fn grasp_quality(
+    py: Python<'_>,
+    contacts: Vec<PyRef<'_, PyFingerContact>>,
+    point: Option<Numbers<'_>>,
+    length: f64,
+    planar: bool,
+    effort: &str,
+) -> Result<PyGraspQuality> {
+    let effort = match effort {
+        "shared" => Effort::Shared,
+        "each" => Effort::Each,
+        _ => return Err(Error::unknown("effort", effort, ["shared", "each"]).into()),
+    };
+    let point = match &point {
+        None => Vec3::ZERO,
+        Some(point) => Vec3::from_array(point.entries("point")?),
+    };
+    let contacts: Vec<FingerContact> = contacts.iter().map(|c| c.inner).collect();
+    let space = WrenchSpace { point, length, planar };
+    let inner = py.detach(|| closure::grasp_quality(&contacts, space, effort))?;
+    Ok(PyGraspQuality { inner })
+}

@@ -1,0 +1,309 @@
+//! The mobility report.
+
+use std::sync::OnceLock;
+
+use cylindroid::closure::{Diagnosis, Mobility, Subspace};
+use pyo3::prelude::*;
+
+use super::diagnosis::{PyFiniteMobility, PySingularity};
+use super::{PyConstraint, PyGap};
+use crate::arrays::{self, Array};
+use crate::error::Result;
+use crate::table::{self, Table};
+
+/// How a mechanism can move, and what holds it: every kind counted, with a basis.
+///
+/// Attributes
+/// ----------
+/// dof : int
+///     Degrees of freedom to first order, idle ones included.
+/// redundancy : int
+///     Motions of driven joints that leave the reference frame at rest.
+/// indeterminacy : int
+///     Motions of the reference frame with driven joints at rest.
+/// coordinate : int
+///     Motions of the reference frame that the driven joints set.
+/// internal : int
+///     Torques of driven joints that balance each other.
+/// zero_torque : int
+///     Wrenches on the reference frame held without torque.
+/// hyperstatic : int
+///     Forces in loops and contacts that nothing determines.
+/// idle : int
+///     Motions of passive joints alone.
+/// grubler : int
+///     Grubler's count, for comparison.
+/// rank_gap : float
+///     Smallest singular value kept over the largest dropped: near 1 the counts are a matter of
+///     taste.
+/// dof_basis : ndarray, (a + p + d, dof)
+///     Motions: driven joints, passive ones, components of the reference frame.
+/// idle_basis : ndarray, (a + p + d, idle)
+/// internal_basis : ndarray, (a, internal)
+///     Torques.
+/// zero_torque_basis : ndarray, (d, zero_torque)
+///     Wrenches, force first.
+/// hyperstatic_basis : ndarray, (t, hyperstatic)
+/// joints : list of JointMobility
+/// doubts : list of str
+///     Counts that hang on little, in words.
+/// singularity : Singularity or None
+///     What is singular about the posture; None for bare matrices. Computed when it is asked for.
+/// finite : FiniteMobility or None
+///     What can be done of the motions beyond first order.
+/// finite_dof : int or None
+///     Degrees of freedom of finite motion; None where it is not known.
+/// actuated, passive, components : list of str
+/// gap : Gap or None
+///     How far loops are open: the report holds where they are closed.
+/// length : float
+///     Characteristic length of the rank decisions (m).
+#[pyclass(frozen, name = "Mobility", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyMobility {
+    inner: Mobility,
+    constraint: PyConstraint,
+    diagnosis: OnceLock<Diagnosis>,
+}
+
+/// How a joint can move.
+///
+/// Attributes
+/// ----------
+/// name : str
+/// moves : bool
+///     False where it is locked by the geometry.
+/// share : float
+///     Its largest share in a motion of unit length (scaled), between 0 and 1.
+/// free : bool
+///     True where it can move with all driven joints at rest.
+/// idle : bool
+///     True where it can move with the driven joints and the reference frame at rest.
+#[pyclass(frozen, get_all, name = "JointMobility", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyJointMobility {
+    name: String,
+    moves: bool,
+    share: f64,
+    free: bool,
+    idle: bool,
+}
+
+#[pymethods]
+impl PyJointMobility {
+    fn __repr__(&self) -> String {
+        format!("<{}: {}>", self.name, self.words())
+    }
+}
+
+impl PyJointMobility {
+    fn words(&self) -> &'static str {
+        match (self.moves, self.idle, self.free) {
+            (false, ..) => "locked",
+            (true, true, _) => "moves, spins alone",
+            (true, false, true) => "moves, also with the drives at rest",
+            (true, false, false) => "moves",
+        }
+    }
+}
+
+impl PyMobility {
+    pub(super) fn of(constraint: &PyConstraint) -> Self {
+        Self {
+            inner: Mobility::of(&constraint.inner),
+            constraint: constraint.clone(),
+            diagnosis: OnceLock::new(),
+        }
+    }
+
+    fn diagnosis(&self, py: Python<'_>) -> Result<Option<&Diagnosis>> {
+        let Some(origin) = &self.constraint.origin else { return Ok(None) };
+        if let Some(known) = self.diagnosis.get() {
+            return Ok(Some(known));
+        }
+        let length = self.constraint.inner.length();
+        let found =
+            py.detach(|| Diagnosis::of(&origin.state, Some(origin.reference), Some(length)))?;
+        Ok(Some(self.diagnosis.get_or_init(|| found)))
+    }
+
+    fn basis<'py>(py: Python<'py>, of: &Subspace) -> Result<Array<'py>> {
+        arrays::matrix(py, &of.basis)
+    }
+
+    fn table(&self) -> Table {
+        let m = &self.inner;
+        let mut table = Table::new(&format!("Mobility of {}", self.constraint.name()));
+        self.constraint.head(&mut table);
+        let gap = m.dof.cut.rank.gap;
+        let gap = if gap.is_infinite() {
+            "a clear rank".to_owned()
+        } else {
+            format!("rank gap {}", table::number(gap))
+        };
+        table.row("dof", format!("{} to first order ({gap})", m.dof.dimension()));
+        for (name, count) in [
+            ("coordinate", m.relation.coordinate),
+            ("redundancy", m.relation.redundancy),
+            ("indeterminacy", m.relation.indeterminacy),
+            ("idle", m.idle.dimension()),
+            ("internal", m.internal.dimension()),
+            ("zero_torque", m.zero_torque.dimension()),
+            ("hyperstatic", m.hyperstatic.dimension()),
+        ] {
+            table.row(name, count.to_string());
+        }
+        table.row("grubler", m.grubler.to_string());
+        for joint in self.joints() {
+            table.row(&joint.name, joint.words());
+        }
+        for doubt in &m.doubts {
+            table.row("doubtful", doubt.to_string());
+        }
+        table
+    }
+}
+
+#[pymethods]
+impl PyMobility {
+    #[getter]
+    fn dof(&self) -> usize {
+        self.inner.dof.dimension()
+    }
+
+    #[getter]
+    fn redundancy(&self) -> usize {
+        self.inner.relation.redundancy
+    }
+
+    #[getter]
+    fn indeterminacy(&self) -> usize {
+        self.inner.relation.indeterminacy
+    }
+
+    #[getter]
+    fn coordinate(&self) -> usize {
+        self.inner.relation.coordinate
+    }
+
+    #[getter]
+    fn internal(&self) -> usize {
+        self.inner.internal.dimension()
+    }
+
+    #[getter]
+    fn zero_torque(&self) -> usize {
+        self.inner.zero_torque.dimension()
+    }
+
+    #[getter]
+    fn hyperstatic(&self) -> usize {
+        self.inner.hyperstatic.dimension()
+    }
+
+    #[getter]
+    fn idle(&self) -> usize {
+        self.inner.idle.dimension()
+    }
+
+    #[getter]
+    fn grubler(&self) -> i64 {
+        self.inner.grubler
+    }
+
+    #[getter]
+    fn rank_gap(&self) -> f64 {
+        self.inner.dof.cut.rank.gap
+    }
+
+    #[getter]
+    fn dof_basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Self::basis(py, &self.inner.dof)
+    }
+
+    #[getter]
+    fn idle_basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Self::basis(py, &self.inner.idle)
+    }
+
+    #[getter]
+    fn internal_basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Self::basis(py, &self.inner.internal)
+    }
+
+    #[getter]
+    fn zero_torque_basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Self::basis(py, &self.inner.zero_torque)
+    }
+
+    #[getter]
+    fn hyperstatic_basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Self::basis(py, &self.inner.hyperstatic)
+    }
+
+    #[getter]
+    fn joints(&self) -> Vec<PyJointMobility> {
+        let names = self.constraint.actuated.iter().chain(&self.constraint.passive);
+        let one = |(name, j): (&String, &cylindroid::closure::JointMobility)| PyJointMobility {
+            name: name.clone(),
+            moves: j.moves,
+            share: j.share,
+            free: j.free_of_actuators,
+            idle: j.idle,
+        };
+        names.zip(&self.inner.joints).map(one).collect()
+    }
+
+    #[getter]
+    fn doubts(&self) -> Vec<String> {
+        self.inner.doubts.iter().map(ToString::to_string).collect()
+    }
+
+    #[getter]
+    fn singularity(&self, py: Python<'_>) -> Result<Option<PySingularity>> {
+        Ok(self.diagnosis(py)?.map(PySingularity::from))
+    }
+
+    #[getter]
+    fn finite(&self, py: Python<'_>) -> Result<Option<PyFiniteMobility>> {
+        Ok(self.diagnosis(py)?.map(|d| PyFiniteMobility::from(&d.finite)))
+    }
+
+    #[getter]
+    fn finite_dof(&self, py: Python<'_>) -> Result<Option<usize>> {
+        Ok(self.diagnosis(py)?.and_then(|d| d.finite.finite))
+    }
+
+    #[getter]
+    fn actuated(&self) -> Vec<String> {
+        self.constraint.actuated.clone()
+    }
+
+    #[getter]
+    fn passive(&self) -> Vec<String> {
+        self.constraint.passive.clone()
+    }
+
+    #[getter]
+    fn components(&self) -> Vec<String> {
+        self.constraint.component_names()
+    }
+
+    #[getter]
+    fn gap(&self) -> Option<PyGap> {
+        self.constraint.origin.as_ref().map(|o| o.gap.into())
+    }
+
+    #[getter]
+    fn length(&self) -> f64 {
+        self.constraint.inner.length()
+    }
+
+    fn __repr__(&self) -> String {
+        self.table().text()
+    }
+
+    fn _repr_html_(&self) -> String {
+        self.table().html()
+    }
+}

@@ -1,0 +1,104 @@
+//! Joint torques and contact forces.
+
+use cylindroid::closure::{self, Load, Motions};
+use pyo3::prelude::*;
+
+use super::{PyConstraint, metric_of};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::table;
+
+/// Joint torques that balance a wrench.
+///
+/// Attributes
+/// ----------
+/// torques : ndarray, (a,)
+///     Those of least norm [N m or N]; internal torques may be added.
+/// unbalanced : ndarray, (d,)
+///     The part of the wrench that nothing balances.
+#[pyclass(frozen, name = "Torques", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyTorques {
+    inner: closure::Torques,
+}
+
+#[pymethods]
+impl PyTorques {
+    #[getter]
+    fn torques<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.torques)
+    }
+
+    #[getter]
+    fn unbalanced<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.unbalanced)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Torques(torques={}, unbalanced={})",
+            table::list(&self.inner.torques),
+            table::list(&self.inner.unbalanced)
+        )
+    }
+}
+
+/// Forces at the contacts.
+///
+/// Attributes
+/// ----------
+/// forces : ndarray, (t,)
+///     An entry for each row of the constraint: from the object on the limbs [N or N m].
+/// unbalanced : float
+///     What the load leaves unbalanced over the load: rounding, unless torques and wrench
+///     contradict each other.
+#[pyclass(frozen, name = "ContactForces", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyContactForces {
+    inner: closure::ContactForces,
+}
+
+#[pymethods]
+impl PyContactForces {
+    #[getter]
+    fn forces<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.forces)
+    }
+
+    #[getter]
+    fn unbalanced(&self) -> f64 {
+        self.inner.unbalanced
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "ContactForces(forces={}, unbalanced={:.1e})",
+            table::list(&self.inner.forces),
+            self.inner.unbalanced
+        )
+    }
+}
+
+pub(super) fn joint_torques(
+    constraint: &PyConstraint,
+    wrench: &Numbers<'_>,
+    metric: Option<&Numbers<'_>>,
+) -> Result<PyTorques> {
+    let metric = metric.map(|m| metric_of("metric", m)).transpose()?;
+    let relation = Motions::of(&constraint.inner).relation();
+    let inner = closure::joint_torques(&relation, wrench.vector("wrench")?, metric.as_ref())?;
+    Ok(PyTorques { inner })
+}
+
+pub(super) fn contact_forces(
+    constraint: &PyConstraint,
+    torques: &Numbers<'_>,
+    wrench: &Numbers<'_>,
+    compliance: Option<&Numbers<'_>>,
+) -> Result<PyContactForces> {
+    let compliance = compliance.map(|c| metric_of("compliance", c)).transpose()?;
+    let motions = Motions::of(&constraint.inner);
+    let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
+    let inner = closure::contact_forces(&constraint.inner, &motions, load, compliance.as_ref())?;
+    Ok(PyContactForces { inner })
+}

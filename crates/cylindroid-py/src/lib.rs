@@ -1,0 +1,57 @@
+//! The Python package `cylindroid`: the library for numpy, without mathematics of its own.
+//!
+//! Numbers come in without a copy where the layout allows it, results are one allocation, and the
+//! interpreter is free while batches run. Errors of the library become exceptions, one class for
+//! each kind. The documentation of every function is that of the Python user.
+
+mod arrays;
+mod closed;
+mod error;
+mod ik;
+mod inverse;
+mod mechanism;
+mod motion;
+mod options;
+mod screws;
+mod servo;
+mod table;
+
+use pyo3::prelude::*;
+
+/// The compiled part of `cylindroid`.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::closed::{
+        PyAssembly, PyAssemblyModes, PyBranch, PyConstraint, PyContactForces, PyDirection,
+        PyFingerContact, PyFiniteMobility, PyFollowed, PyGap, PyGraspQuality, PyJointMobility,
+        PyManipulability, PyMobility, PyPolytope, PySingularity, PySpectrum, PyTorques,
+        grasp_quality,
+    };
+    #[pymodule_export]
+    use crate::ik::PySolution;
+    #[pymodule_export]
+    use crate::inverse::{
+        PyDropped, PyInverse, PyPointDirection, damped, hyperbolic, inverse_by_name, oblique, pinv,
+        point_direction, selectively_damped,
+    };
+    #[pymodule_export]
+    use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism, catalogue, load, parse};
+
+    #[pymodule_export]
+    use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw};
+    #[pymodule_export]
+    use crate::screws::{
+        PyExistence, PyInvolution, PyMargin, PyScrew, PyScrewSystem, PyTransversals, adjoint,
+        involution, projector, transversals,
+    };
+    #[pymodule_export]
+    use crate::servo::{PyOutcome, PyServo, PyStall, PyTrajectory};
+
+    use super::*;
+
+    #[pymodule_init]
+    fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
+        m.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,249 @@
+//! From Python's keywords to the options of the servo, with the names of the command line.
+
+use cylindroid::control::{Gain, Projection, Projector, Secondary, Speed, Task};
+use cylindroid::inverse::HyperbolicDamping;
+use cylindroid::kinematics::Chain;
+use cylindroid::model::Dimension;
+use cylindroid::{Error, Mechanism, Method, Reference, ServoOptions, Twist};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::arrays::Numbers;
+use crate::error::{Failure, Result};
+use crate::inverse::MethodNumbers;
+use crate::mechanism::reference_of;
+
+const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+/// The inverses that choose which part of a motion is taken on.
+const PROJECTIONS: [&str; 4] = ["hyperbolic", "hyperbolic-damped", "hyperbolic-gram", "oblique"];
+/// The one that chooses nothing, as a fallback.
+const PLAIN: &str = "truncated";
+
+/// A number, or one for translations and one for rotations.
+pub(crate) fn pair(name: &'static str, of: &Numbers<'_>, single: f64) -> Result<(f64, f64)> {
+    match *of.values() {
+        [a] => Ok((a, if single.is_nan() { a } else { single })),
+        [a, b] => Ok((a, b)),
+        _ => Err(Failure::option(
+            name,
+            format!("{} numbers", of.values().len()),
+            "give one number, or one for translations and one for rotations",
+        )),
+    }
+}
+
+/// What chooses the inverse.
+#[derive(Debug)]
+pub(crate) struct InverseChoice<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) numbers: MethodNumbers,
+    pub(crate) h: Option<f64>,
+    pub(crate) mu: Option<f64>,
+    pub(crate) lam: Option<f64>,
+    /// Rows are twists of the tool.
+    pub(crate) give_up: Option<Vec<Twist>>,
+    pub(crate) fallback: Option<&'a str>,
+}
+
+impl InverseChoice<'_> {
+    /// Sets method, projection and fallback.
+    pub(crate) fn apply(&self, options: &mut ServoOptions) -> Result<()> {
+        let chooses = PROJECTIONS.contains(&self.name);
+        let method = if chooses {
+            Method::default()
+        } else {
+            Method::named(self.name).map_err(|_| {
+                let all = Method::ALL.iter().map(Method::name).chain(PROJECTIONS);
+                Error::unknown("inverse", self.name, all)
+            })?
+        };
+        options.method = self.numbers.apply(method)?;
+        if chooses {
+            options.projection = self.projection(self.name)?;
+        }
+        options.fallback = match self.fallback {
+            None => None,
+            Some(name) if !chooses => {
+                let reason = format!(
+                    "the inverse '{}' always exists; a fallback is for {}",
+                    self.name,
+                    PROJECTIONS.join(", ")
+                );
+                return Err(Failure::option("fallback", name, reason));
+            }
+            Some(PLAIN) => Some(Projection::Orthogonal),
+            Some(name) if PROJECTIONS.contains(&name) => Some(self.projection(name)?),
+            Some(name) => {
+                let known = PROJECTIONS.iter().chain(&[PLAIN]);
+                return Err(Error::unknown("fallback", name, known).into());
+            }
+        };
+        self.refuse_unused()
+    }
+
+    fn projection(&self, name: &str) -> Result<Projection> {
+        let needed = |option: &'static str, value: Option<f64>| {
+            value.ok_or_else(|| {
+                let reason = format!(
+                    "the inverse '{name}' needs this number, in m/rad: of the order of the arm's \
+                     length for h, 0.01 for mu and lam; ScrewSystem.choose_pitch advises"
+                );
+                Failure::option(option, "missing", reason)
+            })
+        };
+        Ok(match name {
+            "hyperbolic" => Projection::Hyperbolic { h: needed("h", self.h)? },
+            "hyperbolic-damped" => Projection::DampedHyperbolic {
+                h: needed("h", self.h)?,
+                damping: HyperbolicDamping::Invariant { mu: needed("mu", self.mu)? },
+            },
+            "hyperbolic-gram" => Projection::DampedHyperbolic {
+                h: needed("h", self.h)?,
+                damping: HyperbolicDamping::Gram { lambda: needed("lam", self.lam)? },
+            },
+            _ => Projection::Oblique {
+                complement: self.give_up.clone().unwrap_or_default(),
+                reference: Reference::Local,
+            },
+        })
+    }
+
+    /// Refuses numbers of inverses that were not asked for.
+    fn refuse_unused(&self) -> Result<()> {
+        let asked = |names: &[&str]| {
+            names.contains(&self.name) || self.fallback.is_some_and(|f| names.contains(&f))
+        };
+        let numbers: [(&'static str, Option<f64>, &[&str]); 4] = [
+            ("h", self.h, &PROJECTIONS[..3]),
+            ("mu", self.mu, &PROJECTIONS[1..2]),
+            ("lam", self.lam, &PROJECTIONS[2..3]),
+            ("give_up", self.give_up.as_ref().map(|g| g.len() as f64), &PROJECTIONS[3..]),
+        ];
+        for (option, value, names) in numbers {
+            if let Some(value) = value
+                && !asked(names)
+            {
+                let reason = format!("only {} has it; choose one as inverse", names.join(", "));
+                return Err(Failure::option(option, value.to_string(), reason));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The components of the motion that matter.
+pub(crate) fn task(
+    robot: &Mechanism,
+    name: Option<&str>,
+    axes: Option<&str>,
+    default: Task,
+) -> Result<Task> {
+    let mut task = match name {
+        None => default,
+        Some("pose") => Task::POSE,
+        Some("position") => Task::POSITION,
+        Some("orientation") => Task::ORIENTATION,
+        Some("pointing") => Task::POINTING,
+        Some(list) => {
+            let mut components = [false; 6];
+            for name in list.split(',').map(str::trim) {
+                match COMPONENTS.iter().position(|c| *c == name) {
+                    Some(i) => components[i] = true,
+                    None => {
+                        let known = ["pose", "position", "orientation", "pointing"];
+                        let known = known.iter().chain(&COMPONENTS);
+                        return Err(Error::unknown("task or task component", name, known).into());
+                    }
+                }
+            }
+            Task { components, ..Task::POSE }
+        }
+    };
+    let planar = robot.is_closed() && robot.dimension() == Dimension::Planar;
+    if planar && matches!(name, Some("pose" | "position" | "orientation")) {
+        for (on, in_plane) in task.components.iter_mut().zip(Task::PLANAR.components) {
+            *on &= in_plane;
+        }
+    }
+    task.axes = match axes {
+        None => task.axes,
+        // The error is taken at the tool, so the world's axes are meant.
+        Some("world") => Reference::LocalWorldAligned,
+        Some(name) => reference_of(name)?,
+    };
+    Ok(task)
+}
+
+/// The wishes for the joints: names, with gains or without.
+pub(crate) fn secondary(
+    wanted: Option<&Bound<'_, PyAny>>,
+    posture: &[f64],
+    robot: &Mechanism,
+    options: &ServoOptions,
+) -> Result<Vec<Secondary>> {
+    let named = |name: &str, gain: Option<f64>| -> Result<Secondary> {
+        let task = Secondary::named(name, posture)?;
+        Ok(gain.map_or(task.clone(), |gain| task.with_gain(gain)))
+    };
+    let Some(wanted) = wanted else {
+        let components = options.task.components.iter().filter(|c| **c).count();
+        let joints = Chain::new(robot, options.end_effector).n();
+        // Where loops couple joints, a wish that they do not allow costs nothing.
+        let redundant = joints > components || robot.is_closed();
+        return if redundant { Ok(vec![named("limit-avoidance", None)?]) } else { Ok(Vec::new()) };
+    };
+    if let Ok(name) = wanted.cast::<PyString>() {
+        let name = name.to_cow()?;
+        return if name == "none" { Ok(Vec::new()) } else { Ok(vec![named(&name, None)?]) };
+    }
+    if let Ok(gains) = wanted.cast::<PyDict>() {
+        let each = gains
+            .iter()
+            .map(|(name, gain)| named(&name.extract::<String>()?, Some(gain.extract::<f64>()?)));
+        return each.collect();
+    }
+    let words = "secondary is a name, a list of names, or a dict of gains by name";
+    let names: Vec<String> = wanted.extract().map_err(|_| Failure::kind(words))?;
+    names.iter().map(|name| named(name, None)).collect()
+}
+
+pub(crate) fn projector(name: &str) -> Result<Projector> {
+    match name {
+        "exact" => Ok(Projector::Exact),
+        "retained" => Ok(Projector::Retained),
+        _ => Err(Error::unknown("projector", name, ["exact", "retained"]).into()),
+    }
+}
+
+pub(crate) fn gain(of: &Numbers<'_>) -> Result<Gain> {
+    let (position, orientation) = pair("gain", of, f64::NAN)?;
+    Ok(Gain { position, orientation })
+}
+
+pub(crate) fn speed(of: &Numbers<'_>) -> Result<Speed> {
+    let (linear, angular) = pair("speed", of, f64::INFINITY)?;
+    Ok(Speed { linear, angular })
+}
+
+/// Twists as rows, or names of components of the tool's motion.
+pub(crate) fn twists(name: &'static str, of: &Bound<'_, PyAny>) -> Result<Vec<Twist>> {
+    if let Ok(names) = of.extract::<Vec<String>>() {
+        let one = |name: &String| match COMPONENTS.iter().position(|c| c == name) {
+            Some(i) => Ok(Twist::from_array(std::array::from_fn(|k| f64::from(u8::from(k == i))))),
+            None => Err(Error::unknown("component", name, COMPONENTS).into()),
+        };
+        return names.iter().map(one).collect();
+    }
+    let numbers: Numbers<'_> = of.extract()?;
+    match *numbers.shape() {
+        [6] | [_, 6] => {
+            let rows = numbers.values().as_chunks::<6>().0;
+            Ok(rows.iter().map(|r| Twist::from_array(*r)).collect())
+        }
+        _ => Err(Failure::option(
+            name,
+            format!("{} numbers", numbers.values().len()),
+            "give twists as rows of six, linear part first, or names like 'rz'",
+        )),
+    }
+}

@@ -1,0 +1,17 @@
+"""Run where nothing but the wheel and what it needs is installed."""
+
+import importlib.metadata
+import sys
+
+import numpy as np
+
+import cylindroid as cy
+
+installed = {d.metadata["Name"].lower() for d in importlib.metadata.distributions()}
+extra = installed - {"cylindroid", "numpy", "pip", "setuptools", "wheel"}
+assert not extra, f"the wheel brought {extra}"
+assert "matplotlib" not in sys.modules
+
+robot = cy.load("panda")
+assert robot.fk(robot.home).shape == (4, 4)
+assert cy.pinv(robot.jacobian(np.tile(robot.home, (3, 1)))).matrix.shape == (3, 7, 6)

@@ -1,0 +1,82 @@
+"""Inverse kinematics from Python."""
+
+import numpy as np
+import pytest
+
+import cylindroid as cy
+
+rng = np.random.default_rng(8)
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e", "puma560"])
+def test_answers_reach_within_limits(name):
+    r = cy.load(name)
+    targets = r.fk(rng.uniform(np.maximum(r.lower, -3), np.minimum(r.upper, 3), (20, r.n)))
+    found = r.ik(targets)
+    assert found.q.shape == (20, r.n) and found.success.all() and not found.out_of_reach.any()
+    np.testing.assert_allclose(r.fk(found.q), targets, atol=3e-6)
+    assert ((r.lower <= found.q) & (found.q <= r.upper)).all()
+    assert (found.position_error <= 1e-6).all() and (found.iterations > 0).all()
+    one = r.ik(targets[0])
+    np.testing.assert_array_equal(one.q, found.q[0])
+    assert one.success is True and one.iterations == found.iterations[0] and one.attempts >= 1
+    assert "success" in repr(one) and "<table>" in one._repr_html_() and "20 targets" in repr(found)
+
+
+def test_starts_tasks_and_tools():
+    r = cy.load("panda")
+    q = r.home + 0.1
+    target = r.fk(q)
+    np.testing.assert_allclose(r.ik(target, q0=q).q, q, atol=1e-6)
+    near = r.ik(target, q0=q + 0.05, nearest=True)
+    assert np.linalg.norm(near.q - q - 0.05) < 0.2
+    starts = np.array([q, q + 0.02])
+    both = r.ik(np.array([target, target]), q0=starts)
+    np.testing.assert_allclose(both.q[0], q, atol=1e-6)
+    point = r.ik(target, task="position", fixed=r.joint_names[4:])
+    np.testing.assert_allclose(r.fk(point.q)[:3, 3], target[:3, 3], atol=2e-6)
+    np.testing.assert_array_equal(point.q[4:], r.home[4:])
+    tool = np.eye(4)
+    tool[2, 3] = 0.2
+    held = r.ik(target @ tool, tool=tool)
+    np.testing.assert_allclose(r.fk(held.q, tool=tool), target @ tool, atol=3e-6)
+    link = r.fk(q, "link5")
+    np.testing.assert_allclose(r.fk(r.ik(link, "link5").q, "link5"), link, atol=3e-6)
+
+
+def test_all_answers_of_six_joints():
+    r = cy.load("ur5e")
+    target = r.fk([0.3, -1.2, 1.1, -0.4, 0.9, 0.2])
+    all_of_them = r.ik_all(target, 8)
+    assert all_of_them.shape[1] == 6 and len(all_of_them) >= 4
+    np.testing.assert_allclose(r.fk(all_of_them), np.tile(target, (len(all_of_them), 1, 1)), atol=3e-6)
+    assert len(np.unique(all_of_them.round(2), axis=0)) == len(all_of_them)
+
+
+def test_what_cannot_be_reached():
+    r = cy.load("panda")
+    far = np.eye(4)
+    far[0, 3] = 4.0
+    found = r.ik(far, iterations=500)
+    assert not found.success and found.out_of_reach and found.position_error > 2
+    assert "out of reach" in repr(found)
+    assert r.ik_all(far, iterations=100).shape == (0, 7)
+
+
+def test_input_is_checked():
+    r = cy.load("panda")
+    T = r.fk(r.home)
+    for call, kind in [
+        (lambda: r.ik(T[:3]), cy.InvalidOptionError),
+        (lambda: r.ik(T * np.nan), cy.NotFiniteError),
+        (lambda: r.ik(T, "nothing"), cy.UnknownNameError),
+        (lambda: r.ik(T, fixed=["x"]), cy.UnknownNameError),
+        (lambda: r.ik(T, task="w"), cy.UnknownNameError),
+        (lambda: r.ik(T, q0=[1.0]), cy.DimensionError),
+        (lambda: r.ik(np.array([T, T]), q0=np.zeros((3, 7))), cy.InvalidOptionError),
+        (lambda: r.ik(T, tolerance_position=-1), cy.InvalidOptionError),
+        (lambda: cy.load("stewart").ik(T), cy.ModelError),
+    ]:
+        with pytest.raises(kind):
+            call()
+    assert r.ik(np.zeros((0, 4, 4))).q.shape == (0, 7)

@@ -1,0 +1,195 @@
+"""Models and kinematics: shapes, laws, batches."""
+
+import copy
+import pathlib
+
+import numpy as np
+import pytest
+
+import cylindroid as cy
+
+REFERENCES = ["local", "world", "local_world_aligned"]
+ROBOTS = ["panda", "ur5e", "youbot", "3r", "stewart"]
+
+
+def random_q(robot, count, seed=1):
+    rng = np.random.default_rng(seed)
+    lower = np.maximum(robot.lower, -2.0)
+    upper = np.minimum(robot.upper, 2.0)
+    return rng.uniform(lower, upper, (count, robot.n))
+
+
+def test_what_a_mechanism_tells():
+    r = cy.load("panda")
+    assert (r.name, r.n, r.tool, r.dimension, r.is_closed) == ("panda", 7, "hand_tcp", 3, False)
+    assert len(r.joint_names) == 7 and r.tool in r.frames and set(r.units) == {"rad"}
+    for limit in (r.lower, r.upper, r.velocity_limit, r.acceleration_limit, r.effort_limit):
+        assert limit.shape == (7,) and limit.dtype == np.float64
+    assert (r.lower < r.home).all() and (r.home < r.upper).all()
+    assert r.actuated == r.joint_names
+    moving = [j for j in r.joints if j.coordinates]
+    assert [j.coordinates[0] for j in moving] == r.joint_names
+    assert {j.kind for j in moving} == {"revolute"}
+    assert r.report.format == "catalogue" and r.report.source
+
+
+def test_the_catalogue_loads():
+    names = [name for name, what, source in cy.catalogue()]
+    assert {"panda", "ur5e", "youbot", "five-bar", "stewart"} <= set(names)
+    for name in names:
+        r = cy.load(name)
+        assert name in repr(r) or r.name in repr(r)
+        assert str(r) and "<table>" in r._repr_html_()
+        assert r.fk(r.home).shape == (4, 4)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_batches_are_their_rows(name):
+    r = cy.load(name)
+    Q = random_q(r, 20)
+    QD = random_q(r, 20, seed=2)
+    T, all_poses = r.fk(Q), r.fk_all(Q)
+    assert T.shape == (20, 4, 4) and all_poses.shape == (20, len(r.frames), 4, 4)
+    for reference in REFERENCES:
+        J = r.jacobian(Q, reference=reference)
+        H = r.hessian(Q, reference=reference)
+        D = r.jacobian_dot(Q, QD, reference=reference)
+        assert J.shape == (20, 6, r.n) and H.shape == (20, r.n, 6, r.n)
+        for i in range(20):
+            np.testing.assert_array_equal(J[i], r.jacobian(Q[i], reference=reference))
+            np.testing.assert_array_equal(H[i], r.hessian(Q[i], reference=reference))
+            np.testing.assert_array_equal(D[i], r.jacobian_dot(Q[i], QD[i], reference=reference))
+    for i in range(20):
+        np.testing.assert_array_equal(T[i], r.fk(Q[i]))
+        np.testing.assert_array_equal(all_poses[i], r.fk_all(Q[i]))
+        np.testing.assert_allclose(all_poses[i, r.frames.index(r.tool)], T[i], atol=1e-14)
+    assert r.analytical_jacobian(Q).shape == (20, 6, r.n)
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e", "youbot", "3r"])
+def test_jacobians_against_differences(name):
+    r = cy.load(name)
+    step = 1e-6
+    for q in random_q(r, 5):
+        J, H, T = r.jacobian(q), r.hessian(q), r.fk(q)
+        for k in range(r.n):
+            d = np.zeros(r.n)
+            d[k] = step
+            up, down = r.fk(q + d), r.fk(q - d)
+            np.testing.assert_allclose((up - down)[:3, 3] / (2 * step), J[:3, k], atol=1e-8)
+            W = (up - down)[:3, :3] / (2 * step) @ T[:3, :3].T
+            np.testing.assert_allclose([W[2, 1], W[0, 2], W[1, 0]], J[3:, k], atol=1e-8)
+            dJ = (r.jacobian(q + d) - r.jacobian(q - d)) / (2 * step)
+            np.testing.assert_allclose(dJ, H[k], atol=1e-8)
+        qd = np.linspace(-1, 1, r.n)
+        np.testing.assert_allclose(r.jacobian_dot(q, qd), np.tensordot(qd, H, 1), atol=1e-12)
+
+
+def test_references_and_tools_fit_together():
+    r = cy.load("panda")
+    q = random_q(r, 1)[0]
+    T = r.fk(q)
+    R, p = T[:3, :3], T[:3, 3]
+    local, world, aligned = (r.jacobian(q, reference=ref) for ref in REFERENCES)
+    np.testing.assert_allclose(aligned, np.kron(np.eye(2), R) @ local, atol=1e-14)
+    np.testing.assert_allclose(world[:3], aligned[:3] - np.cross(world[3:].T, p).T, atol=1e-14)
+    tool = np.eye(4)
+    tool[:3, 3] = 0.1, 0.2, 0.3
+    np.testing.assert_allclose(r.fk(q, tool=tool), T @ tool, atol=1e-14)
+    moved = r.jacobian(q, tool=tool)
+    np.testing.assert_allclose(
+        moved[:3], aligned[:3] + np.cross(aligned[3:].T, R @ tool[:3, 3]).T, atol=1e-14
+    )
+
+
+def test_what_counts_as_numbers():
+    r = cy.load("panda")
+    q = random_q(r, 6)
+    expected = r.jacobian(q)
+    strided = np.zeros((12, 14))
+    strided[::2, ::2] = q
+    backward = np.ascontiguousarray(q[::-1])[::-1]
+    raw = np.frombuffer(b"\0" + q.tobytes(), dtype=np.uint8)[1:].view(np.float64).reshape(q.shape)
+    assert not raw.flags.aligned or not raw.flags.owndata
+    readonly = q.copy()
+    readonly.flags.writeable = False
+    for same in (
+        q.tolist(),
+        tuple(map(tuple, q)),
+        np.asfortranarray(q),
+        strided[::2, ::2],
+        backward,
+        q.astype(">f8"),
+        raw,
+        readonly,
+        q.view(np.matrix) if hasattr(np, "matrix") else q,
+    ):
+        np.testing.assert_array_equal(r.jacobian(same), expected)
+    np.testing.assert_allclose(r.jacobian(q.astype(np.float32)), expected, atol=1e-6)
+    np.testing.assert_array_equal(r.fk([0, 0, 0, -1, 0, 1, 0]), r.fk([0.0, 0, 0, -1, 0, 1, 0]))
+    assert r.fk(np.zeros((0, 7))).shape == (0, 4, 4)
+    assert r.jacobian(np.zeros((0, 7))).shape == (0, 6, 7)
+    assert r.hessian(np.zeros((0, 7))).shape == (0, 7, 6, 7)
+
+
+def test_results_are_owned():
+    r = cy.load("panda")
+    q = r.home
+    T = r.fk(q)
+    T[:] = 0
+    assert r.fk(q)[3, 3] == 1
+    home = r.home
+    home[:] = 9
+    assert (r.home != 9).all()
+
+
+def test_integrate_and_limits():
+    r = cy.load("panda")
+    np.testing.assert_allclose(r.integrate(r.home, np.ones(7), 0.1), r.home + 0.1, atol=1e-15)
+    assert r.outside_limits(r.home) == []
+    q = r.home
+    q[3] = 1.0
+    assert r.outside_limits(q) == [r.joint_names[3]]
+
+
+def test_text_paths_and_copies(tmp_path):
+    text = """<robot name="two"><link name="a"/><link name="b"/><link name="c"/>
+    <joint name="j1" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
+    <joint name="j2" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="2" effort="1" velocity="1"/></joint></robot>"""
+    path = tmp_path / "two.urdf"
+    path.write_text(text)
+    for r in (cy.parse(text), cy.load(path), cy.load(str(path)), cy.load(pathlib.Path(path))):
+        assert r.joint_names == ["j1", "j2"] and r.units == ["rad", "m"]
+        np.testing.assert_allclose(r.fk([np.pi / 2, 2.0])[:3, 3], [0, 2, 0], atol=1e-15)
+    for clone in (copy.copy(r), copy.deepcopy(r)):
+        np.testing.assert_array_equal(clone.fk([1, 1]), r.fk([1, 1]))
+
+
+def test_a_mechanism_without_joints():
+    r = cy.parse('<robot name="stone"><link name="a"/></robot>')
+    assert r.n == 0
+    np.testing.assert_array_equal(r.fk([]), np.eye(4))
+    assert r.jacobian([]).shape == (6, 0)
+    assert r.jacobian(np.zeros((3, 0))).shape == (3, 6, 0)
+    assert r.fk(np.zeros((3, 0))).shape == (3, 4, 4)
+
+
+def test_threads_run_side_by_side():
+    import threading
+
+    r = cy.load("panda")
+    Q = random_q(r, 20000)
+    expected = r.jacobian(Q)
+    found = [None] * 4
+
+    def work(i):
+        found[i] = r.jacobian(Q)
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    for J in found:
+        np.testing.assert_array_equal(J, expected)

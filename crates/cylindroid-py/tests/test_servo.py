@@ -1,0 +1,266 @@
+"""The servo, motions and time laws from Python."""
+
+import numpy as np
+import pytest
+
+import cylindroid as cy
+
+
+def angle_between(A, B):
+    return np.arccos(np.clip((np.trace(A[:3, :3].T @ B[:3, :3]) - 1) / 2, -1, 1))
+
+
+def lowered(robot, by=0.1):
+    target = robot.fk(robot.home)
+    target[2, 3] -= by
+    return target
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e"])
+@pytest.mark.parametrize("inverse", ["truncated", "damped", "singular-value-filtering"])
+def test_a_loop_reaches(name, inverse):
+    r = cy.load(name)
+    q = r.home + 0.05
+    c = cy.Servo(r, gain=10.0, dt=0.002, inverse=inverse, tolerance_position=1e-5,
+                 tolerance_orientation=1e-5)
+    assert c.status is None and c.stall is None and np.isnan(c.position_error)
+    target = lowered(r)
+    for _ in range(20000):
+        qd = c.step(q, target)
+        assert qd.shape == (r.n,) and (np.abs(qd) <= r.velocity_limit * (1 + 1e-12)).all()
+        np.testing.assert_array_equal(qd, c.rates)
+        if c.status != "moving":
+            break
+        q = c.advance(q)
+    assert c.status == "reached" and c.stall is None
+    T = r.fk(q)
+    np.testing.assert_allclose(c.pose, T, atol=1e-14)
+    assert np.linalg.norm(T[:3, 3] - target[:3, 3]) <= 1e-5
+    assert abs(c.position_error - np.linalg.norm(T[:3, 3] - target[:3, 3])) < 1e-12
+    assert angle_between(T, target) <= 1.1e-5
+    assert 0 < c.singular_ratio < 1 and c.rank == 6 and c.scale == 1.0
+
+
+def test_drive_does_the_same_as_steps():
+    r = cy.load("panda")
+    c = cy.Servo(r)
+    target = lowered(r)
+    outcome = c.drive(r.home, target, record=True)
+    assert outcome.reached and outcome.reason == "reached" and outcome.stall is None
+    way = outcome.trajectory
+    assert len(way) == outcome.steps + 1 == len(way.time)
+    assert way.q.shape == way.rates.shape == (len(way), 7) and way.pose.shape == (len(way), 4, 4)
+    np.testing.assert_array_equal(way.q[-1], outcome.q)
+    np.testing.assert_allclose(way.pose, r.fk(way.q), atol=1e-14)
+    assert way.position_error[-1] == outcome.position_error <= 1e-6
+    q, again = r.home, cy.Servo(r)
+    for i in range(len(way)):
+        np.testing.assert_array_equal(again.step(q, target), way.rates[i])
+        q = again.advance(q)
+    assert "reached" in repr(outcome) and "<table>" in outcome._repr_html_()
+    assert c.drive(r.home, target).trajectory is None
+
+
+def test_stalls_say_why():
+    r = cy.load("panda")
+    far = lowered(r)
+    far[0, 3] = 3.0
+    c = cy.Servo(r)
+    outcome = c.drive(r.home, far)
+    assert not outcome.reached and outcome.reason == "out-of-reach"
+    assert outcome.stall.distance > outcome.stall.length > 0.5
+    assert "stretched arm" in outcome.stall.message and "out-of-reach" in repr(outcome.stall)
+    assert c.status == "stalled" and c.stall.name == "out-of-reach"
+    three = cy.load("3r")
+    target = three.fk(three.home + 0.3)
+    target[:3, :3] = target[:3, :3] @ [[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]]
+    outcome = cy.Servo(three).drive(three.home + 0.3, target)
+    assert outcome.reason == "too-few-joints" and not outcome.reached
+    assert abs(np.linalg.norm(outcome.stall.direction) - 1) < 1e-12
+    bound = cy.Servo(r, task="position")
+    outside = r.fk(r.upper - 0.01)
+    outside[:3, 3] = r.fk(r.home)[:3, 3] * [-1, 1, 0.2]
+    outcome = bound.drive(r.home, outside)
+    assert outcome.reached or outcome.stall.name in ("limits", "singular", "slow")
+
+
+def test_options_are_the_command_lines():
+    r = cy.load("panda")
+    c = cy.Servo(r, "link5", (5.0, 2.0), dt=0.01, speed=(0.1, 0.5), task="position")
+    assert c.frame == "link5" and c.dt == 0.01
+    T = r.fk(r.home, "link5")
+    T[2, 3] += 0.3
+    q, speeds = r.home, []
+    for _ in range(50):
+        rates = c.step(q, T)
+        speeds.append(np.linalg.norm(r.jacobian(q, "link5")[:3] @ rates))
+        q = c.advance(q)
+    assert abs(max(speeds) - 0.1) < 1e-9
+    assert c.orientation_error == 0.0
+    ur = cy.load("ur5e")
+    assert np.isinf(ur.acceleration_limit).all()
+    slow = cy.Servo(ur, acceleration=1.0, dt=0.001)
+    assert np.abs(slow.step(ur.home, lowered(ur))).max() <= 1e-3 * (1 + 1e-12)
+    assert "acceleration" in {kind for _, kind in slow.active_limits}
+    offset = np.eye(4)
+    offset[2, 3] = 0.2
+    tool = cy.Servo(r, tool=offset)
+    tool.step(r.home, r.fk(r.home, tool=offset))
+    assert tool.status == "reached"
+
+
+def test_secondary_wishes_do_not_disturb_the_task():
+    r = cy.load("panda")
+    q = r.home + 0.2
+    target, J = r.fk(q), r.jacobian(q)
+    for options in (
+        {"secondary": "manipulability"},
+        {"secondary": ["centring", "limit-avoidance"]},
+        {"secondary": {"posture": 2.0}, "posture": q + 0.3},
+    ):
+        rates = cy.Servo(r, **options).step(q, target)
+        assert np.linalg.norm(rates) > 1e-6
+        np.testing.assert_allclose(J @ rates, 0, atol=1e-12)
+    wish = np.ones(7)
+    rates = cy.Servo(r, secondary="none").step(q, target, wish)
+    assert np.linalg.norm(rates) > 0.01
+    np.testing.assert_allclose(J @ rates, 0, atol=1e-12)
+    np.testing.assert_allclose(cy.Servo(r, secondary="none").step(q, target), 0, atol=1e-15)
+
+
+def test_hyperbolic_servo_of_five_joints():
+    r = cy.load("youbot")
+    q = r.home + 0.3
+    J = r.jacobian(q, reference="local_world_aligned")
+    twist = np.array([1, 2, -1, 3, 1, 2]) * 1e-3
+    c = cy.Servo(r, inverse="hyperbolic", h=0.1, secondary="none")
+    rates = c.step(q, r.fk(q), feed_forward=twist)
+    np.testing.assert_allclose(rates, cy.hyperbolic(J, 0.1).matrix @ twist, atol=1e-10)
+    assert c.no_inverse is None
+    given_up = cy.Servo(r, inverse="oblique", give_up=["rx"], secondary="none")
+    given_up.step(q, r.fk(q), feed_forward=twist)
+    assert given_up.no_inverse is None
+    same = cy.Servo(r, inverse="oblique", give_up=[[0, 0, 0, 1, 0, 0]], secondary="none")
+    same.step(q, r.fk(q), feed_forward=twist)
+    np.testing.assert_array_equal(same.rates, given_up.rates)
+
+
+def test_closed_chains_are_driven():
+    r = cy.load("five-bar")
+    start = r.assemble().q
+    target = r.fk(start, r.reference)
+    target[:2, 3] += [0.05, -0.05]
+    c = cy.Servo(r, task="position")
+    outcome = c.drive(start, target)
+    assert outcome.reached, outcome
+    assert r.constraint(outcome.q).gap.distance < 1e-9
+    np.testing.assert_allclose(r.fk(outcome.q, r.reference)[:2, 3], target[:2, 3], atol=1e-6)
+
+
+def test_a_way_round():
+    r = cy.load("panda")
+    c = cy.Servo(r)
+    rng = np.random.default_rng(3)
+    for _ in range(3):
+        target = r.fk(rng.uniform(r.lower, r.upper))
+        q = c.find_posture(r.home, target)
+        np.testing.assert_allclose(r.fk(q), target, atol=3e-6)
+        assert r.outside_limits(q) == []
+        move = cy.JointMove(r, r.home, q)
+        positions, rates = move.at(np.linspace(-1, move.duration + 1, 50))
+        np.testing.assert_array_equal(positions[0], r.home)
+        np.testing.assert_allclose(positions[-1], q, atol=1e-14)
+        assert (np.abs(rates) <= r.velocity_limit * (1 + 1e-9)).all()
+    far = np.eye(4)
+    far[0, 3] = 5
+    assert c.find_posture(r.home, far, runs=3) is None
+
+
+def test_paths_and_moves():
+    r = cy.load("panda")
+    start, end = r.fk(r.home), lowered(r)
+    end[:3, 3] += [0.05, 0.1, 0]
+    line = cy.CartesianPath.line(start, end)
+    assert abs(line.length - np.linalg.norm(end[:3, 3] - start[:3, 3])) < 1e-15
+    assert line.radius == np.inf and line.angle < 1e-7
+    np.testing.assert_allclose(line.pose([0, 1, 2]), [start, end, end], atol=1e-15)
+    assert line.deviation(start)[0] < 1e-15
+    move = cy.CartesianMove(line, speed=0.1, jerk=(10.0, 40.0))
+    slow = cy.CartesianMove(line, speed=0.1, duration=9.0)
+    assert move.duration < 9.0 == slow.duration
+    poses, twists = move.at(np.linspace(0, move.duration, 101))
+    assert poses.shape == (101, 4, 4) and twists.shape == (101, 6)
+    assert np.linalg.norm(twists[:, :3], axis=1).max() <= 0.1 + 1e-12
+    outcome = cy.Servo(r).drive(r.home, move, record=True)
+    assert outcome.reached and outcome.time >= move.duration - 1e-3
+    off = max(line.deviation(T)[0] for T in outcome.trajectory.pose)
+    assert off < 1e-5
+    turn = cy.CartesianPath.turn(start, start[:3, 3] + [0, 0, 0.1], [1, 0, 0], np.pi)
+    assert abs(turn.length - 0.1 * np.pi) < 1e-12 and abs(turn.radius - 0.1) < 1e-12
+    circle = cy.CartesianPath.circle(start, start[:3, 3] + [0.1, 0.1, 0], end)
+    assert circle.length > line.length
+    pose, twist = move.target(0.5, 0.001)
+    assert pose.shape == (4, 4) and twist.shape == (6,)
+
+
+def test_time_law():
+    law = cy.TimeLaw(3.0, 1.0, 2.0)
+    t = np.linspace(-1, 5, 601)
+    s = law.at(t)
+    assert s.shape == (601, 4) and law.duration == 3.5 and law.distance == 3.0
+    np.testing.assert_allclose(np.gradient(s[:, 0], t)[5:-5], s[5:-5, 1], atol=0.02)
+    assert s[0, 0] == 0 and s[-1, 0] == 3.0 and np.abs(s[:, 1]).max() <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("options", "kind", "words"),
+    [
+        ({"gain": 3000.0}, cy.InvalidOptionError, "gain"),
+        ({"gain": [1, 2, 3]}, cy.InvalidOptionError, "one number"),
+        ({"dt": 0.0}, cy.InvalidOptionError, "dt"),
+        ({"inverse": "damp"}, cy.UnknownNameError, "damped"),
+        ({"damping": 0.1}, cy.InvalidOptionError, "eps"),
+        ({"inverse": "hyperbolic"}, cy.InvalidOptionError, "needs this number"),
+        ({"h": 0.1}, cy.InvalidOptionError, "hyperbolic"),
+        ({"fallback": "truncated"}, cy.InvalidOptionError, "always exists"),
+        ({"secondary": "posing"}, cy.UnknownNameError, "posture"),
+        ({"projector": "null"}, cy.UnknownNameError, "exact"),
+        ({"task": "x,w"}, cy.UnknownNameError, "task"),
+        ({"task_axes": "tool"}, cy.UnknownNameError, "reference"),
+        ({"frame": "hand"}, cy.UnknownNameError, "frame"),
+        ({"frame": "base"}, cy.ModelError, "no joint moves"),
+        ({"joint_weights": [1, 2]}, cy.DimensionError, "joint weights"),
+        ({"posture": [1, 2], "secondary": "posture"}, cy.DimensionError, "posture"),
+        ({"length": -1}, cy.InvalidOptionError, "length"),
+    ],
+)
+def test_options_are_checked(options, kind, words):
+    with pytest.raises(kind, match=words):
+        cy.Servo(cy.load("panda"), **options)
+
+
+def test_input_is_checked():
+    r = cy.load("panda")
+    c = cy.Servo(r)
+    T = r.fk(r.home)
+    c.step(r.home, T)
+    before = c.rates
+    for q, target, kind in [
+        (r.home[:3], T, cy.DimensionError),
+        (r.home * np.nan, T, cy.NotFiniteError),
+        (r.home, T * np.nan, cy.NotFiniteError),
+        (r.home, T[:3], cy.InvalidOptionError),
+        (r.home, T.T + 1, cy.InvalidOptionError),
+        ([r.home], T, cy.InvalidOptionError),
+    ]:
+        with pytest.raises(kind):
+            c.step(q, target)
+        np.testing.assert_array_equal(c.rates, before)
+    with pytest.raises(cy.DimensionError, match="secondary"):
+        c.step(r.home, T, [1.0])
+    with pytest.raises(cy.InvalidOptionError, match="duration"):
+        c.drive(r.home, T, duration=np.nan)
+    with pytest.raises(TypeError):
+        c.drive(r.home, "there")
+    with pytest.raises(TypeError):
+        cy.Servo("panda")

@@ -1,0 +1,83 @@
+//! The Python package: its wheel built, installed and tested in environments of their own.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+
+use crate::models;
+use crate::steps::{root, run};
+
+const REQUIREMENTS: &str = "crates/cylindroid-py/requirements-test.txt";
+const TESTS: &str = "crates/cylindroid-py/tests";
+
+/// The Python of a virtual environment.
+fn python(venv: &Path) -> PathBuf {
+    if cfg!(windows) { venv.join("Scripts/python.exe") } else { venv.join("bin/python") }
+}
+
+/// A virtual environment.
+fn environment(venv: &Path) -> Result<PathBuf> {
+    let python = python(venv);
+    if !python.exists() {
+        run(Command::new("python3").args(["-m", "venv"]).arg(venv))
+            .context("the Python package needs Python 3.11 or later with venv and pip")?;
+    }
+    Ok(python)
+}
+
+fn pip(python: &Path, arguments: &[&str]) -> Result<()> {
+    let quiet = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    run(Command::new(python).args(quiet).args(arguments))
+}
+
+/// An environment with these requirements, installed once.
+fn with_requirements(venv: &Path) -> Result<PathBuf> {
+    let python = environment(venv)?;
+    let wanted = fs::read_to_string(root().join(REQUIREMENTS)).context(REQUIREMENTS)?;
+    let stamp = venv.join("requirements.txt");
+    if fs::read_to_string(&stamp).is_ok_and(|got| got == wanted) {
+        return Ok(python);
+    }
+    println!("fetching what the tests of the Python package need (300 MB, once)");
+    pip(&python, &["-r", REQUIREMENTS]).context("pip needs a way to PyPI")?;
+    fs::write(stamp, wanted)?;
+    Ok(python)
+}
+
+/// Builds the wheel as `pip install .` would, and returns it.
+fn wheel(python: &Path) -> Result<PathBuf> {
+    let folder = root().join("target/python-wheels");
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
+    let build = ["-m", "maturin", "build", "--release", "--quiet", "--out"];
+    run(Command::new(python).args(build).arg(&folder))?;
+    let mut wheels = fs::read_dir(&folder)?.filter_map(|e| Some(e.ok()?.path()));
+    match (wheels.next(), wheels.next()) {
+        (Some(wheel), None) => Ok(wheel),
+        _ => bail!("{} should hold one wheel", folder.display()),
+    }
+}
+
+/// Builds, installs and tests the package: pytest, the stubs, the tutorials' examples; then the
+/// wheel in an environment that has nothing but numpy.
+pub(crate) fn test() -> Result<()> {
+    let python = with_requirements(&root().join("target/python-venv"))?;
+    let wheel = wheel(&python)?;
+    let file = wheel.to_string_lossy();
+    pip(&python, &["--force-reinstall", "--no-deps", &file])?;
+    let robots = models::fetch()?;
+    let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider", TESTS];
+    run(Command::new(&python).args(pytest).env("CYLINDROID_TEST_ROBOTS", robots))?;
+    run(Command::new(&python).args(["-m", "mypy.stubtest", "--concise", "cylindroid"]))?;
+
+    let bare = root().join("target/python-bare-venv");
+    if bare.exists() {
+        fs::remove_dir_all(&bare)?;
+    }
+    let python = environment(&bare)?;
+    pip(&python, &[&file])?;
+    run(Command::new(&python).args([format!("{TESTS}/bare.py")]))
+}
