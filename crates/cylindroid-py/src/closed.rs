@@ -190,14 +190,16 @@ impl PyConstraint {
         names.iter().map(ToString::to_string).collect()
     }
 
-    /// The rows of a task map, from a matrix or names of components.
-    fn task(&self, task: &Bound<'_, PyAny>) -> Result<Matrix> {
+    /// The rows of a task map and their names, from a matrix or names of components.
+    fn task(&self, task: &Bound<'_, PyAny>) -> Result<(Matrix, Vec<String>)> {
         let names: Vec<String> = if let Ok(text) = task.extract::<String>() {
             text.split(',').map(|s| s.trim().to_owned()).collect()
         } else if let Ok(names) = task.extract::<Vec<String>>() {
             names
         } else {
-            return task.extract::<Numbers<'_>>()?.matrix("task");
+            let map = task.extract::<Numbers<'_>>()?.matrix("task")?;
+            let names = (1..=map.rows()).map(|i| format!("task {i}")).collect();
+            return Ok((map, names));
         };
         let known = self.component_names();
         let mut map = Matrix::zeros(names.len(), known.len());
@@ -207,14 +209,14 @@ impl PyConstraint {
             };
             map[(row, i)] = 1.0;
         }
-        Ok(map)
+        Ok((map, names))
     }
 
     fn relation(&self, task: Option<&Bound<'_, PyAny>>) -> Result<cylindroid::closure::Relation> {
         let relation = Motions::of(&self.inner).relation();
         Ok(match task {
             None => relation,
-            Some(task) => relation.task(&self.task(task)?)?,
+            Some(task) => relation.task(&self.task(task)?.0)?,
         })
     }
 

@@ -1,7 +1,8 @@
 //! The Python package `cylindroid`: the library for numpy, without mathematics of its own.
 //!
-//! Numbers come in without a copy where the layout allows it, results are one allocation, and the
-//! interpreter is free while batches run. Errors of the library become exceptions, one class for
+//! Numbers come in without a copy where the layout allows it, results are one allocation. The
+//! interpreter is free during batches, searches and reports; single steps of a few microseconds
+//! keep it, since to get it back from another thread can take milliseconds. Errors of the library become exceptions, one class for
 //! each kind. The documentation of every function is that of the Python user.
 
 mod arrays;

@@ -262,9 +262,19 @@ impl PyMechanism {
 }
 
 /// The columns of a Jacobian of a chain, among those of the whole mechanism, row by row.
+#[inline]
 fn scatter(local: &Matrix, coordinates: &[usize], n: usize, out: &mut [f64]) {
-    for (j, &c) in coordinates.iter().enumerate() {
-        for (i, x) in local.column(j).iter().enumerate() {
+    let columns = local.as_slice().as_chunks::<6>().0;
+    if columns.len() == n {
+        for i in 0..6 {
+            for (x, column) in out[i * n..(i + 1) * n].iter_mut().zip(columns) {
+                *x = column[i];
+            }
+        }
+        return;
+    }
+    for (column, &c) in columns.iter().zip(coordinates) {
+        for (i, x) in column.iter().enumerate() {
             out[i * n + c] = *x;
         }
     }

@@ -27,7 +27,7 @@ use crate::table::{self, Table};
 ///     Forces resisted: infinite ones are wrenches that the structure holds.
 /// metric : str
 /// actuated, components : list of str
-///     Names of the entries of directions; of a task that is a map there are no names.
+///     Names of the entries of directions.
 #[pyclass(frozen, name = "Manipulability", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyManipulability {
@@ -178,12 +178,14 @@ impl PyManipulability {
         weights: [Option<&Numbers<'_>>; 4],
         metric: &str,
     ) -> Result<Self> {
-        let map = task.map(|t| constraint.task(t)).transpose()?;
-        let metrics = metrics(constraint, map.as_ref(), weights, metric)?;
-        let components = match (task, &map) {
-            (None, _) | (_, None) => constraint.component_names(),
-            (_, Some(map)) => (1..=map.rows()).map(|i| format!("task {i}")).collect(),
+        let (map, components) = match task {
+            None => (None, constraint.component_names()),
+            Some(task) => {
+                let (map, names) = constraint.task(task)?;
+                (Some(map), names)
+            }
         };
+        let metrics = metrics(constraint, map.as_ref(), weights, metric)?;
         let inner = py.detach(|| {
             let relation = Motions::of(&constraint.inner).relation();
             let relation = match &map {

@@ -1,0 +1,42 @@
+"""What a call from Python costs beyond the library, and what a batch costs.
+
+    cargo xtask python            # builds and installs the package in target/python-venv
+    target/python-venv/bin/python crates/cylindroid-py/benches/overhead.py
+
+Minima of many runs, one core. The library's own times: cargo bench --package cylindroid.
+"""
+
+import timeit
+
+import numpy as np
+
+import cylindroid as cy
+
+
+def nanoseconds(call, number=20_000, repeat=9):
+    return min(timeit.repeat(call, number=number, repeat=repeat)) / number * 1e9
+
+
+def main():
+    print(f"{'':28}{'one call':>12}{'in a batch':>14}  (ns for each configuration)")
+    rng = np.random.default_rng(0)
+    for name in ("panda", "ur5e"):
+        robot = cy.load(name)
+        q, Q = robot.home, rng.uniform(-1, 1, (100_000, robot.n))
+        J = robot.jacobian(q)
+        for what, one, many in [
+            ("fk", lambda: robot.fk(q), lambda: robot.fk(Q)),
+            ("jacobian", lambda: robot.jacobian(q), lambda: robot.jacobian(Q)),
+        ]:
+            single = nanoseconds(one)
+            batch = nanoseconds(many, number=1) / len(Q)
+            print(f"{name + ' ' + what:28}{single:12.0f}{batch:14.1f}")
+        print(f"{name + ' pinv':28}{nanoseconds(lambda: cy.pinv(J)):12.0f}")
+        servo, target = cy.Servo(robot), robot.fk(q)
+        target[2, 3] -= 0.05
+        print(f"{name + ' servo step':28}{nanoseconds(lambda: servo.step(q, target)):12.0f}")
+    print(f"{'an attribute':28}{nanoseconds(lambda: robot.n):12.0f}")
+
+
+if __name__ == "__main__":
+    main()
