@@ -2,7 +2,8 @@
 //!
 //! Formula  damped Gauss-Newton: (J^T J + l^2) dq = -J^T r, r what should be held and is not, J its
 //!          rates; the damping falls by ten when the error does, and rises by ten when it does not;
-//!          every step is cut to the position limits
+//!          every step is cut to the position limits, and coordinates that push against theirs
+//!          take no part in it
 //! Shapes   r: held rows, J: held rows x free coordinates
 //! Units    none: lengths over the reach (`loops.rs`)
 //! Valid    any guess; the answer is the last configuration and how far its loops are open. Where
@@ -36,12 +37,13 @@ pub struct Assembly {
     pub gap: Gap,
     /// Steps taken.
     pub steps: usize,
-    /// Coordinates that stand at a position limit: places in `q`.
+    /// Coordinates that stand at a position limit or beyond: places in `q`.
     pub at_limit: Vec<usize>,
 }
 
 /// Closes the loops of `mechanism` from `guess`; the coordinates in `held` keep their values, the
-/// others their position limits. Closing joints have no coordinate: their limits do not count, and
+/// others their position limits (a guess beyond them whose loops are closed is returned as it is,
+/// with the coordinates named in `at_limit`). Closing joints have no coordinate: their limits do not count, and
 /// one that is driven cannot be held.
 ///
 /// ```
@@ -61,6 +63,9 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<
     mechanism.check_q("guess", guess)?;
     let free = free_places(mechanism, held)?;
     let mut now = Closing::at(mechanism, guess.to_vec())?;
+    if !now.loops.is_closed() {
+        now = Closing::at(mechanism, within_limits(mechanism, guess.to_vec(), &free))?;
+    }
     let mut damping = DAMPING.0;
     let mut steps = 0;
     while now.loops.error > 0.0 && steps < MOST_STEPS && damping < DAMPING.1 {
@@ -116,10 +121,30 @@ impl Closing {
         Ok(Self { q, loops })
     }
 
-    /// The configuration after a damped step, within the position limits.
+    /// The configuration after a damped step, within the position limits: coordinates at a limit
+    /// that would go on beyond it take no part.
     fn step(&self, mechanism: &Mechanism, free: &[usize], damping: f64) -> Vec<f64> {
-        let svd = Svd::of(&self.loops.rates_by(free));
-        let mut change = vec![0.0; free.len()];
+        let limits = |i: usize| mechanism.coordinates()[i].limits;
+        let mut taking_part = free.to_vec();
+        loop {
+            let change = self.change(&taking_part, damping);
+            let q = moved(mechanism, &self.q, &taking_part, &change);
+            let stuck = |i: usize| {
+                let (before, l) = (self.q[i], limits(i));
+                (before <= l.lower && q[i] < l.lower) || (before >= l.upper && q[i] > l.upper)
+            };
+            let going: Vec<usize> = taking_part.iter().copied().filter(|&i| !stuck(i)).collect();
+            if going.len() == taking_part.len() {
+                return within_limits(mechanism, q, free);
+            }
+            taking_part = going;
+        }
+    }
+
+    /// The damped step of some coordinates.
+    fn change(&self, places: &[usize], damping: f64) -> Vec<f64> {
+        let svd = Svd::of(&self.loops.rates_by(places));
+        let mut change = vec![0.0; places.len()];
         if !svd.is_empty() && svd.value(0) > 0.0 {
             let l = damping * svd.value(0);
             for i in 0..svd.len() {
@@ -134,11 +159,15 @@ impl Closing {
         if most > LARGEST_STEP {
             change.iter_mut().for_each(|c| *c *= LARGEST_STEP / most);
         }
-        let mut q = moved(mechanism, &self.q, free, &change);
-        for &i in free {
-            let l = &mechanism.coordinates()[i].limits;
-            q[i] = q[i].clamp(l.lower, l.upper);
-        }
-        q
+        change
     }
+}
+
+/// Some coordinates cut to their limits.
+pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
+    for &i in places {
+        let l = &mechanism.coordinates()[i].limits;
+        q[i] = q[i].clamp(l.lower, l.upper);
+    }
+    q
 }
