@@ -1,4 +1,5 @@
-//! Sine and cosine as a pair, branch-free, and random numbers: the same on every platform.
+//! Sine and cosine as a pair, branch-free, the same on every platform; and a fixed sequence of
+//! numbers for guesses.
 //!
 //! Formula  reduce by multiples of pi/2 (three-part Cody-Waite), then the fdlibm kernels
 //! Valid    |x| <= 1e5; beyond it (and for NaN and infinity) the standard library is called
@@ -97,7 +98,7 @@ fn small_sin_cos(x: f64, fused: bool) -> (f64, f64) {
     (f64::from_bits(s.to_bits() ^ sin_sign), f64::from_bits(c.to_bits() ^ cos_sign))
 }
 
-/// The next number in [0, 1) of the sequence that starts with a seed as `state` (SplitMix64).
+/// The next number in [0, 1) of a fixed sequence (SplitMix64); `state` is where it stands.
 pub(crate) fn uniform(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;

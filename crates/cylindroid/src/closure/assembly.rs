@@ -5,19 +5,22 @@
 //!          every step is cut to the position limits, and coordinates that push against theirs
 //!          take no part in it
 //! Shapes   r: held rows, J: held rows x free coordinates
-//! Units    none: lengths over the reach (`loops.rs`)
+//! Units    rows of lengths over the reach, columns of lengths times it
 //! Valid    any guess; the answer is the last configuration and how far its loops are open. Where
 //!          the guess is near an assembly the steps are Newton's, and the error falls to rounding.
 //!          It finds one assembly, mostly the nearest; there may be others, and not to find one
 //!          proves nothing
-//! Source   Levenberg 1944, Marquardt 1963
+//! Source   Levenberg 1944, Marquardt 1963; the rows: `graph.rs`
 //! Checked  tests/it/closure/assembly.rs
 
-use super::graph::Gap;
-use super::loops::{Loops, at_limit, free_places, moved};
+use super::constraint::Unit;
+use super::coordinates::{at_limit, columns, free_places, moved};
+use super::graph::{Gap, Row, link_jacobians, rows};
 use crate::error::Result;
-use crate::linalg::Svd;
+use crate::kinematics::State;
+use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
+use crate::tolerance::CLOSED;
 
 /// Steps at most: a dozen suffice where there is an assembly near.
 const MOST_STEPS: usize = 200;
@@ -62,32 +65,34 @@ pub struct Assembly {
 pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<Assembly> {
     mechanism.check_q("guess", guess)?;
     let free = free_places(mechanism, held)?;
-    let mut now = Closing::at(mechanism, guess.to_vec())?;
-    if !now.loops.is_closed() {
-        now = Closing::at(mechanism, within_limits(mechanism, guess.to_vec(), &free))?;
+    let length = mechanism.reach();
+    let mut now = Closing::at(mechanism, guess, &free, length)?;
+    if !now.is_closed(length) {
+        let within = within_limits(mechanism, guess.to_vec(), &free);
+        now = Closing::at(mechanism, &within, &free, length)?;
     }
     let mut damping = DAMPING.0;
     let mut steps = 0;
-    while now.loops.error > 0.0 && steps < MOST_STEPS && damping < DAMPING.1 {
+    while now.error > 0.0 && steps < MOST_STEPS && damping < DAMPING.1 {
         steps += 1;
-        let next = Closing::at(mechanism, now.step(mechanism, &free, damping))?;
-        let (before, after) = (now.loops.error, next.loops.error);
+        let q = now.step(mechanism, &free, damping);
+        let next = Closing::at(mechanism, &q, &free, length)?;
         // NaN is no improvement.
-        if after < before {
-            let little = after > 0.5 * before && next.loops.is_closed();
+        if next.error < now.error {
+            let little = next.error > 0.5 * now.error && next.is_closed(length);
             (now, damping) = (next, 0.1 * damping);
             if little {
                 break; // rounding
             }
-        } else if now.loops.is_closed() {
+        } else if now.is_closed(length) {
             break;
         } else {
             damping *= 10.0;
         }
     }
     Ok(Assembly {
-        closed: now.loops.is_closed(),
-        gap: now.loops.gap,
+        closed: now.is_closed(length),
+        gap: now.gap,
         at_limit: at_limit(mechanism, &now.q),
         q: now.q,
         steps,
@@ -109,48 +114,67 @@ pub fn recover_passive(mechanism: &Mechanism, guess: &[f64]) -> Result<Assembly>
     assemble(mechanism, guess, &driven)
 }
 
-/// A configuration and its loops.
-struct Closing {
-    q: Vec<f64>,
-    loops: Loops,
+/// A configuration with its residuals and their rates, scaled.
+#[derive(Debug)]
+pub(super) struct Closing {
+    pub(super) q: Vec<f64>,
+    pub(super) residuals: Vec<f64>,
+    pub(super) rates: Matrix,
+    pub(super) error: f64,
+    pub(super) gap: Gap,
 }
 
 impl Closing {
-    fn at(mechanism: &Mechanism, q: Vec<f64>) -> Result<Self> {
-        let loops = Loops::at(mechanism, &q)?;
-        Ok(Self { q, loops })
+    pub(super) fn at(
+        mechanism: &Mechanism,
+        q: &[f64],
+        free: &[usize],
+        length: f64,
+    ) -> Result<Self> {
+        let state = mechanism.state(q)?;
+        let (all, _, gap) = rows(&state)?;
+        let held: Vec<&Row> = all.iter().filter(|row| row.rate_of.is_none()).collect();
+        let scale = |row: &Row| if row.unit == Unit::Length { 1.0 / length } else { 1.0 };
+        let residuals: Vec<f64> = held.iter().map(|row| row.residual * scale(row)).collect();
+        let rates = scaled_rates(&state, &held, free, length, scale)?;
+        let error = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
+        Ok(Self { q: q.to_vec(), residuals, rates, error, gap })
+    }
+
+    pub(super) fn is_closed(&self, length: f64) -> bool {
+        self.gap.distance <= CLOSED * length && self.gap.angle <= CLOSED
     }
 
     /// The configuration after a damped step, within the position limits: coordinates at a limit
-    /// that would go on beyond it take no part.
+    /// that would go on beyond it take no part. `free` are those of the rates.
     fn step(&self, mechanism: &Mechanism, free: &[usize], damping: f64) -> Vec<f64> {
-        let limits = |i: usize| mechanism.coordinates()[i].limits;
-        let mut taking_part = free.to_vec();
+        let mut rates = self.rates.clone();
+        let mut places = free.to_vec();
         loop {
-            let change = self.change(&taking_part, damping);
-            let q = moved(mechanism, &self.q, &taking_part, &change);
+            let change = self.change(&rates, damping);
+            let q = moved(mechanism, &self.q, &places, &change);
             let stuck = |i: usize| {
-                let (before, l) = (self.q[i], limits(i));
+                let (before, l) = (self.q[i], mechanism.coordinates()[i].limits);
                 (before <= l.lower && q[i] < l.lower) || (before >= l.upper && q[i] > l.upper)
             };
-            let going: Vec<usize> = taking_part.iter().copied().filter(|&i| !stuck(i)).collect();
-            if going.len() == taking_part.len() {
+            let going: Vec<usize> = (0..places.len()).filter(|&k| !stuck(places[k])).collect();
+            if going.len() == places.len() {
                 return within_limits(mechanism, q, free);
             }
-            taking_part = going;
+            rates = columns(&rates, &going);
+            places = going.iter().map(|&k| places[k]).collect();
         }
     }
 
-    /// The damped step of some coordinates.
-    fn change(&self, places: &[usize], damping: f64) -> Vec<f64> {
-        let svd = Svd::of(&self.loops.rates_by(places));
-        let mut change = vec![0.0; places.len()];
+    /// The damped step of the coordinates that have these rates.
+    fn change(&self, rates: &Matrix, damping: f64) -> Vec<f64> {
+        let svd = Svd::of(rates);
+        let mut change = vec![0.0; rates.cols()];
         if !svd.is_empty() && svd.value(0) > 0.0 {
             let l = damping * svd.value(0);
             for i in 0..svd.len() {
                 let s = svd.value(i);
-                let residuals = &self.loops.residuals;
-                let along: f64 = svd.u(i).iter().zip(residuals).map(|(u, r)| u * r).sum();
+                let along: f64 = svd.u(i).iter().zip(&self.residuals).map(|(u, r)| u * r).sum();
                 let gain = if s > 0.0 { -along / (s + l * (l / s)) } else { 0.0 };
                 change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
             }
@@ -170,4 +194,22 @@ pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[us
         q[i] = q[i].clamp(l.lower, l.upper);
     }
     q
+}
+
+pub(super) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
+    if mechanism.coordinates()[i].kind.unit() == "m" { length } else { 1.0 }
+}
+
+fn scaled_rates(
+    state: &State,
+    held: &[&Row],
+    free: &[usize],
+    length: f64,
+    scale: impl Fn(&Row) -> f64,
+) -> Result<Matrix> {
+    let links = link_jacobians(state)?;
+    Ok(Matrix::from_fn(held.len(), free.len(), |i, j| {
+        let column = column_scale(state.mechanism(), free[j], length);
+        held[i].rate(&links, free[j]) * scale(held[i]) * column
+    }))
 }

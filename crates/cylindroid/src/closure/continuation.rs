@@ -13,8 +13,8 @@
 use std::fmt;
 
 use super::assembly::assemble;
+use super::coordinates::{free_places, unit_of};
 use super::graph::Gap;
-use super::loops::{free_places, unit_of};
 use super::singularity::SingularityKind;
 use super::way::{Point, Refusal, Stride, Way};
 use crate::error::{Error, Result};
@@ -193,11 +193,11 @@ pub fn follow(
     let mut here = way.at(&assembly.q)?;
     let mut path = vec![path_point(&way, &here, 0.0)];
     let (share, end) = walk(&way, &mut here, &mut path, options)?;
-    Ok(Followed { gap: here.loops.gap, q: here.q, share, path, end })
+    Ok(Followed { gap: here.closing.gap, q: here.closing.q, share, path, end })
 }
 
 fn path_point(way: &Way<'_>, point: &Point, share: f64) -> PathPoint {
-    PathPoint { share, q: point.q.clone(), distance: way.distance(point) }
+    PathPoint { share, q: point.closing.q.clone(), distance: way.distance(point) }
 }
 
 /// Steps along the branch until it ends: the share of the way and why.
@@ -210,7 +210,7 @@ fn walk(
     if way.distance(here) < NEAREST {
         return Ok((0.0, PathEnd::Singular(Box::new(in_sight(way, here)?))));
     }
-    if let Some(coordinate) = way.outside(&here.q) {
+    if let Some(coordinate) = way.outside(&here.closing.q) {
         return Ok((0.0, PathEnd::Limit { coordinate }));
     }
     let (mut share, mut step) = (0.0, 1.0_f64);
@@ -258,7 +258,7 @@ fn in_sight(way: &Way<'_>, point: &Point) -> Result<PathSingularity> {
     let (motion, taken) = way.nearly_free(point).unwrap_or_else(|| (vec![0.0; mechanism.n()], 0.0));
     let rates: Vec<f64> =
         motion.iter().enumerate().map(|(i, x)| x * unit_of(mechanism, i)).collect();
-    let state = mechanism.state(&point.q)?;
+    let state = mechanism.state(&point.closing.q)?;
     let twist = |at: Reference| {
         let jacobian: Matrix = state.jacobian(mechanism.reference(), at);
         let of = jacobian.mul_vec(&rates);

@@ -12,8 +12,8 @@
 //!          other half
 //! Checked  tests/it/closure/modes.rs
 
+use super::coordinates::unit_of;
 use super::graph::link_jacobians;
-use super::loops::unit_of;
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;

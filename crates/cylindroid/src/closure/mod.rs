@@ -24,9 +24,9 @@
 mod assembly;
 mod constraint;
 mod continuation;
+mod coordinates;
 mod graph;
 mod grasp;
-mod loops;
 mod marks;
 mod mobility;
 mod modes;

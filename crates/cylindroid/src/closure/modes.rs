@@ -17,7 +17,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::assembly::{Assembly, assemble, within_limits};
-use super::loops::{Loops, at_limit, free_places, moved};
+use super::coordinates::{at_limit, closing, columns, free_places, moved};
 use super::marks::{Marks, apart, link_poses};
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
@@ -223,7 +223,7 @@ impl Search<'_> {
     /// The motions of free coordinates that keep the loops closed, a column each (orthonormal,
     /// without unit), and what counts as zero in them.
     fn motions(&self, q: &[f64]) -> Result<(Matrix, f64)> {
-        let rates = Loops::at(self.mechanism, q)?.rates_by(self.free);
+        let rates = columns(&closing(self.mechanism, q)?.rates, self.free);
         let space = ColumnSpace::of(&rates.transpose(), Threshold::Relative(CLOSURE_RANK));
         let largest = space.values().first().copied().unwrap_or(0.0);
         let conditioning = if space.rank() == 0 { 1.0 } else { largest / space.cut().kept };

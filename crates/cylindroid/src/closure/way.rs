@@ -4,7 +4,7 @@
 //! Formula  r(h, f) = 0, h(s) = h0 + s d given: predictor J_f f' = -J_h d, corrector J_f df = -r
 //!          with h at s + ds, both of least norm at the rank that the branch has in general
 //! Shapes   J_f: held rows x free coordinates, J_h: the columns of the held ones
-//! Units    none: lengths over the reach (`loops.rs`)
+//! Units    none: lengths over the reach (`assembly.rs`)
 //! Valid    a step is taken if |J_f' - J_f| <= (s + s') / 2, s the smallest singular value that
 //!          counts, and the corrector moved less than half as far as the predictor. By Weyl's
 //!          inequality s then stays above a quarter of s + s' between the two points where J_f
@@ -16,8 +16,8 @@
 //! Source   Allgower & Georg 1990, chapters 3 and 6
 //! Checked  tests/it/closure/continuation.rs
 
-use super::assembly::assemble;
-use super::loops::{Loops, moved, unit_of};
+use super::assembly::{Closing, assemble};
+use super::coordinates::{closing, columns, moved, unit_of};
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd};
 use crate::model::{Mechanism, Motion};
@@ -41,8 +41,7 @@ const NEAR: f64 = 0.05;
 /// A configuration with closed loops.
 #[derive(Debug)]
 pub(super) struct Point {
-    pub(super) q: Vec<f64>,
-    pub(super) loops: Loops,
+    pub(super) closing: Closing,
     /// J_f and its decomposition.
     by_free: Matrix,
     svd: Svd,
@@ -121,10 +120,10 @@ impl<'a> Way<'a> {
     }
 
     pub(super) fn at(&self, q: &[f64]) -> Result<Point> {
-        let loops = Loops::at(self.mechanism, q)?;
-        let by_free = loops.rates_by(&self.free);
+        let closing = closing(self.mechanism, q)?;
+        let by_free = columns(&closing.rates, &self.free);
         let svd = Svd::of(&by_free);
-        Ok(Point { q: q.to_vec(), loops, by_free, svd })
+        Ok(Point { closing, by_free, svd })
     }
 
     /// Smallest singular value that counts over the largest: zero at a singularity, infinite where
@@ -150,14 +149,14 @@ impl<'a> Way<'a> {
         for (&i, v) in self.free.iter().zip(point.svd.v(last)) {
             motion[i] = *v;
         }
-        let by_held = point.loops.rates_by(self.held);
+        let by_held = columns(&point.closing.rates, self.held);
         let taken = by_held.transpose().mul_vec(point.svd.u(last));
         Some((motion, norm(&taken) / point.svd.value(0).max(f64::MIN_POSITIVE)))
     }
 
     /// f', and true if the free coordinates can follow the held ones at all.
     pub(super) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
-        let opened = point.loops.rates_by(self.held).mul_vec(&self.along);
+        let opened = columns(&point.closing.rates, self.held).mul_vec(&self.along);
         let follow = self.solve(point, &opened);
         let left: Vec<f64> =
             point.by_free.mul_vec(&follow).iter().zip(&opened).map(|(a, b)| a + b).collect();
@@ -178,7 +177,7 @@ impl<'a> Way<'a> {
         Stride { step, to, least }: Stride,
     ) -> Result<std::result::Result<Point, Refusal>> {
         let change: Vec<f64> = tangent.iter().map(|x| step * x).collect();
-        let mut guess = moved(self.mechanism, &here.q, &self.free, &change);
+        let mut guess = moved(self.mechanism, &here.closing.q, &self.free, &change);
         self.put_held(&mut guess, to);
         let Some((there, corrected)) = self.corrected(guess)? else {
             return Ok(Err(Refusal::Far));
@@ -197,15 +196,15 @@ impl<'a> Way<'a> {
         if self.distance(&there) < least {
             return Ok(Err(Refusal::Singular));
         }
-        if let Some(i) = self.outside(&there.q) {
+        if let Some(i) = self.outside(&there.closing.q) {
             return Ok(Err(Refusal::Limit(i)));
         }
         // Beyond a limit by rounding is at it.
-        let beyond: Vec<usize> = self.mechanism.outside_limits(&there.q).collect();
+        let beyond: Vec<usize> = self.mechanism.outside_limits(&there.closing.q).collect();
         if beyond.is_empty() {
             return Ok(Ok(there));
         }
-        let mut q = there.q;
+        let mut q = there.closing.q;
         for i in beyond {
             let l = &self.mechanism.coordinates()[i].limits;
             q[i] = q[i].clamp(l.lower, l.upper);
@@ -235,22 +234,22 @@ impl<'a> Way<'a> {
         let mut now = self.at(&guess)?;
         let mut moved_by = 0.0;
         for _ in 0..MOST_CORRECTIONS {
-            if now.loops.error <= SETTLED {
+            if now.closing.error <= SETTLED {
                 break;
             }
-            let change = self.solve(&now, &now.loops.residuals);
-            let q = moved(self.mechanism, &now.q, &self.free, &change);
+            let change = self.solve(&now, &now.closing.residuals);
+            let q = moved(self.mechanism, &now.closing.q, &self.free, &change);
             if q.iter().any(|x| !x.is_finite()) {
                 return Ok(None);
             }
             let next = self.at(&q)?;
-            if !(next.loops.error < 0.5 * now.loops.error) {
+            if !(next.closing.error < 0.5 * now.closing.error) {
                 break;
             }
             moved_by += norm(&change);
             now = next;
         }
-        Ok(now.loops.is_closed().then_some((now, moved_by)))
+        Ok(now.closing.is_closed(self.mechanism.reach()).then_some((now, moved_by)))
     }
 
     /// The least change of the free coordinates that takes `opened` back.
