@@ -2,7 +2,8 @@
 //!
 //! Formula  damped Gauss-Newton: (J^T J + l^2) dq = -J^T r, r what should be held and is not, J its
 //!          rates; the damping falls by ten when the error does, and rises by ten when it does not;
-//!          every step is cut to the position limits
+//!          every step is cut to the position limits, and coordinates that push against theirs
+//!          take no part in it
 //! Shapes   r: held rows, J: held rows x free coordinates
 //! Units    rows of lengths over the reach, columns of lengths times it
 //! Valid    any guess; the answer is the last configuration and how far its loops are open. Where
@@ -13,7 +14,7 @@
 //! Checked  tests/it/closure/assembly.rs
 
 use super::constraint::Unit;
-use super::coordinates::{at_limit, free_places, moved};
+use super::coordinates::{at_limit, columns, free_places, moved};
 use super::graph::{Gap, Row, link_jacobians, rows};
 use crate::error::Result;
 use crate::kinematics::State;
@@ -39,12 +40,13 @@ pub struct Assembly {
     pub gap: Gap,
     /// Steps taken.
     pub steps: usize,
-    /// Coordinates that stand at a position limit: places in `q`.
+    /// Coordinates that stand at a position limit or beyond: places in `q`.
     pub at_limit: Vec<usize>,
 }
 
 /// Closes the loops of `mechanism` from `guess`; the coordinates in `held` keep their values, the
-/// others their position limits. Closing joints have no coordinate: their limits do not count, and
+/// others their position limits (a guess beyond them whose loops are closed is returned as it is,
+/// with the coordinates named in `at_limit`). Closing joints have no coordinate: their limits do not count, and
 /// one that is driven cannot be held.
 ///
 /// ```
@@ -65,6 +67,10 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<
     let free = free_places(mechanism, held)?;
     let length = mechanism.reach();
     let mut now = Closing::at(mechanism, guess, &free, length)?;
+    if !now.is_closed(length) {
+        let within = within_limits(mechanism, guess.to_vec(), &free);
+        now = Closing::at(mechanism, &within, &free, length)?;
+    }
     let mut damping = DAMPING.0;
     let mut steps = 0;
     while now.error > 0.0 && steps < MOST_STEPS && damping < DAMPING.1 {
@@ -139,10 +145,31 @@ impl Closing {
         self.gap.distance <= CLOSED * length && self.gap.angle <= CLOSED
     }
 
-    /// The configuration after a damped step, within the position limits.
+    /// The configuration after a damped step, within the position limits: coordinates at a limit
+    /// that would go on beyond it take no part. `free` are those of the rates.
     fn step(&self, mechanism: &Mechanism, free: &[usize], damping: f64) -> Vec<f64> {
-        let svd = Svd::of(&self.rates);
-        let mut change = vec![0.0; free.len()];
+        let mut rates = self.rates.clone();
+        let mut places = free.to_vec();
+        loop {
+            let change = self.change(&rates, damping);
+            let q = moved(mechanism, &self.q, &places, &change);
+            let stuck = |i: usize| {
+                let (before, l) = (self.q[i], mechanism.coordinates()[i].limits);
+                (before <= l.lower && q[i] < l.lower) || (before >= l.upper && q[i] > l.upper)
+            };
+            let going: Vec<usize> = (0..places.len()).filter(|&k| !stuck(places[k])).collect();
+            if going.len() == places.len() {
+                return within_limits(mechanism, q, free);
+            }
+            rates = columns(&rates, &going);
+            places = going.iter().map(|&k| places[k]).collect();
+        }
+    }
+
+    /// The damped step of the coordinates that have these rates.
+    fn change(&self, rates: &Matrix, damping: f64) -> Vec<f64> {
+        let svd = Svd::of(rates);
+        let mut change = vec![0.0; rates.cols()];
         if !svd.is_empty() && svd.value(0) > 0.0 {
             let l = damping * svd.value(0);
             for i in 0..svd.len() {
@@ -153,15 +180,20 @@ impl Closing {
             }
         }
         let most = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-        let cut = if most > LARGEST_STEP { LARGEST_STEP / most } else { 1.0 };
-        change.iter_mut().for_each(|c| *c *= cut);
-        let mut q = moved(mechanism, &self.q, free, &change);
-        for &i in free {
-            let l = &mechanism.coordinates()[i].limits;
-            q[i] = q[i].clamp(l.lower, l.upper);
+        if most > LARGEST_STEP {
+            change.iter_mut().for_each(|c| *c *= LARGEST_STEP / most);
         }
-        q
+        change
     }
+}
+
+/// Some coordinates cut to their limits.
+pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
+    for &i in places {
+        let l = &mechanism.coordinates()[i].limits;
+        q[i] = q[i].clamp(l.lower, l.upper);
+    }
+    q
 }
 
 pub(super) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {

@@ -16,7 +16,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::assembly::{Assembly, assemble};
+use super::assembly::{Assembly, assemble, within_limits};
 use super::coordinates::{at_limit, closing, columns, free_places, moved};
 use super::marks::{Marks, apart, link_poses};
 use crate::error::{Error, Result};
@@ -207,11 +207,8 @@ impl Search<'_> {
         let most = along.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         for step in [TRIAL / most, -TRIAL / most] {
             let change: Vec<f64> = along.iter().map(|x| step * x).collect();
-            let mut guess = moved(mechanism, q, self.free, &change);
-            for &i in self.free {
-                let l = &mechanism.coordinates()[i].limits;
-                guess[i] = guess[i].clamp(l.lower, l.upper);
-            }
+            let guess =
+                within_limits(mechanism, moved(mechanism, q, self.free, &change), self.free);
             let near = assemble(mechanism, &guess, self.held)?;
             let state = mechanism.state(&near.q)?;
             if near.closed && farthest(&link_poses(&state)?, &before, mechanism) > TRIAL_MOVED {

@@ -196,6 +196,29 @@ fn stewart_legs_lift_to_their_limits() {
     assert!((top - lifted(0.4)).abs() < 1e-8, "{top}");
 }
 
+/// Legs lengthened and shortened in turn twist the platform about the vertical: it stops just before
+/// a right angle, where a screw about the vertical is lost to the legs (Fichter 1986).
+#[test]
+fn a_stewart_platform_stops_before_a_right_angle() {
+    let stewart = catalogue::load("stewart").unwrap();
+    let legs: Vec<usize> = stewart.actuated().collect();
+    for side in [1.0, -1.0] {
+        let goal = [0.4, -0.4, 0.4, -0.4, 0.4, -0.4].map(|x| side * x);
+        let way = go(&stewart, stewart.home(), &legs, &goal);
+        let found = singular(&way);
+        assert_eq!(found.kind, SingularityKind::TypeII);
+        let pose = stewart.state(&way.q).unwrap().pose(stewart.reference());
+        let turn = pose.rotation.log();
+        assert!(turn.x.abs() < 1e-9 && turn.y.abs() < 1e-9 && pose.translation.x.abs() < 1e-9);
+        assert!(turn.z.abs() < FRAC_PI_2 && turn.z.abs() > FRAC_PI_2 - 0.02, "{turn:?}");
+        let screw = found.screw.unwrap();
+        assert!(
+            screw.axis.direction.z.abs() > 0.999 && screw.axis.point.norm() < 0.05,
+            "{screw:?}"
+        );
+    }
+}
+
 /// A limit of a passive joint on the way: the law of cosines says where the elbow is at it.
 #[test]
 fn a_passive_limit_ends_the_way() {
