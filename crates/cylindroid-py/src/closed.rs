@@ -10,7 +10,7 @@ mod statics;
 mod ways;
 
 use cylindroid::closure::{
-    Assembly, Blocks, ClosedChain, Constraint, Gap, Motions, Unit, Units, assemble,
+    Assembly, Blocks, ClosedChain, Constraint, Gap, Motions, Touch, Unit, Units, assemble,
 };
 use cylindroid::kinematics::State;
 use cylindroid::linalg::Metric;
@@ -24,7 +24,7 @@ use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
-pub(crate) use capability::{PyDirection, PyManipulability, PyPolytope, PySpectrum};
+pub(crate) use capability::{PyDirection, PyGradient, PyManipulability, PyPolytope, PySpectrum};
 pub(crate) use diagnosis::{PyBranch, PyFiniteMobility, PySingularity};
 pub(crate) use grasp::{PyFingerContact, PyGraspQuality, grasp_quality};
 pub(crate) use mobility::{PyJointMobility, PyMobility};
@@ -728,6 +728,104 @@ impl PyMechanism {
         let reports =
             all.try_map(|c| PyManipulability::of(py, c, task.as_ref(), weights, metric))?;
         Ok(object(py, reports)?)
+    }
+
+    /// How a measure of manipulability changes with the configuration.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,), optional
+    ///     Default: home.
+    /// measure : str
+    ///     'volume' (of a serial arm Yoshikawa's), 'smallest', 'largest' or 'anisotropy'.
+    /// actuated, reference
+    ///     As `constraint`.
+    /// task, Wu, Wq, metric
+    ///     As `manipulability`; the metrics stay while q changes.
+    ///
+    /// Returns
+    /// -------
+    /// Gradient
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError, ModelError
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> panda = cy.load("panda")
+    /// >>> panda.manipulability_gradient(panda.home, "volume").gradient.shape
+    /// (7,)
+    #[pyo3(signature = (q = None, measure = "volume", actuated = None, reference = None,
+        task = None, Wu = None, Wq = None, metric = "unit"))]
+    #[expect(non_snake_case, reason = "the field's names")]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn manipulability_gradient(
+        &self,
+        py: Python<'_>,
+        q: Option<Numbers<'_>>,
+        measure: &str,
+        actuated: Option<Vec<String>>,
+        reference: Option<&str>,
+        task: Option<Bound<'_, PyAny>>,
+        Wu: Option<Numbers<'_>>,
+        Wq: Option<Numbers<'_>>,
+        metric: &str,
+    ) -> Result<PyGradient> {
+        let weights = [Wu.as_ref(), Wq.as_ref(), None, None];
+        match self.constraints(q.as_ref(), actuated.as_deref(), reference, None)? {
+            Many::One(c) => PyGradient::of(py, &c, measure, task.as_ref(), weights, metric),
+            Many::All(_) => Err(Failure::option("q", "a batch", "give one configuration, (n,)")),
+        }
+    }
+
+    /// The quality of the grasp by the contacts that the mechanism file names on an object.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,), optional
+    ///     Default: home.
+    /// reference : str, optional
+    ///     A frame of the object. Default: the reference.
+    /// mu, torsion : float, optional
+    ///     Coefficient of friction, and largest moment about the normal over the normal force (m),
+    ///     in place of those of the file.
+    /// strength : float
+    ///     Largest normal force of each finger (N), for the effort 'each'.
+    /// effort : str
+    ///     'shared' or 'each', as of the function `grasp_quality`.
+    ///
+    /// Returns
+    /// -------
+    /// GraspQuality
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError
+    /// InvalidOptionError
+    ///     Also for contacts that are no points, or whose coefficients nobody gives.
+    #[pyo3(signature = (q = None, reference = None, mu = None, torsion = None, strength = 1.0,
+        effort = "shared"))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn grasp_quality(
+        &self,
+        py: Python<'_>,
+        q: Option<Numbers<'_>>,
+        reference: Option<&str>,
+        mu: Option<f64>,
+        torsion: Option<f64>,
+        strength: f64,
+        effort: &str,
+    ) -> Result<PyGraspQuality> {
+        let m = &self.inner;
+        let state = match &q {
+            None => m.state(m.home())?,
+            Some(q) => m.state(q.vector("q")?)?,
+        };
+        let object = reference.map_or(Ok(m.reference()), |name| m.frame(name))?;
+        let touch = Touch { mu, torsion, strength };
+        grasp::of_mechanism(py, &state, object, touch, effort)
     }
 
     /// Closes loops and contacts from a guess, within position limits.

@@ -25,9 +25,9 @@ mod _core {
     #[pymodule_export]
     use crate::closed::{
         PyAssembly, PyAssemblyModes, PyBranch, PyConstraint, PyContactForces, PyDirection,
-        PyFingerContact, PyFiniteMobility, PyFollowed, PyGap, PyGraspQuality, PyJointMobility,
-        PyManipulability, PyMobility, PyPolytope, PySingularity, PySpectrum, PyTorques,
-        grasp_quality,
+        PyFingerContact, PyFiniteMobility, PyFollowed, PyGap, PyGradient, PyGraspQuality,
+        PyJointMobility, PyManipulability, PyMobility, PyPolytope, PySingularity, PySpectrum,
+        PyTorques, grasp_quality,
     };
     #[pymodule_export]
     use crate::ik::PySolution;

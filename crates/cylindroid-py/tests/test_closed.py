@@ -267,3 +267,69 @@ def test_limits_that_are_not_symmetric():
     assert half.offsets.min() < one.offsets.min()
     with pytest.raises(cy.InvalidOptionError):
         c.velocity_polytope(-np.ones(6), task="x,y")
+
+
+def test_gradient_of_manipulability():
+    r = cy.load("panda")
+    q = r.home + 0.2
+    for measure in ("volume", "smallest", "anisotropy"):
+        found = r.manipulability_gradient(q, measure, task="x,y,z")
+        assert found.exists and found.multiplicity == 1 and found.error == 0.0
+
+        def value(q):
+            k = r.manipulability(q, task="x,y,z").kinematic
+            return {"volume": k.volume, "smallest": k.finite[-1], "anisotropy": k.anisotropy}[measure]
+
+        step = 1e-6 * np.eye(7)
+        slopes = [(value(q + s) - value(q - s)) / 2e-6 for s in step]
+        np.testing.assert_allclose(found.gradient, slopes, atol=1e-6 * max(1, found.value))
+        assert abs(found.value - value(q)) < 1e-12 and repr(found)
+    with pytest.raises(cy.UnknownNameError, match="volume"):
+        r.manipulability_gradient(q, "yoshikawa")
+
+
+def test_the_grasp_of_a_mechanism():
+    r = cy.parse(HAND, "toml")
+    rough = r.grasp_quality(mu=0.6)
+    assert rough.closed and rough.epsilon[0] > 0
+    assert r.grasp_quality().epsilon == pytest.approx(r.grasp_quality(mu=0.5).epsilon)
+    assert not r.grasp_quality(mu=0.0).closed
+    assert r.grasp_quality(effort="each", strength=2.0).closed
+
+
+HAND = """
+name = "hand"
+dimension = 2
+reference = "object"
+reference_point = [0, 1]
+
+[[joint]]
+name = "left"
+type = "revolute"
+between = ["ground", "finger 1"]
+origin = [-1, 0]
+actuated = true
+
+[[joint]]
+name = "right"
+type = "revolute"
+between = ["ground", "finger 2"]
+origin = [1, 0]
+actuated = true
+
+[[contact]]
+name = "c1"
+type = "hard_finger"
+between = ["finger 1", "object"]
+point = [-1, 1]
+normal = [1, 0]
+friction = 0.5
+
+[[contact]]
+name = "c2"
+type = "hard_finger"
+between = ["finger 2", "object"]
+point = [1, 1]
+normal = [-1, 0]
+friction = 0.5
+"""

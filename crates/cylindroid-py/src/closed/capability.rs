@@ -3,8 +3,8 @@
 use cylindroid::closure::{Motions, Unit, Units};
 use cylindroid::linalg::{Hull, Interval};
 use cylindroid::manipulability::{
-    Direction, Index, Manipulability, Metrics, Polytope, Spectrum, force_polytope,
-    velocity_polytope,
+    Direction, Goal, Gradient, Index, Manipulability, Measure, Metrics, Polytope, Spectrum,
+    force_polytope, gradient, velocity_polytope,
 };
 use cylindroid::{Error, Matrix};
 use pyo3::prelude::*;
@@ -357,6 +357,103 @@ impl PyManipulability {
             table.row(spectrum.what, spectrum.words());
         }
         table
+    }
+}
+
+/// The derivative of a measure of the kinematic efficiencies by the configuration.
+///
+/// Attributes
+/// ----------
+/// exists : bool
+///     False where efficiencies are equal and the measure has a kink, or there is none.
+/// value : float or None
+///     The measure; None where no efficiency is finite.
+/// gradient : ndarray, (n,), or None
+///     An entry for each coordinate; of a mechanism with loops it lies along their motions.
+/// error : float
+///     Estimate from above of the error of a slope: zero for trees, where rounding is left.
+/// multiplicity : int
+///     How many efficiencies meet: 1 where the gradient exists.
+#[pyclass(frozen, name = "Gradient", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyGradient {
+    inner: Gradient,
+}
+
+#[pymethods]
+impl PyGradient {
+    #[getter]
+    fn exists(&self) -> bool {
+        matches!(self.inner, Gradient::Exists { .. })
+    }
+
+    #[getter]
+    fn value(&self) -> Option<f64> {
+        match self.inner {
+            Gradient::Exists { value, .. } | Gradient::Repeated { value, .. } => Some(value),
+            Gradient::Nothing => None,
+        }
+    }
+
+    #[getter]
+    fn gradient<'py>(&self, py: Python<'py>) -> Option<Array<'py>> {
+        match &self.inner {
+            Gradient::Exists { gradient, .. } => Some(arrays::vector(py, gradient)),
+            _ => None,
+        }
+    }
+
+    #[getter]
+    fn error(&self) -> f64 {
+        if let Gradient::Exists { error, .. } = self.inner { error } else { f64::NAN }
+    }
+
+    #[getter]
+    fn multiplicity(&self) -> usize {
+        match self.inner {
+            Gradient::Exists { .. } => 1,
+            Gradient::Repeated { multiplicity, .. } => multiplicity,
+            Gradient::Nothing => 0,
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        match &self.inner {
+            Gradient::Exists { value, gradient, .. } => format!(
+                "Gradient(value={}, gradient={})",
+                table::number(*value),
+                table::list(gradient)
+            ),
+            Gradient::Repeated { value, multiplicity } => format!(
+                "<Gradient: none, {multiplicity} efficiencies meet at {}>",
+                table::number(*value)
+            ),
+            Gradient::Nothing => "<Gradient: none, no finite efficiency>".to_owned(),
+        }
+    }
+}
+
+impl PyGradient {
+    pub(super) fn of(
+        py: Python<'_>,
+        constraint: &PyConstraint,
+        measure: &str,
+        task: Option<&Bound<'_, PyAny>>,
+        weights: [Option<&Numbers<'_>>; 4],
+        metric: &str,
+    ) -> Result<Self> {
+        let Some(measure) = Measure::ALL.into_iter().find(|m| m.name() == measure) else {
+            let known = Measure::ALL.iter().map(|m| m.name());
+            return Err(Error::unknown("measure", measure, known).into());
+        };
+        let Some(origin) = &constraint.origin else {
+            return Err(Failure::option("measure", measure.name(), "bare matrices do not move"));
+        };
+        let map = task.map(|t| constraint.task(t)).transpose()?.map(|(map, _)| map);
+        let metrics = metrics(constraint, map.as_ref(), weights, metric)?;
+        let goal = Goal { reference: Some(origin.reference), task: map.as_ref() };
+        let inner = py.detach(|| gradient(&origin.state, goal, &metrics, measure))?;
+        Ok(Self { inner })
     }
 }
 

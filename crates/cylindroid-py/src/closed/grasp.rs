@@ -1,7 +1,10 @@
 //! Force closure of grasps.
 
-use cylindroid::closure::{self, Effort, FingerContact, Friction, GraspQuality, WrenchSpace};
-use cylindroid::{Error, Vec3};
+use cylindroid::closure::{
+    self, Effort, FingerContact, Friction, GraspQuality, Touch, WrenchSpace, fingers_on,
+};
+use cylindroid::kinematics::State;
+use cylindroid::{Error, FrameId, Vec3};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
@@ -153,11 +156,7 @@ pub(crate) fn grasp_quality(
     planar: bool,
     effort: &str,
 ) -> Result<PyGraspQuality> {
-    let effort = match effort {
-        "shared" => Effort::Shared,
-        "each" => Effort::Each,
-        _ => return Err(Error::unknown("effort", effort, ["shared", "each"]).into()),
-    };
+    let effort = effort_of(effort)?;
     let point = match &point {
         None => Vec3::ZERO,
         Some(point) => Vec3::from_array(point.entries("point")?),
@@ -165,5 +164,29 @@ pub(crate) fn grasp_quality(
     let contacts: Vec<FingerContact> = contacts.iter().map(|c| c.inner).collect();
     let space = WrenchSpace { point, length, planar };
     let inner = py.detach(|| closure::grasp_quality(&contacts, space, effort))?;
+    Ok(PyGraspQuality { inner })
+}
+
+fn effort_of(name: &str) -> Result<Effort> {
+    match name {
+        "shared" => Ok(Effort::Shared),
+        "each" => Ok(Effort::Each),
+        _ => Err(Error::unknown("effort", name, ["shared", "each"]).into()),
+    }
+}
+
+/// By the contacts of a mechanism on the link that carries `object`.
+pub(super) fn of_mechanism(
+    py: Python<'_>,
+    state: &State,
+    object: FrameId,
+    touch: Touch,
+    effort: &str,
+) -> Result<PyGraspQuality> {
+    let effort = effort_of(effort)?;
+    let fingers = fingers_on(state, object, |_| touch)?;
+    let fingers: Vec<FingerContact> = fingers.into_iter().map(|(_, finger)| finger).collect();
+    let space = WrenchSpace::about(state, object, &fingers)?;
+    let inner = py.detach(|| closure::grasp_quality(&fingers, space, effort))?;
     Ok(PyGraspQuality { inner })
 }
