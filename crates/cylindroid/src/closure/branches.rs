@@ -12,9 +12,9 @@
 //! Why so   zeros of the quadratic part alone would name branches that third order destroys
 //! Checked  tests/it/closure/finite.rs
 
-use super::vicinity::{Near, Vicinity, norm};
+use super::vicinity::{Near, Vicinity};
 use crate::error::Result;
-use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold};
+use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold, norm};
 use crate::model::Mechanism;
 use crate::scalar::uniform;
 

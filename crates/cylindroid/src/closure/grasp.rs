@@ -16,7 +16,7 @@
 //! Checked  tests/it/closure/grasp.rs
 
 use crate::error::{Error, Result};
-use crate::linalg::{Hull, HullGoal, HullOptions, Matrix, Qr};
+use crate::linalg::{Hull, HullGoal, HullOptions, Matrix, Qr, norm};
 use crate::spatial::Vec3;
 use crate::tolerance::{GRASP_QUALITY, HULL, MOST_FACETS, ORTHONORMAL};
 
@@ -241,10 +241,6 @@ fn across(n: Vec3) -> Vec3 {
     let axis = if n.x.abs() < 0.6 { Vec3::X } else { Vec3::new(0.0, 1.0, 0.0) };
     let t = n.cross(axis);
     t * (1.0 / t.norm())
-}
-
-fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|a| a * a).sum::<f64>().sqrt()
 }
 
 fn refuse(option: &'static str, value: f64, reason: &str) -> Error {

@@ -16,7 +16,7 @@
 
 use super::assembly::{Closing, column_scale};
 use crate::error::Result;
-use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, solve_upper};
+use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm, solve_upper};
 use crate::model::Mechanism;
 use crate::tolerance::LOOP_ROUNDING;
 
@@ -158,8 +158,4 @@ fn solve(qr: &Qr, b: &Matrix) -> Matrix {
         x.column_mut(j).copy_from_slice(&column);
     }
     x
-}
-
-pub(super) fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -19,7 +19,7 @@
 use super::assembly::{Closing, assemble};
 use super::coordinates::{closing, columns, moved, unit_of};
 use crate::error::Result;
-use crate::linalg::{Matrix, Svd};
+use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, Motion};
 use crate::scalar::uniform;
 use crate::spatial::{Pose, Rotation, Vec3, log};
@@ -264,10 +264,6 @@ impl<'a> Way<'a> {
         }
         change
     }
-}
-
-fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// What moves the held coordinates from `q` to `goal`, without unit: differences, for balls and

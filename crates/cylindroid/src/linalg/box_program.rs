@@ -15,6 +15,7 @@
 
 use super::matrix::Matrix;
 use super::qr::{Qr, solve_upper};
+use super::vector::{dot, norm};
 use crate::tolerance::BOX_PROGRAM;
 
 /// What a row may be: from `lower` to `upper`, zero among it.
@@ -176,12 +177,4 @@ fn inverse(a: &Matrix) -> Matrix {
         inverse.column_mut(j).copy_from_slice(&solve_upper(&r, &e));
     }
     inverse
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
 }

@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 
 use super::matrix::Matrix;
 use super::qr::Qr;
+use super::vector::dot;
 use crate::tolerance::HULL;
 
 /// What is wanted of the hull.
@@ -280,8 +281,4 @@ impl Growth {
         }
         true
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

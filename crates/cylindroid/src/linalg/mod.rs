@@ -13,6 +13,7 @@ mod qr;
 mod singular_values;
 mod svd;
 mod symmetric;
+mod vector;
 
 pub use box_program::{BoxProgram, Interval, Pull};
 pub use column_space::{ColumnSpace, Cut, Threshold};
@@ -25,3 +26,4 @@ pub use qr::Qr;
 pub(crate) use qr::solve_upper;
 pub use svd::{Rank, Svd};
 pub use symmetric::Eigen;
+pub(crate) use vector::norm;

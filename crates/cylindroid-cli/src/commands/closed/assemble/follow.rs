@@ -7,12 +7,12 @@ use cylindroid::closure::{
     FollowOptions, Followed, PathEnd, PathSingularity, SingularityKind, follow,
 };
 use cylindroid::model::Dimension;
-use cylindroid::screws::Screw;
 use serde::Serialize;
 
 use super::{Job, NOT_CLOSED, open_by, q_line};
 use crate::commands::Style;
 use crate::commands::closed::GapJson;
+use crate::commands::closed::singularity::motion_in_words;
 use crate::output::{self, Align, ScrewJson, number};
 
 #[derive(Debug, Serialize)]
@@ -197,22 +197,6 @@ fn gained(job: &Job<'_>, s: &PathSingularity) -> String {
         Some(screw) => {
             let planar = job.mechanism.dimension() == Dimension::Planar;
             format!("the reference frame gains {}", motion_in_words(&screw, planar))
-        }
-    }
-}
-
-fn motion_in_words(screw: &Screw, planar: bool) -> String {
-    let coordinates = |all: [f64; 3]| output::entries(if planar { &all[..2] } else { &all });
-    let along = coordinates(screw.axis.direction.to_array());
-    let at = coordinates(screw.axis.point.to_array());
-    match output::entries(&[screw.pitch]).as_str() {
-        _ if screw.is_translation() => format!("a translation along ({along})"),
-        _ if planar => format!("a rotation about the point ({at}) m"),
-        "0" => format!("a rotation about the line through ({at}) m along ({along})"),
-        pitch => {
-            format!(
-                "a screw of pitch {pitch} m/rad about the line through ({at}) m along ({along})"
-            )
         }
     }
 }
