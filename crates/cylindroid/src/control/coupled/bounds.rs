@@ -44,9 +44,10 @@ impl Coupled {
         let (mut direct, mut wished) = (vec![0.0; n], vec![0.0; n]);
         self.lift(&self.primary, &mut direct);
         self.lift(&self.wish, &mut wished);
-        // At a limit the way to closed loops ends, too.
+        // At a limit the way to closed loops ends, too. Bounds of acceleration that leave out rest
+        // are met by the motion: a correction that met them would open the loops.
         for (x, bound) in self.correction.iter_mut().zip(p.bounds) {
-            *x = bound.clamp(*x);
+            *x = x.max(bound.lower.min(0.0)).min(bound.upper.max(0.0));
         }
         let start = self.correction.clone();
         let both: Vec<f64> = start.iter().zip(&direct).map(|(a, b)| a + b).collect();
