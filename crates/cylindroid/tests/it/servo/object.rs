@@ -279,6 +279,20 @@ fn weak_joints_keep_loops_closed() {
     }
 }
 
+/// At a position limit of one joint the others slide along it; they do not stop and start.
+#[test]
+fn weak_joints_slide_along_limits() {
+    let mechanism = catalogue::load("two-arm").unwrap();
+    let mut options = ServoOptions::new(&mechanism);
+    options.task = Task::POSITION;
+    let mut servo = Servo::new(&mechanism, options).unwrap();
+    let start = mechanism.home().to_vec();
+    let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
+    target.translation = Vec3::new(0.05, 0.0, 0.05);
+    let outcome = drive(&mut servo, &start, 8.0, |_| (target.into(), true), |_| ()).unwrap();
+    assert!(outcome.stall.is_some() && outcome.last.position_error < 0.415, "{outcome:?}");
+}
+
 /// Drives that do not hold the object make no servo.
 #[test]
 fn an_object_must_be_steered() {
