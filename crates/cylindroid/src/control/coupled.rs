@@ -189,9 +189,14 @@ impl Coupled {
 
     /// Turns wished rates of all joints (not weighted) into `wish`.
     pub(super) fn load_wish(&mut self, wanted: &[f64]) {
-        self.wish.fill(0.0);
-        let y = self.steering.project(wanted);
-        self.wish[..y.len()].copy_from_slice(&y);
+        self.wish = self.effort_of(wanted);
+    }
+
+    /// The y of rates of all joints (not weighted).
+    pub(super) fn effort_of(&self, rates: &[f64]) -> Vec<f64> {
+        let mut y = self.steering.project(rates);
+        y.resize(self.drives, 0.0);
+        y
     }
 
     /// Moves `q`, which the last rates have moved, to where the loops are closed: the drives where

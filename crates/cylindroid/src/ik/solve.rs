@@ -50,8 +50,8 @@ pub struct Solution {
     pub out_of_reach: Option<(f64, f64)>,
 }
 
-/// A solver for one mechanism and end effectors; a loop keeps it, since nothing is allocated in
-/// further calls but the answer.
+/// A solver for one mechanism and end effectors; a loop keeps it, since attempts allocate nothing:
+/// what is allocated in further calls is the answers and what the search for the nearest needs.
 #[derive(Debug, Clone)]
 pub struct Solver {
     problem: Problem,
@@ -129,6 +129,7 @@ impl Solver {
     pub fn solve_several(&mut self, goals: &[Goal], count: usize) -> Result<Vec<Solution>> {
         let mut found = self.search(goals, usize::MAX, |answers| answers >= count)?;
         found.retain(|s| s.success);
+        found.truncate(count);
         Ok(found)
     }
 
@@ -182,7 +183,8 @@ impl Solver {
             orientation_error: errors.orientation,
             iterations,
             attempts,
-            out_of_reach,
+            // Farther by less than the tolerance is reached.
+            out_of_reach: out_of_reach.filter(|_| !success),
         };
         if answers.is_empty() {
             let (mut q, _) =

@@ -219,6 +219,34 @@ fn several_answers() {
     }
 }
 
+/// A target beyond the arm by less than the tolerance is reached, and no proof says otherwise; no
+/// answers are wanted, none are given.
+#[test]
+fn nearly_in_reach_is_reached() {
+    let text = r#"
+name = "slide"
+[[joint]]
+name = "slide"
+type = "prismatic"
+between = ["ground", "hand"]
+axis = [1.0, 0.0, 0.0]
+limits = { lower = 0.0, upper = 1.0 }
+"#;
+    let robot =
+        cylindroid::model::formats::toml::parse(text, std::path::Path::new("text.toml")).unwrap();
+    let hand = robot.frame("hand").unwrap();
+    let mut target = robot.state(&[1.0]).unwrap().pose(hand);
+    let options = IkOptions { position_tolerance: 1e-6, ..IkOptions::default() };
+    target.translation.x += 5e-7;
+    let found = solve(&robot, &[Goal::pose(hand, target)], &options).unwrap();
+    assert!(found.success && found.out_of_reach.is_none(), "{found:?}");
+    target.translation.x += 1e-3;
+    let found = solve(&robot, &[Goal::pose(hand, target)], &options).unwrap();
+    assert!(!found.success && found.out_of_reach.is_some(), "{found:?}");
+    target.translation.x = 0.5;
+    assert!(solve_several(&robot, &[Goal::pose(hand, target)], &options, 0).unwrap().is_empty());
+}
+
 /// Ball joints and free bodies turn by their own rules.
 #[test]
 fn ball_joints_and_free_bodies() {

@@ -2,7 +2,8 @@
 //!
 //! Formula  scaled: the largest s in [0, 1] with M y(s) + s_0 in bounds, rates at a bound held one
 //!          by one while the rest can still do the task;
-//!          bent: from rest towards the task, along bounds where they are met
+//!          bent: from rest (or the last rates, slowed as far as the bounds allow) towards the
+//!          task, along bounds where they are met
 //! Shapes   M: rates x a, y: a, J M: m x a, bounds: one for each rate
 //! Valid    any M. Without loops M is the identity, and what is scaled is what `saturation.rs`
 //!          gives; what is bent is a way of descent, not its least squares
@@ -10,7 +11,7 @@
 //! Checked  tests in this file (against `saturation.rs`), tests/it/servo/object.rs
 
 use super::super::limits::{LimitKind, RateBounds};
-use super::super::saturation::{LEAST_SCALE, Saturation, interval, solve};
+use super::super::saturation::{LEAST_SCALE, Saturation, Span, interval, solve};
 use super::{Coupled, norm};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, RowSpace, Svd};
@@ -26,6 +27,8 @@ pub(in super::super) struct CoupledProblem<'a> {
     pub(in super::super) bounds: &'a [RateBounds],
     /// Of the last step.
     pub(in super::super) rates: &'a [f64],
+    /// Their y.
+    pub(in super::super) last: &'a [f64],
 }
 
 impl Coupled {
@@ -44,9 +47,10 @@ impl Coupled {
         let (mut direct, mut wished) = (vec![0.0; n], vec![0.0; n]);
         self.lift(&self.primary, &mut direct);
         self.lift(&self.wish, &mut wished);
-        // At a limit the way to closed loops ends, too.
+        // At a limit the way to closed loops ends, too. Bounds of acceleration that leave out rest
+        // are met by the motion: a correction that met them would open the loops.
         for (x, bound) in self.correction.iter_mut().zip(p.bounds) {
-            *x = bound.clamp(*x);
+            *x = x.max(bound.lower.min(0.0)).min(bound.upper.max(0.0));
         }
         let start = self.correction.clone();
         let both: Vec<f64> = start.iter().zip(&direct).map(|(a, b)| a + b).collect();
@@ -129,16 +133,22 @@ impl Coupled {
         (best, cause)
     }
 
-    /// A bent way: from rest towards the task, along bounds where they are met. False where not
-    /// even rest is within them.
+    /// A bent way: from rest towards the task, along bounds where they are met; from the last rates,
+    /// slowed, where rest is too far for a step. False where these are not within bounds either.
     fn bend(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) -> bool {
         let n = out.len();
-        if !self.correction.iter().zip(p.bounds).all(|(r, b)| b.contains(*r)) {
-            return false;
-        }
         let mut held = Held::default();
         let mut y = vec![0.0; self.drives];
         let mut rates = self.correction.clone();
+        if !rates.iter().zip(p.bounds).all(|(r, b)| b.contains(*r)) {
+            let mut moved = vec![0.0; n];
+            self.lift(p.last, &mut moved);
+            rates.iter_mut().zip(&moved).for_each(|(r, m)| *r += m);
+            moved.iter_mut().for_each(|m| *m = -*m);
+            let Some(Span { most, .. }) = interval(&rates, &moved, p.bounds) else { return false };
+            rates.iter_mut().zip(&moved).for_each(|(r, m)| *r += most * m);
+            y.iter_mut().zip(p.last).for_each(|(y, l)| *y = (1.0 - most) * l);
+        }
         for _ in 0..n {
             let Some(free) = self.hold(&held, p) else { break };
             let done = p.j.mul_vec(&free.y);
@@ -294,9 +304,15 @@ mod tests {
 
             coupled.primary = solved(&reduced, drives);
             let last = vec![0.0; panda.n()];
-            let (j, rates_before) = (&reduced, &last[..]);
-            let problem =
-                CoupledProblem { j, x: &x, method: &method, bounds: &bounds, rates: rates_before };
+            let (j, rates_before, rest) = (&reduced, &last[..], vec![0.0; drives]);
+            let problem = CoupledProblem {
+                j,
+                x: &x,
+                method: &method,
+                bounds: &bounds,
+                rates: rates_before,
+                last: &rest,
+            };
             let mut found = vec![0.0; panda.n()];
             let saturation = coupled.saturate(problem, &mut found);
             assert_eq!(saturation.bent, expected.bent);

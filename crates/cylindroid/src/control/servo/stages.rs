@@ -110,7 +110,8 @@ impl Servo {
         let columns = &self.space.columns;
         let scaled = |(r, c): (&f64, &f64)| if *c == 0.0 { 0.0 } else { r / c };
         let rates: Vec<f64> = self.rates.iter().zip(columns).map(scaled).collect();
-        let problem = CoupledProblem { j, x, method, bounds, rates: &rates };
+        let last = coupled.effort_of(&self.rates);
+        let problem = CoupledProblem { j, x, method, bounds, rates: &rates, last: &last };
         let mut saturation = coupled.saturate(problem, &mut self.primary);
         self.is_escaping = coupled.is_escaping(q, &self.primary, columns, self.options.dt)?;
         if self.is_escaping {

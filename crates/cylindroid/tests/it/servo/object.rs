@@ -246,6 +246,53 @@ fn the_servo_stops_before_a_motion_escapes_the_drives() {
     assert!(back.reached, "{back:?}");
 }
 
+/// While joints gain speed under acceleration limits, rates keep the loops too, and the object is
+/// there as soon as without loops.
+#[test]
+fn weak_joints_keep_loops_closed() {
+    for (name, way) in [("five-bar", [0.03, -0.03, 0.0]), ("stewart", [0.1, 0.0, 0.1])] {
+        let mechanism = catalogue::load(name).unwrap();
+        let mut options = ServoOptions::new(&mechanism);
+        options.acceleration = 0.5;
+        options.task.components = [true, true, name == "stewart", false, false, false];
+        let dt = options.dt;
+        let mut servo = Servo::new(&mechanism, options).unwrap();
+        let start = mechanism.home().to_vec();
+        let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
+        target.translation = target.translation + Vec3::from_array(way);
+        let (mut before, mut widest) = (start.clone(), 0.0_f64);
+        let outcome = drive(
+            &mut servo,
+            &start,
+            5.0,
+            |_| (target.into(), true),
+            |sample| {
+                let moved = mechanism.integrate(&before, sample.rates, dt).unwrap();
+                widest = widest.max(gap(&mechanism, &moved));
+                before.copy_from_slice(sample.q);
+            },
+        )
+        .unwrap();
+        assert!(outcome.reached, "{name}: {outcome:?}");
+        // Of second order in the step.
+        assert!(widest < 1e-6, "{name}: {widest:e}");
+    }
+}
+
+/// At a position limit of one joint the others slide along it; they do not stop and start.
+#[test]
+fn weak_joints_slide_along_limits() {
+    let mechanism = catalogue::load("two-arm").unwrap();
+    let mut options = ServoOptions::new(&mechanism);
+    options.task = Task::POSITION;
+    let mut servo = Servo::new(&mechanism, options).unwrap();
+    let start = mechanism.home().to_vec();
+    let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
+    target.translation = Vec3::new(0.05, 0.0, 0.05);
+    let outcome = drive(&mut servo, &start, 8.0, |_| (target.into(), true), |_| ()).unwrap();
+    assert!(outcome.stall.is_some() && outcome.last.position_error < 0.415, "{outcome:?}");
+}
+
 /// Drives that do not hold the object make no servo.
 #[test]
 fn an_object_must_be_steered() {
