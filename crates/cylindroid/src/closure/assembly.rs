@@ -18,7 +18,7 @@ use super::coordinates::{at_limit, columns, free_places, moved};
 use super::graph::{Gap, Row, link_jacobians, rows};
 use crate::error::Result;
 use crate::kinematics::State;
-use crate::linalg::{Matrix, Svd};
+use crate::linalg::{Matrix, Svd, dot};
 use crate::model::Mechanism;
 use crate::tolerance::CLOSED;
 
@@ -174,7 +174,7 @@ impl Closing {
             let l = damping * svd.value(0);
             for i in 0..svd.len() {
                 let s = svd.value(i);
-                let along: f64 = svd.u(i).iter().zip(&self.residuals).map(|(u, r)| u * r).sum();
+                let along = dot(svd.u(i), &self.residuals);
                 let gain = if s > 0.0 { -along / (s + l * (l / s)) } else { 0.0 };
                 change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
             }

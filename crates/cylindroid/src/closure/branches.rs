@@ -14,7 +14,7 @@
 
 use super::vicinity::{Near, Vicinity};
 use crate::error::Result;
-use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold, norm};
+use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold, dot, norm};
 use crate::model::Mechanism;
 use crate::scalar::uniform;
 
@@ -171,7 +171,7 @@ fn zero(vicinity: &Vicinity<'_>, start: &[f64], h: f64) -> Result<Option<(Vec<f6
         let mut next = x.clone();
         for i in 0..svd.len() {
             let s = svd.value(i);
-            let along: f64 = svd.u(i).iter().zip(&now.left).map(|(u, g)| u * g).sum();
+            let along = dot(svd.u(i), &now.left);
             let l = damping * svd.value(0);
             let gain = if s > 0.0 { along / (s + l * (l / s)) } else { 0.0 };
             next.iter_mut().zip(svd.v(i)).for_each(|(x, v)| *x -= gain * v);
@@ -208,7 +208,7 @@ fn tangent(
     let mut postures = Vec::new();
     for side in [inwards, -inwards] {
         let Some((near_x, near)) = zero(vicinity, &times(x, side), small)? else { continue };
-        let along: f64 = near_x.iter().zip(x).map(|(a, b)| a * b).sum();
+        let along = dot(&near_x, x);
         if along * side.signum() < NEARLY * small * h {
             continue;
         }
@@ -273,7 +273,7 @@ fn morse(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<usize>> {
         let mut sum = 0.0;
         for side in [h, -h] {
             let Some(near) = vicinity.step(&times(x, side))? else { return Ok(None) };
-            sum += near.left.iter().zip(along.column(0)).map(|(g, a)| g * a).sum::<f64>();
+            sum += dot(&near.left, along.column(0));
         }
         Ok(Some(sum / (h * h)))
     };

@@ -16,7 +16,9 @@
 
 use super::constraint::check_finite;
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, CosineSine, Cut, Matrix, PairKind, Qr, Threshold, solve_upper};
+use crate::linalg::{
+    ColumnSpace, CosineSine, Cut, Matrix, PairKind, Qr, Threshold, dot, solve_upper,
+};
 use crate::tolerance::CLOSURE_BLOCK;
 
 /// The counts of a relation.
@@ -256,8 +258,7 @@ impl Relation {
     pub(super) fn balance(&self, wrench: &[f64]) -> Balance {
         // w' = A^T w, since w^T u = w'^T u'.
         let scaled = self.scale.twist.transpose().mul_vec(wrench);
-        let along =
-            |j: usize| -> f64 { self.cs.y.column(j).iter().zip(&scaled).map(|(y, w)| y * w).sum() };
+        let along = |j: usize| dot(self.cs.y.column(j), &scaled);
         let mut torque = vec![0.0; self.joints()];
         for j in self.finite() {
             let share = -along(j) * self.cs.sines[j] / self.cs.cosines[j];

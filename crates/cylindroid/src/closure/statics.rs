@@ -18,7 +18,7 @@ use super::mobility::Subspace;
 use super::motions::Motions;
 use super::relation::{Balance, Relation};
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold};
+use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold, dot};
 use crate::tolerance::CLOSURE_RANK;
 
 /// Joint torques that balance a wrench.
@@ -74,7 +74,7 @@ pub fn joint_torques(
         metric.whiten(&mut torques);
         let basis = Qr::plain(internal).basis();
         for j in 0..basis.cols() {
-            let along: f64 = basis.column(j).iter().zip(&torques).map(|(b, t)| b * t).sum();
+            let along = dot(basis.column(j), &torques);
             torques.iter_mut().zip(basis.column(j)).for_each(|(t, b)| *t -= along * b);
         }
         metric.colour(&mut torques);
@@ -122,7 +122,7 @@ pub fn contact_forces(
     let mut forces = vec![0.0; t];
     let mut left = target.clone();
     for i in 0..motions.cut().rank.rank.min(svd.len()) {
-        let along: f64 = svd.u(i).iter().zip(&target).map(|(u, b)| u * b).sum();
+        let along = dot(svd.u(i), &target);
         forces.iter_mut().zip(svd.v(i)).for_each(|(f, v)| *f += along / svd.value(i) * v);
         left.iter_mut().zip(svd.u(i)).for_each(|(l, u)| *l -= along * u);
     }

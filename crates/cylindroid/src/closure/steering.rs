@@ -19,7 +19,7 @@ use super::constraint::Unit;
 use super::graph::{Gap, Row, link_jacobians, rows};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};
+use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold, dot};
 use crate::model::{CoordinateKind, JointKind, LoopJoint, Mechanism};
 use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, CORRECTION_RANK};
 
@@ -181,7 +181,7 @@ impl RateRows {
         }
         let svd = Svd::of(&self.matrix);
         for i in 0..svd.rank(CORRECTION_RANK).rank {
-            let along: f64 = svd.u(i).iter().zip(&self.residuals).map(|(u, r)| u * r).sum();
+            let along = dot(svd.u(i), &self.residuals);
             let gain = -along / svd.value(i);
             change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
         }

@@ -19,7 +19,7 @@
 use super::assembly::{Closing, assemble};
 use super::coordinates::{closing, columns, moved, unit_of};
 use crate::error::Result;
-use crate::linalg::{Matrix, Svd, norm};
+use crate::linalg::{Matrix, Svd, dot, norm};
 use crate::model::{Mechanism, Motion};
 use crate::scalar::uniform;
 use crate::spatial::{Pose, Rotation, Vec3, log};
@@ -257,7 +257,7 @@ impl<'a> Way<'a> {
         let mut change = vec![0.0; self.free.len()];
         for i in 0..self.rank {
             let s = point.svd.value(i);
-            let along: f64 = point.svd.u(i).iter().zip(opened).map(|(u, r)| u * r).sum();
+            let along = dot(point.svd.u(i), opened);
             if s > 0.0 {
                 change.iter_mut().zip(point.svd.v(i)).for_each(|(c, v)| *c -= along / s * v);
             }

@@ -18,7 +18,7 @@ pub(super) use bounds::CoupledProblem;
 use crate::closure::{Gap, Steering, assemble};
 use crate::error::{Error, Result};
 use crate::ik::Task;
-use crate::linalg::Matrix;
+use crate::linalg::{Matrix, norm};
 use crate::model::Mechanism;
 use crate::tolerance::{LEAST_STEERED, NEARLY_CLOSED, UNSTEERED};
 
@@ -241,8 +241,4 @@ pub(super) fn not_steered(mechanism: &Mechanism, escape: &Escape, task: Task) ->
             parts.join(", ")
         ),
     }
-}
-
-pub(super) fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|a| a * a).sum::<f64>().sqrt()
 }

@@ -12,7 +12,7 @@
 //! Checked  tests/it/screws/vectors.rs::example_3, ::point_direction
 
 use crate::error::{Error, Result};
-use crate::linalg::{Matrix, RowSpace, Svd};
+use crate::linalg::{Matrix, RowSpace, Svd, dot};
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::{SCREW_CLASS, SCREW_RANK, ZERO_AXIS};
 
@@ -55,7 +55,7 @@ pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<Point
     let mut along = vec![0.0; j.cols()];
     let mut outside = q.to_array();
     for i in 0..space.rank() {
-        let component: f64 = svd.u(i).iter().zip(q.to_array()).map(|(u, x)| u * x).sum();
+        let component = dot(svd.u(i), &q.to_array());
         outside.iter_mut().zip(svd.u(i)).for_each(|(o, u)| *o -= component * u);
         let gain = component / svd.value(i);
         along.iter_mut().zip(svd.v(i)).for_each(|(a, v)| *a += gain * v);

@@ -14,7 +14,7 @@
 //! Source   Buss & Kim 2005, eq. 13 to 15; rho_lj -> |J_j|
 //! Checked  tests/it/inverse.rs::selectively_damped_*
 
-use crate::linalg::Svd;
+use crate::linalg::{Svd, dot};
 
 pub(super) fn gains(svd: &Svd, max_rate: f64, task: &[f64], out: &mut [f64]) -> f64 {
     let machine = svd.machine_rank();
@@ -57,5 +57,5 @@ fn along(svd: &Svd, i: usize, task: &[f64]) -> f64 {
     if task.is_empty() {
         return 1.0;
     }
-    svd.u(i).iter().zip(task).map(|(u, x)| u * x).sum()
+    dot(svd.u(i), task)
 }

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::ops::{Index, IndexMut, Mul};
 
+use super::vector::dot;
+
 /// A dense `rows x cols` matrix, stored by columns.
 #[derive(Clone, PartialEq, Default)]
 pub struct Matrix {
@@ -163,7 +165,7 @@ impl Matrix {
         for _ in 0..2 {
             for l in others.clone().filter(|&l| l != j) {
                 let (own, other) = (self.column(j), self.column(l));
-                let along: f64 = own.iter().zip(other).map(|(a, b)| a * b).sum();
+                let along = dot(own, other);
                 for i in 0..self.rows {
                     self[(i, j)] -= along * self[(i, l)];
                 }
@@ -198,7 +200,7 @@ impl Matrix {
     /// `y = self^T * x` without allocation.
     pub fn tr_mul_vec_into(&self, x: &[f64], y: &mut [f64]) {
         for (column, yj) in self.data.chunks_exact(self.rows.max(1)).zip(y) {
-            *yj = column.iter().zip(x).map(|(a, b)| a * b).sum();
+            *yj = dot(column, x);
         }
     }
 

@@ -26,4 +26,4 @@ pub use qr::Qr;
 pub(crate) use qr::solve_upper;
 pub use svd::{Rank, Svd};
 pub use symmetric::Eigen;
-pub(crate) use vector::norm;
+pub(crate) use vector::{dot, norm};

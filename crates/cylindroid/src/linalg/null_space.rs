@@ -8,6 +8,7 @@
 
 use super::matrix::Matrix;
 use super::svd::Svd;
+use super::vector::dot;
 
 /// The span of some right singular vectors.
 #[derive(Debug, Clone, Copy)]
@@ -64,7 +65,7 @@ impl<'a> RowSpace<'a> {
         for _ in 0..2 {
             for i in (0..self.svd.len()).filter(|&i| self.keeps(i)) {
                 let v = self.svd.v(i);
-                let along: f64 = v.iter().zip(x.iter()).map(|(a, b)| a * b).sum();
+                let along = dot(v, x);
                 for (xj, vj) in x.iter_mut().zip(v) {
                     *xj -= along * vj;
                 }
@@ -97,7 +98,7 @@ impl<'a> RowSpace<'a> {
                     self.project_out(&mut x);
                     for l in 0..found {
                         let b = basis.column(l);
-                        let along: f64 = b.iter().zip(&x).map(|(a, c)| a * c).sum();
+                        let along = dot(b, &x);
                         x.iter_mut().zip(b).for_each(|(xj, bj)| *xj -= along * bj);
                     }
                 }

@@ -12,9 +12,9 @@
 
 use super::super::limits::{LimitKind, RateBounds};
 use super::super::saturation::{LEAST_SCALE, Saturation, Span, interval, solve};
-use super::{Coupled, norm};
+use super::Coupled;
 use crate::inverse::{Method, is_kept};
-use crate::linalg::{Matrix, RowSpace, Svd};
+use crate::linalg::{Matrix, RowSpace, Svd, norm};
 use crate::tolerance::HELD_ROWS;
 
 /// The task in y, and what holds for the rates.

@@ -10,7 +10,7 @@ use super::super::step::Wanted;
 use super::Servo;
 use crate::closure::assemble;
 use crate::error::Result;
-use crate::linalg::RowSpace;
+use crate::linalg::{RowSpace, dot};
 use crate::spatial::Twist;
 use crate::tolerance::AT_LIMIT;
 
@@ -244,8 +244,4 @@ impl Servo {
             }
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

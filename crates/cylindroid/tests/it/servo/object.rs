@@ -259,7 +259,7 @@ fn weak_joints_keep_loops_closed() {
         let mut servo = Servo::new(&mechanism, options).unwrap();
         let start = mechanism.home().to_vec();
         let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
-        target.translation = target.translation + Vec3::from_array(way);
+        target.translation += Vec3::from_array(way);
         let (mut before, mut widest) = (start.clone(), 0.0_f64);
         let outcome = drive(
             &mut servo,
