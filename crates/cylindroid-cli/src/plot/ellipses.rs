@@ -52,14 +52,18 @@ struct Ellipse {
 
 impl Ellipse {
     fn of(spectrum: &Spectrum) -> Self {
-        let pairs = |m: &Matrix| (0..m.cols()).map(|j| [m[(0, j)], m[(1, j)]]).collect();
-        let axes = pairs(&spectrum.semi_axes());
+        let pairs = |m: &Matrix| -> Vec<[f64; 2]> {
+            (0..m.cols()).map(|j| [m[(0, j)], m[(1, j)]]).collect()
+        };
+        // A semi-axis may point either way; the rim starts at the same end whatever the rounding.
+        let forwards = |[x, y]: [f64; 2]| if x + 0.4 * y < 0.0 { [-x, -y] } else { [x, y] };
+        let axes = pairs(&spectrum.semi_axes()).into_iter().map(forwards).collect();
         let unit = |d: [f64; 2]| {
             let size = d[0].hypot(d[1]);
             [d[0] / size, d[1] / size]
         };
-        let endless: Vec<[f64; 2]> = pairs(&spectrum.infinite);
-        Self { axes, endless: endless.into_iter().map(unit).collect() }
+        let endless = pairs(&spectrum.infinite).into_iter().map(unit).collect();
+        Self { axes, endless }
     }
 
     fn size(&self) -> f64 {
