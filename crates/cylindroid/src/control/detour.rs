@@ -12,12 +12,10 @@
 
 use super::servo::Servo;
 use crate::error::Result;
-use crate::ik::{Budget, Goal, IkOptions, solve};
+use crate::ik::{ATTEMPT_STEPS, Budget, Goal, IkOptions, solve};
 use crate::model::CoordinateKind;
 use crate::spatial::Pose;
 
-/// Steps of an attempt that are counted on.
-const STEPS: usize = 60;
 /// Share of the servo's tolerance within which the posture reaches the target [-].
 const WITHIN: f64 = 0.5;
 
@@ -58,7 +56,7 @@ pub fn find_posture(
         fixed: (0..mechanism.n()).filter(|c| !free.contains(c)).collect(),
         nearest: true,
         seed: 0,
-        budget: Budget { iterations: STEPS * most_runs.max(1), time: None },
+        budget: Budget { iterations: ATTEMPT_STEPS * most_runs.max(1), time: None },
         length: Some(options.length),
     };
     let goal = Goal { end_effector: options.end_effector, target, task: options.task };

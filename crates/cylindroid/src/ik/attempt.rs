@@ -12,12 +12,13 @@
 //! Source   Sugihara 2011 (damping by the error); projected Newton steps: Bertsekas 1982
 //! Checked  tests/it/ik.rs
 
-use super::damped::Damped;
+use super::damped::{Damped, Wanted};
 use super::goal::Goal;
 use super::options::IkOptions;
+use crate::error::{Error, Result};
 use crate::kinematics::Chain;
 use crate::linalg::Matrix;
-use crate::model::{CoordinateKind, Mechanism};
+use crate::model::{CoordinateKind, Mechanism, Motion};
 
 /// Damping over the squared error [-].
 const DAMPING: f64 = 0.03;
@@ -57,13 +58,15 @@ struct Part {
 /// The goals of a mechanism with memory to work at them.
 #[derive(Debug, Clone)]
 pub(super) struct Problem {
-    mechanism: Mechanism,
+    pub(super) mechanism: Mechanism,
     parts: Vec<Part>,
     /// The coordinates that move the end effectors: places in `q`, ascending.
     pub(super) coordinates: Vec<usize>,
     /// Limits of these coordinates.
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
+    /// True for those that are back where they were after a whole turn.
+    pub(super) turns: Vec<bool>,
     /// True if all are angles and lengths, whose changes are their rates.
     simple: bool,
     m: usize,
@@ -109,6 +112,7 @@ impl Problem {
             |&c: &usize| matches!(all[c].kind, CoordinateKind::Angle | CoordinateKind::Length);
         Self {
             simple: coordinates.iter().all(simple),
+            turns: coordinates.iter().map(|&c| is_back_after_a_turn(mechanism, c)).collect(),
             lower: coordinates.iter().map(|&c| all[c].limits.lower).collect(),
             upper: coordinates.iter().map(|&c| all[c].limits.upper).collect(),
             a: vec![0.0; m * n],
@@ -126,10 +130,20 @@ impl Problem {
     }
 
     /// Other targets for the same end effectors.
-    pub(super) fn aim(&mut self, goals: &[Goal]) {
-        for (part, goal) in self.parts.iter_mut().zip(goals) {
+    pub(super) fn aim(&mut self, goals: &[Goal]) -> Result<()> {
+        Error::check_len("goals", self.parts.len(), goals.len())?;
+        for (i, (part, goal)) in self.parts.iter_mut().zip(goals).enumerate() {
+            if (part.goal.end_effector, part.goal.task) != (goal.end_effector, goal.task) {
+                return Err(Error::InvalidOption {
+                    option: "goals",
+                    value: format!("goal {i} of another end effector or task"),
+                    reason: "a solver is made for its end effectors and tasks; make another"
+                        .to_owned(),
+                });
+            }
             part.goal.target = goal.target;
         }
+        Ok(())
     }
 
     /// Forward kinematics at `q`; writes the errors, scaled.
@@ -178,7 +192,8 @@ impl Problem {
         let damping = DAMPING * squared + LEAST_DAMPING * size;
         self.held.copy_from_slice(&self.fixed);
         for _ in 0..=self.coordinates.len() {
-            if !self.damped.solve(&self.a, &self.e, &self.held, damping, &mut self.d) {
+            let wanted = Wanted { a: &self.a, e: &self.e, held: &self.held, damping };
+            if !self.damped.solve(wanted, &mut self.d) {
                 self.d.fill(0.0);
                 return;
             }
@@ -252,11 +267,6 @@ impl Problem {
         (errors, most)
     }
 
-    /// Number of goals.
-    pub(super) fn goals(&self) -> usize {
-        self.parts.len()
-    }
-
     /// A goal that is farther from the first joint of its chain than the chain is long: both (m).
     pub(super) fn out_of_reach(&self) -> Option<(f64, f64)> {
         self.parts.iter().find_map(|part| {
@@ -314,7 +324,8 @@ impl Problem {
                     .map(|i| (0..wished.len()).map(|j| self.a[j * self.m + i] * wished[j]).sum())
                     .collect();
                 let damping = APPROACH_DAMPING * size;
-                if !self.damped.solve(&self.a, &done, &self.held, damping, &mut self.d) {
+                let wanted = Wanted { a: &self.a, e: &done, held: &self.held, damping };
+                if !self.damped.solve(wanted, &mut self.d) {
                     return;
                 }
                 self.d.iter_mut().zip(&wished).for_each(|(d, w)| *d = w - *d);
@@ -343,6 +354,15 @@ impl Problem {
             }
         }
     }
+}
+
+/// True if nothing moves by a whole turn of the coordinate: not so for screws, and for joints that
+/// follow it by other than whole numbers.
+fn is_back_after_a_turn(mechanism: &Mechanism, coordinate: usize) -> bool {
+    let nodes = mechanism.nodes().iter();
+    let range = |start: usize, motion: Motion| start..start + motion.dof();
+    let mut own = nodes.filter(|n| range(n.coordinate, n.motion).contains(&coordinate));
+    own.all(|n| n.motion == Motion::Revolute && n.multiplier.fract() == 0.0)
 }
 
 /// True where all errors are within tolerance.

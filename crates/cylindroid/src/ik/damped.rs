@@ -9,6 +9,18 @@
 //! Source   Levenberg 1944; Wampler 1986
 //! Checked  tests in this file (against the SVD)
 
+use crate::linalg::dot;
+
+/// What a step shall do.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wanted<'a> {
+    pub(super) a: &'a [f64],
+    pub(super) e: &'a [f64],
+    /// Columns that count as zero.
+    pub(super) held: &'a [bool],
+    pub(super) damping: f64,
+}
+
 /// Memory for steps.
 #[derive(Debug, Clone)]
 pub(super) struct Damped {
@@ -23,34 +35,19 @@ impl Damped {
     }
 
     /// Writes the step into `d`; false where the matrix is not positive definite.
-    pub(super) fn solve(
-        &mut self,
-        a: &[f64],
-        e: &[f64],
-        held: &[bool],
-        damping: f64,
-        d: &mut [f64],
-    ) -> bool {
+    pub(super) fn solve(&mut self, wanted: Wanted<'_>, d: &mut [f64]) -> bool {
         // Said once more as a constant, the common size compiles to straight code.
-        match (e.len(), held.len()) {
-            (6, 6..) => self.by_rows(6, a, e, held, damping, d),
-            (3, 3..) => self.by_rows(3, a, e, held, damping, d),
-            (m, n) if n >= m => self.by_rows(m, a, e, held, damping, d),
-            _ => self.by_columns(a, e, held, damping, d),
+        match (wanted.e.len(), wanted.held.len()) {
+            (6, 6..) => self.by_rows(6, wanted, d),
+            (3, 3..) => self.by_rows(3, wanted, d),
+            (m, n) if n >= m => self.by_rows(m, wanted, d),
+            _ => self.by_columns(wanted, d),
         }
     }
 
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)] // `m` is `e.len()`, said as a constant
-    fn by_rows(
-        &mut self,
-        m: usize,
-        a: &[f64],
-        e: &[f64],
-        held: &[bool],
-        damping: f64,
-        d: &mut [f64],
-    ) -> bool {
+    fn by_rows(&mut self, m: usize, wanted: Wanted<'_>, d: &mut [f64]) -> bool {
+        let Wanted { a, e, held, damping } = wanted;
         let (gram, rest) = (&mut self.gram[..m * m], &mut self.rest[..m]);
         gram.fill(0.0);
         for (column, held) in a.chunks_exact(m).zip(held) {
@@ -72,29 +69,22 @@ impl Damped {
         rest.copy_from_slice(&e[..m]);
         solve(m, gram, rest);
         for ((d, column), held) in d.iter_mut().zip(a.chunks_exact(m)).zip(held) {
-            *d = if *held { 0.0 } else { column.iter().zip(&*rest).map(|(a, r)| a * r).sum() };
+            *d = if *held { 0.0 } else { dot(column, rest) };
         }
         true
     }
 
-    fn by_columns(
-        &mut self,
-        a: &[f64],
-        e: &[f64],
-        held: &[bool],
-        damping: f64,
-        d: &mut [f64],
-    ) -> bool {
+    fn by_columns(&mut self, wanted: Wanted<'_>, d: &mut [f64]) -> bool {
+        let Wanted { a, e, held, damping } = wanted;
         let (m, n) = (e.len(), held.len());
         let column = |j: usize| &a[j * m..(j + 1) * m];
         for i in 0..n {
             for j in 0..=i {
-                let product = || column(i).iter().zip(column(j)).map(|(x, y)| x * y).sum::<f64>();
-                self.gram[i * n + j] = if held[i] || held[j] { 0.0 } else { product() };
+                let apart = held[i] || held[j];
+                self.gram[i * n + j] = if apart { 0.0 } else { dot(column(i), column(j)) };
             }
             self.gram[i * n + i] += if held[i] { 1.0 } else { damping };
-            let along = || column(i).iter().zip(e).map(|(x, y)| x * y).sum::<f64>();
-            self.rest[i] = if held[i] { 0.0 } else { along() };
+            self.rest[i] = if held[i] { 0.0 } else { dot(column(i), e) };
         }
         if !factor(n, &mut self.gram) {
             return false;
@@ -164,14 +154,14 @@ mod tests {
             let held: Vec<bool> = (0..n).map(|_| uniform(&mut random) < 0.2).collect();
             let damping = 0.01;
             let mut d = vec![0.0; n];
-            assert!(Damped::new(m, n).solve(a.as_slice(), &e, &held, damping, &mut d));
+            let wanted = Wanted { a: a.as_slice(), e: &e, held: &held, damping };
+            assert!(Damped::new(m, n).solve(wanted, &mut d));
             let free = Matrix::from_fn(m, n, |i, j| if held[j] { 0.0 } else { a[(i, j)] });
             let svd = Svd::of(&free);
             let mut expected = vec![0.0; n];
             for i in 0..svd.len() {
-                let along: f64 = svd.u(i).iter().zip(&e).map(|(u, e)| u * e).sum();
                 let s = svd.value(i);
-                let gain = along * s / (s * s + damping);
+                let gain = dot(svd.u(i), &e) * s / (s * s + damping);
                 expected.iter_mut().zip(svd.v(i)).for_each(|(x, v)| *x += gain * v);
             }
             for (d, x) in d.iter().zip(&expected) {

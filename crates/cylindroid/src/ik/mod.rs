@@ -22,4 +22,5 @@ mod solve;
 
 pub use goal::{Goal, Task};
 pub use options::{Budget, IkOptions};
+pub(crate) use solve::STEPS as ATTEMPT_STEPS;
 pub use solve::{Solution, Solver, solve, solve_several};

@@ -1,9 +1,9 @@
 //! Inverse kinematics: attempts from the start and from drawn postures, until one reaches.
 //!
 //! Method   the first attempt starts at the given posture, the others at postures drawn evenly
-//!          within the limits (in [-pi, pi] where there are none), the same on every run. What an
-//!          attempt reaches is an answer: within the limits, and within tolerance by forward
-//!          kinematics
+//!          within the limits (in [-pi, pi] where there are none, or where a whole turn changes
+//!          nothing), the same on every run. What an attempt reaches is an answer: within the
+//!          limits, and within tolerance by forward kinematics
 //! Valid    any tree. To find nothing proves nothing, but where the target is farther from the
 //!          first joint than the chain is long
 //! Source   restarts: Beeson & Ames 2015 (TRAC-IK)
@@ -20,7 +20,7 @@ use crate::model::Mechanism;
 use crate::scalar::uniform;
 
 /// Steps of one attempt at most.
-const STEPS: usize = 60;
+pub(crate) const STEPS: usize = 60;
 /// Steps by which the nearest failure is brought as near as it goes.
 const LAST_STEPS: usize = 200;
 /// Attempts after the first answer where the nearest is asked for.
@@ -55,7 +55,6 @@ pub struct Solution {
 #[derive(Debug, Clone)]
 pub struct Solver {
     problem: Problem,
-    mechanism: Mechanism,
     options: IkOptions,
     start: Vec<f64>,
 }
@@ -94,7 +93,7 @@ impl Solver {
         let problem = Problem::new(mechanism, goals, options);
         let mut start = options.start.clone().unwrap_or_else(|| mechanism.home().to_vec());
         problem.clamp(&mut start);
-        Ok(Self { problem, mechanism: mechanism.clone(), options: options.clone(), start })
+        Ok(Self { problem, options: options.clone(), start })
     }
 
     /// Starts the next call at `q`.
@@ -102,7 +101,7 @@ impl Solver {
     /// # Errors
     /// A `q` of the wrong size or not finite.
     pub fn start_at(&mut self, q: &[f64]) -> Result<()> {
-        self.mechanism.check_q("start", q)?;
+        self.problem.mechanism.check_q("start", q)?;
         self.start.copy_from_slice(q);
         self.problem.clamp(&mut self.start);
         Ok(())
@@ -112,7 +111,7 @@ impl Solver {
     /// of [`Solver::new`].
     ///
     /// # Errors
-    /// Goals of another number, numbers that are not finite.
+    /// Goals of another number, end effector or task, numbers that are not finite.
     pub fn solve(&mut self, goals: &[Goal]) -> Result<Solution> {
         if self.options.nearest {
             let mut found = self.search(goals, NEARER, |answers| answers >= NEARER)?;
@@ -140,9 +139,8 @@ impl Solver {
         after_first: usize,
         enough: impl Fn(usize) -> bool,
     ) -> Result<Vec<Solution>> {
-        Error::check_len("goals", self.problem.goals(), goals.len())?;
-        check(&self.mechanism, goals)?;
-        self.problem.aim(goals);
+        check(&self.problem.mechanism, goals)?;
+        self.problem.aim(goals)?;
         let out_of_reach = self.problem.out_of_reach();
         let begin = Instant::now();
         let mut random = self.options.seed;
@@ -200,9 +198,11 @@ impl Solver {
     fn draw(&self, q: &mut [f64], near: bool, random: &mut u64) {
         let p = &self.problem;
         for (i, &c) in p.coordinates.iter().enumerate().filter(|(i, _)| !p.fixed[*i]) {
-            let (middle, spread) = if near { (self.start[c], NEARBY) } else { (0.0, PI) };
+            let bounded = p.lower[i].is_finite() && p.upper[i].is_finite();
+            let anywhere = if bounded && !p.turns[i] { f64::INFINITY } else { PI };
+            let (middle, spread) = if near { (self.start[c], NEARBY) } else { (0.0, anywhere) };
             let (lower, upper) = (p.lower[i].max(middle - spread), p.upper[i].min(middle + spread));
-            // Limits that exclude [-pi, pi] leave one end of it.
+            // Limits that exclude what is drawn from leave one end of it.
             q[c] = (lower + (upper - lower) * uniform(random)).clamp(p.lower[i], p.upper[i]);
         }
     }
@@ -224,17 +224,9 @@ impl Solver {
             let turns = ((self.start[c] - q[c]) / (2.0 * PI)).round();
             let turned = q[c] + 2.0 * PI * turns;
             let within = (self.problem.lower[i]..=self.problem.upper[i]).contains(&turned);
-            if self.problem.fixed[i]
-                || turns == 0.0
-                || !within
-                || self.mechanism.coordinates()[c].kind.unit() != "rad"
-            {
-                continue;
-            }
-            let before = std::mem::replace(&mut q[c], turned);
-            // A joint that others follow, or a screw, is somewhere else then.
-            if !is_reached(self.problem.look(q), &self.options) {
-                q[c] = before;
+            let can = self.problem.turns[i] && !self.problem.fixed[i] && within;
+            if can && turns != 0.0 {
+                q[c] = turned;
             }
         }
     }
@@ -245,11 +237,10 @@ impl Solver {
     }
 
     fn is_same(&self, a: &[f64], b: &[f64]) -> bool {
-        let all = self.mechanism.coordinates();
-        self.problem.coordinates.iter().all(|&c| {
+        let mut all = self.problem.coordinates.iter().zip(&self.problem.turns);
+        all.all(|(&c, turns)| {
             let apart = a[c] - b[c];
-            let turns =
-                if all[c].kind.unit() == "rad" { (apart / (2.0 * PI)).round() } else { 0.0 };
+            let turns = if *turns { (apart / (2.0 * PI)).round() } else { 0.0 };
             (apart - 2.0 * PI * turns).abs() < SAME
         })
     }

@@ -1,10 +1,14 @@
 //! Inverse kinematics against forward kinematics.
 
-use cylindroid::ik::{Budget, Goal, IkOptions, Solution, Task, solve, solve_several};
+use cylindroid::ik::{Budget, Goal, IkOptions, Solution, Solver, Task, solve, solve_several};
 use cylindroid::model::Mechanism;
-use cylindroid::{Pose, Vec3, catalogue};
+use cylindroid::{Pose, Reference, Vec3, catalogue};
 
 use crate::support::{Random, robots};
+
+fn from_text(text: &str) -> Mechanism {
+    cylindroid::model::formats::toml::parse(text, std::path::Path::new("text.toml")).unwrap()
+}
 
 /// What is claimed is true: within the limits, and as near by forward kinematics.
 fn checked(robot: &Mechanism, goals: &[Goal], options: &IkOptions, found: &Solution) {
@@ -14,14 +18,16 @@ fn checked(robot: &Mechanism, goals: &[Goal], options: &IkOptions, found: &Solut
     for goal in goals {
         let pose = state.pose(goal.end_effector);
         let error = pose.error_to(goal.target);
-        if goal.task == Task::POSE {
-            position = position.max(error.linear.norm());
-            orientation = orientation.max(error.angular.norm());
-        } else if goal.task == Task::POSITION {
-            position = position.max(error.linear.norm());
-        } else {
-            return;
-        }
+        let seen = |v: Vec3| match goal.task.axes {
+            Reference::Local => pose.rotation.inverse() * v,
+            _ => v,
+        };
+        let kept = |v: Vec3, keep: &[bool]| -> f64 {
+            let parts = seen(v).to_array().into_iter().zip(keep).filter(|(_, keep)| **keep);
+            parts.map(|(x, _)| x * x).sum::<f64>().sqrt()
+        };
+        position = position.max(kept(error.linear, &goal.task.components[..3]));
+        orientation = orientation.max(kept(error.angular, &goal.task.components[3..]));
     }
     assert!((position - found.position_error).abs() < 1e-12);
     assert!((orientation - found.orientation_error).abs() < 1e-12);
@@ -116,8 +122,7 @@ name = "right"
 model = "ur5e"
 base = { xyz = [0.0, 1.0, 0.0] }
 "#;
-    let pair =
-        cylindroid::model::formats::toml::parse(text, std::path::Path::new("text.toml")).unwrap();
+    let pair = from_text(text);
     let tools = ["left/hand_tcp", "right/tool0"].map(|name| pair.frame(name).unwrap());
     let mut random = Random(63);
     let options = IkOptions::default();
@@ -232,8 +237,7 @@ between = ["ground", "hand"]
 axis = [1.0, 0.0, 0.0]
 limits = { lower = 0.0, upper = 1.0 }
 "#;
-    let robot =
-        cylindroid::model::formats::toml::parse(text, std::path::Path::new("text.toml")).unwrap();
+    let robot = from_text(text);
     let hand = robot.frame("hand").unwrap();
     let mut target = robot.state(&[1.0]).unwrap().pose(hand);
     let options = IkOptions { position_tolerance: 1e-6, ..IkOptions::default() };
@@ -245,6 +249,33 @@ limits = { lower = 0.0, upper = 1.0 }
     assert!(!found.success && found.out_of_reach.is_some(), "{found:?}");
     target.translation.x = 0.5;
     assert!(solve_several(&robot, &[Goal::pose(hand, target)], &options, 0).unwrap().is_empty());
+}
+
+/// A whole turn brings a hinge back to where it was, a screw not: its places are several answers.
+#[test]
+fn whole_turns_of_hinges_are_one_answer_and_of_screws_several() {
+    let of = |kind: &str| {
+        let joint = r#"
+name = "jack"
+[[joint]]
+name = "turn"
+between = ["ground", "hand"]
+origin = [0.0, 0.0, 0.0]
+axis = [0.0, 0.0, 1.0]
+limits = { lower = -13.0, upper = 13.0 }
+"#;
+        from_text(&format!("{joint}{kind}"))
+    };
+    let hinge = of("type = \"revolute\"");
+    let screw = of("type = \"helical\"\npitch = 0.01");
+    for (robot, answers) in [(hinge, 1), (screw, 4)] {
+        let hand = robot.frame("hand").unwrap();
+        let target = robot.state(&[0.5]).unwrap().pose(hand);
+        let goals = [Goal { task: Task::ORIENTATION, ..Goal::pose(hand, target) }];
+        let found = solve_several(&robot, &goals, &IkOptions::default(), 4).unwrap();
+        assert_eq!(found.len(), answers, "{}: {found:?}", robot.name());
+        found.iter().for_each(|one| checked(&robot, &goals, &IkOptions::default(), one));
+    }
 }
 
 /// Ball joints and free bodies turn by their own rules.
@@ -269,8 +300,7 @@ type = "spherical"
 between = ["forearm", "hand"]
 origin = [0.0, 0.0, 0.9]
 "#;
-    let robot =
-        cylindroid::model::formats::toml::parse(text, std::path::Path::new("text.toml")).unwrap();
+    let robot = from_text(text);
     let hand = robot.frame("hand").unwrap();
     let mut random = Random(65);
     for _ in 0..50 {
@@ -311,6 +341,11 @@ fn bad_requests_are_named() {
     refused(&[goal], &IkOptions { start: Some(vec![0.0]), ..options.clone() }, "start");
     let none = Task { components: [false; 6], ..Task::POSE };
     refused(&[Goal { task: none, ..goal }], &options, "components");
+    let mut solver = Solver::new(&panda, &[goal], &options).unwrap();
+    let error = solver.solve(&[Goal { task: Task::POSITION, ..goal }]).unwrap_err().to_string();
+    assert!(error.contains("task"), "{error}");
+    let error = solver.solve(&[goal, goal]).unwrap_err().to_string();
+    assert!(error.contains("goals"), "{error}");
     let stewart = catalogue::load("stewart").unwrap();
     let goal = Goal::pose(stewart.reference(), Pose::IDENTITY);
     let error = solve(&stewart, &[goal], &options).unwrap_err().to_string();
