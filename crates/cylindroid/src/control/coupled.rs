@@ -15,6 +15,7 @@ mod bounds;
 
 pub(super) use bounds::CoupledProblem;
 
+use super::task_space::TaskSpace;
 use crate::closure::{Gap, Steering, assemble};
 use crate::error::{Error, Result};
 use crate::ik::Task;
@@ -84,15 +85,15 @@ impl Coupled {
         self.drives
     }
 
-    /// Looks at the loops of `q`, with `self.task` as the task there, and writes J M. `columns`
-    /// are the scales of the rates.
+    /// Looks at the loops of `q`, with `self.task` as the task there, and writes J M. `space`
+    /// scales the rates.
     ///
     /// # Errors
     /// Loops that are open by more than `NEARLY_CLOSED`.
     pub(super) fn load(
         &mut self,
         q: &[f64],
-        columns: &[f64],
+        space: &TaskSpace,
         dt: f64,
         reduced: &mut Matrix,
     ) -> Result<()> {
@@ -110,37 +111,33 @@ impl Coupled {
                 ),
             });
         }
-        let over = |i: usize, rate: f64| if columns[i] == 0.0 { 0.0 } else { rate / columns[i] };
         self.motions.as_mut_slice().fill(0.0);
         for j in 0..self.steering.motions.cols() {
             let from = self.steering.motions.column(j);
             for (i, x) in self.motions.column_mut(j).iter_mut().enumerate() {
-                *x = over(i, from[i]);
+                *x = space.scaled_rate(i, from[i]);
             }
         }
         for (i, x) in self.correction.iter_mut().enumerate() {
-            *x = over(i, self.steering.correction[i] / dt);
+            *x = space.scaled_rate(i, self.steering.correction[i] / dt);
         }
         let n = self.mechanism.n();
         for j in 0..self.drives {
             let rates = &self.motions.column(j)[..n];
             self.task.mul_vec_into(rates, reduced.column_mut(j));
         }
-        self.escape = self.find_escape(columns);
+        self.escape = self.find_escape(&self.steering, space);
         Ok(())
     }
 
-    /// The motion of the task that the drives have least of, where that is little.
-    fn find_escape(&self, columns: &[f64]) -> Option<Escape> {
-        let in_task = |motion: &[f64]| -> Vec<f64> {
-            let n = self.mechanism.n();
-            let scaled = |(x, c): (&f64, &f64)| if *c == 0.0 { 0.0 } else { x / c };
-            let rates: Vec<f64> = motion[..n].iter().zip(columns).map(scaled).collect();
-            self.task.mul_vec(&rates)
-        };
-        let left = (0..self.steering.left.cols()).map(|j| (0.0, self.steering.left.column(j)));
-        let weak = self.steering.shares.iter().enumerate();
-        let weak = weak.map(|(j, share)| (*share, self.steering.directions.column(j)));
+    /// The motion of the task that the drives have least of where they steer so, and where that is
+    /// little.
+    fn find_escape(&self, steering: &Steering, space: &TaskSpace) -> Option<Escape> {
+        let n = self.mechanism.n();
+        let in_task = |motion: &[f64]| self.task.mul_vec(&space.scaled_rates(&motion[..n]));
+        let left = (0..steering.left.cols()).map(|j| (0.0, steering.left.column(j)));
+        let weak = steering.shares.iter().enumerate();
+        let weak = weak.map(|(j, share)| (*share, steering.directions.column(j)));
         left.chain(weak).take_while(|(share, _)| *share < LEAST_STEERED).find_map(
             |(share, motion)| {
                 let mut direction = in_task(motion);
@@ -165,16 +162,15 @@ impl Coupled {
         &self,
         q: &[f64],
         rates: &[f64],
-        columns: &[f64],
+        space: &TaskSpace,
         dt: f64,
     ) -> Result<bool> {
         let Some(now) = &self.escape else { return Ok(false) };
         let mut next = q.to_vec();
-        let rates: Vec<f64> = rates.iter().zip(columns).map(|(r, c)| r * c).collect();
+        let rates: Vec<f64> = rates.iter().zip(&space.columns).map(|(r, c)| r * c).collect();
         self.mechanism.integrate_in_place(&mut next, &rates[..q.len()], dt);
-        let mut ahead = self.clone();
-        ahead.steering = Steering::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)?;
-        Ok(ahead.find_escape(columns).is_some_and(|then| then.share <= now.share))
+        let ahead = Steering::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)?;
+        Ok(self.find_escape(&ahead, space).is_some_and(|then| then.share <= now.share))
     }
 
     /// `rates = M y`, without the way to closed loops.
@@ -227,8 +223,7 @@ pub(super) fn not_assembled(mechanism: &Mechanism) -> Error {
 
 /// The error of drives that leave the object a motion in every posture.
 pub(super) fn not_steered(mechanism: &Mechanism, escape: &Escape, task: Task) -> Error {
-    const NAMES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
-    let names = NAMES.iter().zip(task.components).filter(|(_, on)| *on);
+    let names = Task::COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
     let parts = names.zip(&escape.direction).filter(|(_, share)| share.abs() > 0.1);
     let parts: Vec<String> = parts.map(|((name, _), share)| format!("{share:.2} {name}")).collect();
     Error::Model {

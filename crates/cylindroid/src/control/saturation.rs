@@ -13,7 +13,7 @@
 
 use super::limits::{LimitKind, RateBounds};
 use crate::inverse::{Method, is_kept};
-use crate::linalg::{Matrix, Svd};
+use crate::linalg::{Matrix, Svd, dot, norm};
 
 /// Below this scale a direction counts as lost and the motion is bent [-].
 pub(super) const LEAST_SCALE: f64 = 0.05;
@@ -227,14 +227,14 @@ impl Saturator {
 
     /// Frees the held joint that would lower the error most by leaving its bound inwards.
     fn release_one(&mut self, p: &Problem<'_>, rates: &[f64]) -> bool {
-        let size = self.rest.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let size = norm(&self.rest);
         let least = RELEASE * self.svd.value(0) * size;
         let mut best = (least, None);
         for (i, bound) in p.bounds.iter().enumerate() {
             if !self.held[i] || bound.lower == bound.upper {
                 continue;
             }
-            let pull: f64 = p.j.column(i).iter().zip(&self.rest).map(|(a, r)| a * r).sum();
+            let pull = dot(p.j.column(i), &self.rest);
             let inwards = if rates[i] >= bound.upper { -pull } else { pull };
             if inwards > best.0 {
                 best = (inwards, Some(i));
@@ -270,7 +270,7 @@ pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], ou
 pub(super) fn apply(svd: &Svd, gains: &[f64], x: &[f64], out: &mut [f64]) {
     out.fill(0.0);
     for (i, gain) in gains.iter().enumerate() {
-        let along: f64 = svd.u(i).iter().zip(x).map(|(u, x)| u * x).sum();
+        let along = dot(svd.u(i), x);
         for (o, v) in out.iter_mut().zip(svd.v(i)) {
             *o += gain * along * v;
         }
@@ -317,8 +317,7 @@ mod tests {
 
     /// The next number in [-1, 1) of a fixed sequence.
     fn next(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        2.0 * crate::scalar::uniform(state) - 1.0
     }
 
     /// What is bent fulfils the conditions of Karush, Kuhn and Tucker for min |J r - x|^2 in a box:

@@ -178,9 +178,10 @@ impl Servo {
             distance: 0.0,
             chain,
         };
-        servo.generic_rank = match servo.coupled.is_some() {
-            true => servo.find_steered_rank()?,
-            false => servo.find_generic_rank(),
+        servo.generic_rank = if servo.coupled.is_some() {
+            servo.find_steered_rank()?
+        } else {
+            servo.find_generic_rank()
         };
         Ok(servo)
     }

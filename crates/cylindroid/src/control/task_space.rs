@@ -56,6 +56,16 @@ impl TaskSpace {
         }
     }
 
+    /// The rate of joint i in scaled coordinates; 0 where it is locked.
+    pub(super) fn scaled_rate(&self, i: usize, rate: f64) -> f64 {
+        if self.is_locked(i) { 0.0 } else { rate / self.columns[i] }
+    }
+
+    /// The rates of the first joints in scaled coordinates.
+    pub(super) fn scaled_rates(&self, rates: &[f64]) -> Vec<f64> {
+        rates.iter().enumerate().map(|(i, rate)| self.scaled_rate(i, *rate)).collect()
+    }
+
     /// Writes a twist in task coordinates.
     pub(super) fn scale(&self, twist: Twist, x: &mut [f64]) {
         let twist = twist.to_array();

@@ -15,6 +15,8 @@ pub struct Task {
 }
 
 impl Task {
+    /// The names of the components, in the order of a twist.
+    pub const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
     /// Position and orientation.
     pub const POSE: Self = Self { components: [true; 6], axes: Reference::LocalWorldAligned };
     /// Position and orientation in the plane x-y.

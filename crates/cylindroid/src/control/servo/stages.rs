@@ -81,7 +81,7 @@ impl Servo {
             return Ok(());
         };
         self.space.load(&self.chain, &mut coupled.task);
-        coupled.load(q, &self.space.columns, self.options.dt, &mut self.task)
+        coupled.load(q, &self.space, self.options.dt, &mut self.task)
     }
 
     /// A posture near home in which the loops are closed; the first is the nearest to home.
@@ -107,13 +107,11 @@ impl Servo {
             self.task.mul_vec_into(&self.primary, &mut self.done);
             return Ok(saturation);
         };
-        let columns = &self.space.columns;
-        let scaled = |(r, c): (&f64, &f64)| if *c == 0.0 { 0.0 } else { r / c };
-        let rates: Vec<f64> = self.rates.iter().zip(columns).map(scaled).collect();
+        let rates = self.space.scaled_rates(&self.rates);
         let last = coupled.effort_of(&self.rates);
         let problem = CoupledProblem { j, x, method, bounds, rates: &rates, last: &last };
         let mut saturation = coupled.saturate(problem, &mut self.primary);
-        self.is_escaping = coupled.is_escaping(q, &self.primary, columns, self.options.dt)?;
+        self.is_escaping = coupled.is_escaping(q, &self.primary, &self.space, self.options.dt)?;
         if self.is_escaping {
             coupled.brake(&problem, &mut self.primary);
             saturation = Saturation { scale: 0.0, bent: false };
@@ -155,8 +153,8 @@ impl Servo {
             if self.wish.iter().all(|w| *w == 0.0) {
                 return;
             }
-            for (w, &c) in self.wish.iter_mut().zip(&self.space.columns) {
-                *w = if c == 0.0 { 0.0 } else { *w / c };
+            for (i, w) in self.wish.iter_mut().enumerate() {
+                *w = self.space.scaled_rate(i, *w);
             }
         }
         let space = match self.options.projector {
@@ -176,12 +174,8 @@ impl Servo {
             let now = Motion1 { position: q.get(c).copied().unwrap_or(0.0), rate: self.rates[c] };
             let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
             self.own_bounds[i] = bound;
-            if self.space.is_locked(i) {
-                (bound.lower, bound.upper) = (0.0, 0.0);
-            } else {
-                bound.lower /= self.space.columns[i];
-                bound.upper /= self.space.columns[i];
-            }
+            bound.lower = self.space.scaled_rate(i, bound.lower);
+            bound.upper = self.space.scaled_rate(i, bound.upper);
             self.bounds[i] = bound;
         }
     }
