@@ -26,10 +26,11 @@ pub fn body_inertia(state: &State, frame: FrameId) -> Option<Matrix> {
     let origin = state.pose(frame).translation;
     let mut sum = Matrix::zeros(6, 6);
     let mut total = 0.0;
-    for (link, own) in mechanism.links().iter().zip(mechanism.frames()) {
-        let (Some(inertial), true) = (&link.inertial, own.slot == slot) else { continue };
-        let Ok(id) = mechanism.frame(&link.name) else { continue };
-        let world_from_inertia = state.pose(id) * inertial.link_from_inertia;
+    for (i, link) in mechanism.links().iter().enumerate() {
+        let link_frame = mechanism.link_frame(i);
+        let carried = mechanism.frame_of(link_frame).slot == slot;
+        let (Some(inertial), true) = (&link.inertial, carried) else { continue };
+        let world_from_inertia = state.pose(link_frame) * inertial.link_from_inertia;
         let mass = inertial.mass;
         let arm = Mat3::skew(world_from_inertia.translation - origin);
         let turn = world_from_inertia.rotation.matrix();
