@@ -13,12 +13,10 @@
 //! Source   Levenberg 1944, Marquardt 1963; the rows: `graph.rs`
 //! Checked  tests/it/closure/assembly.rs
 
-use super::constraint::Unit;
-use super::coordinates::{at_limit, columns, free_places, moved};
-use super::graph::{Gap, Row, link_jacobians, rows};
+use super::coordinates::{at_limit, column_scale, columns, free_places, moved};
+use super::graph::{Gap, Row, for_each_rate, rows};
 use crate::error::Result;
-use crate::kinematics::State;
-use crate::linalg::{Matrix, Svd, dot};
+use crate::linalg::{Matrix, Svd, dot, norm};
 use crate::model::Mechanism;
 use crate::tolerance::CLOSED;
 
@@ -133,11 +131,19 @@ impl Closing {
     ) -> Result<Self> {
         let state = mechanism.state(q)?;
         let (all, _, gap) = rows(&state)?;
-        let held: Vec<&Row> = all.iter().filter(|row| row.rate_of.is_none()).collect();
-        let scale = |row: &Row| if row.unit == Unit::Length { 1.0 / length } else { 1.0 };
-        let residuals: Vec<f64> = held.iter().map(|row| row.residual * scale(row)).collect();
-        let rates = scaled_rates(&state, &held, free, length, scale)?;
-        let error = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let held: Vec<Row> = all.into_iter().filter(|row| row.rate_of.is_none()).collect();
+        let residuals: Vec<f64> = held.iter().map(|row| row.scaled_residual(length)).collect();
+        let mut columns = vec![None; mechanism.n()];
+        for (j, &i) in free.iter().enumerate() {
+            columns[i] = Some((j, column_scale(mechanism, i, length)));
+        }
+        let mut rates = Matrix::zeros(held.len(), free.len());
+        for_each_rate(&state, &held, |i, coordinate, rate| {
+            if let Some((j, scale)) = columns[coordinate] {
+                rates[(i, j)] += rate * scale / held[i].unit.size(length);
+            }
+        });
+        let error = norm(&residuals);
         Ok(Self { q: q.to_vec(), residuals, rates, error, gap })
     }
 
@@ -194,22 +200,4 @@ pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[us
         q[i] = q[i].clamp(l.lower, l.upper);
     }
     q
-}
-
-pub(super) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
-    if mechanism.coordinates()[i].kind.unit() == "m" { length } else { 1.0 }
-}
-
-fn scaled_rates(
-    state: &State,
-    held: &[&Row],
-    free: &[usize],
-    length: f64,
-    scale: impl Fn(&Row) -> f64,
-) -> Result<Matrix> {
-    let links = link_jacobians(state)?;
-    Ok(Matrix::from_fn(held.len(), free.len(), |i, j| {
-        let column = column_scale(state.mechanism(), free[j], length);
-        held[i].rate(&links, free[j]) * scale(held[i]) * column
-    }))
 }

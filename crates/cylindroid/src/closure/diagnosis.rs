@@ -154,7 +154,7 @@ impl Posture {
     }
 
     fn size(&self, unit: Unit) -> f64 {
-        if unit == Unit::Length { self.chain.constraint.length() } else { 1.0 }
+        unit.size(self.chain.constraint.length())
     }
 
     /// Columns of twists (of wrenches, where `dual`) or rates, scaled and made orthonormal.

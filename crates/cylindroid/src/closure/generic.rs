@@ -11,7 +11,8 @@
 //!          Grubler's count is wrong for whatever is overconstrained
 //! Checked  tests/it/closure/diagnosis.rs
 
-use super::assembly::{assemble, column_scale};
+use super::assembly::assemble;
+use super::coordinates::column_scale;
 use super::graph::ClosedChain;
 use super::motions::Motions;
 use super::singularity::Counts;

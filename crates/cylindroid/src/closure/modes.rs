@@ -161,7 +161,7 @@ struct Seen {
 
 impl Search<'_> {
     fn places(&self, q: &[f64]) -> Result<Vec<Vec3>> {
-        Ok(self.marks.at(&link_poses(&self.mechanism.state(q)?)?))
+        Ok(self.marks.at(&link_poses(&self.mechanism.state(q)?)))
     }
 
     fn add(&mut self, assembly: Assembly, guessed: &[Vec3]) -> Result<()> {
@@ -200,7 +200,7 @@ impl Search<'_> {
         if kernel.cols() == 0 {
             return Ok(isolated);
         }
-        let before = link_poses(&mechanism.state(q)?)?;
+        let before = link_poses(&mechanism.state(q)?);
         let mut random = 0;
         let weights: Vec<f64> = (0..kernel.cols()).map(|_| uniform(&mut random) - 0.5).collect();
         let along = kernel.mul_vec(&weights);
@@ -211,9 +211,9 @@ impl Search<'_> {
                 within_limits(mechanism, moved(mechanism, q, self.free, &change), self.free);
             let near = assemble(mechanism, &guess, self.held)?;
             let state = mechanism.state(&near.q)?;
-            if near.closed && farthest(&link_poses(&state)?, &before, mechanism) > TRIAL_MOVED {
+            if near.closed && farthest(&link_poses(&state), &before, mechanism) > TRIAL_MOVED {
                 let (kernel, tolerance) = self.motions(&near.q)?;
-                let resting = self.marks.resting(&state, self.free, &kernel, tolerance)?;
+                let resting = self.marks.resting(&state, self.free, &kernel, tolerance);
                 return Ok((kernel.cols(), resting));
             }
         }

@@ -14,7 +14,8 @@
 //! Source   Lyapunov-Schmidt reduction; Golubitsky & Schaeffer 1985, chapter VII
 //! Checked  tests/it/closure/finite.rs
 
-use super::assembly::{Closing, column_scale};
+use super::assembly::Closing;
+use super::coordinates::column_scale;
 use crate::error::Result;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm, solve_upper};
 use crate::model::Mechanism;

@@ -22,7 +22,7 @@
 
 use super::efficiency::{Direction, Manipulability};
 use super::metrics::Metrics;
-use crate::closure::{ClosedChain, Constraint, Load, Motions, contact_forces};
+use crate::closure::{ClosedChain, Constraint, Load, Motions, Unit, contact_forces};
 use crate::error::Result;
 use crate::inverse::truncated;
 use crate::kinematics::{Reference, State};
@@ -259,8 +259,7 @@ fn metric_times(metric: Option<&Metric>, x: &[f64]) -> Vec<f64> {
 
 /// How coordinates of the tree are scaled.
 fn coordinate_scale(state: &State, length: f64) -> Vec<f64> {
-    let scale = |unit| if unit == "m" { length } else { 1.0 };
-    state.mechanism().coordinates().iter().map(|c| scale(c.kind.unit())).collect()
+    state.mechanism().coordinates().iter().map(|c| Unit::of(c.kind).size(length)).collect()
 }
 
 /// The motions of the tree's coordinates that keep the loops closed, orthonormal when scaled.
