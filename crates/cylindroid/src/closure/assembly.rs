@@ -16,7 +16,8 @@
 use super::coordinates::{at_limit, column_scale, columns, free_places, moved};
 use super::graph::{Gap, Row, for_each_rate, rows};
 use crate::error::Result;
-use crate::linalg::{Matrix, Svd, dot, norm};
+use crate::inverse::damp;
+use crate::linalg::{Matrix, Svd, norm};
 use crate::model::Mechanism;
 use crate::tolerance::CLOSED;
 
@@ -175,16 +176,9 @@ impl Closing {
     /// The damped step of the coordinates that have these rates.
     fn change(&self, rates: &Matrix, damping: f64) -> Vec<f64> {
         let svd = Svd::of(rates);
-        let mut change = vec![0.0; rates.cols()];
-        if !svd.is_empty() && svd.value(0) > 0.0 {
-            let l = damping * svd.value(0);
-            for i in 0..svd.len() {
-                let s = svd.value(i);
-                let along = dot(svd.u(i), &self.residuals);
-                let gain = if s > 0.0 { -along / (s + l * (l / s)) } else { 0.0 };
-                change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
-            }
-        }
+        let l = damping * svd.values().next().unwrap_or(0.0);
+        let gain = |_, s| if s > 0.0 { -damp(s, l) } else { 0.0 };
+        let mut change = svd.apply_gains(&self.residuals, gain);
         let most = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         if most > LARGEST_STEP {
             change.iter_mut().for_each(|c| *c *= LARGEST_STEP / most);

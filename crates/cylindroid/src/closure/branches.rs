@@ -14,6 +14,7 @@
 
 use super::vicinity::{Near, Vicinity};
 use crate::error::Result;
+use crate::inverse::damp;
 use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold, dot, norm};
 use crate::model::Mechanism;
 use crate::scalar::uniform;
@@ -168,16 +169,10 @@ fn zero(vicinity: &Vicinity<'_>, start: &[f64], h: f64) -> Result<Option<(Vec<f6
         if svd.is_empty() || !(svd.value(0) > 0.0) || damping > 1e6 {
             break;
         }
-        let mut next = x.clone();
-        for i in 0..svd.len() {
-            let s = svd.value(i);
-            let along = dot(svd.u(i), &now.left);
-            let l = damping * svd.value(0);
-            let gain = if s > 0.0 { along / (s + l * (l / s)) } else { 0.0 };
-            next.iter_mut().zip(svd.v(i)).for_each(|(x, v)| *x -= gain * v);
-        }
-        let size = norm(&next);
-        let next = times(&next, h / size);
+        let l = damping * svd.value(0);
+        let step = svd.apply_gains(&now.left, |_, s| damp(s, l));
+        let next: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x - d).collect();
+        let next = times(&next, h / norm(&next));
         match vicinity.step(&next)? {
             Some(near) if near.error() < now.error() => {
                 let little = near.error() > 0.5 * now.error();

@@ -18,7 +18,7 @@ use super::mobility::Subspace;
 use super::motions::Motions;
 use super::relation::{Balance, Relation};
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold, dot};
+use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold, dot, norm};
 use crate::tolerance::CLOSURE_RANK;
 
 /// Joint torques that balance a wrench.
@@ -119,18 +119,17 @@ pub fn contact_forces(
         metric.colour_columns(&mut equations);
     }
     let svd = Svd::of(&equations);
-    let mut forces = vec![0.0; t];
+    let rank = motions.cut().rank.rank.min(svd.len());
+    let mut forces = svd.solve(&target, rank);
     let mut left = target.clone();
-    for i in 0..motions.cut().rank.rank.min(svd.len()) {
+    for i in 0..rank {
         let along = dot(svd.u(i), &target);
-        forces.iter_mut().zip(svd.v(i)).for_each(|(f, v)| *f += along / svd.value(i) * v);
         left.iter_mut().zip(svd.u(i)).for_each(|(l, u)| *l -= along * u);
     }
     match compliance {
         Some(metric) => metric.colour(&mut forces),
         None => forces.iter_mut().zip(rows).for_each(|(f, r)| *f *= r),
     }
-    let norm = |x: &[f64]| x.iter().map(|a| a * a).sum::<f64>().sqrt();
     let size = norm(&target);
     Ok(ContactForces { forces, unbalanced: if size > 0.0 { norm(&left) / size } else { 0.0 } })
 }

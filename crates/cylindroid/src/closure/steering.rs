@@ -19,7 +19,7 @@ use super::constraint::Unit;
 use super::graph::{Gap, Row, for_each_rate, rate_unit, rows};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold, dot};
+use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};
 use crate::model::{LoopJoint, Mechanism};
 use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, CORRECTION_RANK};
 
@@ -168,17 +168,12 @@ impl RateRows {
 
     /// -C^+ residual, without directions in which loops can hardly be closed.
     fn correction(&self) -> Vec<f64> {
-        let mut change = vec![0.0; self.scale.len()];
         if self.residuals.iter().all(|r| *r == 0.0) {
-            return change;
+            return vec![0.0; self.scale.len()];
         }
         let svd = Svd::of(&self.matrix);
-        for i in 0..svd.rank(CORRECTION_RANK).rank {
-            let along = dot(svd.u(i), &self.residuals);
-            let gain = -along / svd.value(i);
-            change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
-        }
-        change.iter_mut().zip(&self.scale).for_each(|(c, s)| *c *= s);
+        let mut change = svd.solve(&self.residuals, svd.rank(CORRECTION_RANK).rank);
+        change.iter_mut().zip(&self.scale).for_each(|(c, s)| *c *= -s);
         change
     }
 }

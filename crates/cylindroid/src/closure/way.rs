@@ -19,7 +19,7 @@
 use super::assembly::{Closing, assemble};
 use super::coordinates::{closing, columns, moved, unit_of};
 use crate::error::Result;
-use crate::linalg::{Matrix, Svd, dot, norm};
+use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, Motion};
 use crate::scalar::uniform;
 use crate::spatial::{Pose, Rotation, Vec3, log};
@@ -157,7 +157,7 @@ impl<'a> Way<'a> {
     /// f', and true if the free coordinates can follow the held ones at all.
     pub(super) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
         let opened = columns(&point.closing.rates, self.held).mul_vec(&self.along);
-        let follow = self.solve(point, &opened);
+        let follow = self.back(point, &opened);
         let left: Vec<f64> =
             point.by_free.mul_vec(&follow).iter().zip(&opened).map(|(a, b)| a + b).collect();
         let possible = norm(&left) <= CONTRADICTION * norm(&opened).max(CONTRADICTION);
@@ -237,7 +237,7 @@ impl<'a> Way<'a> {
             if now.closing.error <= SETTLED {
                 break;
             }
-            let change = self.solve(&now, &now.closing.residuals);
+            let change = self.back(&now, &now.closing.residuals);
             let q = moved(self.mechanism, &now.closing.q, &self.free, &change);
             if q.iter().any(|x| !x.is_finite()) {
                 return Ok(None);
@@ -253,16 +253,8 @@ impl<'a> Way<'a> {
     }
 
     /// The least change of the free coordinates that takes `opened` back.
-    fn solve(&self, point: &Point, opened: &[f64]) -> Vec<f64> {
-        let mut change = vec![0.0; self.free.len()];
-        for i in 0..self.rank {
-            let s = point.svd.value(i);
-            let along = dot(point.svd.u(i), opened);
-            if s > 0.0 {
-                change.iter_mut().zip(point.svd.v(i)).for_each(|(c, v)| *c -= along / s * v);
-            }
-        }
-        change
+    fn back(&self, point: &Point, opened: &[f64]) -> Vec<f64> {
+        point.svd.solve(opened, self.rank).iter().map(|change| -change).collect()
     }
 }
 
