@@ -87,10 +87,9 @@ impl ClosedChain {
         let mechanism = state.mechanism();
         let reference = reference.unwrap_or_else(|| mechanism.reference());
         mechanism.check_frame(reference)?;
-        let planar = mechanism.dimension() == Dimension::Planar;
         let (rows, loops, gap) = rows(state)?;
         let columns = Columns::of(mechanism, &loops);
-        let components: &[usize] = if planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
+        let components = mechanism.dimension().components();
         let (held, d) = (rows.len(), components.len());
         let mut blocks = Blocks {
             actuated: Matrix::zeros(held + d, columns.actuated.len()),

@@ -11,7 +11,7 @@
 
 use crate::kinematics::State;
 use crate::linalg::Matrix;
-use crate::model::{Dimension, FrameId};
+use crate::model::FrameId;
 use crate::spatial::Mat3;
 
 /// The inertia of the body that carries `frame`, about the frame's origin in world axes; `None`
@@ -49,11 +49,6 @@ pub fn body_inertia(state: &State, frame: FrameId) -> Option<Matrix> {
     if !(total > 0.0) {
         return None;
     }
-    Some(match mechanism.dimension() {
-        Dimension::Spatial => sum,
-        Dimension::Planar => Matrix::from_fn(3, 3, |i, j| sum[(PLANE[i], PLANE[j])]),
-    })
+    let kept = mechanism.dimension().components();
+    Some(Matrix::from_fn(kept.len(), kept.len(), |i, j| sum[(kept[i], kept[j])]))
 }
-
-/// The components of a planar body.
-const PLANE: [usize; 3] = [0, 1, 5];
