@@ -39,6 +39,9 @@ pub struct ClosedChain {
     /// How far the loops are open: the largest distance (m) and angle (rad) by which what should
     /// be held is not.
     pub gap: Gap,
+    /// Of every coordinate of the tree, then of closing joints: whether it is driven, and its
+    /// column among those of its sort.
+    places: Vec<(bool, usize)>,
 }
 
 /// How far loops and contacts are from being closed.
@@ -134,7 +137,15 @@ impl ClosedChain {
             units,
             reference,
             gap,
+            places: columns.places,
         })
+    }
+
+    /// The column of a coordinate of the mechanism (place in `q`) among those of driven joints and,
+    /// after them, of passive ones.
+    pub(crate) fn column(&self, coordinate: usize) -> usize {
+        let (driven, place) = self.places[coordinate];
+        if driven { place } else { self.actuated.len() + place }
     }
 }
 

@@ -266,16 +266,8 @@ fn coordinate_scale(state: &State, length: f64) -> Vec<f64> {
 fn tangent(state: &State, chain: &ClosedChain, motions: &Motions) -> Matrix {
     let scale = coordinate_scale(state, chain.constraint.length());
     let basis = motions.basis();
-    let names = chain.actuated.iter().chain(&chain.passive);
-    let places: Vec<Option<usize>> = state
-        .mechanism()
-        .coordinates()
-        .iter()
-        .map(|c| names.clone().position(|name| *name == c.name))
-        .collect();
-    let rates = Matrix::from_fn(scale.len(), basis.cols(), |i, j| {
-        places[i].map_or(0.0, |p| basis[(p, j)] / scale[i])
-    });
+    let rates =
+        Matrix::from_fn(scale.len(), basis.cols(), |i, j| basis[(chain.column(i), j)] / scale[i]);
     let unit = ColumnSpace::of(&rates, Threshold::Absolute(motions.tolerance())).basis();
     Matrix::from_fn(scale.len(), unit.cols(), |i, j| unit[(i, j)] * scale[i])
 }
@@ -305,17 +297,14 @@ fn along(state: &State, chain: &ClosedChain, rates: &[f64]) -> Result<(Matrix, M
 
 /// dM of a tree for each coordinate: the Hessian in the columns of driven and passive joints.
 fn constraint_hessian(state: &State, chain: &ClosedChain) -> Vec<Matrix> {
-    let rows: &[usize] =
-        if chain.constraint.object() == 3 { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
-    let coordinates = state.mechanism().coordinates();
-    let place = |name: &String| coordinates.iter().position(|c| c.name == *name);
-    let columns: Vec<Option<usize>> =
-        chain.actuated.iter().chain(&chain.passive).map(place).collect();
-    let object = chain.constraint.object();
+    let rows = state.mechanism().dimension().components();
     let of = |hessian: &Matrix| {
-        Matrix::from_fn(object, columns.len() + object, |i, j| {
-            columns.get(j).copied().flatten().map_or(0.0, |c| hessian[(rows[i], c)])
-        })
+        let mut dm = Matrix::zeros(rows.len(), hessian.cols() + rows.len());
+        for c in 0..hessian.cols() {
+            let column = dm.column_mut(chain.column(c));
+            column.iter_mut().zip(rows).for_each(|(x, &row)| *x = hessian[(row, c)]);
+        }
+        dm
     };
     state.hessian(chain.reference, Reference::LocalWorldAligned).iter().map(of).collect()
 }
