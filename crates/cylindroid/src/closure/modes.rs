@@ -19,12 +19,13 @@ use std::f64::consts::{PI, TAU};
 use super::assembly::{Assembly, assemble, within_limits};
 use super::coordinates::{at_limit, closing, columns, free_places, moved};
 use super::marks::{Marks, apart, link_poses};
+use super::motions::block_tolerance;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
 use crate::model::{CoordinateKind, JointKind, Mechanism, Motion};
 use crate::scalar::uniform;
 use crate::spatial::{Pose, Quaternion, Vec3};
-use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING, SAME_ASSEMBLY};
+use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY};
 
 /// Length of the step by which a motion is tried [rad, or reaches], and how far links have to have
 /// moved after it: from a double root the loops come back to where they were.
@@ -224,10 +225,8 @@ impl Search<'_> {
     /// without unit), and what counts as zero in them.
     fn motions(&self, q: &[f64]) -> Result<(Matrix, f64)> {
         let rates = columns(&closing(self.mechanism, q)?.rates, self.free);
-        let space = ColumnSpace::of(&rates.transpose(), Threshold::Relative(CLOSURE_RANK));
-        let largest = space.values().first().copied().unwrap_or(0.0);
-        let conditioning = if space.rank() == 0 { 1.0 } else { largest / space.cut().kept };
-        Ok((space.complement(), CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)))
+        let space = ColumnSpace::cut_of(rates.transpose(), Threshold::Relative(CLOSURE_RANK));
+        Ok((space.complement(), block_tolerance(&space)))
     }
 }
 

@@ -31,6 +31,12 @@ pub struct Rows {
     pub object: bool,
 }
 
+/// The absolute threshold for blocks of a kernel: of the complement of these columns.
+pub(super) fn block_tolerance(space: &ColumnSpace) -> f64 {
+    let conditioning = if space.rank() == 0 { 1.0 } else { space.largest() / space.cut().kept };
+    CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)
+}
+
 /// All motions of a constraint.
 #[derive(Debug, Clone)]
 pub struct Motions {
@@ -58,8 +64,6 @@ impl Motions {
     pub fn with_threshold(constraint: &Constraint, threshold: f64) -> Self {
         let space =
             ColumnSpace::cut_of(constraint.scaled_transpose(), Threshold::Relative(threshold));
-        let largest = space.largest();
-        let conditioning = if space.rank() == 0 { 1.0 } else { largest / space.cut().kept };
         Self {
             actuated: constraint.actuated(),
             passive: constraint.passive(),
@@ -68,9 +72,9 @@ impl Motions {
             scale: constraint.column_scale().to_vec(),
             kernel: space.complement(),
             cut: space.cut(),
-            largest,
+            largest: space.largest(),
             threshold,
-            tolerance: CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning),
+            tolerance: block_tolerance(&space),
         }
     }
 

@@ -17,11 +17,12 @@
 
 use super::constraint::Unit;
 use super::graph::{Gap, Row, for_each_rate, rate_unit, rows};
+use super::motions::block_tolerance;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};
 use crate::model::{LoopJoint, Mechanism};
-use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, CORRECTION_RANK};
+use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 
 /// The motions of a closed chain by what its drives do with them.
 #[derive(Debug, Clone)]
@@ -68,7 +69,8 @@ impl Steering {
         let rates = RateRows::of(state, all, &rated, locked);
         let size = &rates.scale;
 
-        let space = ColumnSpace::of(&rates.matrix.transpose(), Threshold::Relative(CLOSURE_RANK));
+        let space =
+            ColumnSpace::cut_of(rates.matrix.transpose(), Threshold::Relative(CLOSURE_RANK));
         let kernel = space.complement();
         let driven = driven(mechanism, &rated, weights);
         let others = (0..size.len()).filter(|i| driven.iter().all(|(d, _)| d != i));
@@ -78,7 +80,7 @@ impl Steering {
         let unscaled = &kernel * &cs.z;
         let unscaled =
             Matrix::from_fn(size.len(), kernel.cols(), |i, j| size[i] * unscaled[(i, j)]);
-        let free = cs.cosines.iter().take_while(|c| **c <= CLOSURE_BLOCK).count();
+        let free = cs.cosines.iter().take_while(|c| **c <= block_tolerance(&space)).count();
         let p = kernel.cols() - free;
 
         // D = X' S' Z'^T for the driven rates of unit directions in their weights.

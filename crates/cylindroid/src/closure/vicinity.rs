@@ -64,7 +64,7 @@ impl<'a> Vicinity<'a> {
     ) -> Result<Self> {
         let free: Vec<usize> = (0..mechanism.n()).collect();
         let start = Closing::at(mechanism, q, &free, length)?;
-        let rows = ColumnSpace::of(&start.rates.transpose(), Threshold::Relative(threshold));
+        let rows = ColumnSpace::cut_of(start.rates.transpose(), Threshold::Relative(threshold));
         let (kernel, across) = (rows.complement(), rows.basis());
         // The range as the image of N: of the same rank, whatever the threshold cut off.
         let image = Qr::plain(&start.rates * &across);
