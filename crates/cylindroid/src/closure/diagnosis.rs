@@ -89,15 +89,16 @@ impl Diagnosis {
         let mechanism = state.mechanism();
         let here = Posture::of(state, reference, length)?;
         let length = here.chain.constraint.length();
-        let generic = Generic::of(state, reference, Some(length))?;
+        let counts = Counts::of(&here.motions, &here.relation);
+        let generic = Generic::around(state, reference, length, counts)?;
         let finite = FiniteMobility::of(state, Some(length))?;
         let beside: Vec<Posture> = finite
             .beside()
             .iter()
             .map(|q| Posture::of(&mechanism.state(q)?, reference, Some(length)))
             .collect::<Result<_>>()?;
-        let counts = Counts::of(&here.motions, &here.relation);
-        let mut singularities = Singularities::of(&here.motions, &here.relation, &generic.counts);
+        let mut singularities =
+            Singularities::with_counts(&counts, &here.motions, &here.relation, &generic.counts);
         let fold = SingularityKind::ConfigurationSpace;
         // Nothing to compare with, but motions that do not exist: the rank is lost here.
         let shaky = finite.finite.is_some_and(|f| f < finite.infinitesimal);

@@ -16,10 +16,9 @@
 
 use std::fmt;
 
-use super::assembly::Closing;
 use super::branches::{branches, direction};
 use super::vicinity::Vicinity;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
 use crate::tolerance::{CLOSURE_RANK, FINITE_STEP};
@@ -107,8 +106,7 @@ impl FiniteMobility {
     pub fn of(state: &State, length: Option<f64>) -> Result<Self> {
         let mechanism = state.mechanism();
         let length = length.unwrap_or_else(|| mechanism.reach());
-        crate::error::Error::check_positive("length", length)?;
-        let all: Vec<usize> = (0..mechanism.n()).collect();
+        Error::check_positive("length", length)?;
         let vicinity = Vicinity::of(mechanism, state.q(), length, CLOSURE_RANK)?;
         let k = vicinity.motions();
         let mut report = Self {
@@ -122,7 +120,7 @@ impl FiniteMobility {
             left_open: 0.0,
             beside: Vec::new(),
         };
-        if !Closing::at(mechanism, state.q(), &all, length)?.is_closed(length) {
+        if !vicinity.is_closed() {
             return Ok(report);
         }
         if k == 0 || vicinity.superfluous() == 0 {

@@ -45,16 +45,20 @@ impl Generic {
     /// # Errors
     /// As [`ClosedChain::of`].
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
-        let mechanism = state.mechanism();
         let chain = ClosedChain::of(state, reference, length)?;
-        let counted = |chain: &ClosedChain| {
-            let motions = Motions::of(&chain.constraint);
-            Counts::of(&motions, &motions.relation())
-        };
-        let length = chain.constraint.length();
+        Self::around(state, reference, chain.constraint.length(), counted(&chain))
+    }
+
+    /// The same for a posture whose counts are known.
+    pub(super) fn around(
+        state: &State,
+        reference: Option<FrameId>,
+        length: f64,
+        counts: Counts,
+    ) -> Result<Self> {
+        let mechanism = state.mechanism();
         let mut random = 7;
-        let mut generic =
-            Self { counts: counted(&chain), others: 0, guesses: GUESSES.0 + GUESSES.1 };
+        let mut generic = Self { counts, others: 0, guesses: GUESSES.0 + GUESSES.1 };
         for guess in 0..generic.guesses {
             let near = guess < GUESSES.0;
             let guess = another(mechanism, state.q(), length, near, &mut random);
@@ -71,6 +75,11 @@ impl Generic {
         }
         Ok(generic)
     }
+}
+
+fn counted(chain: &ClosedChain) -> Counts {
+    let motions = Motions::of(&chain.constraint);
+    Counts::of(&motions, &motions.relation())
 }
 
 /// A guess within the position limits.

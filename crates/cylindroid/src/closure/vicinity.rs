@@ -36,6 +36,7 @@ pub(super) struct Vicinity<'a> {
     rest: Matrix,
     at_start: Vec<f64>,
     noise: f64,
+    closed: bool,
 }
 
 /// A posture near it in which all loops are closed but for `left`.
@@ -71,8 +72,13 @@ impl<'a> Vicinity<'a> {
         let (held, rest) = (image.basis(), image.complement());
         let at_start = rest.transpose().mul_vec(&start.residuals);
         let noise = LOOP_ROUNDING.max(10.0 * start.error);
-        let q = q.to_vec();
-        Ok(Self { mechanism, length, q, free, kernel, across, held, rest, at_start, noise })
+        let (q, closed) = (q.to_vec(), start.is_closed(length));
+        Ok(Self { mechanism, length, q, free, kernel, across, held, rest, at_start, noise, closed })
+    }
+
+    /// True where the loops of the posture are closed.
+    pub(super) fn is_closed(&self) -> bool {
+        self.closed
     }
 
     /// Number k of motions to first order.
