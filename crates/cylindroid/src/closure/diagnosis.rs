@@ -34,13 +34,7 @@ use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};
 use crate::model::FrameId;
 use crate::screws::{Line, Screw, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3, Wrench};
-use crate::tolerance::CLOSURE_BLOCK;
-
-/// What the limit of generic spaces is right to [-].
-const LIMIT: f64 = 1e-6;
-/// A joint whose share in motions of length one is below this stands still: above what the limit
-/// of generic motions is wrong by [-].
-const STILL: f64 = 1e-5;
+use crate::tolerance::{CLOSURE_BLOCK, GENERIC_LIMIT, STANDS_STILL};
 
 /// The singularities of a posture, named.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,7 +113,7 @@ impl Diagnosis {
         let redundant = beyond(&Posture::redundant, s.redundancy);
         let idle = beyond(&Posture::idle, s.idle);
         let point = state.pose(here.chain.reference).translation;
-        let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { LIMIT };
+        let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { GENERIC_LIMIT };
         let (of_wrenches, of_gains) = (accuracy(s.zero_torque), accuracy(s.indeterminacy));
         let wrenches = here.columns(&blocked, |d, x| x / d).map(|x| ray(wrench(&x, point)));
         let lost = here.columns(&blocked, |d, x| x * d).map(|x| twist(&x, point));
@@ -280,5 +274,10 @@ fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
 /// The names of those that take part.
 fn movers(motions: &Matrix, names: &[String]) -> Vec<String> {
     let share = |i: usize| (0..motions.cols()).map(|j| motions[(i, j)].powi(2)).sum::<f64>().sqrt();
-    names.iter().enumerate().filter(|(i, _)| share(*i) > STILL).map(|(_, n)| n.clone()).collect()
+    names
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| share(*i) > STANDS_STILL)
+        .map(|(_, n)| n.clone())
+        .collect()
 }

@@ -21,15 +21,13 @@ use super::vicinity::Vicinity;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
-use crate::tolerance::{CLOSURE_RANK, FINITE_STEP};
+use crate::tolerance::{CLOSURE_RANK, FINITE_STEP, WITHIN_BRANCHES};
 
 /// How often a step that Newton's method does not follow is halved.
 const HALVINGS: usize = 8;
 /// How much nearer than the step the postures beside a posture are: spaces there, the mean of both
 /// sides, are those here but for 1e-10 times their curvature.
 const BESIDE: f64 = 1e-3;
-/// Motions whose part outside all branches is below this belong to them [-].
-const WITHIN: f64 = 1e-3;
 
 /// What a count of finite motions rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,7 +146,7 @@ impl FiniteMobility {
                 report.beside = tangent.postures;
             }
         }
-        let outside = ColumnSpace::of(&tangents, Threshold::Absolute(WITHIN)).complement();
+        let outside = ColumnSpace::of(&tangents, Threshold::Absolute(WITHIN_BRANCHES)).complement();
         report.shaky = vicinity.unscaled(&(vicinity.kernel() * &outside));
         Ok(report)
     }

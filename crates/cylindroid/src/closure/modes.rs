@@ -25,12 +25,10 @@ use crate::linalg::{ColumnSpace, Matrix, Threshold};
 use crate::model::{CoordinateKind, JointKind, Mechanism, Motion};
 use crate::scalar::uniform;
 use crate::spatial::{Pose, Quaternion, Vec3};
-use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY};
+use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY, TRIAL_MOVED};
 
-/// Length of the step by which a motion is tried [rad, or reaches], and how far links have to have
-/// moved after it: from a double root the loops come back to where they were.
+/// Length of the step by which a motion is tried [rad, or reaches].
 const TRIAL: f64 = 0.05;
-const TRIAL_MOVED: f64 = 1e-3;
 
 /// How modes are looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

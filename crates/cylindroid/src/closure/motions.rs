@@ -15,10 +15,7 @@
 use super::constraint::Constraint;
 use super::relation::{ObjectScale, Relation};
 use crate::linalg::{ColumnSpace, Cut, Matrix, Rank, Threshold};
-use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING};
-
-/// A share of a motion that no rounding takes away: `sqrt(1 - s^2)` is right to 1e-13 from here on.
-const CLEARLY: f64 = 0.01;
+use crate::tolerance::{CLEAR_SHARE, CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING};
 
 /// Groups of rows of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -161,7 +158,7 @@ impl Motions {
         let k = self.dof();
         let s = space.largest().min(1.0);
         let least = ((1.0 - s) * (1.0 + s)).sqrt();
-        let others = if k > 0 && least > CLEARLY.max(self.tolerance) {
+        let others = if k > 0 && least > CLEAR_SHARE.max(self.tolerance) {
             let threshold = self.tolerance;
             let rank = Rank { rank: k, threshold, gap: f64::INFINITY };
             (Matrix::zeros(k, 0), Cut { rank, kept: least, dropped: 0.0 })

@@ -23,17 +23,12 @@ use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, Motion};
 use crate::scalar::uniform;
 use crate::spatial::{Pose, Rotation, Vec3, log};
-use crate::tolerance::{CLOSURE_RANK, LIMIT_MET};
+use crate::tolerance::{
+    CLOSURE_RANK, CONTRADICTION, CORRECTION_ROUNDING, LIMIT_MET, LOOP_ROUNDING,
+};
 
 /// Corrections at most: three are usual.
 const MOST_CORRECTIONS: usize = 12;
-/// Residuals at which a correction ends: far below `CLOSED`, above rounding.
-const SETTLED: f64 = 1e-13;
-/// Corrections below this are rounding, whatever the step [-].
-const ROUNDING: f64 = 1e-9;
-/// What is left of a motion of the held coordinates that the free ones should follow, relative to
-/// it, where they cannot: far above rounding at the conditioning of the worst pose on a path.
-const CONTRADICTION: f64 = 1e-6;
 /// Neighbours that are asked for their rank, and how far away they are [rad, or reaches].
 const NEIGHBOURS: usize = 3;
 const NEAR: f64 = 0.05;
@@ -188,7 +183,7 @@ impl<'a> Way<'a> {
             there.by_free[(i, j)] - here.by_free[(i, j)]
         }));
         let turned = turned.values().next().unwrap_or(0.0);
-        if corrected > 0.5 * predicted + ROUNDING
+        if corrected > 0.5 * predicted + CORRECTION_ROUNDING
             || turned > 0.5 * (self.smallest(here) + self.smallest(&there))
         {
             return Ok(Err(Refusal::Far));
@@ -234,7 +229,7 @@ impl<'a> Way<'a> {
         let mut now = self.at(&guess)?;
         let mut moved_by = 0.0;
         for _ in 0..MOST_CORRECTIONS {
-            if now.closing.error <= SETTLED {
+            if now.closing.error <= LOOP_ROUNDING {
                 break;
             }
             let change = self.back(&now, &now.closing.residuals);
