@@ -9,7 +9,7 @@
 //!          joints add their null space
 //! Source   Donelan & Selig, example 3, corrected: the set is {rates : J rates in S}, S the twists
 //!          that move x along q, not the image of S under a pseudoinverse, which is larger
-//! Checked  tests/it/screws/vectors.rs::example_3, ::point_direction
+//! Checked  tests/it/screws/vectors/examples.rs::example_3, tests/it/screws/point_direction.rs
 
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, RowSpace, Svd, dot};
