@@ -63,6 +63,63 @@ pub(crate) fn case(name: &str) -> Case {
     cases().into_iter().find(|c| c.name == name).unwrap()
 }
 
+/// How a mechanism may be described anew and stay what it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Anew {
+    /// In other frames, metrics moved along.
+    Frame,
+    /// In other units of length, metrics moved along, and with other characteristic lengths.
+    Unit,
+    /// With contacts drawn elsewhere on their links.
+    Drawing,
+    /// With other combinations of the rows, other coordinates of joints and object.
+    Basis,
+    /// All at once.
+    Everything,
+}
+
+/// Checks all reference mechanisms, described anew.
+pub(crate) fn described_anew(how: Anew, seed: u64, check: impl Fn(&Case, &Problem)) {
+    let mut random = Random(seed);
+    let check_case = |case: &Case| check(case, &case.problem());
+    for case in cases() {
+        match how {
+            Anew::Frame => {
+                for _ in 0..3 {
+                    check_case(&case.moved(case.random_frame(&mut random), 1.0));
+                }
+            }
+            Anew::Unit => {
+                for factor in [1e3, 1e-3] {
+                    check_case(&case.moved(Pose::IDENTITY, factor));
+                }
+                for length in [0.1, 5.0] {
+                    check_case(&Case { length, ..case.clone() });
+                }
+            }
+            Anew::Drawing => {
+                for _ in 0..3 {
+                    check_case(&case.redrawn(&mut random));
+                }
+            }
+            Anew::Basis => {
+                for _ in 0..3 {
+                    check(&case, &case.problem().rebased(&mut random));
+                }
+            }
+            Anew::Everything => {
+                for _ in 0..5 {
+                    let factor = 10_f64.powf(random.within(-3.0, 3.0));
+                    let drawn = case.redrawn(&mut random);
+                    let moved = drawn.moved(case.random_frame(&mut random), factor);
+                    check_case(&moved);
+                    check(&moved, &moved.problem().rebased(&mut random));
+                }
+            }
+        }
+    }
+}
+
 fn vec3(v: &Value) -> Vec3 {
     let x: Vec<f64> = numbers(v);
     Vec3::new(x[0], x[1], x.get(2).copied().unwrap_or(0.0))
