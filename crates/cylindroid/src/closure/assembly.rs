@@ -13,7 +13,7 @@
 //! Source   Levenberg 1944, Marquardt 1963; the rows: `graph.rs`
 //! Checked  tests/it/closure/assembly.rs
 
-use super::coordinates::{at_limit, column_scale, columns, free_places, moved};
+use super::coordinates::{at_limit, column_scale, columns, free_places, moved, within_limits};
 use super::graph::{Gap, Row, for_each_rate, rows};
 use crate::error::Result;
 use crate::inverse::damp;
@@ -185,13 +185,4 @@ impl Closing {
         }
         change
     }
-}
-
-/// Some coordinates cut to their limits.
-pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
-    for &i in places {
-        let l = &mechanism.coordinates()[i].limits;
-        q[i] = q[i].clamp(l.lower, l.upper);
-    }
-    q
 }

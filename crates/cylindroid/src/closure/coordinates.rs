@@ -86,6 +86,15 @@ pub(super) fn moved(
     next
 }
 
+/// Some coordinates cut to their position limits.
+pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
+    for &i in places {
+        let l = &mechanism.coordinates()[i].limits;
+        q[i] = q[i].clamp(l.lower, l.upper);
+    }
+    q
+}
+
 /// Coordinates that stand at a position limit.
 pub(super) fn at_limit(mechanism: &Mechanism, q: &[f64]) -> Vec<usize> {
     let stands = |i: &usize| {

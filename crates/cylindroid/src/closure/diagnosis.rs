@@ -273,11 +273,6 @@ fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
 
 /// The names of those that take part.
 fn movers(motions: &Matrix, names: &[String]) -> Vec<String> {
-    let share = |i: usize| (0..motions.cols()).map(|j| motions[(i, j)].powi(2)).sum::<f64>().sqrt();
-    names
-        .iter()
-        .enumerate()
-        .filter(|(i, _)| share(*i) > STANDS_STILL)
-        .map(|(_, n)| n.clone())
-        .collect()
+    let moves = |i: &usize| motions.row_norm(*i) > STANDS_STILL;
+    (0..names.len()).filter(moves).map(|i| names[i].clone()).collect()
 }

@@ -102,9 +102,7 @@ pub fn grasp_quality(
     space: WrenchSpace,
     effort: Effort,
 ) -> Result<GraspQuality> {
-    if !(space.length > 0.0 && space.length.is_finite()) {
-        return Err(refuse("length", space.length, "the characteristic length is positive"));
-    }
+    Error::check_positive("length", space.length)?;
     let fingers: Vec<Finger> =
         contacts.iter().map(|c| Finger::new(c, space, effort)).collect::<Result<_>>()?;
     let d = space.components().len();
@@ -185,8 +183,8 @@ impl Finger {
         if space.planar && (normal.z.abs() > ORTHONORMAL || point.z.abs() > ORTHONORMAL) {
             return Err(refuse("normal", normal.z, "a planar contact lies in the plane z = 0"));
         }
-        if effort == Effort::Each && !(strength > 0.0 && strength.is_finite()) {
-            return Err(refuse("strength", strength, "the largest normal force is positive"));
+        if effort == Effort::Each {
+            Error::check_positive("strength", strength)?;
         }
         let (mu, torsion) = match friction {
             Friction::None => (0.0, 0.0),

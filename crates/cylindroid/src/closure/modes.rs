@@ -16,8 +16,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::assembly::{Assembly, assemble, within_limits};
-use super::coordinates::{at_limit, closing, columns, free_places, moved};
+use super::assembly::{Assembly, assemble};
+use super::coordinates::{at_limit, closing, columns, free_places, moved, within_limits};
 use super::marks::{Marks, apart, link_poses};
 use super::motions::block_tolerance;
 use crate::error::{Error, Result};

@@ -17,7 +17,7 @@
 //! Checked  tests/it/closure/continuation.rs
 
 use super::assembly::{Closing, assemble};
-use super::coordinates::{closing, columns, moved, unit_of};
+use super::coordinates::{closing, columns, moved, unit_of, within_limits};
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, Motion};
@@ -199,12 +199,7 @@ impl<'a> Way<'a> {
         if beyond.is_empty() {
             return Ok(Ok(there));
         }
-        let mut q = there.closing.q;
-        for i in beyond {
-            let l = &self.mechanism.coordinates()[i].limits;
-            q[i] = q[i].clamp(l.lower, l.upper);
-        }
-        Ok(Ok(self.at(&q)?))
+        Ok(Ok(self.at(&within_limits(self.mechanism, there.closing.q, &beyond))?))
     }
 
     /// The first coordinate outside its limits by more than rounding.
