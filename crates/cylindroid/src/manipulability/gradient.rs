@@ -22,7 +22,7 @@
 
 use super::efficiency::{Direction, Manipulability};
 use super::metrics::Metrics;
-use crate::closure::{ClosedChain, Constraint, Load, Motions, Unit, contact_forces};
+use crate::closure::{ClosedChain, Constraint, Load, Motions, Supports, Unit};
 use crate::error::Result;
 use crate::inverse::truncated;
 use crate::kinematics::{Reference, State};
@@ -157,12 +157,13 @@ pub fn gradient(
     if multiplicity > 1 {
         return Ok(Gradient::Repeated { value, multiplicity });
     }
+    let behind = Behind::of(&chain.constraint, &motions, goal.task)?;
     let pairs: Vec<Stationary> = all
         .finite
         .iter()
         .zip(&weights)
         .filter(|(_, w)| **w != 0.0)
-        .map(|(d, w)| Stationary::of(d, *w, (&chain.constraint, &motions), goal.task, metrics))
+        .map(|(d, w)| Stationary::of(d, *w, &behind, metrics))
         .collect::<Result<_>>()?;
     let sum = |dm: &Matrix| -> f64 { pairs.iter().map(|p| p.slope(dm)).sum() };
     if !state.mechanism().is_closed() {
@@ -184,6 +185,27 @@ pub fn gradient(
     Ok(Gradient::Exists { value, gradient, error })
 }
 
+/// What stands behind the directions: motions of all joints, and the forces at the contacts.
+struct Behind<'a> {
+    task: Option<&'a Matrix>,
+    supports: Supports<'a>,
+    /// All motions, and their least combination that has given parts of driven joints and object.
+    basis: Matrix,
+    least: Matrix,
+}
+
+impl<'a> Behind<'a> {
+    fn of(constraint: &'a Constraint, motions: &Motions, task: Option<&'a Matrix>) -> Result<Self> {
+        let basis = motions.basis();
+        let (a, n) = (motions.actuated(), basis.rows());
+        let twists = basis.rows_between(a + motions.passive(), n);
+        let seen = task.map_or_else(|| twists.clone(), |map| map * &twists);
+        let both = Matrix::above(basis.cols(), &[&basis.rows_between(0, a), &seen]);
+        let least = truncated(&both, CLOSURE_BLOCK)?.matrix;
+        Ok(Self { task, supports: Supports::of(constraint, motions, None)?, basis, least })
+    }
+}
+
 /// A direction with what its derivative needs.
 struct Stationary {
     /// x = (q_a, q_p, u).
@@ -198,8 +220,7 @@ impl Stationary {
     fn of(
         direction: &Direction,
         weight: f64,
-        (constraint, motions): (&Constraint, &Motions),
-        task: Option<&Matrix>,
+        behind: &Behind<'_>,
         metrics: &Metrics,
     ) -> Result<Self> {
         let efficiency = direction.pair.efficiency();
@@ -208,21 +229,15 @@ impl Stationary {
         let mut torques = metric_times(metrics.joint.as_ref(), q);
         torques.iter_mut().for_each(|x| *x *= efficiency);
         let mut wrench = metric_times(metrics.object.as_ref(), u);
-        if let Some(map) = task {
+        if let Some(map) = behind.task {
             wrench = map.transpose().mul_vec(&wrench);
         }
         wrench.iter_mut().for_each(|x| *x = -*x);
         let load = Load { torques: &torques, wrench: &wrench };
-        // The motion behind the direction; the least where several are.
-        let basis = motions.basis();
-        let (a, n) = (motions.actuated(), basis.rows());
-        let twists = basis.rows_between(a + motions.passive(), n);
-        let seen = task.map_or_else(|| twists.clone(), |map| map * &twists);
-        let both = Matrix::above(basis.cols(), &[&basis.rows_between(0, a), &seen]);
-        let shares = truncated(&both, CLOSURE_BLOCK)?.matrix.mul_vec(&[q.as_slice(), u].concat());
+        let shares = behind.least.mul_vec(&[q.as_slice(), u].concat());
         Ok(Self {
-            motion: basis.mul_vec(&shares),
-            forces: contact_forces(constraint, motions, load, None)?.forces,
+            motion: behind.basis.mul_vec(&shares),
+            forces: behind.supports.forces(load)?.forces,
             factor: -2.0 * weight / (efficiency * input * input),
         })
     }
