@@ -210,7 +210,7 @@ impl Case {
         moved.length *= factor;
         // u' = A u with A = blockdiag(factor R, R), so W' = A^-T W A^-1 and T' = T A^-1.
         let r = pose.rotation.matrix().to_rows();
-        let components: &[usize] = if self.planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
+        let components = self.components();
         let inverse = Matrix::from_fn(components.len(), components.len(), |i, j| {
             let (i, j) = (components[i], components[j]);
             let turn = if i / 3 == j / 3 { r[j % 3][i % 3] } else { 0.0 };
@@ -229,6 +229,11 @@ impl Case {
         let scale = Matrix::diagonal(&driven);
         moved.wq = &(&scale * &self.wq) * &scale;
         moved
+    }
+
+    /// Those of a twist that a body has.
+    fn components(&self) -> &'static [usize] {
+        if self.planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] }
     }
 
     /// Number of objects.
@@ -307,7 +312,7 @@ impl Case {
     }
 
     pub(crate) fn constraint(&self) -> Constraint {
-        let components: &[usize] = if self.planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
+        let components = self.components();
         let d = components.len();
         let (mut joint_rows, mut object_rows, mut units) = (Vec::new(), Vec::new(), Vec::new());
         for contact in &self.contacts {
