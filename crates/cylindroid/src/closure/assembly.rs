@@ -45,8 +45,8 @@ pub struct Assembly {
 
 /// Closes the loops of `mechanism` from `guess`; the coordinates in `held` keep their values, the
 /// others their position limits (a guess beyond them whose loops are closed is returned as it is,
-/// with the coordinates named in `at_limit`). Closing joints have no coordinate: their limits do not count, and
-/// one that is driven cannot be held.
+/// with the coordinates named in `at_limit`). Closing joints have no coordinate: their limits do
+/// not count, and one that is driven cannot be held.
 ///
 /// ```
 /// use cylindroid::closure::assemble;

@@ -124,8 +124,9 @@ impl fmt::Display for PathEnd {
 
 /// Moves the coordinates `held` from their values in `start` straight to `goal`, the others keeping
 /// the loops closed: on the branch where they are, within position limits, and no nearer to a
-/// singularity than the options say (from a start that is nearer, only away from it). Angles go the way that the numbers say, whole turns too;
-/// spherical and free joints, which are held as a whole, by the screw to their goal.
+/// singularity than the options say (from a start that is nearer, only away from it). Angles go the
+/// way that the numbers say, whole turns too; spherical and free joints, which are held as a whole,
+/// by the screw to their goal.
 ///
 /// The start is assembled first, the held coordinates resting. Where they leave motions free, the
 /// others move by the least. The path keeps its branch by steps in which the rates of the loops

@@ -139,6 +139,14 @@ pub(super) fn link_poses(state: &State) -> Vec<Pose> {
     (0..mechanism.links().len()).map(|link| state.pose(mechanism.link_frame(link))).collect()
 }
 
+/// The farthest that a link is from its other place: distance over the reach, or angle.
+pub(super) fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
+    a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
+        let distance = (a.translation - b.translation).norm() / mechanism.reach();
+        most.max(distance).max(a.rotation.angle_to(b.rotation))
+    })
+}
+
 const WHOLE: [Vec3; 2] = [Vec3::X, Vec3::Y];
 
 /// The axis by which a joint is told apart: none where it leaves the second link more than one

@@ -32,6 +32,7 @@ mod finite;
 mod generic;
 mod graph;
 mod grasp;
+mod guesses;
 mod marks;
 mod mobility;
 mod modes;

@@ -14,17 +14,18 @@
 //! Source   Good 1953 for the chance; a motion is told from a double root by a step along it
 //! Checked  tests/it/closure/modes.rs
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use super::assembly::{Assembly, assemble};
 use super::coordinates::{at_limit, closing, columns, free_places, moved, within_limits};
-use super::marks::{Marks, apart, link_poses};
+use super::guesses::anywhere;
+use super::marks::{Marks, apart, farthest, link_poses};
 use super::motions::block_tolerance;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
-use crate::model::{CoordinateKind, JointKind, Mechanism, Motion};
+use crate::model::{CoordinateKind, JointKind, Mechanism};
 use crate::scalar::uniform;
-use crate::spatial::{Pose, Quaternion, Vec3};
+use crate::spatial::Vec3;
 use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY, TRIAL_MOVED};
 
 /// Length of the step by which a motion is tried [rad, or reaches].
@@ -131,7 +132,7 @@ pub fn assembly_modes(
         let found = if start == 0 {
             first.clone()
         } else {
-            assemble(mechanism, &start_at_random(mechanism, guess, &free, &mut random), held)?
+            assemble(mechanism, &anywhere(mechanism, guess, &free, &mut random), held)?
         };
         if found.closed {
             closed += 1;
@@ -226,61 +227,6 @@ impl Search<'_> {
         let space = ColumnSpace::cut_of(rates.transpose(), Threshold::Relative(CLOSURE_RANK));
         Ok((space.complement(), block_tolerance(&space)))
     }
-}
-
-/// The farthest that a link is from its other place: distance over the reach, or angle.
-fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
-    a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
-        let distance = (a.translation - b.translation).norm() / mechanism.reach();
-        most.max(distance).max(a.rotation.angle_to(b.rotation))
-    })
-}
-
-/// Angles in (-pi, pi], slides in the reach, rotations evenly among all, within the limits.
-fn start_at_random(
-    mechanism: &Mechanism,
-    guess: &[f64],
-    free: &[usize],
-    random: &mut u64,
-) -> Vec<f64> {
-    let mut q = guess.to_vec();
-    for &i in free {
-        let coordinate = &mechanism.coordinates()[i];
-        let span = match coordinate.kind {
-            CoordinateKind::Angle => PI,
-            CoordinateKind::Length | CoordinateKind::Position => mechanism.reach(),
-            CoordinateKind::RotationVector => continue,
-        };
-        // Limits beyond one turn are cut to it, wherever they are.
-        let l = &coordinate.limits;
-        let lower = l.lower.max((-span).min(l.upper - 2.0 * span));
-        let upper = l.upper.min(span.max(l.lower + 2.0 * span));
-        q[i] = upper - (upper - lower) * uniform(random);
-    }
-    for node in mechanism.nodes() {
-        let at = match node.motion {
-            Motion::Spherical => node.coordinate,
-            Motion::Free => node.coordinate + 3,
-            _ => continue,
-        };
-        if free.contains(&at) {
-            q[at..at + 3].copy_from_slice(&rotation_at_random(random));
-        }
-    }
-    q
-}
-
-/// A rotation vector, all rotations alike (Shoemake 1992).
-fn rotation_at_random(random: &mut u64) -> [f64; 3] {
-    let (share, a, b) = (uniform(random), TAU * uniform(random), TAU * uniform(random));
-    let (first, second) = ((1.0 - share).sqrt(), share.sqrt());
-    let quaternion = Quaternion {
-        w: first * a.cos(),
-        x: first * a.sin(),
-        y: second * b.cos(),
-        z: second * b.sin(),
-    };
-    quaternion.rotation().map_or([0.0; 3], |r| r.log().to_array())
 }
 
 /// The same assembly with angles whole turns nearer to the guess, where limits allow them and no

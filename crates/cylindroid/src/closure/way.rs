@@ -18,10 +18,10 @@
 
 use super::assembly::{Closing, assemble};
 use super::coordinates::{closing, columns, moved, unit_of, within_limits};
+use super::guesses::near;
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, Motion};
-use crate::scalar::uniform;
 use crate::spatial::{Pose, Rotation, Vec3, log};
 use crate::tolerance::{
     CLOSURE_RANK, CONTRADICTION, CORRECTION_ROUNDING, LIMIT_MET, LOOP_ROUNDING,
@@ -100,13 +100,10 @@ impl<'a> Way<'a> {
     fn generic_rank(&self) -> Result<usize> {
         let rank = |q: &[f64]| -> Result<usize> { Ok(self.at(q)?.svd.rank(CLOSURE_RANK).rank) };
         let mut most = rank(&self.from)?;
-        let all: Vec<usize> = (0..self.mechanism.n()).collect();
         let mut random = 0;
         for _ in 0..NEIGHBOURS {
-            let change: Vec<f64> =
-                all.iter().map(|_| NEAR * (2.0 * uniform(&mut random) - 1.0)).collect();
-            let near =
-                assemble(self.mechanism, &moved(self.mechanism, &self.from, &all, &change), &[])?;
+            let guess = near(self.mechanism, &self.from, NEAR, &mut random);
+            let near = assemble(self.mechanism, &guess, &[])?;
             if near.closed {
                 most = most.max(rank(&near.q)?);
             }
