@@ -123,6 +123,10 @@ pub const CLOSURE_BLOCK: f64 = 1e-9;
 /// value kept): blocks of it are not read more finely [-].
 pub const KERNEL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// A share of a motion of length one above this [-] is certain without a decomposition of its own:
+/// `sqrt(1 - s^2)` is right to 1e-13 from here on.
+pub const CLEAR_SHARE: f64 = 1e-2;
+
 /// Pairs of motion and of force, computed apart from each other, agree to this in debug builds:
 /// each comes from a basis that is right to 1e-7 at the worst conditioning that counts [-].
 pub const DUALITY: f64 = 1e-6;
@@ -184,6 +188,33 @@ pub const LOOP_ROUNDING: f64 = 1e-13;
 /// rounding.
 pub const FINITE_STEP: f64 = 1e-2;
 
+/// Part of the distance to where branches of closed postures meet below which a singular value of a
+/// posture on one of them counts as zero [-]: where branches cross, what is zero there
+/// grows in proportion to the distance.
+pub const BRANCH_RANK: f64 = 1e-3;
+
+/// Two branches whose tangents differ by an angle whose sine is below this are one [-]; tangents are
+/// right to 1e-6.
+pub const SAME_BRANCH: f64 = 1e-3;
+
+/// Steps that can be followed span a direction if they spread along it by more than this [-].
+pub const BRANCH_SPREAD: f64 = 0.1;
+
+/// A branch that turns by more than the angle of this cosine on its way to the posture is not
+/// followed further [-].
+pub const BRANCH_TURN: f64 = 0.9;
+
+/// Motions whose part outside all branches is below this belong to them [-], as
+/// [`SAME_BRANCH`].
+pub const WITHIN_BRANCHES: f64 = 1e-3;
+
+/// What the limit of generic spaces, taken from postures beside it, is right to [-].
+pub const GENERIC_LIMIT: f64 = 1e-6;
+
+/// A joint whose share in motions of length one is below this stands still [-]: above what
+/// [`GENERIC_LIMIT`] makes of none.
+pub const STANDS_STILL: f64 = 1e-5;
+
 /// Position error at which inverse kinematics counts a target as reached, by default (m): what
 /// others call exact, a tenth of what arms repeat.
 pub const IK_POSITION: f64 = 1e-6;
@@ -205,9 +236,28 @@ pub const MATRIX_STEP: f64 = 1e-3;
 /// assemblies apart [-].
 pub const SAME_ASSEMBLY: f64 = 1e-6;
 
+/// Links that a trial step by 0.05 moves by less than this have come back to where they were, in
+/// lengths over the reach and in angle [-]: the assembly is a double root, and no motion leaves it.
+pub const TRIAL_MOVED: f64 = 1e-3;
+
 /// Default least distance to a singularity on a way through closed configurations: smallest over
 /// largest singular value of the rates of the loops [-].
 pub const PATH_SINGULAR: f64 = 1e-3;
+
+/// Least distance to a singularity that can be asked for [-]: closer to a fold, the last steps are
+/// shorter than [`SHARE_FOUND`].
+pub const LEAST_PATH_SINGULAR: f64 = 1e-5;
+
+/// What falls to zero with the distance d to a singularity is below its root there, what does not
+/// is above it; the root of distances below the square of this is that of rounding [-].
+pub const VANISHES: f64 = 1e-6;
+
+/// Corrections of a step below this are rounding, whatever the step [-].
+pub const CORRECTION_ROUNDING: f64 = 1e-9;
+
+/// What is left of a motion of the held coordinates that the free ones should follow, relative to
+/// it, where they cannot [-]: far above rounding at the conditioning of the worst pose on a way.
+pub const CONTRADICTION: f64 = 1e-6;
 
 /// Where a way through closed configurations ends is found to this share of it [-]: a fold is
 /// then a distance of about its root away, 1e-6, or nearer.

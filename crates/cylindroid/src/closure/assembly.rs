@@ -13,12 +13,11 @@
 //! Source   Levenberg 1944, Marquardt 1963; the rows: `graph.rs`
 //! Checked  tests/it/closure/assembly.rs
 
-use super::constraint::Unit;
-use super::coordinates::{at_limit, columns, free_places, moved};
-use super::graph::{Gap, Row, link_jacobians, rows};
+use super::coordinates::{at_limit, column_scale, columns, free_places, moved, within_limits};
+use super::graph::{Gap, Row, for_each_rate, rows};
 use crate::error::Result;
-use crate::kinematics::State;
-use crate::linalg::{Matrix, Svd, dot};
+use crate::inverse::damp;
+use crate::linalg::{Matrix, Svd, norm};
 use crate::model::Mechanism;
 use crate::tolerance::CLOSED;
 
@@ -46,8 +45,8 @@ pub struct Assembly {
 
 /// Closes the loops of `mechanism` from `guess`; the coordinates in `held` keep their values, the
 /// others their position limits (a guess beyond them whose loops are closed is returned as it is,
-/// with the coordinates named in `at_limit`). Closing joints have no coordinate: their limits do not count, and
-/// one that is driven cannot be held.
+/// with the coordinates named in `at_limit`). Closing joints have no coordinate: their limits do
+/// not count, and one that is driven cannot be held.
 ///
 /// ```
 /// use cylindroid::closure::assemble;
@@ -133,11 +132,19 @@ impl Closing {
     ) -> Result<Self> {
         let state = mechanism.state(q)?;
         let (all, _, gap) = rows(&state)?;
-        let held: Vec<&Row> = all.iter().filter(|row| row.rate_of.is_none()).collect();
-        let scale = |row: &Row| if row.unit == Unit::Length { 1.0 / length } else { 1.0 };
-        let residuals: Vec<f64> = held.iter().map(|row| row.residual * scale(row)).collect();
-        let rates = scaled_rates(&state, &held, free, length, scale)?;
-        let error = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let held: Vec<Row> = all.into_iter().filter(|row| row.rate_of.is_none()).collect();
+        let residuals: Vec<f64> = held.iter().map(|row| row.scaled_residual(length)).collect();
+        let mut columns = vec![None; mechanism.n()];
+        for (j, &i) in free.iter().enumerate() {
+            columns[i] = Some((j, column_scale(mechanism, i, length)));
+        }
+        let mut rates = Matrix::zeros(held.len(), free.len());
+        for_each_rate(&state, &held, |i, coordinate, rate| {
+            if let Some((j, scale)) = columns[coordinate] {
+                rates[(i, j)] += rate * scale / held[i].unit.size(length);
+            }
+        });
+        let error = norm(&residuals);
         Ok(Self { q: q.to_vec(), residuals, rates, error, gap })
     }
 
@@ -169,47 +176,13 @@ impl Closing {
     /// The damped step of the coordinates that have these rates.
     fn change(&self, rates: &Matrix, damping: f64) -> Vec<f64> {
         let svd = Svd::of(rates);
-        let mut change = vec![0.0; rates.cols()];
-        if !svd.is_empty() && svd.value(0) > 0.0 {
-            let l = damping * svd.value(0);
-            for i in 0..svd.len() {
-                let s = svd.value(i);
-                let along = dot(svd.u(i), &self.residuals);
-                let gain = if s > 0.0 { -along / (s + l * (l / s)) } else { 0.0 };
-                change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
-            }
-        }
+        let l = damping * svd.values().next().unwrap_or(0.0);
+        let gain = |_, s| if s > 0.0 { -damp(s, l) } else { 0.0 };
+        let mut change = svd.apply_gains(&self.residuals, gain);
         let most = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         if most > LARGEST_STEP {
             change.iter_mut().for_each(|c| *c *= LARGEST_STEP / most);
         }
         change
     }
-}
-
-/// Some coordinates cut to their limits.
-pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
-    for &i in places {
-        let l = &mechanism.coordinates()[i].limits;
-        q[i] = q[i].clamp(l.lower, l.upper);
-    }
-    q
-}
-
-pub(super) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
-    if mechanism.coordinates()[i].kind.unit() == "m" { length } else { 1.0 }
-}
-
-fn scaled_rates(
-    state: &State,
-    held: &[&Row],
-    free: &[usize],
-    length: f64,
-    scale: impl Fn(&Row) -> f64,
-) -> Result<Matrix> {
-    let links = link_jacobians(state)?;
-    Ok(Matrix::from_fn(held.len(), free.len(), |i, j| {
-        let column = column_scale(state.mechanism(), free[j], length);
-        held[i].rate(&links, free[j]) * scale(held[i]) * column
-    }))
 }

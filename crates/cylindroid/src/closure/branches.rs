@@ -14,22 +14,16 @@
 
 use super::vicinity::{Near, Vicinity};
 use crate::error::Result;
+use crate::inverse::damp;
 use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold, dot, norm};
 use crate::model::Mechanism;
 use crate::scalar::uniform;
+use crate::tolerance::{BRANCH_RANK, BRANCH_SPREAD, BRANCH_TURN, SAME_BRANCH};
 
 /// Steps of a search at most.
 const MOST_STEPS: usize = 60;
 /// How much nearer the tangent is taken.
 const INWARDS: f64 = 1.0 / 64.0;
-/// Part of the distance below which a singular value at a zero counts as none [-].
-const SMALL: f64 = 1e-3;
-/// Sine of the angle below which two tangents are one; they are right to 1e-6.
-const SAME: f64 = 1e-3;
-/// Steps that can be followed span a direction if they spread along it by more than this [-].
-const SPREAD: f64 = 0.1;
-/// Cosine of the angle by which a branch may turn on its way inwards.
-const NEARLY: f64 = 0.9;
 /// More tangents of one dimension than this are those of a cone.
 const MOST_TANGENTS: usize = 3;
 
@@ -109,8 +103,8 @@ struct Here {
 impl Here {
     /// At `q`, which is `h` away from where branches meet; none where no step can be followed.
     fn of(mechanism: &Mechanism, q: &[f64], length: f64, h: f64) -> Result<Option<Self>> {
-        let at = Vicinity::of(mechanism, q, length, SMALL * h)?;
-        match followed(&at, h * SMALL.sqrt())? {
+        let at = Vicinity::of(mechanism, q, length, BRANCH_RANK * h)?;
+        match followed(&at, h * BRANCH_RANK.sqrt())? {
             None => Ok(None),
             Some(true) => Ok(Some(Self { motions: at.kernel().clone(), clear: true })),
             Some(false) => {
@@ -123,7 +117,7 @@ impl Here {
                         found = Matrix::beside(k, &[&found, &column(&times(&x, 1.0 / h))]);
                     }
                 }
-                let space = ColumnSpace::of(&found, Threshold::Absolute(SPREAD));
+                let space = ColumnSpace::of(&found, Threshold::Absolute(BRANCH_SPREAD));
                 Ok(Some(Self { motions: at.kernel() * &space.basis(), clear: false }))
             }
         }
@@ -168,16 +162,10 @@ fn zero(vicinity: &Vicinity<'_>, start: &[f64], h: f64) -> Result<Option<(Vec<f6
         if svd.is_empty() || !(svd.value(0) > 0.0) || damping > 1e6 {
             break;
         }
-        let mut next = x.clone();
-        for i in 0..svd.len() {
-            let s = svd.value(i);
-            let along = dot(svd.u(i), &now.left);
-            let l = damping * svd.value(0);
-            let gain = if s > 0.0 { along / (s + l * (l / s)) } else { 0.0 };
-            next.iter_mut().zip(svd.v(i)).for_each(|(x, v)| *x -= gain * v);
-        }
-        let size = norm(&next);
-        let next = times(&next, h / size);
+        let l = damping * svd.value(0);
+        let step = svd.apply_gains(&now.left, |_, s| damp(s, l));
+        let next: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x - d).collect();
+        let next = times(&next, h / norm(&next));
         match vicinity.step(&next)? {
             Some(near) if near.error() < now.error() => {
                 let little = near.error() > 0.5 * now.error();
@@ -209,7 +197,7 @@ fn tangent(
     for side in [inwards, -inwards] {
         let Some((near_x, near)) = zero(vicinity, &times(x, side), small)? else { continue };
         let along = dot(&near_x, x);
-        if along * side.signum() < NEARLY * small * h {
+        if along * side.signum() < BRANCH_TURN * small * h {
             continue;
         }
         let Some(here) = Here::of(mechanism, &near.q, length, small)? else { continue };
@@ -231,7 +219,7 @@ fn tangent(
 fn same(a: &Tangent, b: &Tangent) -> bool {
     a.dimension == b.dimension && {
         let between = Svd::of(&(&a.directions.transpose() * &b.directions));
-        between.value(between.len() - 1) > 1.0 - SAME * SAME
+        between.value(between.len() - 1) > 1.0 - SAME_BRANCH * SAME_BRANCH
     }
 }
 
@@ -245,7 +233,7 @@ fn merged(mut tangents: Vec<Tangent>, k: usize) -> Vec<Tangent> {
         if dimension > 1 && of.len() > MOST_TANGENTS {
             let all = Matrix::beside(k, &of.iter().map(|t| &t.directions).collect::<Vec<_>>());
             of.truncate(1);
-            of[0].directions = ColumnSpace::of(&all, Threshold::Absolute(SAME)).basis();
+            of[0].directions = ColumnSpace::of(&all, Threshold::Absolute(SAME_BRANCH)).basis();
         }
         merged.extend(of);
     }

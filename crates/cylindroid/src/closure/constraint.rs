@@ -16,6 +16,7 @@
 
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
+use crate::model::CoordinateKind;
 
 /// What a coordinate or a row of the constraint measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +25,21 @@ pub enum Unit {
     Length,
     /// Radians: turning joints, angular velocities.
     Angle,
+}
+
+impl Unit {
+    /// Of a coordinate.
+    pub(crate) fn of(kind: CoordinateKind) -> Self {
+        if kind.is_length() { Self::Length } else { Self::Angle }
+    }
+
+    /// What 1 without unit is where lengths are measured in `length` (m or rad).
+    pub(crate) fn size(self, length: f64) -> f64 {
+        match self {
+            Self::Length => length,
+            Self::Angle => 1.0,
+        }
+    }
 }
 
 /// The three matrices of a constraint.
@@ -94,18 +110,12 @@ impl Constraint {
     /// Units of the wrong number; a length that is not positive and finite, or so far from one
     /// that scaled entries overflow.
     pub fn with_length(mut self, units: &Units, length: f64) -> Result<Self> {
-        if !(length > 0.0 && length.is_finite()) {
-            return Err(Error::InvalidOption {
-                option: "length",
-                value: length.to_string(),
-                reason: "the characteristic length is positive and finite".to_owned(),
-            });
-        }
+        Error::check_positive("length", length)?;
         Error::check_len("units of the rows", self.rows(), units.rows.len())?;
         Error::check_len("units of the actuated joints", self.actuated(), units.actuated.len())?;
         Error::check_len("units of the passive joints", self.passive(), units.passive.len())?;
         Error::check_len("units of the object", self.object(), units.object.len())?;
-        let scale = |unit: &Unit| if *unit == Unit::Length { length } else { 1.0 };
+        let scale = |unit: &Unit| unit.size(length);
         self.row_scale = units.rows.iter().map(|u| 1.0 / scale(u)).collect();
         let columns = units.actuated.iter().chain(&units.passive).chain(&units.object);
         self.column_scale = columns.map(scale).collect();

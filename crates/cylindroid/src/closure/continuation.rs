@@ -23,15 +23,10 @@ use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::screws::Screw;
 use crate::spatial::Twist;
-use crate::tolerance::{PATH_SINGULAR, SHARE_FOUND};
+use crate::tolerance::{LEAST_PATH_SINGULAR, PATH_SINGULAR, SHARE_FOUND, VANISHES};
 
 /// Steps at most, tried ones included.
 const MOST_STEPS: usize = 20_000;
-/// Least distance that can be asked for: closer, the last steps are shorter than [`SHARE_FOUND`].
-const NEAREST: f64 = 1e-5;
-/// What falls to zero with the distance d is below its root there; what does not is above it. Of
-/// distances below this square the root is that of rounding.
-const VANISHES: f64 = 1e-6;
 
 /// How a way is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -129,8 +124,9 @@ impl fmt::Display for PathEnd {
 
 /// Moves the coordinates `held` from their values in `start` straight to `goal`, the others keeping
 /// the loops closed: on the branch where they are, within position limits, and no nearer to a
-/// singularity than the options say (from a start that is nearer, only away from it). Angles go the way that the numbers say, whole turns too;
-/// spherical and free joints, which are held as a whole, by the screw to their goal.
+/// singularity than the options say (from a start that is nearer, only away from it). Angles go the
+/// way that the numbers say, whole turns too; spherical and free joints, which are held as a whole,
+/// by the screw to their goal.
 ///
 /// The start is assembled first, the held coordinates resting. Where they leave motions free, the
 /// others move by the least. The path keeps its branch by steps in which the rates of the loops
@@ -164,11 +160,11 @@ pub fn follow(
     Error::check_len("goal", held.len(), goal.len())?;
     Error::check_finite("goal", goal)?;
     Error::check_positive("step", options.step)?;
-    if !(NEAREST..1.0).contains(&options.least_distance) {
+    if !(LEAST_PATH_SINGULAR..1.0).contains(&options.least_distance) {
         return Err(Error::InvalidOption {
             option: "least_distance",
             value: options.least_distance.to_string(),
-            reason: format!("it is from {NEAREST:e} to below 1"),
+            reason: format!("it is from {LEAST_PATH_SINGULAR:e} to below 1"),
         });
     }
     let free = free_places(mechanism, held)?;
@@ -207,7 +203,7 @@ fn walk(
     path: &mut Vec<PathPoint>,
     options: FollowOptions,
 ) -> Result<(f64, PathEnd)> {
-    if way.distance(here) < NEAREST {
+    if way.distance(here) < LEAST_PATH_SINGULAR {
         return Ok((0.0, PathEnd::Singular(Box::new(in_sight(way, here)?))));
     }
     if let Some(coordinate) = way.outside(&here.closing.q) {

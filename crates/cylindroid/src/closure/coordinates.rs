@@ -4,7 +4,8 @@
 //! Valid    any mechanism; numbers of balls and free bodies are not moved one by one
 //! Checked  tests/it/closure/assembly.rs, tests/it/closure/modes.rs
 
-use super::assembly::{Closing, column_scale};
+use super::assembly::Closing;
+use super::constraint::Unit;
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Motion};
@@ -21,7 +22,12 @@ pub(super) fn columns(rates: &Matrix, places: &[usize]) -> Matrix {
     Matrix::from_fn(rates.rows(), places.len(), |i, j| rates[(i, places[j])])
 }
 
-/// What a change of 1 means at coordinate `i` (m or rad).
+/// What a change of 1 means at coordinate `i` where lengths are over `length` (m or rad).
+pub(super) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
+    Unit::of(mechanism.coordinates()[i].kind).size(length)
+}
+
+/// The same with lengths over the reach.
 pub(super) fn unit_of(mechanism: &Mechanism, i: usize) -> f64 {
     column_scale(mechanism, i, mechanism.reach())
 }
@@ -78,6 +84,15 @@ pub(super) fn moved(
         }
     }
     next
+}
+
+/// Some coordinates cut to their position limits.
+pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
+    for &i in places {
+        let l = &mechanism.coordinates()[i].limits;
+        q[i] = q[i].clamp(l.lower, l.upper);
+    }
+    q
 }
 
 /// Coordinates that stand at a position limit.

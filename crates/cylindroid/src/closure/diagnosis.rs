@@ -34,13 +34,7 @@ use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};
 use crate::model::FrameId;
 use crate::screws::{Line, Screw, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3, Wrench};
-use crate::tolerance::CLOSURE_BLOCK;
-
-/// What the limit of generic spaces is right to [-].
-const LIMIT: f64 = 1e-6;
-/// A joint whose share in motions of length one is below this stands still: above what the limit
-/// of generic motions is wrong by [-].
-const STILL: f64 = 1e-5;
+use crate::tolerance::{CLOSURE_BLOCK, GENERIC_LIMIT, STANDS_STILL};
 
 /// The singularities of a posture, named.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,15 +83,16 @@ impl Diagnosis {
         let mechanism = state.mechanism();
         let here = Posture::of(state, reference, length)?;
         let length = here.chain.constraint.length();
-        let generic = Generic::of(state, reference, Some(length))?;
+        let counts = Counts::of(&here.motions, &here.relation);
+        let generic = Generic::around(state, reference, length, counts)?;
         let finite = FiniteMobility::of(state, Some(length))?;
         let beside: Vec<Posture> = finite
             .beside()
             .iter()
             .map(|q| Posture::of(&mechanism.state(q)?, reference, Some(length)))
             .collect::<Result<_>>()?;
-        let counts = Counts::of(&here.motions, &here.relation);
-        let mut singularities = Singularities::of(&here.motions, &here.relation, &generic.counts);
+        let mut singularities =
+            Singularities::with_counts(&counts, &here.motions, &here.relation, &generic.counts);
         let fold = SingularityKind::ConfigurationSpace;
         // Nothing to compare with, but motions that do not exist: the rank is lost here.
         let shaky = finite.finite.is_some_and(|f| f < finite.infinitesimal);
@@ -118,7 +113,7 @@ impl Diagnosis {
         let redundant = beyond(&Posture::redundant, s.redundancy);
         let idle = beyond(&Posture::idle, s.idle);
         let point = state.pose(here.chain.reference).translation;
-        let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { LIMIT };
+        let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { GENERIC_LIMIT };
         let (of_wrenches, of_gains) = (accuracy(s.zero_torque), accuracy(s.indeterminacy));
         let wrenches = here.columns(&blocked, |d, x| x / d).map(|x| ray(wrench(&x, point)));
         let lost = here.columns(&blocked, |d, x| x * d).map(|x| twist(&x, point));
@@ -154,7 +149,7 @@ impl Posture {
     }
 
     fn size(&self, unit: Unit) -> f64 {
-        if unit == Unit::Length { self.chain.constraint.length() } else { 1.0 }
+        unit.size(self.chain.constraint.length())
     }
 
     /// Columns of twists (of wrenches, where `dual`) or rates, scaled and made orthonormal.
@@ -278,6 +273,6 @@ fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
 
 /// The names of those that take part.
 fn movers(motions: &Matrix, names: &[String]) -> Vec<String> {
-    let share = |i: usize| (0..motions.cols()).map(|j| motions[(i, j)].powi(2)).sum::<f64>().sqrt();
-    names.iter().enumerate().filter(|(i, _)| share(*i) > STILL).map(|(_, n)| n.clone()).collect()
+    let moves = |i: &usize| motions.row_norm(*i) > STANDS_STILL;
+    (0..names.len()).filter(moves).map(|i| names[i].clone()).collect()
 }

@@ -42,7 +42,7 @@ pub fn fingers_on(
     let mechanism = state.mechanism();
     mechanism.check_frame(object)?;
     let link = mechanism.frame_of(object).link;
-    let world_from_link = state.pose(mechanism.frame(&mechanism.links()[link].name)?);
+    let world_from_link = state.pose(mechanism.link_frame(link));
     let mut fingers = Vec::new();
     for (place, contact) in mechanism.contacts().iter().enumerate() {
         let (link_from_contact, sign): (Pose, f64) = if contact.b == link {

@@ -16,21 +16,18 @@
 
 use std::fmt;
 
-use super::assembly::Closing;
 use super::branches::{branches, direction};
 use super::vicinity::Vicinity;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
-use crate::tolerance::{CLOSURE_RANK, FINITE_STEP};
+use crate::tolerance::{CLOSURE_RANK, FINITE_STEP, WITHIN_BRANCHES};
 
 /// How often a step that Newton's method does not follow is halved.
 const HALVINGS: usize = 8;
 /// How much nearer than the step the postures beside a posture are: spaces there, the mean of both
 /// sides, are those here but for 1e-10 times their curvature.
 const BESIDE: f64 = 1e-3;
-/// Motions whose part outside all branches is below this belong to them [-].
-const WITHIN: f64 = 1e-3;
 
 /// What a count of finite motions rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,8 +104,7 @@ impl FiniteMobility {
     pub fn of(state: &State, length: Option<f64>) -> Result<Self> {
         let mechanism = state.mechanism();
         let length = length.unwrap_or_else(|| mechanism.reach());
-        crate::error::Error::check_positive("length", length)?;
-        let all: Vec<usize> = (0..mechanism.n()).collect();
+        Error::check_positive("length", length)?;
         let vicinity = Vicinity::of(mechanism, state.q(), length, CLOSURE_RANK)?;
         let k = vicinity.motions();
         let mut report = Self {
@@ -122,7 +118,7 @@ impl FiniteMobility {
             left_open: 0.0,
             beside: Vec::new(),
         };
-        if !Closing::at(mechanism, state.q(), &all, length)?.is_closed(length) {
+        if !vicinity.is_closed() {
             return Ok(report);
         }
         if k == 0 || vicinity.superfluous() == 0 {
@@ -150,7 +146,7 @@ impl FiniteMobility {
                 report.beside = tangent.postures;
             }
         }
-        let outside = ColumnSpace::of(&tangents, Threshold::Absolute(WITHIN)).complement();
+        let outside = ColumnSpace::of(&tangents, Threshold::Absolute(WITHIN_BRANCHES)).complement();
         report.shaky = vicinity.unscaled(&(vicinity.kernel() * &outside));
         Ok(report)
     }

@@ -11,20 +11,21 @@
 //!          Grubler's count is wrong for whatever is overconstrained
 //! Checked  tests/it/closure/diagnosis.rs
 
-use super::assembly::{assemble, column_scale};
+use super::assembly::assemble;
 use super::graph::ClosedChain;
+use super::guesses::{anywhere, near};
+use super::marks::{farthest, link_poses};
 use super::motions::Motions;
 use super::singularity::Counts;
 use crate::error::Result;
 use crate::kinematics::State;
-use crate::model::{FrameId, Mechanism};
-use crate::scalar::uniform;
+use crate::model::FrameId;
 use crate::tolerance::FINITE_STEP;
 
 /// Guesses near the posture, and anywhere.
 const GUESSES: (usize, usize) = (6, 6);
-/// How far guesses near it are, and those in coordinates without limits [rad, or lengths].
-const DISTANCES: (f64, f64) = (0.3, std::f64::consts::FRAC_PI_2);
+/// How far guesses near it are [rad, or reaches].
+const NEAR: f64 = 0.3;
 
 /// Generic counts and how many postures stand behind them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,26 +45,33 @@ impl Generic {
     /// # Errors
     /// As [`ClosedChain::of`].
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
-        let mechanism = state.mechanism();
         let chain = ClosedChain::of(state, reference, length)?;
-        let counted = |chain: &ClosedChain| {
-            let motions = Motions::of(&chain.constraint);
-            Counts::of(&motions, &motions.relation())
-        };
-        let length = chain.constraint.length();
+        Self::around(state, reference, chain.constraint.length(), counted(&chain))
+    }
+
+    /// The same for a posture whose counts are known.
+    pub(super) fn around(
+        state: &State,
+        reference: Option<FrameId>,
+        length: f64,
+        counts: Counts,
+    ) -> Result<Self> {
+        let mechanism = state.mechanism();
+        let all: Vec<usize> = (0..mechanism.n()).collect();
+        let here = link_poses(state);
         let mut random = 7;
-        let mut generic =
-            Self { counts: counted(&chain), others: 0, guesses: GUESSES.0 + GUESSES.1 };
+        let mut generic = Self { counts, others: 0, guesses: GUESSES.0 + GUESSES.1 };
         for guess in 0..generic.guesses {
-            let near = guess < GUESSES.0;
-            let guess = another(mechanism, state.q(), length, near, &mut random);
+            let guess = if guess < GUESSES.0 {
+                near(mechanism, state.q(), NEAR, &mut random)
+            } else {
+                anywhere(mechanism, state.q(), &all, &mut random)
+            };
             let closed = assemble(mechanism, &guess, &[])?;
-            let away = (0..mechanism.n()).any(|i| {
-                let change = (closed.q[i] - state.q()[i]).abs();
-                change > FINITE_STEP * column_scale(mechanism, i, length)
-            });
+            let there = mechanism.state(&closed.q)?;
+            let away = farthest(&link_poses(&there), &here, mechanism) > FINITE_STEP;
             if closed.closed && away {
-                let chain = ClosedChain::of(&mechanism.state(&closed.q)?, reference, Some(length))?;
+                let chain = ClosedChain::of(&there, reference, Some(length))?;
                 generic.counts = generic.counts.generic(counted(&chain));
                 generic.others += 1;
             }
@@ -72,29 +80,7 @@ impl Generic {
     }
 }
 
-/// A guess within the position limits.
-fn another(
-    mechanism: &Mechanism,
-    q: &[f64],
-    length: f64,
-    near: bool,
-    random: &mut u64,
-) -> Vec<f64> {
-    let far = if near { DISTANCES.0 } else { DISTANCES.1 };
-    let shares: Vec<f64> = q.iter().map(|_| uniform(random)).collect();
-    let rates: Vec<f64> = shares
-        .iter()
-        .enumerate()
-        .map(|(i, x)| (2.0 * x - 1.0) * far * column_scale(mechanism, i, length))
-        .collect();
-    let mut guess = q.to_vec();
-    mechanism.integrate_in_place(&mut guess, &rates, 1.0);
-    for (i, coordinate) in mechanism.coordinates().iter().enumerate() {
-        let l = coordinate.limits;
-        if !near && l.lower.is_finite() && l.upper.is_finite() {
-            guess[i] = l.lower + (l.upper - l.lower) * shares[i];
-        }
-        guess[i] = guess[i].clamp(l.lower, l.upper);
-    }
-    guess
+fn counted(chain: &ClosedChain) -> Counts {
+    let motions = Motions::of(&chain.constraint);
+    Counts::of(&motions, &motions.relation())
 }

@@ -18,10 +18,10 @@
 
 use super::constraint::{Blocks, Constraint, Unit, Units};
 use crate::error::{Error, Result};
-use crate::kinematics::{Reference, State};
+use crate::kinematics::State;
 use crate::linalg::Matrix;
 use crate::model::{Dimension, FrameId, JointKind, LoopJoint, Mechanism};
-use crate::spatial::{Pose, Twist, Vec3, Wrench};
+use crate::spatial::{Pose, Vec3, Wrench};
 
 /// A mechanism at a configuration as a constraint, with the names of what the columns are.
 #[derive(Debug, Clone)]
@@ -39,6 +39,9 @@ pub struct ClosedChain {
     /// How far the loops are open: the largest distance (m) and angle (rad) by which what should
     /// be held is not.
     pub gap: Gap,
+    /// Of every coordinate of the tree, then of closing joints: whether it is driven, and its
+    /// column among those of its sort.
+    places: Vec<(bool, usize)>,
 }
 
 /// How far loops and contacts are from being closed.
@@ -87,10 +90,9 @@ impl ClosedChain {
         let mechanism = state.mechanism();
         let reference = reference.unwrap_or_else(|| mechanism.reference());
         mechanism.check_frame(reference)?;
-        let planar = mechanism.dimension() == Dimension::Planar;
         let (rows, loops, gap) = rows(state)?;
         let columns = Columns::of(mechanism, &loops);
-        let components: &[usize] = if planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
+        let components = mechanism.dimension().components();
         let (held, d) = (rows.len(), components.len());
         let mut blocks = Blocks {
             actuated: Matrix::zeros(held + d, columns.actuated.len()),
@@ -102,26 +104,11 @@ impl ClosedChain {
             let block = if driven { &mut blocks.actuated } else { &mut blocks.passive };
             block[(i, j)] += rate;
         };
-        // The rows of a pair stand together: its two links are walked once, and up to where they
-        // meet, since what moves both does not open the pair.
-        let mut from = 0;
-        for pair in rows.chunk_by(|x, y| (x.a, x.b) == (y.a, y.b)) {
-            let tip = |link| state.tip(mechanism.link_frame(link).into());
-            let (a, b) = (tip(pair[0].a), tip(pair[0].b));
-            let common = a.common_slot(&b);
-            for (link, sign) in [(a, -1.0), (b, 1.0)] {
-                link.for_each_column_above(common, Vec3::ZERO, |_, c, twist| {
-                    for (i, row) in pair.iter().enumerate() {
-                        add(from + i, c, sign * twist.power(row.wrench));
-                    }
-                });
+        for_each_rate(state, &rows, &mut add);
+        for (i, row) in rows.iter().enumerate() {
+            if let Some(k) = row.rate_of {
+                add(i, mechanism.n() + k, -1.0);
             }
-            for (i, row) in pair.iter().enumerate() {
-                if let Some(k) = row.rate_of {
-                    add(from + i, mechanism.n() + k, -1.0);
-                }
-            }
-            from += pair.len();
         }
         let target = state.tip(reference.into());
         target.for_each_column(target.world_from_tip.translation, |_, c, twist| {
@@ -150,7 +137,15 @@ impl ClosedChain {
             units,
             reference,
             gap,
+            places: columns.places,
         })
+    }
+
+    /// The column of a coordinate of the mechanism (place in `q`) among those of driven joints and,
+    /// after them, of passive ones.
+    pub(crate) fn column(&self, coordinate: usize) -> usize {
+        let (driven, place) = self.places[coordinate];
+        if driven { place } else { self.actuated.len() + place }
     }
 }
 
@@ -169,7 +164,7 @@ impl Columns {
     fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {
         let mut columns = Self::default();
         columns.places.reserve(mechanism.n() + loops.len());
-        let mut add = |name: &String, length: bool, driven: bool| {
+        let mut add = |name: &String, unit: Unit, driven: bool| {
             let (names, units) = if driven {
                 (&mut columns.actuated, &mut columns.actuated_units)
             } else {
@@ -177,33 +172,50 @@ impl Columns {
             };
             columns.places.push((driven, names.len()));
             names.push(name.clone());
-            units.push(if length { Unit::Length } else { Unit::Angle });
+            units.push(unit);
         };
         for c in mechanism.coordinates() {
-            add(&c.name, c.kind.unit() == "m", c.actuated);
+            add(&c.name, Unit::of(c.kind), c.actuated);
         }
         for l in loops {
-            add(&l.name, l.kind == JointKind::Prismatic, l.actuated);
+            add(&l.name, rate_unit(l), l.actuated);
         }
         columns
     }
 }
 
-fn twist(jacobian: &Matrix, column: usize) -> Twist {
-    Twist::from_array(std::array::from_fn(|i| jacobian.column(column)[i]))
+/// What the rate of a closing joint of one coordinate measures.
+pub(super) fn rate_unit(joint: &LoopJoint) -> Unit {
+    if joint.kind == JointKind::Prismatic { Unit::Length } else { Unit::Angle }
 }
 
-/// Of every link, seen from the world.
-pub(super) fn link_jacobians(state: &State) -> Result<Vec<Matrix>> {
+/// Calls `f(row, coordinate, rate)` for every coordinate of the tree that opens a row, the place of
+/// the row among `rows` and its rate by that coordinate. A coordinate may come several times (mimic
+/// joints): its rates add up.
+pub(super) fn for_each_rate(state: &State, rows: &[Row], mut f: impl FnMut(usize, usize, f64)) {
     let mechanism = state.mechanism();
-    let of = |link| Ok(state.jacobian(mechanism.link_frame(link), Reference::World));
-    (0..mechanism.links().len()).map(of).collect()
+    // The rows of a pair stand together: its two links are walked once, and up to where they meet,
+    // since what moves both does not open the pair.
+    let mut from = 0;
+    for pair in rows.chunk_by(|x, y| (x.a, x.b) == (y.a, y.b)) {
+        let tip = |link| state.tip(mechanism.link_frame(link).into());
+        let (a, b) = (tip(pair[0].a), tip(pair[0].b));
+        let common = a.common_slot(&b);
+        for (link, sign) in [(a, -1.0), (b, 1.0)] {
+            link.for_each_column_above(common, Vec3::ZERO, |_, c, twist| {
+                for (i, row) in pair.iter().enumerate() {
+                    f(from + i, c, sign * twist.power(row.wrench));
+                }
+            });
+        }
+        from += pair.len();
+    }
 }
 
 impl Row {
-    /// Its rate by coordinate `j` of the tree.
-    pub(super) fn rate(&self, links: &[Matrix], j: usize) -> f64 {
-        (twist(&links[self.b], j) - twist(&links[self.a], j)).power(self.wrench)
+    /// The residual with lengths over `length`.
+    pub(super) fn scaled_residual(&self, length: f64) -> f64 {
+        self.residual / self.unit.size(length)
     }
 }
 

@@ -17,6 +17,7 @@
 
 use crate::error::{Error, Result};
 use crate::linalg::{Hull, HullGoal, HullOptions, Matrix, Qr, norm};
+use crate::model::Dimension;
 use crate::spatial::Vec3;
 use crate::tolerance::{GRASP_QUALITY, HULL, MOST_FACETS, ORTHONORMAL};
 
@@ -72,6 +73,12 @@ pub struct WrenchSpace {
     pub planar: bool,
 }
 
+impl WrenchSpace {
+    fn components(self) -> &'static [usize] {
+        if self.planar { Dimension::Planar } else { Dimension::Spatial }.components()
+    }
+}
+
 /// How well a grasp holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraspQuality {
@@ -95,12 +102,10 @@ pub fn grasp_quality(
     space: WrenchSpace,
     effort: Effort,
 ) -> Result<GraspQuality> {
-    if !(space.length > 0.0 && space.length.is_finite()) {
-        return Err(refuse("length", space.length, "the characteristic length is positive"));
-    }
+    Error::check_positive("length", space.length)?;
     let fingers: Vec<Finger> =
         contacts.iter().map(|c| Finger::new(c, space, effort)).collect::<Result<_>>()?;
-    let d = if space.planar { 3 } else { 6 };
+    let d = space.components().len();
     let farthest = |n: &[f64]| -> Vec<f64> {
         let mut wrench = vec![0.0; d];
         let reach = fingers.iter().map(|f| f.reach(n));
@@ -178,8 +183,8 @@ impl Finger {
         if space.planar && (normal.z.abs() > ORTHONORMAL || point.z.abs() > ORTHONORMAL) {
             return Err(refuse("normal", normal.z, "a planar contact lies in the plane z = 0"));
         }
-        if effort == Effort::Each && !(strength > 0.0 && strength.is_finite()) {
-            return Err(refuse("strength", strength, "the largest normal force is positive"));
+        if effort == Effort::Each {
+            Error::check_positive("strength", strength)?;
         }
         let (mu, torsion) = match friction {
             Friction::None => (0.0, 0.0),
@@ -196,8 +201,7 @@ impl Finger {
         let column = |force: Vec3, moment: Vec3, scale: f64| -> Vec<f64> {
             let moment = (arm.cross(force) + moment) * (1.0 / space.length);
             let w = [force.x, force.y, force.z, moment.x, moment.y, moment.z];
-            let kept: &[usize] = if space.planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
-            kept.iter().map(|&i| w[i] * scale * size).collect()
+            space.components().iter().map(|&i| w[i] * scale * size).collect()
         };
         let mut columns = vec![column(normal, Vec3::ZERO, 1.0)];
         let tangents = if space.planar {

@@ -13,8 +13,6 @@
 //! Checked  tests/it/closure/modes.rs
 
 use super::coordinates::unit_of;
-use super::graph::link_jacobians;
-use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;
 use crate::model::{JointKind, Mechanism};
@@ -105,19 +103,24 @@ impl Marks {
         places: &[usize],
         motions: &Matrix,
         tolerance: f64,
-    ) -> Result<Vec<bool>> {
-        let links = link_jacobians(state)?;
-        let now = self.at(&link_poses(state)?);
+    ) -> Vec<bool> {
         let mechanism = state.mechanism();
-        let rests = |mark: &Mark, at: &Vec3| {
-            (0..motions.cols()).all(|k| {
-                let mut link = [0.0; 6];
+        let poses = link_poses(state);
+        let now = self.at(&poses);
+        let rates: Vec<Vec<f64>> = (0..motions.cols())
+            .map(|k| {
+                let mut rates = vec![0.0; mechanism.n()];
                 for (&j, x) in places.iter().zip(motions.column(k)) {
-                    let rate = x * unit_of(mechanism, j);
-                    let column = links[mark.link].column(j);
-                    link.iter_mut().zip(column).for_each(|(l, c)| *l += c * rate);
+                    rates[j] = x * unit_of(mechanism, j);
                 }
-                let twist = Twist::from_array(link);
+                rates
+            })
+            .collect();
+        let rests = |mark: &Mark, at: &Vec3| {
+            let tip = state.tip(mechanism.link_frame(mark.link).into());
+            rates.iter().all(|rates| {
+                let mut twist = Twist::ZERO;
+                tip.for_each_column(Vec3::ZERO, |_, c, unit| twist = twist + unit * rates[c]);
                 let turned = twist.angular.cross(*at);
                 let rate = match mark.kind {
                     Kind::Point => twist.linear * (1.0 / self.length) + turned,
@@ -126,14 +129,22 @@ impl Marks {
                 rate.norm() <= tolerance
             })
         };
-        Ok(self.marks.iter().zip(&now).map(|(mark, at)| rests(mark, at)).collect())
+        self.marks.iter().zip(&now).map(|(mark, at)| rests(mark, at)).collect()
     }
 }
 
 /// The poses of all links.
-pub(super) fn link_poses(state: &State) -> Result<Vec<Pose>> {
+pub(super) fn link_poses(state: &State) -> Vec<Pose> {
     let mechanism = state.mechanism();
-    mechanism.links().iter().map(|l| Ok(state.pose(mechanism.frame(&l.name)?))).collect()
+    (0..mechanism.links().len()).map(|link| state.pose(mechanism.link_frame(link))).collect()
+}
+
+/// The farthest that a link is from its other place: distance over the reach, or angle.
+pub(super) fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
+    a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
+        let distance = (a.translation - b.translation).norm() / mechanism.reach();
+        most.max(distance).max(a.rotation.angle_to(b.rotation))
+    })
 }
 
 const WHOLE: [Vec3; 2] = [Vec3::X, Vec3::Y];

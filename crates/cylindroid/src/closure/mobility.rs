@@ -219,16 +219,13 @@ impl Mobility {
 fn joint_mobility(motions: &Motions, indeterminate: &Matrix, idle: &Matrix) -> Vec<JointMobility> {
     let kernel = motions.kernel();
     let (free, idle) = (kernel * indeterminate, kernel * idle);
-    let size = |m: &Matrix, i: usize| -> f64 {
-        (0..m.cols()).map(|j| m[(i, j)].powi(2)).sum::<f64>().sqrt()
-    };
     let tolerance = motions.tolerance();
     (0..motions.actuated() + motions.passive())
         .map(|i| JointMobility {
-            share: size(kernel, i).min(1.0),
-            moves: size(kernel, i) > tolerance,
-            free_of_actuators: i >= motions.actuated() && size(&free, i) > tolerance,
-            idle: i >= motions.actuated() && size(&idle, i) > tolerance,
+            share: kernel.row_norm(i).min(1.0),
+            moves: kernel.row_norm(i) > tolerance,
+            free_of_actuators: i >= motions.actuated() && free.row_norm(i) > tolerance,
+            idle: i >= motions.actuated() && idle.row_norm(i) > tolerance,
         })
         .collect()
 }

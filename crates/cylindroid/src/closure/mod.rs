@@ -32,6 +32,7 @@ mod finite;
 mod generic;
 mod graph;
 mod grasp;
+mod guesses;
 mod marks;
 mod mobility;
 mod modes;
@@ -58,6 +59,7 @@ pub use modes::{AssemblyModes, Mode, ModeOptions, assembly_modes};
 pub use motions::{Motions, Rows};
 pub use relation::{Parts, Relation, RelationDimensions};
 pub use singularity::{Counts, Distances, Singularities, SingularityKind};
+pub(crate) use statics::Supports;
 pub use statics::{
     ContactForces, Load, Torques, contact_forces, internal_forces, joint_torques, structural_forces,
 };

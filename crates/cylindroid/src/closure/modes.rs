@@ -14,22 +14,22 @@
 //! Source   Good 1953 for the chance; a motion is told from a double root by a step along it
 //! Checked  tests/it/closure/modes.rs
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-use super::assembly::{Assembly, assemble, within_limits};
-use super::coordinates::{at_limit, closing, columns, free_places, moved};
-use super::marks::{Marks, apart, link_poses};
+use super::assembly::{Assembly, assemble};
+use super::coordinates::{at_limit, closing, columns, free_places, moved, within_limits};
+use super::guesses::anywhere;
+use super::marks::{Marks, apart, farthest, link_poses};
+use super::motions::block_tolerance;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
-use crate::model::{CoordinateKind, JointKind, Mechanism, Motion};
+use crate::model::{CoordinateKind, JointKind, Mechanism};
 use crate::scalar::uniform;
-use crate::spatial::{Pose, Quaternion, Vec3};
-use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING, SAME_ASSEMBLY};
+use crate::spatial::Vec3;
+use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY, TRIAL_MOVED};
 
-/// Length of the step by which a motion is tried [rad, or reaches], and how far links have to have
-/// moved after it: from a double root the loops come back to where they were.
+/// Length of the step by which a motion is tried [rad, or reaches].
 const TRIAL: f64 = 0.05;
-const TRIAL_MOVED: f64 = 1e-3;
 
 /// How modes are looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -132,7 +132,7 @@ pub fn assembly_modes(
         let found = if start == 0 {
             first.clone()
         } else {
-            assemble(mechanism, &start_at_random(mechanism, guess, &free, &mut random), held)?
+            assemble(mechanism, &anywhere(mechanism, guess, &free, &mut random), held)?
         };
         if found.closed {
             closed += 1;
@@ -161,7 +161,7 @@ struct Seen {
 
 impl Search<'_> {
     fn places(&self, q: &[f64]) -> Result<Vec<Vec3>> {
-        Ok(self.marks.at(&link_poses(&self.mechanism.state(q)?)?))
+        Ok(self.marks.at(&link_poses(&self.mechanism.state(q)?)))
     }
 
     fn add(&mut self, assembly: Assembly, guessed: &[Vec3]) -> Result<()> {
@@ -200,7 +200,7 @@ impl Search<'_> {
         if kernel.cols() == 0 {
             return Ok(isolated);
         }
-        let before = link_poses(&mechanism.state(q)?)?;
+        let before = link_poses(&mechanism.state(q)?);
         let mut random = 0;
         let weights: Vec<f64> = (0..kernel.cols()).map(|_| uniform(&mut random) - 0.5).collect();
         let along = kernel.mul_vec(&weights);
@@ -211,9 +211,9 @@ impl Search<'_> {
                 within_limits(mechanism, moved(mechanism, q, self.free, &change), self.free);
             let near = assemble(mechanism, &guess, self.held)?;
             let state = mechanism.state(&near.q)?;
-            if near.closed && farthest(&link_poses(&state)?, &before, mechanism) > TRIAL_MOVED {
+            if near.closed && farthest(&link_poses(&state), &before, mechanism) > TRIAL_MOVED {
                 let (kernel, tolerance) = self.motions(&near.q)?;
-                let resting = self.marks.resting(&state, self.free, &kernel, tolerance)?;
+                let resting = self.marks.resting(&state, self.free, &kernel, tolerance);
                 return Ok((kernel.cols(), resting));
             }
         }
@@ -224,66 +224,9 @@ impl Search<'_> {
     /// without unit), and what counts as zero in them.
     fn motions(&self, q: &[f64]) -> Result<(Matrix, f64)> {
         let rates = columns(&closing(self.mechanism, q)?.rates, self.free);
-        let space = ColumnSpace::of(&rates.transpose(), Threshold::Relative(CLOSURE_RANK));
-        let largest = space.values().first().copied().unwrap_or(0.0);
-        let conditioning = if space.rank() == 0 { 1.0 } else { largest / space.cut().kept };
-        Ok((space.complement(), CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)))
+        let space = ColumnSpace::cut_of(rates.transpose(), Threshold::Relative(CLOSURE_RANK));
+        Ok((space.complement(), block_tolerance(&space)))
     }
-}
-
-/// The farthest that a link is from its other place: distance over the reach, or angle.
-fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
-    a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
-        let distance = (a.translation - b.translation).norm() / mechanism.reach();
-        most.max(distance).max(a.rotation.angle_to(b.rotation))
-    })
-}
-
-/// Angles in (-pi, pi], slides in the reach, rotations evenly among all, within the limits.
-fn start_at_random(
-    mechanism: &Mechanism,
-    guess: &[f64],
-    free: &[usize],
-    random: &mut u64,
-) -> Vec<f64> {
-    let mut q = guess.to_vec();
-    for &i in free {
-        let coordinate = &mechanism.coordinates()[i];
-        let span = match coordinate.kind {
-            CoordinateKind::Angle => PI,
-            CoordinateKind::Length | CoordinateKind::Position => mechanism.reach(),
-            CoordinateKind::RotationVector => continue,
-        };
-        // Limits beyond one turn are cut to it, wherever they are.
-        let l = &coordinate.limits;
-        let lower = l.lower.max((-span).min(l.upper - 2.0 * span));
-        let upper = l.upper.min(span.max(l.lower + 2.0 * span));
-        q[i] = upper - (upper - lower) * uniform(random);
-    }
-    for node in mechanism.nodes() {
-        let at = match node.motion {
-            Motion::Spherical => node.coordinate,
-            Motion::Free => node.coordinate + 3,
-            _ => continue,
-        };
-        if free.contains(&at) {
-            q[at..at + 3].copy_from_slice(&rotation_at_random(random));
-        }
-    }
-    q
-}
-
-/// A rotation vector, all rotations alike (Shoemake 1992).
-fn rotation_at_random(random: &mut u64) -> [f64; 3] {
-    let (share, a, b) = (uniform(random), TAU * uniform(random), TAU * uniform(random));
-    let (first, second) = ((1.0 - share).sqrt(), share.sqrt());
-    let quaternion = Quaternion {
-        w: first * a.cos(),
-        x: first * a.sin(),
-        y: second * b.cos(),
-        z: second * b.sin(),
-    };
-    quaternion.rotation().map_or([0.0; 3], |r| r.log().to_array())
 }
 
 /// The same assembly with angles whole turns nearer to the guess, where limits allow them and no

@@ -15,10 +15,7 @@
 use super::constraint::Constraint;
 use super::relation::{ObjectScale, Relation};
 use crate::linalg::{ColumnSpace, Cut, Matrix, Rank, Threshold};
-use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING};
-
-/// A share of a motion that no rounding takes away: `sqrt(1 - s^2)` is right to 1e-13 from here on.
-const CLEARLY: f64 = 0.01;
+use crate::tolerance::{CLEAR_SHARE, CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING};
 
 /// Groups of rows of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,6 +26,12 @@ pub struct Rows {
     pub passive: bool,
     /// The reference object.
     pub object: bool,
+}
+
+/// The absolute threshold for blocks of a kernel: of the complement of these columns.
+pub(super) fn block_tolerance(space: &ColumnSpace) -> f64 {
+    let conditioning = if space.rank() == 0 { 1.0 } else { space.largest() / space.cut().kept };
+    CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)
 }
 
 /// All motions of a constraint.
@@ -58,8 +61,6 @@ impl Motions {
     pub fn with_threshold(constraint: &Constraint, threshold: f64) -> Self {
         let space =
             ColumnSpace::cut_of(constraint.scaled_transpose(), Threshold::Relative(threshold));
-        let largest = space.largest();
-        let conditioning = if space.rank() == 0 { 1.0 } else { largest / space.cut().kept };
         Self {
             actuated: constraint.actuated(),
             passive: constraint.passive(),
@@ -68,9 +69,9 @@ impl Motions {
             scale: constraint.column_scale().to_vec(),
             kernel: space.complement(),
             cut: space.cut(),
-            largest,
+            largest: space.largest(),
             threshold,
-            tolerance: CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning),
+            tolerance: block_tolerance(&space),
         }
     }
 
@@ -157,7 +158,7 @@ impl Motions {
         let k = self.dof();
         let s = space.largest().min(1.0);
         let least = ((1.0 - s) * (1.0 + s)).sqrt();
-        let others = if k > 0 && least > CLEARLY.max(self.tolerance) {
+        let others = if k > 0 && least > CLEAR_SHARE.max(self.tolerance) {
             let threshold = self.tolerance;
             let rank = Rank { rank: k, threshold, gap: f64::INFINITY };
             (Matrix::zeros(k, 0), Cut { rank, kept: least, dropped: 0.0 })

@@ -130,7 +130,16 @@ impl Singularities {
     /// Of a pose, against the generic counts of its mechanism.
     #[must_use]
     pub fn of(motions: &Motions, relation: &Relation, generic: &Counts) -> Self {
-        let now = Counts::of(motions, relation);
+        Self::with_counts(&Counts::of(motions, relation), motions, relation, generic)
+    }
+
+    /// The same for a pose whose own counts are known.
+    pub(super) fn with_counts(
+        now: &Counts,
+        motions: &Motions,
+        relation: &Relation,
+        generic: &Counts,
+    ) -> Self {
         let loses = now.zero_torque > generic.zero_torque || now.redundancy > generic.redundancy;
         let gains = now.indeterminacy > generic.indeterminacy;
         let folds = now.rank < generic.rank;

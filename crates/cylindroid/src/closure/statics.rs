@@ -18,7 +18,7 @@ use super::mobility::Subspace;
 use super::motions::Motions;
 use super::relation::{Balance, Relation};
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold, dot};
+use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold, dot, norm};
 use crate::tolerance::CLOSURE_RANK;
 
 /// Joint torques that balance a wrench.
@@ -93,46 +93,66 @@ pub fn contact_forces(
     load: Load<'_>,
     compliance: Option<&Metric>,
 ) -> Result<ContactForces> {
-    Error::check_len("torques", constraint.actuated(), load.torques.len())?;
-    Error::check_len("wrench", constraint.object(), load.wrench.len())?;
-    Error::check_finite("torques", load.torques)?;
-    Error::check_finite("wrench", load.wrench)?;
-    let t = constraint.rows();
-    // b' = -D_c (tau, 0, -w): the columns of the object carry -G^T, and G t = w.
-    let (a, p) = (constraint.actuated(), constraint.passive());
-    let scale = constraint.column_scale();
-    let mut target = vec![0.0; a + p + constraint.object()];
-    for (i, torque) in load.torques.iter().enumerate() {
-        target[i] = -torque * scale[i];
-    }
-    for (i, w) in load.wrench.iter().enumerate() {
-        target[a + p + i] = -w * scale[a + p + i];
-    }
-    // Unknown: the scaled forces t = D_r t', or z = L^T t with C = L L^T.
-    let mut equations = constraint.scaled_transpose();
-    let rows = constraint.row_scale();
-    if let Some(metric) = compliance {
-        Error::check_len("compliance", t, metric.len())?;
-        for (j, r) in rows.iter().enumerate() {
-            equations.column_mut(j).iter_mut().for_each(|x| *x /= r);
+    Supports::of(constraint, motions, compliance)?.forces(load)
+}
+
+/// The equations of [`contact_forces`], decomposed once for any load.
+pub(crate) struct Supports<'a> {
+    constraint: &'a Constraint,
+    compliance: Option<&'a Metric>,
+    svd: Svd,
+    rank: usize,
+}
+
+impl<'a> Supports<'a> {
+    pub(crate) fn of(
+        constraint: &'a Constraint,
+        motions: &Motions,
+        compliance: Option<&'a Metric>,
+    ) -> Result<Self> {
+        // Unknown: the scaled forces t = D_r t', or z = L^T t with C = L L^T.
+        let mut equations = constraint.scaled_transpose();
+        if let Some(metric) = compliance {
+            Error::check_len("compliance", constraint.rows(), metric.len())?;
+            for (j, r) in constraint.row_scale().iter().enumerate() {
+                equations.column_mut(j).iter_mut().for_each(|x| *x /= r);
+            }
+            metric.colour_columns(&mut equations);
         }
-        metric.colour_columns(&mut equations);
+        let svd = Svd::of(&equations);
+        let rank = motions.cut().rank.rank.min(svd.len());
+        Ok(Self { constraint, compliance, svd, rank })
     }
-    let svd = Svd::of(&equations);
-    let mut forces = vec![0.0; t];
-    let mut left = target.clone();
-    for i in 0..motions.cut().rank.rank.min(svd.len()) {
-        let along = dot(svd.u(i), &target);
-        forces.iter_mut().zip(svd.v(i)).for_each(|(f, v)| *f += along / svd.value(i) * v);
-        left.iter_mut().zip(svd.u(i)).for_each(|(l, u)| *l -= along * u);
+
+    pub(crate) fn forces(&self, load: Load<'_>) -> Result<ContactForces> {
+        let (constraint, svd) = (self.constraint, &self.svd);
+        Error::check_len("torques", constraint.actuated(), load.torques.len())?;
+        Error::check_len("wrench", constraint.object(), load.wrench.len())?;
+        Error::check_finite("torques", load.torques)?;
+        Error::check_finite("wrench", load.wrench)?;
+        // b' = -D_c (tau, 0, -w): the columns of the object carry -G^T, and G t = w.
+        let (a, p) = (constraint.actuated(), constraint.passive());
+        let scale = constraint.column_scale();
+        let mut target = vec![0.0; a + p + constraint.object()];
+        for (i, torque) in load.torques.iter().enumerate() {
+            target[i] = -torque * scale[i];
+        }
+        for (i, w) in load.wrench.iter().enumerate() {
+            target[a + p + i] = -w * scale[a + p + i];
+        }
+        let mut forces = svd.solve(&target, self.rank);
+        let mut left = target.clone();
+        for i in 0..self.rank {
+            let along = dot(svd.u(i), &target);
+            left.iter_mut().zip(svd.u(i)).for_each(|(l, u)| *l -= along * u);
+        }
+        match self.compliance {
+            Some(metric) => metric.colour(&mut forces),
+            None => forces.iter_mut().zip(constraint.row_scale()).for_each(|(f, r)| *f *= r),
+        }
+        let size = norm(&target);
+        Ok(ContactForces { forces, unbalanced: if size > 0.0 { norm(&left) / size } else { 0.0 } })
     }
-    match compliance {
-        Some(metric) => metric.colour(&mut forces),
-        None => forces.iter_mut().zip(rows).for_each(|(f, r)| *f *= r),
-    }
-    let norm = |x: &[f64]| x.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let size = norm(&target);
-    Ok(ContactForces { forces, unbalanced: if size > 0.0 { norm(&left) / size } else { 0.0 } })
 }
 
 /// ker G and ker J^T: contact forces that nothing determines.

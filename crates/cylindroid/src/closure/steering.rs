@@ -16,12 +16,13 @@
 //! Checked  tests/it/closure/steering.rs
 
 use super::constraint::Unit;
-use super::graph::{Gap, Row, link_jacobians, rows};
+use super::graph::{Gap, Row, for_each_rate, rate_unit, rows};
+use super::motions::block_tolerance;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold, dot};
-use crate::model::{CoordinateKind, JointKind, LoopJoint, Mechanism};
-use crate::tolerance::{CLOSURE_BLOCK, CLOSURE_RANK, CORRECTION_RANK};
+use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};
+use crate::model::{LoopJoint, Mechanism};
+use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 
 /// The motions of a closed chain by what its drives do with them.
 #[derive(Debug, Clone)]
@@ -65,10 +66,11 @@ impl Steering {
             });
         }
         let (all, rated, gap) = rows(state)?;
-        let rates = RateRows::of(state, &all, &rated, locked)?;
+        let rates = RateRows::of(state, all, &rated, locked);
         let size = &rates.scale;
 
-        let space = ColumnSpace::of(&rates.matrix.transpose(), Threshold::Relative(CLOSURE_RANK));
+        let space =
+            ColumnSpace::cut_of(rates.matrix.transpose(), Threshold::Relative(CLOSURE_RANK));
         let kernel = space.complement();
         let driven = driven(mechanism, &rated, weights);
         let others = (0..size.len()).filter(|i| driven.iter().all(|(d, _)| d != i));
@@ -78,7 +80,7 @@ impl Steering {
         let unscaled = &kernel * &cs.z;
         let unscaled =
             Matrix::from_fn(size.len(), kernel.cols(), |i, j| size[i] * unscaled[(i, j)]);
-        let free = cs.cosines.iter().take_while(|c| **c <= CLOSURE_BLOCK).count();
+        let free = cs.cosines.iter().take_while(|c| **c <= block_tolerance(&space)).count();
         let p = kernel.cols() - free;
 
         // D = X' S' Z'^T for the driven rates of unit directions in their weights.
@@ -137,55 +139,43 @@ struct RateRows {
 }
 
 impl RateRows {
-    fn of(state: &State, all: &[Row], rated: &[&LoopJoint], locked: &[usize]) -> Result<Self> {
+    fn of(state: &State, all: Vec<Row>, rated: &[&LoopJoint], locked: &[usize]) -> Self {
         let mechanism = state.mechanism();
         let (n, length) = (mechanism.n(), mechanism.reach());
-        let is_length = |kind: CoordinateKind| kind.unit() == "m";
-        let of = |long: bool| if long { length } else { 1.0 };
         let measured: Vec<usize> = (0..rated.len()).filter(|&k| rated[k].actuated).collect();
-        let scale: Vec<f64> = mechanism
-            .coordinates()
-            .iter()
-            .map(|c| of(is_length(c.kind)))
-            .chain(measured.iter().map(|&k| of(rated[k].kind == JointKind::Prismatic)))
-            .collect();
+        let coordinates = mechanism.coordinates().iter().map(|c| Unit::of(c.kind));
+        let units = coordinates.chain(measured.iter().map(|&k| rate_unit(rated[k])));
+        let scale: Vec<f64> = units.map(|unit| unit.size(length)).collect();
         // Rates of passive closing joints say nothing.
         let column = |k: usize| measured.iter().position(|&m| m == k).map(|e| n + e);
-        let kept: Vec<&Row> =
-            all.iter().filter(|row| row.rate_of.is_none_or(|k| column(k).is_some())).collect();
-        let links = link_jacobians(state)?;
-        let matrix = Matrix::from_fn(kept.len() + locked.len(), scale.len(), |i, j| {
-            let Some(row) = kept.get(i) else {
-                return f64::from(u8::from(locked[i - kept.len()] == j));
-            };
-            let per_length = if row.unit == Unit::Length { 1.0 / length } else { 1.0 };
-            let rate = if j < n {
-                row.rate(&links, j)
-            } else {
-                -f64::from(u8::from(row.rate_of.and_then(column) == Some(j)))
-            };
-            rate * per_length * scale[j]
-        });
-        let residual = |row: &&Row| {
-            if row.unit == Unit::Length { row.residual / length } else { row.residual }
+        let kept: Vec<Row> =
+            all.into_iter().filter(|row| row.rate_of.is_none_or(|k| column(k).is_some())).collect();
+        let mut matrix = Matrix::zeros(kept.len() + locked.len(), scale.len());
+        let mut add = |i: usize, j: usize, rate| {
+            matrix[(i, j)] += rate * scale[j] / kept[i].unit.size(length)
         };
-        let residuals = kept.iter().map(residual).chain(locked.iter().map(|_| 0.0)).collect();
-        Ok(Self { matrix, residuals, scale })
+        for_each_rate(state, &kept, &mut add);
+        for (i, row) in kept.iter().enumerate() {
+            if let Some(j) = row.rate_of.and_then(column) {
+                add(i, j, -1.0);
+            }
+        }
+        for (i, &place) in locked.iter().enumerate() {
+            matrix[(kept.len() + i, place)] = 1.0;
+        }
+        let residuals = kept.iter().map(|row| row.scaled_residual(length));
+        let residuals = residuals.chain(locked.iter().map(|_| 0.0)).collect();
+        Self { matrix, residuals, scale }
     }
 
     /// -C^+ residual, without directions in which loops can hardly be closed.
     fn correction(&self) -> Vec<f64> {
-        let mut change = vec![0.0; self.scale.len()];
         if self.residuals.iter().all(|r| *r == 0.0) {
-            return change;
+            return vec![0.0; self.scale.len()];
         }
         let svd = Svd::of(&self.matrix);
-        for i in 0..svd.rank(CORRECTION_RANK).rank {
-            let along = dot(svd.u(i), &self.residuals);
-            let gain = -along / svd.value(i);
-            change.iter_mut().zip(svd.v(i)).for_each(|(c, v)| *c += gain * v);
-        }
-        change.iter_mut().zip(&self.scale).for_each(|(c, s)| *c *= s);
+        let mut change = svd.solve(&self.residuals, svd.rank(CORRECTION_RANK).rank);
+        change.iter_mut().zip(&self.scale).for_each(|(c, s)| *c *= -s);
         change
     }
 }

@@ -19,7 +19,7 @@ use super::graph::{ClosedChain, Row, rows};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::Metric;
-use crate::spatial::{Pose, Vec3, Wrench};
+use crate::spatial::{Vec3, Wrench};
 
 /// The wrench that a closing joint or a contact transmits.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,22 +53,20 @@ pub fn transmitted(state: &State, chain: &ClosedChain, forces: &[f64]) -> Result
     Error::check_finite("contact forces", forces)?;
     let mechanism = state.mechanism();
     let rows = pairs(state, chain)?;
-    let pose = |link: usize| -> Result<Pose> {
-        Ok(state.pose(mechanism.frame(&mechanism.links()[link].name)?))
-    };
+    let pose = |link: usize| state.pose(mechanism.link_frame(link));
     let sum = |place: usize, point: Vec3| {
         let own = rows.iter().zip(forces).filter(|(row, _)| row.pair == place);
         own.fold(Wrench::ZERO, |sum, (row, t)| sum + row.wrench * *t).at_point(point)
     };
     let mut all = Vec::new();
     for joint in mechanism.loops() {
-        let point = (pose(joint.b)? * joint.link_b_from_joint).translation;
+        let point = (pose(joint.b) * joint.link_b_from_joint).translation;
         let wrench = sum(all.len(), point);
         all.push(Transmitted { name: joint.name.clone(), point, wrench, normal: None });
     }
     for contact in mechanism.contacts() {
-        let point = (pose(contact.b)? * contact.link_b_from_contact).translation;
-        let axes = (pose(contact.a)? * contact.link_a_from_contact).rotation;
+        let point = (pose(contact.b) * contact.link_b_from_contact).translation;
+        let axes = (pose(contact.a) * contact.link_a_from_contact).rotation;
         let wrench = sum(all.len(), point);
         let normal = axes.z_axis().dot(wrench.force);
         all.push(Transmitted { name: contact.name.clone(), point, wrench, normal: Some(normal) });

@@ -14,7 +14,8 @@
 //! Source   Lyapunov-Schmidt reduction; Golubitsky & Schaeffer 1985, chapter VII
 //! Checked  tests/it/closure/finite.rs
 
-use super::assembly::{Closing, column_scale};
+use super::assembly::Closing;
+use super::coordinates::column_scale;
 use crate::error::Result;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm, solve_upper};
 use crate::model::Mechanism;
@@ -35,6 +36,7 @@ pub(super) struct Vicinity<'a> {
     rest: Matrix,
     at_start: Vec<f64>,
     noise: f64,
+    closed: bool,
 }
 
 /// A posture near it in which all loops are closed but for `left`.
@@ -63,15 +65,20 @@ impl<'a> Vicinity<'a> {
     ) -> Result<Self> {
         let free: Vec<usize> = (0..mechanism.n()).collect();
         let start = Closing::at(mechanism, q, &free, length)?;
-        let rows = ColumnSpace::of(&start.rates.transpose(), Threshold::Relative(threshold));
+        let rows = ColumnSpace::cut_of(start.rates.transpose(), Threshold::Relative(threshold));
         let (kernel, across) = (rows.complement(), rows.basis());
         // The range as the image of N: of the same rank, whatever the threshold cut off.
         let image = Qr::plain(&start.rates * &across);
         let (held, rest) = (image.basis(), image.complement());
         let at_start = rest.transpose().mul_vec(&start.residuals);
         let noise = LOOP_ROUNDING.max(10.0 * start.error);
-        let q = q.to_vec();
-        Ok(Self { mechanism, length, q, free, kernel, across, held, rest, at_start, noise })
+        let (q, closed) = (q.to_vec(), start.is_closed(length));
+        Ok(Self { mechanism, length, q, free, kernel, across, held, rest, at_start, noise, closed })
+    }
+
+    /// True where the loops of the posture are closed.
+    pub(super) fn is_closed(&self) -> bool {
+        self.closed
     }
 
     /// Number k of motions to first order.

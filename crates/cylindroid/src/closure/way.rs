@@ -17,23 +17,18 @@
 //! Checked  tests/it/closure/continuation.rs
 
 use super::assembly::{Closing, assemble};
-use super::coordinates::{closing, columns, moved, unit_of};
+use super::coordinates::{closing, columns, moved, unit_of, within_limits};
+use super::guesses::near;
 use crate::error::Result;
-use crate::linalg::{Matrix, Svd, dot, norm};
+use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, Motion};
-use crate::scalar::uniform;
 use crate::spatial::{Pose, Rotation, Vec3, log};
-use crate::tolerance::{CLOSURE_RANK, LIMIT_MET};
+use crate::tolerance::{
+    CLOSURE_RANK, CONTRADICTION, CORRECTION_ROUNDING, LIMIT_MET, LOOP_ROUNDING,
+};
 
 /// Corrections at most: three are usual.
 const MOST_CORRECTIONS: usize = 12;
-/// Residuals at which a correction ends: far below `CLOSED`, above rounding.
-const SETTLED: f64 = 1e-13;
-/// Corrections below this are rounding, whatever the step [-].
-const ROUNDING: f64 = 1e-9;
-/// What is left of a motion of the held coordinates that the free ones should follow, relative to
-/// it, where they cannot: far above rounding at the conditioning of the worst pose on a path.
-const CONTRADICTION: f64 = 1e-6;
 /// Neighbours that are asked for their rank, and how far away they are [rad, or reaches].
 const NEIGHBOURS: usize = 3;
 const NEAR: f64 = 0.05;
@@ -105,13 +100,10 @@ impl<'a> Way<'a> {
     fn generic_rank(&self) -> Result<usize> {
         let rank = |q: &[f64]| -> Result<usize> { Ok(self.at(q)?.svd.rank(CLOSURE_RANK).rank) };
         let mut most = rank(&self.from)?;
-        let all: Vec<usize> = (0..self.mechanism.n()).collect();
         let mut random = 0;
         for _ in 0..NEIGHBOURS {
-            let change: Vec<f64> =
-                all.iter().map(|_| NEAR * (2.0 * uniform(&mut random) - 1.0)).collect();
-            let near =
-                assemble(self.mechanism, &moved(self.mechanism, &self.from, &all, &change), &[])?;
+            let guess = near(self.mechanism, &self.from, NEAR, &mut random);
+            let near = assemble(self.mechanism, &guess, &[])?;
             if near.closed {
                 most = most.max(rank(&near.q)?);
             }
@@ -157,7 +149,7 @@ impl<'a> Way<'a> {
     /// f', and true if the free coordinates can follow the held ones at all.
     pub(super) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
         let opened = columns(&point.closing.rates, self.held).mul_vec(&self.along);
-        let follow = self.solve(point, &opened);
+        let follow = self.back(point, &opened);
         let left: Vec<f64> =
             point.by_free.mul_vec(&follow).iter().zip(&opened).map(|(a, b)| a + b).collect();
         let possible = norm(&left) <= CONTRADICTION * norm(&opened).max(CONTRADICTION);
@@ -188,7 +180,7 @@ impl<'a> Way<'a> {
             there.by_free[(i, j)] - here.by_free[(i, j)]
         }));
         let turned = turned.values().next().unwrap_or(0.0);
-        if corrected > 0.5 * predicted + ROUNDING
+        if corrected > 0.5 * predicted + CORRECTION_ROUNDING
             || turned > 0.5 * (self.smallest(here) + self.smallest(&there))
         {
             return Ok(Err(Refusal::Far));
@@ -204,12 +196,7 @@ impl<'a> Way<'a> {
         if beyond.is_empty() {
             return Ok(Ok(there));
         }
-        let mut q = there.closing.q;
-        for i in beyond {
-            let l = &self.mechanism.coordinates()[i].limits;
-            q[i] = q[i].clamp(l.lower, l.upper);
-        }
-        Ok(Ok(self.at(&q)?))
+        Ok(Ok(self.at(&within_limits(self.mechanism, there.closing.q, &beyond))?))
     }
 
     /// The first coordinate outside its limits by more than rounding.
@@ -234,10 +221,10 @@ impl<'a> Way<'a> {
         let mut now = self.at(&guess)?;
         let mut moved_by = 0.0;
         for _ in 0..MOST_CORRECTIONS {
-            if now.closing.error <= SETTLED {
+            if now.closing.error <= LOOP_ROUNDING {
                 break;
             }
-            let change = self.solve(&now, &now.closing.residuals);
+            let change = self.back(&now, &now.closing.residuals);
             let q = moved(self.mechanism, &now.closing.q, &self.free, &change);
             if q.iter().any(|x| !x.is_finite()) {
                 return Ok(None);
@@ -253,16 +240,8 @@ impl<'a> Way<'a> {
     }
 
     /// The least change of the free coordinates that takes `opened` back.
-    fn solve(&self, point: &Point, opened: &[f64]) -> Vec<f64> {
-        let mut change = vec![0.0; self.free.len()];
-        for i in 0..self.rank {
-            let s = point.svd.value(i);
-            let along = dot(point.svd.u(i), opened);
-            if s > 0.0 {
-                change.iter_mut().zip(point.svd.v(i)).for_each(|(c, v)| *c -= along / s * v);
-            }
-        }
-        change
+    fn back(&self, point: &Point, opened: &[f64]) -> Vec<f64> {
+        point.svd.solve(opened, self.rank).iter().map(|change| -change).collect()
     }
 }
 

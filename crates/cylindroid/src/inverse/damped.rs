@@ -20,6 +20,6 @@ pub(super) fn gains(svd: &Svd, damping: f64, out: &mut [f64]) -> f64 {
 /// `s / (s^2 + l^2)`, in the form that squares neither; zero below the smallest normal number, also
 /// without damping.
 #[inline]
-pub(super) fn damp(s: f64, damping: f64) -> f64 {
+pub(crate) fn damp(s: f64, damping: f64) -> f64 {
     if s < f64::MIN_POSITIVE { 0.0 } else { 1.0 / (s + damping * (damping / s)) }
 }

@@ -20,7 +20,7 @@
 //! Source   Donelan & Selig, theorems 1, 2 and 5, section 6.2; its example 1 has a wrong entry
 //!          (row 3, column 2: (16 h^2 + 16 h - 1) / 32 h), its damped form the wrong promise that it
 //!          always exists
-//! Checked  tests/it/screws/vectors.rs, ::laws, ::invariance
+//! Checked  tests/it/screws/vectors/, laws.rs, invariance.rs
 
 use super::report::{Dropped, Inverse, assemble};
 use super::weighted::Weights;

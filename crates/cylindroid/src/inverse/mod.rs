@@ -26,6 +26,7 @@ pub(crate) mod truncated;
 mod variable_damping;
 mod weighted;
 
+pub(crate) use damped::damp;
 pub use hyperbolic::{HyperbolicDamping, HyperbolicOptions, hyperbolic, hyperbolic_with, oblique};
 pub use independent::hyperbolic_into;
 pub use point_direction::{PointDirection, point_direction};

@@ -9,7 +9,7 @@
 //!          joints add their null space
 //! Source   Donelan & Selig, example 3, corrected: the set is {rates : J rates in S}, S the twists
 //!          that move x along q, not the image of S under a pseudoinverse, which is larger
-//! Checked  tests/it/screws/vectors.rs::example_3, ::point_direction
+//! Checked  tests/it/screws/vectors/examples.rs::example_3, tests/it/screws/point_direction.rs
 
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, RowSpace, Svd, dot};
@@ -52,13 +52,11 @@ pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<Point
     let svd = Svd::of(&velocity);
     let rank = svd.values().filter(|s| *s > SCREW_RANK * size).count();
     let space = RowSpace::first(&svd, rank);
-    let mut along = vec![0.0; j.cols()];
+    let along = svd.solve(&q.to_array(), space.rank());
     let mut outside = q.to_array();
     for i in 0..space.rank() {
         let component = dot(svd.u(i), &q.to_array());
         outside.iter_mut().zip(svd.u(i)).for_each(|(o, u)| *o -= component * u);
-        let gain = component / svd.value(i);
-        along.iter_mut().zip(svd.v(i)).for_each(|(a, v)| *a += gain * v);
     }
     let reachable = Vec3::from_array(outside).norm() <= SCREW_CLASS;
     Ok(PointDirection { along: reachable.then_some(along), still: space.complement_basis() })

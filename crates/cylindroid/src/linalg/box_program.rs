@@ -11,7 +11,7 @@
 //!          steps makes the cost finite, and any point returned is within the bounds.
 //! Why so   at most 14 x 14 here, and z = 0 is inside: an active set of 100 lines needs no solver
 //! Source   Nocedal & Wright, Numerical Optimization, 2nd ed., section 16.5, without curvature
-//! Checked  tests/it/hull.rs::box_program_*
+//! Checked  tests/it/box_program.rs
 
 use super::matrix::Matrix;
 use super::qr::{Qr, solve_upper};

@@ -17,6 +17,7 @@ use super::column_space::Cut;
 use super::matrix::Matrix;
 use super::qr::Qr;
 use super::svd::Svd;
+use super::vector::norm;
 
 /// Which of the two blocks a direction lives in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -184,9 +185,9 @@ impl Complete {
 
 /// Scales a vector to length one and returns its length; a zero vector stays.
 fn normalise(x: &mut [f64]) -> f64 {
-    let norm = x.iter().map(|a| a * a).sum::<f64>().sqrt();
-    if norm > 0.0 {
-        x.iter_mut().for_each(|a| *a /= norm);
+    let size = norm(x);
+    if size > 0.0 {
+        x.iter_mut().for_each(|a| *a /= size);
     }
-    norm
+    size
 }

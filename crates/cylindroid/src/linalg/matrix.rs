@@ -204,6 +204,12 @@ impl Matrix {
         }
     }
 
+    /// The length of row `i`.
+    #[must_use]
+    pub fn row_norm(&self, i: usize) -> f64 {
+        (0..self.cols).map(|j| self[(i, j)].powi(2)).sum::<f64>().sqrt()
+    }
+
     /// Square root of the sum of the squared entries.
     #[must_use]
     pub fn frobenius_norm(&self) -> f64 {

@@ -8,7 +8,7 @@
 
 use super::matrix::Matrix;
 use super::svd::Svd;
-use super::vector::dot;
+use super::vector::{dot, norm};
 
 /// The span of some right singular vectors.
 #[derive(Debug, Clone, Copy)]
@@ -102,10 +102,10 @@ impl<'a> RowSpace<'a> {
                         x.iter_mut().zip(b).for_each(|(xj, bj)| *xj -= along * bj);
                     }
                 }
-                let norm = x.iter().map(|a| a * a).sum::<f64>().sqrt();
-                if norm > best.0 {
-                    x.iter_mut().for_each(|a| *a /= norm);
-                    best = (norm, x);
+                let size = norm(&x);
+                if size > best.0 {
+                    x.iter_mut().for_each(|a| *a /= size);
+                    best = (size, x);
                 }
             }
             basis.column_mut(found).copy_from_slice(&best.1);

@@ -209,6 +209,21 @@ impl Svd {
         self.sweeps
     }
 
+    /// `V diag(gain) U^T b`, n entries; `gain` of the place and size of each singular value.
+    pub(crate) fn apply_gains(&self, b: &[f64], gain: impl Fn(usize, f64) -> f64) -> Vec<f64> {
+        let mut x = vec![0.0; self.cols];
+        for i in 0..self.len() {
+            let along = gain(i, self.value(i)) * super::vector::dot(self.u(i), b);
+            x.iter_mut().zip(self.v(i)).for_each(|(x, v)| *x += along * v);
+        }
+        x
+    }
+
+    /// The least x that is nearest to solving `A x = b` in the first `rank` directions.
+    pub(crate) fn solve(&self, b: &[f64], rank: usize) -> Vec<f64> {
+        self.apply_gains(b, |i, s| if i < rank && s > 0.0 { 1.0 / s } else { 0.0 })
+    }
+
     /// Rank at the relative threshold `eps` (values `s_i <= eps * s_1` do not count), never below
     /// machine precision nor the smallest normal number, which has the largest inverse.
     #[must_use]

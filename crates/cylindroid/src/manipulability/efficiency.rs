@@ -22,7 +22,7 @@
 use super::metrics::Metrics;
 use crate::closure::{Parts, Relation};
 use crate::error::Result;
-use crate::linalg::{CosineSine, Matrix, Metric, Qr};
+use crate::linalg::{CosineSine, Matrix, Metric, Qr, dot};
 use crate::tolerance::{DUALITY, LOPSIDED};
 
 /// A point (s : c) of the projective line, `s^2 + c^2 = 1`: what comes out for what goes in.
@@ -284,7 +284,7 @@ fn without(mut a: Matrix, basis: &Matrix) -> Matrix {
         for j in 0..a.cols() {
             for l in 0..basis.cols() {
                 let b = basis.column(l);
-                let along: f64 = a.column(j).iter().zip(b).map(|(x, y)| x * y).sum();
+                let along = dot(a.column(j), b);
                 a.column_mut(j).iter_mut().zip(b).for_each(|(x, y)| *x -= along * y);
             }
         }

@@ -22,7 +22,7 @@
 
 use super::efficiency::{Direction, Manipulability};
 use super::metrics::Metrics;
-use crate::closure::{ClosedChain, Constraint, Load, Motions, contact_forces};
+use crate::closure::{ClosedChain, Constraint, Load, Motions, Supports, Unit};
 use crate::error::Result;
 use crate::inverse::truncated;
 use crate::kinematics::{Reference, State};
@@ -157,12 +157,13 @@ pub fn gradient(
     if multiplicity > 1 {
         return Ok(Gradient::Repeated { value, multiplicity });
     }
+    let behind = Behind::of(&chain.constraint, &motions, goal.task)?;
     let pairs: Vec<Stationary> = all
         .finite
         .iter()
         .zip(&weights)
         .filter(|(_, w)| **w != 0.0)
-        .map(|(d, w)| Stationary::of(d, *w, (&chain.constraint, &motions), goal.task, metrics))
+        .map(|(d, w)| Stationary::of(d, *w, &behind, metrics))
         .collect::<Result<_>>()?;
     let sum = |dm: &Matrix| -> f64 { pairs.iter().map(|p| p.slope(dm)).sum() };
     if !state.mechanism().is_closed() {
@@ -184,6 +185,27 @@ pub fn gradient(
     Ok(Gradient::Exists { value, gradient, error })
 }
 
+/// What stands behind the directions: motions of all joints, and the forces at the contacts.
+struct Behind<'a> {
+    task: Option<&'a Matrix>,
+    supports: Supports<'a>,
+    /// All motions, and their least combination that has given parts of driven joints and object.
+    basis: Matrix,
+    least: Matrix,
+}
+
+impl<'a> Behind<'a> {
+    fn of(constraint: &'a Constraint, motions: &Motions, task: Option<&'a Matrix>) -> Result<Self> {
+        let basis = motions.basis();
+        let (a, n) = (motions.actuated(), basis.rows());
+        let twists = basis.rows_between(a + motions.passive(), n);
+        let seen = task.map_or_else(|| twists.clone(), |map| map * &twists);
+        let both = Matrix::above(basis.cols(), &[&basis.rows_between(0, a), &seen]);
+        let least = truncated(&both, CLOSURE_BLOCK)?.matrix;
+        Ok(Self { task, supports: Supports::of(constraint, motions, None)?, basis, least })
+    }
+}
+
 /// A direction with what its derivative needs.
 struct Stationary {
     /// x = (q_a, q_p, u).
@@ -198,8 +220,7 @@ impl Stationary {
     fn of(
         direction: &Direction,
         weight: f64,
-        (constraint, motions): (&Constraint, &Motions),
-        task: Option<&Matrix>,
+        behind: &Behind<'_>,
         metrics: &Metrics,
     ) -> Result<Self> {
         let efficiency = direction.pair.efficiency();
@@ -208,21 +229,15 @@ impl Stationary {
         let mut torques = metric_times(metrics.joint.as_ref(), q);
         torques.iter_mut().for_each(|x| *x *= efficiency);
         let mut wrench = metric_times(metrics.object.as_ref(), u);
-        if let Some(map) = task {
+        if let Some(map) = behind.task {
             wrench = map.transpose().mul_vec(&wrench);
         }
         wrench.iter_mut().for_each(|x| *x = -*x);
         let load = Load { torques: &torques, wrench: &wrench };
-        // The motion behind the direction; the least where several are.
-        let basis = motions.basis();
-        let (a, n) = (motions.actuated(), basis.rows());
-        let twists = basis.rows_between(a + motions.passive(), n);
-        let seen = task.map_or_else(|| twists.clone(), |map| map * &twists);
-        let both = Matrix::above(basis.cols(), &[&basis.rows_between(0, a), &seen]);
-        let shares = truncated(&both, CLOSURE_BLOCK)?.matrix.mul_vec(&[q.as_slice(), u].concat());
+        let shares = behind.least.mul_vec(&[q.as_slice(), u].concat());
         Ok(Self {
-            motion: basis.mul_vec(&shares),
-            forces: contact_forces(constraint, motions, load, None)?.forces,
+            motion: behind.basis.mul_vec(&shares),
+            forces: behind.supports.forces(load)?.forces,
             factor: -2.0 * weight / (efficiency * input * input),
         })
     }
@@ -259,24 +274,15 @@ fn metric_times(metric: Option<&Metric>, x: &[f64]) -> Vec<f64> {
 
 /// How coordinates of the tree are scaled.
 fn coordinate_scale(state: &State, length: f64) -> Vec<f64> {
-    let scale = |unit| if unit == "m" { length } else { 1.0 };
-    state.mechanism().coordinates().iter().map(|c| scale(c.kind.unit())).collect()
+    state.mechanism().coordinates().iter().map(|c| Unit::of(c.kind).size(length)).collect()
 }
 
 /// The motions of the tree's coordinates that keep the loops closed, orthonormal when scaled.
 fn tangent(state: &State, chain: &ClosedChain, motions: &Motions) -> Matrix {
     let scale = coordinate_scale(state, chain.constraint.length());
     let basis = motions.basis();
-    let names = chain.actuated.iter().chain(&chain.passive);
-    let places: Vec<Option<usize>> = state
-        .mechanism()
-        .coordinates()
-        .iter()
-        .map(|c| names.clone().position(|name| *name == c.name))
-        .collect();
-    let rates = Matrix::from_fn(scale.len(), basis.cols(), |i, j| {
-        places[i].map_or(0.0, |p| basis[(p, j)] / scale[i])
-    });
+    let rates =
+        Matrix::from_fn(scale.len(), basis.cols(), |i, j| basis[(chain.column(i), j)] / scale[i]);
     let unit = ColumnSpace::of(&rates, Threshold::Absolute(motions.tolerance())).basis();
     Matrix::from_fn(scale.len(), unit.cols(), |i, j| unit[(i, j)] * scale[i])
 }
@@ -306,17 +312,14 @@ fn along(state: &State, chain: &ClosedChain, rates: &[f64]) -> Result<(Matrix, M
 
 /// dM of a tree for each coordinate: the Hessian in the columns of driven and passive joints.
 fn constraint_hessian(state: &State, chain: &ClosedChain) -> Vec<Matrix> {
-    let rows: &[usize] =
-        if chain.constraint.object() == 3 { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
-    let coordinates = state.mechanism().coordinates();
-    let place = |name: &String| coordinates.iter().position(|c| c.name == *name);
-    let columns: Vec<Option<usize>> =
-        chain.actuated.iter().chain(&chain.passive).map(place).collect();
-    let object = chain.constraint.object();
+    let rows = state.mechanism().dimension().components();
     let of = |hessian: &Matrix| {
-        Matrix::from_fn(object, columns.len() + object, |i, j| {
-            columns.get(j).copied().flatten().map_or(0.0, |c| hessian[(rows[i], c)])
-        })
+        let mut dm = Matrix::zeros(rows.len(), hessian.cols() + rows.len());
+        for c in 0..hessian.cols() {
+            let column = dm.column_mut(chain.column(c));
+            column.iter_mut().zip(rows).for_each(|(x, &row)| *x = hessian[(row, c)]);
+        }
+        dm
     };
     state.hessian(chain.reference, Reference::LocalWorldAligned).iter().map(of).collect()
 }

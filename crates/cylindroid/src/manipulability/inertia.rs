@@ -11,7 +11,7 @@
 
 use crate::kinematics::State;
 use crate::linalg::Matrix;
-use crate::model::{Dimension, FrameId};
+use crate::model::FrameId;
 use crate::spatial::Mat3;
 
 /// The inertia of the body that carries `frame`, about the frame's origin in world axes; `None`
@@ -26,10 +26,11 @@ pub fn body_inertia(state: &State, frame: FrameId) -> Option<Matrix> {
     let origin = state.pose(frame).translation;
     let mut sum = Matrix::zeros(6, 6);
     let mut total = 0.0;
-    for (link, own) in mechanism.links().iter().zip(mechanism.frames()) {
-        let (Some(inertial), true) = (&link.inertial, own.slot == slot) else { continue };
-        let Ok(id) = mechanism.frame(&link.name) else { continue };
-        let world_from_inertia = state.pose(id) * inertial.link_from_inertia;
+    for (i, link) in mechanism.links().iter().enumerate() {
+        let link_frame = mechanism.link_frame(i);
+        let carried = mechanism.frame_of(link_frame).slot == slot;
+        let (Some(inertial), true) = (&link.inertial, carried) else { continue };
+        let world_from_inertia = state.pose(link_frame) * inertial.link_from_inertia;
         let mass = inertial.mass;
         let arm = Mat3::skew(world_from_inertia.translation - origin);
         let turn = world_from_inertia.rotation.matrix();
@@ -48,11 +49,6 @@ pub fn body_inertia(state: &State, frame: FrameId) -> Option<Matrix> {
     if !(total > 0.0) {
         return None;
     }
-    Some(match mechanism.dimension() {
-        Dimension::Spatial => sum,
-        Dimension::Planar => Matrix::from_fn(3, 3, |i, j| sum[(PLANE[i], PLANE[j])]),
-    })
+    let kept = mechanism.dimension().components();
+    Some(Matrix::from_fn(kept.len(), kept.len(), |i, j| sum[(kept[i], kept[j])]))
 }
-
-/// The components of a planar body.
-const PLANE: [usize; 3] = [0, 1, 5];

@@ -37,13 +37,20 @@ impl Dimension {
         }
     }
 
+    /// The components of a twist `[v; w]` or wrench `[f; m]` that a body has: in the plane x, y and
+    /// the turn about z.
+    #[must_use]
+    pub const fn components(self) -> &'static [usize] {
+        match self {
+            Self::Planar => &[0, 1, 5],
+            Self::Spatial => &[0, 1, 2, 3, 4, 5],
+        }
+    }
+
     /// Freedoms of a body: 3 in the plane, 6 in space.
     #[must_use]
     pub const fn freedoms(self) -> usize {
-        match self {
-            Self::Planar => 3,
-            Self::Spatial => 6,
-        }
+        self.components().len()
     }
 }
 

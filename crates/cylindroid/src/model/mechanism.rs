@@ -67,13 +67,16 @@ pub enum CoordinateKind {
 }
 
 impl CoordinateKind {
+    /// True for what is measured in metres, false for radians.
+    #[must_use]
+    pub const fn is_length(self) -> bool {
+        matches!(self, Self::Length | Self::Position)
+    }
+
     /// Its SI unit.
     #[must_use]
     pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Angle | Self::RotationVector => "rad",
-            Self::Length | Self::Position => "m",
-        }
+        if self.is_length() { "m" } else { "rad" }
     }
 }
 

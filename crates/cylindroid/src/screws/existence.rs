@@ -12,7 +12,7 @@
 //! Source   Donelan & Selig, theorems 2 and 3, corollary 4 (the sign of h flips on the reciprocal
 //!          side); choice of h by |P_h| is ours: the condition of the Gram matrix misleads for
 //!          orders 4 and 5, where it grows with |h| although P_h converges
-//! Checked  tests/it/screws/vectors.rs, ::classes
+//! Checked  tests/it/screws/vectors/normal_forms.rs, tests/it/screws/classes.rs
 
 use std::fmt;
 

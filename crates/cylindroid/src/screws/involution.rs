@@ -10,7 +10,7 @@
 //!          iff their two transversals coincide (also at infinity) or are infinitely many; five
 //!          iff they have a common transversal, which may lie at infinity; "involution iff forces
 //!          on the lines in equilibrium" (Sylvester) is for six lines
-//! Checked  tests/it/screws/vectors.rs::lines, ::counterexamples_to_the_paper
+//! Checked  tests/it/screws/vectors/lines.rs
 
 use super::screw::{Line, Screw};
 use super::spanning::ScrewOptions;

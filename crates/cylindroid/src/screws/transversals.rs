@@ -9,7 +9,7 @@
 //!          plane
 //! Source   Hilbert & Cohn-Vossen, section 3 (regulus); Donelan & Selig, section 4, whose counts
 //!          for four and five lines forget the transversals at infinity and the double one
-//! Checked  tests/it/screws/vectors.rs::lines, ::counterexamples_to_the_paper
+//! Checked  tests/it/screws/vectors/lines.rs
 
 use super::screw::{Line, Screw};
 use super::span::angular;

@@ -63,6 +63,13 @@ fn any_matrices_have_an_answer() {
         let load = Load { torques: &torques.torques, wrench: &wrench };
         contact_forces(&constraint, &motions, load, None).unwrap();
         let counts = Counts::of(&motions, &relation);
-        assert!(Singularities::of(&motions, &relation, &counts).is_regular());
+        assert_eq!((counts.rank, counts.zero_torque), (t - motions.hyperstatic(), r.zero_torque));
+        let found = Singularities::of(&motions, &relation, &counts);
+        assert!(found.is_regular(), "{round}");
+        // Not at a singularity of its own, so at some distance from all.
+        let d = found.distances;
+        for distance in [d.type_i, d.type_ii, d.configuration_space, d.passive] {
+            assert!(distance > 0.0 && (distance <= 1.0 + 1e-12 || distance.is_infinite()), "{d:?}");
+        }
     }
 }

@@ -1,10 +1,12 @@
 //! Closing loops from a guess.
 
 use cylindroid::catalogue;
-use cylindroid::closure::{ClosedChain, Mode, ModeOptions, assemble, assembly_modes};
+use cylindroid::closure::{
+    ClosedChain, Mode, ModeOptions, assemble, assembly_modes, recover_passive,
+};
 
-use super::linkage::{linkage, place};
-use crate::support::Random;
+use super::linkage::{circles, linkage, place};
+use crate::support::{Random, assert_close};
 
 /// Near its home every closed chain of the catalogue closes to rounding, in a few steps.
 #[test]
@@ -96,4 +98,38 @@ fn a_closed_guess_beyond_a_limit_is_said() {
     // From a guess that is open they are kept.
     let found = assemble(&five_bar, &[-0.1, 0.0, 0.0, 0.0], &[]).unwrap();
     assert!(found.closed && found.q[place] >= 0.2, "{found:?}");
+}
+
+/// A part of a ball joint cannot be held: its numbers mean nothing one by one.
+#[test]
+fn balls_are_held_as_a_whole() {
+    let stewart = catalogue::load("stewart").unwrap();
+    let ball = stewart.coordinates().iter().position(|c| c.name.starts_with("s1")).unwrap();
+    let refused = assemble(&stewart, stewart.home(), &[ball]).unwrap_err().to_string();
+    assert!(refused.contains("hold all"), "{refused}");
+    let whole = assemble(&stewart, stewart.home(), &[ball, ball + 1, ball + 2]).unwrap();
+    assert_close("platform at home", &whole.q, stewart.home(), 1e-12);
+    assert_eq!(whole.q[ball..ball + 3], [0.0; 3]);
+}
+
+/// Passive joints for given drives.
+#[test]
+fn passive_joints_follow_the_drives() {
+    let four_bar = catalogue::load("four-bar").unwrap();
+    let found = recover_passive(&four_bar, &[0.2, 0.0, 0.0]).unwrap();
+    assert!(found.closed && found.q[0] == 0.2);
+    let rocker = four_bar.state(&found.q).unwrap().pose(four_bar.frame("rocker").unwrap());
+    let angle = 70_f64.to_radians() + 0.2;
+    let [up, _] = circles([angle.cos(), angle.sin()], 1.8, [2.0, 0.0], 1.3).unwrap();
+    assert_close("elbow", &rocker.translation.to_array()[..2], &up, 1e-9);
+    // Three drives on two degrees of freedom: what they leave open is said.
+    let over = catalogue::load("five-bar").unwrap().with_actuated(&["q1", "q2", "q3"]).unwrap();
+    let torn = recover_passive(&over, &[0.1, 0.0, 0.1, 0.0]).unwrap();
+    assert!(!torn.closed && torn.gap.distance > 1e-3, "{torn:?}");
+    assert_eq!(torn.q[..3], [0.1, 0.0, 0.1]);
+    let home = recover_passive(&over, &[0.0; 4]).unwrap();
+    assert!(home.closed && home.q == [0.0; 4]);
+    // A drive that closes the loop has no coordinate: it holds nothing.
+    let closing = catalogue::load("five-bar").unwrap().with_actuated(&["q5"]).unwrap();
+    assert!(recover_passive(&closing, &[0.1, 0.1, 0.0, 0.0]).unwrap().closed);
 }

@@ -63,6 +63,63 @@ pub(crate) fn case(name: &str) -> Case {
     cases().into_iter().find(|c| c.name == name).unwrap()
 }
 
+/// How a mechanism may be described anew and stay what it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Anew {
+    /// In other frames, metrics moved along.
+    Frame,
+    /// In other units of length, metrics moved along, and with other characteristic lengths.
+    Unit,
+    /// With contacts drawn elsewhere on their links.
+    Drawing,
+    /// With other combinations of the rows, other coordinates of joints and object.
+    Basis,
+    /// All at once.
+    Everything,
+}
+
+/// Checks all reference mechanisms, described anew.
+pub(crate) fn described_anew(how: Anew, seed: u64, check: impl Fn(&Case, &Problem)) {
+    let mut random = Random(seed);
+    let check_case = |case: &Case| check(case, &case.problem());
+    for case in cases() {
+        match how {
+            Anew::Frame => {
+                for _ in 0..3 {
+                    check_case(&case.moved(case.random_frame(&mut random), 1.0));
+                }
+            }
+            Anew::Unit => {
+                for factor in [1e3, 1e-3] {
+                    check_case(&case.moved(Pose::IDENTITY, factor));
+                }
+                for length in [0.1, 5.0] {
+                    check_case(&Case { length, ..case.clone() });
+                }
+            }
+            Anew::Drawing => {
+                for _ in 0..3 {
+                    check_case(&case.redrawn(&mut random));
+                }
+            }
+            Anew::Basis => {
+                for _ in 0..3 {
+                    check(&case, &case.problem().rebased(&mut random));
+                }
+            }
+            Anew::Everything => {
+                for _ in 0..5 {
+                    let factor = 10_f64.powf(random.within(-3.0, 3.0));
+                    let drawn = case.redrawn(&mut random);
+                    let moved = drawn.moved(case.random_frame(&mut random), factor);
+                    check_case(&moved);
+                    check(&moved, &moved.problem().rebased(&mut random));
+                }
+            }
+        }
+    }
+}
+
 fn vec3(v: &Value) -> Vec3 {
     let x: Vec<f64> = numbers(v);
     Vec3::new(x[0], x[1], x.get(2).copied().unwrap_or(0.0))
@@ -153,7 +210,7 @@ impl Case {
         moved.length *= factor;
         // u' = A u with A = blockdiag(factor R, R), so W' = A^-T W A^-1 and T' = T A^-1.
         let r = pose.rotation.matrix().to_rows();
-        let components: &[usize] = if self.planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
+        let components = self.components();
         let inverse = Matrix::from_fn(components.len(), components.len(), |i, j| {
             let (i, j) = (components[i], components[j]);
             let turn = if i / 3 == j / 3 { r[j % 3][i % 3] } else { 0.0 };
@@ -172,6 +229,11 @@ impl Case {
         let scale = Matrix::diagonal(&driven);
         moved.wq = &(&scale * &self.wq) * &scale;
         moved
+    }
+
+    /// Those of a twist that a body has.
+    fn components(&self) -> &'static [usize] {
+        if self.planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] }
     }
 
     /// Number of objects.
@@ -250,7 +312,7 @@ impl Case {
     }
 
     pub(crate) fn constraint(&self) -> Constraint {
-        let components: &[usize] = if self.planar { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
+        let components = self.components();
         let d = components.len();
         let (mut joint_rows, mut object_rows, mut units) = (Vec::new(), Vec::new(), Vec::new());
         for contact in &self.contacts {

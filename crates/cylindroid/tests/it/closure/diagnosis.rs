@@ -3,6 +3,7 @@
 use cylindroid::closure::{
     ClosedChain, Diagnosis, FiniteMobility, Generic, Mobility, SingularityKind, assemble,
 };
+use cylindroid::model::formats;
 use cylindroid::screws::Screw;
 use cylindroid::spatial::{Vec3, Wrench};
 use cylindroid::{Error, Mechanism, Reference, catalogue};
@@ -185,7 +186,15 @@ fn strange_mechanisms_have_an_answer() {
         Err(Error::InvalidOption { option: "length", .. })
     ));
     assert!(FiniteMobility::of(&state, Some(f64::INFINITY)).is_err());
-    // No joints at all.
-    let chain = ClosedChain::of(&five_bar.state(five_bar.home()).unwrap(), None, None).unwrap();
-    assert_eq!(Mobility::of(&chain.constraint).dof.dimension(), 2);
+    // No joints at all: a link in the world, and a stone that nothing holds.
+    for (text, dof) in [("type = \"fixed\"", 0), ("type = \"free\"\nactuated = false", 6)] {
+        let text = format!("[[joint]]\nname = \"j\"\nbetween = [\"ground\", \"stone\"]\n{text}\n");
+        let m = formats::toml::parse(&text, std::path::Path::new("stone.toml")).unwrap();
+        let found = at_home(&m);
+        assert!(found.singularities.is_regular(), "{found:?}");
+        assert_eq!((found.finite.infinitesimal, found.finite.finite), (dof, Some(dof)));
+        let chain = ClosedChain::of(&m.state(m.home()).unwrap(), None, None).unwrap();
+        let mobility = Mobility::of(&chain.constraint);
+        assert_eq!((mobility.dof.dimension(), mobility.zero_torque.dimension()), (dof, 6 - dof));
+    }
 }

@@ -1,7 +1,7 @@
 //! What holds for every mechanism: no work on the relation, statics from free bodies, bases.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Constraint, Motions};
+use cylindroid::closure::{Constraint, Mobility, Motions};
 use cylindroid::linalg::{ColumnSpace, Threshold};
 
 use super::case::{case, cases};
@@ -67,6 +67,57 @@ fn motions_keep_the_constraint() {
         let constraint = case.constraint();
         let kept = &constraint.matrix() * &Motions::of(&constraint).basis();
         assert!(kept.max_abs() < 1e-13, "{}: {kept:?}", case.name);
+    }
+}
+
+/// The bases of the mobility report: orthonormal, motions that keep the constraint with the rows
+/// at rest that should be, forces that do no work. That none is missing the counts say.
+#[test]
+fn bases_are_what_they_say() {
+    for case in cases() {
+        let constraint = case.constraint();
+        let (a, p, m) = (constraint.actuated(), constraint.passive(), constraint.matrix());
+        let n = a + p + constraint.object();
+        let found = Mobility::of(&constraint);
+        let zero = |what: &str, m: &Matrix| {
+            assert!(m.max_abs() < 1e-12, "{what} of {}: {m:?}", case.name);
+        };
+        let (driven, passive, object) = (0..a, a..a + p, a + p..n);
+        for (what, space, still) in [
+            ("dof", &found.dof, vec![]),
+            ("redundancy", &found.redundancy, vec![&passive, &object]),
+            ("indeterminacy", &found.indeterminacy, vec![&driven]),
+            ("idle", &found.idle, vec![&driven, &object]),
+            ("ungrasped", &found.ungrasped, vec![&driven, &passive]),
+            ("coordinate", &found.coordinate, vec![]),
+        ] {
+            zero(what, &(&m * &space.basis));
+            for rows in still {
+                zero(what, &space.basis.rows_between(rows.start, rows.end));
+            }
+        }
+        for other in [&found.redundancy, &found.indeterminacy] {
+            zero("coordinate", &(&other.basis.transpose() * &found.coordinate.basis));
+        }
+        let all = &found.dof.basis;
+        let (of_joints, of_object) = (all.rows_between(0, a), all.rows_between(a + p, n));
+        zero("internal", &(&found.internal.basis.transpose() * &of_joints));
+        zero("zero_torque", &(&found.zero_torque.basis.transpose() * &of_object));
+        zero("hyperstatic", &(&m.transpose() * &found.hyperstatic.basis));
+        for space in [
+            &found.dof,
+            &found.redundancy,
+            &found.indeterminacy,
+            &found.idle,
+            &found.ungrasped,
+            &found.coordinate,
+            &found.internal,
+            &found.zero_torque,
+            &found.hyperstatic,
+        ] {
+            let gram = &space.basis.transpose() * &space.basis;
+            assert!(gram.max_difference(&Matrix::identity(gram.rows())) < 1e-12, "{}", case.name);
+        }
     }
 }
 

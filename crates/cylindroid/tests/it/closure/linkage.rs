@@ -1,4 +1,4 @@
-//! Planar linkages from their joints.
+//! Planar linkages from their joints, and the geometry to check them by.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -50,4 +50,14 @@ pub(crate) fn dead_four_bar(more_of_rocker: &str) -> Mechanism {
 /// The place of a coordinate.
 pub(crate) fn place(mechanism: &Mechanism, name: &str) -> usize {
     mechanism.coordinates().iter().position(|c| c.name == name).unwrap()
+}
+
+/// Where the circles about a and b meet, left of the way from a to b first.
+pub(crate) fn circles(a: [f64; 2], r: f64, b: [f64; 2], s: f64) -> Option<[[f64; 2]; 2]> {
+    let (x, y) = (b[0] - a[0], b[1] - a[1]);
+    let d = x.hypot(y);
+    let along = (d * d + r * r - s * s) / (2.0 * d);
+    let height = (r * r - along * along).sqrt();
+    let at = |h: f64| [a[0] + (x * along - y * h) / d, a[1] + (y * along + x * h) / d];
+    (height >= 0.0).then(|| [at(height), at(-height)])
 }

@@ -1,14 +1,14 @@
-//! Assembly modes against closed forms, a scan and symmetry; passive joints for given drives.
+//! Assembly modes against closed forms, a scan and symmetry.
 
 use std::f64::consts::{PI, TAU};
 
-use cylindroid::closure::{AssemblyModes, ModeOptions, assemble, assembly_modes, recover_passive};
+use cylindroid::closure::{AssemblyModes, ModeOptions, assembly_modes};
 use cylindroid::model::{JointKind, JointSpec, LoopSpec};
 use cylindroid::spatial::{Mat3, Pose, Vec3};
 use cylindroid::{Mechanism, catalogue};
 
-use super::linkage::{dead_four_bar, five_bar, place};
-use crate::support::{Random, assert_close};
+use super::linkage::{circles, dead_four_bar, five_bar, place};
+use crate::support::Random;
 
 fn search(mechanism: &Mechanism, guess: &[f64], held: &[usize], starts: usize) -> AssemblyModes {
     let found = assembly_modes(mechanism, guess, held, ModeOptions { starts, seed: 3 }).unwrap();
@@ -35,16 +35,6 @@ fn turned(p: [f64; 2], about: [f64; 2], angle: f64) -> [f64; 2] {
     let (s, c) = angle.sin_cos();
     let (x, y) = (p[0] - about[0], p[1] - about[1]);
     [about[0] + c * x - s * y, about[1] + s * x + c * y]
-}
-
-/// Where the circles about a and b meet, left of the way from a to b first.
-fn circles(a: [f64; 2], r: f64, b: [f64; 2], s: f64) -> Option<[[f64; 2]; 2]> {
-    let (x, y) = (b[0] - a[0], b[1] - a[1]);
-    let d = x.hypot(y);
-    let along = (d * d + r * r - s * s) / (2.0 * d);
-    let height = (r * r - along * along).sqrt();
-    let at = |h: f64| [a[0] + (x * along - y * h) / d, a[1] + (y * along + x * h) / d];
-    (height >= 0.0).then(|| [at(height), at(-height)])
 }
 
 /// Every point of `expected` is one of `got`, and the other way round.
@@ -306,32 +296,4 @@ fn modes_are_the_same_on_every_run_and_refuse_nonsense() {
     let none = ModeOptions { starts: 0, seed: 0 };
     assert!(assembly_modes(&stewart, stewart.home(), &legs, none).is_err());
     assert!(assembly_modes(&stewart, &[0.0], &legs, ModeOptions::default()).is_err());
-    // A part of a ball joint cannot be held: its numbers mean nothing one by one.
-    let ball = stewart.coordinates().iter().position(|c| c.name.starts_with("s1")).unwrap();
-    let refused = assemble(&stewart, stewart.home(), &[ball]).unwrap_err().to_string();
-    assert!(refused.contains("hold all"), "{refused}");
-    let whole = assemble(&stewart, stewart.home(), &[ball, ball + 1, ball + 2]).unwrap();
-    assert_close("platform at home", &whole.q, stewart.home(), 1e-12);
-    assert_eq!(whole.q[ball..ball + 3], [0.0; 3]);
-}
-
-#[test]
-fn passive_joints_follow_the_drives() {
-    let four_bar = catalogue::load("four-bar").unwrap();
-    let found = recover_passive(&four_bar, &[0.2, 0.0, 0.0]).unwrap();
-    assert!(found.closed && found.q[0] == 0.2);
-    let rocker = four_bar.state(&found.q).unwrap().pose(four_bar.frame("rocker").unwrap());
-    let angle = 70_f64.to_radians() + 0.2;
-    let [up, _] = circles([angle.cos(), angle.sin()], 1.8, [2.0, 0.0], 1.3).unwrap();
-    assert_close("elbow", &rocker.translation.to_array()[..2], &up, 1e-9);
-    // Three drives on two degrees of freedom: what they leave open is said.
-    let over = catalogue::load("five-bar").unwrap().with_actuated(&["q1", "q2", "q3"]).unwrap();
-    let torn = recover_passive(&over, &[0.1, 0.0, 0.1, 0.0]).unwrap();
-    assert!(!torn.closed && torn.gap.distance > 1e-3, "{torn:?}");
-    assert_eq!(torn.q[..3], [0.1, 0.0, 0.1]);
-    let home = recover_passive(&over, &[0.0; 4]).unwrap();
-    assert!(home.closed && home.q == [0.0; 4]);
-    // A drive that closes the loop has no coordinate: it holds nothing.
-    let closing = catalogue::load("five-bar").unwrap().with_actuated(&["q5"]).unwrap();
-    assert!(recover_passive(&closing, &[0.1, 0.1, 0.0, 0.0]).unwrap().closed);
 }

@@ -3,32 +3,19 @@
 
 use cylindroid::closure::{ClosedChain, Mobility, Motions, Singularities, assemble};
 use cylindroid::manipulability::{Manipulability, Metrics};
-use cylindroid::model::{Dimension, JointKind, JointSpec, LoopSpec};
-use cylindroid::spatial::{Pose, Vec3};
+use cylindroid::model::Dimension;
+use cylindroid::screws::Line;
+use cylindroid::spatial::Vec3;
 use cylindroid::{Mechanism, catalogue};
 
-/// A ring of hinges at these points of the plane, the last of which closes it.
-fn ring(points: &[(f64, f64)], dimension: Dimension) -> Mechanism {
-    let at = |i: usize| Vec3::new(points[i].0, points[i].1, 0.0);
-    let link = |i: usize| if i == 0 { "ground".to_owned() } else { format!("link{i}") };
-    let mut b = Mechanism::builder("ring");
-    b.dimension(dimension);
-    let last = points.len() - 1;
-    for i in 0..last {
-        let from = if i == 0 { Vec3::ZERO } else { at(i - 1) };
-        b.joint(JointSpec {
-            parent_from_joint: Pose::from_translation(at(i) - from),
-            actuated: i + 4 < points.len(),
-            ..JointSpec::new(&format!("q{}", i + 1), JointKind::Revolute, &link(i), &link(i + 1))
-        });
-    }
-    b.close(LoopSpec {
-        link_a_from_joint: Pose::from_translation(at(last) - at(last - 1)),
-        link_b_from_joint: Pose::from_translation(at(last)),
-        ..LoopSpec::new("closing", JointKind::Revolute, &link(last), "ground")
-    });
-    b.reference(&link(2));
-    b.build().unwrap()
+use super::rings::ring;
+
+/// Hinges at these points of the plane, all but the last four driven.
+fn hinges(points: &[(f64, f64)], dimension: Dimension) -> Mechanism {
+    let axis = |(x, y): &(f64, f64)| Line { point: Vec3::new(*x, *y, 0.0), direction: Vec3::Z };
+    let axes: Vec<Line> = points.iter().map(axis).collect();
+    let driven: Vec<String> = (1..points.len() - 3).map(|i| format!("q{i}")).collect();
+    ring("ring", &axes, dimension).with_actuated(&driven).unwrap()
 }
 
 /// dof, hyperstatic, redundancy, indeterminacy, internal, zero_torque.
@@ -58,14 +45,14 @@ fn counts(m: &Mechanism) -> [usize; 6] {
 #[test]
 fn size_does_not_matter() {
     let shape = [(0.0, 0.0), (0.0, 2.0), (1.0, 2.0), (2.0, 1.0), (2.0, 0.0)];
-    let expected = counts(&ring(&shape, Dimension::Planar));
+    let expected = counts(&hinges(&shape, Dimension::Planar));
     assert_eq!(expected[..2], [2, 0]);
-    let expected_in_space = counts(&ring(&shape, Dimension::Spatial));
+    let expected_in_space = counts(&hinges(&shape, Dimension::Spatial));
     assert_eq!(expected_in_space[..2], [2, 3]);
     for factor in [1e3, 1e-3, 1e6, 1e-6, 1e100] {
         let points = shape.map(|(x, y)| (factor * x, factor * y));
-        assert_eq!(counts(&ring(&points, Dimension::Planar)), expected, "{factor}");
-        assert_eq!(counts(&ring(&points, Dimension::Spatial)), expected_in_space, "{factor}");
+        assert_eq!(counts(&hinges(&points, Dimension::Planar)), expected, "{factor}");
+        assert_eq!(counts(&hinges(&points, Dimension::Spatial)), expected_in_space, "{factor}");
     }
 }
 
@@ -74,7 +61,7 @@ fn size_does_not_matter() {
 #[test]
 fn tiny_links() {
     let four_bar =
-        |crank: f64| ring(&[(0.0, 0.0), (0.0, crank), (1.0, 1.0), (1.5, 0.0)], Dimension::Planar);
+        |crank: f64| hinges(&[(0.0, 0.0), (0.0, crank), (1.0, 1.0), (1.5, 0.0)], Dimension::Planar);
     for crank in [1e-3, 1e-6, 1e-7] {
         assert_eq!(counts(&four_bar(crank))[0], 1, "{crank}");
     }
@@ -96,13 +83,13 @@ fn a_hundred_joints() {
         })
         .collect();
     for (dimension, hyperstatic) in [(Dimension::Planar, 0), (Dimension::Spatial, 3)] {
-        let m = ring(&points, dimension);
+        let m = hinges(&points, dimension);
         assert_eq!(m.n(), 99);
         let [dof, too_many, ..] = counts(&m);
         assert_eq!((dof, too_many), (97, hyperstatic), "{dimension:?}");
     }
     // Bent open, it is closed again near by.
-    let m = ring(&points, Dimension::Planar);
+    let m = hinges(&points, Dimension::Planar);
     let guess: Vec<f64> = m.home().iter().enumerate().map(|(i, q)| q + 1e-3 * i as f64).collect();
     assert!(assemble(&m, &guess, &[0, 1, 2]).unwrap().closed);
 }

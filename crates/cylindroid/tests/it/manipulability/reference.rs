@@ -3,10 +3,9 @@
 use cylindroid::Matrix;
 use cylindroid::closure::{Motions, Relation};
 use cylindroid::manipulability::{Index, Manipulability, Metrics};
-use cylindroid::spatial::Pose;
 
-use crate::closure::case::{Case, Problem, case, cases, numbers};
-use crate::support::{Random, assert_close};
+use crate::closure::case::{Anew, Case, Problem, case, cases, described_anew, numbers};
+use crate::support::assert_close;
 
 /// Relative.
 const TOLERANCE: f64 = 1e-9;
@@ -28,12 +27,7 @@ fn assert_relative(what: &str, got: &[f64], expected: &[f64]) {
 }
 
 #[track_caller]
-fn check(case: &Case) {
-    check_problem(case, &case.problem());
-}
-
-#[track_caller]
-fn check_problem(case: &Case, problem: &Problem) {
+fn check(case: &Case, problem: &Problem) {
     let m = Manipulability::of(&relation(problem), &metrics(problem)).unwrap();
     for (kind, spectrum) in [
         ("kinematic", m.kinematic.clone()),
@@ -51,67 +45,32 @@ fn check_problem(case: &Case, problem: &Problem) {
 
 #[test]
 fn spectra() {
-    cases().iter().for_each(check);
+    cases().iter().for_each(|case| check(case, &case.problem()));
 }
 
 #[test]
 fn spectra_do_not_depend_on_the_frame() {
-    let mut random = Random(81);
-    for case in cases() {
-        for _ in 0..3 {
-            check(&case.moved(case.random_frame(&mut random), 1.0));
-        }
-    }
+    described_anew(Anew::Frame, 81, check);
 }
 
 #[test]
 fn spectra_do_not_depend_on_the_unit() {
-    for case in cases() {
-        for factor in [1e3, 1e-3] {
-            check(&case.moved(Pose::IDENTITY, factor));
-        }
-        let mut scaled = case.clone();
-        for length in [0.1, 5.0] {
-            scaled.length = length;
-            check(&scaled);
-        }
-    }
+    described_anew(Anew::Unit, 0, check);
 }
 
 #[test]
 fn spectra_do_not_depend_on_where_a_contact_is_drawn() {
-    let mut random = Random(82);
-    for case in cases() {
-        for _ in 0..3 {
-            check(&case.redrawn(&mut random));
-        }
-    }
+    described_anew(Anew::Drawing, 82, check);
 }
 
-/// Other combinations of the rows, other coordinates of joints and object, metrics moved along.
 #[test]
 fn spectra_do_not_depend_on_bases() {
-    let mut random = Random(83);
-    for case in cases() {
-        for _ in 0..3 {
-            check_problem(&case, &case.problem().rebased(&mut random));
-        }
-    }
+    described_anew(Anew::Basis, 83, check);
 }
 
-/// Frame, unit, drawing and basis all at once.
 #[test]
 fn spectra_do_not_depend_on_anything() {
-    let mut random = Random(84);
-    for case in cases() {
-        for _ in 0..5 {
-            let factor = 10_f64.powf(random.within(-3.0, 3.0));
-            let drawn = case.redrawn(&mut random);
-            let moved = drawn.moved(case.random_frame(&mut random), factor);
-            check(&moved);
-            check_problem(&moved, &moved.problem().rebased(&mut random));
-        }
-    }
+    described_anew(Anew::Everything, 84, check);
 }
 
 /// The five-bar of figure 3 in closed form: N and D are known integers.
