@@ -200,11 +200,7 @@ impl Motions {
 
     /// From scaled coordinates.
     pub(super) fn unscaled(&self, motions: &Matrix) -> Matrix {
-        let mut given = motions.clone();
-        for j in 0..given.cols() {
-            given.column_mut(j).iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-        }
-        given
+        motions.clone().scale_rows(&self.scale)
     }
 
     /// Number of driven joints.

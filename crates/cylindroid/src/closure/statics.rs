@@ -162,7 +162,7 @@ pub(super) fn undetermined(constraint: &Constraint, motions: &Motions) -> Subspa
     } else {
         let scaled = constraint.scaled_transpose().transpose();
         let space = ColumnSpace::of(&scaled, Threshold::Relative(motions.threshold()));
-        unscaled(constraint, space.complement())
+        space.complement().scale_rows(constraint.row_scale())
     };
     Subspace { basis, cut: motions.cut() }
 }
@@ -185,12 +185,5 @@ pub fn structural_forces(constraint: &Constraint) -> Subspace {
 fn kernel_of_columns(constraint: &Constraint, from: usize, to: usize) -> Subspace {
     let columns = constraint.scaled_transpose().rows_between(from, to).transpose();
     let space = ColumnSpace::of(&columns, Threshold::Relative(CLOSURE_RANK));
-    Subspace { basis: unscaled(constraint, space.complement()), cut: space.cut() }
-}
-
-fn unscaled(constraint: &Constraint, mut forces: Matrix) -> Matrix {
-    for j in 0..forces.cols() {
-        forces.column_mut(j).iter_mut().zip(constraint.row_scale()).for_each(|(f, r)| *f *= r);
-    }
-    forces
+    Subspace { basis: space.complement().scale_rows(constraint.row_scale()), cut: space.cut() }
 }

@@ -77,9 +77,7 @@ impl Steering {
         let order: Vec<usize> = driven.iter().map(|(d, _)| *d).chain(others).collect();
         let sorted = Matrix::from_fn(size.len(), kernel.cols(), |i, j| kernel[(order[i], j)]);
         let cs = CosineSine::of(&sorted, driven.len());
-        let unscaled = &kernel * &cs.z;
-        let unscaled =
-            Matrix::from_fn(size.len(), kernel.cols(), |i, j| size[i] * unscaled[(i, j)]);
+        let unscaled = (&kernel * &cs.z).scale_rows(size);
         let free = cs.cosines.iter().take_while(|c| **c <= block_tolerance(&space)).count();
         let p = kernel.cols() - free;
 

@@ -17,7 +17,7 @@
 use super::assembly::Closing;
 use super::coordinates::column_scale;
 use crate::error::Result;
-use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm, solve_upper};
+use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm};
 use crate::model::Mechanism;
 use crate::tolerance::LOOP_ROUNDING;
 
@@ -28,6 +28,8 @@ const MOST_STEPS: usize = 30;
 pub(super) struct Vicinity<'a> {
     mechanism: &'a Mechanism,
     length: f64,
+    /// Of each coordinate: rate = scale * scaled rate.
+    scale: Vec<f64>,
     q: Vec<f64>,
     free: Vec<usize>,
     kernel: Matrix,
@@ -73,7 +75,21 @@ impl<'a> Vicinity<'a> {
         let at_start = rest.transpose().mul_vec(&start.residuals);
         let noise = LOOP_ROUNDING.max(10.0 * start.error);
         let (q, closed) = (q.to_vec(), start.is_closed(length));
-        Ok(Self { mechanism, length, q, free, kernel, across, held, rest, at_start, noise, closed })
+        let scale = free.iter().map(|&i| column_scale(mechanism, i, length)).collect();
+        Ok(Self {
+            mechanism,
+            length,
+            scale,
+            q,
+            free,
+            kernel,
+            across,
+            held,
+            rest,
+            at_start,
+            noise,
+            closed,
+        })
     }
 
     /// True where the loops of the posture are closed.
@@ -103,17 +119,11 @@ impl<'a> Vicinity<'a> {
 
     /// Scaled rates in the units of the coordinates.
     pub(super) fn unscaled(&self, rates: &Matrix) -> Matrix {
-        Matrix::from_fn(rates.rows(), rates.cols(), |i, j| {
-            column_scale(self.mechanism, i, self.length) * rates[(i, j)]
-        })
+        rates.clone().scale_rows(&self.scale)
     }
 
     fn moved(&self, q: &[f64], scaled: &[f64]) -> Vec<f64> {
-        let rates: Vec<f64> = scaled
-            .iter()
-            .enumerate()
-            .map(|(i, x)| column_scale(self.mechanism, i, self.length) * x)
-            .collect();
+        let rates: Vec<f64> = scaled.iter().zip(&self.scale).map(|(x, s)| x * s).collect();
         let mut q = q.to_vec();
         self.mechanism.integrate_in_place(&mut q, &rates, 1.0);
         q
@@ -130,7 +140,7 @@ impl<'a> Vicinity<'a> {
             let across = Qr::plain(&self.held.transpose() * &(&now.rates * &self.across));
             if error <= self.noise && !(error < 0.5 * last) || error == 0.0 {
                 let along = &now.rates * &self.kernel;
-                let follow = solve(&across, &(&self.held.transpose() * &along));
+                let follow = across.solve(&self.held.transpose() * &along);
                 let swept = &now.rates * &(&self.across * &follow);
                 let rates = &self.rest.transpose()
                     * &Matrix::from_fn(along.rows(), along.cols(), |i, j| {
@@ -145,7 +155,7 @@ impl<'a> Vicinity<'a> {
                 return Ok(None);
             }
             last = error;
-            let mut back = solve(&across, &Matrix::from_fn(open.len(), 1, |i, _| -open[i]));
+            let mut back = across.solve(Matrix::from_fn(open.len(), 1, |i, _| -open[i]));
             if !back.is_finite() || back.max_abs() > 1.0 {
                 return Ok(None);
             }
@@ -153,16 +163,4 @@ impl<'a> Vicinity<'a> {
         }
         Ok(None)
     }
-}
-
-/// `A^-1 B` for a square A that was decomposed without pivots.
-fn solve(qr: &Qr, b: &Matrix) -> Matrix {
-    let r = qr.r();
-    let mut x = b.clone();
-    for j in 0..x.cols() {
-        qr.apply_transposed(x.column_mut(j));
-        let column = solve_upper(&r, x.column(j));
-        x.column_mut(j).copy_from_slice(&column);
-    }
-    x
 }

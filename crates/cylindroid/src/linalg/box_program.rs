@@ -76,7 +76,8 @@ impl BoxProgram {
     pub fn new(a: &Matrix, bounds: &[Interval]) -> Self {
         assert_eq!(a.rows(), bounds.len(), "a bound for each row");
         let normals = Matrix::from_fn(a.cols(), a.rows(), |j, i| a[(i, j)] / bounds[i].size());
-        let inverse = (a.rows() == a.cols()).then(|| inverse(&normals.transpose()));
+        let inverse = (a.rows() == a.cols())
+            .then(|| Qr::plain(normals.transpose()).solve(Matrix::identity(a.rows())));
         let scaled =
             |b: &Interval| Interval { lower: b.lower / b.size(), upper: b.upper / b.size() };
         Self { normals, bounds: bounds.iter().map(scaled).collect(), inverse }
@@ -162,19 +163,4 @@ impl BoxProgram {
         }
         first
     }
-}
-
-/// The inverse of a regular square matrix.
-fn inverse(a: &Matrix) -> Matrix {
-    let n = a.rows();
-    let qr = Qr::plain(a.clone());
-    let r = qr.r();
-    let mut inverse = Matrix::zeros(n, n);
-    for j in 0..n {
-        let mut e = vec![0.0; n];
-        e[j] = 1.0;
-        qr.apply_transposed(&mut e);
-        inverse.column_mut(j).copy_from_slice(&solve_upper(&r, &e));
-    }
-    inverse
 }

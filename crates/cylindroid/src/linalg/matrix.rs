@@ -204,6 +204,14 @@ impl Matrix {
         }
     }
 
+    /// Every row times its factor.
+    pub(crate) fn scale_rows(mut self, factors: &[f64]) -> Self {
+        for column in self.data.chunks_exact_mut(self.rows.max(1)) {
+            column.iter_mut().zip(factors).for_each(|(x, f)| *x *= f);
+        }
+        self
+    }
+
     /// The length of row `i`.
     #[must_use]
     pub fn row_norm(&self, i: usize) -> f64 {

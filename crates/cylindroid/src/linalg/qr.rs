@@ -158,6 +158,17 @@ impl Qr {
         &self.order
     }
 
+    /// `A^-1 B` for a regular square A decomposed without pivots.
+    pub(crate) fn solve(&self, mut b: Matrix) -> Matrix {
+        let r = self.r();
+        for j in 0..b.cols() {
+            self.apply_transposed(b.column_mut(j));
+            let x = solve_upper(&r, b.column(j));
+            b.column_mut(j).copy_from_slice(&x);
+        }
+        b
+    }
+
     /// `x <- Q x`, m entries.
     pub fn apply(&self, x: &mut [f64]) {
         for j in (0..self.factors.len()).rev() {
