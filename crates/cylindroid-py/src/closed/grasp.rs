@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
+use crate::mechanism::PyMechanism;
 use crate::table;
 
 /// A finger on an object.
@@ -176,7 +177,7 @@ fn effort_of(name: &str) -> Result<Effort> {
 }
 
 /// By the contacts of a mechanism on the link that carries `object`.
-pub(super) fn of_mechanism(
+fn of_mechanism(
     py: Python<'_>,
     state: &State,
     object: FrameId,
@@ -189,4 +190,55 @@ pub(super) fn of_mechanism(
     let space = WrenchSpace::about(state, object, &fingers)?;
     let inner = py.detach(|| closure::grasp_quality(&fingers, space, effort))?;
     Ok(PyGraspQuality { inner })
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// The quality of the grasp by the contacts that the mechanism file names on an object.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,), optional
+    ///     Default: home.
+    /// reference : str, optional
+    ///     A frame of the object. Default: the reference.
+    /// mu, torsion : float, optional
+    ///     Coefficient of friction, and largest moment about the normal over the normal force (m),
+    ///     in place of those of the file.
+    /// strength : float
+    ///     Largest normal force of each finger (N), for the effort 'each'.
+    /// effort : str
+    ///     'shared' or 'each', as of the function `grasp_quality`.
+    ///
+    /// Returns
+    /// -------
+    /// GraspQuality
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError
+    /// InvalidOptionError
+    ///     Also for contacts that are no points, or whose coefficients nobody gives.
+    #[pyo3(signature = (q = None, reference = None, mu = None, torsion = None, strength = 1.0,
+        effort = "shared"))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn grasp_quality(
+        &self,
+        py: Python<'_>,
+        q: Option<Numbers<'_>>,
+        reference: Option<&str>,
+        mu: Option<f64>,
+        torsion: Option<f64>,
+        strength: f64,
+        effort: &str,
+    ) -> Result<PyGraspQuality> {
+        let m = &self.inner;
+        let state = match &q {
+            None => m.state(m.home())?,
+            Some(q) => m.state(q.vector("q")?)?,
+        };
+        let object = reference.map_or(Ok(m.reference()), |name| m.frame(name))?;
+        let touch = Touch { mu, torsion, strength };
+        of_mechanism(py, &state, object, touch, effort)
+    }
 }

@@ -79,7 +79,7 @@ impl PyContactForces {
     }
 }
 
-pub(super) fn joint_torques(
+fn joint_torques(
     constraint: &PyConstraint,
     wrench: &Numbers<'_>,
     metric: Option<&Numbers<'_>>,
@@ -90,7 +90,7 @@ pub(super) fn joint_torques(
     Ok(PyTorques { inner })
 }
 
-pub(super) fn contact_forces(
+fn contact_forces(
     constraint: &PyConstraint,
     torques: &Numbers<'_>,
     wrench: &Numbers<'_>,
@@ -101,4 +101,64 @@ pub(super) fn contact_forces(
     let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
     let inner = closure::contact_forces(&constraint.inner, &motions, load, compliance.as_ref())?;
     Ok(PyContactForces { inner })
+}
+
+#[pymethods]
+impl PyConstraint {
+    /// The joint torques of least norm that hold a wrench on the object.
+    ///
+    /// Parameters
+    /// ----------
+    /// wrench : array_like, (d,)
+    ///     Acts on the object, force first.
+    /// metric : array_like, (a,) or (a, a), optional
+    ///     Of the torques. Default: scaled by the characteristic length.
+    ///
+    /// Returns
+    /// -------
+    /// Torques
+    #[pyo3(signature = (wrench, metric = None))]
+    fn joint_torques(&self, wrench: Numbers<'_>, metric: Option<Numbers<'_>>) -> Result<PyTorques> {
+        joint_torques(self, &wrench, metric.as_ref())
+    }
+
+    /// The forces at the contacts under torques and a wrench: least, or elastic.
+    ///
+    /// Parameters
+    /// ----------
+    /// torques : array_like, (a,)
+    /// wrench : array_like, (d,)
+    /// compliance : array_like, (t,) or (t, t), optional
+    ///     Of the contacts.
+    ///
+    /// Returns
+    /// -------
+    /// ContactForces
+    #[pyo3(signature = (torques, wrench, compliance = None))]
+    fn contact_forces(
+        &self,
+        torques: Numbers<'_>,
+        wrench: Numbers<'_>,
+        compliance: Option<Numbers<'_>>,
+    ) -> Result<PyContactForces> {
+        contact_forces(self, &torques, &wrench, compliance.as_ref())
+    }
+
+    /// A basis of the contact forces without a wrench on the object: what squeezes it.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (t, k)
+    fn internal_forces<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &cylindroid::closure::internal_forces(&self.inner).basis)
+    }
+
+    /// A basis of the contact forces without torques at any joint: what the structure holds.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (t, k)
+    fn structural_forces<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &cylindroid::closure::structural_forces(&self.inner).basis)
+    }
 }

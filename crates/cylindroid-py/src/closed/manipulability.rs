@@ -1,0 +1,258 @@
+//! The class `Manipulability`: efficiencies of motion and force.
+
+use cylindroid::Error;
+use cylindroid::closure::Motions;
+use cylindroid::manipulability::{Index, Manipulability};
+use pyo3::prelude::*;
+
+use super::metrics::metrics;
+use super::{PyConstraint, PySpectrum, object};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::mechanism::PyMechanism;
+use crate::table::{self, Table};
+
+/// How well motion and force go from the driven joints to the object.
+///
+/// Attributes
+/// ----------
+/// kinematic : Spectrum
+///     Motions of the object for rates of the driven joints: zeros are redundant motions, infinite
+///     ones motions that the drives do not hold.
+/// active_force : Spectrum
+///     Forces exerted: wrenches for torques; zeros are internal torques.
+/// passive_force : Spectrum
+///     Forces resisted: infinite ones are wrenches that the structure holds.
+/// metric : str
+/// actuated, components : list of str
+///     Names of the entries of directions.
+#[pyclass(frozen, name = "Manipulability", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyManipulability {
+    inner: Manipulability,
+    name: String,
+    metric: String,
+    actuated: Vec<String>,
+    components: Vec<String>,
+}
+
+impl PyManipulability {
+    pub(super) fn of(
+        py: Python<'_>,
+        constraint: &PyConstraint,
+        task: Option<&Bound<'_, PyAny>>,
+        weights: [Option<&Numbers<'_>>; 4],
+        metric: &str,
+    ) -> Result<Self> {
+        let (map, components) = match task {
+            None => (None, constraint.component_names()),
+            Some(task) => {
+                let (map, names) = constraint.task(task)?;
+                (Some(map), names)
+            }
+        };
+        let metrics = metrics(constraint, map.as_ref(), weights, metric)?;
+        let inner = py.detach(|| {
+            let relation = Motions::of(&constraint.inner).relation();
+            let relation = match &map {
+                None => relation,
+                Some(map) => relation.task(map)?,
+            };
+            Manipulability::of(&relation, &metrics)
+        })?;
+        Ok(Self {
+            inner,
+            name: constraint.name(),
+            metric: metric.to_owned(),
+            actuated: constraint.actuated.clone(),
+            components,
+        })
+    }
+
+    fn spectra(&self) -> [PySpectrum; 3] {
+        [
+            PySpectrum { inner: self.inner.kinematic.clone(), what: "kinematic" },
+            PySpectrum { inner: self.inner.active_force(), what: "active force" },
+            PySpectrum { inner: self.inner.passive_force(), what: "passive force" },
+        ]
+    }
+}
+
+#[pymethods]
+impl PyManipulability {
+    #[getter]
+    fn kinematic(&self) -> PySpectrum {
+        let [kinematic, ..] = self.spectra();
+        kinematic
+    }
+
+    #[getter]
+    fn active_force(&self) -> PySpectrum {
+        let [_, active, _] = self.spectra();
+        active
+    }
+
+    #[getter]
+    fn passive_force(&self) -> PySpectrum {
+        let [.., passive] = self.spectra();
+        passive
+    }
+
+    #[getter]
+    fn metric(&self) -> &str {
+        &self.metric
+    }
+
+    #[getter]
+    fn actuated(&self) -> Vec<String> {
+        self.actuated.clone()
+    }
+
+    #[getter]
+    fn components(&self) -> Vec<String> {
+        self.components.clone()
+    }
+
+    /// The efficiencies that count for an index, largest first, infinities and zeros included.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     'kinematic', 'active-kinematic' (rates given), 'passive-kinematic' (twist given),
+    ///     'force', 'active-force' (torques given) or 'passive-force' (wrench given).
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (k,)
+    ///
+    /// Raises
+    /// ------
+    /// UnknownNameError
+    #[pyo3(signature = (name))]
+    fn index<'py>(&self, py: Python<'py>, name: &str) -> Result<Array<'py>> {
+        let Some(index) = Index::ALL.iter().find(|i| i.name() == name) else {
+            let known = Index::ALL.iter().map(Index::name);
+            return Err(Error::unknown("index", name, known).into());
+        };
+        Ok(arrays::vector(py, &index.values(&self.inner)))
+    }
+
+    fn __repr__(&self) -> String {
+        self.table().text()
+    }
+
+    fn _repr_html_(&self) -> String {
+        self.table().html()
+    }
+}
+
+impl PyManipulability {
+    fn table(&self) -> Table {
+        let mut table = Table::new(&format!("Manipulability of {}", self.name));
+        table.row("metric", &self.metric);
+        table.row("driven", table::names(&self.actuated));
+        table.row("object", table::names(&self.components));
+        for spectrum in self.spectra() {
+            table.row(spectrum.what, spectrum.words());
+        }
+        table
+    }
+}
+
+#[pymethods]
+impl PyConstraint {
+    /// How well motion and force go from the driven joints to the object.
+    ///
+    /// Parameters
+    /// ----------
+    /// task, Wu, Wq, Ww, Wtau, metric
+    ///     As `Mechanism.manipulability`.
+    ///
+    /// Returns
+    /// -------
+    /// Manipulability
+    #[pyo3(signature = (task = None, Wu = None, Wq = None, Ww = None, Wtau = None,
+        metric = "unit"))]
+    #[expect(non_snake_case, reason = "the field's names")]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn manipulability(
+        &self,
+        py: Python<'_>,
+        task: Option<Bound<'_, PyAny>>,
+        Wu: Option<Numbers<'_>>,
+        Wq: Option<Numbers<'_>>,
+        Ww: Option<Numbers<'_>>,
+        Wtau: Option<Numbers<'_>>,
+        metric: &str,
+    ) -> Result<PyManipulability> {
+        let weights = [&Wu, &Wq, &Ww, &Wtau].map(Option::as_ref);
+        PyManipulability::of(py, self, task.as_ref(), weights, metric)
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// How well motion and force go from the driven joints to the reference frame.
+    ///
+    /// Efficiencies are squares of output over input along principal directions. Zero: nothing
+    /// comes out; infinite: without any input.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, actuated, reference
+    ///     As `constraint`.
+    /// task : str, list of str or array_like, (k, d), optional
+    ///     Components of the twist that matter ('x,y'), or a map on it.
+    /// Wu, Wq, Ww, Wtau : array_like, square or their diagonals, optional
+    ///     Metrics of twists (or the task), joint rates, wrenches and torques, positive definite.
+    ///     Defaults: those of `metric`; wrenches and torques by the duals.
+    /// metric : str
+    ///     'unit' (m beside rad), 'length' (lengths over the characteristic length), 'limits'
+    ///     (lengths so, joint rates over their limits).
+    /// length : float, optional
+    ///     Characteristic length (m). Default: the reach.
+    ///
+    /// Returns
+    /// -------
+    /// Manipulability, or list of Manipulability
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError, ModelError
+    ///
+    /// Notes
+    /// -----
+    /// Bicchi and Prattichizzo 1998. For a serial arm the kinematic efficiencies are the squares
+    /// of the singular values of its Jacobian.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> k = cy.load("five-bar").manipulability(task="x,y").kinematic
+    /// >>> len(k.finite), k.zeros, k.infinite
+    /// (2, 0, 0)
+    #[pyo3(signature = (q = None, actuated = None, reference = None, task = None, Wu = None,
+        Wq = None, Ww = None, Wtau = None, metric = "unit", length = None))]
+    #[expect(non_snake_case, reason = "the field's names")]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn manipulability<'py>(
+        &self,
+        py: Python<'py>,
+        q: Option<Numbers<'py>>,
+        actuated: Option<Vec<String>>,
+        reference: Option<&str>,
+        task: Option<Bound<'py, PyAny>>,
+        Wu: Option<Numbers<'py>>,
+        Wq: Option<Numbers<'py>>,
+        Ww: Option<Numbers<'py>>,
+        Wtau: Option<Numbers<'py>>,
+        metric: &str,
+        length: Option<f64>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let all = self.constraints(q.as_ref(), actuated.as_deref(), reference, length)?;
+        let weights = [&Wu, &Wq, &Ww, &Wtau].map(Option::as_ref);
+        let reports =
+            all.try_map(|c| PyManipulability::of(py, c, task.as_ref(), weights, metric))?;
+        Ok(object(py, reports)?)
+    }
+}

@@ -1,0 +1,130 @@
+//! The class `CartesianMove`.
+
+use cylindroid::control::{Bounds, CartesianBounds, CartesianMove};
+use pyo3::prelude::*;
+
+use super::{ACCELERATION, PyCartesianPath, SPEED, times};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::options::pair;
+use crate::table;
+
+/// A frame moving along a path by the fastest time law that keeps every bound.
+///
+/// Parameters
+/// ----------
+/// path : CartesianPath
+/// speed, acceleration, jerk : float or (float, float), optional
+///     Bounds of translation and rotation [m/s, rad/s; /s^2; /s^3]. Defaults: (0.25, 1), (1, 4),
+///     no bound on the jerk: a trapezoidal velocity.
+/// duration : float, optional
+///     Slows the move down to end then (s).
+///
+/// Attributes
+/// ----------
+/// duration : float
+///     Time from rest to rest (s).
+/// path : CartesianPath
+///
+/// Raises
+/// ------
+/// InvalidOptionError
+///     For bounds that are NaN, zero or negative, a duration that is too short.
+///
+/// Notes
+/// -----
+/// Drive a servo along it with `Servo.drive(q, move)`.
+#[pyclass(frozen, name = "CartesianMove", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyCartesianMove {
+    pub(crate) inner: CartesianMove,
+}
+
+#[pymethods]
+impl PyCartesianMove {
+    #[new]
+    #[pyo3(signature = (path, speed = None, acceleration = None, jerk = None, duration = None))]
+    fn new(
+        path: PyRef<'_, PyCartesianPath>,
+        speed: Option<Numbers<'_>>,
+        acceleration: Option<Numbers<'_>>,
+        jerk: Option<Numbers<'_>>,
+        duration: Option<f64>,
+    ) -> Result<Self> {
+        let of = |name, given: &Option<Numbers<'_>>, default: (f64, f64)| match given {
+            None => Ok(default),
+            Some(given) => pair(name, given, default.1),
+        };
+        let v = of("speed", &speed, SPEED)?;
+        let a = of("acceleration", &acceleration, ACCELERATION)?;
+        let j = of("jerk", &jerk, (f64::INFINITY, f64::INFINITY))?;
+        let bounds = CartesianBounds {
+            linear: Bounds { velocity: v.0, acceleration: a.0, jerk: j.0 },
+            angular: Bounds { velocity: v.1, acceleration: a.1, jerk: j.1 },
+        };
+        let mut inner = CartesianMove::new(path.inner, bounds)?;
+        if let Some(duration) = duration {
+            inner = inner.stretched_to(duration)?;
+        }
+        Ok(Self { inner })
+    }
+
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.inner.law().duration()
+    }
+
+    #[getter]
+    fn path(&self) -> PyCartesianPath {
+        PyCartesianPath { inner: *self.inner.path() }
+    }
+
+    /// Pose and twist at a time; at rest before 0 and after the duration.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, () or (N,)
+    ///     (s).
+    ///
+    /// Returns
+    /// -------
+    /// (ndarray, ndarray)
+    ///     Poses, (4, 4) or (N, 4, 4), and twists, (6,) or (N, 6): linear first, world axes, at
+    ///     the moving origin.
+    #[pyo3(signature = (t))]
+    fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<(Array<'py>, Array<'py>)> {
+        let (t, count) = times("t", &t)?;
+        let poses = arrays::written(py, count, &[4, 4], |out| {
+            for (t, out) in t.iter().zip(out.chunks_exact_mut(16)) {
+                arrays::put_pose(self.inner.at(*t).pose, out);
+            }
+        })?;
+        let twists = arrays::written(py, count, &[6], |out| {
+            for (t, out) in t.iter().zip(out.chunks_exact_mut(6)) {
+                out.copy_from_slice(&self.inner.at(*t).twist.to_array());
+            }
+        })?;
+        Ok((poses, twists))
+    }
+
+    /// Target and feed-forward of a servo of period `dt` at time `t`, for `Servo.step`.
+    ///
+    /// Parameters
+    /// ----------
+    /// t, dt : float
+    ///     (s).
+    ///
+    /// Returns
+    /// -------
+    /// (ndarray, ndarray)
+    ///     The pose now, (4, 4), and the constant twist that leads to that of the next step, (6,).
+    #[pyo3(signature = (t, dt))]
+    fn target<'py>(&self, py: Python<'py>, t: f64, dt: f64) -> Result<(Array<'py>, Array<'py>)> {
+        let target = self.inner.target(t, dt);
+        Ok((arrays::pose(py, target.pose)?, arrays::vector(py, &target.feed_forward.to_array())))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<CartesianMove of {} s>", table::number(self.duration()))
+    }
+}

@@ -1,0 +1,113 @@
+//! The class `JointMove`.
+
+use cylindroid::control::{Bounds, JointDefaults, JointMove, JointSample};
+use pyo3::prelude::*;
+
+use super::{ACCELERATION, SPEED, times};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::mechanism::PyMechanism;
+use crate::options::pair;
+use crate::table;
+
+/// All joints moving straight to another configuration, starting and stopping together.
+///
+/// Parameters
+/// ----------
+/// mechanism : Mechanism
+///     Its velocity and acceleration limits are kept, and its position limits.
+/// q, to : array_like, (n,)
+///     From and to [rad or m].
+/// speed, acceleration, jerk : float or (float, float), optional
+///     Of joints without limits of their own: those that slide and those that turn [m/s, rad/s;
+///     /s^2; /s^3]. Defaults: (0.25, 1), (1, 4), no bound on the jerk, which is that of all.
+/// duration : float, optional
+///     Slows the move down to end then (s).
+///
+/// Attributes
+/// ----------
+/// duration : float
+///     (s)
+///
+/// Raises
+/// ------
+/// DimensionError, NotFiniteError
+/// InvalidOptionError
+///     For ends outside limits, and spherical or free joints that have no straight way.
+#[pyclass(frozen, name = "JointMove", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyJointMove {
+    inner: JointMove,
+}
+
+#[pymethods]
+impl PyJointMove {
+    #[new]
+    #[pyo3(signature = (mechanism, q, to, speed = None, acceleration = None, jerk = None,
+        duration = None))]
+    fn new(
+        mechanism: PyRef<'_, PyMechanism>,
+        q: Numbers<'_>,
+        to: Numbers<'_>,
+        speed: Option<Numbers<'_>>,
+        acceleration: Option<Numbers<'_>>,
+        jerk: Option<Numbers<'_>>,
+        duration: Option<f64>,
+    ) -> Result<Self> {
+        let of = |name, given: &Option<Numbers<'_>>, default: (f64, f64)| match given {
+            None => Ok(default),
+            Some(given) => pair(name, given, f64::NAN),
+        };
+        let v = of("speed", &speed, SPEED)?;
+        let a = of("acceleration", &acceleration, ACCELERATION)?;
+        let j = of("jerk", &jerk, (f64::INFINITY, f64::INFINITY))?;
+        let defaults = JointDefaults {
+            length: Bounds { velocity: v.0, acceleration: a.0, jerk: j.0 },
+            angle: Bounds { velocity: v.1, acceleration: a.1, jerk: j.1 },
+        };
+        let (q, to) = (q.vector("q")?, to.vector("to")?);
+        let mut inner = JointMove::within_limits(&mechanism.inner, q, to, &defaults)?;
+        if let Some(duration) = duration {
+            inner = inner.stretched_to(duration)?;
+        }
+        Ok(Self { inner })
+    }
+
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.inner.law().duration()
+    }
+
+    /// Positions and velocities at a time; at rest before 0 and after the duration.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, () or (N,)
+    ///     (s).
+    ///
+    /// Returns
+    /// -------
+    /// (ndarray, ndarray)
+    ///     q and qd, (n,) or (N, n).
+    #[pyo3(signature = (t))]
+    fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<(Array<'py>, Array<'py>)> {
+        let (t, count) = times("t", &t)?;
+        let n = self.inner.path().dof();
+        let mut velocities = vec![0.0; n * t.len()];
+        let mut result = Ok(());
+        let q = arrays::written(py, count, &[n], |out| {
+            let rows = out.chunks_exact_mut(n.max(1)).zip(velocities.chunks_exact_mut(n.max(1)));
+            for (t, (positions, velocities)) in t.iter().zip(rows) {
+                let sample = JointSample { positions, velocities };
+                result = self.inner.sample_into(*t, sample).map(|_| ());
+            }
+        })?;
+        result?;
+        let qd = arrays::written(py, count, &[n], |out| out.copy_from_slice(&velocities))?;
+        Ok((q, qd))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<JointMove of {} s>", table::number(self.duration()))
+    }
+}
