@@ -33,6 +33,8 @@ pub(crate) struct PySolution {
     n: usize,
 }
 
+table::shown!(PySolution);
+
 impl PySolution {
     fn counts<'py>(
         &self,
@@ -119,14 +121,6 @@ impl PySolution {
     #[getter]
     fn out_of_reach<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.truths(py, |s| s.out_of_reach.is_some())
-    }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
     }
 }
 

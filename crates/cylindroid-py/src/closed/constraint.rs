@@ -276,15 +276,9 @@ impl PyConstraint {
     fn gap(&self) -> Option<PyGap> {
         self.origin.as_ref().map(|o| o.gap.into())
     }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
-    }
 }
+
+table::shown!(PyConstraint);
 
 impl PyConstraint {
     fn table(&self) -> Table {

@@ -136,15 +136,9 @@ impl PyManipulability {
         };
         Ok(arrays::vector(py, &index.values(&self.inner)))
     }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
-    }
 }
+
+table::shown!(PyManipulability);
 
 impl PyManipulability {
     fn table(&self) -> Table {

@@ -107,6 +107,8 @@ impl PyJointMobility {
     }
 }
 
+table::shown!(PyMobility);
+
 impl PyMobility {
     pub(super) fn of(constraint: &PyConstraint) -> Self {
         Self {
@@ -297,14 +299,6 @@ impl PyMobility {
     #[getter]
     fn length(&self) -> f64 {
         self.constraint.inner.length()
-    }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
     }
 }
 

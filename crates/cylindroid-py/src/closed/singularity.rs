@@ -136,15 +136,9 @@ impl PySingularity {
     fn __bool__(&self) -> bool {
         !self.regular()
     }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
-    }
 }
+
+table::shown!(PySingularity);
 
 impl PySingularity {
     fn table(&self) -> Table {

@@ -159,15 +159,9 @@ impl PyInverse {
             Many::All(all) => all.iter().map(reason).collect::<Vec<_>>().into_pyobject(py),
         }
     }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
-    }
 }
+
+table::shown!(PyInverse);
 
 impl PyInverse {
     pub(super) fn new(j: &Many<Matrix>, inner: Many<Inverse>, stacked: (usize, usize)) -> Self {

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::PyMechanism;
 use crate::error::Result;
-use crate::table::Table;
+use crate::table::{self, Table};
 
 /// Loads a model.
 ///
@@ -118,15 +118,9 @@ pub(crate) struct PyLoadReport {
 }
 
 #[pymethods]
-impl PyLoadReport {
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
+impl PyLoadReport {}
 
-    fn _repr_html_(&self) -> String {
-        self.table().html()
-    }
-}
+table::shown!(PyLoadReport);
 
 impl PyLoadReport {
     fn table(&self) -> Table {

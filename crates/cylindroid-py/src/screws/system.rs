@@ -296,15 +296,9 @@ impl PyScrewSystem {
     fn contains(&self, twist: Numbers<'_>) -> Result<bool> {
         Ok(self.sine_to(twist)? <= self.inner.tolerance())
     }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
-    }
 }
+
+table::shown!(PyScrewSystem);
 
 impl PyScrewSystem {
     fn table(&self) -> Table {

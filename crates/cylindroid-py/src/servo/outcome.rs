@@ -110,15 +110,9 @@ impl PyOutcome {
     fn trajectory(&self) -> Option<PyTrajectory> {
         self.trajectory.clone()
     }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
-    }
 }
+
+table::shown!(PyOutcome);
 
 impl PyOutcome {
     fn table(&self) -> Table {
