@@ -3,7 +3,6 @@
 use cylindroid::Pose;
 use cylindroid::control::Task;
 use cylindroid::ik::{Budget, Goal, IkOptions, Solution, Solver};
-use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Many, Numbers, Rows};
@@ -36,30 +35,6 @@ pub(crate) struct PySolution {
 table::shown!(PySolution);
 
 impl PySolution {
-    fn counts<'py>(
-        &self,
-        py: Python<'py>,
-        f: impl Fn(&Solution) -> usize,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        Ok(match &self.inner {
-            Many::One(one) => f(one).into_pyobject(py)?.into_any(),
-            Many::All(all) => {
-                all.iter().map(|s| f(s) as i64).collect::<Vec<i64>>().into_pyarray(py).into_any()
-            }
-        })
-    }
-
-    fn truths<'py>(
-        &self,
-        py: Python<'py>,
-        f: impl Fn(&Solution) -> bool,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        Ok(match &self.inner {
-            Many::One(one) => f(one).into_pyobject(py)?.to_owned().into_any(),
-            Many::All(all) => all.iter().map(f).collect::<Vec<bool>>().into_pyarray(py).into_any(),
-        })
-    }
-
     fn table(&self) -> Table {
         let Many::One(s) = &self.inner else {
             let all = self.inner.as_slice();
@@ -85,42 +60,38 @@ impl PySolution {
 impl PySolution {
     #[getter]
     fn success<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.truths(py, |s| s.success)
+        arrays::each(py, &self.inner, |s| s.success)
     }
 
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        let n = self.n;
-        arrays::written(py, self.inner.count(), &[n], |out| {
-            for (s, out) in self.inner.as_slice().iter().zip(out.chunks_exact_mut(n.max(1))) {
-                out.copy_from_slice(&s.q);
-            }
-        })
+        let all = self.inner.as_slice().iter().map(|s| &s.q);
+        arrays::rows(py, self.inner.count(), self.n, all)
     }
 
     #[getter]
     fn position_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::numbers(py, &self.inner, |s| s.position_error)
+        arrays::each(py, &self.inner, |s| s.position_error)
     }
 
     #[getter]
     fn orientation_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::numbers(py, &self.inner, |s| s.orientation_error)
+        arrays::each(py, &self.inner, |s| s.orientation_error)
     }
 
     #[getter]
     fn iterations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.counts(py, |s| s.iterations)
+        arrays::each(py, &self.inner, |s| s.iterations as i64)
     }
 
     #[getter]
     fn attempts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.counts(py, |s| s.attempts)
+        arrays::each(py, &self.inner, |s| s.attempts as i64)
     }
 
     #[getter]
     fn out_of_reach<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.truths(py, |s| s.out_of_reach.is_some())
+        arrays::each(py, &self.inner, |s| s.out_of_reach.is_some())
     }
 }
 
@@ -332,11 +303,6 @@ impl PyMechanism {
         let goals = [Goal { target: target.pose("target")?, ..goal }];
         let found =
             py.detach(|| cylindroid::ik::solve_several(robot, &goals, &options, count.max(1)))?;
-        let n = robot.n();
-        arrays::written(py, Some(found.len()), &[n], |out| {
-            for (s, out) in found.iter().zip(out.chunks_exact_mut(n.max(1))) {
-                out.copy_from_slice(&s.q);
-            }
-        })
+        arrays::rows(py, Some(found.len()), robot.n(), found.iter().map(|s| &s.q))
     }
 }

@@ -56,12 +56,8 @@ impl PyFollowed {
 
     #[getter]
     fn path<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        let n = self.inner.q.len();
-        arrays::written(py, Some(self.inner.path.len()), &[n], |out| {
-            for (p, out) in self.inner.path.iter().zip(out.chunks_exact_mut(n.max(1))) {
-                out.copy_from_slice(&p.q);
-            }
-        })
+        let all = &self.inner.path;
+        arrays::rows(py, Some(all.len()), self.inner.q.len(), all.iter().map(|p| &p.q))
     }
 
     #[getter]

@@ -4,7 +4,7 @@ use cylindroid::closure::{Unit, Units};
 use cylindroid::manipulability::Metrics;
 use cylindroid::{Error, Matrix};
 
-use super::{PyConstraint, metric_of};
+use super::PyConstraint;
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
 
@@ -30,7 +30,7 @@ pub(super) fn metrics(
     let [object, joint, wrench, torque] = weights;
     let set = |to: &mut Option<_>, name: &'static str, given: Option<&Numbers<'_>>| {
         if let Some(given) = given {
-            *to = Some(metric_of(name, given)?);
+            *to = Some(given.metric(name)?);
         }
         Ok::<(), Failure>(())
     };

@@ -17,7 +17,6 @@ mod singularity;
 mod spectrum;
 mod statics;
 
-use cylindroid::linalg::Metric;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use pyo3::{PyClass, PyClassInitializer};
@@ -39,14 +38,6 @@ pub(crate) use polytope::PyPolytope;
 pub(crate) use singularity::PySingularity;
 pub(crate) use spectrum::{PyDirection, PySpectrum};
 pub(crate) use statics::{PyContactForces, PyTorques};
-
-/// A metric from a matrix, or its diagonal.
-fn metric_of(name: &'static str, of: &Numbers<'_>) -> Result<Metric> {
-    Ok(match of.shape() {
-        [_] => Metric::diagonal(name, of.values())?,
-        _ => Metric::new(name, &of.matrix(name)?)?,
-    })
-}
 
 impl PyMechanism {
     /// The constraints at one or many configurations.

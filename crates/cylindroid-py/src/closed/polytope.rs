@@ -72,12 +72,8 @@ impl PyPolytope {
 impl PyPolytope {
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        let d = self.dimension;
-        arrays::written(py, Some(self.hull().vertices.len()), &[d], |out| {
-            for (v, out) in self.hull().vertices.iter().zip(out.chunks_exact_mut(d.max(1))) {
-                out.copy_from_slice(v);
-            }
-        })
+        let all = &self.hull().vertices;
+        arrays::rows(py, Some(all.len()), self.dimension, all.iter())
     }
 
     #[getter]
@@ -87,12 +83,8 @@ impl PyPolytope {
 
     #[getter]
     fn normals<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        let d = self.dimension;
-        arrays::written(py, Some(self.hull().facets.len()), &[d], |out| {
-            for (f, out) in self.hull().facets.iter().zip(out.chunks_exact_mut(d.max(1))) {
-                out.copy_from_slice(&f.normal);
-            }
-        })
+        let all = &self.hull().facets;
+        arrays::rows(py, Some(all.len()), self.dimension, all.iter().map(|f| &f.normal))
     }
 
     #[getter]

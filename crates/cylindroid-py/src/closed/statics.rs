@@ -3,7 +3,7 @@
 use cylindroid::closure::{self, Load, Motions};
 use pyo3::prelude::*;
 
-use super::{PyConstraint, metric_of};
+use super::PyConstraint;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::table;
@@ -84,7 +84,7 @@ fn joint_torques(
     wrench: &Numbers<'_>,
     metric: Option<&Numbers<'_>>,
 ) -> Result<PyTorques> {
-    let metric = metric.map(|m| metric_of("metric", m)).transpose()?;
+    let metric = metric.map(|m| m.metric("metric")).transpose()?;
     let relation = Motions::of(&constraint.inner).relation();
     let inner = closure::joint_torques(&relation, wrench.vector("wrench")?, metric.as_ref())?;
     Ok(PyTorques { inner })
@@ -96,7 +96,7 @@ fn contact_forces(
     wrench: &Numbers<'_>,
     compliance: Option<&Numbers<'_>>,
 ) -> Result<PyContactForces> {
-    let compliance = compliance.map(|c| metric_of("compliance", c)).transpose()?;
+    let compliance = compliance.map(|c| c.metric("compliance")).transpose()?;
     let motions = Motions::of(&constraint.inner);
     let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
     let inner = closure::contact_forces(&constraint.inner, &motions, load, compliance.as_ref())?;

@@ -3,7 +3,7 @@
 use cylindroid::inverse::{self, Method, Weights};
 use pyo3::prelude::*;
 
-use super::{PyInverse, metric, of_each};
+use super::{PyInverse, of_each};
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
 
@@ -117,8 +117,8 @@ pub(crate) fn inverse_by_name(
     let numbers = MethodNumbers { eps, damping, onset, filter, max_rate, shape, floor };
     let method = numbers.apply(Method::named(method)?)?;
     let weights = Weights {
-        joint: metric("joint_weights", joint_weights.as_ref())?,
-        task: metric("task_weights", task_weights.as_ref())?,
+        joint: joint_weights.map(|w| w.metric("joint_weights")).transpose()?,
+        task: task_weights.map(|w| w.metric("task_weights")).transpose()?,
     };
     of_each(py, &J, |j| inverse::weighted(j, method, &weights))
 }

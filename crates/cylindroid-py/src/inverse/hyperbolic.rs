@@ -3,7 +3,7 @@
 use cylindroid::inverse::{self, HyperbolicDamping, HyperbolicOptions};
 use pyo3::prelude::*;
 
-use super::{PyInverse, metric, of_each};
+use super::{PyInverse, of_each};
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
 use crate::screws::scale_of;
@@ -86,7 +86,7 @@ pub(crate) fn hyperbolic(
 ) -> Result<PyInverse> {
     let options = HyperbolicOptions {
         scale: scale_of(length, center.as_ref(), noise)?,
-        joint_metric: metric("joint_metric", joint_metric.as_ref())?,
+        joint_metric: joint_metric.map(|m| m.metric("joint_metric")).transpose()?,
         damping: damping_of(mu, lam)?,
     };
     of_each(py, &J, |j| inverse::hyperbolic_with(j, h, &options))
@@ -125,7 +125,7 @@ pub(crate) fn oblique(
 ) -> Result<PyInverse> {
     let options = HyperbolicOptions {
         scale: scale_of(length, center.as_ref(), noise)?,
-        joint_metric: metric("joint_metric", joint_metric.as_ref())?,
+        joint_metric: joint_metric.map(|m| m.metric("joint_metric")).transpose()?,
         damping: HyperbolicDamping::None,
     };
     let complement = complement.matrix("complement")?;

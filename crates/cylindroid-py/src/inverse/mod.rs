@@ -9,7 +9,6 @@ mod report;
 
 use cylindroid::Matrix;
 use cylindroid::inverse::Inverse;
-use cylindroid::linalg::Metric;
 use pyo3::prelude::*;
 
 use crate::arrays::{Many, Numbers};
@@ -35,12 +34,4 @@ fn of_each(
         _ => (0, 0),
     };
     Ok(PyInverse::new(&matrices, inner, stacked))
-}
-
-fn metric(name: &'static str, of: Option<&Numbers<'_>>) -> Result<Option<Metric>> {
-    let Some(of) = of else { return Ok(None) };
-    Ok(Some(match of.shape() {
-        [_] => Metric::diagonal(name, of.values())?,
-        _ => Metric::new(name, &of.matrix(name)?)?,
-    }))
 }

@@ -2,7 +2,6 @@
 
 use cylindroid::Matrix;
 use cylindroid::inverse::{self, Inverse};
-use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Many};
@@ -102,13 +101,7 @@ impl PyInverse {
 
     #[getter]
     fn rank<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(match &self.inner {
-            Many::One(inverse) => inverse.rank.into_pyobject(py)?.into_any(),
-            Many::All(all) => {
-                let ranks: Vec<i64> = all.iter().map(|i| i.rank as i64).collect();
-                ranks.into_pyarray(py).into_any()
-            }
-        })
+        arrays::each(py, &self.inner, |i| i.rank as i64)
     }
 
     #[getter]
@@ -117,21 +110,18 @@ impl PyInverse {
             Some(first) => first.singular_values.len(),
             None => self.shape.0.min(self.shape.1),
         };
-        arrays::written(py, self.inner.count(), &[k], |out| {
-            for (inverse, out) in self.inner.as_slice().iter().zip(out.chunks_exact_mut(k.max(1))) {
-                out.copy_from_slice(&inverse.singular_values);
-            }
-        })
+        let all = self.inner.as_slice().iter().map(|i| &i.singular_values);
+        arrays::rows(py, self.inner.count(), k, all)
     }
 
     #[getter]
     fn threshold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::numbers(py, &self.inner, |i| i.threshold)
+        arrays::each(py, &self.inner, |i| i.threshold)
     }
 
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::numbers(py, &self.inner, |i| i.gap)
+        arrays::each(py, &self.inner, |i| i.gap)
     }
 
     #[getter]
@@ -144,12 +134,7 @@ impl PyInverse {
 
     #[getter]
     fn exists<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(match &self.inner {
-            Many::One(inverse) => inverse.exists.into_pyobject(py)?.to_owned().into_any(),
-            Many::All(all) => {
-                all.iter().map(|i| i.exists).collect::<Vec<bool>>().into_pyarray(py).into_any()
-            }
-        })
+        arrays::each(py, &self.inner, |i| i.exists)
     }
 
     #[getter]

@@ -88,14 +88,7 @@ impl PyInvolution {
 
     #[getter]
     fn null_twists<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        let all = &self.inner.null_twists;
-        arrays::written(py, None, &[6, all.len()], |out| {
-            for (j, twist) in all.iter().enumerate() {
-                for (i, x) in twist.to_array().into_iter().enumerate() {
-                    out[i * all.len() + j] = x;
-                }
-            }
-        })
+        arrays::twists(py, &self.inner.null_twists)
     }
 
     #[getter]

@@ -83,12 +83,6 @@ pub(crate) fn projector<'py>(
 #[pyo3(signature = (a_from_b))]
 pub(crate) fn adjoint<'py>(py: Python<'py>, a_from_b: Numbers<'py>) -> Result<Array<'py>> {
     let pose: Pose = a_from_b.pose("a_from_b")?;
-    arrays::written(py, None, &[6, 6], |out| {
-        for j in 0..6 {
-            let unit = Twist::from_array(std::array::from_fn(|i| f64::from(u8::from(i == j))));
-            for (i, x) in pose.adjoint(unit).to_array().into_iter().enumerate() {
-                out[6 * i + j] = x;
-            }
-        }
-    })
+    let unit = |i: usize| Twist::from_array(std::array::from_fn(|k| f64::from(u8::from(k == i))));
+    arrays::twists(py, &std::array::from_fn::<Twist, 6, _>(|j| pose.adjoint(unit(j))))
 }

@@ -188,14 +188,7 @@ impl PyScrewSystem {
 
     #[getter]
     fn basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        let basis = self.inner.basis();
-        arrays::written(py, None, &[6, basis.len()], |out| {
-            for (j, twist) in basis.iter().enumerate() {
-                for (i, x) in twist.to_array().into_iter().enumerate() {
-                    out[i * basis.len() + j] = x;
-                }
-            }
-        })
+        arrays::twists(py, &self.inner.basis())
     }
 
     #[getter]
