@@ -105,40 +105,36 @@ fn poses(target: &Numbers<'_>) -> Result<Many<Pose>> {
 }
 
 /// What both searches are told.
-struct Search {
-    options: IkOptions,
-    goal: Goal,
-}
-
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
-fn search(
-    mechanism: &PyMechanism,
-    frame: Option<&str>,
-    tool: Option<&Numbers<'_>>,
-    task: Option<&str>,
-    task_axes: Option<&str>,
-    tolerances: (f64, f64),
+struct Search<'a, 'py> {
+    frame: Option<&'a str>,
+    tool: Option<Numbers<'py>>,
+    task: Option<&'a str>,
+    task_axes: Option<&'a str>,
     fixed: Option<Vec<String>>,
+    tolerance_position: f64,
+    tolerance_orientation: f64,
     seed: u64,
     iterations: usize,
-) -> Result<Search> {
-    let robot = &mechanism.inner;
-    let task = options::task(robot, task, task_axes, Task::POSE)?;
-    Ok(Search {
-        options: IkOptions {
-            position_tolerance: tolerances.0,
-            orientation_tolerance: tolerances.1,
-            fixed: mechanism.places(&fixed.unwrap_or_default())?,
-            seed,
-            budget: Budget { iterations, time: None },
+}
+
+impl Search<'_, '_> {
+    /// Options, and a goal whose target is still to come.
+    fn apply(&self, mechanism: &PyMechanism) -> Result<(IkOptions, Goal)> {
+        let options = IkOptions {
+            position_tolerance: self.tolerance_position,
+            orientation_tolerance: self.tolerance_orientation,
+            fixed: mechanism.places(self.fixed.as_deref().unwrap_or_default())?,
+            seed: self.seed,
+            budget: Budget { iterations: self.iterations, time: None },
             ..IkOptions::default()
-        },
-        goal: Goal {
-            end_effector: mechanism.end_effector(frame, tool)?,
+        };
+        let goal = Goal {
+            end_effector: mechanism.end_effector(self.frame, self.tool.as_ref())?,
             target: Pose::IDENTITY,
-            task,
-        },
-    })
+            task: options::task(&mechanism.inner, self.task, self.task_axes, Task::POSE)?,
+        };
+        Ok((options, goal))
+    }
 }
 
 #[pymethods]
@@ -210,18 +206,18 @@ impl PyMechanism {
         iterations: usize,
     ) -> Result<PySolution> {
         let robot = &self.inner;
-        let tolerances = (tolerance_position, tolerance_orientation);
-        let Search { mut options, goal } = search(
-            self,
+        let search = Search {
             frame,
-            tool.as_ref(),
+            tool,
             task,
             task_axes,
-            tolerances,
             fixed,
+            tolerance_position,
+            tolerance_orientation,
             seed,
             iterations,
-        )?;
+        };
+        let (mut options, goal) = search.apply(self)?;
         options.nearest = nearest;
         let starts = q0.as_ref().map(|q0| Rows::of(robot, "q0", q0)).transpose()?;
         let targets = poses(&target)?;
@@ -287,18 +283,18 @@ impl PyMechanism {
         iterations: usize,
     ) -> Result<Array<'py>> {
         let robot = &self.inner;
-        let tolerances = (tolerance_position, tolerance_orientation);
-        let Search { mut options, goal } = search(
-            self,
+        let search = Search {
             frame,
-            tool.as_ref(),
+            tool,
             task,
             task_axes,
-            tolerances,
             fixed,
+            tolerance_position,
+            tolerance_orientation,
             seed,
             iterations,
-        )?;
+        };
+        let (mut options, goal) = search.apply(self)?;
         options.start = q0.as_ref().map(|q| q.vector("q0").map(<[f64]>::to_vec)).transpose()?;
         let goals = [Goal { target: target.pose("target")?, ..goal }];
         let found =

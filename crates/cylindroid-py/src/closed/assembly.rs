@@ -132,10 +132,7 @@ impl PyMechanism {
         hold: Option<Vec<String>>,
     ) -> Result<PyAssembly> {
         let m = &self.inner;
-        let guess = match &guess {
-            None => m.home(),
-            Some(guess) => guess.vector("guess")?,
-        };
+        let guess = self.or_home("guess", guess.as_ref())?;
         let held = self.places(&hold.unwrap_or_default())?;
         let found = py.detach(|| assemble(m, guess, &held))?;
         let names: Vec<String> = m.coordinates().iter().map(|c| c.name.clone()).collect();

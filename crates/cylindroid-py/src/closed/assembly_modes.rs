@@ -114,10 +114,7 @@ impl PyMechanism {
         seed: u64,
     ) -> Result<PyAssemblyModes> {
         let m = &self.inner;
-        let guess = match &guess {
-            None => m.home(),
-            Some(guess) => guess.vector("guess")?,
-        };
+        let guess = self.or_home("guess", guess.as_ref())?;
         let held = self.places(&hold.unwrap_or_default())?;
         let options = ModeOptions { starts, seed };
         let inner = py.detach(|| assembly_modes(m, guess, &held, options))?;

@@ -1,15 +1,15 @@
 //! Force closure of grasps.
 
+use cylindroid::Vec3;
 use cylindroid::closure::{
     self, Effort, FingerContact, Friction, GraspQuality, Touch, WrenchSpace, fingers_on,
 };
-use cylindroid::kinematics::State;
-use cylindroid::{Error, FrameId, Vec3};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;
+use crate::options;
 use crate::table;
 
 /// A finger on an object.
@@ -169,27 +169,7 @@ pub(crate) fn grasp_quality(
 }
 
 fn effort_of(name: &str) -> Result<Effort> {
-    match name {
-        "shared" => Ok(Effort::Shared),
-        "each" => Ok(Effort::Each),
-        _ => Err(Error::unknown("effort", name, ["shared", "each"]).into()),
-    }
-}
-
-/// By the contacts of a mechanism on the link that carries `object`.
-fn of_mechanism(
-    py: Python<'_>,
-    state: &State,
-    object: FrameId,
-    touch: Touch,
-    effort: &str,
-) -> Result<PyGraspQuality> {
-    let effort = effort_of(effort)?;
-    let fingers = fingers_on(state, object, |_| touch)?;
-    let fingers: Vec<FingerContact> = fingers.into_iter().map(|(_, finger)| finger).collect();
-    let space = WrenchSpace::about(state, object, &fingers)?;
-    let inner = py.detach(|| closure::grasp_quality(&fingers, space, effort))?;
-    Ok(PyGraspQuality { inner })
+    options::named("effort", name, &[("shared", Effort::Shared), ("each", Effort::Each)])
 }
 
 #[pymethods]
@@ -233,12 +213,13 @@ impl PyMechanism {
         effort: &str,
     ) -> Result<PyGraspQuality> {
         let m = &self.inner;
-        let state = match &q {
-            None => m.state(m.home())?,
-            Some(q) => m.state(q.vector("q")?)?,
-        };
+        let state = m.state(self.or_home("q", q.as_ref())?)?;
         let object = reference.map_or(Ok(m.reference()), |name| m.frame(name))?;
-        let touch = Touch { mu, torsion, strength };
-        of_mechanism(py, &state, object, touch, effort)
+        let effort = effort_of(effort)?;
+        let fingers = fingers_on(&state, object, |_| Touch { mu, torsion, strength })?;
+        let fingers: Vec<FingerContact> = fingers.into_iter().map(|(_, finger)| finger).collect();
+        let space = WrenchSpace::about(&state, object, &fingers)?;
+        let inner = py.detach(|| closure::grasp_quality(&fingers, space, effort))?;
+        Ok(PyGraspQuality { inner })
     }
 }

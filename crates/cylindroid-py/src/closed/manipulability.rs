@@ -68,34 +68,23 @@ impl PyManipulability {
             components,
         })
     }
-
-    fn spectra(&self) -> [PySpectrum; 3] {
-        [
-            PySpectrum { inner: self.inner.kinematic.clone(), what: "kinematic" },
-            PySpectrum { inner: self.inner.active_force(), what: "active force" },
-            PySpectrum { inner: self.inner.passive_force(), what: "passive force" },
-        ]
-    }
 }
 
 #[pymethods]
 impl PyManipulability {
     #[getter]
     fn kinematic(&self) -> PySpectrum {
-        let [kinematic, ..] = self.spectra();
-        kinematic
+        PySpectrum { inner: self.inner.kinematic.clone(), what: "kinematic" }
     }
 
     #[getter]
     fn active_force(&self) -> PySpectrum {
-        let [_, active, _] = self.spectra();
-        active
+        PySpectrum { inner: self.inner.active_force(), what: "active force" }
     }
 
     #[getter]
     fn passive_force(&self) -> PySpectrum {
-        let [.., passive] = self.spectra();
-        passive
+        PySpectrum { inner: self.inner.passive_force(), what: "passive force" }
     }
 
     #[getter]
@@ -146,7 +135,7 @@ impl PyManipulability {
         table.row("metric", &self.metric);
         table.row("driven", table::names(&self.actuated));
         table.row("object", table::names(&self.components));
-        for spectrum in self.spectra() {
+        for spectrum in [self.kinematic(), self.active_force(), self.passive_force()] {
             table.row(spectrum.what, spectrum.words());
         }
         table

@@ -79,30 +79,6 @@ impl PyContactForces {
     }
 }
 
-fn joint_torques(
-    constraint: &PyConstraint,
-    wrench: &Numbers<'_>,
-    metric: Option<&Numbers<'_>>,
-) -> Result<PyTorques> {
-    let metric = metric.map(|m| m.metric("metric")).transpose()?;
-    let relation = Motions::of(&constraint.inner).relation();
-    let inner = closure::joint_torques(&relation, wrench.vector("wrench")?, metric.as_ref())?;
-    Ok(PyTorques { inner })
-}
-
-fn contact_forces(
-    constraint: &PyConstraint,
-    torques: &Numbers<'_>,
-    wrench: &Numbers<'_>,
-    compliance: Option<&Numbers<'_>>,
-) -> Result<PyContactForces> {
-    let compliance = compliance.map(|c| c.metric("compliance")).transpose()?;
-    let motions = Motions::of(&constraint.inner);
-    let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
-    let inner = closure::contact_forces(&constraint.inner, &motions, load, compliance.as_ref())?;
-    Ok(PyContactForces { inner })
-}
-
 #[pymethods]
 impl PyConstraint {
     /// The joint torques of least norm that hold a wrench on the object.
@@ -119,7 +95,10 @@ impl PyConstraint {
     /// Torques
     #[pyo3(signature = (wrench, metric = None))]
     fn joint_torques(&self, wrench: Numbers<'_>, metric: Option<Numbers<'_>>) -> Result<PyTorques> {
-        joint_torques(self, &wrench, metric.as_ref())
+        let metric = metric.map(|m| m.metric("metric")).transpose()?;
+        let relation = self.relation(None)?;
+        let inner = closure::joint_torques(&relation, wrench.vector("wrench")?, metric.as_ref())?;
+        Ok(PyTorques { inner })
     }
 
     /// The forces at the contacts under torques and a wrench: least, or elastic.
@@ -141,7 +120,11 @@ impl PyConstraint {
         wrench: Numbers<'_>,
         compliance: Option<Numbers<'_>>,
     ) -> Result<PyContactForces> {
-        contact_forces(self, &torques, &wrench, compliance.as_ref())
+        let compliance = compliance.map(|c| c.metric("compliance")).transpose()?;
+        let motions = Motions::of(&self.inner);
+        let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
+        let inner = closure::contact_forces(&self.inner, &motions, load, compliance.as_ref())?;
+        Ok(PyContactForces { inner })
     }
 
     /// A basis of the contact forces without a wrench on the object: what squeezes it.
@@ -150,7 +133,7 @@ impl PyConstraint {
     /// -------
     /// ndarray, (t, k)
     fn internal_forces<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        arrays::matrix(py, &cylindroid::closure::internal_forces(&self.inner).basis)
+        arrays::matrix(py, &closure::internal_forces(&self.inner).basis)
     }
 
     /// A basis of the contact forces without torques at any joint: what the structure holds.
@@ -159,6 +142,6 @@ impl PyConstraint {
     /// -------
     /// ndarray, (t, k)
     fn structural_forces<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        arrays::matrix(py, &cylindroid::closure::structural_forces(&self.inner).basis)
+        arrays::matrix(py, &closure::structural_forces(&self.inner).basis)
     }
 }

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use super::{PyMechanism, reference_of};
 use crate::arrays::{self, Array, Numbers, Rows};
 use crate::error::{Failure, Result};
+use crate::options;
 
 /// The columns of a Jacobian of a chain, among those of the whole mechanism, row by row.
 #[inline]
@@ -333,9 +334,7 @@ impl PyMechanism {
             ("rotation_vector", OrientationRates::RotationVector),
         ];
         let n = self.inner.n();
-        let Some((_, rates)) = ANGLES.into_iter().find(|(name, _)| *name == angles) else {
-            return Err(Error::unknown("angles", angles, ANGLES.map(|a| a.0)).into());
-        };
+        let rates = options::named("angles", angles, &ANGLES)?;
         let rows = Rows::of(&self.inner, "q", &q)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         let mut state = self.inner.state(self.inner.home())?;

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use cylindroid::Mechanism;
 use cylindroid::model::formats;
-use cylindroid::{Error, Mechanism};
 use pyo3::prelude::*;
 
 use super::PyMechanism;
 use crate::error::Result;
+use crate::options;
 use crate::table::{self, Table};
 
 /// Loads a model.
@@ -83,9 +84,7 @@ pub(crate) fn parse(
         ("sdf", formats::sdf::parse),
         ("toml", formats::toml::parse),
     ];
-    let Some((_, read)) = readers.iter().find(|(name, _)| *name == format) else {
-        return Err(Error::unknown("format", format, readers.iter().map(|r| r.0)).into());
-    };
+    let read = options::named("format", format, &readers)?;
     Ok(PyMechanism { inner: py.detach(|| read(text, &path))? })
 }
 

@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
+use crate::options;
 use crate::table::{self, Table};
 
 pub(crate) use joint::PyJoint;
@@ -57,13 +58,7 @@ pub(crate) struct PyMechanism {
 }
 
 pub(crate) fn reference_of(name: &str) -> Result<Reference> {
-    match Reference::NAMES.iter().find(|(known, _)| *known == name) {
-        Some((_, reference)) => Ok(*reference),
-        None => {
-            let known = Reference::NAMES.iter().map(|(name, _)| *name);
-            Err(Error::unknown("reference", name, known).into())
-        }
-    }
+    options::named("reference", name, &Reference::NAMES)
 }
 
 impl PyMechanism {
@@ -91,6 +86,15 @@ impl PyMechanism {
             place.ok_or_else(|| Error::unknown("coordinate", name, &known).into())
         };
         names.iter().map(place).collect()
+    }
+
+    /// A vector that was given, else home.
+    pub(crate) fn or_home<'a>(
+        &'a self,
+        name: &'static str,
+        given: Option<&'a Numbers<'_>>,
+    ) -> Result<&'a [f64]> {
+        given.map_or(Ok(self.inner.home()), |given| given.vector(name))
     }
 
     fn frame_name(&self, id: cylindroid::FrameId) -> &str {

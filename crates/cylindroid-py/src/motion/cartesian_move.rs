@@ -1,12 +1,11 @@
 //! The class `CartesianMove`.
 
-use cylindroid::control::{Bounds, CartesianBounds, CartesianMove};
+use cylindroid::control::{CartesianBounds, CartesianMove};
 use pyo3::prelude::*;
 
-use super::{ACCELERATION, PyCartesianPath, SPEED, times};
+use super::{PyCartesianPath, bounds, times};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
-use crate::options::pair;
 use crate::table;
 
 /// A frame moving along a path by the fastest time law that keeps every bound.
@@ -51,17 +50,8 @@ impl PyCartesianMove {
         jerk: Option<Numbers<'_>>,
         duration: Option<f64>,
     ) -> Result<Self> {
-        let of = |name, given: &Option<Numbers<'_>>, default: (f64, f64)| match given {
-            None => Ok(default),
-            Some(given) => pair(name, given, default.1),
-        };
-        let v = of("speed", &speed, SPEED)?;
-        let a = of("acceleration", &acceleration, ACCELERATION)?;
-        let j = of("jerk", &jerk, (f64::INFINITY, f64::INFINITY))?;
-        let bounds = CartesianBounds {
-            linear: Bounds { velocity: v.0, acceleration: a.0, jerk: j.0 },
-            angular: Bounds { velocity: v.1, acceleration: a.1, jerk: j.1 },
-        };
+        let (linear, angular) = bounds([&speed, &acceleration, &jerk], false)?;
+        let bounds = CartesianBounds { linear, angular };
         let mut inner = CartesianMove::new(path.inner, bounds)?;
         if let Some(duration) = duration {
             inner = inner.stretched_to(duration)?;

@@ -1,13 +1,12 @@
 //! The class `JointMove`.
 
-use cylindroid::control::{Bounds, JointDefaults, JointMove, JointSample};
+use cylindroid::control::{JointDefaults, JointMove, JointSample};
 use pyo3::prelude::*;
 
-use super::{ACCELERATION, SPEED, times};
+use super::{bounds, times};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;
-use crate::options::pair;
 use crate::table;
 
 /// All joints moving straight to another configuration, starting and stopping together.
@@ -54,17 +53,8 @@ impl PyJointMove {
         jerk: Option<Numbers<'_>>,
         duration: Option<f64>,
     ) -> Result<Self> {
-        let of = |name, given: &Option<Numbers<'_>>, default: (f64, f64)| match given {
-            None => Ok(default),
-            Some(given) => pair(name, given, f64::NAN),
-        };
-        let v = of("speed", &speed, SPEED)?;
-        let a = of("acceleration", &acceleration, ACCELERATION)?;
-        let j = of("jerk", &jerk, (f64::INFINITY, f64::INFINITY))?;
-        let defaults = JointDefaults {
-            length: Bounds { velocity: v.0, acceleration: a.0, jerk: j.0 },
-            angle: Bounds { velocity: v.1, acceleration: a.1, jerk: j.1 },
-        };
+        let (length, angle) = bounds([&speed, &acceleration, &jerk], true)?;
+        let defaults = JointDefaults { length, angle };
         let (q, to) = (q.vector("q")?, to.vector("to")?);
         let mut inner = JointMove::within_limits(&mechanism.inner, q, to, &defaults)?;
         if let Some(duration) = duration {

@@ -69,6 +69,7 @@ impl PyServo {
             drive_servo(servo, q, duration, aim, observe)
         })?;
         self.last = Some(outcome.last);
+        let trajectory = trajectory.map(|t| Py::new(py, t)).transpose()?;
         let mechanism = self.inner.mechanism().clone();
         Ok(PyOutcome { outcome, trajectory, mechanism })
     }

@@ -199,10 +199,7 @@ impl PyServo {
         let numbers = MethodNumbers { eps, damping, onset, filter, max_rate, shape, floor };
         InverseChoice { name: inverse, numbers, h, mu, lam, give_up, fallback }
             .apply(&mut options)?;
-        let posture = match &posture {
-            Some(posture) => posture.vector("posture")?,
-            None => robot.home(),
-        };
+        let posture = mechanism.or_home("posture", posture.as_ref())?;
         options.secondary = options::secondary(secondary.as_ref(), posture, robot, &options)?;
         Ok(Self { inner: Servo::new(robot, options)?, last: None })
     }

@@ -35,7 +35,7 @@ use crate::table::{self, Table};
 #[derive(Debug)]
 pub(crate) struct PyOutcome {
     pub(super) outcome: Outcome,
-    pub(super) trajectory: Option<PyTrajectory>,
+    pub(super) trajectory: Option<Py<PyTrajectory>>,
     pub(super) mechanism: Mechanism,
 }
 
@@ -107,8 +107,8 @@ impl PyOutcome {
     }
 
     #[getter]
-    fn trajectory(&self) -> Option<PyTrajectory> {
-        self.trajectory.clone()
+    fn trajectory(&self, py: Python<'_>) -> Option<Py<PyTrajectory>> {
+        self.trajectory.as_ref().map(|t| t.clone_ref(py))
     }
 }
 

@@ -19,7 +19,7 @@ use crate::table;
 ///     `world_from_tool` (m).
 /// position_error, orientation_error, singular_ratio : ndarray, (S,)
 #[pyclass(frozen, name = "Trajectory", module = "cylindroid")]
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct PyTrajectory {
     n: usize,
     time: Vec<f64>,
