@@ -1,6 +1,6 @@
 //! The class `Constraint`: the velocity constraint of a closed chain.
 
-use cylindroid::closure::{Blocks, ClosedChain, Constraint, Gap, Motions, Unit, Units};
+use cylindroid::closure::{Blocks, ClosedChain, Constraint, Gap, Motions, Relation, Unit, Units};
 use cylindroid::kinematics::State;
 use cylindroid::{Error, FrameId, Matrix, Mechanism};
 use pyo3::prelude::*;
@@ -164,15 +164,13 @@ impl PyConstraint {
         Ok((map, names))
     }
 
-    pub(super) fn relation(
-        &self,
-        task: Option<&Bound<'_, PyAny>>,
-    ) -> Result<cylindroid::closure::Relation> {
+    /// Of the driven joints and the object, or the task that the map makes of its twist.
+    pub(super) fn relation(&self, map: Option<&Matrix>) -> cylindroid::Result<Relation> {
         let relation = Motions::of(&self.inner).relation();
-        Ok(match task {
-            None => relation,
-            Some(task) => relation.task(&self.task(task)?.0)?,
-        })
+        match map {
+            None => Ok(relation),
+            Some(map) => relation.task(map),
+        }
     }
 
     pub(super) fn head(&self, table: &mut Table) {
@@ -322,7 +320,7 @@ impl PyMechanism {
         reference: Option<&str>,
         length: Option<f64>,
     ) -> Result<Bound<'py, PyAny>> {
-        let all = self.constraints(q.as_ref(), actuated.as_deref(), reference, length)?;
+        let all = self.constraints(py, q.as_ref(), actuated.as_deref(), reference, length)?;
         Ok(object(py, all)?)
     }
 }

@@ -5,7 +5,7 @@ use cylindroid::manipulability::{Goal, Gradient, Measure, gradient};
 use pyo3::prelude::*;
 
 use super::PyConstraint;
-use super::metrics::metrics;
+use super::metrics::Question;
 use crate::arrays::{self, Array, Many, Numbers};
 use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;
@@ -85,7 +85,7 @@ impl PyGradient {
 }
 
 impl PyGradient {
-    pub(super) fn of(
+    fn of(
         py: Python<'_>,
         constraint: &PyConstraint,
         measure: &str,
@@ -100,9 +100,9 @@ impl PyGradient {
         let Some(origin) = &constraint.origin else {
             return Err(Failure::option("measure", measure.name(), "bare matrices do not move"));
         };
-        let map = task.map(|t| constraint.task(t)).transpose()?.map(|(map, _)| map);
-        let metrics = metrics(constraint, map.as_ref(), weights, metric)?;
-        let goal = Goal { reference: Some(origin.reference), task: map.as_ref() };
+        let question = Question::about(constraint, task, weights, metric)?;
+        let metrics = question.metrics(constraint)?;
+        let goal = Goal { reference: Some(origin.reference), task: question.map.as_ref() };
         let inner = py.detach(|| gradient(&origin.state, goal, &metrics, measure))?;
         Ok(Self { inner })
     }
@@ -154,7 +154,7 @@ impl PyMechanism {
         metric: &str,
     ) -> Result<PyGradient> {
         let weights = [Wu.as_ref(), Wq.as_ref(), None, None];
-        match self.constraints(q.as_ref(), actuated.as_deref(), reference, None)? {
+        match self.constraints(py, q.as_ref(), actuated.as_deref(), reference, None)? {
             Many::One(c) => PyGradient::of(py, &c, measure, task.as_ref(), weights, metric),
             Many::All(_) => Err(Failure::option("q", "a batch", "give one configuration, (n,)")),
         }

@@ -1,11 +1,11 @@
 //! The class `Manipulability`: efficiencies of motion and force.
 
 use cylindroid::Error;
-use cylindroid::closure::Motions;
 use cylindroid::manipulability::{Index, Manipulability};
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 
-use super::metrics::metrics;
+use super::metrics::Question;
 use super::{PyConstraint, PySpectrum, object};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
@@ -37,35 +37,14 @@ pub(crate) struct PyManipulability {
 }
 
 impl PyManipulability {
-    pub(super) fn of(
-        py: Python<'_>,
-        constraint: &PyConstraint,
-        task: Option<&Bound<'_, PyAny>>,
-        weights: [Option<&Numbers<'_>>; 4],
-        metric: &str,
-    ) -> Result<Self> {
-        let (map, components) = match task {
-            None => (None, constraint.component_names()),
-            Some(task) => {
-                let (map, names) = constraint.task(task)?;
-                (Some(map), names)
-            }
-        };
-        let metrics = metrics(constraint, map.as_ref(), weights, metric)?;
-        let inner = py.detach(|| {
-            let relation = Motions::of(&constraint.inner).relation();
-            let relation = match &map {
-                None => relation,
-                Some(map) => relation.task(map)?,
-            };
-            Manipulability::of(&relation, &metrics)
-        })?;
+    fn of(constraint: &PyConstraint, question: &Question) -> Result<Self> {
+        let relation = constraint.relation(question.map.as_ref())?;
         Ok(Self {
-            inner,
+            inner: Manipulability::of(&relation, &question.metrics(constraint)?)?,
             name: constraint.name(),
-            metric: metric.to_owned(),
+            metric: question.preset.clone(),
             actuated: constraint.actuated.clone(),
-            components,
+            components: question.components.clone(),
         })
     }
 }
@@ -169,7 +148,8 @@ impl PyConstraint {
         metric: &str,
     ) -> Result<PyManipulability> {
         let weights = [&Wu, &Wq, &Ww, &Wtau].map(Option::as_ref);
-        PyManipulability::of(py, self, task.as_ref(), weights, metric)
+        let question = Question::about(self, task.as_ref(), weights, metric)?;
+        py.detach(|| PyManipulability::of(self, &question))
     }
 }
 
@@ -232,10 +212,13 @@ impl PyMechanism {
         metric: &str,
         length: Option<f64>,
     ) -> Result<Bound<'py, PyAny>> {
-        let all = self.constraints(q.as_ref(), actuated.as_deref(), reference, length)?;
+        let all = self.constraints(py, q.as_ref(), actuated.as_deref(), reference, length)?;
+        let Some(like) = all.as_slice().first() else {
+            return Ok(PyList::empty(py).into_any());
+        };
         let weights = [&Wu, &Wq, &Ww, &Wtau].map(Option::as_ref);
-        let reports =
-            all.try_map(|c| PyManipulability::of(py, c, task.as_ref(), weights, metric))?;
+        let question = Question::about(like, task.as_ref(), weights, metric)?;
+        let reports = py.detach(|| all.try_map(|c| PyManipulability::of(c, &question)))?;
         Ok(object(py, reports)?)
     }
 }

@@ -3,42 +3,70 @@
 use cylindroid::closure::{Unit, Units};
 use cylindroid::manipulability::Metrics;
 use cylindroid::{Error, Matrix};
+use pyo3::prelude::*;
 
 use super::PyConstraint;
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
 
-/// The metrics of a preset, and those that were given in its place.
-pub(super) fn metrics(
-    constraint: &PyConstraint,
-    map: Option<&Matrix>,
-    weights: [Option<&Numbers<'_>>; 4],
-    metric: &str,
-) -> Result<Metrics> {
-    const PRESETS: [&str; 3] = ["unit", "length", "limits"];
-    let mut metrics = Metrics::UNIT;
-    if !PRESETS.contains(&metric) {
-        return Err(Error::unknown("metric", metric, PRESETS).into());
-    }
-    if metric != "unit" {
-        let units = task_units(constraint, map)?;
-        metrics = Metrics::characteristic_length(&units, constraint.inner.length())?;
-        if metric == "limits" {
-            metrics = metrics.with_rate_limits(&limits(constraint, false)?)?;
+/// A question about efficiencies: which components of the object's twist, in which metrics.
+#[derive(Debug)]
+pub(super) struct Question {
+    pub(super) map: Option<Matrix>,
+    pub(super) components: Vec<String>,
+    pub(super) preset: String,
+    /// Those that take the place of the preset's.
+    given: Metrics,
+}
+
+impl Question {
+    /// About constraints like this one; `weights` are Wu, Wq, Ww, Wtau.
+    pub(super) fn about(
+        constraint: &PyConstraint,
+        task: Option<&Bound<'_, PyAny>>,
+        weights: [Option<&Numbers<'_>>; 4],
+        preset: &str,
+    ) -> Result<Self> {
+        const PRESETS: [&str; 3] = ["unit", "length", "limits"];
+        if !PRESETS.contains(&preset) {
+            return Err(Error::unknown("metric", preset, PRESETS).into());
         }
+        let (map, components) = match task {
+            None => (None, constraint.component_names()),
+            Some(task) => {
+                let (map, names) = constraint.task(task)?;
+                (Some(map), names)
+            }
+        };
+        let [object, joint, wrench, torque] = weights;
+        let of = |name, given: Option<&Numbers<'_>>| given.map(|w| w.metric(name)).transpose();
+        let given = Metrics {
+            object: of("Wu", object)?,
+            joint: of("Wq", joint)?,
+            wrench: of("Ww", wrench)?,
+            torque: of("Wtau", torque)?,
+        };
+        Ok(Self { map, components, preset: preset.to_owned(), given })
     }
-    let [object, joint, wrench, torque] = weights;
-    let set = |to: &mut Option<_>, name: &'static str, given: Option<&Numbers<'_>>| {
-        if let Some(given) = given {
-            *to = Some(given.metric(name)?);
+
+    /// The metrics at this constraint.
+    pub(super) fn metrics(&self, constraint: &PyConstraint) -> Result<Metrics> {
+        let mut metrics = Metrics::UNIT;
+        if self.preset != "unit" {
+            let units = task_units(constraint, self.map.as_ref())?;
+            metrics = Metrics::characteristic_length(&units, constraint.inner.length())?;
+            if self.preset == "limits" {
+                metrics = metrics.with_rate_limits(&limits(constraint, false)?)?;
+            }
         }
-        Ok::<(), Failure>(())
-    };
-    set(&mut metrics.object, "Wu", object)?;
-    set(&mut metrics.joint, "Wq", joint)?;
-    set(&mut metrics.wrench, "Ww", wrench)?;
-    set(&mut metrics.torque, "Wtau", torque)?;
-    Ok(metrics)
+        let given = self.given.clone();
+        Ok(Metrics {
+            object: given.object.or(metrics.object),
+            joint: given.joint.or(metrics.joint),
+            wrench: given.wrench.or(metrics.wrench),
+            torque: given.torque.or(metrics.torque),
+        })
+    }
 }
 
 /// Units with those of the task in place of the object's: each of its rows is of one kind.

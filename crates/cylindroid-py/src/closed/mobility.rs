@@ -350,7 +350,7 @@ impl PyMechanism {
         reference: Option<&str>,
         length: Option<f64>,
     ) -> Result<Bound<'py, PyAny>> {
-        let all = self.constraints(q.as_ref(), actuated.as_deref(), reference, length)?;
+        let all = self.constraints(py, q.as_ref(), actuated.as_deref(), reference, length)?;
         let reports = py.detach(|| all.try_map(|c| Ok::<_, Failure>(PyMobility::of(c))))?;
         Ok(object(py, reports)?)
     }

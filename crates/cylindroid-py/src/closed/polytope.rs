@@ -51,16 +51,15 @@ impl PyPolytope {
                 _ => symmetric(given.vector("limits")?),
             },
         };
-        let relation = constraint.relation(task)?;
-        let dimension = relation.object();
-        let inner = py.detach(|| {
-            if force {
-                force_polytope(&relation, &limits)
-            } else {
-                velocity_polytope(&relation, &limits)
-            }
-        })?;
-        Ok(Self { inner, dimension })
+        let map = task.map(|task| constraint.task(task)).transpose()?.map(|(map, _)| map);
+        py.detach(|| {
+            let relation = constraint.relation(map.as_ref())?;
+            let inner = match force {
+                true => force_polytope(&relation, &limits)?,
+                false => velocity_polytope(&relation, &limits)?,
+            };
+            Ok(Self { inner, dimension: relation.object() })
+        })
     }
 
     fn hull(&self) -> &Hull {

@@ -94,10 +94,18 @@ impl PyConstraint {
     /// -------
     /// Torques
     #[pyo3(signature = (wrench, metric = None))]
-    fn joint_torques(&self, wrench: Numbers<'_>, metric: Option<Numbers<'_>>) -> Result<PyTorques> {
+    fn joint_torques(
+        &self,
+        py: Python<'_>,
+        wrench: Numbers<'_>,
+        metric: Option<Numbers<'_>>,
+    ) -> Result<PyTorques> {
         let metric = metric.map(|m| m.metric("metric")).transpose()?;
-        let relation = self.relation(None)?;
-        let inner = closure::joint_torques(&relation, wrench.vector("wrench")?, metric.as_ref())?;
+        let wrench = wrench.vector("wrench")?;
+        let inner = py.detach(|| {
+            let relation = self.relation(None)?;
+            closure::joint_torques(&relation, wrench, metric.as_ref())
+        })?;
         Ok(PyTorques { inner })
     }
 
@@ -116,14 +124,17 @@ impl PyConstraint {
     #[pyo3(signature = (torques, wrench, compliance = None))]
     fn contact_forces(
         &self,
+        py: Python<'_>,
         torques: Numbers<'_>,
         wrench: Numbers<'_>,
         compliance: Option<Numbers<'_>>,
     ) -> Result<PyContactForces> {
         let compliance = compliance.map(|c| c.metric("compliance")).transpose()?;
-        let motions = Motions::of(&self.inner);
         let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
-        let inner = closure::contact_forces(&self.inner, &motions, load, compliance.as_ref())?;
+        let inner = py.detach(|| {
+            let motions = Motions::of(&self.inner);
+            closure::contact_forces(&self.inner, &motions, load, compliance.as_ref())
+        })?;
         Ok(PyContactForces { inner })
     }
 
@@ -133,7 +144,7 @@ impl PyConstraint {
     /// -------
     /// ndarray, (t, k)
     fn internal_forces<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        arrays::matrix(py, &closure::internal_forces(&self.inner).basis)
+        arrays::matrix(py, &py.detach(|| closure::internal_forces(&self.inner)).basis)
     }
 
     /// A basis of the contact forces without torques at any joint: what the structure holds.
@@ -142,6 +153,6 @@ impl PyConstraint {
     /// -------
     /// ndarray, (t, k)
     fn structural_forces<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        arrays::matrix(py, &closure::structural_forces(&self.inner).basis)
+        arrays::matrix(py, &py.detach(|| closure::structural_forces(&self.inner)).basis)
     }
 }
