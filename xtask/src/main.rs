@@ -21,7 +21,7 @@ cargo xtask <task>
   layers    checks that the library's modules import only those before them, and that files are
             short
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
-  bench     runs the benchmarks of the kernels
+  bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   figures   draws the figures of the README";
 
 fn main() -> ExitCode {
