@@ -963,6 +963,14 @@ class Stall:
 
 @final
 class TimeLaw:
+    def __new__(
+        cls,
+        distance: float,
+        velocity: float,
+        acceleration: float,
+        jerk: float | None = None,
+        duration: float | None = None,
+    ) -> TimeLaw: ...
     @property
     def duration(self) -> float: ...
     @property

@@ -81,6 +81,11 @@ impl PyCartesianMove {
     /// (ndarray, ndarray)
     ///     Poses, (4, 4) or (N, 4, 4), and twists, (6,) or (N, 6): linear first, world axes, at
     ///     the moving origin.
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For a time that is NaN.
     #[pyo3(signature = (t))]
     fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<(Array<'py>, Array<'py>)> {
         let (t, count) = times("t", &t)?;

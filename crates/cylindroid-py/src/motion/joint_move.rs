@@ -79,6 +79,11 @@ impl PyJointMove {
     /// -------
     /// (ndarray, ndarray)
     ///     q and qd, (n,) or (N, n).
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For a time that is NaN.
     #[pyo3(signature = (t))]
     fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<(Array<'py>, Array<'py>)> {
         let (t, count) = times("t", &t)?;
@@ -87,10 +92,9 @@ impl PyJointMove {
         let mut result = Ok(());
         let q = arrays::written(py, count, &[n], |out| {
             let rows = out.chunks_exact_mut(n.max(1)).zip(velocities.chunks_exact_mut(n.max(1)));
-            for (t, (positions, velocities)) in t.iter().zip(rows) {
-                let sample = JointSample { positions, velocities };
-                result = self.inner.sample_into(*t, sample).map(|_| ());
-            }
+            result = t.iter().zip(rows).try_for_each(|(t, (positions, velocities))| {
+                self.inner.sample_into(*t, JointSample { positions, velocities }).map(|_| ())
+            });
         })?;
         result?;
         let qd = arrays::written(py, count, &[n], |out| out.copy_from_slice(&velocities))?;

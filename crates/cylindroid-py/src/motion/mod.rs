@@ -5,6 +5,7 @@ mod joint_move;
 mod path;
 mod time_law;
 
+use cylindroid::Error;
 use cylindroid::control::Bounds;
 
 use crate::arrays::Numbers;
@@ -41,11 +42,19 @@ fn bounds(given: Given<'_, '_>, of_both: bool) -> Result<(Bounds, Bounds)> {
     ))
 }
 
-/// Numbers of an argument that may be one number or a vector of them.
+/// Numbers of an argument that may be one number or a vector of them; infinite ones are allowed.
 fn times<'a>(name: &'static str, of: &'a Numbers<'_>) -> Result<(&'a [f64], Option<usize>)> {
-    match *of.shape() {
-        [] => Ok((of.values(), None)),
-        [count] => Ok((of.values(), Some(count))),
-        _ => Err(Failure::option(name, "an array of several axes", "give a number or a vector")),
+    let (values, count) = match *of.shape() {
+        [] => (of.values(), None),
+        [count] => (of.values(), Some(count)),
+        _ => {
+            let reason = "give a number or a vector";
+            return Err(Failure::option(name, "an array of several axes", reason));
+        }
+    };
+    if let Some(i) = values.iter().position(|x| x.is_nan()) {
+        let what = if count.is_some() { format!("{name}[{i}]") } else { name.to_owned() };
+        return Err(Error::NotFinite { what, value: f64::NAN }.into());
     }
+    Ok((values, count))
 }

@@ -138,6 +138,11 @@ impl PyCartesianPath {
     /// Returns
     /// -------
     /// ndarray, (4, 4) or (N, 4, 4)
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For an s that is NaN.
     #[pyo3(signature = (s))]
     fn pose<'py>(&self, py: Python<'py>, s: Numbers<'py>) -> Result<Array<'py>> {
         let (s, count) = times("s", &s)?;

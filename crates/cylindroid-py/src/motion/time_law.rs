@@ -13,8 +13,10 @@ use crate::error::Result;
 /// ----------
 /// distance : float
 ///     Of either sign, in the unit u of the coordinate.
-/// velocity, acceleration, jerk : float
-///     Bounds [u/s, u/s^2, u/s^3]; an infinite jerk gives a trapezoidal velocity.
+/// velocity, acceleration : float
+///     Bounds [u/s, u/s^2].
+/// jerk : float, optional
+///     [u/s^3]. Default: no bound, which gives a trapezoidal velocity.
 /// duration : float, optional
 ///     Slows the motion down to end then (s).
 ///
@@ -40,15 +42,15 @@ pub(crate) struct PyTimeLaw {
 #[pymethods]
 impl PyTimeLaw {
     #[new]
-    #[pyo3(signature = (distance, velocity, acceleration, jerk = f64::INFINITY, duration = None))]
-    #[pyo3(text_signature = "(distance, velocity, acceleration, jerk=float('inf'), duration=None)")]
+    #[pyo3(signature = (distance, velocity, acceleration, jerk = None, duration = None))]
     fn new(
         distance: f64,
         velocity: f64,
         acceleration: f64,
-        jerk: f64,
+        jerk: Option<f64>,
         duration: Option<f64>,
     ) -> Result<Self> {
+        let jerk = jerk.unwrap_or(f64::INFINITY);
         let mut inner = TimeLaw::new(distance, Bounds { velocity, acceleration, jerk })?;
         if let Some(duration) = duration {
             inner = inner.stretched_to(duration)?;
@@ -76,6 +78,11 @@ impl PyTimeLaw {
     /// Returns
     /// -------
     /// ndarray, (4,) or (N, 4)
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For a time that is NaN.
     #[pyo3(signature = (t))]
     fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<Array<'py>> {
         let (t, count) = times("t", &t)?;
