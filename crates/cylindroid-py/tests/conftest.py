@@ -12,7 +12,7 @@ figures = pytest.StashKey[list[str]]()
 @pytest.fixture(scope="session")
 def robot_files():
     """The folder of example-robot-data."""
-    folder = pathlib.Path(os.environ.get("CYLINDROID_TEST_ROBOTS", "not set"))
+    folder = pathlib.Path(os.environ.get("CYLINDROID_TEST_ROBOTS") or "not set")
     if not folder.is_dir():
         pytest.fail(
             f"no robot files in CYLINDROID_TEST_ROBOTS ({folder}): 'cargo xtask python' fetches them, "
