@@ -51,14 +51,15 @@ impl PyMechanism {
     ) -> Result<Many<PyConstraint>> {
         let driven = actuated.map(|names| self.inner.with_actuated(names)).transpose()?;
         let mechanism = driven.as_ref().unwrap_or(&self.inner);
-        let rows = q.map(|q| Rows::of(mechanism, "q", q)).transpose()?;
-        py.detach(|| {
-            let one = |q: &[f64]| PyConstraint::of(mechanism, q, reference, length);
-            let Some(rows) = rows else { return Ok(Many::One(one(mechanism.home())?)) };
-            Ok(match rows.count {
-                None => Many::One(one(rows.row(0))?),
-                Some(n) => Many::All((0..n).map(|i| one(rows.row(i))).collect::<Result<_>>()?),
-            })
+        let one = |q: &[f64]| PyConstraint::of(mechanism, q, reference, length);
+        let Some(q) = q else { return Ok(Many::One(one(mechanism.home())?)) };
+        let rows = Rows::of(mechanism, "q", q)?;
+        Ok(match rows.count {
+            None => Many::One(one(rows.row(0))?),
+            Some(n) => {
+                let all = || (0..n).map(|i| one(rows.row(i))).collect::<Result<_>>();
+                Many::All(py.detach(all)?)
+            }
         })
     }
 }
