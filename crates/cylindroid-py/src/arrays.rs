@@ -5,7 +5,7 @@
 
 use cylindroid::linalg::Metric;
 use cylindroid::model::Mechanism;
-use cylindroid::{Error, Matrix, Pose, Twist};
+use cylindroid::{Error, Matrix, Pose, Twist, Wrench};
 use numpy::{
     Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
 };
@@ -98,6 +98,16 @@ impl Numbers<'_> {
             [rows, cols] => Ok(matrix_of(self.values(), rows, cols)),
             _ => Err(Failure::option(name, self.shape_text(), "a matrix has two axes")),
         }
+    }
+
+    /// A twist, linear part first.
+    pub(crate) fn twist(&self, name: &'static str) -> Result<Twist> {
+        Ok(Twist::from_array(self.entries(name)?))
+    }
+
+    /// A wrench, force first.
+    pub(crate) fn wrench(&self, name: &'static str) -> Result<Wrench> {
+        Ok(Wrench::from_array(self.entries(name)?))
     }
 
     /// A metric from a matrix, or from its diagonal.

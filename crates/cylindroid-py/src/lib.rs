@@ -8,6 +8,7 @@
 
 mod arrays;
 mod closed;
+mod control;
 mod error;
 mod ik;
 mod inverse;
@@ -29,6 +30,11 @@ mod _core {
         PyFingerContact, PyFiniteMobility, PyFollowed, PyGap, PyGradient, PyGraspQuality,
         PyJointMobility, PyManipulability, PyMobility, PyPolytope, PySingularity, PySpectrum,
         PyTorques, grasp::grasp_quality,
+    };
+    #[pymodule_export]
+    use crate::control::{
+        PyAdmittance, PyHybridCommand, PyHybridLaw, PyInternalForceCommand, PyInternalForceLaw,
+        PyOperatorShare, PySharedCommand, PySharedLaw,
     };
     #[pymodule_export]
     use crate::ik::PySolution;
@@ -53,12 +59,12 @@ mod _core {
     #[pymodule_export]
     use crate::screws::involution::involution;
     #[pymodule_export]
-    use crate::screws::projector::{adjoint, projector};
+    use crate::screws::projector::{adjoint, projector, screw_to};
     #[pymodule_export]
     use crate::screws::transversals::transversals;
     #[pymodule_export]
     use crate::screws::{
-        PyExistence, PyInvolution, PyMargin, PyScrew, PyScrewSystem, PyTransversals,
+        PyExistence, PyInvolution, PyMargin, PyProjector, PyScrew, PyScrewSystem, PyTransversals,
     };
     #[pymodule_export]
     use crate::servo::{PyOutcome, PyServo, PyStall, PyTrajectory};

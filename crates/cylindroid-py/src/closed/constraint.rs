@@ -165,7 +165,7 @@ impl PyConstraint {
     }
 
     /// Of the driven joints and the object, or the task that the map makes of its twist.
-    pub(super) fn relation(&self, map: Option<&Matrix>) -> cylindroid::Result<Relation> {
+    pub(crate) fn relation(&self, map: Option<&Matrix>) -> cylindroid::Result<Relation> {
         let relation = Motions::of(&self.inner).relation();
         match map {
             None => Ok(relation),

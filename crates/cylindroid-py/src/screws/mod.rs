@@ -16,6 +16,7 @@ use crate::error::Result;
 
 pub(crate) use existence::PyExistence;
 pub(crate) use involution::PyInvolution;
+pub(crate) use projector::PyProjector;
 pub(crate) use screw::{PyScrew, screw_list};
 pub(crate) use system::{PyMargin, PyScrewSystem};
 pub(crate) use transversals::PyTransversals;

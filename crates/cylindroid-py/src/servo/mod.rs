@@ -95,6 +95,8 @@ pub(crate) use trajectory::PyTrajectory;
 ///     Joints whose limit set a rate in the last step, and its kind.
 /// scale : float
 ///     The share of the wanted motion that the limits left.
+/// bent : bool
+///     True if they did not leave its direction either.
 /// no_inverse : str or None
 ///     Why the inverse that was asked for was not used in the last step.
 /// pose : ndarray, (4, 4)
@@ -126,6 +128,13 @@ pub(crate) use trajectory::PyTrajectory;
 pub(crate) struct PyServo {
     inner: Servo,
     last: Option<Step>,
+}
+
+impl PyServo {
+    /// What the last step did.
+    pub(crate) fn last(&self) -> Option<&Step> {
+        self.last.as_ref()
+    }
 }
 
 #[pymethods]
@@ -241,7 +250,7 @@ impl PyServo {
             pose: target.pose("target")?,
             feed_forward: match &feed_forward {
                 None => Twist::ZERO,
-                Some(twist) => Twist::from_array(twist.entries("feed_forward")?),
+                Some(twist) => twist.twist("feed_forward")?,
             },
         };
         let wanted = match &secondary {

@@ -59,6 +59,11 @@ impl PyServo {
     }
 
     #[getter]
+    fn bent(&self) -> bool {
+        self.last.is_some_and(|s| s.saturation.bent)
+    }
+
+    #[getter]
     fn rates<'py>(&self, py: Python<'py>) -> Array<'py> {
         arrays::vector(py, self.inner.rates())
     }
