@@ -1,4 +1,5 @@
-//! The modules of the library form one line: each imports only those before it.
+//! The modules of the library form one line: each imports only those before it. No file of a crate
+//! is longer than a newcomer reads.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,16 +27,44 @@ const LINE: [&str; 15] = [
 
 /// More lines than this and a newcomer no longer finds the room.
 const LONGEST_FILE: usize = 500;
+/// Whose files are so short.
+const CRATES: [&str; 3] = ["cylindroid", "cylindroid-cli", "cylindroid-py"];
 
 /// Checks every `use crate::...` and `crate::...` path of the library, and the length of files.
 ///
 /// # Errors
 /// A module that imports one to its right, or is missing from the line; a file that is too long.
 pub(crate) fn check() -> Result<()> {
-    let source = crate::steps::root().join("crates/cylindroid/src");
+    let mut faults = line_faults()?;
+    for name in CRATES {
+        faults.extend(length_faults(name)?);
+    }
+    if faults.is_empty() {
+        return Ok(());
+    }
+    bail!("files are not where they belong, or too long:\n  {}", faults.join("\n  "))
+}
+
+/// Files of a crate that are too long.
+fn length_faults(name: &str) -> Result<Vec<String>> {
+    let source = source_of(name);
     let mut faults = Vec::new();
     for file in rust_files(&source)? {
-        let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+        let lines = text_of(&file)?.lines().count();
+        if lines > LONGEST_FILE {
+            let short = file.strip_prefix(&source).unwrap_or(&file).display();
+            faults.push(format!("{name}/{short}: {lines} lines, at most {LONGEST_FILE}"));
+        }
+    }
+    Ok(faults)
+}
+
+/// Imports of the library that break the line.
+fn line_faults() -> Result<Vec<String>> {
+    let source = source_of("cylindroid");
+    let mut faults = Vec::new();
+    for file in rust_files(&source)? {
+        let text = text_of(&file)?;
         let short = file.strip_prefix(&source).unwrap_or(&file);
         let first = short.iter().next().map(|s| s.to_string_lossy().into_owned());
         let module = first.unwrap_or_default().trim_end_matches(".rs").to_owned();
@@ -70,15 +99,16 @@ pub(crate) fn check() -> Result<()> {
                 }
             }
         }
-        let lines = text.lines().count();
-        if lines > LONGEST_FILE {
-            faults.push(format!("{}: {lines} lines, at most {LONGEST_FILE}", short.display()));
-        }
     }
-    if faults.is_empty() {
-        return Ok(());
-    }
-    bail!("the library's line of modules is broken:\n  {}", faults.join("\n  "))
+    Ok(faults)
+}
+
+fn source_of(name: &str) -> PathBuf {
+    crate::steps::root().join("crates").join(name).join("src")
+}
+
+fn text_of(file: &Path) -> Result<String> {
+    fs::read_to_string(file).with_context(|| file.display().to_string())
 }
 
 fn place(module: &str) -> Option<usize> {

@@ -18,9 +18,10 @@ cargo xtask <task>
   quick     formatting, layers, lints: what to run before a push
   setup     fetches the robot files that tests read (from PyPI, once)
   python    builds the Python package, installs and tests it (needs Python 3 and PyPI)
-  layers    checks that the library's modules import only those before them
+  layers    checks that the library's modules import only those before them, and that files are
+            short
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
-  bench     runs the benchmarks of the kernels
+  bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   figures   draws the figures of the README";
 
 fn main() -> ExitCode {

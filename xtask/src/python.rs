@@ -11,6 +11,7 @@ use crate::steps::{root, run};
 
 const REQUIREMENTS: &str = "crates/cylindroid-py/requirements-test.txt";
 const TESTS: &str = "crates/cylindroid-py/tests";
+const BENCH: &str = "crates/cylindroid-py/benches/overhead.py";
 
 /// The Python of a virtual environment.
 fn python(venv: &Path) -> PathBuf {
@@ -61,13 +62,24 @@ fn wheel(python: &Path) -> Result<PathBuf> {
     }
 }
 
+/// A Python that has the package and what its tests need, and the wheel.
+fn installed() -> Result<(PathBuf, PathBuf)> {
+    let python = with_requirements(&root().join("target/python-venv"))?;
+    let wheel = wheel(&python)?;
+    pip(&python, &["--force-reinstall", "--no-deps", &wheel.to_string_lossy()])?;
+    Ok((python, wheel))
+}
+
+/// What calls from Python cost.
+pub(crate) fn bench() -> Result<()> {
+    let (python, _) = installed()?;
+    run(Command::new(python).arg(BENCH))
+}
+
 /// Builds, installs and tests the package: pytest, the stubs, the tutorials' examples; then the
 /// wheel in an environment that has nothing but numpy.
 pub(crate) fn test() -> Result<()> {
-    let python = with_requirements(&root().join("target/python-venv"))?;
-    let wheel = wheel(&python)?;
-    let file = wheel.to_string_lossy();
-    pip(&python, &["--force-reinstall", "--no-deps", &file])?;
+    let (python, wheel) = installed()?;
     let robots = models::fetch()?;
     let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider", TESTS];
     run(Command::new(&python).args(pytest).env("CYLINDROID_TEST_ROBOTS", robots))?;
@@ -78,6 +90,6 @@ pub(crate) fn test() -> Result<()> {
         fs::remove_dir_all(&bare)?;
     }
     let python = environment(&bare)?;
-    pip(&python, &[&file])?;
+    pip(&python, &[&wheel.to_string_lossy()])?;
     run(Command::new(&python).args([format!("{TESTS}/bare.py")]))
 }

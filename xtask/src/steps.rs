@@ -124,9 +124,10 @@ pub(crate) fn vectors() -> Result<()> {
     run(mujoco.arg("crates/cylindroid/tests/vectors/mujoco").args(files))
 }
 
-/// The kernels, on this machine.
+/// The kernels, and calls from Python, on this machine.
 pub(crate) fn bench() -> Result<()> {
-    run(&mut cargo(&["bench", "--package", "cylindroid"]))
+    run(&mut cargo(&["bench", "--package", "cylindroid"]))?;
+    python::bench()
 }
 
 /// The figures of the README, by the command line that users have.

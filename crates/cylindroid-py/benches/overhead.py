@@ -1,9 +1,8 @@
 """What a call from Python costs beyond the library, and what a batch costs.
 
-    cargo xtask python            # builds and installs the package in target/python-venv
-    target/python-venv/bin/python crates/cylindroid-py/benches/overhead.py
+    cargo xtask bench             # the library's own times first, then these
 
-Minima of many runs, one core. The library's own times: cargo bench --package cylindroid.
+Minima of many runs, one core.
 """
 
 import timeit
@@ -15,6 +14,11 @@ import cylindroid as cy
 
 def nanoseconds(call, number=20_000, repeat=9):
     return min(timeit.repeat(call, number=number, repeat=repeat)) / number * 1e9
+
+
+def fresh(shape):
+    """Memory that numpy has not touched yet, every page of it written once."""
+    np.empty(shape).reshape(-1)[::512] = 0.0
 
 
 def main():
@@ -31,6 +35,8 @@ def main():
             single = nanoseconds(one)
             batch = nanoseconds(many, number=1) / len(Q)
             print(f"{name + ' ' + what:28}{single:12.0f}{batch:14.1f}")
+        batch = nanoseconds(lambda: fresh((len(Q), 6, robot.n)), number=1) / len(Q)
+        print(f"{'  its memory alone':28}{'':12}{batch:14.1f}")
         print(f"{name + ' pinv':28}{nanoseconds(lambda: cy.pinv(J)):12.0f}")
         servo, target = cy.Servo(robot), robot.fk(q)
         target[2, 3] -= 0.05

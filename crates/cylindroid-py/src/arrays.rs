@@ -3,12 +3,15 @@
 //!
 //! Batches have the axis of the configurations first: `(N, n)` in, `(N, ...)` out.
 
+use cylindroid::linalg::Metric;
 use cylindroid::model::Mechanism;
-use cylindroid::{Error, Matrix, Pose};
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use pyo3::intern;
+use cylindroid::{Error, Matrix, Pose, Twist, Wrench};
+use numpy::{
+    Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use pyo3::{IntoPyObjectExt, intern};
 
 use crate::error::{Failure, Result};
 
@@ -95,6 +98,24 @@ impl Numbers<'_> {
             [rows, cols] => Ok(matrix_of(self.values(), rows, cols)),
             _ => Err(Failure::option(name, self.shape_text(), "a matrix has two axes")),
         }
+    }
+
+    /// A twist, linear part first.
+    pub(crate) fn twist(&self, name: &'static str) -> Result<Twist> {
+        Ok(Twist::from_array(self.entries(name)?))
+    }
+
+    /// A wrench, force first.
+    pub(crate) fn wrench(&self, name: &'static str) -> Result<Wrench> {
+        Ok(Wrench::from_array(self.entries(name)?))
+    }
+
+    /// A metric from a matrix, or from its diagonal.
+    pub(crate) fn metric(&self, name: &'static str) -> Result<Metric> {
+        Ok(match self.shape() {
+            [_] => Metric::diagonal(name, self.values())?,
+            _ => Metric::new(name, &self.matrix(name)?)?,
+        })
     }
 
     /// One matrix or a stack of them.
@@ -248,16 +269,36 @@ pub(crate) fn vector<'py>(py: Python<'py>, values: &[f64]) -> Array<'py> {
     numpy::PyArray1::from_slice(py, values).to_dyn().clone()
 }
 
-/// A vector of a number for each thing, or that number.
-pub(crate) fn numbers<'py, T>(
+/// A vector of a number (or truth) for each thing, or that number.
+pub(crate) fn each<'py, T, X: Element + IntoPyObject<'py>>(
     py: Python<'py>,
     all: &Many<T>,
-    f: impl Fn(&T) -> f64,
+    f: impl Fn(&T) -> X,
 ) -> PyResult<Bound<'py, PyAny>> {
-    Ok(match all {
-        Many::One(x) => f(x).into_pyobject(py)?.into_any(),
-        Many::All(all) => all.iter().map(f).collect::<Vec<f64>>().into_pyarray(py).into_any(),
+    match all {
+        Many::One(x) => f(x).into_bound_py_any(py),
+        Many::All(all) => Ok(all.iter().map(f).collect::<Vec<X>>().into_pyarray(py).into_any()),
+    }
+}
+
+/// Rows of `width` numbers: `(K, width)`, or `(width,)` of one thing that is no batch.
+pub(crate) fn rows<'py, R: AsRef<[f64]>>(
+    py: Python<'py>,
+    count: Option<usize>,
+    width: usize,
+    rows: impl Iterator<Item = R> + Send,
+) -> Result<Array<'py>> {
+    written(py, count, &[width], |out| {
+        for (row, out) in rows.zip(out.chunks_exact_mut(width.max(1))) {
+            out.copy_from_slice(row.as_ref());
+        }
     })
+}
+
+/// Twists as columns, linear part first: `(6, k)`.
+pub(crate) fn twists<'py>(py: Python<'py>, all: &[Twist]) -> Result<Array<'py>> {
+    let columns: Vec<[f64; 6]> = all.iter().map(|t| t.to_array()).collect();
+    matrix(py, &Matrix::from_fn(6, columns.len(), |i, j| columns[j][i]))
 }
 
 /// A matrix as rows.

@@ -2,11 +2,13 @@
 //!
 //! Numbers come in without a copy where the layout allows it, results are one allocation. The
 //! interpreter is free during batches, searches and reports; single steps of a few microseconds
-//! keep it, since to get it back from another thread can take milliseconds. Errors of the library become exceptions, one class for
-//! each kind. The documentation of every function is that of the Python user.
+//! keep it, since to get it back from another thread can take milliseconds. Errors of the library
+//! become exceptions, one class for each kind. The documentation of every function is that of the
+//! Python user.
 
 mod arrays;
 mod closed;
+mod control;
 mod error;
 mod ik;
 mod inverse;
@@ -27,24 +29,42 @@ mod _core {
         PyAssembly, PyAssemblyModes, PyBranch, PyConstraint, PyContactForces, PyDirection,
         PyFingerContact, PyFiniteMobility, PyFollowed, PyGap, PyGradient, PyGraspQuality,
         PyJointMobility, PyManipulability, PyMobility, PyPolytope, PySingularity, PySpectrum,
-        PyTorques, grasp_quality,
+        PyTorques, grasp::grasp_quality,
+    };
+    #[pymodule_export]
+    use crate::control::{
+        PyAdmittance, PyHybridCommand, PyHybridLaw, PyInternalForceCommand, PyInternalForceLaw,
+        PyOperatorShare, PySharedCommand, PySharedLaw,
     };
     #[pymodule_export]
     use crate::ik::PySolution;
     #[pymodule_export]
-    use crate::inverse::{
-        PyDropped, PyInverse, PyPointDirection, damped, hyperbolic, inverse_by_name, oblique, pinv,
-        point_direction, selectively_damped,
-    };
+    use crate::inverse::by_name::inverse_by_name;
     #[pymodule_export]
-    use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism, catalogue, load, parse};
-
+    use crate::inverse::damped::{damped, selectively_damped};
+    #[pymodule_export]
+    use crate::inverse::hyperbolic::{hyperbolic, oblique};
+    #[pymodule_export]
+    use crate::inverse::pinv::pinv;
+    #[pymodule_export]
+    use crate::inverse::point_direction::point_direction;
+    #[pymodule_export]
+    use crate::inverse::{PyDropped, PyInverse, PyPointDirection};
+    #[pymodule_export]
+    use crate::mechanism::load::{catalogue, load, parse};
+    #[pymodule_export]
+    use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism};
     #[pymodule_export]
     use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw};
     #[pymodule_export]
+    use crate::screws::involution::involution;
+    #[pymodule_export]
+    use crate::screws::projector::{adjoint, projector, screw_to};
+    #[pymodule_export]
+    use crate::screws::transversals::transversals;
+    #[pymodule_export]
     use crate::screws::{
-        PyExistence, PyInvolution, PyMargin, PyScrew, PyScrewSystem, PyTransversals, adjoint,
-        involution, projector, transversals,
+        PyExistence, PyInvolution, PyMargin, PyProjector, PyScrew, PyScrewSystem, PyTransversals,
     };
     #[pymodule_export]
     use crate::servo::{PyOutcome, PyServo, PyStall, PyTrajectory};

@@ -19,6 +19,14 @@ const PROJECTIONS: [&str; 4] = ["hyperbolic", "hyperbolic-damped", "hyperbolic-g
 /// The one that chooses nothing, as a fallback.
 const PLAIN: &str = "truncated";
 
+/// What a name means.
+pub(crate) fn named<T: Copy>(what: &'static str, name: &str, known: &[(&str, T)]) -> Result<T> {
+    match known.iter().find(|(known, _)| *known == name) {
+        Some((_, meant)) => Ok(*meant),
+        None => Err(Error::unknown(what, name, known.iter().map(|(known, _)| known)).into()),
+    }
+}
+
 /// A number, or one for translations and one for rotations.
 pub(crate) fn pair(name: &'static str, of: &Numbers<'_>, single: f64) -> Result<(f64, f64)> {
     match *of.values() {
@@ -208,11 +216,7 @@ pub(crate) fn secondary(
 }
 
 pub(crate) fn projector(name: &str) -> Result<Projector> {
-    match name {
-        "exact" => Ok(Projector::Exact),
-        "retained" => Ok(Projector::Retained),
-        _ => Err(Error::unknown("projector", name, ["exact", "retained"]).into()),
-    }
+    named("projector", name, &[("exact", Projector::Exact), ("retained", Projector::Retained)])
 }
 
 pub(crate) fn gain(of: &Numbers<'_>) -> Result<Gain> {

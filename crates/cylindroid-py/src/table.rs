@@ -42,6 +42,23 @@ impl Table {
     }
 }
 
+/// The methods of Python that show what a class's `table` holds.
+macro_rules! shown {
+    ($class:ident) => {
+        #[pymethods]
+        impl $class {
+            fn __repr__(&self) -> String {
+                self.table().text()
+            }
+
+            fn _repr_html_(&self) -> String {
+                self.table().html()
+            }
+        }
+    };
+}
+pub(crate) use shown;
+
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('\n', "<br>")
 }

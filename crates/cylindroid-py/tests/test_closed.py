@@ -56,7 +56,7 @@ def test_a_singular_posture_is_named():
 
 def test_finite_motion():
     m = cy.load("delta").mobility()
-    assert m.finite_dof == 3 and m.finite.certain is not None and m.finite.branches[0].dimension == 3
+    assert m.finite_dof == 3 and m.finite.certain and m.finite.branches[0].dimension == 3
     assert m.finite.infinitesimal == m.dof and m.finite.shaky.shape[1] == 0
 
 
@@ -188,7 +188,10 @@ def test_polytopes():
     corners = (J @ signs).T
     for normal, offset in zip(box.normals, box.offsets):
         assert abs((corners @ normal).max() - offset) < 1e-9
-    assert len(box.facets) == len(box.offsets) and (box.vertices @ box.normals.T).max() > 0
+    reached = box.vertices @ box.normals.T - box.offsets
+    assert len(box.facets) == len(box.offsets) and reached.max() < 1e-9
+    for facet, at in zip(box.facets, reached.T):
+        assert np.abs(at[facet]).max() < 1e-9
     limits = np.full(6, 2.0)
     force = c.force_polytope(limits, task="x,y,z")
     full = r.jacobian(r.home + 0.3)

@@ -1,5 +1,6 @@
 """Plots and the Toolbox's names: what is drawn is what was computed."""
 
+import matplotlib
 import numpy as np
 import pytest
 
@@ -9,7 +10,6 @@ from cylindroid.rtb import Robot
 
 @pytest.fixture
 def plot():
-    matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     from cylindroid import plot
 

@@ -53,6 +53,55 @@ def test_all_answers_of_six_joints():
     assert len(np.unique(all_of_them.round(2), axis=0)) == len(all_of_them)
 
 
+TWO_ARMS = """<robot name="two">
+<link name="base"/><link name="torso"/><link name="l1"/><link name="l2"/><link name="r1"/><link name="r2"/>
+<link name="l"/><link name="r"/>
+<joint name="turn" type="continuous"><parent link="base"/><child link="torso"/><axis xyz="0 0 1"/></joint>
+<joint name="l1" type="continuous"><parent link="torso"/><child link="l1"/>
+<origin xyz="0 1 0"/><axis xyz="0 0 1"/></joint>
+<joint name="l2" type="continuous"><parent link="l1"/><child link="l2"/>
+<origin xyz="1 0 0"/><axis xyz="0 0 1"/></joint>
+<joint name="lf" type="fixed"><parent link="l2"/><child link="l"/><origin xyz="0.5 0 0"/></joint>
+<joint name="r1" type="continuous"><parent link="torso"/><child link="r1"/>
+<origin xyz="0 -1 0"/><axis xyz="0 0 1"/></joint>
+<joint name="r2" type="continuous"><parent link="r1"/><child link="r2"/>
+<origin xyz="1 0 0"/><axis xyz="0 0 1"/></joint>
+<joint name="rf" type="fixed"><parent link="r2"/><child link="r"/><origin xyz="0.5 0 0"/></joint>
+</robot>"""
+
+
+def test_several_frames_at_once():
+    r = cy.parse(TWO_ARMS)
+    Q = rng.uniform(-2, 2, (10, 5))
+    targets = {"l": r.fk(Q, "l"), "r": r.fk(Q, "r")}
+    found = r.ik(targets, task="x,y", task_axes="world")
+    assert found.success.all() and found.q.shape == (10, 5)
+    for frame, poses in targets.items():
+        np.testing.assert_allclose(r.fk(found.q, frame)[:, :2, 3], poses[:, :2, 3], atol=2e-6)
+    one = {frame: poses[0] for frame, poses in targets.items()}
+    np.testing.assert_array_equal(r.ik(one, task="x,y", task_axes="world").q, found.q[0])
+    ways = r.ik_all(one, 3, task="x,y", task_axes="world")
+    assert len(ways) == 3
+    for frame, pose in one.items():
+        np.testing.assert_allclose(r.fk(ways, frame)[:, :2, 3], np.tile(pose[:2, 3], (3, 1)), atol=2e-6)
+    # Each hand alone could be there; both cannot: shoulders are on opposite sides of the torso.
+    apart = {"l": r.fk(Q[0], "l"), "r": r.fk(Q[0], "r")}
+    apart["l"][:2, 3] = apart["r"][:2, 3] = 2.3, 0.0
+    lone = [r.ik({f: T}, task="x,y", task_axes="world").success for f, T in apart.items()]
+    assert lone == [True, True] and not r.ik(apart, task="x,y", task_axes="world", iterations=2000).success
+    for call, kind, words in [
+        (lambda: r.ik({}), cy.CylindroidError, "goal"),
+        (lambda: r.ik({"hand": one["l"]}), cy.UnknownNameError, "frame"),
+        (lambda: r.ik(one, "l"), cy.InvalidOptionError, "names the frames"),
+        (lambda: r.ik(one, tool=np.eye(4)), cy.InvalidOptionError, "tool"),
+        (lambda: r.ik({"l": targets["l"], "r": one["r"]}), cy.InvalidOptionError, "as many"),
+        (lambda: r.ik_all(targets), cy.InvalidOptionError, "batch"),
+        (lambda: r.ik({"l": "there"}), TypeError, "real numbers"),
+    ]:
+        with pytest.raises(kind, match=words):
+            call()
+
+
 def test_what_cannot_be_reached():
     r = cy.load("panda")
     far = np.eye(4)

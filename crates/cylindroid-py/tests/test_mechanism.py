@@ -38,7 +38,7 @@ def test_the_catalogue_loads():
     assert {"panda", "ur5e", "youbot", "five-bar", "stewart"} <= set(names)
     for name in names:
         r = cy.load(name)
-        assert name in repr(r) or r.name in repr(r)
+        assert f"'{r.name}'" in repr(r) and f"{r.n} coordinates" in repr(r)
         assert str(r) and "<table>" in r._repr_html_()
         assert r.fk(r.home).shape == (4, 4)
 
@@ -110,7 +110,7 @@ def test_what_counts_as_numbers():
     strided[::2, ::2] = q
     backward = np.ascontiguousarray(q[::-1])[::-1]
     raw = np.frombuffer(b"\0" + q.tobytes(), dtype=np.uint8)[1:].view(np.float64).reshape(q.shape)
-    assert not raw.flags.aligned or not raw.flags.owndata
+    assert not raw.flags.aligned
     readonly = q.copy()
     readonly.flags.writeable = False
     for same in (
@@ -122,7 +122,7 @@ def test_what_counts_as_numbers():
         q.astype(">f8"),
         raw,
         readonly,
-        q.view(np.matrix) if hasattr(np, "matrix") else q,
+        q.view(np.matrix),
     ):
         np.testing.assert_array_equal(r.jacobian(same), expected)
     np.testing.assert_allclose(r.jacobian(q.astype(np.float32)), expected, atol=1e-6)
@@ -173,23 +173,3 @@ def test_a_mechanism_without_joints():
     assert r.jacobian([]).shape == (6, 0)
     assert r.jacobian(np.zeros((3, 0))).shape == (3, 6, 0)
     assert r.fk(np.zeros((3, 0))).shape == (3, 4, 4)
-
-
-def test_threads_run_side_by_side():
-    import threading
-
-    r = cy.load("panda")
-    Q = random_q(r, 20000)
-    expected = r.jacobian(Q)
-    found = [None] * 4
-
-    def work(i):
-        found[i] = r.jacobian(Q)
-
-    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
-    for t in threads:
-        t.start()
-    for t in threads:
-        t.join()
-    for J in found:
-        np.testing.assert_array_equal(J, expected)

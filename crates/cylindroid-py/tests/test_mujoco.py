@@ -1,19 +1,10 @@
 """Two arms in MuJoCo under the servo at 500 Hz: targets reached, limits kept, stalls reported."""
 
-import os
-import pathlib
-
 import numpy as np
+import physics
 import pytest
 
 import cylindroid as cy
-
-pytest.importorskip("mujoco")
-ROBOTS = pathlib.Path(os.environ.get("CYLINDROID_TEST_ROBOTS", "none"))
-if not ROBOTS.is_dir():
-    pytest.skip("no robot files: cargo xtask python fetches them", allow_module_level=True)
-
-import physics  # noqa: E402
 
 ARMS = {
     "panda": (
@@ -27,9 +18,9 @@ TARGETS = 50
 POSITION, ORIENTATION = 1e-3, np.radians(0.5)
 
 
-def arm_of(name):
+def arm_of(name, robot_files):
     file, frame, locked = ARMS[name]
-    arm = physics.Arm(ROBOTS / file, frame, locked)
+    arm = physics.Arm(robot_files / file, frame, locked)
     arm.start(arm.robot.home)
     servo = cy.Servo(
         arm.robot,
@@ -85,8 +76,8 @@ def errors(arm, target):
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_random_targets_are_reached(name):
-    arm, servo, frame = arm_of(name)
+def test_random_targets_are_reached(name, robot_files, report):
+    arm, servo, frame = arm_of(name, robot_files)
     rng = np.random.default_rng(2026)
     rounds, worst = 0, np.zeros(2)
     for _ in range(TARGETS):
@@ -99,13 +90,15 @@ def test_random_targets_are_reached(name):
         worst = np.maximum(worst, found)
         assert np.isfinite(arm.q).all()
     assert arm.beyond < 0, f"a joint went {arm.beyond} rad beyond its limit"
-    print(f"{name}: {TARGETS} targets, {rounds} through joint space; worst {worst[0]:.1e} m, "
-          f"{np.degrees(worst[1]):.3f} deg; {-arm.beyond:.4f} rad from the nearest limit")
+    report(
+        f"{name} in MuJoCo: {TARGETS} targets, {rounds} through joint space; worst {worst[0]:.1e} m, "
+        f"{np.degrees(worst[1]):.3f} deg; {-arm.beyond:.4f} rad from the nearest limit"
+    )
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_a_target_out_of_reach_ends_in_a_report(name):
-    arm, servo, frame = arm_of(name)
+def test_a_target_out_of_reach_ends_in_a_report(name, robot_files):
+    arm, servo, frame = arm_of(name, robot_files)
     target = arm.robot.fk(arm.robot.home, frame)
     target[:3, 3] = 3.0, 0.5, 0.8
     assert follow(arm, servo, target) == "stalled"
@@ -119,9 +112,9 @@ def test_a_target_out_of_reach_ends_in_a_report(name):
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_an_inverse_that_bounds_rates_does_not_oscillate_out_of_reach(name):
+def test_an_inverse_that_bounds_rates_does_not_oscillate_out_of_reach(name, robot_files):
     """Also after the report, for a caller who goes on: the tool creeps one way."""
-    arm, _, frame = arm_of(name)
+    arm, _, frame = arm_of(name, robot_files)
     servo = cy.Servo(
         arm.robot,
         frame,

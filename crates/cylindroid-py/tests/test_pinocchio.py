@@ -1,16 +1,13 @@
 """Against Pinocchio: every URDF of example-robot-data and rtb-data that it loads, every frame."""
 
-import importlib.util
-import os
 import pathlib
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
-import pytest
+import pinocchio as pin
+import rtbdata
 
 import cylindroid as cy
-
-pin = pytest.importorskip("pinocchio")
 
 # What Pinocchio accepts and we refuse, with the reason.
 REFUSED = {
@@ -18,15 +15,9 @@ REFUSED = {
 }
 
 
-def files():
-    found = []
-    robots = os.environ.get("CYLINDROID_TEST_ROBOTS")
-    if robots:
-        found += sorted(pathlib.Path(robots).rglob("*.urdf"))
-    data = importlib.util.find_spec("rtbdata")
-    if data:
-        found += sorted(pathlib.Path(data.origin).parent.rglob("*.urdf"))
-    return found
+def files(robot_files):
+    folders = robot_files, pathlib.Path(rtbdata.__file__).parent
+    return [path for folder in folders for path in sorted(folder.rglob("*.urdf"))]
 
 
 def loaded(path):
@@ -111,13 +102,9 @@ def compare(path, robot, model, count=3):
     return worst, len(frames)
 
 
-@pytest.mark.skipif(
-    not os.environ.get("CYLINDROID_TEST_ROBOTS") or not importlib.util.find_spec("rtbdata"),
-    reason="no robot files: cargo xtask python fetches them",
-)
-def test_every_robot_that_pinocchio_loads():
+def test_every_robot_that_pinocchio_loads(robot_files, report):
     compared, frames, refused = 0, 0, {}
-    for path in files():
+    for path in files(robot_files):
         model = loaded(path)
         if model is None:
             continue
@@ -134,4 +121,4 @@ def test_every_robot_that_pinocchio_loads():
     assert refused.keys() == REFUSED.keys()
     for name, reason in REFUSED.items():
         assert reason in refused[name]
-    print(f"{compared} robots, {frames} frames")
+    report(f"Pinocchio: {compared} robots, {frames} frames")

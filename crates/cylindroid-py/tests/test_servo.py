@@ -77,11 +77,18 @@ def test_stalls_say_why():
     outcome = cy.Servo(three).drive(three.home + 0.3, target)
     assert outcome.reason == "too-few-joints" and not outcome.reached
     assert abs(np.linalg.norm(outcome.stall.direction) - 1) < 1e-12
-    bound = cy.Servo(r, task="position")
-    outside = r.fk(r.upper - 0.01)
-    outside[:3, 3] = r.fk(r.home)[:3, 3] * [-1, 1, 0.2]
-    outcome = bound.drive(r.home, outside)
-    assert outcome.reached or outcome.stall.name in ("limits", "singular", "slow")
+    wiper = cy.parse(
+        """<robot name="wiper"><link name="a"/><link name="b"/><link name="c"/>
+        <joint name="j1" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+        <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+        <joint name="j2" type="fixed"><parent link="b"/><child link="c"/><origin xyz="1 0 0"/></joint>
+        </robot>"""
+    )
+    beyond = np.eye(4)
+    beyond[:2, 3] = np.cos(1.5), np.sin(1.5)
+    outcome = cy.Servo(wiper, task="position").drive([0.9], beyond)
+    assert outcome.reason == "limits" and outcome.stall.joints == ["j1"] and abs(outcome.q - 1.0) < 1e-12
+    assert "limit of j1" in outcome.stall.message and ("j1", "position") in outcome.limits_hit
 
 
 def test_options_are_the_command_lines():
@@ -201,6 +208,21 @@ def test_paths_and_moves():
     assert circle.length > line.length
     pose, twist = move.target(0.5, 0.001)
     assert pose.shape == (4, 4) and twist.shape == (6,)
+
+
+@pytest.mark.parametrize("times", [np.nan, [0.0, np.nan, 0.2]])
+def test_a_time_that_is_no_number_is_refused(times):
+    r = cy.load("panda")
+    line = cy.CartesianPath.line(r.fk(r.home), lowered(r))
+    for at in (
+        line.pose,
+        cy.CartesianMove(line).at,
+        cy.JointMove(r, r.home, r.home + 0.1).at,
+        cy.TimeLaw(3.0, 1.0, 2.0).at,
+    ):
+        with pytest.raises(cy.NotFiniteError, match=r"\b[ts]\b"):
+            at(times)
+        assert np.isfinite(at([-np.inf, np.inf])[0]).all()
 
 
 def test_time_law():

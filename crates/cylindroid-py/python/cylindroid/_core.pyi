@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 _Array = NDArray[np.float64]
 
 __all__ = [
+    "Admittance",
     "Assembly",
     "AssemblyModes",
     "Branch",
@@ -26,6 +27,10 @@ __all__ = [
     "Gap",
     "Gradient",
     "GraspQuality",
+    "HybridCommand",
+    "HybridLaw",
+    "InternalForceCommand",
+    "InternalForceLaw",
     "Inverse",
     "Involution",
     "Joint",
@@ -36,12 +41,16 @@ __all__ = [
     "Margin",
     "Mechanism",
     "Mobility",
+    "OperatorShare",
     "Outcome",
     "PointDirection",
     "Polytope",
+    "Projector",
     "Screw",
     "ScrewSystem",
     "Servo",
+    "SharedCommand",
+    "SharedLaw",
     "Singularity",
     "Solution",
     "Spectrum",
@@ -64,11 +73,23 @@ __all__ = [
     "pinv",
     "point_direction",
     "projector",
+    "screw_to",
     "selectively_damped",
     "transversals",
 ]
 
 __version__: str
+
+@final
+class Admittance:
+    def __new__(
+        cls, force: float, moment: float = 0.0, point: ArrayLike | None = None
+    ) -> Admittance: ...
+    @staticmethod
+    def from_matrix(matrix: ArrayLike) -> Admittance: ...
+    @property
+    def matrix(self) -> _Array: ...
+    def seen_from(self, a_from_b: ArrayLike) -> Admittance: ...
 
 @final
 class Assembly:
@@ -309,6 +330,46 @@ class GraspQuality:
     def epsilon(self) -> tuple[float, float]: ...
     @property
     def weakest(self) -> _Array: ...
+
+@final
+class HybridCommand:
+    @property
+    def twist(self) -> _Array: ...
+    @property
+    def position_part(self) -> _Array: ...
+    @property
+    def force_part(self) -> _Array: ...
+    @property
+    def wrench_error(self) -> _Array: ...
+
+@final
+class HybridLaw:
+    def __new__(cls, gain: float, admittance: Admittance) -> HybridLaw: ...
+    def command(
+        self,
+        projector: Projector,
+        error: ArrayLike,
+        wanted: ArrayLike,
+        measured: ArrayLike,
+        feed_forward: ArrayLike | None = None,
+    ) -> HybridCommand: ...
+    def seen_from(self, a_from_b: ArrayLike) -> HybridLaw: ...
+
+@final
+class InternalForceCommand:
+    @property
+    def rates(self) -> _Array: ...
+    @property
+    def internal(self) -> _Array: ...
+    @property
+    def error(self) -> _Array: ...
+
+@final
+class InternalForceLaw:
+    def __new__(cls, gain: float, stiffness: ArrayLike) -> InternalForceLaw: ...
+    def command(
+        self, constraint: Constraint, wanted: ArrayLike, measured: ArrayLike
+    ) -> InternalForceCommand: ...
 
 @final
 class Inverse:
@@ -584,7 +645,7 @@ class Mechanism:
     ) -> Assembly: ...
     def ik(
         self,
-        target: ArrayLike,
+        target: ArrayLike | dict[str, ArrayLike],
         frame: str | None = None,
         q0: ArrayLike | None = None,
         *,
@@ -600,7 +661,7 @@ class Mechanism:
     ) -> Solution: ...
     def ik_all(
         self,
-        target: ArrayLike,
+        target: ArrayLike | dict[str, ArrayLike],
         count: int = 8,
         frame: str | None = None,
         q0: ArrayLike | None = None,
@@ -672,6 +733,13 @@ class Mobility:
     def _repr_html_(self) -> str: ...
 
 @final
+class OperatorShare:
+    def __new__(cls, dt: float, fall: float, rise: float) -> OperatorShare: ...
+    @property
+    def value(self) -> float: ...
+    def update(self, servo: Servo) -> None: ...
+
+@final
 class Outcome:
     @property
     def reached(self) -> bool: ...
@@ -724,6 +792,24 @@ class Polytope:
     def unbounded(self) -> _Array: ...
     @property
     def span(self) -> _Array: ...
+
+@final
+class Projector:
+    def __new__(
+        cls,
+        motions: ArrayLike,
+        along: float | ArrayLike,
+        length: float | None = None,
+        center: ArrayLike | None = None,
+        noise: float | None = None,
+    ) -> Projector: ...
+    @property
+    def matrix(self) -> _Array: ...
+    @property
+    def norm(self) -> float: ...
+    def motion(self, twist: ArrayLike) -> _Array: ...
+    def rest(self, twist: ArrayLike) -> _Array: ...
+    def constraint(self, wrench: ArrayLike) -> _Array: ...
 
 @final
 class Screw:
@@ -843,6 +929,8 @@ class Servo:
     @property
     def position_error(self) -> float: ...
     @property
+    def bent(self) -> bool: ...
+    @property
     def scale(self) -> float: ...
     @property
     def stall(self) -> Stall | None: ...
@@ -877,6 +965,26 @@ class Servo:
         record: bool = False,
     ) -> Outcome: ...
     def find_posture(self, q: ArrayLike, target: ArrayLike, runs: int = 200) -> _Array | None: ...
+
+@final
+class SharedCommand:
+    @property
+    def twist(self) -> _Array: ...
+    @property
+    def robot_part(self) -> _Array: ...
+    @property
+    def operator_part(self) -> _Array: ...
+
+@final
+class SharedLaw:
+    def __new__(cls, gain: float) -> SharedLaw: ...
+    def command(
+        self,
+        projector: Projector,
+        error: ArrayLike,
+        operator: ArrayLike,
+        feed_forward: ArrayLike | None = None,
+    ) -> SharedCommand: ...
 
 @final
 class Singularity:
@@ -963,6 +1071,14 @@ class Stall:
 
 @final
 class TimeLaw:
+    def __new__(
+        cls,
+        distance: float,
+        velocity: float,
+        acceleration: float,
+        jerk: float | None = None,
+        duration: float | None = None,
+    ) -> TimeLaw: ...
     @property
     def duration(self) -> float: ...
     @property
@@ -1067,6 +1183,7 @@ def projector(
     center: ArrayLike | None = None,
     noise: float | None = None,
 ) -> _Array: ...
+def screw_to(pose: ArrayLike, target: ArrayLike) -> _Array: ...
 def selectively_damped(
     J: ArrayLike, task: ArrayLike, max_rate: float = 0.7853981633974483
 ) -> Inverse: ...

@@ -1,14 +1,15 @@
 //! Force closure of grasps.
 
+use cylindroid::Vec3;
 use cylindroid::closure::{
     self, Effort, FingerContact, Friction, GraspQuality, Touch, WrenchSpace, fingers_on,
 };
-use cylindroid::kinematics::State;
-use cylindroid::{Error, FrameId, Vec3};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
+use crate::mechanism::PyMechanism;
+use crate::options;
 use crate::table;
 
 /// A finger on an object.
@@ -168,25 +169,57 @@ pub(crate) fn grasp_quality(
 }
 
 fn effort_of(name: &str) -> Result<Effort> {
-    match name {
-        "shared" => Ok(Effort::Shared),
-        "each" => Ok(Effort::Each),
-        _ => Err(Error::unknown("effort", name, ["shared", "each"]).into()),
-    }
+    options::named("effort", name, &[("shared", Effort::Shared), ("each", Effort::Each)])
 }
 
-/// By the contacts of a mechanism on the link that carries `object`.
-pub(super) fn of_mechanism(
-    py: Python<'_>,
-    state: &State,
-    object: FrameId,
-    touch: Touch,
-    effort: &str,
-) -> Result<PyGraspQuality> {
-    let effort = effort_of(effort)?;
-    let fingers = fingers_on(state, object, |_| touch)?;
-    let fingers: Vec<FingerContact> = fingers.into_iter().map(|(_, finger)| finger).collect();
-    let space = WrenchSpace::about(state, object, &fingers)?;
-    let inner = py.detach(|| closure::grasp_quality(&fingers, space, effort))?;
-    Ok(PyGraspQuality { inner })
+#[pymethods]
+impl PyMechanism {
+    /// The quality of the grasp by the contacts that the mechanism file names on an object.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,), optional
+    ///     Default: home.
+    /// reference : str, optional
+    ///     A frame of the object. Default: the reference.
+    /// mu, torsion : float, optional
+    ///     Coefficient of friction, and largest moment about the normal over the normal force (m),
+    ///     in place of those of the file.
+    /// strength : float
+    ///     Largest normal force of each finger (N), for the effort 'each'.
+    /// effort : str
+    ///     'shared' or 'each', as of the function `grasp_quality`.
+    ///
+    /// Returns
+    /// -------
+    /// GraspQuality
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError
+    /// InvalidOptionError
+    ///     Also for contacts that are no points, or whose coefficients nobody gives.
+    #[pyo3(signature = (q = None, reference = None, mu = None, torsion = None, strength = 1.0,
+        effort = "shared"))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn grasp_quality(
+        &self,
+        py: Python<'_>,
+        q: Option<Numbers<'_>>,
+        reference: Option<&str>,
+        mu: Option<f64>,
+        torsion: Option<f64>,
+        strength: f64,
+        effort: &str,
+    ) -> Result<PyGraspQuality> {
+        let m = &self.inner;
+        let state = m.state(self.or_home("q", q.as_ref())?)?;
+        let object = reference.map_or(Ok(m.reference()), |name| m.frame(name))?;
+        let effort = effort_of(effort)?;
+        let fingers = fingers_on(&state, object, |_| Touch { mu, torsion, strength })?;
+        let fingers: Vec<FingerContact> = fingers.into_iter().map(|(_, finger)| finger).collect();
+        let space = WrenchSpace::about(&state, object, &fingers)?;
+        let inner = py.detach(|| closure::grasp_quality(&fingers, space, effort))?;
+        Ok(PyGraspQuality { inner })
+    }
 }

@@ -5,10 +5,10 @@ use std::sync::OnceLock;
 use cylindroid::closure::{Diagnosis, Mobility, Subspace};
 use pyo3::prelude::*;
 
-use super::diagnosis::{PyFiniteMobility, PySingularity};
-use super::{PyConstraint, PyGap};
-use crate::arrays::{self, Array};
-use crate::error::Result;
+use super::{PyConstraint, PyFiniteMobility, PyGap, PySingularity, object};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::{Failure, Result};
+use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
 /// How a mechanism can move, and what holds it: every kind counted, with a basis.
@@ -106,6 +106,8 @@ impl PyJointMobility {
         }
     }
 }
+
+table::shown!(PyMobility);
 
 impl PyMobility {
     pub(super) fn of(constraint: &PyConstraint) -> Self {
@@ -298,12 +300,58 @@ impl PyMobility {
     fn length(&self) -> f64 {
         self.constraint.inner.length()
     }
+}
 
-    fn __repr__(&self) -> String {
-        self.table().text()
+#[pymethods]
+impl PyConstraint {
+    /// How it can move, and what holds it.
+    ///
+    /// Returns
+    /// -------
+    /// Mobility
+    fn mobility(&self, py: Python<'_>) -> PyMobility {
+        py.detach(|| PyMobility::of(self))
     }
+}
 
-    fn _repr_html_(&self) -> String {
-        self.table().html()
+#[pymethods]
+impl PyMechanism {
+    /// How the mechanism can move, what is redundant, idle or held twice.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, actuated, reference, length
+    ///     As `constraint`.
+    ///
+    /// Returns
+    /// -------
+    /// Mobility, or list of Mobility
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError, ModelError
+    ///
+    /// Notes
+    /// -----
+    /// Bicchi and Prattichizzo 1998. Counts come from ranks, never from Grubler's formula.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> report = cy.load("five-bar").mobility()
+    /// >>> report.dof, report.redundancy, report.hyperstatic
+    /// (2, 0, 0)
+    #[pyo3(signature = (q = None, actuated = None, reference = None, length = None))]
+    fn mobility<'py>(
+        &self,
+        py: Python<'py>,
+        q: Option<Numbers<'py>>,
+        actuated: Option<Vec<String>>,
+        reference: Option<&str>,
+        length: Option<f64>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let all = self.constraints(py, q.as_ref(), actuated.as_deref(), reference, length)?;
+        let reports = py.detach(|| all.try_map(|c| Ok::<_, Failure>(PyMobility::of(c))))?;
+        Ok(object(py, reports)?)
     }
 }

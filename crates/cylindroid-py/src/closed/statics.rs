@@ -3,7 +3,7 @@
 use cylindroid::closure::{self, Load, Motions};
 use pyo3::prelude::*;
 
-use super::{PyConstraint, metric_of};
+use super::PyConstraint;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::table;
@@ -79,26 +79,80 @@ impl PyContactForces {
     }
 }
 
-pub(super) fn joint_torques(
-    constraint: &PyConstraint,
-    wrench: &Numbers<'_>,
-    metric: Option<&Numbers<'_>>,
-) -> Result<PyTorques> {
-    let metric = metric.map(|m| metric_of("metric", m)).transpose()?;
-    let relation = Motions::of(&constraint.inner).relation();
-    let inner = closure::joint_torques(&relation, wrench.vector("wrench")?, metric.as_ref())?;
-    Ok(PyTorques { inner })
-}
+#[pymethods]
+impl PyConstraint {
+    /// The joint torques of least norm that hold a wrench on the object.
+    ///
+    /// Parameters
+    /// ----------
+    /// wrench : array_like, (d,)
+    ///     Acts on the object, force first.
+    /// metric : array_like, (a,) or (a, a), optional
+    ///     Of the torques. Default: scaled by the characteristic length.
+    ///
+    /// Returns
+    /// -------
+    /// Torques
+    #[pyo3(signature = (wrench, metric = None))]
+    fn joint_torques(
+        &self,
+        py: Python<'_>,
+        wrench: Numbers<'_>,
+        metric: Option<Numbers<'_>>,
+    ) -> Result<PyTorques> {
+        let metric = metric.map(|m| m.metric("metric")).transpose()?;
+        let wrench = wrench.vector("wrench")?;
+        let inner = py.detach(|| {
+            let relation = self.relation(None)?;
+            closure::joint_torques(&relation, wrench, metric.as_ref())
+        })?;
+        Ok(PyTorques { inner })
+    }
 
-pub(super) fn contact_forces(
-    constraint: &PyConstraint,
-    torques: &Numbers<'_>,
-    wrench: &Numbers<'_>,
-    compliance: Option<&Numbers<'_>>,
-) -> Result<PyContactForces> {
-    let compliance = compliance.map(|c| metric_of("compliance", c)).transpose()?;
-    let motions = Motions::of(&constraint.inner);
-    let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
-    let inner = closure::contact_forces(&constraint.inner, &motions, load, compliance.as_ref())?;
-    Ok(PyContactForces { inner })
+    /// The forces at the contacts under torques and a wrench: least, or elastic.
+    ///
+    /// Parameters
+    /// ----------
+    /// torques : array_like, (a,)
+    /// wrench : array_like, (d,)
+    /// compliance : array_like, (t,) or (t, t), optional
+    ///     Of the contacts.
+    ///
+    /// Returns
+    /// -------
+    /// ContactForces
+    #[pyo3(signature = (torques, wrench, compliance = None))]
+    fn contact_forces(
+        &self,
+        py: Python<'_>,
+        torques: Numbers<'_>,
+        wrench: Numbers<'_>,
+        compliance: Option<Numbers<'_>>,
+    ) -> Result<PyContactForces> {
+        let compliance = compliance.map(|c| c.metric("compliance")).transpose()?;
+        let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
+        let inner = py.detach(|| {
+            let motions = Motions::of(&self.inner);
+            closure::contact_forces(&self.inner, &motions, load, compliance.as_ref())
+        })?;
+        Ok(PyContactForces { inner })
+    }
+
+    /// A basis of the contact forces without a wrench on the object: what squeezes it.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (t, k)
+    fn internal_forces<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &py.detach(|| closure::internal_forces(&self.inner)).basis)
+    }
+
+    /// A basis of the contact forces without torques at any joint: what the structure holds.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (t, k)
+    fn structural_forces<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &py.detach(|| closure::structural_forces(&self.inner)).basis)
+    }
 }

@@ -1,12 +1,9 @@
-//! Singular postures and finite mobility.
+//! The class `Singularity`: what is singular about a posture.
 
-use cylindroid::Matrix;
-use cylindroid::closure::{Branch, Diagnosis, FiniteMobility, SingularityKind};
+use cylindroid::closure::{Diagnosis, SingularityKind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{self, Array};
-use crate::error::Result;
 use crate::screws::{PyScrew, screw_list};
 use crate::table::{self, Table};
 
@@ -139,15 +136,9 @@ impl PySingularity {
     fn __bool__(&self) -> bool {
         !self.regular()
     }
-
-    fn __repr__(&self) -> String {
-        self.table().text()
-    }
-
-    fn _repr_html_(&self) -> String {
-        self.table().html()
-    }
 }
+
+table::shown!(PySingularity);
 
 impl PySingularity {
     fn table(&self) -> Table {
@@ -192,117 +183,5 @@ impl PySingularity {
             table.row("idle", table::names(&self.inner.idle));
         }
         table
-    }
-}
-
-/// How a mechanism can move from a posture beyond first order.
-///
-/// Attributes
-/// ----------
-/// dof : int or None
-///     Degrees of freedom of finite motion: those of the largest branch; None where unknown.
-/// infinitesimal : int
-///     Motions to first order.
-/// branches : list of Branch
-///     Two and more: the mechanism can go different ways from here.
-/// shaky : ndarray, (n, k)
-///     Rates of q that exist to first order and lead nowhere.
-/// evidence : str
-/// certain : bool
-///     False where branches may have been missed.
-/// step : float
-///     [rad, or characteristic lengths]
-/// left_open : float
-#[pyclass(frozen, name = "FiniteMobility", module = "cylindroid")]
-#[derive(Debug)]
-pub(crate) struct PyFiniteMobility {
-    inner: FiniteMobility,
-}
-
-impl From<&FiniteMobility> for PyFiniteMobility {
-    fn from(inner: &FiniteMobility) -> Self {
-        Self { inner: inner.clone() }
-    }
-}
-
-#[pymethods]
-impl PyFiniteMobility {
-    #[getter]
-    fn dof(&self) -> Option<usize> {
-        self.inner.finite
-    }
-
-    #[getter]
-    fn infinitesimal(&self) -> usize {
-        self.inner.infinitesimal
-    }
-
-    #[getter]
-    fn branches(&self) -> Vec<PyBranch> {
-        self.inner.branches.iter().map(PyBranch::from).collect()
-    }
-
-    #[getter]
-    fn shaky<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        arrays::matrix(py, &self.inner.shaky)
-    }
-
-    #[getter]
-    fn evidence(&self) -> String {
-        self.inner.evidence.to_string()
-    }
-
-    #[getter]
-    fn certain(&self) -> bool {
-        self.inner.certain
-    }
-
-    #[getter]
-    fn step(&self) -> f64 {
-        self.inner.step
-    }
-
-    #[getter]
-    fn left_open(&self) -> f64 {
-        self.inner.left_open
-    }
-
-    fn __repr__(&self) -> String {
-        let dof = self.inner.finite.map_or_else(|| "unknown".to_owned(), |f| f.to_string());
-        format!("<FiniteMobility: {dof} of {}, {}>", self.inner.infinitesimal, self.inner.evidence)
-    }
-}
-
-/// A set of closed postures through the posture in question.
-///
-/// Attributes
-/// ----------
-/// dimension : int
-///     Its finite degrees of freedom.
-/// motions : ndarray, (n, k)
-///     Rates of q along it.
-#[pyclass(frozen, name = "Branch", module = "cylindroid")]
-#[derive(Debug)]
-pub(crate) struct PyBranch {
-    #[pyo3(get)]
-    dimension: usize,
-    motions: Matrix,
-}
-
-impl From<&Branch> for PyBranch {
-    fn from(branch: &Branch) -> Self {
-        Self { dimension: branch.dimension, motions: branch.motions.clone() }
-    }
-}
-
-#[pymethods]
-impl PyBranch {
-    #[getter]
-    fn motions<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        arrays::matrix(py, &self.motions)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Branch of dimension {}>", self.dimension)
     }
 }

@@ -1,0 +1,141 @@
+//! Closing loops and contacts from a guess.
+
+use cylindroid::closure::{Assembly, Gap, assemble};
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::mechanism::PyMechanism;
+use crate::table;
+
+/// How far loops and contacts are from being closed.
+///
+/// Attributes
+/// ----------
+/// distance : float
+///     Along held directions (m).
+/// angle : float
+///     About held directions (rad).
+#[pyclass(frozen, get_all, name = "Gap", module = "cylindroid")]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PyGap {
+    distance: f64,
+    angle: f64,
+}
+
+impl From<Gap> for PyGap {
+    fn from(gap: Gap) -> Self {
+        Self { distance: gap.distance, angle: gap.angle }
+    }
+}
+
+#[pymethods]
+impl PyGap {
+    fn __repr__(&self) -> String {
+        format!("Gap(distance={:.3e}, angle={:.3e})", self.distance, self.angle)
+    }
+}
+
+/// The outcome of an attempt to close loops and contacts.
+///
+/// Attributes
+/// ----------
+/// q : ndarray, (n,)
+///     The configuration.
+/// closed : bool
+///     True if every loop and contact is closed.
+/// gap : Gap
+///     How far they are open.
+/// steps : int
+/// at_limit : list of str
+///     Coordinates that stand at a position limit.
+#[pyclass(frozen, name = "Assembly", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyAssembly {
+    q: Vec<f64>,
+    #[pyo3(get)]
+    closed: bool,
+    #[pyo3(get)]
+    gap: PyGap,
+    #[pyo3(get)]
+    steps: usize,
+    #[pyo3(get)]
+    at_limit: Vec<String>,
+}
+
+impl PyAssembly {
+    pub(super) fn new(found: &Assembly, names: &[String]) -> Self {
+        Self {
+            q: found.q.clone(),
+            closed: found.closed,
+            gap: found.gap.into(),
+            steps: found.steps,
+            at_limit: found.at_limit.iter().map(|&i| names[i].clone()).collect(),
+        }
+    }
+}
+
+#[pymethods]
+impl PyAssembly {
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.q)
+    }
+
+    fn __bool__(&self) -> bool {
+        self.closed
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<Assembly: {}, open by {:.1e} m, {:.1e} rad, q = {}>",
+            if self.closed { "closed" } else { "not closed" },
+            self.gap.distance,
+            self.gap.angle,
+            table::list(&self.q)
+        )
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// Closes loops and contacts from a guess, within position limits.
+    ///
+    /// It finds one assembly, mostly the nearest; there may be others, and not to find one proves
+    /// nothing.
+    ///
+    /// Parameters
+    /// ----------
+    /// guess : array_like, (n,), optional
+    ///     Default: home.
+    /// hold : list of str, optional
+    ///     Coordinates that keep the values of the guess.
+    ///
+    /// Returns
+    /// -------
+    /// Assembly
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> cy.load("five-bar").assemble([-0.2, 0.1, 0.0, 0.0]).closed
+    /// True
+    #[pyo3(signature = (guess = None, hold = None))]
+    fn assemble(
+        &self,
+        py: Python<'_>,
+        guess: Option<Numbers<'_>>,
+        hold: Option<Vec<String>>,
+    ) -> Result<PyAssembly> {
+        let m = &self.inner;
+        let guess = self.or_home("guess", guess.as_ref())?;
+        let held = self.places(&hold.unwrap_or_default())?;
+        let found = py.detach(|| assemble(m, guess, &held))?;
+        let names: Vec<String> = m.coordinates().iter().map(|c| c.name.clone()).collect();
+        Ok(PyAssembly::new(&found, &names))
+    }
+}

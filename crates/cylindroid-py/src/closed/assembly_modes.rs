@@ -1,0 +1,124 @@
+//! All ways in which loops close.
+
+use cylindroid::closure::{ModeOptions, assembly_modes};
+use pyo3::prelude::*;
+
+use super::PyAssembly;
+use crate::arrays::Numbers;
+use crate::error::Result;
+use crate::mechanism::PyMechanism;
+use crate::table;
+
+/// The ways in which loops close that were found; there may be others.
+///
+/// Attributes
+/// ----------
+/// modes : list of Assembly
+///     Nearest to the guess first.
+/// found : list of int
+///     How many starts led to each.
+/// continuum : list of int
+///     Degrees of freedom that the held coordinates leave at each: 0 for an isolated assembly.
+/// starts, closed : int
+///     Starts, and those from which the loops closed.
+/// chance_of_more : float
+///     Estimate of the chance that another start which closes finds a new mode.
+#[pyclass(frozen, name = "AssemblyModes", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyAssemblyModes {
+    inner: cylindroid::closure::AssemblyModes,
+    names: Vec<String>,
+}
+
+#[pymethods]
+impl PyAssemblyModes {
+    #[getter]
+    fn modes(&self) -> Vec<PyAssembly> {
+        self.inner.modes.iter().map(|m| PyAssembly::new(&m.assembly, &self.names)).collect()
+    }
+
+    #[getter]
+    fn found(&self) -> Vec<usize> {
+        self.inner.modes.iter().map(|m| m.found).collect()
+    }
+
+    #[getter]
+    fn continuum(&self) -> Vec<usize> {
+        self.inner.modes.iter().map(|m| m.continuum).collect()
+    }
+
+    #[getter]
+    fn starts(&self) -> usize {
+        self.inner.starts
+    }
+
+    #[getter]
+    fn closed(&self) -> usize {
+        self.inner.closed
+    }
+
+    #[getter]
+    fn chance_of_more(&self) -> f64 {
+        self.inner.chance_of_more()
+    }
+
+    fn __len__(&self) -> usize {
+        self.inner.modes.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<AssemblyModes: {} found from {} starts, chance of more {}>",
+            self.inner.modes.len(),
+            self.inner.starts,
+            table::number(self.inner.chance_of_more())
+        )
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// The ways in which loops close with some coordinates held, from many starts.
+    ///
+    /// Parameters
+    /// ----------
+    /// guess : array_like, (n,), optional
+    ///     Default: home.
+    /// hold : list of str, optional
+    ///     Coordinates that keep the values of the guess.
+    /// starts : int
+    /// seed : int
+    ///     The same seed gives the same starts.
+    ///
+    /// Returns
+    /// -------
+    /// AssemblyModes
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> linkage = cy.load("four-bar")
+    /// >>> len(linkage.assembly_modes([0.3, 0, 0], hold=linkage.joint_names[:1]))
+    /// 2
+    #[pyo3(signature = (guess = None, hold = None, starts = 64, seed = 0))]
+    fn assembly_modes(
+        &self,
+        py: Python<'_>,
+        guess: Option<Numbers<'_>>,
+        hold: Option<Vec<String>>,
+        starts: usize,
+        seed: u64,
+    ) -> Result<PyAssemblyModes> {
+        let m = &self.inner;
+        let guess = self.or_home("guess", guess.as_ref())?;
+        let held = self.places(&hold.unwrap_or_default())?;
+        let options = ModeOptions { starts, seed };
+        let inner = py.detach(|| assembly_modes(m, guess, &held, options))?;
+        let names = m.coordinates().iter().map(|c| c.name.clone()).collect();
+        Ok(PyAssemblyModes { inner, names })
+    }
+}

@@ -1,0 +1,326 @@
+//! The class `Constraint`: the velocity constraint of a closed chain.
+
+use cylindroid::closure::{Blocks, ClosedChain, Constraint, Gap, Motions, Relation, Unit, Units};
+use cylindroid::kinematics::State;
+use cylindroid::{Error, FrameId, Matrix, Mechanism};
+use pyo3::prelude::*;
+
+use super::{PyGap, object};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::{Failure, Result};
+use crate::mechanism::PyMechanism;
+use crate::table::{self, Table};
+
+/// The velocity constraint of a closed chain: `Ja qa + Jp qp - G^T u = 0`.
+///
+/// From `Mechanism.constraint`, or from matrices.
+///
+/// Parameters
+/// ----------
+/// Ja : array_like, (t, a)
+///     Velocities at the contacts by the driven joints.
+/// Jp : array_like, (t, p), optional
+///     By passive joints, and by objects other than the reference.
+/// G : array_like, (d, t), optional
+///     Wrench on the object by the forces at the contacts. Default: the identity, as of a serial
+///     arm.
+/// length : float, optional
+///     Characteristic length of rank decisions, where units are given (m).
+/// units : tuple of four str, optional
+///     Units of rows, driven joints, passive columns and the object: a letter each, 'm' or 'r', as
+///     in ('mmr', 'rr', 'rr', 'mmr').
+///
+/// Attributes
+/// ----------
+/// actuated, passive, components : list of str
+///     Names of the driven joints, the passive columns, the components of the object's twist.
+/// Ja, Jp, G : ndarray
+/// matrix : ndarray, (t, a + p + d)
+///     `[Ja Jp -G^T]`.
+/// length : float
+/// gap : Gap or None
+///     How far the loops of the mechanism are open.
+///
+/// Raises
+/// ------
+/// DimensionError, NotFiniteError, InvalidOptionError
+///
+/// Notes
+/// -----
+/// Bicchi and Prattichizzo 1998, eq. 2.
+///
+/// Examples
+/// --------
+/// >>> import cylindroid as cy
+/// >>> lever = cy.Constraint([[2.0]], G=[[1.0]])
+/// >>> lever.mobility().dof
+/// 1
+#[pyclass(frozen, name = "Constraint", module = "cylindroid")]
+#[derive(Debug, Clone)]
+pub(crate) struct PyConstraint {
+    pub(super) inner: Constraint,
+    pub(super) actuated: Vec<String>,
+    pub(super) passive: Vec<String>,
+    pub(super) units: Units,
+    pub(super) origin: Option<Origin>,
+}
+
+/// The mechanism, its posture and the frame that a constraint is of.
+#[derive(Debug, Clone)]
+pub(super) struct Origin {
+    pub(super) state: State,
+    pub(super) reference: FrameId,
+    pub(super) gap: Gap,
+}
+
+fn units_of(of: Option<&(String, String, String, String)>, c: &Constraint) -> Result<Units> {
+    let all = |n: usize| vec![Unit::Angle; n];
+    let Some((rows, actuated, passive, object)) = of else {
+        return Ok(Units {
+            rows: all(c.rows()),
+            actuated: all(c.actuated()),
+            passive: all(c.passive()),
+            object: all(c.object()),
+        });
+    };
+    let letters = |text: &String| {
+        let one = |letter: char| match letter {
+            'm' => Ok(Unit::Length),
+            'r' => Ok(Unit::Angle),
+            _ => Err(Failure::option("units", letter, "the letters are 'm' and 'r'")),
+        };
+        text.chars().map(one).collect::<Result<Vec<Unit>>>()
+    };
+    Ok(Units {
+        rows: letters(rows)?,
+        actuated: letters(actuated)?,
+        passive: letters(passive)?,
+        object: letters(object)?,
+    })
+}
+
+impl PyConstraint {
+    pub(super) fn of(
+        mechanism: &Mechanism,
+        q: &[f64],
+        reference: Option<&str>,
+        length: Option<f64>,
+    ) -> Result<Self> {
+        let frame = reference.map(|name| mechanism.frame(name)).transpose()?;
+        let state = mechanism.state(q)?;
+        let chain = ClosedChain::of(&state, frame, length)?;
+        Ok(Self {
+            inner: chain.constraint,
+            actuated: chain.actuated,
+            passive: chain.passive,
+            units: chain.units,
+            origin: Some(Origin { state, reference: chain.reference, gap: chain.gap }),
+        })
+    }
+
+    /// What it is of, in a title.
+    pub(super) fn name(&self) -> String {
+        match &self.origin {
+            Some(origin) => format!("'{}'", origin.state.mechanism().name()),
+            None => format!(
+                "a constraint of {} driven and {} passive columns",
+                self.inner.actuated(),
+                self.inner.passive()
+            ),
+        }
+    }
+
+    pub(super) fn component_names(&self) -> Vec<String> {
+        let names: &[&str] = match self.inner.object() {
+            3 => &["x", "y", "rz"],
+            6 => &["x", "y", "z", "rx", "ry", "rz"],
+            _ => &[],
+        };
+        if names.is_empty() {
+            return (1..=self.inner.object()).map(|i| format!("u{i}")).collect();
+        }
+        names.iter().map(ToString::to_string).collect()
+    }
+
+    /// The rows of a task map and their names, from a matrix or names of components.
+    pub(super) fn task(&self, task: &Bound<'_, PyAny>) -> Result<(Matrix, Vec<String>)> {
+        let names: Vec<String> = if let Ok(text) = task.extract::<String>() {
+            text.split(',').map(|s| s.trim().to_owned()).collect()
+        } else if let Ok(names) = task.extract::<Vec<String>>() {
+            names
+        } else {
+            let map = task.extract::<Numbers<'_>>()?.matrix("task")?;
+            let names = (1..=map.rows()).map(|i| format!("task {i}")).collect();
+            return Ok((map, names));
+        };
+        let known = self.component_names();
+        let mut map = Matrix::zeros(names.len(), known.len());
+        for (row, name) in names.iter().enumerate() {
+            let Some(i) = known.iter().position(|k| k == name) else {
+                return Err(Error::unknown("component", name, &known).into());
+            };
+            map[(row, i)] = 1.0;
+        }
+        Ok((map, names))
+    }
+
+    /// Of the driven joints and the object, or the task that the map makes of its twist.
+    pub(crate) fn relation(&self, map: Option<&Matrix>) -> cylindroid::Result<Relation> {
+        let relation = Motions::of(&self.inner).relation();
+        match map {
+            None => Ok(relation),
+            Some(map) => relation.task(map),
+        }
+    }
+
+    pub(super) fn head(&self, table: &mut Table) {
+        table.row("driven", table::names(&self.actuated));
+        table.row("passive", table::names(&self.passive));
+        if let Some(origin) = &self.origin {
+            let frame = origin.state.mechanism().frame_of(origin.reference);
+            table.row("reference", &frame.name);
+            let Gap { distance, angle } = origin.gap;
+            if distance > 1e-9 || angle > 1e-9 {
+                table.row("loops open by", format!("{distance:.1e} m, {angle:.1e} rad"));
+            }
+        }
+    }
+}
+
+#[pymethods]
+impl PyConstraint {
+    #[new]
+    #[pyo3(signature = (Ja, Jp = None, G = None, length = None, units = None))]
+    #[expect(non_snake_case, reason = "the field's names")]
+    fn new(
+        Ja: Numbers<'_>,
+        Jp: Option<Numbers<'_>>,
+        G: Option<Numbers<'_>>,
+        length: Option<f64>,
+        units: Option<(String, String, String, String)>,
+    ) -> Result<Self> {
+        let actuated = Ja.matrix("Ja")?;
+        let passive = match &Jp {
+            None => Matrix::zeros(actuated.rows(), 0),
+            Some(Jp) => Jp.matrix("Jp")?,
+        };
+        let grasp = match &G {
+            None => Matrix::identity(actuated.rows()),
+            Some(G) => G.matrix("G")?,
+        };
+        let mut inner = Constraint::new(Blocks { actuated, passive, grasp })?;
+        if length.is_some() && units.is_none() {
+            let reason = "a length needs units, to know which rows and columns are lengths";
+            return Err(Failure::option("length", "without units", reason));
+        }
+        let given = units_of(units.as_ref(), &inner)?;
+        if units.is_some() {
+            inner = inner.with_length(&given, length.unwrap_or(1.0))?;
+        }
+        let named = |n: usize, letter: &str| (1..=n).map(|i| format!("{letter}{i}")).collect();
+        Ok(Self {
+            actuated: named(inner.actuated(), "qa"),
+            passive: named(inner.passive(), "qp"),
+            units: given,
+            inner,
+            origin: None,
+        })
+    }
+
+    #[getter]
+    fn actuated(&self) -> Vec<String> {
+        self.actuated.clone()
+    }
+
+    #[getter]
+    fn passive(&self) -> Vec<String> {
+        self.passive.clone()
+    }
+
+    #[getter]
+    fn components(&self) -> Vec<String> {
+        self.component_names()
+    }
+
+    #[getter]
+    #[pyo3(name = "Ja")]
+    fn actuated_block<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &self.inner.blocks().actuated)
+    }
+
+    #[getter]
+    #[pyo3(name = "Jp")]
+    fn passive_block<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &self.inner.blocks().passive)
+    }
+
+    #[getter]
+    #[pyo3(name = "G")]
+    fn grasp_block<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &self.inner.blocks().grasp)
+    }
+
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &self.inner.matrix())
+    }
+
+    #[getter]
+    fn length(&self) -> f64 {
+        self.inner.length()
+    }
+
+    #[getter]
+    fn gap(&self) -> Option<PyGap> {
+        self.origin.as_ref().map(|o| o.gap.into())
+    }
+}
+
+table::shown!(PyConstraint);
+
+impl PyConstraint {
+    fn table(&self) -> Table {
+        let mut table = Table::new(&format!("Constraint of {}", self.name()));
+        self.head(&mut table);
+        table.row("rows", self.inner.rows().to_string());
+        table.row("length", format!("{} m", table::number(self.inner.length())));
+        table
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// The velocity constraint of loops, contacts and reference frame.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n), optional
+    ///     Default: home.
+    /// actuated : list of str, optional
+    ///     The driven joints, in place of those of the file.
+    /// reference : str, optional
+    ///     The frame whose motion is the goal. Default: that of the file, else the tool.
+    /// length : float, optional
+    ///     Characteristic length (m). Default: the reach.
+    ///
+    /// Returns
+    /// -------
+    /// Constraint, or list of Constraint
+    ///     Loops are taken as closed; `gap` says how far they are open.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError, ModelError
+    #[pyo3(signature = (q = None, actuated = None, reference = None, length = None))]
+    fn constraint<'py>(
+        &self,
+        py: Python<'py>,
+        q: Option<Numbers<'py>>,
+        actuated: Option<Vec<String>>,
+        reference: Option<&str>,
+        length: Option<f64>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let all = self.constraints(py, q.as_ref(), actuated.as_deref(), reference, length)?;
+        Ok(object(py, all)?)
+    }
+}

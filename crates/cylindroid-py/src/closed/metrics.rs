@@ -1,0 +1,104 @@
+//! Metrics and limits of the driven joints from what Python gives.
+
+use cylindroid::closure::{Unit, Units};
+use cylindroid::manipulability::Metrics;
+use cylindroid::{Error, Matrix};
+use pyo3::prelude::*;
+
+use super::PyConstraint;
+use crate::arrays::Numbers;
+use crate::error::{Failure, Result};
+
+/// A question about efficiencies: which components of the object's twist, in which metrics.
+#[derive(Debug)]
+pub(super) struct Question {
+    pub(super) map: Option<Matrix>,
+    pub(super) components: Vec<String>,
+    pub(super) preset: String,
+    /// Those that take the place of the preset's.
+    given: Metrics,
+}
+
+impl Question {
+    /// About constraints like this one; `weights` are Wu, Wq, Ww, Wtau.
+    pub(super) fn about(
+        constraint: &PyConstraint,
+        task: Option<&Bound<'_, PyAny>>,
+        weights: [Option<&Numbers<'_>>; 4],
+        preset: &str,
+    ) -> Result<Self> {
+        const PRESETS: [&str; 3] = ["unit", "length", "limits"];
+        if !PRESETS.contains(&preset) {
+            return Err(Error::unknown("metric", preset, PRESETS).into());
+        }
+        let (map, components) = match task {
+            None => (None, constraint.component_names()),
+            Some(task) => {
+                let (map, names) = constraint.task(task)?;
+                (Some(map), names)
+            }
+        };
+        let [object, joint, wrench, torque] = weights;
+        let of = |name, given: Option<&Numbers<'_>>| given.map(|w| w.metric(name)).transpose();
+        let given = Metrics {
+            object: of("Wu", object)?,
+            joint: of("Wq", joint)?,
+            wrench: of("Ww", wrench)?,
+            torque: of("Wtau", torque)?,
+        };
+        Ok(Self { map, components, preset: preset.to_owned(), given })
+    }
+
+    /// The metrics at this constraint.
+    pub(super) fn metrics(&self, constraint: &PyConstraint) -> Result<Metrics> {
+        let mut metrics = Metrics::UNIT;
+        if self.preset != "unit" {
+            let units = task_units(constraint, self.map.as_ref())?;
+            metrics = Metrics::characteristic_length(&units, constraint.inner.length())?;
+            if self.preset == "limits" {
+                metrics = metrics.with_rate_limits(&limits(constraint, false)?)?;
+            }
+        }
+        let given = self.given.clone();
+        Ok(Metrics {
+            object: given.object.or(metrics.object),
+            joint: given.joint.or(metrics.joint),
+            wrench: given.wrench.or(metrics.wrench),
+            torque: given.torque.or(metrics.torque),
+        })
+    }
+}
+
+/// Units with those of the task in place of the object's: each of its rows is of one kind.
+fn task_units(constraint: &PyConstraint, map: Option<&Matrix>) -> Result<Units> {
+    let Some(map) = map else { return Ok(constraint.units.clone()) };
+    let row = |i: usize| {
+        let mut used = (0..map.cols()).filter(|&j| map[(i, j)] != 0.0);
+        let first = used.next().map_or(Unit::Angle, |j| constraint.units.object[j]);
+        if used.all(|j| constraint.units.object[j] == first) {
+            return Ok(first);
+        }
+        let reason = "a row of the task mixes lengths and angles; give Wu and Wq";
+        Err(Failure::option("metric", "length", reason))
+    };
+    let object = (0..map.rows()).map(row).collect::<Result<Vec<Unit>>>()?;
+    Ok(Units { object, ..constraint.units.clone() })
+}
+
+/// The limits of the driven joints, of rates or torques, all finite.
+pub(super) fn limits(constraint: &PyConstraint, torque: bool) -> Result<Vec<f64>> {
+    let what = if torque { "effort" } else { "velocity" };
+    let Some(origin) = &constraint.origin else {
+        return Err(Failure::option("limits", "missing", "bare matrices have none; give them"));
+    };
+    let mechanism = origin.state.mechanism();
+    let limit = |name: &String| {
+        let tree = mechanism.coordinates().iter().find(|c| c.name == *name).map(|c| c.limits);
+        let closing = mechanism.loops().iter().find(|l| l.name == *name).map(|l| l.limits);
+        let limit = tree.or(closing).map(|l| if torque { l.effort } else { l.velocity });
+        limit.filter(|v| v.is_finite() && *v > 0.0).ok_or_else(|| {
+            Failure::option("limits", name, format!("the joint has no {what} limit; give limits"))
+        })
+    };
+    constraint.actuated.iter().map(limit).collect()
+}

@@ -1,0 +1,82 @@
+//! Closed chains: constraint, mobility, manipulability, statics, assembly.
+//!
+//! A serial arm is a mechanism without loops: the same functions serve it.
+
+mod assembly;
+mod assembly_modes;
+mod constraint;
+mod finite_mobility;
+mod follow;
+mod gradient;
+pub(crate) mod grasp;
+mod manipulability;
+mod metrics;
+mod mobility;
+mod polytope;
+mod singularity;
+mod spectrum;
+mod statics;
+
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+use pyo3::{PyClass, PyClassInitializer};
+
+use crate::arrays::{Many, Numbers, Rows};
+use crate::error::Result;
+use crate::mechanism::PyMechanism;
+
+pub(crate) use assembly::{PyAssembly, PyGap};
+pub(crate) use assembly_modes::PyAssemblyModes;
+pub(crate) use constraint::PyConstraint;
+pub(crate) use finite_mobility::{PyBranch, PyFiniteMobility};
+pub(crate) use follow::PyFollowed;
+pub(crate) use gradient::PyGradient;
+pub(crate) use grasp::{PyFingerContact, PyGraspQuality};
+pub(crate) use manipulability::PyManipulability;
+pub(crate) use mobility::{PyJointMobility, PyMobility};
+pub(crate) use polytope::PyPolytope;
+pub(crate) use singularity::PySingularity;
+pub(crate) use spectrum::{PyDirection, PySpectrum};
+pub(crate) use statics::{PyContactForces, PyTorques};
+
+impl PyMechanism {
+    /// The constraints at one or many configurations.
+    fn constraints(
+        &self,
+        py: Python<'_>,
+        q: Option<&Numbers<'_>>,
+        actuated: Option<&[String]>,
+        reference: Option<&str>,
+        length: Option<f64>,
+    ) -> Result<Many<PyConstraint>> {
+        let driven = actuated.map(|names| self.inner.with_actuated(names)).transpose()?;
+        let mechanism = driven.as_ref().unwrap_or(&self.inner);
+        let one = |q: &[f64]| PyConstraint::of(mechanism, q, reference, length);
+        let Some(q) = q else { return Ok(Many::One(one(mechanism.home())?)) };
+        let rows = Rows::of(mechanism, "q", q)?;
+        Ok(match rows.count {
+            None => Many::One(one(rows.row(0))?),
+            Some(n) => {
+                let all = || (0..n).map(|i| one(rows.row(i))).collect::<Result<_>>();
+                Many::All(py.detach(all)?)
+            }
+        })
+    }
+}
+
+/// One object of Python, or a list of them.
+fn object<'py, T>(py: Python<'py>, many: Many<T>) -> PyResult<Bound<'py, PyAny>>
+where
+    T: PyClass + Into<PyClassInitializer<T>>,
+{
+    Ok(match many {
+        Many::One(one) => Bound::new(py, one)?.into_any(),
+        Many::All(all) => {
+            let list = PyList::empty(py);
+            for one in all {
+                list.append(Bound::new(py, one)?)?;
+            }
+            list.into_any()
+        }
+    })
+}

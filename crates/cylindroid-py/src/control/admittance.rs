@@ -1,0 +1,109 @@
+//! The class `Admittance`: how a tool gives way to a wrench.
+
+use cylindroid::control::{Admittance, AdmittanceGain};
+use cylindroid::{Matrix, Vec3};
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array, Numbers};
+use crate::error::{Failure, Result};
+
+/// How a tool gives way to a wrench: twist = matrix @ wrench.
+///
+/// Parameters
+/// ----------
+/// force : float
+///     How much to forces, in all directions [m/s/N].
+/// moment : float
+///     How much to moments [rad/s/(N m)]; zero for a tool that does not turn.
+/// point : array_like, (3,), optional
+///     Where moments are taken (m). Default: the origin of the frame.
+///
+/// Attributes
+/// ----------
+/// matrix : ndarray, (6, 6)
+///     Twist (linear first) from wrench (force first).
+///
+/// Raises
+/// ------
+/// InvalidOptionError, NotFiniteError
+///     For gains that are negative: a tool gives way, it never pushes back.
+///
+/// Notes
+/// -----
+/// Hogan 1985.
+///
+/// Examples
+/// --------
+/// >>> import cylindroid as cy
+/// >>> cy.Admittance(0.01).matrix.diagonal()
+/// array([0.01, 0.01, 0.01, 0.  , 0.  , 0.  ])
+#[pyclass(frozen, name = "Admittance", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyAdmittance {
+    pub(super) inner: Admittance,
+}
+
+#[pymethods]
+impl PyAdmittance {
+    #[new]
+    #[pyo3(signature = (force, moment = 0.0, point = None))]
+    fn new(force: f64, moment: f64, point: Option<Numbers<'_>>) -> Result<Self> {
+        let point = point.map_or(Ok(Vec3::ZERO), |p| p.entries("point").map(Vec3::from_array))?;
+        Ok(Self { inner: Admittance::at(point, AdmittanceGain { force, moment })? })
+    }
+
+    /// From its matrix.
+    ///
+    /// Parameters
+    /// ----------
+    /// matrix : array_like, (6, 6)
+    ///     Its symmetric part positive semidefinite.
+    ///
+    /// Returns
+    /// -------
+    /// Admittance
+    ///
+    /// Raises
+    /// ------
+    /// InvalidOptionError, NotFiniteError
+    #[staticmethod]
+    #[pyo3(signature = (matrix))]
+    fn from_matrix(matrix: Numbers<'_>) -> Result<Self> {
+        let m = matrix.matrix("matrix")?;
+        if (m.rows(), m.cols()) != (6, 6) {
+            let shape = format!("{} x {}", m.rows(), m.cols());
+            return Err(Failure::option("matrix", shape, "it is 6 x 6, linear part first"));
+        }
+        let rows = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
+        Ok(Self { inner: Admittance::from_rows(rows)? })
+    }
+
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        let rows = self.inner.rows();
+        arrays::matrix(py, &Matrix::from_fn(6, 6, |i, j| rows[i][j]))
+    }
+
+    /// The same admittance seen from another frame.
+    ///
+    /// Parameters
+    /// ----------
+    /// a_from_b : array_like, (4, 4)
+    ///     This one is in frame b.
+    ///
+    /// Returns
+    /// -------
+    /// Admittance
+    ///
+    /// Raises
+    /// ------
+    /// InvalidOptionError, NotFiniteError
+    #[pyo3(signature = (a_from_b))]
+    fn seen_from(&self, a_from_b: Numbers<'_>) -> Result<Self> {
+        Ok(Self { inner: self.inner.seen_from(a_from_b.pose("a_from_b")?) })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Admittance, {} m/s/N along x>", self.inner.rows()[0][0])
+    }
+}

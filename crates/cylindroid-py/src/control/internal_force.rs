@@ -1,0 +1,124 @@
+//! Internal forces of cooperating arms, hands and over-actuated mechanisms.
+
+use cylindroid::control::{InternalForceCommand, InternalForceLaw};
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array, Numbers};
+use crate::closed::PyConstraint;
+use crate::error::Result;
+use crate::table;
+
+/// How hard an object is squeezed, apart from how it moves: rates of the driven joints that bring
+/// the internal torques to a set-point and leave the object where it is.
+///
+/// Parameters
+/// ----------
+/// gain : float
+///     The internal torques go to their set-point as exp(-gain t) [1/s]; times dt below 2.
+/// stiffness : array_like, (a,)
+///     Of each driven joint, which follows a position or rate and gives way like a spring [N m/rad
+///     or N/m].
+///
+/// Raises
+/// ------
+/// InvalidOptionError
+///
+/// Notes
+/// -----
+/// Bicchi and Prattichizzo 1998, eq. 13.
+///
+/// Examples
+/// --------
+/// Two drives push on one slider from both sides, each with 1 N too little:
+///
+/// >>> import cylindroid as cy
+/// >>> pair = cy.Constraint([[1.0, 0.0], [0.0, 1.0]], G=[[1.0, 1.0]])
+/// >>> law = cy.InternalForceLaw(10.0, [1000.0, 1000.0])
+/// >>> command = law.command(pair, wanted=[5.0, -5.0], measured=[4.0, -4.0])
+/// >>> command.rates.round(9)
+/// array([ 0.01, -0.01])
+#[pyclass(frozen, name = "InternalForceLaw", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyInternalForceLaw {
+    inner: InternalForceLaw,
+}
+
+/// What to add to the rates of the driven joints.
+///
+/// Attributes
+/// ----------
+/// rates : ndarray, (a,)
+///     [rad/s or m/s]
+/// internal, error : ndarray, (a,)
+///     The internal part of the measured torques, and of wanted less measured ones [N m or N].
+#[pyclass(frozen, name = "InternalForceCommand", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyInternalForceCommand {
+    inner: InternalForceCommand,
+}
+
+#[pymethods]
+impl PyInternalForceLaw {
+    #[new]
+    #[pyo3(signature = (gain, stiffness))]
+    fn new(gain: f64, stiffness: Numbers<'_>) -> Result<Self> {
+        Ok(Self { inner: InternalForceLaw::new(gain, stiffness.vector("stiffness")?)? })
+    }
+
+    /// The rates of this step.
+    ///
+    /// Parameters
+    /// ----------
+    /// constraint : Constraint
+    ///     Of the mechanism where it is now.
+    /// wanted, measured : array_like, (a,)
+    ///     Torques as the joints exert them, in the order of `constraint.actuated`; only their
+    ///     internal part counts. For a squeeze t at the contacts (a column of
+    ///     `Constraint.internal_forces`) the wanted ones are `-Ja.T @ t`.
+    ///
+    /// Returns
+    /// -------
+    /// InternalForceCommand
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    #[pyo3(signature = (constraint, wanted, measured))]
+    fn command(
+        &self,
+        constraint: PyRef<'_, PyConstraint>,
+        wanted: Numbers<'_>,
+        measured: Numbers<'_>,
+    ) -> Result<PyInternalForceCommand> {
+        let relation = constraint.relation(None)?;
+        let (wanted, measured) = (wanted.vector("wanted")?, measured.vector("measured")?);
+        Ok(PyInternalForceCommand { inner: self.inner.command(&relation, wanted, measured)? })
+    }
+}
+
+#[pymethods]
+impl PyInternalForceCommand {
+    #[getter]
+    fn rates<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.rates)
+    }
+
+    #[getter]
+    fn internal<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.internal)
+    }
+
+    #[getter]
+    fn error<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.error)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "InternalForceCommand(rates={}, internal={}, error={})",
+            table::list(&self.inner.rates),
+            table::list(&self.inner.internal),
+            table::list(&self.inner.error)
+        )
+    }
+}

@@ -1,0 +1,14 @@
+//! Laws for tools in contact, and for tools that a person moves as well: what twist (or rates) to
+//! command. A servo carries it out.
+
+mod admittance;
+mod hybrid;
+mod internal_force;
+mod operator_share;
+mod shared;
+
+pub(crate) use admittance::PyAdmittance;
+pub(crate) use hybrid::{PyHybridCommand, PyHybridLaw};
+pub(crate) use internal_force::{PyInternalForceCommand, PyInternalForceLaw};
+pub(crate) use operator_share::PyOperatorShare;
+pub(crate) use shared::{PySharedCommand, PySharedLaw};

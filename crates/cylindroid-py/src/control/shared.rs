@@ -1,0 +1,129 @@
+//! Shared control: a robot keeps some motions of its tool, an operator has the others.
+
+use cylindroid::Twist;
+use cylindroid::control::{SharedCommand, SharedInput, SharedLaw};
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::screws::PyProjector;
+use crate::table;
+
+/// Shared control: a robot keeps some motions of its tool, an operator has the others.
+///
+/// Everything is in one frame, whichever. For a servo it has the axes of the world and its origin
+/// at the tool.
+///
+/// Parameters
+/// ----------
+/// gain : float
+///     Of the twist error [1/s].
+///
+/// Raises
+/// ------
+/// InvalidOptionError
+///
+/// Notes
+/// -----
+/// Donelan and Selig, Hyperbolic pseudoinverses for kinematics in the Euclidean group, section 6.3.
+/// Near limits pass on the share of the operator that `OperatorShare` gives.
+///
+/// Examples
+/// --------
+/// An operator slides a tool along a plane, and pushes into it in vain:
+///
+/// >>> import numpy as np
+/// >>> import cylindroid as cy
+/// >>> slide_and_turn = np.eye(6)[:, [0, 1, 3, 4, 5]]
+/// >>> projector = cy.Projector(slide_and_turn, np.inf)
+/// >>> law = cy.SharedLaw(10.0)
+/// >>> command = law.command(projector, error=[0, 0, 0.01, 0, 0, 0],
+/// ...                       operator=[0.2, 0, -5, 0, 0, 0])
+/// >>> command.twist.round(9) + 0.0
+/// array([0.2, 0. , 0.1, 0. , 0. , 0. ])
+#[pyclass(frozen, name = "SharedLaw", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PySharedLaw {
+    inner: SharedLaw,
+}
+
+/// What shared control commands.
+///
+/// Attributes
+/// ----------
+/// twist : ndarray, (6,)
+///     Of the tool: the sum of the two parts [m/s, rad/s].
+/// robot_part, operator_part : ndarray, (6,)
+#[pyclass(frozen, name = "SharedCommand", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PySharedCommand {
+    inner: SharedCommand,
+}
+
+#[pymethods]
+impl PySharedLaw {
+    #[new]
+    #[pyo3(signature = (gain))]
+    fn new(gain: f64) -> Result<Self> {
+        Ok(Self { inner: SharedLaw::new(gain)? })
+    }
+
+    /// The twist of this step.
+    ///
+    /// Parameters
+    /// ----------
+    /// projector : Projector
+    ///     On the operator's motions, along the robot's.
+    /// error : array_like, (6,)
+    ///     From the tool to a pose that the robot shall keep, any of them; see `screw_to` [m, rad].
+    /// operator : array_like, (6,)
+    ///     The twist that the operator wants [m/s, rad/s].
+    /// feed_forward : array_like, (6,), optional
+    ///     The twist of what the robot keeps to. Default: it rests.
+    ///
+    /// Returns
+    /// -------
+    /// SharedCommand
+    ///     For `Servo.step(q, pose, feed_forward=command.twist)`.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    #[pyo3(signature = (projector, error, operator, feed_forward = None))]
+    fn command(
+        &self,
+        projector: PyRef<'_, PyProjector>,
+        error: Numbers<'_>,
+        operator: Numbers<'_>,
+        feed_forward: Option<Numbers<'_>>,
+    ) -> Result<PySharedCommand> {
+        let input = SharedInput {
+            error: error.twist("error")?,
+            feed_forward: feed_forward.map_or(Ok(Twist::ZERO), |f| f.twist("feed_forward"))?,
+            operator: operator.twist("operator")?,
+        };
+        Ok(PySharedCommand { inner: self.inner.command(&projector.inner, &input)? })
+    }
+}
+
+#[pymethods]
+impl PySharedCommand {
+    #[getter]
+    fn twist<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.twist.to_array())
+    }
+
+    #[getter]
+    fn robot_part<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.robot_part.to_array())
+    }
+
+    #[getter]
+    fn operator_part<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.operator_part.to_array())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("SharedCommand(twist={})", table::list(&self.inner.twist.to_array()))
+    }
+}

@@ -1,0 +1,193 @@
+//! Inverse kinematics.
+
+mod search;
+mod solution;
+
+use cylindroid::Error;
+use cylindroid::ik::{IkOptions, Solver, solve_several};
+use pyo3::prelude::*;
+
+use self::search::Search;
+use crate::arrays::{self, Array, Many, Numbers, Rows};
+use crate::error::{Failure, Result};
+use crate::mechanism::PyMechanism;
+
+pub(crate) use solution::PySolution;
+
+#[pymethods]
+impl PyMechanism {
+    /// A configuration that puts a frame at a target, within all limits.
+    ///
+    /// Attempts start at `q0`, then at postures drawn within the limits, until one reaches. The
+    /// same seed gives the same answer.
+    ///
+    /// Parameters
+    /// ----------
+    /// target : array_like, (4, 4) or (N, 4, 4), or dict of them by frame
+    ///     `world_from_tool` as it should be (m); a dict names several frames that shall be reached
+    ///     at once.
+    /// frame : str, optional
+    ///     Default: `tool`.
+    /// q0 : array_like, (n,) or (N, n), optional
+    ///     Where to start. Default: home.
+    /// tool : array_like, (4, 4), optional
+    ///     `frame_from_tool`, a tool point fixed to the frame.
+    /// task, task_axes : str, optional
+    ///     The components that matter, as of `Servo`. Default: the pose.
+    /// nearest : bool
+    ///     Prefer the answer nearest to `q0` over the one found first.
+    /// fixed : list of str, optional
+    ///     Coordinates that keep the values of `q0`.
+    /// tolerance_position, tolerance_orientation : float
+    ///     Largest errors of an answer (m, rad).
+    /// seed : int
+    ///     Of the postures that are drawn.
+    /// iterations : int
+    ///     Steps of all attempts, when to give up.
+    ///
+    /// Returns
+    /// -------
+    /// Solution
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError
+    /// ModelError
+    ///     For a mechanism with loops.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> arm = cy.load("ur5e")
+    /// >>> target = arm.fk([0.3, -1.2, 1.1, -0.4, 0.9, 0.2])
+    /// >>> found = arm.ik(target)
+    /// >>> found.success, bool(abs(arm.fk(found.q) - target).max() < 1e-5)
+    /// (True, True)
+    ///
+    /// Two frames at once, here a link and the tool, of which the positions matter:
+    ///
+    /// >>> q = [0.3, -1.2, 1.1, -0.4, 0.9, 0.2]
+    /// >>> both = {"link3": arm.fk(q, "link3"), arm.tool: arm.fk(q)}
+    /// >>> arm.ik(both, task="position").success
+    /// True
+    #[pyo3(signature = (target, frame = None, q0 = None, *, tool = None, task = None,
+        task_axes = None, nearest = false, fixed = None, tolerance_position = 1e-6,
+        tolerance_orientation = 1e-6, seed = 0, iterations = 20000))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn ik(
+        &self,
+        py: Python<'_>,
+        target: Bound<'_, PyAny>,
+        frame: Option<&str>,
+        q0: Option<Numbers<'_>>,
+        tool: Option<Numbers<'_>>,
+        task: Option<&str>,
+        task_axes: Option<&str>,
+        nearest: bool,
+        fixed: Option<Vec<String>>,
+        tolerance_position: f64,
+        tolerance_orientation: f64,
+        seed: u64,
+        iterations: usize,
+    ) -> Result<PySolution> {
+        let robot = &self.inner;
+        let search = Search {
+            frame,
+            tool,
+            task,
+            task_axes,
+            fixed,
+            tolerance_position,
+            tolerance_orientation,
+            seed,
+            iterations,
+        };
+        let options = IkOptions { nearest, ..search.options(self)? };
+        let starts = q0.as_ref().map(|q0| Rows::of(robot, "q0", q0)).transpose()?;
+        let targets = search.targets(self, &target)?;
+        if let Some(count) = starts.and_then(|s| s.count)
+            && targets.count() != Some(count)
+        {
+            let reason = "give one, or as many as targets";
+            return Err(Failure::option("q0", format!("{count} starts"), reason));
+        }
+        let inner = py.detach(|| {
+            let mut solver = Solver::new(robot, &targets.goals, &options)?;
+            let mut solve = |i: usize| {
+                if let Some(starts) = &starts {
+                    solver.start_at(starts.row(if starts.count.is_some() { i } else { 0 }))?;
+                }
+                solver.solve(&targets.at(i))
+            };
+            Ok::<_, Error>(match targets.count() {
+                None => Many::One(solve(0)?),
+                Some(count) => Many::All((0..count).map(solve).collect::<cylindroid::Result<_>>()?),
+            })
+        })?;
+        Ok(PySolution { inner, n: robot.n() })
+    }
+
+    /// Several configurations that put a frame at a target, the nearest to `q0` first.
+    ///
+    /// Parameters
+    /// ----------
+    /// target : array_like, (4, 4), or dict of them by frame
+    /// count : int
+    ///     At most so many. Of arms with more joints than the task needs there are infinitely
+    ///     many: these are some.
+    /// frame, q0, tool, task, task_axes, fixed, tolerance_position, tolerance_orientation
+    ///     As `ik`.
+    /// seed, iterations
+    ///     As `ik`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (K, n)
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError, ModelError
+    ///     As `ik`.
+    #[pyo3(signature = (target, count = 8, frame = None, q0 = None, *, tool = None, task = None,
+        task_axes = None, fixed = None, tolerance_position = 1e-6, tolerance_orientation = 1e-6,
+        seed = 0, iterations = 20000))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn ik_all<'py>(
+        &self,
+        py: Python<'py>,
+        target: Bound<'py, PyAny>,
+        count: usize,
+        frame: Option<&str>,
+        q0: Option<Numbers<'py>>,
+        tool: Option<Numbers<'py>>,
+        task: Option<&str>,
+        task_axes: Option<&str>,
+        fixed: Option<Vec<String>>,
+        tolerance_position: f64,
+        tolerance_orientation: f64,
+        seed: u64,
+        iterations: usize,
+    ) -> Result<Array<'py>> {
+        let robot = &self.inner;
+        let search = Search {
+            frame,
+            tool,
+            task,
+            task_axes,
+            fixed,
+            tolerance_position,
+            tolerance_orientation,
+            seed,
+            iterations,
+        };
+        let mut options = search.options(self)?;
+        options.start = q0.as_ref().map(|q| q.vector("q0").map(<[f64]>::to_vec)).transpose()?;
+        let targets = search.targets(self, &target)?;
+        if targets.count().is_some() {
+            return Err(Failure::option("target", "a batch", "give one pose, (4, 4)"));
+        }
+        let goals = targets.at(0);
+        let found = py.detach(|| solve_several(robot, &goals, &options, count.max(1)))?;
+        arrays::rows(py, Some(found.len()), robot.n(), found.iter().map(|s| &s.q))
+    }
+}

@@ -1,0 +1,105 @@
+//! What searches for a configuration are told.
+
+use cylindroid::Pose;
+use cylindroid::control::Task;
+use cylindroid::ik::{Budget, Goal, IkOptions};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{Many, Numbers};
+use crate::error::{Failure, Result};
+use crate::mechanism::PyMechanism;
+use crate::options;
+
+/// One pose or a stack of them.
+fn poses(target: &Numbers<'_>) -> Result<Many<Pose>> {
+    let [_, 4, 4] = *target.shape() else { return Ok(Many::One(target.pose("target")?)) };
+    let rows = target.values().as_chunks::<4>().0;
+    let one = |[a, b, c, d]: &[[f64; 4]; 4]| Pose::from_matrix([*a, *b, *c, *d]);
+    let all = rows.as_chunks::<4>().0.iter().map(one);
+    Ok(Many::All(all.collect::<cylindroid::Result<_>>()?))
+}
+
+/// Frames and where each shall be.
+pub(super) struct Targets {
+    /// One for each frame; what they aim at is in `poses`.
+    pub(super) goals: Vec<Goal>,
+    /// Of each frame as many.
+    poses: Vec<Many<Pose>>,
+}
+
+impl Targets {
+    /// How many things are asked for; `None` for one that is no batch.
+    pub(super) fn count(&self) -> Option<usize> {
+        self.poses.first().and_then(Many::count)
+    }
+
+    /// The goals of the i-th of them.
+    pub(super) fn at(&self, i: usize) -> Vec<Goal> {
+        let aimed =
+            |(goal, poses): (&Goal, &Many<Pose>)| Goal { target: poses.as_slice()[i], ..*goal };
+        self.goals.iter().zip(&self.poses).map(aimed).collect()
+    }
+}
+
+/// What both searches are told.
+pub(super) struct Search<'a, 'py> {
+    pub(super) frame: Option<&'a str>,
+    pub(super) tool: Option<Numbers<'py>>,
+    pub(super) task: Option<&'a str>,
+    pub(super) task_axes: Option<&'a str>,
+    pub(super) fixed: Option<Vec<String>>,
+    pub(super) tolerance_position: f64,
+    pub(super) tolerance_orientation: f64,
+    pub(super) seed: u64,
+    pub(super) iterations: usize,
+}
+
+impl Search<'_, '_> {
+    pub(super) fn options(&self, mechanism: &PyMechanism) -> Result<IkOptions> {
+        Ok(IkOptions {
+            position_tolerance: self.tolerance_position,
+            orientation_tolerance: self.tolerance_orientation,
+            fixed: mechanism.places(self.fixed.as_deref().unwrap_or_default())?,
+            seed: self.seed,
+            budget: Budget { iterations: self.iterations, time: None },
+            ..IkOptions::default()
+        })
+    }
+
+    /// From poses of the frame, or a dict of poses by frame.
+    pub(super) fn targets(
+        &self,
+        mechanism: &PyMechanism,
+        target: &Bound<'_, PyAny>,
+    ) -> Result<Targets> {
+        let task = options::task(&mechanism.inner, self.task, self.task_axes, Task::POSE)?;
+        let goal = |frame: Option<&str>| -> Result<Goal> {
+            let end_effector = mechanism.end_effector(frame, self.tool.as_ref())?;
+            Ok(Goal { end_effector, target: Pose::IDENTITY, task })
+        };
+        let Ok(by_frame) = target.cast::<PyDict>() else {
+            let poses = poses(&target.extract()?)?;
+            return Ok(Targets { goals: vec![goal(self.frame)?], poses: vec![poses] });
+        };
+        if let Some(frame) = self.frame {
+            let reason = "the dict of targets names the frames";
+            return Err(Failure::option("frame", frame, reason));
+        }
+        if self.tool.is_some() {
+            let reason = "a tool is fixed to one frame; with several give targets of the frames";
+            return Err(Failure::option("tool", "with a dict of targets", reason));
+        }
+        let mut targets = Targets { goals: Vec::new(), poses: Vec::new() };
+        for (frame, pose) in by_frame {
+            targets.goals.push(goal(Some(&frame.extract::<String>()?))?);
+            targets.poses.push(poses(&pose.extract()?)?);
+        }
+        let count = targets.count();
+        if targets.poses.iter().any(|p| p.count() != count) {
+            let reason = "give one for each frame, or as many for each";
+            return Err(Failure::option("target", "poses of different numbers", reason));
+        }
+        Ok(targets)
+    }
+}

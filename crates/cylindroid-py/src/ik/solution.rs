@@ -1,0 +1,92 @@
+//! The class `Solution`: what came of a search.
+
+use cylindroid::ik::Solution;
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array, Many};
+use crate::error::Result;
+use crate::table::{self, Table};
+
+/// What came of a search for a configuration; of several targets everything has their axis first.
+///
+/// Attributes
+/// ----------
+/// success : bool or ndarray of bool, (N,)
+///     True if the target is reached within tolerance, checked by forward kinematics.
+/// q : ndarray, (n,) or (N, n)
+///     The configuration, within the limits; without success the nearest that was found.
+/// position_error, orientation_error : float or ndarray, (N,)
+///     Of the components that matter (m, rad).
+/// iterations, attempts : int or ndarray of int, (N,)
+/// out_of_reach : bool or ndarray of bool, (N,)
+///     True where it is proved that nothing reaches: the target is farther from the first joint
+///     than the chain is long. No success alone proves nothing.
+#[pyclass(frozen, name = "Solution", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PySolution {
+    pub(super) inner: Many<Solution>,
+    pub(super) n: usize,
+}
+
+table::shown!(PySolution);
+
+impl PySolution {
+    fn table(&self) -> Table {
+        let Many::One(s) = &self.inner else {
+            let all = self.inner.as_slice();
+            let mut table = Table::new(&format!("Solutions for {} targets", all.len()));
+            table.row("reached", all.iter().filter(|s| s.success).count().to_string());
+            return table;
+        };
+        let mut table = Table::new("Solution");
+        table.row("success", if s.success { "yes" } else { "no" });
+        if let Some((distance, length)) = s.out_of_reach {
+            let (distance, length) = (table::number(distance), table::number(length));
+            table.row("out of reach", format!("{distance} m away, the arm is {length} m long"));
+        }
+        let errors = format!("{:.1e} m, {:.1e} rad", s.position_error, s.orientation_error);
+        table.row("errors", errors);
+        table.row("iterations", format!("{} in {} attempts", s.iterations, s.attempts));
+        table.row("q", table::list(&s.q));
+        table
+    }
+}
+
+#[pymethods]
+impl PySolution {
+    #[getter]
+    fn success<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::each(py, &self.inner, |s| s.success)
+    }
+
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        let all = self.inner.as_slice().iter().map(|s| &s.q);
+        arrays::rows(py, self.inner.count(), self.n, all)
+    }
+
+    #[getter]
+    fn position_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::each(py, &self.inner, |s| s.position_error)
+    }
+
+    #[getter]
+    fn orientation_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::each(py, &self.inner, |s| s.orientation_error)
+    }
+
+    #[getter]
+    fn iterations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::each(py, &self.inner, |s| s.iterations as i64)
+    }
+
+    #[getter]
+    fn attempts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::each(py, &self.inner, |s| s.attempts as i64)
+    }
+
+    #[getter]
+    fn out_of_reach<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::each(py, &self.inner, |s| s.out_of_reach.is_some())
+    }
+}

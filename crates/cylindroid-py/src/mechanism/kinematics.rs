@@ -1,0 +1,392 @@
+//! Kinematics: poses, Jacobians and their derivatives, of one configuration or many.
+
+use cylindroid::kinematics::{Chain, OrientationRates};
+use cylindroid::{Error, Matrix};
+use pyo3::prelude::*;
+
+use super::{PyMechanism, reference_of};
+use crate::arrays::{self, Array, Numbers, Rows};
+use crate::error::{Failure, Result};
+use crate::options;
+
+/// The columns of a Jacobian of a chain, among those of the whole mechanism, row by row.
+#[inline]
+fn scatter(local: &Matrix, coordinates: &[usize], n: usize, out: &mut [f64]) {
+    let columns = local.as_slice().as_chunks::<6>().0;
+    if columns.len() == n {
+        for i in 0..6 {
+            for (x, column) in out[i * n..(i + 1) * n].iter_mut().zip(columns) {
+                *x = column[i];
+            }
+        }
+        return;
+    }
+    for (column, &c) in columns.iter().zip(coordinates) {
+        for (i, x) in column.iter().enumerate() {
+            out[i * n + c] = *x;
+        }
+    }
+}
+
+impl PyMechanism {
+    fn pair<'a>(&self, q: &'a Numbers<'_>, qd: &'a Numbers<'_>) -> Result<(Rows<'a>, Rows<'a>)> {
+        let rows = Rows::of(&self.inner, "q", q)?;
+        let rates = Rows::of(&self.inner, "qd", qd)?;
+        if rows.count != rates.count {
+            let words = |r: &Rows<'_>| r.count.map_or("one".to_owned(), |n| n.to_string());
+            return Err(Failure::option(
+                "qd",
+                format!("{} for {} of q", words(&rates), words(&rows)),
+                "give as many rates as configurations",
+            ));
+        }
+        Ok((rows, rates))
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// The pose of a frame: `world_from_frame`.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// frame : str, optional
+    ///     One of `frames`. Default: `tool`.
+    /// tool : array_like, (4, 4), optional
+    ///     `frame_from_tool`, a tool point fixed to the frame.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (4, 4) or (N, 4, 4)
+    ///     m.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     For a q of the wrong size or with an entry that is not finite, naming the joint.
+    /// UnknownNameError
+    ///     For a name that there is not, with the nearest names.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> arm = cy.load("3r")
+    /// >>> arm.fk([0.0, 0.0, 0.0])[:3, 3]
+    /// array([0.8, 0. , 0.4])
+    #[pyo3(signature = (q, frame = None, tool = None))]
+    fn fk<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        frame: Option<&str>,
+        tool: Option<Numbers<'py>>,
+    ) -> Result<Array<'py>> {
+        let rows = Rows::of(&self.inner, "q", &q)?;
+        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
+        arrays::written(py, rows.count, &[4, 4], move |out| {
+            for (i, out) in out.chunks_exact_mut(16).enumerate() {
+                arrays::put_pose(chain.set(rows.row(i)), out);
+            }
+        })
+    }
+
+    /// The poses of all frames, in the order of `frames`.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (F, 4, 4) or (N, F, 4, 4)
+    ///     `world_from_frame` (m).
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     As `fk`.
+    #[pyo3(signature = (q))]
+    fn fk_all<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
+        let rows = Rows::of(&self.inner, "q", &q)?;
+        let mut state = self.inner.state(self.inner.home())?;
+        let names = self.inner.frames().iter().map(|f| self.inner.frame(&f.name));
+        let frames = names.collect::<cylindroid::Result<Vec<_>>>()?;
+        let mut result = Ok(());
+        let array = arrays::written(py, rows.count, &[frames.len(), 4, 4], |out| {
+            for (i, out) in out.chunks_exact_mut(16 * frames.len().max(1)).enumerate() {
+                result = state.set(rows.row(i));
+                for (frame, out) in frames.iter().zip(out.chunks_exact_mut(16)) {
+                    arrays::put_pose(state.pose(*frame), out);
+                }
+            }
+        })?;
+        result?;
+        Ok(array)
+    }
+
+    /// The Jacobian: twist of the frame = J @ qd, linear rows first.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// frame : str, optional
+    ///     One of `frames`. Default: `tool`.
+    /// reference : str
+    ///     'local' (the frame's origin and axes), 'world' (the world's origin and axes) or
+    ///     'local_world_aligned' (the frame's origin, the world's axes).
+    /// tool : array_like, (4, 4), optional
+    ///     `frame_from_tool`, a tool point fixed to the frame.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (6, n) or (N, 6, n)
+    ///     m/s and rad/s for each unit of rate; columns of joints that do not move the frame are zero.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     For a q of the wrong size or with an entry that is not finite, naming the joint.
+    /// UnknownNameError
+    ///     For a name that there is not, with the nearest names.
+    ///
+    /// Notes
+    /// -----
+    /// The words for the references are Pinocchio's. With loops it is the Jacobian of the spanning tree.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> panda = cy.load("panda")
+    /// >>> panda.jacobian([panda.home] * 5, reference="local").shape
+    /// (5, 6, 7)
+    #[pyo3(signature = (q, frame = None, reference = "local_world_aligned", tool = None))]
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        frame: Option<&str>,
+        reference: &str,
+        tool: Option<Numbers<'py>>,
+    ) -> Result<Array<'py>> {
+        let (n, reference) = (self.inner.n(), reference_of(reference)?);
+        let rows = Rows::of(&self.inner, "q", &q)?;
+        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
+        let mut local = Matrix::zeros(6, chain.n());
+        arrays::written(py, rows.count, &[6, n], move |out| {
+            for (i, out) in out.chunks_exact_mut((6 * n).max(1)).enumerate() {
+                chain.set(rows.row(i));
+                chain.jacobian_into(reference, &mut local);
+                scatter(&local, chain.coordinates(), n, out);
+            }
+        })
+    }
+
+    /// The derivative of the Jacobian by every coordinate: `hessian[k]` is dJ/dq_k.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// frame : str, optional
+    ///     One of `frames`. Default: `tool`.
+    /// reference : str
+    ///     'local' (the frame's origin and axes), 'world' (the world's origin and axes) or
+    ///     'local_world_aligned' (the frame's origin, the world's axes).
+    /// tool : array_like, (4, 4), optional
+    ///     `frame_from_tool`, a tool point fixed to the frame.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (n, 6, n) or (N, n, 6, n)
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     For a q of the wrong size or with an entry that is not finite, naming the joint.
+    /// UnknownNameError
+    ///     For a name that there is not, with the nearest names.
+    ///
+    /// Notes
+    /// -----
+    /// Haviland and Corke 2020 (arXiv 2010.08686), in screw form. Spherical and free joints: the
+    /// derivative along their unit rates.
+    #[pyo3(signature = (q, frame = None, reference = "local_world_aligned", tool = None))]
+    fn hessian<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        frame: Option<&str>,
+        reference: &str,
+        tool: Option<Numbers<'py>>,
+    ) -> Result<Array<'py>> {
+        let (n, reference) = (self.inner.n(), reference_of(reference)?);
+        let rows = Rows::of(&self.inner, "q", &q)?;
+        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
+        let mut local = vec![Matrix::zeros(6, chain.n()); chain.n()];
+        arrays::written(py, rows.count, &[n, 6, n], move |out| {
+            for (i, out) in out.chunks_exact_mut((6 * n * n).max(1)).enumerate() {
+                chain.set(rows.row(i));
+                chain.hessian_into(reference, &mut local);
+                for (matrix, &k) in local.iter().zip(chain.coordinates()) {
+                    let out = &mut out[6 * n * k..6 * n * (k + 1)];
+                    scatter(matrix, chain.coordinates(), n, out);
+                }
+            }
+        })
+    }
+
+    /// The derivative of the Jacobian in time while the coordinates move with `qd`.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// qd : array_like, (n,) or (N, n)
+    ///     Rates, as many as configurations [rad/s or m/s].
+    /// frame : str, optional
+    ///     One of `frames`. Default: `tool`.
+    /// reference : str
+    ///     'local' (the frame's origin and axes), 'world' (the world's origin and axes) or
+    ///     'local_world_aligned' (the frame's origin, the world's axes).
+    /// tool : array_like, (4, 4), optional
+    ///     `frame_from_tool`, a tool point fixed to the frame.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (6, n) or (N, 6, n)
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     For a q of the wrong size or with an entry that is not finite, naming the joint.
+    /// UnknownNameError
+    ///     For a name that there is not, with the nearest names.
+    #[pyo3(signature = (q, qd, frame = None, reference = "local_world_aligned", tool = None))]
+    fn jacobian_dot<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        qd: Numbers<'py>,
+        frame: Option<&str>,
+        reference: &str,
+        tool: Option<Numbers<'py>>,
+    ) -> Result<Array<'py>> {
+        let (n, reference) = (self.inner.n(), reference_of(reference)?);
+        let (rows, rates) = self.pair(&q, &qd)?;
+        let of = self.end_effector(frame, tool.as_ref())?;
+        let mut state = self.inner.state(self.inner.home())?;
+        let mut result = Ok(());
+        let array = arrays::written(py, rows.count, &[6, n], |out| {
+            let mut one = |i: usize, out: &mut [f64]| -> cylindroid::Result<()> {
+                state.set(rows.row(i))?;
+                arrays::put_rows(&state.jacobian_dot(rates.row(i), of, reference)?, out);
+                Ok(())
+            };
+            result = out
+                .chunks_exact_mut((6 * n).max(1))
+                .enumerate()
+                .try_for_each(|(i, out)| one(i, out));
+        })?;
+        result?;
+        Ok(array)
+    }
+
+    /// The Jacobian of position and angles instead of position and angular velocity, world axes.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// angles : str
+    ///     'rpy' (about fixed x, y, z), 'zyz' (Euler angles) or 'rotation_vector'.
+    /// frame : str, optional
+    ///     One of `frames`. Default: `tool`.
+    /// tool : array_like, (4, 4), optional
+    ///     `frame_from_tool`, a tool point fixed to the frame.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (6, n) or (N, 6, n)
+    ///     Where the angles are singular (gimbal lock) the angle rows hold the least-squares rates.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     For a q of the wrong size or with an entry that is not finite, naming the joint.
+    /// UnknownNameError
+    ///     For a name that there is not, with the nearest names.
+    #[pyo3(signature = (q, angles = "rpy", frame = None, tool = None))]
+    fn analytical_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        angles: &str,
+        frame: Option<&str>,
+        tool: Option<Numbers<'py>>,
+    ) -> Result<Array<'py>> {
+        const ANGLES: [(&str, OrientationRates); 3] = [
+            ("rpy", OrientationRates::Rpy),
+            ("zyz", OrientationRates::Zyz),
+            ("rotation_vector", OrientationRates::RotationVector),
+        ];
+        let n = self.inner.n();
+        let rates = options::named("angles", angles, &ANGLES)?;
+        let rows = Rows::of(&self.inner, "q", &q)?;
+        let of = self.end_effector(frame, tool.as_ref())?;
+        let mut state = self.inner.state(self.inner.home())?;
+        let mut result = Ok(());
+        let array = arrays::written(py, rows.count, &[6, n], |out| {
+            for (i, out) in out.chunks_exact_mut((6 * n).max(1)).enumerate() {
+                result = state.set(rows.row(i));
+                arrays::put_rows(&state.analytical_jacobian(of, rates).matrix, out);
+            }
+        })?;
+        result?;
+        Ok(array)
+    }
+
+    /// `q` moved by constant rates for `dt` seconds.
+    ///
+    /// `q + dt * qd`, with rotation vectors and free bodies moved on their group.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, qd : array_like, (n,) or (N, n)
+    ///     Coordinates and as many rates.
+    /// dt : float
+    ///     Time (s).
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (n,) or (N, n)
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    #[pyo3(signature = (q, qd, dt))]
+    fn integrate<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        qd: Numbers<'py>,
+        dt: f64,
+    ) -> Result<Array<'py>> {
+        let n = self.inner.n();
+        let (rows, rates) = self.pair(&q, &qd)?;
+        Error::check_finite("dt", &[dt])?;
+        let mut result = Ok(());
+        let array = arrays::written(py, rows.count, &[n], |out| {
+            result = out.chunks_exact_mut(n.max(1)).enumerate().try_for_each(|(i, out)| {
+                let next = self.inner.integrate(rows.row(i), rates.row(i), dt)?;
+                out.copy_from_slice(&next);
+                Ok::<(), Error>(())
+            });
+        })?;
+        result?;
+        Ok(array)
+    }
+}

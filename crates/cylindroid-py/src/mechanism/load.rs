@@ -1,0 +1,152 @@
+//! Loading models, and what a loader reports.
+
+use std::path::{Path, PathBuf};
+
+use cylindroid::Mechanism;
+use cylindroid::model::formats;
+use pyo3::prelude::*;
+
+use super::PyMechanism;
+use crate::error::Result;
+use crate::options;
+use crate::table::{self, Table};
+
+/// Loads a model.
+///
+/// Parameters
+/// ----------
+/// model : str or os.PathLike
+///     The name of a catalogue model (see `catalogue`), or the path of a file: URDF, MJCF, SDF, or a
+///     mechanism file in TOML.
+///
+/// Returns
+/// -------
+/// Mechanism
+///
+/// Raises
+/// ------
+/// UnknownNameError
+///     For a name that is neither, with the nearest names.
+/// MissingFileError, UnreadableFileError
+/// ModelFileError
+///     For a file that cannot be understood, with line and column.
+///
+/// Examples
+/// --------
+/// >>> import cylindroid as cy
+/// >>> cy.load("panda")
+/// <Mechanism 'panda': 7 coordinates, tool 'hand_tcp'>
+/// >>> cy.load("pnda")
+/// Traceback (most recent call last):
+///     ...
+/// cylindroid._errors.UnknownNameError: no catalogue model or file named 'pnda'; nearest: panda, ...
+#[pyfunction]
+#[pyo3(signature = (model))]
+pub(crate) fn load(py: Python<'_>, model: PathBuf) -> Result<PyMechanism> {
+    let name = model.to_string_lossy().into_owned();
+    let inner = py.detach(|| cylindroid::load(&name))?;
+    Ok(PyMechanism { inner })
+}
+
+/// Reads a model from text.
+///
+/// Parameters
+/// ----------
+/// text : str
+/// format : str
+///     'urdf', 'mjcf', 'sdf' or 'toml' (a mechanism file).
+/// path : str or os.PathLike, optional
+///     For messages, and to find meshes and files that the text includes.
+///
+/// Returns
+/// -------
+/// Mechanism
+///
+/// Raises
+/// ------
+/// UnknownNameError
+///     For another format.
+/// ModelFileError
+///     With line and column.
+#[pyfunction]
+#[pyo3(signature = (text, format = "urdf", path = None))]
+pub(crate) fn parse(
+    py: Python<'_>,
+    text: &str,
+    format: &str,
+    path: Option<PathBuf>,
+) -> Result<PyMechanism> {
+    let path = path.unwrap_or_else(|| PathBuf::from("<text>"));
+    type Reader = fn(&str, &Path) -> cylindroid::Result<Mechanism>;
+    let readers: [(&str, Reader); 4] = [
+        ("urdf", formats::urdf::parse),
+        ("mjcf", formats::mjcf::parse),
+        ("sdf", formats::sdf::parse),
+        ("toml", formats::toml::parse),
+    ];
+    let read = options::named("format", format, &readers)?;
+    Ok(PyMechanism { inner: py.detach(|| read(text, &path))? })
+}
+
+/// The models inside the package.
+///
+/// Returns
+/// -------
+/// list of (str, str, str)
+///     Name, what it is, where its numbers come from.
+#[pyfunction]
+pub(crate) fn catalogue() -> Vec<(&'static str, String, String)> {
+    let entries = cylindroid::catalogue::entries();
+    entries.into_iter().map(|e| (e.name, e.description, e.source)).collect()
+}
+
+/// What a loader read and what it did not use.
+///
+/// Attributes
+/// ----------
+/// format, source : str
+/// ignored : list of (int, str, str)
+///     Line (0 where it has none), what, and why.
+#[pyclass(frozen, get_all, name = "LoadReport", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyLoadReport {
+    format: &'static str,
+    source: String,
+    /// Line, what, why.
+    ignored: Vec<(usize, String, String)>,
+}
+
+#[pymethods]
+impl PyLoadReport {}
+
+table::shown!(PyLoadReport);
+
+impl PyLoadReport {
+    fn table(&self) -> Table {
+        let mut table = Table::new("LoadReport");
+        table.row("format", self.format);
+        table.row("source", &self.source);
+        table.row("ignored", self.ignored.len().to_string());
+        for (line, what, why) in &self.ignored {
+            table.row(&format!("line {line}"), format!("{what}: {why}"));
+        }
+        table
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    #[getter]
+    fn report(&self) -> PyLoadReport {
+        let report = self.inner.report();
+        PyLoadReport {
+            format: report.format,
+            source: report.source.clone(),
+            ignored: report
+                .ignored
+                .iter()
+                .map(|i| (i.line, i.what.clone(), i.why.clone()))
+                .collect(),
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! The class `Mechanism`: a model and its kinematics.
+
+mod joint;
+mod kinematics;
+mod limits;
+pub(crate) mod load;
+
+use cylindroid::model::Dimension;
+use cylindroid::{EndEffector, Error, Mechanism, Pose, Reference};
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::options;
+use crate::table::{self, Table};
+
+pub(crate) use joint::PyJoint;
+pub(crate) use load::PyLoadReport;
+
+/// A robot or mechanism, immutable; from `load` or `parse`.
+///
+/// Attributes
+/// ----------
+/// name : str
+/// n : int
+///     Number of coordinates: entries of q and of the rates.
+/// joint_names : list of str
+///     Names of the coordinates, in the order of q.
+/// units : list of str
+///     'rad' or 'm' for each coordinate.
+/// frames : list of str
+///     Those of the links first, then named ones.
+/// links : list of str
+/// joints : list of Joint
+/// contacts : list of str
+/// actuated : list of str
+///     The coordinates (and joints that close loops) that motors drive.
+/// lower, upper, velocity_limit, acceleration_limit, effort_limit : ndarray, (n,)
+///     Infinite where the file gives none [rad or m, /s, /s^2, N m or N].
+/// home : ndarray, (n,)
+///     The file's home configuration, else zero, and the middle of limits that exclude zero.
+/// tool : str
+///     The frame that is meant where none is named.
+/// reference : str
+///     The frame whose motion is the goal of a closed chain.
+/// reach : float
+///     Characteristic length (m): the longest way from the base to a frame along the links.
+/// is_closed : bool
+///     True if loops or contacts constrain q.
+/// dimension : int
+///     2 in the plane x-y, else 3.
+/// report : LoadReport
+///     What was read and what was not used.
+#[pyclass(frozen, name = "Mechanism", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyMechanism {
+    pub(crate) inner: Mechanism,
+}
+
+pub(crate) fn reference_of(name: &str) -> Result<Reference> {
+    options::named("reference", name, &Reference::NAMES)
+}
+
+impl PyMechanism {
+    pub(crate) fn end_effector(
+        &self,
+        frame: Option<&str>,
+        tool: Option<&Numbers<'_>>,
+    ) -> Result<EndEffector> {
+        let frame = match frame {
+            None => self.inner.tool(),
+            Some(name) => self.inner.frame(name)?,
+        };
+        let frame_from_tool = match tool {
+            None => Pose::IDENTITY,
+            Some(tool) => tool.pose("tool")?,
+        };
+        Ok(EndEffector { frame, frame_from_tool })
+    }
+
+    /// The places of coordinates by their names.
+    pub(crate) fn places(&self, names: &[String]) -> Result<Vec<usize>> {
+        let known: Vec<&str> = self.inner.coordinates().iter().map(|c| c.name.as_str()).collect();
+        let place = |name: &String| {
+            let place = known.iter().position(|k| k == name);
+            place.ok_or_else(|| Error::unknown("coordinate", name, &known).into())
+        };
+        names.iter().map(place).collect()
+    }
+
+    /// A vector that was given, else home.
+    pub(crate) fn or_home<'a>(
+        &'a self,
+        name: &'static str,
+        given: Option<&'a Numbers<'_>>,
+    ) -> Result<&'a [f64]> {
+        given.map_or(Ok(self.inner.home()), |given| given.vector(name))
+    }
+
+    fn frame_name(&self, id: cylindroid::FrameId) -> &str {
+        &self.inner.frame_of(id).name
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    #[getter]
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    #[getter]
+    fn n(&self) -> usize {
+        self.inner.n()
+    }
+
+    #[getter]
+    fn joint_names(&self) -> Vec<&str> {
+        self.inner.coordinates().iter().map(|c| c.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn units(&self) -> Vec<&'static str> {
+        self.inner.coordinates().iter().map(|c| c.kind.unit()).collect()
+    }
+
+    #[getter]
+    fn frames(&self) -> Vec<&str> {
+        self.inner.frames().iter().map(|f| f.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn links(&self) -> Vec<&str> {
+        self.inner.links().iter().map(|l| l.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn contacts(&self) -> Vec<&str> {
+        self.inner.contacts().iter().map(|c| c.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn actuated(&self) -> Vec<&str> {
+        let tree = self.inner.actuated().map(|i| self.inner.coordinates()[i].name.as_str());
+        let closing = self.inner.loops().iter().filter(|l| l.actuated).map(|l| l.name.as_str());
+        tree.chain(closing).collect()
+    }
+
+    #[getter]
+    fn is_closed(&self) -> bool {
+        self.inner.is_closed()
+    }
+
+    #[getter]
+    fn dimension(&self) -> u8 {
+        match self.inner.dimension() {
+            Dimension::Planar => 2,
+            Dimension::Spatial => 3,
+        }
+    }
+
+    #[getter]
+    fn home<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, self.inner.home())
+    }
+
+    #[getter]
+    fn tool(&self) -> &str {
+        self.frame_name(self.inner.tool())
+    }
+
+    #[getter]
+    fn reference(&self) -> &str {
+        self.frame_name(self.inner.reference())
+    }
+
+    #[getter]
+    fn reach(&self) -> f64 {
+        self.inner.reach()
+    }
+
+    /// The same mechanism driven by these joints and no others.
+    ///
+    /// Parameters
+    /// ----------
+    /// names : sequence of str
+    ///     Joints of the tree, their coordinates, or joints that close loops.
+    ///
+    /// Returns
+    /// -------
+    /// Mechanism
+    ///
+    /// Raises
+    /// ------
+    /// UnknownNameError
+    ///     With the nearest names.
+    /// InvalidOptionError
+    ///     For a joint that does not move or follows another.
+    #[pyo3(signature = (names))]
+    fn with_actuated(&self, names: Vec<String>) -> Result<Self> {
+        Ok(Self { inner: self.inner.with_actuated(&names)? })
+    }
+
+    fn __repr__(&self) -> String {
+        let m = &self.inner;
+        let mut text = format!("<Mechanism '{}': {} coordinates", m.name(), m.n());
+        for (count, what) in [(m.loops().len(), "loops"), (m.contacts().len(), "contacts")] {
+            if count > 0 {
+                text.push_str(&format!(", {count} {what}"));
+            }
+        }
+        text.push_str(&format!(", tool '{}'>", self.tool()));
+        text
+    }
+
+    fn __str__(&self) -> String {
+        self.table().text()
+    }
+
+    fn _repr_html_(&self) -> String {
+        self.table().html()
+    }
+
+    fn __copy__(&self) -> Self {
+        Self { inner: self.inner.clone() }
+    }
+
+    fn __deepcopy__(&self, _memo: Bound<'_, PyAny>) -> Self {
+        Self { inner: self.inner.clone() }
+    }
+}
+
+impl PyMechanism {
+    fn table(&self) -> Table {
+        let m = &self.inner;
+        let mut table = Table::new(&format!("Mechanism '{}'", m.name()));
+        table.row("format", m.report().format);
+        table.row("tool", self.tool());
+        if m.is_closed() {
+            table.row("reference", self.reference());
+            table.row("loops", m.loops().len().to_string());
+            table.row("contacts", m.contacts().len().to_string());
+        }
+        table.row("reach", format!("{} m", table::number(m.reach())));
+        for c in m.coordinates() {
+            let unit = c.kind.unit();
+            let limits = format!(
+                "{} to {} {unit}, {} {unit}/s{}",
+                table::number(c.limits.lower),
+                table::number(c.limits.upper),
+                table::number(c.limits.velocity),
+                if c.actuated { "" } else { ", passive" }
+            );
+            table.row(&c.name, limits);
+        }
+        if !m.report().ignored.is_empty() {
+            table.row("ignored", format!("{} things, see report", m.report().ignored.len()));
+        }
+        table
+    }
+}

@@ -1,0 +1,125 @@
+//! The class `CartesianMove`.
+
+use cylindroid::control::{CartesianBounds, CartesianMove};
+use pyo3::prelude::*;
+
+use super::{PyCartesianPath, bounds, times};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::table;
+
+/// A frame moving along a path by the fastest time law that keeps every bound.
+///
+/// Parameters
+/// ----------
+/// path : CartesianPath
+/// speed, acceleration, jerk : float or (float, float), optional
+///     Bounds of translation and rotation [m/s, rad/s; /s^2; /s^3]. Defaults: (0.25, 1), (1, 4),
+///     no bound on the jerk: a trapezoidal velocity.
+/// duration : float, optional
+///     Slows the move down to end then (s).
+///
+/// Attributes
+/// ----------
+/// duration : float
+///     Time from rest to rest (s).
+/// path : CartesianPath
+///
+/// Raises
+/// ------
+/// InvalidOptionError
+///     For bounds that are NaN, zero or negative, a duration that is too short.
+///
+/// Notes
+/// -----
+/// Drive a servo along it with `Servo.drive(q, move)`.
+#[pyclass(frozen, name = "CartesianMove", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyCartesianMove {
+    pub(crate) inner: CartesianMove,
+}
+
+#[pymethods]
+impl PyCartesianMove {
+    #[new]
+    #[pyo3(signature = (path, speed = None, acceleration = None, jerk = None, duration = None))]
+    fn new(
+        path: PyRef<'_, PyCartesianPath>,
+        speed: Option<Numbers<'_>>,
+        acceleration: Option<Numbers<'_>>,
+        jerk: Option<Numbers<'_>>,
+        duration: Option<f64>,
+    ) -> Result<Self> {
+        let (linear, angular) = bounds([&speed, &acceleration, &jerk], false)?;
+        let bounds = CartesianBounds { linear, angular };
+        let mut inner = CartesianMove::new(path.inner, bounds)?;
+        if let Some(duration) = duration {
+            inner = inner.stretched_to(duration)?;
+        }
+        Ok(Self { inner })
+    }
+
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.inner.law().duration()
+    }
+
+    #[getter]
+    fn path(&self) -> PyCartesianPath {
+        PyCartesianPath { inner: *self.inner.path() }
+    }
+
+    /// Pose and twist at a time; at rest before 0 and after the duration.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, () or (N,)
+    ///     (s).
+    ///
+    /// Returns
+    /// -------
+    /// (ndarray, ndarray)
+    ///     Poses, (4, 4) or (N, 4, 4), and twists, (6,) or (N, 6): linear first, world axes, at
+    ///     the moving origin.
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For a time that is NaN.
+    #[pyo3(signature = (t))]
+    fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<(Array<'py>, Array<'py>)> {
+        let (t, count) = times("t", &t)?;
+        let poses = arrays::written(py, count, &[4, 4], |out| {
+            for (t, out) in t.iter().zip(out.chunks_exact_mut(16)) {
+                arrays::put_pose(self.inner.at(*t).pose, out);
+            }
+        })?;
+        let twists = arrays::written(py, count, &[6], |out| {
+            for (t, out) in t.iter().zip(out.chunks_exact_mut(6)) {
+                out.copy_from_slice(&self.inner.at(*t).twist.to_array());
+            }
+        })?;
+        Ok((poses, twists))
+    }
+
+    /// Target and feed-forward of a servo of period `dt` at time `t`, for `Servo.step`.
+    ///
+    /// Parameters
+    /// ----------
+    /// t, dt : float
+    ///     (s).
+    ///
+    /// Returns
+    /// -------
+    /// (ndarray, ndarray)
+    ///     The pose now, (4, 4), and the constant twist that leads to that of the next step, (6,).
+    #[pyo3(signature = (t, dt))]
+    fn target<'py>(&self, py: Python<'py>, t: f64, dt: f64) -> Result<(Array<'py>, Array<'py>)> {
+        let target = self.inner.target(t, dt);
+        Ok((arrays::pose(py, target.pose)?, arrays::vector(py, &target.feed_forward.to_array())))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<CartesianMove of {} s>", table::number(self.duration()))
+    }
+}

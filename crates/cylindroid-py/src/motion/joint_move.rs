@@ -1,0 +1,107 @@
+//! The class `JointMove`.
+
+use cylindroid::control::{JointDefaults, JointMove, JointSample};
+use pyo3::prelude::*;
+
+use super::{bounds, times};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::mechanism::PyMechanism;
+use crate::table;
+
+/// All joints moving straight to another configuration, starting and stopping together.
+///
+/// Parameters
+/// ----------
+/// mechanism : Mechanism
+///     Its velocity and acceleration limits are kept, and its position limits.
+/// q, to : array_like, (n,)
+///     From and to [rad or m].
+/// speed, acceleration, jerk : float or (float, float), optional
+///     Of joints without limits of their own: those that slide and those that turn [m/s, rad/s;
+///     /s^2; /s^3]. Defaults: (0.25, 1), (1, 4), no bound on the jerk, which is that of all.
+/// duration : float, optional
+///     Slows the move down to end then (s).
+///
+/// Attributes
+/// ----------
+/// duration : float
+///     (s)
+///
+/// Raises
+/// ------
+/// DimensionError, NotFiniteError
+/// InvalidOptionError
+///     For ends outside limits, and spherical or free joints that have no straight way.
+#[pyclass(frozen, name = "JointMove", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyJointMove {
+    inner: JointMove,
+}
+
+#[pymethods]
+impl PyJointMove {
+    #[new]
+    #[pyo3(signature = (mechanism, q, to, speed = None, acceleration = None, jerk = None,
+        duration = None))]
+    fn new(
+        mechanism: PyRef<'_, PyMechanism>,
+        q: Numbers<'_>,
+        to: Numbers<'_>,
+        speed: Option<Numbers<'_>>,
+        acceleration: Option<Numbers<'_>>,
+        jerk: Option<Numbers<'_>>,
+        duration: Option<f64>,
+    ) -> Result<Self> {
+        let (length, angle) = bounds([&speed, &acceleration, &jerk], true)?;
+        let defaults = JointDefaults { length, angle };
+        let (q, to) = (q.vector("q")?, to.vector("to")?);
+        let mut inner = JointMove::within_limits(&mechanism.inner, q, to, &defaults)?;
+        if let Some(duration) = duration {
+            inner = inner.stretched_to(duration)?;
+        }
+        Ok(Self { inner })
+    }
+
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.inner.law().duration()
+    }
+
+    /// Positions and velocities at a time; at rest before 0 and after the duration.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, () or (N,)
+    ///     (s).
+    ///
+    /// Returns
+    /// -------
+    /// (ndarray, ndarray)
+    ///     q and qd, (n,) or (N, n).
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For a time that is NaN.
+    #[pyo3(signature = (t))]
+    fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<(Array<'py>, Array<'py>)> {
+        let (t, count) = times("t", &t)?;
+        let n = self.inner.path().dof();
+        let mut velocities = vec![0.0; n * t.len()];
+        let mut result = Ok(());
+        let q = arrays::written(py, count, &[n], |out| {
+            let rows = out.chunks_exact_mut(n.max(1)).zip(velocities.chunks_exact_mut(n.max(1)));
+            result = t.iter().zip(rows).try_for_each(|(t, (positions, velocities))| {
+                self.inner.sample_into(*t, JointSample { positions, velocities }).map(|_| ())
+            });
+        })?;
+        result?;
+        let qd = arrays::written(py, count, &[n], |out| out.copy_from_slice(&velocities))?;
+        Ok((q, qd))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<JointMove of {} s>", table::number(self.duration()))
+    }
+}

@@ -1,0 +1,179 @@
+//! The class `CartesianPath`.
+
+use cylindroid::Vec3;
+use cylindroid::control::{CartesianPath, Turn};
+use pyo3::prelude::*;
+
+use super::times;
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::table;
+
+/// A path of a frame in space, over s from 0 to 1; from `line`, `circle` or `turn`.
+///
+/// Attributes
+/// ----------
+/// length : float
+///     Of the path of the origin (m).
+/// angle : float
+///     Of the whole rotation (rad).
+/// radius : float
+///     Of the arc (m); infinite for a line.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import cylindroid as cy
+/// >>> start, end = np.eye(4), np.eye(4)
+/// >>> end[2, 3] = 0.5
+/// >>> cy.CartesianPath.line(start, end).pose(0.5)[:3, 3]
+/// array([0.  , 0.  , 0.25])
+#[pyclass(frozen, name = "CartesianPath", module = "cylindroid")]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PyCartesianPath {
+    pub(super) inner: CartesianPath,
+}
+
+#[pymethods]
+impl PyCartesianPath {
+    /// Along the straight line between two poses, turning about the constant axis by at most pi.
+    ///
+    /// Parameters
+    /// ----------
+    /// start, end : array_like, (4, 4)
+    ///     `world_from_tool` (m).
+    ///
+    /// Returns
+    /// -------
+    /// CartesianPath
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError, InvalidOptionError
+    #[staticmethod]
+    #[pyo3(signature = (start, end))]
+    fn line(start: Numbers<'_>, end: Numbers<'_>) -> Result<Self> {
+        Ok(Self { inner: CartesianPath::line(start.pose("start")?, end.pose("end")?)? })
+    }
+
+    /// Along the arc through a point.
+    ///
+    /// Parameters
+    /// ----------
+    /// start : array_like, (4, 4)
+    /// via : array_like, (3,)
+    ///     A point on the arc (m).
+    /// end : array_like, (4, 4)
+    ///
+    /// Returns
+    /// -------
+    /// CartesianPath
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError, InvalidOptionError
+    ///     Also for three points on one line.
+    #[staticmethod]
+    #[pyo3(signature = (start, via, end))]
+    fn circle(start: Numbers<'_>, via: Numbers<'_>, end: Numbers<'_>) -> Result<Self> {
+        let via = Vec3::from_array(via.entries("via")?);
+        Ok(Self { inner: CartesianPath::circle(start.pose("start")?, via, end.pose("end")?)? })
+    }
+
+    /// Along the arc of a turn about a fixed line, the orientation carried along.
+    ///
+    /// Parameters
+    /// ----------
+    /// start : array_like, (4, 4)
+    /// centre, axis : array_like, (3,)
+    ///     A point of the line (m) and its direction, world axes.
+    /// angle : float
+    ///     How far, right-handed; more than one turn is allowed (rad).
+    ///
+    /// Returns
+    /// -------
+    /// CartesianPath
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError, InvalidOptionError
+    #[staticmethod]
+    #[pyo3(signature = (start, centre, axis, angle))]
+    fn turn(
+        start: Numbers<'_>,
+        centre: Numbers<'_>,
+        axis: Numbers<'_>,
+        angle: f64,
+    ) -> Result<Self> {
+        let turn = Turn {
+            centre: Vec3::from_array(centre.entries("centre")?),
+            axis: Vec3::from_array(axis.entries("axis")?),
+            angle,
+        };
+        Ok(Self { inner: CartesianPath::turn(start.pose("start")?, turn)? })
+    }
+
+    #[getter]
+    fn length(&self) -> f64 {
+        self.inner.length()
+    }
+
+    #[getter]
+    fn angle(&self) -> f64 {
+        self.inner.angle()
+    }
+
+    #[getter]
+    fn radius(&self) -> f64 {
+        self.inner.radius()
+    }
+
+    /// The pose at s.
+    ///
+    /// Parameters
+    /// ----------
+    /// s : array_like, () or (N,)
+    ///     Clamped to [0, 1].
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (4, 4) or (N, 4, 4)
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For an s that is NaN.
+    #[pyo3(signature = (s))]
+    fn pose<'py>(&self, py: Python<'py>, s: Numbers<'py>) -> Result<Array<'py>> {
+        let (s, count) = times("s", &s)?;
+        arrays::written(py, count, &[4, 4], |out| {
+            for (s, out) in s.iter().zip(out.chunks_exact_mut(16)) {
+                arrays::put_pose(self.inner.pose(*s), out);
+            }
+        })
+    }
+
+    /// How far a measured pose is off this path.
+    ///
+    /// Parameters
+    /// ----------
+    /// pose : array_like, (4, 4)
+    ///
+    /// Returns
+    /// -------
+    /// (float, float, float)
+    ///     Distance to the path (m), angle to its orientation there (rad), and the nearest s.
+    #[pyo3(signature = (pose))]
+    fn deviation(&self, pose: Numbers<'_>) -> Result<(f64, f64, f64)> {
+        let d = self.inner.deviation(pose.pose("pose")?);
+        Ok((d.position, d.orientation, d.s))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<CartesianPath of {} m, {} rad>",
+            table::number(self.inner.length()),
+            table::number(self.inner.angle())
+        )
+    }
+}

@@ -1,0 +1,142 @@
+//! Whether the hyperbolic pseudoinverse of a screw system exists, and its projectors.
+
+use cylindroid::Error;
+use cylindroid::screws::Existence;
+use pyo3::prelude::*;
+
+use super::PyScrewSystem;
+use crate::arrays::{self, Array};
+use crate::error::Result;
+use crate::table;
+
+/// Whether a hyperbolic pseudoinverse exists, and how clearly.
+///
+/// Attributes
+/// ----------
+/// exists : bool
+/// margin, threshold : float
+///     Smallest singular value of the Gram matrix of the pitch form; at or below the threshold
+///     there is none.
+/// reason : str or None
+#[pyclass(frozen, get_all, name = "Existence", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyExistence {
+    exists: bool,
+    margin: f64,
+    threshold: f64,
+    reason: Option<String>,
+}
+
+impl From<Existence> for PyExistence {
+    fn from(e: Existence) -> Self {
+        let reason = e.reason.map(|r| r.to_string());
+        Self { exists: e.exists, margin: e.margin, threshold: e.threshold, reason }
+    }
+}
+
+#[pymethods]
+impl PyExistence {
+    fn __bool__(&self) -> bool {
+        self.exists
+    }
+
+    fn __repr__(&self) -> String {
+        match &self.reason {
+            None => format!("<exists, margin {}>", table::number(self.margin)),
+            Some(reason) => format!("<does not exist: {reason}>"),
+        }
+    }
+}
+
+fn check_pitch(h: f64) -> Result<()> {
+    if h.is_nan() {
+        return Err(Error::NotFinite { what: "pitch h".into(), value: h }.into());
+    }
+    Ok(())
+}
+
+#[pymethods]
+impl PyScrewSystem {
+    /// Whether the hyperbolic pseudoinverse of pitch h exists.
+    ///
+    /// Parameters
+    /// ----------
+    /// h : float
+    ///     [m/rad], or infinite for the limit.
+    ///
+    /// Returns
+    /// -------
+    /// Existence
+    #[pyo3(signature = (h))]
+    fn existence(&self, h: f64) -> Result<PyExistence> {
+        check_pitch(h)?;
+        Ok(self.inner.existence(h).into())
+    }
+
+    /// The projector on this system along its h-reciprocal one: no change of frame or unit alters
+    /// what it does.
+    ///
+    /// Parameters
+    /// ----------
+    /// h : float
+    ///     [m/rad], or infinite for the limit.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (6, 6), or None
+    ///     On twists, linear part first; None where `existence(h)` says that there is none. On
+    ///     wrenches `1 - P.T` keeps what does no work on the system.
+    #[pyo3(signature = (h))]
+    fn projector<'py>(&self, py: Python<'py>, h: f64) -> Result<Option<Array<'py>>> {
+        check_pitch(h)?;
+        self.inner.projector(h).map(|p| arrays::matrix(py, &p.matrix())).transpose()
+    }
+
+    /// The projector on this system along another; None where the two do not split the space.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : ScrewSystem
+    ///     Twists that may be given up.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (6, 6), or None
+    #[pyo3(signature = (other))]
+    fn projector_along<'py>(
+        &self,
+        py: Python<'py>,
+        other: PyRef<'_, Self>,
+    ) -> Result<Option<Array<'py>>> {
+        let projector = self.inner.projector_along(&other.inner);
+        projector.map(|p| arrays::matrix(py, &p.matrix())).transpose()
+    }
+
+    /// The largest factor by which the projector of pitch h enlarges a twist; infinite where there
+    /// is none.
+    ///
+    /// Parameters
+    /// ----------
+    /// h : float
+    ///
+    /// Returns
+    /// -------
+    /// float
+    #[pyo3(signature = (h))]
+    fn projector_norm(&self, h: f64) -> Result<f64> {
+        check_pitch(h)?;
+        Ok(self.inner.projector_norm(h))
+    }
+
+    /// The pitch at which the projector is smallest: advice for `h`.
+    ///
+    /// Returns
+    /// -------
+    /// (float or None, float)
+    ///     The pitch [m/rad], infinite where the limit is best, None where no pitch has an
+    ///     inverse; and the size of the projector there.
+    fn choose_pitch(&self, py: Python<'_>) -> (Option<f64>, f64) {
+        let choice = py.detach(|| self.inner.choose_pitch());
+        (choice.pitch, choice.norm)
+    }
+}

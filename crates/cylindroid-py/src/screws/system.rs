@@ -1,0 +1,309 @@
+//! The class `ScrewSystem`: class, frame, principal screws, sums and intersections.
+
+use cylindroid::screws::{self, ScrewSystem};
+use cylindroid::{Error, Twist};
+use pyo3::prelude::*;
+
+use super::{PyScrew, scale_of, screw_list};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::table::{self, Table};
+
+/// The subspace of twists that a set of twists spans, with its class, principal screws and frame.
+///
+/// Parameters
+/// ----------
+/// J : array_like, (6, m)
+///     Twists as columns, linear part first, of one frame.
+/// length : float, optional
+///     Characteristic length L (m): the reach of an arm. Default: 1.
+/// center : array_like, (3,), optional
+///     The point at which lengths are judged (m). Default: the one nearest to all axes.
+/// noise : float, optional
+///     Error of the twists relative to their size. Default: rounding.
+///
+/// Attributes
+/// ----------
+/// rank : int
+///     Order of the system, 0 to 6.
+/// gibson_hunt : str
+///     Its class: 'IA', 'IA1', 'IB0', ...; 'h' or 'inf' for orders 1 and 5, '0' and '6'; systems of
+///     order 4 and 5 carry the class of their reciprocal system.
+/// meaning : str
+///     What a system of this class consists of.
+/// principal_pitches : ndarray
+///     Pitches at which the hyperbolic pseudoinverse ceases to exist, largest first [m/rad].
+/// principal_screws : list of Screw
+/// canonical_pose : ndarray, (4, 4)
+///     The frame of the normal form, seen from the frame of the twists.
+/// pitches : ndarray
+///     Those of the normal form [m/rad].
+/// slope : float or None
+///     The p of classes IB, IB0 and IC.
+/// residual : float
+///     Sine of the angle between the system and its normal form.
+/// margins : list of Margin
+///     The quantities that the class hangs on.
+/// ambiguous : bool
+///     True if one of them lies so near to its threshold that the verdict is a matter of taste.
+/// basis : ndarray, (6, rank)
+///     Twists that span the system.
+/// gap, threshold : float
+///     Of the rank.
+/// length : float
+/// center : ndarray, (3,)
+/// tolerance : float
+///
+/// Raises
+/// ------
+/// DimensionError, NotFiniteError, InvalidOptionError
+///
+/// Notes
+/// -----
+/// Gibson and Hunt 1990; Donelan and Selig, Hyperbolic pseudoinverses.
+///
+/// Examples
+/// --------
+/// Two axes at right angles, 0.2 m apart: the cylindroid between pitches -0.1 and 0.1.
+///
+/// >>> import cylindroid as cy
+/// >>> system = cy.ScrewSystem([[0, 0], [0, 0], [0, -0.2], [0, 1], [0, 0], [1, 0]])
+/// >>> system.gibson_hunt
+/// 'IA'
+/// >>> system.principal_pitches.round(12)
+/// array([ 0.1, -0.1])
+#[pyclass(frozen, name = "ScrewSystem", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyScrewSystem {
+    pub(crate) inner: ScrewSystem,
+}
+
+/// A quantity that the class of a screw system hangs on.
+///
+/// Attributes
+/// ----------
+/// quantity : str
+/// value, threshold : float
+///     Without unit; at or below the threshold it counts as zero.
+#[pyclass(frozen, get_all, name = "Margin", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyMargin {
+    quantity: &'static str,
+    value: f64,
+    threshold: f64,
+}
+
+#[pymethods]
+impl PyMargin {
+    fn __repr__(&self) -> String {
+        let (value, threshold) = (table::number(self.value), table::number(self.threshold));
+        format!("Margin('{}', value={value}, threshold={threshold})", self.quantity)
+    }
+}
+
+#[pymethods]
+impl PyScrewSystem {
+    #[new]
+    #[pyo3(signature = (J, length = None, center = None, noise = None))]
+    #[expect(non_snake_case, reason = "the field's name")]
+    fn new(
+        J: Numbers<'_>,
+        length: Option<f64>,
+        center: Option<Numbers<'_>>,
+        noise: Option<f64>,
+    ) -> Result<Self> {
+        let options = scale_of(length, center.as_ref(), noise)?;
+        Ok(Self { inner: ScrewSystem::of_columns(&J.matrix("J")?, &options)? })
+    }
+
+    #[getter]
+    fn rank(&self) -> usize {
+        self.inner.order()
+    }
+
+    #[getter]
+    fn gap(&self) -> f64 {
+        self.inner.rank().gap
+    }
+
+    #[getter]
+    fn threshold(&self) -> f64 {
+        self.inner.rank().threshold
+    }
+
+    #[getter]
+    fn gibson_hunt(&self) -> &'static str {
+        self.inner.class().name()
+    }
+
+    #[getter]
+    fn meaning(&self) -> &'static str {
+        self.inner.class().meaning()
+    }
+
+    #[getter]
+    fn principal_pitches<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.principal_pitches())
+    }
+
+    #[getter]
+    fn principal_screws(&self) -> Vec<PyScrew> {
+        screw_list(self.inner.principal_screws())
+    }
+
+    #[getter]
+    fn canonical_pose<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::pose(py, self.inner.canonical_pose())
+    }
+
+    #[getter]
+    fn pitches<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.normal_form().pitches)
+    }
+
+    #[getter]
+    fn slope(&self) -> Option<f64> {
+        self.inner.normal_form().slope
+    }
+
+    #[getter]
+    fn residual(&self) -> f64 {
+        self.inner.residual()
+    }
+
+    #[getter]
+    fn margins(&self) -> Vec<PyMargin> {
+        let one = |m: &screws::Margin| PyMargin {
+            quantity: m.quantity,
+            value: m.value,
+            threshold: m.threshold,
+        };
+        self.inner.margins().iter().map(one).collect()
+    }
+
+    #[getter]
+    fn ambiguous(&self) -> bool {
+        self.inner.is_ambiguous()
+    }
+
+    #[getter]
+    fn basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::twists(py, &self.inner.basis())
+    }
+
+    #[getter]
+    fn length(&self) -> f64 {
+        self.inner.length()
+    }
+
+    #[getter]
+    fn center<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.center().to_array())
+    }
+
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.inner.tolerance()
+    }
+
+    /// The twists reciprocal to all of this system: what contacts along them do not hinder.
+    ///
+    /// Returns
+    /// -------
+    /// ScrewSystem
+    fn reciprocal(&self) -> Self {
+        Self { inner: self.inner.reciprocal() }
+    }
+
+    /// The twists reciprocal to all of this system in the form of pitch h.
+    ///
+    /// Parameters
+    /// ----------
+    /// h : float
+    ///     [m/rad]
+    ///
+    /// Returns
+    /// -------
+    /// ScrewSystem
+    #[pyo3(signature = (h))]
+    fn h_reciprocal(&self, h: f64) -> Result<Self> {
+        Error::check_finite("h", &[h])?;
+        Ok(Self { inner: self.inner.h_reciprocal(h) })
+    }
+
+    /// The sums of twists of both systems.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : ScrewSystem
+    ///
+    /// Returns
+    /// -------
+    /// ScrewSystem
+    #[pyo3(signature = (other))]
+    fn sum(&self, other: PyRef<'_, Self>) -> Self {
+        Self { inner: self.inner.sum(&other.inner) }
+    }
+
+    /// The twists that belong to both systems.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : ScrewSystem
+    ///
+    /// Returns
+    /// -------
+    /// ScrewSystem
+    #[pyo3(signature = (other))]
+    fn intersection(&self, other: PyRef<'_, Self>) -> Self {
+        Self { inner: self.inner.intersection(&other.inner) }
+    }
+
+    /// The sine of the angle by which a twist leaves the system.
+    ///
+    /// Parameters
+    /// ----------
+    /// twist : array_like, (6,)
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     Zero for a member, one for a twist across all of them.
+    #[pyo3(signature = (twist))]
+    fn sine_to(&self, twist: Numbers<'_>) -> Result<f64> {
+        let entries = twist.entries::<6>("twist")?;
+        Error::check_finite("twist", &entries)?;
+        Ok(self.inner.sine_to(Twist::from_array(entries)))
+    }
+
+    /// Whether a twist belongs to the system, to the tolerance of its class.
+    ///
+    /// Parameters
+    /// ----------
+    /// twist : array_like, (6,)
+    ///
+    /// Returns
+    /// -------
+    /// bool
+    #[pyo3(signature = (twist))]
+    fn contains(&self, twist: Numbers<'_>) -> Result<bool> {
+        Ok(self.sine_to(twist)? <= self.inner.tolerance())
+    }
+}
+
+table::shown!(PyScrewSystem);
+
+impl PyScrewSystem {
+    fn table(&self) -> Table {
+        let s = &self.inner;
+        let mut table = Table::new(&format!("ScrewSystem of order {}", s.order()));
+        let of = if matches!(s.order(), 4 | 5) { "reciprocal system: " } else { "" };
+        table.row("class", format!("{}, {of}{}", s.class(), s.class().meaning()));
+        table.row("principal pitches", table::list(&s.principal_pitches()));
+        table.row("origin", table::list(&s.canonical_pose().translation.to_array()));
+        if s.is_ambiguous() {
+            table.row("ambiguous", "a quantity lies near its threshold, see margins");
+        }
+        table
+    }
+}

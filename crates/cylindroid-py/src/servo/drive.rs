@@ -1,0 +1,109 @@
+//! Whole motions: a servo driving an ideal robot, and the search for a way round.
+
+use cylindroid::control::{Sample, Target, drive as drive_servo, find_posture};
+use cylindroid::{Error, Pose};
+use pyo3::prelude::*;
+
+use super::{PyOutcome, PyServo, PyTrajectory};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::motion::PyCartesianMove;
+
+/// Where a motion goes.
+enum Goal {
+    Pose(Pose),
+    Along(Box<cylindroid::control::CartesianMove>),
+}
+
+#[pymethods]
+impl PyServo {
+    /// Drives an ideal robot, which does as it is told, until the motion ends.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,)
+    ///     The start.
+    /// target : array_like, (4, 4), or CartesianMove
+    ///     A pose, or a motion of the target.
+    /// duration : float
+    ///     Longest time (s).
+    /// record : bool
+    ///     Whether to keep every step in `Outcome.trajectory`.
+    ///
+    /// Returns
+    /// -------
+    /// Outcome
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, InvalidOptionError
+    #[pyo3(signature = (q, target, duration = 60.0, record = false))]
+    fn drive(
+        &mut self,
+        py: Python<'_>,
+        q: Numbers<'_>,
+        target: Bound<'_, PyAny>,
+        duration: f64,
+        record: bool,
+    ) -> Result<PyOutcome> {
+        Error::check_positive("duration", duration)?;
+        let goal = match target.extract::<PyRef<'_, PyCartesianMove>>() {
+            Ok(motion) => Goal::Along(Box::new(motion.inner)),
+            Err(_) => Goal::Pose(target.extract::<Numbers<'_>>()?.pose("target")?),
+        };
+        let q = q.vector("q")?;
+        let servo = &mut self.inner;
+        servo.reset();
+        let (n, dt) = (servo.mechanism().n(), servo.options().dt);
+        let mut trajectory = record.then(|| PyTrajectory::of(n));
+        let outcome = py.detach(|| {
+            let observe = |sample: Sample<'_>| {
+                if let Some(trajectory) = &mut trajectory {
+                    trajectory.push(&sample);
+                }
+            };
+            let aim = |time: f64| match &goal {
+                Goal::Pose(pose) => (Target::from(*pose), true),
+                Goal::Along(motion) => (motion.target(time, dt), time >= motion.law().duration()),
+            };
+            drive_servo(servo, q, duration, aim, observe)
+        })?;
+        self.last = Some(outcome.last);
+        let trajectory = trajectory.map(|t| Py::new(py, t)).transpose()?;
+        let mechanism = self.inner.mechanism().clone();
+        Ok(PyOutcome { outcome, trajectory, mechanism })
+    }
+
+    /// A posture within the limits that reaches a target, where one can be found: a way round
+    /// where the servo, going straight at it, stalls.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,)
+    ///     Coordinates that do not move the frame keep these values.
+    /// target : array_like, (4, 4)
+    ///     `world_from_tool` (m).
+    /// runs : int
+    ///     Attempts at most.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (n,), or None
+    ///     None says that no run reached it: likely, not proved, that no posture does.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, InvalidOptionError
+    #[pyo3(signature = (q, target, runs = 200))]
+    fn find_posture<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        target: Numbers<'py>,
+        runs: usize,
+    ) -> Result<Option<Array<'py>>> {
+        let (q, target) = (q.vector("q")?, target.pose("target")?);
+        let found = py.detach(|| find_posture(&self.inner, q, target, runs))?;
+        Ok(found.map(|detour| arrays::vector(py, &detour.q)))
+    }
+}

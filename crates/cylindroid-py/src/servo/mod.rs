@@ -1,0 +1,296 @@
+//! The class `Servo`: Cartesian control, one step at a time or a whole motion.
+
+mod drive;
+mod outcome;
+mod stall;
+mod status;
+mod trajectory;
+
+use cylindroid::control::{Step, Target};
+use cylindroid::{Servo, ServoOptions, Twist};
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+use crate::inverse::MethodNumbers;
+use crate::mechanism::PyMechanism;
+use crate::options::{self, InverseChoice};
+
+pub(crate) use outcome::PyOutcome;
+pub(crate) use stall::PyStall;
+pub(crate) use trajectory::PyTrajectory;
+
+/// A Cartesian controller of one frame: from joint positions and a target pose to joint rates.
+///
+/// It never leaves a position, velocity or acceleration limit, stays bounded at singular poses,
+/// and says why it gets no nearer. Closed chains are driven at their reference through their
+/// driven joints.
+///
+/// Parameters
+/// ----------
+/// mechanism : Mechanism
+/// frame : str, optional
+///     What is driven. Default: the tool, or the reference of a closed chain.
+/// tool : array_like, (4, 4), optional
+///     `frame_from_tool`, a tool point fixed to the frame.
+/// gain : float or (float, float), optional
+///     Of position and orientation error [1/s]; gain * dt below 2. Default: 5.
+/// dt : float, optional
+///     Time between steps (s). Default: 0.001.
+/// tolerance_position, tolerance_orientation : float, optional
+///     Errors at which the target counts as reached (m, rad). Default: 1e-6.
+/// speed : float or (float, float), optional
+///     Largest speeds of the tool [m/s, rad/s]. Default: what the joints allow.
+/// acceleration : float, optional
+///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
+/// length : float, optional
+///     Characteristic length that scales linear rows (m). Default: the reach.
+/// joint_weights : array_like, (n,), optional
+///     A large weight keeps a joint still.
+/// secondary : str, list of str or dict of gains by name, optional
+///     What joints do where the tool does not care: 'posture', 'centring', 'limit-avoidance',
+///     'manipulability', or 'none'. Default: limit avoidance where there are more joints than task
+///     components.
+/// posture : array_like, (n,), optional
+///     Where 'posture' goes. Default: home.
+/// projector : str
+///     The null space they may use: 'exact' never disturbs the task, 'retained' also lets them
+///     through directions that the inverse cut.
+/// task : str, optional
+///     'pose', 'position', 'orientation', 'pointing' (position and direction of the tool's z axis),
+///     or components like 'x,y,rz'. Default: the pose, in the plane for planar closed chains.
+/// task_axes : str, optional
+///     'world' or 'local', the axes of the components.
+/// inverse : str
+///     How the Jacobian is inverted: 'truncated', 'damped', 'variable-damping',
+///     'numerical-filtering', 'selectively-damped', 'singular-value-filtering'; for arms that
+///     cannot do all of a motion 'hyperbolic' (h), 'hyperbolic-damped' (h, mu), 'hyperbolic-gram'
+///     (h, lam), 'oblique' (give_up).
+/// eps, damping, onset, filter, max_rate, shape, floor : float, optional
+///     Numbers of the inverse, see `inverse`.
+/// h, mu, lam : float, optional
+///     Pitch and dampings of the hyperbolic inverses [m/rad].
+/// give_up : list of str or array_like, (k, 6), optional
+///     Motions of the tool, in its axes, that may be given up: names like 'rz', or twists as rows.
+/// fallback : str, optional
+///     What takes over where that inverse does not exist. Default: none, the arm stops.
+///
+/// Attributes
+/// ----------
+/// status : str or None
+///     'moving', 'reached' or 'stalled' after the last step, None before the first.
+/// stall : Stall or None
+///     Why the last step got no nearer, where it stalled.
+/// position_error, orientation_error : float
+///     Before the last step, of the components that matter (m, rad).
+/// singular_ratio : float
+///     Smallest singular value of the scaled task Jacobian over the largest.
+/// rank : int
+///     Directions realised by at least half.
+/// rates : ndarray, (n,)
+///     Of the last step; in a closed chain driven and passive ones [rad/s or m/s].
+/// closing_rates : ndarray
+///     Of driven joints that close loops.
+/// active_limits : list of (str, str)
+///     Joints whose limit set a rate in the last step, and its kind.
+/// scale : float
+///     The share of the wanted motion that the limits left.
+/// bent : bool
+///     True if they did not leave its direction either.
+/// no_inverse : str or None
+///     Why the inverse that was asked for was not used in the last step.
+/// pose : ndarray, (4, 4)
+///     `world_from_tool` before the last step.
+/// frame : str
+/// dt : float
+///
+/// Raises
+/// ------
+/// UnknownNameError, InvalidOptionError, NotFiniteError, DimensionError
+///     For options that make no controller.
+/// ModelError
+///     Where no joint moves the frame, or the drives of a closed chain do not hold it.
+///
+/// Examples
+/// --------
+/// >>> import cylindroid as cy
+/// >>> robot = cy.load("panda")
+/// >>> servo, q = cy.Servo(robot, gain=10.0, dt=0.002), robot.home
+/// >>> target = robot.fk(q)
+/// >>> target[2, 3] -= 0.1
+/// >>> while servo.status not in ("reached", "stalled"):
+/// ...     qd = servo.step(q, target)
+/// ...     q = q + servo.dt * qd
+/// >>> servo.status, bool(abs(robot.fk(q) - target).max() < 1e-5)
+/// ('reached', True)
+#[pyclass(name = "Servo", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyServo {
+    inner: Servo,
+    last: Option<Step>,
+}
+
+impl PyServo {
+    /// What the last step did.
+    pub(crate) fn last(&self) -> Option<&Step> {
+        self.last.as_ref()
+    }
+}
+
+#[pymethods]
+impl PyServo {
+    #[new]
+    #[pyo3(signature = (mechanism, frame = None, gain = None, *, tool = None, dt = None,
+        tolerance_position = None, tolerance_orientation = None, speed = None,
+        acceleration = None, length = None, joint_weights = None, secondary = None,
+        posture = None, projector = "exact", task = None, task_axes = None,
+        inverse = "truncated", eps = None, damping = None, onset = None, filter = None,
+        max_rate = None, shape = None, floor = None, h = None, mu = None, lam = None,
+        give_up = None, fallback = None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn new(
+        mechanism: PyRef<'_, PyMechanism>,
+        frame: Option<&str>,
+        gain: Option<Numbers<'_>>,
+        tool: Option<Numbers<'_>>,
+        dt: Option<f64>,
+        tolerance_position: Option<f64>,
+        tolerance_orientation: Option<f64>,
+        speed: Option<Numbers<'_>>,
+        acceleration: Option<f64>,
+        length: Option<f64>,
+        joint_weights: Option<Numbers<'_>>,
+        secondary: Option<Bound<'_, PyAny>>,
+        posture: Option<Numbers<'_>>,
+        projector: &str,
+        task: Option<&str>,
+        task_axes: Option<&str>,
+        inverse: &str,
+        eps: Option<f64>,
+        damping: Option<f64>,
+        onset: Option<f64>,
+        filter: Option<f64>,
+        max_rate: Option<f64>,
+        shape: Option<f64>,
+        floor: Option<f64>,
+        h: Option<f64>,
+        mu: Option<f64>,
+        lam: Option<f64>,
+        give_up: Option<Bound<'_, PyAny>>,
+        fallback: Option<&str>,
+    ) -> Result<Self> {
+        let robot = &mechanism.inner;
+        let mut options = ServoOptions::new(robot);
+        if let Some(name) = frame {
+            options.end_effector.frame = robot.frame(name)?;
+        }
+        if let Some(tool) = &tool {
+            options.end_effector.frame_from_tool = tool.pose("tool")?;
+        }
+        if let Some(gain) = &gain {
+            options.gain = options::gain(gain)?;
+        }
+        if let Some(speed) = &speed {
+            options.speed = options::speed(speed)?;
+        }
+        let set = |to: &mut f64, value: Option<f64>| *to = value.unwrap_or(*to);
+        set(&mut options.dt, dt);
+        set(&mut options.tolerance.position, tolerance_position);
+        set(&mut options.tolerance.orientation, tolerance_orientation);
+        set(&mut options.acceleration, acceleration);
+        set(&mut options.length, length);
+        if let Some(weights) = &joint_weights {
+            options.joint_weights = weights.vector("joint_weights")?.to_vec();
+        }
+        options.projector = options::projector(projector)?;
+        options.task = options::task(robot, task, task_axes, options.task)?;
+        let give_up = give_up.map(|g| options::twists("give_up", &g)).transpose()?;
+        let numbers = MethodNumbers { eps, damping, onset, filter, max_rate, shape, floor };
+        InverseChoice { name: inverse, numbers, h, mu, lam, give_up, fallback }
+            .apply(&mut options)?;
+        let posture = mechanism.or_home("posture", posture.as_ref())?;
+        options.secondary = options::secondary(secondary.as_ref(), posture, robot, &options)?;
+        Ok(Self { inner: Servo::new(robot, options)?, last: None })
+    }
+
+    /// One step: the rates to command from now until the next step.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,)
+    ///     Where the joints are [rad or m].
+    /// target : array_like, (4, 4)
+    ///     `world_from_tool` as it should be (m).
+    /// secondary : array_like, (n,), optional
+    ///     Wanted joint rates, carried out as far as the task allows.
+    /// feed_forward : array_like, (6,), optional
+    ///     The twist of a moving target, linear first, world axes, at the tool [m/s, rad/s].
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (n,)
+    ///     Rates [rad/s or m/s].
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     The servo stays as it was.
+    /// InvalidOptionError
+    ///     For a target that is no pose, or open loops.
+    #[pyo3(signature = (q, target, secondary = None, feed_forward = None))]
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        target: Numbers<'py>,
+        secondary: Option<Numbers<'py>>,
+        feed_forward: Option<Numbers<'py>>,
+    ) -> Result<Array<'py>> {
+        let target = Target {
+            pose: target.pose("target")?,
+            feed_forward: match &feed_forward {
+                None => Twist::ZERO,
+                Some(twist) => twist.twist("feed_forward")?,
+            },
+        };
+        let wanted = match &secondary {
+            None => &[],
+            Some(wanted) => {
+                let wanted = wanted.vector("secondary")?;
+                self.inner.mechanism().check_q("secondary", wanted)?;
+                wanted
+            }
+        };
+        self.last = Some(self.inner.step_with(q.vector("q")?, target, wanted)?);
+        Ok(arrays::vector(py, self.inner.rates()))
+    }
+
+    /// `q` moved by the rates of the last step, for simulation.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,)
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (n,)
+    ///     After `dt` seconds; passive joints of a closed chain go where the loops are closed.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    #[pyo3(signature = (q))]
+    fn advance<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
+        let q = q.vector("q")?;
+        self.inner.mechanism().check_q("q", q)?;
+        let mut next = q.to_vec();
+        self.inner.advance(&mut next);
+        Ok(arrays::vector(py, &next))
+    }
+
+    /// Forgets the last rates and target: the joints stand still.
+    fn reset(&mut self) {
+        self.inner.reset();
+        self.last = None;
+    }
+}

@@ -1,0 +1,108 @@
+//! The class `Stall`: why a servo gets no nearer.
+
+use cylindroid::Mechanism;
+use cylindroid::control::Stall;
+use pyo3::prelude::*;
+
+use crate::arrays::{self, Array};
+use crate::table;
+
+/// Why a servo gets no nearer to its target.
+///
+/// Attributes
+/// ----------
+/// name : str
+///     'out-of-reach', 'limits', 'singular', 'too-few-joints', 'no-inverse', 'given-up',
+///     'uncontrolled' or 'slow'.
+/// message : str
+///     What it means, with the numbers.
+/// joints : list of str
+///     The joints that stand at their limits.
+/// direction : ndarray or None
+///     The remaining error (or the motion that escapes) as a unit vector in the task.
+/// distance, length : float or None
+///     Out of reach: from the first joint to the target, and the stretched chain from there (m).
+#[pyclass(frozen, name = "Stall", module = "cylindroid")]
+#[derive(Debug, Clone)]
+pub(crate) struct PyStall {
+    #[pyo3(get)]
+    pub(super) name: &'static str,
+    #[pyo3(get)]
+    pub(super) message: String,
+    #[pyo3(get)]
+    joints: Vec<String>,
+    direction: Option<Vec<f64>>,
+    #[pyo3(get)]
+    distance: Option<f64>,
+    #[pyo3(get)]
+    length: Option<f64>,
+}
+
+#[pymethods]
+impl PyStall {
+    #[getter]
+    fn direction<'py>(&self, py: Python<'py>) -> Option<Array<'py>> {
+        self.direction.as_ref().map(|d| arrays::vector(py, d))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Stall('{}': {})", self.name, self.message)
+    }
+}
+
+impl PyStall {
+    pub(super) fn new(stall: &Stall, mechanism: &Mechanism) -> Self {
+        let mut new = Self {
+            name: stall.name(),
+            message: String::new(),
+            joints: Vec::new(),
+            direction: None,
+            distance: None,
+            length: None,
+        };
+        let number = table::number;
+        new.message = match stall {
+            Stall::OutOfReach { distance, length } => {
+                (new.distance, new.length) = (Some(*distance), Some(*length));
+                format!(
+                    "the target is {} m from the first joint, the stretched arm {} m long",
+                    number(*distance),
+                    number(*length)
+                )
+            }
+            Stall::Limits { coordinates } => {
+                let name = |i: &usize| mechanism.coordinates()[*i].name.clone();
+                new.joints = coordinates.iter().map(name).collect();
+                format!("at the limit of {}", new.joints.join(", "))
+            }
+            Stall::Singular { ratio, direction } => {
+                new.direction = Some(direction.clone());
+                format!(
+                    "a singular pose: smallest singular value {} of the largest",
+                    number(*ratio)
+                )
+            }
+            Stall::TooFewJoints { rank, task, direction } => {
+                new.direction = Some(direction.clone());
+                format!("{rank} independent motions for a task of {task} components")
+            }
+            Stall::NoInverse(reason) => format!("the inverse does not exist here: {reason}"),
+            Stall::GivenUp { direction } => {
+                new.direction = Some(direction.clone());
+                "what remains is what the inverse gives up, although the arm could lessen it".into()
+            }
+            Stall::Uncontrolled { share, direction } => {
+                new.direction = Some(direction.clone());
+                format!(
+                    "a motion is about to escape the drives (type II singularity): {} of it is \
+                     still theirs",
+                    number(*share)
+                )
+            }
+            Stall::Slow => "no progress for a second, with neither limits nor a singular pose: \
+                            less damping, a higher gain or speed"
+                .into(),
+        };
+        new
+    }
+}
