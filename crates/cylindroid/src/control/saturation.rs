@@ -263,18 +263,7 @@ impl Saturator {
 /// `out = V diag(gains) U^T x`
 pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], out: &mut [f64]) {
     method.gains(svd, x, gains);
-    apply(svd, gains, x, out);
-}
-
-/// `out = V diag(gains) U^T x` for gains that are known.
-pub(super) fn apply(svd: &Svd, gains: &[f64], x: &[f64], out: &mut [f64]) {
-    out.fill(0.0);
-    for (i, gain) in gains.iter().enumerate() {
-        let along = dot(svd.u(i), x);
-        for (o, v) in out.iter_mut().zip(svd.v(i)) {
-            *o += gain * along * v;
-        }
-    }
+    svd.apply_gains_into(x, |i, _| gains[i], out);
 }
 
 /// Where `a + s b` keeps the bounds.

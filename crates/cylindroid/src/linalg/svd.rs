@@ -212,11 +212,22 @@ impl Svd {
     /// `V diag(gain) U^T b`, n entries; `gain` of the place and size of each singular value.
     pub(crate) fn apply_gains(&self, b: &[f64], gain: impl Fn(usize, f64) -> f64) -> Vec<f64> {
         let mut x = vec![0.0; self.cols];
+        self.apply_gains_into(b, gain, &mut x);
+        x
+    }
+
+    /// [`Svd::apply_gains`] without allocation.
+    pub(crate) fn apply_gains_into(
+        &self,
+        b: &[f64],
+        gain: impl Fn(usize, f64) -> f64,
+        x: &mut [f64],
+    ) {
+        x.fill(0.0);
         for i in 0..self.len() {
             let along = gain(i, self.value(i)) * super::vector::dot(self.u(i), b);
             x.iter_mut().zip(self.v(i)).for_each(|(x, v)| *x += along * v);
         }
-        x
     }
 
     /// The least x that is nearest to solving `A x = b` in the first `rank` directions.

@@ -14,7 +14,7 @@ use super::super::limits::{LimitKind, RateBounds};
 use super::super::saturation::{LEAST_SCALE, Saturation, Span, interval, solve};
 use super::Coupled;
 use crate::inverse::{Method, is_kept};
-use crate::linalg::{Matrix, RowSpace, Svd, dot, norm};
+use crate::linalg::{Matrix, RowSpace, Svd, norm};
 use crate::tolerance::HELD_ROWS;
 
 /// The task in y, and what holds for the rates.
@@ -201,11 +201,7 @@ impl Coupled {
         let rank = svd.rank(HELD_ROWS).rank;
         let asked: Vec<f64> =
             held.rows.iter().map(|&(i, rate)| rate - self.correction[i]).collect();
-        let mut y = vec![0.0; self.drives];
-        for i in 0..rank {
-            let along = dot(svd.u(i), &asked);
-            y.iter_mut().zip(svd.v(i)).for_each(|(y, v)| *y += along / svd.value(i) * v);
-        }
+        let y = svd.solve(&asked, rank);
         let kept = rows.mul_vec(&y);
         let off = kept.iter().zip(&asked).map(|(k, a)| (k - a).abs()).fold(0.0, f64::max);
         if off > HELD_ROWS * (1.0 + norm(&asked)) {

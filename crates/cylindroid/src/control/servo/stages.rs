@@ -4,7 +4,7 @@ use super::super::approach;
 use super::super::coupled::CoupledProblem;
 use super::super::limits::{LimitKind, Motion1, RateBounds};
 use super::super::options::Projector;
-use super::super::saturation::{Problem, RELEASE, Saturation, apply, solve};
+use super::super::saturation::{Problem, RELEASE, Saturation, solve};
 use super::super::stall::Effort;
 use super::super::step::Wanted;
 use super::Servo;
@@ -32,10 +32,10 @@ impl Servo {
                 let way = |(w, rate): (&mut f64, &f64)| *w = rate / gain.position;
                 self.wish.iter_mut().zip(&self.primary).for_each(way);
             } else if let Some(coupled) = &mut self.coupled {
-                apply(&self.svd, &self.gains, &self.possible, &mut coupled.wish);
+                self.svd.apply_gains_into(&self.possible, |i, _| self.gains[i], &mut coupled.wish);
                 coupled.lift(&coupled.wish, &mut self.wish);
             } else {
-                apply(&self.svd, &self.gains, &self.possible, &mut self.wish);
+                self.svd.apply_gains_into(&self.possible, |i, _| self.gains[i], &mut self.wish);
             }
             let dt = self.options.dt;
             let share =
