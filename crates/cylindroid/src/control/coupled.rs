@@ -227,8 +227,7 @@ pub(super) fn not_assembled(mechanism: &Mechanism) -> Error {
 
 /// The error of drives that leave the object a motion in every posture.
 pub(super) fn not_steered(mechanism: &Mechanism, escape: &Escape, task: Task) -> Error {
-    const NAMES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
-    let names = NAMES.iter().zip(task.components).filter(|(_, on)| *on);
+    let names = Task::COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
     let parts = names.zip(&escape.direction).filter(|(_, share)| share.abs() > 0.1);
     let parts: Vec<String> = parts.map(|((name, _), share)| format!("{share:.2} {name}")).collect();
     Error::Model {

@@ -13,6 +13,7 @@ use serde::Serialize;
 use crate::args::GraspArgs;
 use crate::commands::{Style, configuration};
 use crate::output::{self, Align, number};
+use crate::values::components;
 
 /// Exit code of a grasp that is open.
 const OPEN: u8 = 1;
@@ -101,11 +102,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         closed: quality.closed,
         epsilon: BoundsJson { lower: quality.epsilon.0, upper: quality.epsilon.1 },
         effort: word,
-        components: if space.planar {
-            &["x", "y", "rz"]
-        } else {
-            &["x", "y", "z", "rx", "ry", "rz"]
-        },
+        components: components(if space.planar { 3 } else { 6 }),
         weakest: &quality.weakest,
         length: space.length,
         contacts: contacts.collect(),

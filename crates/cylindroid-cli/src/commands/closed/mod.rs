@@ -16,6 +16,7 @@ use serde::Serialize;
 use super::configuration;
 use crate::args::ClosedArgs;
 use crate::output::{self, number};
+use crate::values::components;
 
 /// A mechanism, its configuration and its constraint there.
 struct Posed {
@@ -56,10 +57,7 @@ impl Posed {
 
     /// Names of the components of the reference's twist.
     fn components(&self) -> &'static [&'static str] {
-        match self.chain.constraint.object() {
-            3 => &["x", "y", "rz"],
-            _ => &["x", "y", "z", "rx", "ry", "rz"],
-        }
+        components(self.chain.constraint.object())
     }
 
     /// The lines that say what is looked at.

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use cylindroid::closure::Gap;
-use cylindroid::control::Outcome;
+use cylindroid::control::{Outcome, Task};
 use serde::Serialize;
 
 use super::job::{Goal, Job};
@@ -11,7 +11,6 @@ use super::{inverse, sentences};
 use crate::commands::Style;
 use crate::commands::closed::GapJson;
 use crate::output::{self, PoseJson};
-use crate::values::COMPONENTS;
 
 /// What came of a job.
 #[derive(Debug)]
@@ -145,7 +144,7 @@ pub(super) fn write(
 fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
     let Result { outcome, deviation, gap, way } = result;
     let (robot, options) = (&job.robot, &job.options);
-    let names = COMPONENTS.iter().zip(options.task.components).filter(|(_, on)| *on);
+    let names = Task::COMPONENTS.iter().zip(options.task.components).filter(|(_, on)| *on);
     MoveJson {
         model: robot.name(),
         frame: &job.frame,
