@@ -20,7 +20,6 @@ use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::{Matrix, Svd, dot};
 use crate::model::Mechanism;
-use crate::tolerance::CLOSED;
 
 /// Steps at most: a dozen suffice where there is an assembly near.
 const MOST_STEPS: usize = 200;
@@ -142,7 +141,7 @@ impl Closing {
     }
 
     pub(super) fn is_closed(&self, length: f64) -> bool {
-        self.gap.distance <= CLOSED * length && self.gap.angle <= CLOSED
+        self.gap.is_closed(length)
     }
 
     /// The configuration after a damped step, within the position limits: coordinates at a limit

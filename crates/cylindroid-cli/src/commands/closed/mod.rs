@@ -63,7 +63,7 @@ impl Posed {
     /// The lines that say what is looked at.
     fn heading(&self) -> Vec<(&'static str, String)> {
         let gap = self.chain.gap;
-        let open = gap.distance > 1e-9 || gap.angle > 1e-9;
+        let open = !gap.is_closed(self.chain.constraint.length());
         vec![
             ("model", self.mechanism.name().to_owned()),
             ("reference frame", self.frame().to_owned()),
