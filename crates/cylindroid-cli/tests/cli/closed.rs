@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{cylindroid, difference, json, numbers, text};
+use crate::{cylindroid, difference, json, numbers, refused, text};
 
 #[test]
 fn mobility_counts() {
@@ -144,11 +144,6 @@ fn coordinates_go_where_they_are_sent() {
 
 #[test]
 fn bad_requests() {
-    let refused = |arguments: &[&str]| {
-        let output = cylindroid(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        String::from_utf8_lossy(&output.stderr).into_owned()
-    };
     assert!(refused(&["mobility", "five-bar", "--actuated", "q9"]).contains("q1, q2"));
     assert!(refused(&["mobility", "five-bar", "--frame", "x"]).contains("frame"));
     assert!(refused(&["mobility", "five-bar", "--length", "0"]).contains("length"));

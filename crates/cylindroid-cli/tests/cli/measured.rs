@@ -2,18 +2,12 @@
 
 use std::fs;
 
-use crate::{cylindroid, difference, json, numbers, text};
+use crate::{difference, json, numbers, refused, text};
 
 const FIVE_BAR: [&str; 4] = ["manipulability", "five-bar", "--actuated", "q1,q5"];
 
 fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
     [&FIVE_BAR[..], more].concat()
-}
-
-fn refused(arguments: &[&str]) -> String {
-    let output = cylindroid(arguments);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// Redundancy adds a zero where rates are given, structure an infinite one where a wrench is.

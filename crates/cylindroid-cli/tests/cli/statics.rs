@@ -2,15 +2,9 @@
 
 use std::fs;
 
-use crate::{cylindroid, difference, json, numbers, text};
+use crate::{cylindroid, difference, json, numbers, refused, text};
 
 const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
-
-fn refused(arguments: &[&str]) -> String {
-    let output = cylindroid(arguments);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 /// tau = -J^T w.
 #[test]
