@@ -73,10 +73,12 @@ pub(crate) struct AssembleArgs {
     /// Look for all ways in which the loops close, from this many starts: the guess, then random
     /// ones within limits. Some may be missed; how often each was found is printed
     #[arg(long, value_name = "STARTS", conflicts_with = "to")]
+    #[arg(allow_negative_numbers = true)]
     pub(crate) modes: Option<usize>,
 
     /// Other random starts for --modes
     #[arg(long, value_name = "N", default_value_t = 0, requires = "modes")]
+    #[arg(allow_negative_numbers = true)]
     pub(crate) seed: u64,
 
     /// Move these coordinates from --q (assembled) to these values [rad or m], those of --hold at

@@ -44,6 +44,11 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
     }
 }
 
+/// Exit code of a yes (0) or a no (1).
+fn answer(yes: bool) -> ExitCode {
+    ExitCode::from(u8::from(!yes))
+}
+
 /// The configuration that is meant, of the right size and finite.
 fn configuration(robot: &Mechanism, args: &PostureArgs) -> cylindroid::Result<Vec<f64>> {
     let q = args.q.configuration(robot, args.degrees)?;

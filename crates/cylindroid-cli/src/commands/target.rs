@@ -6,6 +6,7 @@ use cylindroid::spatial::{Quaternion, Rpy};
 use cylindroid::{Error, Pose, Reference, Result, Rotation, Vec3};
 
 use crate::args::{TargetArgs, TaskAxes};
+use crate::output::number;
 
 /// The task, and what is driven in words.
 pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String)> {
@@ -47,8 +48,26 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
     Ok((task, driven))
 }
 
-/// What is given of the target, the rest as at the start.
-pub(super) fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> anyhow::Result<Pose> {
+/// Lines of a table with the errors of position and orientation, where they matter.
+pub(super) fn errors(task: Task, position: f64, orientation: f64) -> [(&'static str, String); 2] {
+    let (linear, angular) = task.components.split_at(3);
+    let driven = |components: &[bool], value: f64| {
+        if components.contains(&true) { number(value) } else { "not driven".to_owned() }
+    };
+    [
+        ("position error [m]", driven(linear, position)),
+        ("orientation error [rad]", driven(angular, orientation)),
+    ]
+}
+
+/// What is given of the target, the rest as at the start; where nothing is, the error has the
+/// `other` ways to say where.
+pub(super) fn target_pose(
+    args: &TargetArgs,
+    from: Pose,
+    degrees: bool,
+    other: &str,
+) -> anyhow::Result<Pose> {
     let si = |x: f64| if degrees { x.to_radians() } else { x };
     let mut pose = from;
     let mut given = false;
@@ -78,7 +97,7 @@ pub(super) fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> anyho
         return Ok(pose);
     }
     anyhow::bail!(
-        "no target: say where to move with --to x,y,z, with an orientation (--rpy, --quaternion, \
-         --rotation-vector) or with --joint-to q"
+        "no target: say where with --to x,y,z, or with an orientation (--rpy, --quaternion, \
+         --rotation-vector){other}"
     )
 }

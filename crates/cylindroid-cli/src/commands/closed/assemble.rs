@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::GapJson;
 use crate::args::AssembleArgs;
-use crate::commands::{Style, configuration};
+use crate::commands::{Style, answer, configuration};
 use crate::output::{self, Align, number};
 use crate::values::Joints;
 
@@ -32,9 +32,6 @@ struct AssembleJson<'a> {
     /// Coordinates that stand at a position limit.
     at_limit: Vec<&'a str>,
 }
-
-/// Exit code of loops that do not close.
-const NOT_CLOSED: u8 = 1;
 
 /// What is asked for: a mechanism, a guess, the coordinates that keep their values.
 struct Job<'a> {
@@ -85,7 +82,7 @@ pub(crate) fn run(
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &mechanism, &found, &report)?,
     }
-    Ok(if found.closed { ExitCode::SUCCESS } else { ExitCode::from(NOT_CLOSED) })
+    Ok(answer(found.closed))
 }
 
 /// The places of coordinates by their names, by those of their joints, or `driven`.
@@ -125,6 +122,7 @@ fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<follow::Goal, Error
     };
     // What is not named stays as guessed.
     let target = to.configuration(job.mechanism, degrees)?;
+    job.mechanism.check_q("--to", &target)?;
     let mut goal = follow::Goal { places: Vec::new(), values: Vec::new() };
     for (name, _) in pairs {
         let place = job.names.iter().position(|n| n == name);

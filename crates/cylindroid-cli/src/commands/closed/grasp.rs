@@ -11,12 +11,9 @@ use cylindroid::{Error, FrameId, Result};
 use serde::Serialize;
 
 use crate::args::GraspArgs;
-use crate::commands::{Style, configuration};
+use crate::commands::{Style, answer, configuration};
 use crate::output::{self, Align, number};
 use crate::values::components;
-
-/// Exit code of a grasp that is open.
-const OPEN: u8 = 1;
 
 #[derive(Debug, Serialize)]
 struct GraspJson<'a> {
@@ -111,7 +108,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &report, &quality)?,
     }
-    Ok(if quality.closed { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
+    Ok(answer(quality.closed))
 }
 
 /// The contacts on the object; an error where there are none.

@@ -24,6 +24,12 @@ impl Task {
         let d = components.len();
         if let Some(path) = &args.task_map {
             let map = number_file::matrix(path, d)?;
+            if map.rows() == 0 {
+                return Err(number_file::cannot_read(
+                    path,
+                    "it has no rows; a task has one at least",
+                ));
+            }
             let names = (1..=map.rows()).map(|i| format!("task {i}")).collect();
             return Ok(Some(Self { names, map }));
         }

@@ -53,7 +53,7 @@ impl Job {
         let loaded = cylindroid::load(&args.posture.model)?;
         let robot = match args.actuated.as_slice() {
             [] => loaded,
-            names => loaded.with_actuated(names)?,
+            names => only_loops(loaded)?.with_actuated(names)?,
         };
         let degrees = args.posture.degrees;
         let start = configuration(&robot, &args.posture)?;
@@ -88,7 +88,7 @@ impl Job {
             let motion = Box::new(JointMove::within_limits(&robot, &start, &q, &defaults)?);
             (pose(&q)?, Goal::Joints(motion), "all joints, straight".to_owned())
         } else {
-            let to = target_pose(&args.target, from, degrees)?;
+            let to = target_pose(&args.target, from, degrees, ", or with --joint-to q")?;
             let path = path(&args.path, from, to)?;
             let goal = match path {
                 None => Goal::Pose(to),
@@ -116,6 +116,21 @@ impl Job {
             defaults,
         })
     }
+}
+
+/// Joints of trees are all driven.
+fn only_loops(robot: Mechanism) -> Result<Mechanism> {
+    if robot.is_closed() {
+        return Ok(robot);
+    }
+    Err(Error::InvalidOption {
+        option: "--actuated",
+        value: robot.name().to_owned(),
+        reason: format!(
+            "'{}' has no loops or contacts, so all joints are driven; leave the option out",
+            robot.name()
+        ),
+    })
 }
 
 /// Joints of loops cannot all move straight.
