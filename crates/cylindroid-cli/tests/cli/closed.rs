@@ -246,7 +246,7 @@ fn strange_mechanisms() {
 }
 
 /// The robot files that `cargo xtask setup` fetches.
-fn robots() -> PathBuf {
+pub(crate) fn robots() -> PathBuf {
     let fetched = "../../target/test-data/models/cmeel.prefix/share/example-robot-data/robots";
     let folder = std::env::var_os("CYLINDROID_TEST_ROBOTS")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(fetched), PathBuf::from);

@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod closed;
+mod documents;
 mod ik;
 mod measured;
 mod motion;
