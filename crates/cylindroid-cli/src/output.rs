@@ -178,7 +178,12 @@ pub(crate) fn pose_cells(pose: Pose) -> Vec<String> {
 /// [`number`] for entries of poses and matrices, whose size is of the order of 1: rounding is
 /// shown as 0 (JSON has it).
 fn quiet(x: f64) -> String {
-    number(if x.abs() < ROUNDING { 0.0 } else { x })
+    number(without_rounding(x))
+}
+
+/// Zero for what is rounding beside numbers of the order of 1.
+pub(crate) fn without_rounding(x: f64) -> f64 {
+    if x.abs() < ROUNDING { 0.0 } else { x }
 }
 
 /// Entries below this are rounding [m, rad].

@@ -17,7 +17,13 @@ fn mobility_counts() {
         assert_eq!(five_bar[key], count, "{key}");
     }
     assert!(five_bar["gap"]["distance"].as_f64().unwrap() < 1e-12);
-    assert!(text(&["mobility", "two-arm"]).contains("torques of driven joints that balance"));
+    // Two arms of seven joints: one elbow each, and all they can do to each other.
+    let table = text(&["mobility", "two-arm"]);
+    let count = |kind: &str| {
+        let row = table.lines().find_map(|l| l.strip_prefix(kind)).unwrap();
+        row.split_whitespace().next().unwrap().to_owned()
+    };
+    assert_eq!((count("redundancy"), count("internal")), ("2".to_owned(), "6".to_owned()));
     // Opened by hand: said, not hidden.
     let open = text(&["mobility", "five-bar", "--q", "0.3,0,0,0"]);
     assert!(open.contains("loops are open by"), "{open}");
@@ -52,6 +58,7 @@ fn loops_are_closed_from_a_guess() {
     // The line q is an argument of other commands.
     let text = text(&command);
     let q = text.lines().find_map(|l| l.strip_prefix("q ")).unwrap().trim().to_owned();
+    assert!(text.contains("closed: 1 loop and 0 contacts"), "{text}");
     let mobility = json(&["mobility", "five-bar", "--q", &q], 0);
     assert!(mobility["gap"]["distance"].as_f64().unwrap() < 1e-9);
     // Too far apart: a negative answer.
@@ -106,6 +113,8 @@ fn modes_are_listed() {
     assert!(none["closed"] == false && none["guess_gap"]["distance"].as_f64().unwrap() > 0.1);
     let table = text(&["assemble", "five-bar", "--hold", "q1,q2", "--modes", "20"]);
     assert!(table.contains("2 modes from 20") && table.contains("q of mode 2"), "{table}");
+    // Rounding is not spelt out.
+    assert!(table.contains("q of mode 1  0,0,0,0"), "{table}");
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn open_by(gap: Gap) -> String {
 
 /// An argument for `--q`, in full.
 fn q_line(q: &[f64]) -> String {
-    q.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+    q.iter().map(|x| output::without_rounding(*x).to_string()).collect::<Vec<_>>().join(",")
 }
 
 fn print(
@@ -155,7 +155,8 @@ fn print(
     let (loops, contacts) = (mechanism.loops().len(), mechanism.contacts().len());
     let gap = open_by(found.gap);
     let result = if found.closed {
-        format!("closed: {loops} loops and {contacts} contacts to {gap}")
+        let s = |n: usize| if n == 1 { "" } else { "s" };
+        format!("closed: {loops} loop{} and {contacts} contact{} to {gap}", s(loops), s(contacts))
     } else {
         format!(
             "not closed: open by {gap} where the search ended; try another guess (--q), or hold \
