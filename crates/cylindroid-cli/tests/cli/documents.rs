@@ -12,20 +12,15 @@ use crate::text;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
-const COMMANDS: [&str; 12] = [
-    "models",
-    "info",
-    "fk",
-    "jacobian",
-    "ik",
-    "move",
-    "screws",
-    "assemble",
-    "mobility",
-    "manipulability",
-    "statics",
-    "grasp",
-];
+/// All commands, as the help lists them.
+fn commands() -> Vec<String> {
+    let help = text(&["--help"]);
+    let list = help.split("\nCommands:\n").nth(1).and_then(|rest| rest.split("\n\n").next());
+    let entries = list.unwrap().lines().filter_map(|line| line.strip_prefix("  "));
+    let names =
+        entries.filter(|entry| !entry.starts_with(' ')).map(|entry| entry.split(' ').next());
+    names.flatten().filter(|name| *name != "help").map(str::to_owned).collect()
+}
 
 fn document(name: &str) -> String {
     fs::read_to_string(Path::new(ROOT).join(name)).unwrap()
@@ -33,14 +28,15 @@ fn document(name: &str) -> String {
 
 /// What a reader would type: lines and code of a text that begin with the binary or its `cargo
 /// run`, without what is said beside them.
-fn examples(document: &str) -> Vec<String> {
+fn examples(document: &str, commands: &[String]) -> Vec<String> {
     let lines = document.lines().chain(document.split('`'));
     let typed = lines.filter_map(|line| {
         let line = line.trim();
         let command = line
             .strip_prefix("cylindroid ")
             .or_else(|| line.strip_prefix("cargo run --release -- "))?;
-        let alone = !command.contains('\n') && COMMANDS.contains(&command.split(' ').next()?);
+        let is_command = commands.iter().any(|name| command.split(' ').next() == Some(name));
+        let alone = is_command && !command.contains('\n');
         alone.then(|| command.split("  ").next().unwrap_or(command).to_owned())
     });
     typed.collect::<BTreeSet<_>>().into_iter().collect()
@@ -56,10 +52,14 @@ fn examples_run_as_they_stand() {
     fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
     let urdf = robots().join("ur_description/urdf/ur5_robot.urdf");
     let mut pages = vec![document("README.md"), text(&["--help"])];
-    pages.extend(COMMANDS.map(|command| text(&[command, "--help"])));
-    let counts: Vec<usize> = pages.iter().map(|page| examples(page).len()).collect();
-    assert!(counts[0] > 15 && counts[1] > 3 && counts[6..].iter().all(|n| *n > 1), "{counts:?}");
-    for example in pages.iter().flat_map(|page| examples(page)) {
+    let commands = commands();
+    pages.extend(commands.iter().map(|command| text(&[command, "--help"])));
+    let found: Vec<Vec<String>> = pages.iter().map(|page| examples(page, &commands)).collect();
+    let counts: Vec<usize> = found.iter().map(Vec::len).collect();
+    // The first four commands speak for themselves.
+    let all = counts[6..].iter().all(|n| *n > 1);
+    assert!(commands.len() > 11 && counts[0] > 15 && counts[1] > 3 && all, "{counts:?}");
+    for example in found.iter().flatten() {
         let words = example.replace("path/to/ur5_robot.urdf", &urdf.to_string_lossy());
         let output = Command::new(env!("CARGO_BIN_EXE_cylindroid"))
             .args(words.split(' '))
@@ -151,8 +151,8 @@ fn json_has_the_keys_of_its_page() {
     let page = document("docs/json.md");
     let sections: Vec<&str> = page.split("\n## ").collect();
     let anywhere = coded(&page);
-    for command in COMMANDS {
-        let section = sections.iter().find(|s| s.lines().next() == Some(command));
+    for command in &commands() {
+        let section = sections.iter().find(|s| s.lines().next() == Some(command.as_str()));
         let section = section.unwrap_or_else(|| panic!("no section on {command}"));
         let named = coded(section);
         let rows = section.lines().filter(|l| l.starts_with("| `"));
@@ -160,7 +160,8 @@ fn json_has_the_keys_of_its_page() {
             rows.flat_map(|row| coded(row.split('|').nth(1).unwrap_or_default())).collect();
         let mut printed = BTreeSet::new();
         for arguments in printing(command) {
-            let output = crate::cylindroid(&[&[command][..], &arguments, &["--json"]].concat());
+            let output =
+                crate::cylindroid(&[&[command.as_str()][..], &arguments, &["--json"]].concat());
             let value: Value = serde_json::from_slice(&output.stdout).unwrap();
             let mut inner = BTreeSet::new();
             keys(&value, &mut inner);
