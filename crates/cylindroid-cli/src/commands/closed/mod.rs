@@ -13,7 +13,7 @@ use cylindroid::model::Mechanism;
 use cylindroid::{Error, Result, State};
 use serde::Serialize;
 
-use super::configuration;
+use super::{configuration, load};
 use crate::args::ClosedArgs;
 use crate::output::{self, number};
 use crate::values::components;
@@ -27,11 +27,7 @@ struct Posed {
 
 impl Posed {
     fn new(args: &ClosedArgs) -> Result<Self> {
-        let loaded = cylindroid::load(&args.posture.model)?;
-        let mechanism = match args.actuated.as_slice() {
-            [] => loaded,
-            names => loaded.with_actuated(names)?,
-        };
+        let mechanism = load(&args.posture.model, &args.actuated)?;
         let q = configuration(&mechanism, &args.posture)?;
         let frame = args.frame.as_deref().map(|name| mechanism.frame(name)).transpose()?;
         if let Some(length) = args.length {

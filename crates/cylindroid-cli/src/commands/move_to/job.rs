@@ -9,7 +9,7 @@ use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
 use super::super::target::{target_pose, task};
-use super::super::{configuration, end_effector};
+use super::super::{configuration, end_effector, load};
 use super::{inverse, joints};
 use crate::args::{LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs};
 use crate::values::Named;
@@ -50,11 +50,10 @@ pub(super) enum Goal {
 
 impl Job {
     pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
-        let loaded = cylindroid::load(&args.posture.model)?;
-        let robot = match args.actuated.as_slice() {
-            [] => loaded,
-            names => only_loops(loaded)?.with_actuated(names)?,
-        };
+        let robot = load(&args.posture.model, &args.actuated)?;
+        if !args.actuated.is_empty() && !robot.is_closed() {
+            return Err(all_driven(&robot).into());
+        }
         let degrees = args.posture.degrees;
         let start = configuration(&robot, &args.posture)?;
         within_limits(&robot, "--q", &start)?;
@@ -119,18 +118,15 @@ impl Job {
 }
 
 /// Joints of trees are all driven.
-fn only_loops(robot: Mechanism) -> Result<Mechanism> {
-    if robot.is_closed() {
-        return Ok(robot);
-    }
-    Err(Error::InvalidOption {
+fn all_driven(robot: &Mechanism) -> Error {
+    Error::InvalidOption {
         option: "--actuated",
         value: robot.name().to_owned(),
         reason: format!(
             "'{}' has no loops or contacts, so all joints are driven; leave the option out",
             robot.name()
         ),
-    })
+    }
 }
 
 /// Joints of loops cannot all move straight.
