@@ -165,16 +165,13 @@ fn json_has_the_keys_of_its_page() {
             let value: Value = serde_json::from_slice(&output.stdout).unwrap();
             let mut inner = BTreeSet::new();
             keys(&value, &mut inner);
-            for key in inner.difference(&anywhere) {
-                panic!("{command} {arguments:?} prints '{key}', which docs/json.md does not name");
-            }
+            let unnamed: Vec<_> = inner.difference(&anywhere).collect();
+            assert!(unnamed.is_empty(), "{command} {arguments:?} prints {unnamed:?}: not named");
             printed.extend(value.as_object().unwrap().keys().cloned());
         }
-        for key in printed.iter().filter(|key| !named.contains(key.as_str())) {
-            panic!("{command} prints '{key}', which its section in docs/json.md does not name");
-        }
-        for key in promised.iter().filter(|key| !printed.contains(**key)) {
-            panic!("docs/json.md promises '{key}' of {command}, which does not print it");
-        }
+        let unnamed: Vec<_> = printed.iter().filter(|key| !named.contains(key.as_str())).collect();
+        assert!(unnamed.is_empty(), "{command} prints {unnamed:?}: not named in its section");
+        let missing: Vec<_> = promised.iter().filter(|key| !printed.contains(**key)).collect();
+        assert!(missing.is_empty(), "{command} does not print {missing:?}: promised");
     }
 }
