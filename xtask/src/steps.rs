@@ -126,7 +126,7 @@ pub(crate) fn vectors() -> Result<()> {
 
 /// The kernels, on this machine.
 pub(crate) fn bench() -> Result<()> {
-    run(&mut cargo(&["bench", "--package", "cylindroid"]))
+    run(&mut cargo(&["bench", "--package", "cylindroid", "--bench", "kernels"]))
 }
 
 /// The figures of the README, by the command line that users have.
