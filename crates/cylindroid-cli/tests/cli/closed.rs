@@ -27,6 +27,12 @@ fn mobility_counts() {
     // Opened by hand: said, not hidden.
     let open = text(&["mobility", "five-bar", "--q", "0.3,0,0,0"]);
     assert!(open.contains("loops are open by"), "{open}");
+    // So are limits that a posture leaves, in every command that looks at one.
+    for command in [&["mobility", "panda"][..], &["statics", "panda", "--wrench", "0,0,1,0,0,0"]] {
+        let command = [command, &["--q", "zero"]].concat();
+        assert_eq!(json(&command, 0)["outside_limits"], serde_json::json!(["panda_joint4"]));
+        assert!(text(&command).contains("outside the position limits: panda_joint4"));
+    }
     // A serial arm is an ordinary case.
     assert_eq!(json(&["mobility", "panda"], 0)["redundancy"], 1);
 }

@@ -29,7 +29,7 @@ struct AssembleJson<'a> {
     steps: usize,
     guess: &'a [f64],
     held: Vec<&'a str>,
-    /// Coordinates that stand at a position limit.
+    /// Coordinates at a position limit, or beyond it where a guess that is closed was kept.
     at_limit: Vec<&'a str>,
 }
 
@@ -170,7 +170,7 @@ fn print(
             ("result", result),
             ("steps", found.steps.to_string()),
             ("held", report.held.join(", ")),
-            ("at a limit", report.at_limit.join(", ")),
+            ("at or beyond a limit", report.at_limit.join(", ")),
             ("q", q_line(&found.q)),
         ],
     )?;

@@ -64,6 +64,7 @@ impl Posed {
             ("model", self.mechanism.name().to_owned()),
             ("reference frame", self.frame().to_owned()),
             ("q [rad or m]", posture(&self.q)),
+            ("note", output::outside_note(&output::outside_limits(&self.mechanism, &self.q))),
             ("driven", list(&self.chain.actuated)),
             ("passive", list(&self.chain.passive)),
             (
@@ -101,6 +102,7 @@ struct HeadJson<'a> {
     /// The reference.
     frame: &'a str,
     q: &'a [f64],
+    outside_limits: Vec<&'a str>,
     actuated: &'a [String],
     passive: &'a [String],
     /// How far loops are from closed.
@@ -131,6 +133,7 @@ impl<'a> From<&'a Posed> for HeadJson<'a> {
             model: posed.mechanism.name(),
             frame: posed.frame(),
             q: &posed.q,
+            outside_limits: output::outside_limits(&posed.mechanism, &posed.q),
             actuated: &chain.actuated,
             passive: &chain.passive,
             gap: chain.gap.into(),
