@@ -4,7 +4,6 @@ use cylindroid::control::{
     Bounds, CartesianBounds, CartesianMove, CartesianPath, Gain, JointDefaults, JointMove,
     Projector, Secondary,
 };
-use cylindroid::kinematics::Chain;
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
@@ -181,15 +180,7 @@ fn secondary(
     start: &[f64],
 ) -> Result<Vec<Secondary>> {
     if named.is_empty() {
-        let components = options.task.components.iter().filter(|c| **c).count();
-        let joints = Chain::new(robot, options.end_effector).n();
-        // Where loops couple joints, a wish that they do not allow costs nothing.
-        let redundant = joints > components || robot.is_closed();
-        return if redundant {
-            Ok(vec![Secondary::named("limit-avoidance", start)?])
-        } else {
-            Ok(Vec::new())
-        };
+        return options.usual_secondary(robot);
     }
     if let [Named { name, number: None }] = named
         && name == "none"
