@@ -165,15 +165,12 @@ impl Quantity {
 
 /// The limits of the model, or the first driven joint without one.
 fn of_model(posed: &Posed, quantity: Quantity) -> std::result::Result<Vec<Interval>, String> {
-    let mechanism = &posed.mechanism;
     let most = |l: Limits| match quantity {
         Quantity::Rate => l.velocity,
         Quantity::Torque => l.effort,
     };
     let limit = |name: &String| {
-        let tree = mechanism.coordinates().iter().find(|c| c.name == *name);
-        let closing = mechanism.loops().iter().find(|l| l.name == *name);
-        let limit = tree.map(|c| c.limits).or(closing.map(|l| l.limits)).map(most);
+        let limit = posed.mechanism.limits_of(name).map(most);
         let finite = limit.filter(|l| l.is_finite() && *l > 0.0);
         finite.map(Interval::symmetric).ok_or_else(|| name.clone())
     };
