@@ -126,7 +126,7 @@ pub(crate) fn vectors() -> Result<()> {
 
 /// The kernels, and calls from Python, on this machine.
 pub(crate) fn bench() -> Result<()> {
-    run(&mut cargo(&["bench", "--package", "cylindroid"]))?;
+    run(&mut cargo(&["bench", "--package", "cylindroid", "--bench", "kernels"]))?;
     python::bench()
 }
 

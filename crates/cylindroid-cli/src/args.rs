@@ -25,7 +25,7 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --plot move.svg
   cylindroid screws youbot
 
-Exit codes: 0 done, 1 a negative answer (a target not reached, a grasp not closed), 2 an error.";
+Exit codes: 0 done, 1 a negative answer (a target not reached, loops or a grasp not closed), 2 an error.";
 
 /// Moves robots in Cartesian space and tells what they can do.
 ///
@@ -66,16 +66,16 @@ pub(crate) enum Command {
     #[command(long_about = closed::ASSEMBLE, after_long_help = closed::ASSEMBLE_EXAMPLES)]
     Assemble(Box<AssembleArgs>),
     /// Mobility of a mechanism: how it can move, what is redundant, idle or held twice
-    #[command(long_about = closed::MOBILITY)]
+    #[command(long_about = closed::MOBILITY, after_long_help = closed::MOBILITY_EXAMPLES)]
     Mobility(Box<ClosedArgs>),
     /// How well motion and force go from the driven joints to the reference frame
-    #[command(long_about = closed::MANIPULABILITY)]
+    #[command(long_about = closed::MANIPULABILITY, after_long_help = closed::MANIPULABILITY_EXAMPLES)]
     Manipulability(Box<ManipulabilityArgs>),
     /// Joint torques that hold a wrench, and the forces in loops and contacts
-    #[command(long_about = closed::STATICS)]
+    #[command(long_about = closed::STATICS, after_long_help = closed::STATICS_EXAMPLES)]
     Statics(Box<StaticsArgs>),
     /// Force closure of the contacts on an object, and its quality
-    #[command(long_about = closed::GRASP)]
+    #[command(long_about = closed::GRASP, after_long_help = closed::GRASP_EXAMPLES)]
     Grasp(Box<GraspArgs>),
 }
 

@@ -2,16 +2,18 @@
 
 use std::fmt;
 use std::fs;
+use std::io::{self, Write};
 
 use cylindroid::{Error, FileError};
 use miette::{Diagnostic, LabeledSpan, NamedSource, Report, SourceCode};
 
-/// Prints an error.
+/// Prints an error, if anybody reads it.
 pub(crate) fn print(error: &anyhow::Error) {
-    match error.downcast_ref::<Error>() {
-        Some(Error::File(file)) => eprintln!("{:?}", Report::new(Underlined::new(file))),
-        _ => eprintln!("error: {error:#}"),
-    }
+    let mut out = io::stderr();
+    let _ = match error.downcast_ref::<Error>() {
+        Some(Error::File(file)) => writeln!(out, "{:?}", Report::new(Underlined::new(file))),
+        _ => writeln!(out, "error: {error:#}"),
+    };
 }
 
 /// True if the reader of our output has gone away, as `head` does: not an error.

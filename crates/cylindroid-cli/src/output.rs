@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use cylindroid::screws::Screw;
 use cylindroid::spatial::{Quaternion, Rpy};
-use cylindroid::{Mechanism, Pose};
+use cylindroid::{Matrix, Mechanism, Pose};
 use serde::Serialize;
 
 /// Writes one JSON object, numbers in full; what is infinite becomes `null`.
@@ -35,6 +35,11 @@ pub(crate) fn number(x: f64) -> String {
 
 fn trim_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+/// The columns of a matrix, a list each.
+pub(crate) fn columns(m: &Matrix) -> Vec<Vec<f64>> {
+    (0..m.cols()).map(|j| m.column(j).to_vec()).collect()
 }
 
 /// A configuration or a quaternion: as [`list`], rounding shown as 0.
@@ -173,7 +178,12 @@ pub(crate) fn pose_cells(pose: Pose) -> Vec<String> {
 /// [`number`] for entries of poses and matrices, whose size is of the order of 1: rounding is
 /// shown as 0 (JSON has it).
 fn quiet(x: f64) -> String {
-    number(if x.abs() < ROUNDING { 0.0 } else { x })
+    number(without_rounding(x))
+}
+
+/// Zero for what is rounding beside numbers of the order of 1.
+pub(crate) fn without_rounding(x: f64) -> f64 {
+    if x.abs() < ROUNDING { 0.0 } else { x }
 }
 
 /// Entries below this are rounding [m, rad].

@@ -60,8 +60,13 @@ pub(crate) fn check(path: &Path) -> Result<()> {
 
 /// Draws a motion.
 pub(crate) fn draw(trajectory: &Trajectory, path: &Path) -> Result<()> {
+    save(path, |svg| panels(trajectory, svg))
+}
+
+/// Writes what is drawn.
+fn save(path: &Path, draw: impl FnOnce(&mut String) -> Drawn) -> Result<()> {
     let mut svg = String::new();
-    panels(trajectory, &mut svg).map_err(|error| cannot_write(path, &error))?;
+    draw(&mut svg).map_err(|error| cannot_write(path, &error))?;
     std::fs::write(path, svg).map_err(|error| cannot_write(path, &error))
 }
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use cylindroid::ik::Task;
 use cylindroid::linalg::Interval;
 use cylindroid::model::CoordinateKind;
 use cylindroid::{Error, Mechanism};
@@ -227,17 +228,19 @@ impl FromStr for Named {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Motion(pub(crate) [f64; 6]);
 
-/// The names of the components of a twist, in their order.
-pub(crate) const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+/// The names of the components of a twist or wrench in space (6) or in the plane (3).
+pub(crate) const fn components(dimension: usize) -> &'static [&'static str] {
+    if dimension == 3 { &["x", "y", "rz"] } else { &Task::COMPONENTS }
+}
 
 impl FromStr for Motion {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if let Some(i) = COMPONENTS.iter().position(|c| *c == text.trim()) {
+        if let Some(i) = Task::COMPONENTS.iter().position(|c| *c == text.trim()) {
             return Ok(Self(std::array::from_fn(|j| f64::from(u8::from(i == j)))));
         }
-        let all = || format!("one of {} or six numbers", COMPONENTS.join(", "));
+        let all = || format!("one of {} or six numbers", Task::COMPONENTS.join(", "));
         text.parse::<Numbers<6>>()
             .map(|n| Self(n.0))
             .map_err(|why| format!("{why}; a motion is {}", all()))

@@ -17,12 +17,24 @@ The pose is compared with other closed postures of the mechanism: where it is si
 that blocks and the motion lost or gained are named as screws, seen from the world. Loops and \
 contacts are taken as closed: the gap by which they are open is printed.";
 
+pub(crate) const MOBILITY_EXAMPLES: &str = "\
+Examples:
+  cylindroid mobility stewart
+  cylindroid mobility five-bar --actuated q1,q5
+  cylindroid mobility ur5e --q zero";
+
 pub(crate) const MANIPULABILITY: &str = "\
 How well motion and force go from the driven joints to the reference frame
 
 Efficiencies are squares of output over input along the principal directions: of motion (object \
 speed over joint speed), of force exerted (wrench over torques, the object's free wrenches chosen \
 for the least) and of force resisted. Zero: nothing comes out. Infinite: without any input.";
+
+pub(crate) const MANIPULABILITY_EXAMPLES: &str = "\
+Examples:
+  cylindroid manipulability five-bar --actuated q2,q4 --plot ellipses.svg
+  cylindroid manipulability panda --metric limits --task x,y,z --polytope
+  cylindroid manipulability stewart --metric length --gradient smallest";
 
 #[derive(Debug, Args)]
 pub(crate) struct ClosedArgs {
@@ -73,10 +85,12 @@ pub(crate) struct AssembleArgs {
     /// Look for all ways in which the loops close, from this many starts: the guess, then random
     /// ones within limits. Some may be missed; how often each was found is printed
     #[arg(long, value_name = "STARTS", conflicts_with = "to")]
+    #[arg(allow_negative_numbers = true)]
     pub(crate) modes: Option<usize>,
 
     /// Other random starts for --modes
     #[arg(long, value_name = "N", default_value_t = 0, requires = "modes")]
+    #[arg(allow_negative_numbers = true)]
     pub(crate) seed: u64,
 
     /// Move these coordinates from --q (assembled) to these values [rad or m], those of --hold at
@@ -197,6 +211,12 @@ times rates plus wrench times twist is zero. They are the least in size; interna
 balance each other, may be added. What a joint or contact transmits is the wrench by which its \
 first link acts on its second; a contact that pushes has a positive normal force.";
 
+pub(crate) const STATICS_EXAMPLES: &str = "\
+Examples:
+  cylindroid statics panda --wrench 0,0,-10,0,0,0
+  cylindroid statics five-bar --actuated q1,q5 --wrench 3,-1,0.2
+  cylindroid statics two-arm --wrench 0,0,-9.81,0,0,0 --compliance 1e-6";
+
 #[derive(Debug, Args)]
 pub(crate) struct StaticsArgs {
     #[command(flatten)]
@@ -224,6 +244,11 @@ The quality epsilon is the least wrench, in its worst direction, that is more th
 hold: between two bounds (Ferrari and Canny), with moments over the characteristic length. \
 Fingers push along their normals, into the object. Only contacts at points count: \
 point_frictionless, hard_finger, soft_finger. Exit code 0 if the grasp is closed, 1 if not.";
+
+pub(crate) const GRASP_EXAMPLES: &str = "\
+Examples:
+  cylindroid grasp docs/grasp.toml --torsion 0.01
+  cylindroid grasp docs/grasp.toml --torsion 0.01 --mu 0.4,tip1=0.6 --strength 20";
 
 #[derive(Debug, Args)]
 pub(crate) struct GraspArgs {

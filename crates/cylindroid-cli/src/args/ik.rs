@@ -1,13 +1,14 @@
 //! The arguments of `ik`.
 
 use clap::Args;
+use clap::builder::RangedU64ValueParser;
 
 use super::{FrameArgs, PostureArgs, TargetArgs};
 
 pub(crate) const ABOUT: &str = "\
 Inverse kinematics: configurations that put a frame at a target, within all limits
 
-Attempts start at --q, then at postures drawn within the limits, until one reaches the target; \
+Attempts start at --q (moved within the limits), then at postures drawn within them, until one reaches the target; \
 what is claimed was checked by forward kinematics. The same seed gives the same answer. Where \
 nothing is found the nearest posture is printed: a proof that none reaches only where the target \
 is farther away than the arm is long.
@@ -36,11 +37,12 @@ pub(crate) struct IkArgs {
     pub(crate) nearest: bool,
 
     /// Up to so many distinct answers, the nearest to --q first
-    #[arg(long, value_name = "N", conflicts_with = "nearest")]
+    #[arg(long, value_name = "N", conflicts_with = "nearest", allow_negative_numbers = true)]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) all: Option<usize>,
 
     /// Of the postures that are drawn
-    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    #[arg(long, value_name = "SEED", default_value_t = 0, allow_negative_numbers = true)]
     pub(crate) seed: u64,
 
     /// Largest position error of an answer [m]
@@ -52,6 +54,6 @@ pub(crate) struct IkArgs {
     pub(crate) tolerance_orientation: f64,
 
     /// Steps of all attempts, when to give up
-    #[arg(long, value_name = "N", default_value_t = 20_000)]
+    #[arg(long, value_name = "N", default_value_t = 20_000, allow_negative_numbers = true)]
     pub(crate) iterations: usize,
 }

@@ -3,17 +3,13 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::Mechanism;
-use cylindroid::ik::{Budget, Goal, IkOptions, Solution, solve, solve_several};
+use cylindroid::ik::{Budget, Goal, IkOptions, Solution, Task, solve, solve_several};
 use serde::Serialize;
 
-use super::target::{target_pose, task};
-use super::{Style, configuration, end_effector};
+use super::target::{errors, target_pose, task};
+use super::{Style, answer, configuration, end_effector};
 use crate::args::IkArgs;
 use crate::output::{self, Align, PoseJson, number};
-
-/// Exit code of a target that was not reached.
-const NOT_REACHED: u8 = 1;
 
 #[derive(Debug, Serialize)]
 struct IkJson<'a> {
@@ -51,7 +47,7 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     let end_effector = end_effector(&robot, &args.frame)?;
     let (task, what) = task(&args.target, &robot)?;
     let from = robot.state(&start)?.pose(end_effector);
-    let target = target_pose(&args.target, from, args.posture.degrees)?;
+    let target = target_pose(&args.target, from, args.posture.degrees, "")?;
     let options = IkOptions {
         position_tolerance: args.tolerance_position,
         orientation_tolerance: args.tolerance_orientation,
@@ -64,7 +60,7 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     let goals = [Goal { end_effector, target, task }];
     let found = match args.all {
         None => vec![solve(&robot, &goals, &options)?],
-        Some(count) => match solve_several(&robot, &goals, &options, count.max(1))? {
+        Some(count) => match solve_several(&robot, &goals, &options, count)? {
             none if none.is_empty() => vec![solve(&robot, &goals, &options)?],
             some => some,
         },
@@ -89,16 +85,15 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     };
     match style {
         Style::Json => output::json(out, &report)?,
-        Style::Table => print(out, &robot, &report, &what, &found)?,
+        Style::Table => print(out, &report, (&what, task), &found)?,
     }
-    Ok(if first.success { ExitCode::SUCCESS } else { ExitCode::from(NOT_REACHED) })
+    Ok(answer(first.success))
 }
 
 fn print(
     out: &mut dyn Write,
-    robot: &Mechanism,
     report: &IkJson<'_>,
-    what: &str,
+    (what, task): (&str, Task),
     found: &[Solution],
 ) -> anyhow::Result<()> {
     let result = match (&report.out_of_reach, report.success, found.len()) {
@@ -115,17 +110,19 @@ fn print(
                        nearest posture follows"
             .to_owned(),
     };
+    let [position_error, orientation_error] =
+        errors(task, report.position_error, report.orientation_error);
     output::pairs(
         out,
         [
-            ("model", robot.name().to_owned()),
+            ("model", report.model.to_owned()),
             ("frame", report.frame.to_owned()),
             ("asked for", what.to_owned()),
             ("result", result),
-            ("position error [m]", number(report.position_error)),
-            ("orientation error [rad]", number(report.orientation_error)),
+            position_error,
+            orientation_error,
             ("attempts", format!("{}, {} steps", report.attempts, report.iterations)),
-            ("q [rad or m]", output::list(report.q)),
+            ("q [rad or m]", output::entries(report.q)),
         ],
     )?;
     if found.len() > 1 {

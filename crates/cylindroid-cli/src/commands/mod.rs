@@ -44,6 +44,17 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
     }
 }
 
+/// Exit code of a yes (0) or a no (1).
+fn answer(yes: bool) -> ExitCode {
+    ExitCode::from(u8::from(!yes))
+}
+
+/// The model, driven by these joints where any are named.
+fn load(model: &str, actuated: &[String]) -> cylindroid::Result<Mechanism> {
+    let loaded = cylindroid::load(model)?;
+    if actuated.is_empty() { Ok(loaded) } else { loaded.with_actuated(actuated) }
+}
+
 /// The configuration that is meant, of the right size and finite.
 fn configuration(robot: &Mechanism, args: &PostureArgs) -> cylindroid::Result<Vec<f64>> {
     let q = args.q.configuration(robot, args.degrees)?;

@@ -1,12 +1,12 @@
 //! Where a tool shall be, and what of that matters: the target of `move` and `ik`.
 
 use cylindroid::control::Task;
-use cylindroid::model::{Dimension, Mechanism};
+use cylindroid::model::Mechanism;
 use cylindroid::spatial::{Quaternion, Rpy};
 use cylindroid::{Error, Pose, Reference, Result, Rotation, Vec3};
 
 use crate::args::{TargetArgs, TaskAxes};
-use crate::values::COMPONENTS;
+use crate::output::number;
 
 /// The task, and what is driven in words.
 pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String)> {
@@ -19,19 +19,7 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
         (None, false, true) => "orientation",
         (None, ..) => "pose",
     };
-    let mut task = match named {
-        "pose" => Task::POSE,
-        "position" => Task::POSITION,
-        "orientation" => Task::ORIENTATION,
-        "pointing" => Task::POINTING,
-        list => Task { components: components(list)?, ..Task::POSE },
-    };
-    let planar = robot.is_closed() && robot.dimension() == Dimension::Planar;
-    if planar && matches!(named, "pose" | "position" | "orientation") {
-        for (on, in_plane) in task.components.iter_mut().zip(Task::PLANAR.components) {
-            *on &= in_plane;
-        }
-    }
+    let mut task = Task::named(named, robot)?;
     match args.task_axes {
         None => {}
         Some(TaskAxes::Local) => task.axes = Reference::Local,
@@ -51,7 +39,7 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
         }
         (_, "pose") => "position and orientation".into(),
         _ => {
-            let names = COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
+            let names = Task::COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
             let names: Vec<&str> = names.map(|(name, _)| *name).collect();
             let axes = if task.axes == Reference::Local { "tool" } else { "world" };
             format!("{} along and about the axes of the {axes}", names.join(", "))
@@ -60,26 +48,26 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
     Ok((task, driven))
 }
 
-fn components(list: &str) -> Result<[bool; 6]> {
-    let mut components = [false; 6];
-    for name in list.split(',').map(str::trim) {
-        match COMPONENTS.iter().position(|c| *c == name) {
-            Some(i) => components[i] = true,
-            None => {
-                let known = ["pose", "position", "orientation", "pointing"];
-                return Err(Error::unknown(
-                    "task or task component",
-                    name,
-                    known.iter().chain(&COMPONENTS),
-                ));
-            }
-        }
-    }
-    Ok(components)
+/// Lines of a table with the errors of position and orientation, where they matter.
+pub(super) fn errors(task: Task, position: f64, orientation: f64) -> [(&'static str, String); 2] {
+    let (linear, angular) = task.components.split_at(3);
+    let driven = |components: &[bool], value: f64| {
+        if components.contains(&true) { number(value) } else { "not driven".to_owned() }
+    };
+    [
+        ("position error [m]", driven(linear, position)),
+        ("orientation error [rad]", driven(angular, orientation)),
+    ]
 }
 
-/// What is given of the target, the rest as at the start.
-pub(super) fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> anyhow::Result<Pose> {
+/// What is given of the target, the rest as at the start; where nothing is, the error has the
+/// `other` ways to say where.
+pub(super) fn target_pose(
+    args: &TargetArgs,
+    from: Pose,
+    degrees: bool,
+    other: &str,
+) -> anyhow::Result<Pose> {
     let si = |x: f64| if degrees { x.to_radians() } else { x };
     let mut pose = from;
     let mut given = false;
@@ -109,7 +97,7 @@ pub(super) fn target_pose(args: &TargetArgs, from: Pose, degrees: bool) -> anyho
         return Ok(pose);
     }
     anyhow::bail!(
-        "no target: say where to move with --to x,y,z, with an orientation (--rpy, --quaternion, \
-         --rotation-vector) or with --joint-to q"
+        "no target: say where with --to x,y,z, or with an orientation (--rpy, --quaternion, \
+         --rotation-vector){other}"
     )
 }

@@ -16,9 +16,8 @@ use plotters::prelude::*;
 
 use self::panel::{Panel, panel};
 use super::skeleton::Skeleton;
-use super::{COLOURS, Drawn, FONT};
+use super::{COLOURS, Drawn, FONT, save};
 use crate::output::number;
-use crate::trajectory::cannot_write;
 
 /// What is drawn.
 pub(crate) struct Drawing<'a> {
@@ -134,10 +133,7 @@ pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
         frame.name,
         driven(&drawing.chain.actuated)
     );
-    let mut svg = String::new();
-    figure(&title, &blocks, &skeleton, reference, &mut svg)
-        .map_err(|error| cannot_write(path, &error))?;
-    std::fs::write(path, svg).map_err(|error| cannot_write(path, &error))
+    save(path, |svg| figure(&title, &blocks, &skeleton, reference, svg))
 }
 
 /// Names while there are few.

@@ -8,9 +8,8 @@ use cylindroid::screws::{Line, Screw, ScrewSystem, gram_determinant};
 use cylindroid::{Matrix, Pose, Result, Vec3};
 use plotters::prelude::*;
 
-use super::{Area, COLOURS, Drawn, FONT, builder};
+use super::{Area, COLOURS, Drawn, FONT, builder, save};
 use crate::output::number;
-use crate::trajectory::cannot_write;
 
 /// Width, and height of a panel [px].
 const WIDTH: u32 = 820;
@@ -31,9 +30,7 @@ pub(crate) fn draw(
     system: &ScrewSystem,
     path: &Path,
 ) -> Result<()> {
-    let mut svg = String::new();
-    panels(title, jacobian, system, &mut svg).map_err(|error| cannot_write(path, &error))?;
-    std::fs::write(path, svg).map_err(|error| cannot_write(path, &error))
+    save(path, |svg| panels(title, jacobian, system, svg))
 }
 
 fn panels(title: &str, jacobian: &Matrix, system: &ScrewSystem, svg: &mut String) -> Drawn {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{cylindroid, difference, json, numbers, text};
+use crate::{cylindroid, difference, json, numbers, refused, text};
 
 #[test]
 fn mobility_counts() {
@@ -17,10 +17,22 @@ fn mobility_counts() {
         assert_eq!(five_bar[key], count, "{key}");
     }
     assert!(five_bar["gap"]["distance"].as_f64().unwrap() < 1e-12);
-    assert!(text(&["mobility", "two-arm"]).contains("torques of driven joints that balance"));
+    // Two arms of seven joints: one elbow each, and all they can do to each other.
+    let table = text(&["mobility", "two-arm"]);
+    let count = |kind: &str| {
+        let row = table.lines().find_map(|l| l.strip_prefix(kind)).unwrap();
+        row.split_whitespace().next().unwrap().to_owned()
+    };
+    assert_eq!((count("redundancy"), count("internal")), ("2".to_owned(), "6".to_owned()));
     // Opened by hand: said, not hidden.
     let open = text(&["mobility", "five-bar", "--q", "0.3,0,0,0"]);
     assert!(open.contains("loops are open by"), "{open}");
+    // So are limits that a posture leaves, in every command that looks at one.
+    for command in [&["mobility", "panda"][..], &["statics", "panda", "--wrench", "0,0,1,0,0,0"]] {
+        let command = [command, &["--q", "zero"]].concat();
+        assert_eq!(json(&command, 0)["outside_limits"], serde_json::json!(["panda_joint4"]));
+        assert!(text(&command).contains("outside the position limits: panda_joint4"));
+    }
     // A serial arm is an ordinary case.
     assert_eq!(json(&["mobility", "panda"], 0)["redundancy"], 1);
 }
@@ -52,6 +64,7 @@ fn loops_are_closed_from_a_guess() {
     // The line q is an argument of other commands.
     let text = text(&command);
     let q = text.lines().find_map(|l| l.strip_prefix("q ")).unwrap().trim().to_owned();
+    assert!(text.contains("closed: 1 loop and 0 contacts"), "{text}");
     let mobility = json(&["mobility", "five-bar", "--q", &q], 0);
     assert!(mobility["gap"]["distance"].as_f64().unwrap() < 1e-9);
     // Too far apart: a negative answer.
@@ -106,6 +119,8 @@ fn modes_are_listed() {
     assert!(none["closed"] == false && none["guess_gap"]["distance"].as_f64().unwrap() > 0.1);
     let table = text(&["assemble", "five-bar", "--hold", "q1,q2", "--modes", "20"]);
     assert!(table.contains("2 modes from 20") && table.contains("q of mode 2"), "{table}");
+    // Rounding is not spelt out.
+    assert!(table.contains("q of mode 1  0,0,0,0"), "{table}");
 }
 
 #[test]
@@ -144,11 +159,6 @@ fn coordinates_go_where_they_are_sent() {
 
 #[test]
 fn bad_requests() {
-    let refused = |arguments: &[&str]| {
-        let output = cylindroid(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        String::from_utf8_lossy(&output.stderr).into_owned()
-    };
     assert!(refused(&["mobility", "five-bar", "--actuated", "q9"]).contains("q1, q2"));
     assert!(refused(&["mobility", "five-bar", "--frame", "x"]).contains("frame"));
     assert!(refused(&["mobility", "five-bar", "--length", "0"]).contains("length"));
@@ -251,7 +261,7 @@ fn strange_mechanisms() {
 }
 
 /// The robot files that `cargo xtask setup` fetches.
-fn robots() -> PathBuf {
+pub(crate) fn robots() -> PathBuf {
     let fetched = "../../target/test-data/models/cmeel.prefix/share/example-robot-data/robots";
     let folder = std::env::var_os("CYLINDROID_TEST_ROBOTS")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(fetched), PathBuf::from);

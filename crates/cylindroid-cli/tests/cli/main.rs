@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod closed;
+mod documents;
 mod ik;
 mod measured;
 mod motion;
@@ -31,6 +32,16 @@ fn text(arguments: &[&str]) -> String {
     let output = cylindroid(arguments);
     assert_eq!(output.status.code(), Some(0), "{arguments:?}");
     String::from_utf8(output.stdout).unwrap()
+}
+
+/// Runs it, expects an error, one message and nothing else, and returns it.
+fn refused(arguments: &[&str]) -> String {
+    let output = cylindroid(arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    stderr
 }
 
 /// Largest difference of two lists (the JSON reader of the tests is off by one rounding).

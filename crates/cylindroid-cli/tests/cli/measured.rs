@@ -2,18 +2,12 @@
 
 use std::fs;
 
-use crate::{cylindroid, difference, json, numbers, text};
+use crate::{difference, json, numbers, refused, text};
 
 const FIVE_BAR: [&str; 4] = ["manipulability", "five-bar", "--actuated", "q1,q5"];
 
 fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
     [&FIVE_BAR[..], more].concat()
-}
-
-fn refused(arguments: &[&str]) -> String {
-    let output = cylindroid(arguments);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// Redundancy adds a zero where rates are given, structure an infinite one where a wrench is.
@@ -150,8 +144,22 @@ fn gradients() {
     };
     let difference = (volume(1e-5) - volume(-1e-5)) / 2e-5;
     assert!((difference - slope[3]).abs() < 1e-8, "{difference} {}", slope[3]);
-    let closed = text(&["manipulability", "stewart", "--gradient", "smallest"]);
-    assert!(closed.contains("smallest of motion"), "{closed}");
+    // Of the five-bar along the motion of q1, the passive joints following.
+    let report = json(&with(&["--gradient", "smallest"]), 0);
+    let slope = numbers(&report["gradient"]["gradient"]);
+    let at = |q1: &str| {
+        let posture = ["assemble", "five-bar", "--q", q1, "--hold", "q1,q2"];
+        let q = numbers(&json(&posture, 0)["q"]);
+        let words: Vec<String> = q.iter().map(ToString::to_string).collect();
+        let report = json(&with(&["--q", &words.join(",")]), 0);
+        (q, report["measures"]["kinematic"]["smallest"].as_f64().unwrap())
+    };
+    let ((q_up, up), (q_down, down)) = (at("q1=1e-4"), at("q1=-1e-4"));
+    let expected: f64 =
+        slope.iter().zip(q_up.iter().zip(&q_down)).map(|(s, (a, b))| s * (a - b)).sum();
+    assert!((up - down - expected).abs() < 1e-9 && expected.abs() > 1e-5, "{expected}");
+    let table = text(&["manipulability", "stewart", "--gradient", "smallest"]);
+    assert!(table.contains("gradient of the smallest of motion, 0.240124"), "{table}");
 }
 
 #[test]

@@ -197,11 +197,7 @@ fn where_no_inverse_exists_it_is_said() {
 
 #[test]
 fn the_pitch_is_asked_for_with_advice() {
-    let refused = |more: &[&str]| {
-        let output = cylindroid(&youbot(more));
-        assert_eq!(output.status.code(), Some(2), "{more:?}");
-        String::from_utf8_lossy(&output.stderr).into_owned()
-    };
+    let refused = |more: &[&str]| crate::refused(&youbot(more));
     let text = refused(&["--inverse", "hyperbolic"]);
     assert!(text.contains("at the start --h"), "{text}");
     let text = refused(&["--inverse", "hyperbolic", "--h", "nan"]);

@@ -19,7 +19,6 @@ use crate::error::Result;
 use crate::inverse::damp;
 use crate::linalg::{Matrix, Svd, norm};
 use crate::model::Mechanism;
-use crate::tolerance::CLOSED;
 
 /// Steps at most: a dozen suffice where there is an assembly near.
 const MOST_STEPS: usize = 200;
@@ -149,7 +148,7 @@ impl Closing {
     }
 
     pub(super) fn is_closed(&self, length: f64) -> bool {
-        self.gap.distance <= CLOSED * length && self.gap.angle <= CLOSED
+        self.gap.is_closed(length)
     }
 
     /// The configuration after a damped step, within the position limits: coordinates at a limit

@@ -22,6 +22,7 @@ use crate::kinematics::State;
 use crate::linalg::Matrix;
 use crate::model::{Dimension, FrameId, JointKind, LoopJoint, Mechanism};
 use crate::spatial::{Pose, Vec3, Wrench};
+use crate::tolerance::CLOSED;
 
 /// A mechanism at a configuration as a constraint, with the names of what the columns are.
 #[derive(Debug, Clone)]
@@ -60,6 +61,12 @@ impl Gap {
     /// A driven closing joint of several coordinates.
     pub fn of(state: &State) -> Result<Self> {
         Ok(rows(state)?.2)
+    }
+
+    /// True up to `tolerance::CLOSED` of a length (m), mostly the reach, and in angle.
+    #[must_use]
+    pub fn is_closed(self, length: f64) -> bool {
+        self.distance <= CLOSED * length && self.angle <= CLOSED
     }
 }
 

@@ -5,7 +5,7 @@ use super::secondary::Secondary;
 use crate::error::{Error, Result};
 use crate::ik::Task;
 use crate::inverse::Method;
-use crate::kinematics::EndEffector;
+use crate::kinematics::{Chain, EndEffector};
 use crate::model::{Dimension, Mechanism};
 use crate::tolerance;
 
@@ -109,6 +109,31 @@ impl ServoOptions {
             secondary: Vec::new(),
             projector: Projector::Exact,
         }
+    }
+
+    /// Wishes for who has none: limit avoidance with its default numbers where there are more
+    /// joints than components of the task, or where loops couple joints (a wish that they do not
+    /// allow costs nothing); else none.
+    ///
+    /// ```
+    /// use cylindroid::{ServoOptions, catalogue};
+    ///
+    /// let (panda, ur5e) = (catalogue::load("panda")?, catalogue::load("ur5e")?);
+    /// assert_eq!(ServoOptions::new(&panda).usual_secondary(&panda)?[0].name(), "limit-avoidance");
+    /// assert!(ServoOptions::new(&ur5e).usual_secondary(&ur5e)?.is_empty());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A frame of another mechanism.
+    pub fn usual_secondary(&self, mechanism: &Mechanism) -> Result<Vec<Secondary>> {
+        mechanism.check_frame(self.end_effector.frame)?;
+        let components = self.task.components.iter().filter(|c| **c).count();
+        let joints = Chain::new(mechanism, self.end_effector).n();
+        if joints > components || mechanism.is_closed() {
+            return Ok(vec![Secondary::named("limit-avoidance", &[])?]);
+        }
+        Ok(Vec::new())
     }
 
     /// Refuses numbers that make no controller.

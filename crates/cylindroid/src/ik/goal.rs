@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::kinematics::{EndEffector, Reference};
-use crate::model::Mechanism;
+use crate::model::{Dimension, Mechanism};
 use crate::spatial::{Pose, Twist};
 
 /// The components of an end effector's motion that matter.
@@ -17,6 +17,7 @@ pub struct Task {
 impl Task {
     /// The names of the components, in the order of a twist.
     pub const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
     /// Position and orientation.
     pub const POSE: Self = Self { components: [true; 6], axes: Reference::LocalWorldAligned };
     /// Position and orientation in the plane x-y.
@@ -37,6 +38,52 @@ impl Task {
     /// Position and the direction of the tool's z axis: a task for five joints.
     pub const POINTING: Self =
         Self { components: [true, true, true, true, true, false], axes: Reference::Local };
+
+    /// The task of this name: `pose`, `position`, `orientation`, `pointing`, or components like
+    /// `x,y,rz`. Of planar mechanisms with loops the first three are those of the plane, as in
+    /// [`ServoOptions::new`](crate::ServoOptions::new).
+    ///
+    /// ```
+    /// use cylindroid::{catalogue, ik::Task};
+    ///
+    /// let (arm, linkage) = (catalogue::load("3r")?, catalogue::load("five-bar")?);
+    /// assert_eq!(Task::named("pose", &arm)?, Task::POSE);
+    /// assert_eq!(Task::named("pose", &linkage)?, Task::PLANAR);
+    /// assert_eq!(Task::named("x, y,rz", &arm)?, Task::PLANAR);
+    /// assert!(Task::named("x,yaw", &arm).is_err());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] with the nearest names.
+    pub fn named(name: &str, mechanism: &Mechanism) -> Result<Self> {
+        let mut task = match name {
+            "pose" => Self::POSE,
+            "position" => Self::POSITION,
+            "orientation" => Self::ORIENTATION,
+            "pointing" => return Ok(Self::POINTING),
+            list => return Self::of_components(list),
+        };
+        if mechanism.is_closed() && mechanism.dimension() == Dimension::Planar {
+            for (on, in_plane) in task.components.iter_mut().zip(Self::PLANAR.components) {
+                *on &= in_plane;
+            }
+        }
+        Ok(task)
+    }
+
+    fn of_components(list: &str) -> Result<Self> {
+        let mut components = [false; 6];
+        for name in list.split(',').map(str::trim) {
+            let place = Self::COMPONENTS.iter().position(|c| *c == name).ok_or_else(|| {
+                let known = ["pose", "position", "orientation", "pointing"];
+                let known = known.iter().chain(&Self::COMPONENTS);
+                Error::unknown("task or task component", name, known)
+            })?;
+            components[place] = true;
+        }
+        Ok(Self { components, ..Self::POSE })
+    }
 
     /// Refuses a task without components, and axes at the world's origin.
     pub(crate) fn check(self) -> Result<()> {

@@ -184,6 +184,22 @@ impl Mechanism {
         (0..self.n()).filter(|&i| self.data.coordinates[i].actuated)
     }
 
+    /// The limits of the coordinate or closing joint of this name.
+    ///
+    /// ```
+    /// let five_bar = cylindroid::catalogue::load("five-bar")?;
+    /// assert_eq!(five_bar.limits_of("q1").unwrap().velocity, 2.0);
+    /// assert!(five_bar.limits_of("q5").unwrap().velocity.is_infinite()); // closes the loop
+    /// assert_eq!(five_bar.limits_of("q6"), None);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    #[must_use]
+    pub fn limits_of(&self, name: &str) -> Option<Limits> {
+        let coordinate = self.data.coordinates.iter().find(|c| c.name == name);
+        let closing = || self.data.loops.iter().find(|l| l.name == name).map(|l| l.limits);
+        coordinate.map(|c| c.limits).or_else(closing)
+    }
+
     /// The same mechanism driven by these joints and no others: names of joints of the tree, of
     /// their coordinates, or of closing joints. Coordinates keep their order.
     ///

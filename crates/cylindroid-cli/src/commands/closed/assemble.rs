@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::GapJson;
 use crate::args::AssembleArgs;
-use crate::commands::{Style, configuration};
+use crate::commands::{Style, answer, configuration};
 use crate::output::{self, Align, number};
 use crate::values::Joints;
 
@@ -29,12 +29,9 @@ struct AssembleJson<'a> {
     steps: usize,
     guess: &'a [f64],
     held: Vec<&'a str>,
-    /// Coordinates that stand at a position limit.
+    /// Coordinates at a position limit, or beyond it where a guess that is closed was kept.
     at_limit: Vec<&'a str>,
 }
-
-/// Exit code of loops that do not close.
-const NOT_CLOSED: u8 = 1;
 
 /// What is asked for: a mechanism, a guess, the coordinates that keep their values.
 struct Job<'a> {
@@ -85,7 +82,7 @@ pub(crate) fn run(
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &mechanism, &found, &report)?,
     }
-    Ok(if found.closed { ExitCode::SUCCESS } else { ExitCode::from(NOT_CLOSED) })
+    Ok(answer(found.closed))
 }
 
 /// The places of coordinates by their names, by those of their joints, or `driven`.
@@ -125,6 +122,7 @@ fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<follow::Goal, Error
     };
     // What is not named stays as guessed.
     let target = to.configuration(job.mechanism, degrees)?;
+    job.mechanism.check_q("--to", &target)?;
     let mut goal = follow::Goal { places: Vec::new(), values: Vec::new() };
     for (name, _) in pairs {
         let place = job.names.iter().position(|n| n == name);
@@ -145,7 +143,7 @@ fn open_by(gap: Gap) -> String {
 
 /// An argument for `--q`, in full.
 fn q_line(q: &[f64]) -> String {
-    q.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+    q.iter().map(|x| output::without_rounding(*x).to_string()).collect::<Vec<_>>().join(",")
 }
 
 fn print(
@@ -157,7 +155,8 @@ fn print(
     let (loops, contacts) = (mechanism.loops().len(), mechanism.contacts().len());
     let gap = open_by(found.gap);
     let result = if found.closed {
-        format!("closed: {loops} loops and {contacts} contacts to {gap}")
+        let s = |n: usize| if n == 1 { "" } else { "s" };
+        format!("closed: {loops} loop{} and {contacts} contact{} to {gap}", s(loops), s(contacts))
     } else {
         format!(
             "not closed: open by {gap} where the search ended; try another guess (--q), or hold \
@@ -171,7 +170,7 @@ fn print(
             ("result", result),
             ("steps", found.steps.to_string()),
             ("held", report.held.join(", ")),
-            ("at a limit", report.at_limit.join(", ")),
+            ("at or beyond a limit", report.at_limit.join(", ")),
             ("q", q_line(&found.q)),
         ],
     )?;

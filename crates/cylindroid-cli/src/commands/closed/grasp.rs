@@ -11,11 +11,9 @@ use cylindroid::{Error, FrameId, Result};
 use serde::Serialize;
 
 use crate::args::GraspArgs;
-use crate::commands::{Style, configuration};
+use crate::commands::{Style, answer, configuration};
 use crate::output::{self, Align, number};
-
-/// Exit code of a grasp that is open.
-const OPEN: u8 = 1;
+use crate::values::components;
 
 #[derive(Debug, Serialize)]
 struct GraspJson<'a> {
@@ -101,11 +99,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         closed: quality.closed,
         epsilon: BoundsJson { lower: quality.epsilon.0, upper: quality.epsilon.1 },
         effort: word,
-        components: if space.planar {
-            &["x", "y", "rz"]
-        } else {
-            &["x", "y", "z", "rx", "ry", "rz"]
-        },
+        components: components(if space.planar { 3 } else { 6 }),
         weakest: &quality.weakest,
         length: space.length,
         contacts: contacts.collect(),
@@ -114,7 +108,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &report, &quality)?,
     }
-    Ok(if quality.closed { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
+    Ok(answer(quality.closed))
 }
 
 /// The contacts on the object; an error where there are none.

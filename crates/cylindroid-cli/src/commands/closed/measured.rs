@@ -24,6 +24,12 @@ impl Task {
         let d = components.len();
         if let Some(path) = &args.task_map {
             let map = number_file::matrix(path, d)?;
+            if map.rows() == 0 {
+                return Err(number_file::cannot_read(
+                    path,
+                    "it has no rows; a task has one at least",
+                ));
+            }
             let names = (1..=map.rows()).map(|i| format!("task {i}")).collect();
             return Ok(Some(Self { names, map }));
         }
@@ -159,15 +165,12 @@ impl Quantity {
 
 /// The limits of the model, or the first driven joint without one.
 fn of_model(posed: &Posed, quantity: Quantity) -> std::result::Result<Vec<Interval>, String> {
-    let mechanism = &posed.mechanism;
     let most = |l: Limits| match quantity {
         Quantity::Rate => l.velocity,
         Quantity::Torque => l.effort,
     };
     let limit = |name: &String| {
-        let tree = mechanism.coordinates().iter().find(|c| c.name == *name);
-        let closing = mechanism.loops().iter().find(|l| l.name == *name);
-        let limit = tree.map(|c| c.limits).or(closing.map(|l| l.limits)).map(most);
+        let limit = posed.mechanism.limits_of(name).map(most);
         let finite = limit.filter(|l| l.is_finite() && *l > 0.0);
         finite.map(Interval::symmetric).ok_or_else(|| name.clone())
     };

@@ -3,7 +3,6 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::Matrix;
 use cylindroid::closure::{Counts, Diagnosis, JointMobility, Mobility};
 use serde::Serialize;
 
@@ -75,11 +74,6 @@ pub(crate) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The columns.
-pub(super) fn vectors(basis: &Matrix) -> Vec<Vec<f64>> {
-    (0..basis.cols()).map(|j| basis.column(j).to_vec()).collect()
-}
-
 fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJson<'a> {
     let chain = &posed.chain;
     let names = chain.actuated.iter().chain(&chain.passive);
@@ -98,10 +92,10 @@ fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJs
         idle: m.idle.dimension(),
         grubler: m.grubler,
         rank_gap: m.dof.cut.rank.gap,
-        dof_basis: vectors(&m.dof.basis),
-        idle_basis: vectors(&m.idle.basis),
-        internal_basis: vectors(&m.internal.basis),
-        zero_torque_basis: vectors(&m.zero_torque.basis),
+        dof_basis: output::columns(&m.dof.basis),
+        idle_basis: output::columns(&m.idle.basis),
+        internal_basis: output::columns(&m.internal.basis),
+        zero_torque_basis: output::columns(&m.zero_torque.basis),
         joints: names
             .zip(&m.joints)
             .map(|(joint, j)| JointJson {

@@ -13,9 +13,10 @@ use cylindroid::model::Mechanism;
 use cylindroid::{Error, Result, State};
 use serde::Serialize;
 
-use super::configuration;
+use super::{configuration, load};
 use crate::args::ClosedArgs;
 use crate::output::{self, number};
+use crate::values::components;
 
 /// A mechanism, its configuration and its constraint there.
 struct Posed {
@@ -26,11 +27,7 @@ struct Posed {
 
 impl Posed {
     fn new(args: &ClosedArgs) -> Result<Self> {
-        let loaded = cylindroid::load(&args.posture.model)?;
-        let mechanism = match args.actuated.as_slice() {
-            [] => loaded,
-            names => loaded.with_actuated(names)?,
-        };
+        let mechanism = load(&args.posture.model, &args.actuated)?;
         let q = configuration(&mechanism, &args.posture)?;
         let frame = args.frame.as_deref().map(|name| mechanism.frame(name)).transpose()?;
         if let Some(length) = args.length {
@@ -56,20 +53,18 @@ impl Posed {
 
     /// Names of the components of the reference's twist.
     fn components(&self) -> &'static [&'static str] {
-        match self.chain.constraint.object() {
-            3 => &["x", "y", "rz"],
-            _ => &["x", "y", "z", "rx", "ry", "rz"],
-        }
+        components(self.chain.constraint.object())
     }
 
     /// The lines that say what is looked at.
     fn heading(&self) -> Vec<(&'static str, String)> {
         let gap = self.chain.gap;
-        let open = gap.distance > 1e-9 || gap.angle > 1e-9;
+        let open = !gap.is_closed(self.chain.constraint.length());
         vec![
             ("model", self.mechanism.name().to_owned()),
             ("reference frame", self.frame().to_owned()),
             ("q [rad or m]", posture(&self.q)),
+            ("note", output::outside_note(&output::outside_limits(&self.mechanism, &self.q))),
             ("driven", list(&self.chain.actuated)),
             ("passive", list(&self.chain.passive)),
             (
@@ -107,6 +102,7 @@ struct HeadJson<'a> {
     /// The reference.
     frame: &'a str,
     q: &'a [f64],
+    outside_limits: Vec<&'a str>,
     actuated: &'a [String],
     passive: &'a [String],
     /// How far loops are from closed.
@@ -137,6 +133,7 @@ impl<'a> From<&'a Posed> for HeadJson<'a> {
             model: posed.mechanism.name(),
             frame: posed.frame(),
             q: &posed.q,
+            outside_limits: output::outside_limits(&posed.mechanism, &posed.q),
             actuated: &chain.actuated,
             passive: &chain.passive,
             gap: chain.gap.into(),

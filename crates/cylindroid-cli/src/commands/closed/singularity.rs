@@ -7,7 +7,6 @@ use cylindroid::model::Dimension;
 use cylindroid::screws::Screw;
 use serde::Serialize;
 
-use super::mobility::vectors;
 use super::{Posed, list};
 use crate::output::{self, Align, ScrewJson, number};
 
@@ -99,7 +98,7 @@ impl From<&FiniteMobility> for FiniteJson {
     fn from(f: &FiniteMobility) -> Self {
         let branch = |b: &cylindroid::closure::Branch| BranchJson {
             dimension: b.dimension,
-            motions: vectors(&b.motions),
+            motions: output::columns(&b.motions),
         };
         Self {
             evidence: f.evidence.to_string(),
@@ -107,7 +106,7 @@ impl From<&FiniteMobility> for FiniteJson {
             step: f.step,
             left_open: f.left_open,
             branches: f.branches.iter().map(branch).collect(),
-            shaky: vectors(&f.shaky),
+            shaky: output::columns(&f.shaky),
         }
     }
 }
@@ -276,14 +275,14 @@ pub(super) fn ways(out: &mut dyn Write, posed: &Posed, f: &FiniteMobility) -> an
     let mut names = Vec::new();
     let mut motions = Vec::new();
     for (i, branch) in f.branches.iter().enumerate() {
-        for (j, motion) in vectors(&branch.motions).into_iter().enumerate() {
+        for (j, motion) in output::columns(&branch.motions).into_iter().enumerate() {
             let more =
                 if branch.motions.cols() > 1 { format!(".{}", j + 1) } else { String::new() };
             names.push(format!("way {}{more}", i + 1));
             motions.push(scaled(motion));
         }
     }
-    for (i, motion) in vectors(&f.shaky).into_iter().enumerate() {
+    for (i, motion) in output::columns(&f.shaky).into_iter().enumerate() {
         names.push(format!("shaky {}", i + 1));
         motions.push(scaled(motion));
     }

@@ -7,7 +7,7 @@ use cylindroid::closure::{
     Load, Mobility, Motions, Transmitted, contact_forces, joint_torques, row_compliance,
     transmitted,
 };
-use cylindroid::{Error, Matrix, Result};
+use cylindroid::{Error, Result};
 use serde::Serialize;
 
 use super::{HeadJson, Posed, measured};
@@ -22,7 +22,7 @@ struct StaticsJson<'a> {
     /// The components of wrenches.
     components: &'static [&'static str],
     wrench: &'a [f64],
-    /// Of the driven joints, the least in size.
+    /// Of the driven joints, the least in size [N m or N].
     torques: Vec<f64>,
     /// The part of the wrench that the structure holds without torques.
     structural: Vec<f64>,
@@ -135,13 +135,12 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
         let forces = contact_forces(constraint, &motions, load, compliance.as_ref())?.forces;
         Ok(transmitted(&state, chain, &forces)?.into_iter().map(Into::into).collect())
     };
-    let columns = |m: &Matrix| (0..m.cols()).map(|j| m.column(j).to_vec()).collect::<Vec<_>>();
     let nothing = vec![0.0; components.len()];
-    let internal = columns(&mobility.internal.basis)
+    let internal = output::columns(&mobility.internal.basis)
         .into_iter()
         .map(|torques| Ok(InternalJson { forces: through(&torques, &nothing)?, torques }))
         .collect::<Result<_>>()?;
-    let hyperstatic = columns(&mobility.hyperstatic.basis)
+    let hyperstatic = output::columns(&mobility.hyperstatic.basis)
         .iter()
         .map(|t| Ok(transmitted(&state, chain, t)?.into_iter().map(Into::into).collect()))
         .collect::<Result<_>>()?;
@@ -156,7 +155,7 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
         elastic: compliance.is_some(),
         internal,
         hyperstatic,
-        zero_torque_basis: columns(&mobility.zero_torque.basis),
+        zero_torque_basis: output::columns(&mobility.zero_torque.basis),
     })
 }
 
@@ -183,7 +182,7 @@ fn print(out: &mut dyn Write, posed: &Posed, report: &StaticsJson<'_>) -> anyhow
     rows.extend(report.zero_torque_basis.iter().map(|w| row("zero-torque wrench (basis)", w)));
     output::table(out, &columns, rows)?;
     writeln!(out)?;
-    let mut columns = vec![("driven joint", Align::Left), ("torque", Align::Right)];
+    let mut columns = vec![("driven joint", Align::Left), ("torque [N m or N]", Align::Right)];
     let names: Vec<String> = (1..=report.internal.len()).map(|i| format!("internal {i}")).collect();
     columns.extend(names.iter().map(|n| (n.as_str(), Align::Right)));
     let joints = posed.chain.actuated.iter().enumerate().map(|(i, name)| {

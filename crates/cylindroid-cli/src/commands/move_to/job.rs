@@ -4,12 +4,11 @@ use cylindroid::control::{
     Bounds, CartesianBounds, CartesianMove, CartesianPath, Gain, JointDefaults, JointMove,
     Projector, Secondary,
 };
-use cylindroid::kinematics::Chain;
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
 use super::super::target::{target_pose, task};
-use super::super::{configuration, end_effector};
+use super::super::{configuration, end_effector, load};
 use super::{inverse, joints};
 use crate::args::{LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs};
 use crate::values::Named;
@@ -50,11 +49,10 @@ pub(super) enum Goal {
 
 impl Job {
     pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
-        let loaded = cylindroid::load(&args.posture.model)?;
-        let robot = match args.actuated.as_slice() {
-            [] => loaded,
-            names => loaded.with_actuated(names)?,
-        };
+        let robot = load(&args.posture.model, &args.actuated)?;
+        if !args.actuated.is_empty() && !robot.is_closed() {
+            return Err(all_driven(&robot).into());
+        }
         let degrees = args.posture.degrees;
         let start = configuration(&robot, &args.posture)?;
         within_limits(&robot, "--q", &start)?;
@@ -88,7 +86,7 @@ impl Job {
             let motion = Box::new(JointMove::within_limits(&robot, &start, &q, &defaults)?);
             (pose(&q)?, Goal::Joints(motion), "all joints, straight".to_owned())
         } else {
-            let to = target_pose(&args.target, from, degrees)?;
+            let to = target_pose(&args.target, from, degrees, ", or with --joint-to q")?;
             let path = path(&args.path, from, to)?;
             let goal = match path {
                 None => Goal::Pose(to),
@@ -115,6 +113,18 @@ impl Job {
             detour,
             defaults,
         })
+    }
+}
+
+/// Joints of trees are all driven.
+fn all_driven(robot: &Mechanism) -> Error {
+    Error::InvalidOption {
+        option: "--actuated",
+        value: robot.name().to_owned(),
+        reason: format!(
+            "'{}' has no loops or contacts, so all joints are driven; leave the option out",
+            robot.name()
+        ),
     }
 }
 
@@ -170,15 +180,7 @@ fn secondary(
     start: &[f64],
 ) -> Result<Vec<Secondary>> {
     if named.is_empty() {
-        let components = options.task.components.iter().filter(|c| **c).count();
-        let joints = Chain::new(robot, options.end_effector).n();
-        // Where loops couple joints, a wish that they do not allow costs nothing.
-        let redundant = joints > components || robot.is_closed();
-        return if redundant {
-            Ok(vec![Secondary::named("limit-avoidance", start)?])
-        } else {
-            Ok(Vec::new())
-        };
+        return options.usual_secondary(robot);
     }
     if let [Named { name, number: None }] = named
         && name == "none"

@@ -16,13 +16,11 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::job::{Goal, Job};
 use self::report::{Deviation, Result, Way};
-use super::Style;
+use super::{Style, answer};
 use crate::args::MoveArgs;
 use crate::plot;
 use crate::trajectory::{self, Trajectory};
 
-/// Exit code of a target that was not reached.
-const NOT_REACHED: u8 = 1;
 /// Runs of the search for another posture after a stall: enough for all that were tried, about a
 /// second at the worst.
 const SEARCH_RUNS: usize = 200;
@@ -49,8 +47,7 @@ pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow:
     }
 
     report::write(&job, &result, style, out)?;
-    let reached = result.outcome.reached;
-    Ok(if reached { ExitCode::SUCCESS } else { ExitCode::from(NOT_REACHED) })
+    Ok(answer(result.outcome.reached))
 }
 
 /// Runs the motion.

@@ -3,15 +3,15 @@
 use std::io::Write;
 
 use cylindroid::closure::Gap;
-use cylindroid::control::Outcome;
+use cylindroid::control::{Outcome, Task};
 use serde::Serialize;
 
 use super::job::{Goal, Job};
 use super::{inverse, sentences};
 use crate::commands::Style;
 use crate::commands::closed::GapJson;
+use crate::commands::target::errors;
 use crate::output::{self, PoseJson};
-use crate::values::COMPONENTS;
 
 /// What came of a job.
 #[derive(Debug)]
@@ -145,7 +145,7 @@ pub(super) fn write(
 fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
     let Result { outcome, deviation, gap, way } = result;
     let (robot, options) = (&job.robot, &job.options);
-    let names = COMPONENTS.iter().zip(options.task.components).filter(|(_, on)| *on);
+    let names = Task::COMPONENTS.iter().zip(options.task.components).filter(|(_, on)| *on);
     MoveJson {
         model: robot.name(),
         frame: &job.frame,
@@ -222,11 +222,9 @@ fn law_duration(job: &Job) -> Option<f64> {
 
 fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> {
     let Result { outcome, deviation, gap, way } = result;
-    let components = job.options.task.components;
-    let (linear, angular) = (components[..3].contains(&true), components[3..].contains(&true));
-    let driven = |on: bool, value: f64| {
-        if on { output::number(value) } else { "not driven".to_owned() }
-    };
+    let last = &outcome.last;
+    let [position_error, orientation_error] =
+        errors(job.options.task, last.position_error, last.orientation_error);
     let deviation = deviation.map_or_else(String::new, |d| {
         let mut text = format!("{} m", output::number(d.position));
         if let Some(orientation) = d.orientation {
@@ -253,8 +251,8 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ("steps", outcome.steps.to_string()),
             ("time [s]", output::number(outcome.time)),
             ("time law [s]", law_duration(job).map_or_else(String::new, output::number)),
-            ("position error [m]", driven(linear, outcome.last.position_error)),
-            ("orientation error [rad]", driven(angular, outcome.last.orientation_error)),
+            position_error,
+            orientation_error,
             ("largest path deviation", deviation),
             (
                 "loops open by at most",

@@ -1,11 +1,10 @@
 //! Why a motion ended, in full sentences: what happened, with names and numbers, and what to try.
 
 use cylindroid::Reference;
-use cylindroid::control::{Outcome, Stall};
+use cylindroid::control::{Outcome, Stall, Task};
 
 use super::job::Job;
 use crate::output::number;
-use crate::values::COMPONENTS;
 
 /// The cause as one word: "reached", a [`Stall::name`], or "time-limit".
 pub(super) fn reason(outcome: &Outcome) -> &'static str {
@@ -168,7 +167,7 @@ fn limits(job: &Job, outcome: &Outcome, coordinates: &[usize]) -> String {
 fn along(job: &Job, direction: &[f64]) -> String {
     /// Components below this are not named.
     const SMALL: f64 = 0.1;
-    let names = COMPONENTS.iter().zip(job.options.task.components).filter(|(_, on)| *on);
+    let names = Task::COMPONENTS.iter().zip(job.options.task.components).filter(|(_, on)| *on);
     let parts: Vec<String> = names
         .zip(direction)
         .filter(|(_, share)| share.abs() >= SMALL)

@@ -41,10 +41,10 @@ pub(crate) fn run(
         }
     }
     let found = find(args)?;
-    report::write(&found, &args.h, style, out)?;
     if let Some(path) = &args.plot {
         plot::screws::draw(&found.twists.title(), &found.twists.matrix(), &found.system, path)?;
     }
+    report::write(&found, &args.h, style, out)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -184,10 +184,10 @@ fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
         },
         existence: pitches.iter().map(|&h| existence_json(system, h)).collect(),
         involution: found.involution.as_ref().map(involution_json),
-        point: found.point.as_ref().map(|p| PointJson {
-            along: p.along.clone(),
-            still: (0..p.still.cols()).map(|j| p.still.column(j).to_vec()).collect(),
-        }),
+        point: found
+            .point
+            .as_ref()
+            .map(|p| PointJson { along: p.along.clone(), still: output::columns(&p.still) }),
     }
 }
 
@@ -468,7 +468,7 @@ fn point(out: &mut dyn Write, names: &[String], p: &PointDirection) -> anyhow::R
         Some(rates) => rows.push(cells("point moves at 1 m/s", rates)),
         None => writeln!(out, "No rates move the point along this direction.")?,
     }
-    rows.extend((0..p.still.cols()).map(|j| cells("point rests", p.still.column(j))));
+    rows.extend(output::columns(&p.still).iter().map(|rates| cells("point rests", rates)));
     Ok(output::table(out, &columns, rows)?)
 }
 

@@ -9,10 +9,10 @@ use cylindroid::closure::{
 use cylindroid::model::Dimension;
 use serde::Serialize;
 
-use super::{Job, NOT_CLOSED, open_by, q_line};
-use crate::commands::Style;
+use super::{Job, open_by, q_line};
 use crate::commands::closed::GapJson;
 use crate::commands::closed::singularity::motion_in_words;
+use crate::commands::{Style, answer};
 use crate::output::{self, Align, ScrewJson, number};
 
 #[derive(Debug, Serialize)]
@@ -88,8 +88,7 @@ pub(super) fn run(
         Style::Json => output::json(out, &describe(job, goal, options, &way))?,
         Style::Table => print(out, job, goal, &way)?,
     }
-    let reached = way.end == PathEnd::Reached;
-    Ok(if reached { ExitCode::SUCCESS } else { ExitCode::from(NOT_CLOSED) })
+    Ok(answer(way.end == PathEnd::Reached))
 }
 
 fn start<'a>(job: &'a Job<'_>, way: &'a Followed) -> &'a [f64] {

@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use cylindroid::closure::{AssemblyModes, Mode, ModeOptions, assembly_modes};
 use serde::Serialize;
 
-use super::{Job, NOT_CLOSED, open_by, q_line};
-use crate::commands::Style;
+use super::{Job, open_by, q_line};
 use crate::commands::closed::GapJson;
+use crate::commands::{Style, answer};
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]
@@ -55,7 +55,7 @@ pub(super) fn run(
         Style::Json => output::json(out, &describe(job, options, &found))?,
         Style::Table => print(out, job, &found)?,
     }
-    Ok(if found.modes.is_empty() { ExitCode::from(NOT_CLOSED) } else { ExitCode::SUCCESS })
+    Ok(answer(!found.modes.is_empty()))
 }
 
 fn describe<'a>(job: &'a Job<'_>, options: ModeOptions, found: &'a AssemblyModes) -> ModesJson<'a> {

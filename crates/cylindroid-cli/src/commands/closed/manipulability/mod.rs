@@ -53,7 +53,6 @@ pub(crate) fn run(
         plot::check(path)?;
     }
     let found = find(args)?;
-    report::write(&found, style, out)?;
     if let Some(path) = &args.plot {
         let [rates, torques] = [Quantity::Rate, Quantity::Torque];
         let drawing = plot::ellipses::Drawing {
@@ -66,6 +65,7 @@ pub(crate) fn run(
         };
         plot::ellipses::draw(&drawing, path)?;
     }
+    report::write(&found, style, out)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -2,7 +2,6 @@
 
 use std::io::Write;
 
-use cylindroid::Matrix;
 use cylindroid::linalg::Interval;
 use cylindroid::manipulability::{Direction, Gradient, Index, Spectrum};
 use serde::Serialize;
@@ -98,7 +97,7 @@ impl From<&Bounded> for BoundedJson {
             limits: ends(&b.limits),
             range: ends(&b.range),
             vertices: polytope.map(|p| p.hull.polygon().iter().map(|v| v.to_vec()).collect()),
-            unbounded: polytope.map_or_else(Vec::new, |p| columns_of(&p.unbounded)),
+            unbounded: polytope.map_or_else(Vec::new, |p| output::columns(&p.unbounded)),
             complete: polytope.is_none_or(|p| p.hull.complete),
         }
     }
@@ -137,10 +136,6 @@ struct DirectionJson {
     object: Vec<f64>,
 }
 
-fn columns_of(m: &Matrix) -> Vec<Vec<f64>> {
-    (0..m.cols()).map(|j| m.column(j).to_vec()).collect()
-}
-
 impl From<&Spectrum> for SpectrumJson {
     fn from(s: &Spectrum) -> Self {
         let direction =
@@ -150,8 +145,8 @@ impl From<&Spectrum> for SpectrumJson {
             zeros: s.zeros.cols(),
             infinite: s.infinite.cols(),
             directions: s.finite.iter().map(direction).collect(),
-            zero_directions: columns_of(&s.zeros),
-            infinite_directions: columns_of(&s.infinite),
+            zero_directions: output::columns(&s.zeros),
+            infinite_directions: output::columns(&s.infinite),
         }
     }
 }
@@ -267,11 +262,12 @@ fn efficiencies(
         cells.extend((0..object).map(|i| twist.get(i).map_or_else(|| "0".to_owned(), cell)));
         cells
     };
-    let infinite = columns_of(&spectrum.infinite);
+    let infinite = output::columns(&spectrum.infinite);
     let infinite = infinite.into_iter().map(|u| row("infinite".to_owned(), &[], &u));
     let values = spectrum.values().into_iter().zip(&spectrum.finite);
     let finite = values.map(|(value, d)| row(number(value), &d.joint, &d.object));
-    let zeros = columns_of(&spectrum.zeros).into_iter().map(|q| row("zero".to_owned(), &q, &[]));
+    let zeros =
+        output::columns(&spectrum.zeros).into_iter().map(|q| row("zero".to_owned(), &q, &[]));
     output::table(out, &columns, infinite.chain(finite).chain(zeros).collect::<Vec<_>>())?;
     Ok(())
 }

@@ -1,0 +1,177 @@
+//! The documents against the binary: examples run as they stand, and JSON has the keys it promises.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::closed::robots;
+use crate::text;
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
+/// All commands, as the help lists them.
+fn commands() -> Vec<String> {
+    let help = text(&["--help"]);
+    let list = help.split("\nCommands:\n").nth(1).and_then(|rest| rest.split("\n\n").next());
+    let entries = list.unwrap().lines().filter_map(|line| line.strip_prefix("  "));
+    let names =
+        entries.filter(|entry| !entry.starts_with(' ')).map(|entry| entry.split(' ').next());
+    names.flatten().filter(|name| *name != "help").map(str::to_owned).collect()
+}
+
+fn document(name: &str) -> String {
+    fs::read_to_string(Path::new(ROOT).join(name)).unwrap()
+}
+
+/// What a reader would type: lines and code of a text that begin with the binary or its `cargo
+/// run`, without what is said beside them.
+fn examples(document: &str, commands: &[String]) -> Vec<String> {
+    let lines = document.lines().chain(document.split('`'));
+    let typed = lines.filter_map(|line| {
+        let line = line.trim();
+        let command = line
+            .strip_prefix("cylindroid ")
+            .or_else(|| line.strip_prefix("cargo run --release -- "))?;
+        let is_command = commands.iter().any(|name| command.split(' ').next() == Some(name));
+        let alone = is_command && !command.contains('\n');
+        alone.then(|| command.split("  ").next().unwrap_or(command).to_owned())
+    });
+    typed.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Of the README, and of every help text.
+#[test]
+fn examples_run_as_they_stand() {
+    let folder = tempfile::tempdir().unwrap();
+    let docs = folder.path().join("docs");
+    fs::create_dir(&docs).unwrap();
+    fs::copy(GRASP, docs.join("grasp.toml")).unwrap();
+    fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
+    let urdf = robots().join("ur_description/urdf/ur5_robot.urdf");
+    let mut pages = vec![document("README.md"), text(&["--help"])];
+    let commands = commands();
+    pages.extend(commands.iter().map(|command| text(&[command, "--help"])));
+    let found: Vec<Vec<String>> = pages.iter().map(|page| examples(page, &commands)).collect();
+    let counts: Vec<usize> = found.iter().map(Vec::len).collect();
+    // The first four commands speak for themselves.
+    let all = counts[6..].iter().all(|n| *n > 1);
+    assert!(commands.len() > 11 && counts[0] > 15 && counts[1] > 3 && all, "{counts:?}");
+    for example in found.iter().flatten() {
+        let words = example.replace("path/to/ur5_robot.urdf", &urdf.to_string_lossy());
+        let output = Command::new(env!("CARGO_BIN_EXE_cylindroid"))
+            .args(words.split(' '))
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{example}: {stderr}");
+    }
+}
+
+/// Words that are set as code.
+fn coded(text: &str) -> BTreeSet<&str> {
+    let code = text.split('`').skip(1).step_by(2);
+    let words = code.flat_map(|c| c.split(|x: char| !x.is_alphanumeric() && x != '_'));
+    words.filter(|word| !word.is_empty()).collect()
+}
+
+/// All keys of an object and of what is in it.
+fn keys<'a>(value: &'a Value, found: &mut BTreeSet<&'a str>) {
+    match value {
+        Value::Object(map) => {
+            found.extend(map.keys().map(String::as_str));
+            map.values().for_each(|v| keys(v, found));
+        }
+        Value::Array(list) => list.iter().for_each(|v| keys(v, found)),
+        _ => {}
+    }
+}
+
+/// Commands that print every key that there is.
+fn printing(command: &str) -> Vec<Vec<&'static str>> {
+    const UP: [&str; 4] = ["--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"];
+    const SLIDING: &str = "../cylindroid/tests/data/mechanisms/stewart-turned.toml";
+    let with = |first: &[&'static str], more: &[&'static str]| [first, more].concat();
+    let all = match command {
+        "info" => vec![vec!["panda"], vec!["two-arm"], vec!["stewart"]],
+        "fk" => vec![vec!["panda"], vec!["panda", "--all"]],
+        "jacobian" => vec![
+            vec!["ur5e", "--rates", "shoulder_pan_joint=0.1"],
+            vec!["ur5e", "--analytical", "zyz"],
+        ],
+        "ik" => vec![with(&["panda"], &UP), vec!["panda", "--to", "2,0,0.5"]],
+        "move" => vec![
+            with(&["panda", "--line"], &UP),
+            vec!["puma560", "--to", "-0.5,0.2,0.3"],
+            vec!["puma560", "--to", "-0.5,0.2,0.3", "--no-detour"],
+            vec!["five-bar", "--to", "1.2,1.8,0"],
+            vec![
+                "youbot",
+                "--q",
+                "0.4,0.6,0.9,1.641592653589793,0.2",
+                "--to",
+                "0.2350376,0.0993723,0.04",
+                "--task",
+                "pose",
+                "--inverse",
+                "hyperbolic",
+                "--h",
+                "0.1",
+                "--fallback",
+                "truncated",
+            ],
+        ],
+        "screws" => {
+            vec![vec!["youbot", "--h", "0.1", "--point", "0.4,0.2,0.2", "--direction", "0,0,1"]]
+        }
+        "assemble" => vec![
+            vec!["five-bar"],
+            vec!["five-bar", "--modes", "2"],
+            vec!["five-bar", "--to", "q1=1", "--hold", "q1"],
+        ],
+        "mobility" => vec![vec!["stewart"], vec![SLIDING]],
+        "manipulability" => vec![vec!["five-bar", "--polytope", "--gradient", "volume"]],
+        "statics" => vec![
+            vec![GRASP, "--wrench", "0,0,-9,0,0,0"],
+            vec!["five-bar", "--actuated", "q1,q2,q3,q4,q5", "--wrench", "3,-1,0.2"],
+        ],
+        "grasp" => vec![vec![GRASP, "--torsion", "0.01"]],
+        _ => vec![vec![]],
+    };
+    all.into_iter().map(|more| with(&[], &more)).collect()
+}
+
+/// Every key that is printed is in the command's section (what is inside of others: somewhere on
+/// the page), and every key of its tables is printed.
+#[test]
+fn json_has_the_keys_of_its_page() {
+    let page = document("docs/json.md");
+    let sections: Vec<&str> = page.split("\n## ").collect();
+    let anywhere = coded(&page);
+    for command in &commands() {
+        let section = sections.iter().find(|s| s.lines().next() == Some(command.as_str()));
+        let section = section.unwrap_or_else(|| panic!("no section on {command}"));
+        let named = coded(section);
+        let rows = section.lines().filter(|l| l.starts_with("| `"));
+        let promised: BTreeSet<&str> =
+            rows.flat_map(|row| coded(row.split('|').nth(1).unwrap_or_default())).collect();
+        let mut printed = BTreeSet::new();
+        for arguments in printing(command) {
+            let output =
+                crate::cylindroid(&[&[command.as_str()][..], &arguments, &["--json"]].concat());
+            let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+            let mut inner = BTreeSet::new();
+            keys(&value, &mut inner);
+            let unnamed: Vec<_> = inner.difference(&anywhere).collect();
+            assert!(unnamed.is_empty(), "{command} {arguments:?} prints {unnamed:?}: not named");
+            printed.extend(value.as_object().unwrap().keys().cloned());
+        }
+        let unnamed: Vec<_> = printed.iter().filter(|key| !named.contains(key.as_str())).collect();
+        assert!(unnamed.is_empty(), "{command} prints {unnamed:?}: not named in its section");
+        let missing: Vec<_> = promised.iter().filter(|key| !printed.contains(**key)).collect();
+        assert!(missing.is_empty(), "{command} does not print {missing:?}: promised");
+    }
+}
