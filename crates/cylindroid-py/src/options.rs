@@ -2,8 +2,6 @@
 
 use cylindroid::control::{Gain, Projection, Projector, Secondary, Speed, Task};
 use cylindroid::inverse::HyperbolicDamping;
-use cylindroid::kinematics::Chain;
-use cylindroid::model::Dimension;
 use cylindroid::{Error, Mechanism, Method, Reference, ServoOptions, Twist};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -13,9 +11,6 @@ use crate::error::{Failure, Result};
 use crate::inverse::MethodNumbers;
 use crate::mechanism::reference_of;
 
-const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
-/// The inverses that choose which part of a motion is taken on.
-const PROJECTIONS: [&str; 4] = ["hyperbolic", "hyperbolic-damped", "hyperbolic-gram", "oblique"];
 /// The one that chooses nothing, as a fallback.
 const PLAIN: &str = "truncated";
 
@@ -56,12 +51,12 @@ pub(crate) struct InverseChoice<'a> {
 impl InverseChoice<'_> {
     /// Sets method, projection and fallback.
     pub(crate) fn apply(&self, options: &mut ServoOptions) -> Result<()> {
-        let chooses = PROJECTIONS.contains(&self.name);
+        let chooses = Projection::NAMES.contains(&self.name);
         let method = if chooses {
             Method::default()
         } else {
             Method::named(self.name).map_err(|_| {
-                let all = Method::ALL.iter().map(Method::name).chain(PROJECTIONS);
+                let all = Method::ALL.iter().map(Method::name).chain(Projection::NAMES);
                 Error::unknown("inverse", self.name, all)
             })?
         };
@@ -75,14 +70,14 @@ impl InverseChoice<'_> {
                 let reason = format!(
                     "the inverse '{}' always exists; a fallback is for {}",
                     self.name,
-                    PROJECTIONS.join(", ")
+                    Projection::NAMES.join(", ")
                 );
                 return Err(Failure::option("fallback", name, reason));
             }
             Some(PLAIN) => Some(Projection::Orthogonal),
-            Some(name) if PROJECTIONS.contains(&name) => Some(self.projection(name)?),
+            Some(name) if Projection::NAMES.contains(&name) => Some(self.projection(name)?),
             Some(name) => {
-                let known = PROJECTIONS.iter().chain(&[PLAIN]);
+                let known = Projection::NAMES.iter().chain(&[PLAIN]);
                 return Err(Error::unknown("fallback", name, known).into());
             }
         };
@@ -122,10 +117,10 @@ impl InverseChoice<'_> {
             names.contains(&self.name) || self.fallback.is_some_and(|f| names.contains(&f))
         };
         let numbers: [(&'static str, Option<f64>, &[&str]); 4] = [
-            ("h", self.h, &PROJECTIONS[..3]),
-            ("mu", self.mu, &PROJECTIONS[1..2]),
-            ("lam", self.lam, &PROJECTIONS[2..3]),
-            ("give_up", self.give_up.as_ref().map(|g| g.len() as f64), &PROJECTIONS[3..]),
+            ("h", self.h, &Projection::NAMES[..3]),
+            ("mu", self.mu, &Projection::NAMES[1..2]),
+            ("lam", self.lam, &Projection::NAMES[2..3]),
+            ("give_up", self.give_up.as_ref().map(|g| g.len() as f64), &Projection::NAMES[3..]),
         ];
         for (option, value, names) in numbers {
             if let Some(value) = value
@@ -146,33 +141,7 @@ pub(crate) fn task(
     axes: Option<&str>,
     default: Task,
 ) -> Result<Task> {
-    let mut task = match name {
-        None => default,
-        Some("pose") => Task::POSE,
-        Some("position") => Task::POSITION,
-        Some("orientation") => Task::ORIENTATION,
-        Some("pointing") => Task::POINTING,
-        Some(list) => {
-            let mut components = [false; 6];
-            for name in list.split(',').map(str::trim) {
-                match COMPONENTS.iter().position(|c| *c == name) {
-                    Some(i) => components[i] = true,
-                    None => {
-                        let known = ["pose", "position", "orientation", "pointing"];
-                        let known = known.iter().chain(&COMPONENTS);
-                        return Err(Error::unknown("task or task component", name, known).into());
-                    }
-                }
-            }
-            Task { components, ..Task::POSE }
-        }
-    };
-    let planar = robot.is_closed() && robot.dimension() == Dimension::Planar;
-    if planar && matches!(name, Some("pose" | "position" | "orientation")) {
-        for (on, in_plane) in task.components.iter_mut().zip(Task::PLANAR.components) {
-            *on &= in_plane;
-        }
-    }
+    let mut task = name.map_or(Ok(default), |name| Task::named(name, robot))?;
     task.axes = match axes {
         None => task.axes,
         // The error is taken at the tool, so the world's axes are meant.
@@ -194,11 +163,7 @@ pub(crate) fn secondary(
         Ok(gain.map_or(task.clone(), |gain| task.with_gain(gain)))
     };
     let Some(wanted) = wanted else {
-        let components = options.task.components.iter().filter(|c| **c).count();
-        let joints = Chain::new(robot, options.end_effector).n();
-        // Where loops couple joints, a wish that they do not allow costs nothing.
-        let redundant = joints > components || robot.is_closed();
-        return if redundant { Ok(vec![named("limit-avoidance", None)?]) } else { Ok(Vec::new()) };
+        return Ok(options.usual_secondary(robot)?);
     };
     if let Ok(name) = wanted.cast::<PyString>() {
         let name = name.to_cow()?;
@@ -232,9 +197,9 @@ pub(crate) fn speed(of: &Numbers<'_>) -> Result<Speed> {
 /// Twists as rows, or names of components of the tool's motion.
 pub(crate) fn twists(name: &'static str, of: &Bound<'_, PyAny>) -> Result<Vec<Twist>> {
     if let Ok(names) = of.extract::<Vec<String>>() {
-        let one = |name: &String| match COMPONENTS.iter().position(|c| c == name) {
+        let one = |name: &String| match Task::COMPONENTS.iter().position(|c| c == name) {
             Some(i) => Ok(Twist::from_array(std::array::from_fn(|k| f64::from(u8::from(k == i))))),
-            None => Err(Error::unknown("component", name, COMPONENTS).into()),
+            None => Err(Error::unknown("component", name, Task::COMPONENTS).into()),
         };
         return names.iter().map(one).collect();
     }

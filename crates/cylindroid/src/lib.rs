@@ -17,7 +17,7 @@
 //! first (`[v; w]`, `[f; m]`); `world_from_tool` names a pose; a Jacobian always names its
 //! [`Reference`]. The modules form one line, each imports only those before it:
 //! `error, tolerance, scalar, linalg, spatial, screws, inverse, model, kinematics, closure,
-//! manipulability, control`.
+//! manipulability, ik, control`.
 
 #![cfg_attr(test, allow(clippy::float_cmp_const))]
 

@@ -180,7 +180,7 @@ impl PyConstraint {
             let frame = origin.state.mechanism().frame_of(origin.reference);
             table.row("reference", &frame.name);
             let Gap { distance, angle } = origin.gap;
-            if distance > 1e-9 || angle > 1e-9 {
+            if !origin.gap.is_closed(origin.state.mechanism().reach()) {
                 table.row("loops open by", format!("{distance:.1e} m, {angle:.1e} rad"));
             }
         }

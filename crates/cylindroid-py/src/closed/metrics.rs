@@ -93,9 +93,7 @@ pub(super) fn limits(constraint: &PyConstraint, torque: bool) -> Result<Vec<f64>
     };
     let mechanism = origin.state.mechanism();
     let limit = |name: &String| {
-        let tree = mechanism.coordinates().iter().find(|c| c.name == *name).map(|c| c.limits);
-        let closing = mechanism.loops().iter().find(|l| l.name == *name).map(|l| l.limits);
-        let limit = tree.or(closing).map(|l| if torque { l.effort } else { l.velocity });
+        let limit = mechanism.limits_of(name).map(|l| if torque { l.effort } else { l.velocity });
         limit.filter(|v| v.is_finite() && *v > 0.0).ok_or_else(|| {
             Failure::option("limits", name, format!("the joint has no {what} limit; give limits"))
         })

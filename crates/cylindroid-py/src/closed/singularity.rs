@@ -1,6 +1,6 @@
 //! The class `Singularity`: what is singular about a posture.
 
-use cylindroid::closure::{Diagnosis, SingularityKind};
+use cylindroid::closure::Diagnosis;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -13,8 +13,8 @@ use crate::table::{self, Table};
 /// ----------
 /// regular : bool
 /// kinds : list of str
-///     'type I' (the object loses motion), 'type II' (it gains motion that the drives do not
-///     hold), 'type III' (both), 'configuration space' (the mechanism gains a motion), 'passive'
+///     'type-i' (the object loses motion), 'type-ii' (it gains motion that the drives do not
+///     hold), 'type-iii' (both), 'configuration-space' (the mechanism gains a motion), 'passive'
 ///     (passive joints gain one of their own).
 /// descriptions : list of str
 ///     The same in words.
@@ -47,16 +47,6 @@ impl From<&Diagnosis> for PySingularity {
     }
 }
 
-fn kind_name(kind: SingularityKind) -> &'static str {
-    match kind {
-        SingularityKind::TypeI => "type I",
-        SingularityKind::TypeII => "type II",
-        SingularityKind::TypeIII => "type III",
-        SingularityKind::ConfigurationSpace => "configuration space",
-        SingularityKind::Passive => "passive",
-    }
-}
-
 #[pymethods]
 impl PySingularity {
     #[getter]
@@ -66,7 +56,7 @@ impl PySingularity {
 
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
-        self.inner.singularities.kinds.iter().map(|k| kind_name(*k)).collect()
+        self.inner.singularities.kinds.iter().map(|k| k.name()).collect()
     }
 
     #[getter]

@@ -23,20 +23,7 @@ impl MethodNumbers {
     /// The method of this name with the numbers that were given; others are refused.
     pub(crate) fn apply(&self, mut method: Method) -> Result<Method> {
         let name = method.name();
-        let mut own = match &mut method {
-            Method::Truncated { eps } => vec![("eps", eps)],
-            Method::Damped { damping } => vec![("damping", damping)],
-            Method::VariableDamping { onset, damping } => {
-                vec![("onset", onset), ("damping", damping)]
-            }
-            Method::NumericalFiltering { onset, damping, filter } => {
-                vec![("onset", onset), ("damping", damping), ("filter", filter)]
-            }
-            Method::SelectivelyDamped { max_rate } => vec![("max_rate", max_rate)],
-            Method::SingularValueFiltering { shape, floor } => {
-                vec![("shape", shape), ("floor", floor)]
-            }
-        };
+        let mut own = method.numbers_mut();
         let given = [
             ("eps", self.eps),
             ("damping", self.damping),

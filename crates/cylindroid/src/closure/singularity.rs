@@ -54,6 +54,20 @@ pub enum SingularityKind {
     Passive,
 }
 
+impl SingularityKind {
+    /// Its name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::TypeI => "type-i",
+            Self::TypeII => "type-ii",
+            Self::TypeIII => "type-iii",
+            Self::ConfigurationSpace => "configuration-space",
+            Self::Passive => "passive",
+        }
+    }
+}
+
 impl fmt::Display for SingularityKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

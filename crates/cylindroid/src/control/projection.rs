@@ -51,14 +51,29 @@ pub enum Projection {
 }
 
 impl Projection {
+    /// The names of those that choose a part: all but the orthogonal one.
+    pub const NAMES: [&str; 4] = ["hyperbolic", "hyperbolic-damped", "hyperbolic-gram", "oblique"];
+
     /// Its name in options and reports.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Orthogonal => "orthogonal",
-            Self::Hyperbolic { .. } => "hyperbolic",
-            Self::DampedHyperbolic { .. } => "damped-hyperbolic",
-            Self::Oblique { .. } => "oblique",
+            Self::Hyperbolic { .. } => Self::NAMES[0],
+            Self::DampedHyperbolic { damping: HyperbolicDamping::Gram { .. }, .. } => {
+                Self::NAMES[2]
+            }
+            Self::DampedHyperbolic { .. } => Self::NAMES[1],
+            Self::Oblique { .. } => Self::NAMES[3],
+        }
+    }
+
+    /// The pitch of the form, where there is one [m/rad].
+    #[must_use]
+    pub const fn pitch(&self) -> Option<f64> {
+        match self {
+            Self::Hyperbolic { h } | Self::DampedHyperbolic { h, .. } => Some(*h),
+            Self::Orthogonal | Self::Oblique { .. } => None,
         }
     }
 

@@ -126,6 +126,34 @@ impl Method {
             .ok_or_else(|| Error::unknown("inverse", name, Self::ALL.iter().map(Self::name)))
     }
 
+    /// The numbers of the method by their names, to be set.
+    ///
+    /// ```
+    /// let mut method = cylindroid::Method::named("truncated")?;
+    /// for (name, number) in method.numbers_mut() {
+    ///     assert_eq!(name, "eps");
+    ///     *number = 1e-6;
+    /// }
+    /// assert_eq!(method, cylindroid::Method::Truncated { eps: 1e-6 });
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    pub fn numbers_mut(&mut self) -> Vec<(&'static str, &mut f64)> {
+        match self {
+            Self::Truncated { eps } => vec![("eps", eps)],
+            Self::Damped { damping } => vec![("damping", damping)],
+            Self::VariableDamping { onset, damping } => {
+                vec![("onset", onset), ("damping", damping)]
+            }
+            Self::NumericalFiltering { onset, damping, filter } => {
+                vec![("onset", onset), ("damping", damping), ("filter", filter)]
+            }
+            Self::SelectivelyDamped { max_rate } => vec![("max_rate", max_rate)],
+            Self::SingularValueFiltering { shape, floor } => {
+                vec![("shape", shape), ("floor", floor)]
+            }
+        }
+    }
+
     /// Refuses numbers outside the domain of the method.
     ///
     /// # Errors

@@ -9,8 +9,6 @@ use cylindroid::{Error, Method, Reference, Result, ServoOptions, Twist};
 use crate::args::InverseArgs;
 use crate::output::number;
 
-/// The inverses that choose which part of a motion is taken on.
-const PROJECTIONS: [&str; 4] = ["hyperbolic", "hyperbolic-damped", "hyperbolic-gram", "oblique"];
 /// The one that chooses nothing, as a fallback.
 const PLAIN: &str = "truncated";
 
@@ -21,7 +19,7 @@ pub(super) fn apply(
     robot: &Mechanism,
     options: &mut ServoOptions,
 ) -> Result<()> {
-    let chooses = PROJECTIONS.contains(&args.inverse.as_str());
+    let chooses = Projection::NAMES.contains(&args.inverse.as_str());
     let method = if chooses { Method::default() } else { named(&args.inverse)? };
     options.method = with_numbers(args, method, &args.inverse)?;
     let pitch = |name: &str| match args.h {
@@ -41,14 +39,14 @@ pub(super) fn apply(
                 reason: format!(
                     "the inverse '{}' always exists; a fallback is for {}",
                     args.inverse,
-                    PROJECTIONS.join(", ")
+                    Projection::NAMES.join(", ")
                 ),
             });
         }
         Some(PLAIN) => Some(Projection::Orthogonal),
-        Some(name) if PROJECTIONS.contains(&name) => Some(projection(args, name, pitch)?),
+        Some(name) if Projection::NAMES.contains(&name) => Some(projection(args, name, pitch)?),
         Some(name) => {
-            return Err(Error::unknown("fallback", name, PROJECTIONS.iter().chain(&[PLAIN])));
+            return Err(Error::unknown("fallback", name, Projection::NAMES.iter().chain(&[PLAIN])));
         }
     };
     (options.projection, options.fallback) = (wanted, fallback);
@@ -59,26 +57,13 @@ pub(super) fn apply(
 pub(super) fn name(projection: &Projection, method: &Method) -> &'static str {
     match projection {
         Projection::Orthogonal => method.name(),
-        Projection::Hyperbolic { .. } => "hyperbolic",
-        Projection::DampedHyperbolic { damping: HyperbolicDamping::Gram { .. }, .. } => {
-            "hyperbolic-gram"
-        }
-        Projection::DampedHyperbolic { .. } => "hyperbolic-damped",
-        Projection::Oblique { .. } => "oblique",
-    }
-}
-
-/// The pitch of the form, where there is one.
-pub(super) fn pitch(projection: &Projection) -> Option<f64> {
-    match projection {
-        Projection::Hyperbolic { h } | Projection::DampedHyperbolic { h, .. } => Some(*h),
-        Projection::Orthogonal | Projection::Oblique { .. } => None,
+        _ => projection.name(),
     }
 }
 
 fn named(name: &str) -> Result<Method> {
     Method::named(name).map_err(|_| {
-        let all = Method::ALL.iter().map(Method::name).chain(PROJECTIONS);
+        let all = Method::ALL.iter().map(Method::name).chain(Projection::NAMES);
         Error::unknown("inverse", name, all)
     })
 }
@@ -149,9 +134,9 @@ fn unused(args: &InverseArgs) -> Result<()> {
         reason: format!("only {} has it; choose one with --inverse", names.join(", ")),
     };
     let numbers: [(&'static str, Option<f64>, &[&str]); 3] = [
-        ("--h", args.h, &PROJECTIONS[..3]),
-        ("--mu", args.mu, &PROJECTIONS[1..2]),
-        ("--lambda", args.lambda, &PROJECTIONS[2..3]),
+        ("--h", args.h, &Projection::NAMES[..3]),
+        ("--mu", args.mu, &Projection::NAMES[1..2]),
+        ("--lambda", args.lambda, &Projection::NAMES[2..3]),
     ];
     for (option, value, names) in numbers {
         if let Some(value) = value
@@ -160,29 +145,17 @@ fn unused(args: &InverseArgs) -> Result<()> {
             return Err(refuse(option, value.to_string(), names));
         }
     }
-    if !args.give_up.is_empty() && !asked(&PROJECTIONS[3..]) {
+    if !args.give_up.is_empty() && !asked(&Projection::NAMES[3..]) {
         let given = format!("{} motions", args.give_up.len());
-        return Err(refuse("--give-up", given, &PROJECTIONS[3..]));
+        return Err(refuse("--give-up", given, &Projection::NAMES[3..]));
     }
     Ok(())
 }
 
 /// The inverse with the numbers that were given.
 fn with_numbers(args: &InverseArgs, mut method: Method, name: &str) -> Result<Method> {
-    let mut numbers = match &mut method {
-        Method::Truncated { eps } => vec![("--eps", eps)],
-        Method::Damped { damping } => vec![("--damping", damping)],
-        Method::VariableDamping { onset, damping } => {
-            vec![("--onset", onset), ("--damping", damping)]
-        }
-        Method::NumericalFiltering { onset, damping, filter } => {
-            vec![("--onset", onset), ("--damping", damping), ("--filter", filter)]
-        }
-        Method::SelectivelyDamped { max_rate } => vec![("--max-rate", max_rate)],
-        Method::SingularValueFiltering { shape, floor } => {
-            vec![("--shape", shape), ("--floor", floor)]
-        }
-    };
+    let flag = |number: &str| format!("--{}", number.replace('_', "-"));
+    let mut numbers = method.numbers_mut();
     let given = [
         ("--eps", args.eps),
         ("--damping", args.damping),
@@ -193,8 +166,8 @@ fn with_numbers(args: &InverseArgs, mut method: Method, name: &str) -> Result<Me
         ("--floor", args.floor),
     ];
     for (option, value) in given.into_iter().filter_map(|(o, v)| Some((o, v?))) {
-        let Some((_, number)) = numbers.iter_mut().find(|(o, _)| *o == option) else {
-            let own: Vec<&str> = numbers.iter().map(|(o, _)| *o).collect();
+        let Some((_, number)) = numbers.iter_mut().find(|(o, _)| flag(o) == option) else {
+            let own: Vec<String> = numbers.iter().map(|(o, _)| flag(o)).collect();
             return Err(Error::InvalidOption {
                 option,
                 value: value.to_string(),

@@ -176,7 +176,7 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         task: names.map(|(name, _)| *name).collect(),
         task_axes: options.task.axes.name(),
         inverse: inverse::name(&options.projection, &options.method),
-        h: inverse::pitch(&options.projection),
+        h: options.projection.pitch(),
         fallback: options.fallback.as_ref().map(|f| inverse::name(f, &options.method)),
         steps_without_inverse: outcome.steps_without_inverse,
         no_inverse: outcome.no_inverse.map(|reason| reason.to_string()),
@@ -281,7 +281,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
 fn inverse(job: &Job, outcome: &Outcome) -> String {
     let options = &job.options;
     let mut text = inverse::name(&options.projection, &options.method).to_owned();
-    if let Some(h) = inverse::pitch(&options.projection) {
+    if let Some(h) = options.projection.pitch() {
         let h = if h.is_infinite() { "infinity".to_owned() } else { output::number(h) };
         text.push_str(&format!(" (h = {h} m/rad)"));
     }

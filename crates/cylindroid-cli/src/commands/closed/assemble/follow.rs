@@ -3,9 +3,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::closure::{
-    FollowOptions, Followed, PathEnd, PathSingularity, SingularityKind, follow,
-};
+use cylindroid::closure::{FollowOptions, Followed, PathEnd, PathSingularity, follow};
 use cylindroid::model::Dimension;
 use serde::Serialize;
 
@@ -104,7 +102,7 @@ fn describe<'a>(
     let asked = goal.places.iter().zip(&goal.values);
     let sight = match &way.end {
         PathEnd::Singular(s) => Some(SightJson {
-            kind: kind(s.kind),
+            kind: s.kind.name(),
             distance: s.distance,
             rates: &s.rates,
             twist: s.twist.to_array(),
@@ -136,16 +134,6 @@ fn describe<'a>(
             .iter()
             .map(|p| PointJson { share: p.share, q: &p.q, distance: p.distance })
             .collect(),
-    }
-}
-
-fn kind(kind: SingularityKind) -> &'static str {
-    match kind {
-        SingularityKind::TypeI => "type-i",
-        SingularityKind::TypeII => "type-ii",
-        SingularityKind::TypeIII => "type-iii",
-        SingularityKind::ConfigurationSpace => "configuration-space",
-        SingularityKind::Passive => "passive",
     }
 }
 
