@@ -254,6 +254,23 @@ pub(crate) fn written<'py>(
     Ok(array)
 }
 
+/// [`written`] row by row, for one configuration or many: `write` is told which.
+pub(crate) fn written_rows<'py>(
+    py: Python<'py>,
+    count: Option<usize>,
+    shape: &[usize],
+    mut write: impl FnMut(usize, &mut [f64]) -> cylindroid::Result<()> + Send,
+) -> Result<Array<'py>> {
+    let width = shape.iter().product::<usize>().max(1);
+    let mut result = Ok(());
+    let array = written(py, count, shape, |out| {
+        let mut rows = out.chunks_exact_mut(width).enumerate();
+        result = rows.try_for_each(|(i, out)| write(i, out));
+    })?;
+    result?;
+    Ok(array)
+}
+
 fn zeros<'py>(py: Python<'py>, sizes: &[usize]) -> Result<Array<'py>> {
     let total = sizes.iter().try_fold(1_usize, |a, b| a.checked_mul(*b));
     if total.is_some_and(|t| t <= MANY) {

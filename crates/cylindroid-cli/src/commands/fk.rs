@@ -44,20 +44,17 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     let (model, q) = (robot.name(), state.q());
 
     if args.all {
-        let ids = robot.frames().iter().map(|f| Ok((f.name.as_str(), robot.frame(&f.name)?)));
-        let ids = ids.collect::<cylindroid::Result<Vec<_>>>()?;
+        let ids = robot.frame_ids().map(|id| (robot.frame_of(id).name.as_str(), id));
         if style == Style::Json {
-            let frames = ids
-                .into_iter()
-                .map(|(frame, id)| FrameJson { frame, pose: state.pose(id).into() })
-                .collect();
+            let frames =
+                ids.map(|(frame, id)| FrameJson { frame, pose: state.pose(id).into() }).collect();
             output::json(out, &AllJson { model, q, joint_names, outside_limits, frames })?;
             return Ok(ExitCode::SUCCESS);
         }
         print_posture(out, model, q, &outside_limits)?;
         let mut columns = vec![("frame", Align::Left)];
         columns.extend(output::POSE_COLUMNS);
-        let rows = ids.into_iter().map(|(name, id)| {
+        let rows = ids.map(|(name, id)| {
             let mut row = vec![name.to_owned()];
             row.extend(output::pose_cells(state.pose(id)));
             row

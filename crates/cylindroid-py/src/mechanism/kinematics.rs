@@ -85,10 +85,9 @@ impl PyMechanism {
     ) -> Result<Array<'py>> {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
-        arrays::written(py, rows.count, &[4, 4], move |out| {
-            for (i, out) in out.chunks_exact_mut(16).enumerate() {
-                arrays::put_pose(chain.set(rows.row(i)), out);
-            }
+        arrays::written_rows(py, rows.count, &[4, 4], |i, out| {
+            arrays::put_pose(chain.set(rows.row(i)), out);
+            Ok(())
         })
     }
 
@@ -112,19 +111,14 @@ impl PyMechanism {
     fn fk_all<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let mut state = self.inner.state(self.inner.home())?;
-        let names = self.inner.frames().iter().map(|f| self.inner.frame(&f.name));
-        let frames = names.collect::<cylindroid::Result<Vec<_>>>()?;
-        let mut result = Ok(());
-        let array = arrays::written(py, rows.count, &[frames.len(), 4, 4], |out| {
-            for (i, out) in out.chunks_exact_mut(16 * frames.len().max(1)).enumerate() {
-                result = state.set(rows.row(i));
-                for (frame, out) in frames.iter().zip(out.chunks_exact_mut(16)) {
-                    arrays::put_pose(state.pose(*frame), out);
-                }
+        let frames = self.inner.frames().len();
+        arrays::written_rows(py, rows.count, &[frames, 4, 4], |i, out| {
+            state.set(rows.row(i))?;
+            for (frame, out) in self.inner.frame_ids().zip(out.chunks_exact_mut(16)) {
+                arrays::put_pose(state.pose(frame), out);
             }
-        })?;
-        result?;
-        Ok(array)
+            Ok(())
+        })
     }
 
     /// The Jacobian: twist of the frame = J @ qd, linear rows first.
@@ -176,12 +170,11 @@ impl PyMechanism {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
         let mut local = Matrix::zeros(6, chain.n());
-        arrays::written(py, rows.count, &[6, n], move |out| {
-            for (i, out) in out.chunks_exact_mut((6 * n).max(1)).enumerate() {
-                chain.set(rows.row(i));
-                chain.jacobian_into(reference, &mut local);
-                scatter(&local, chain.coordinates(), n, out);
-            }
+        arrays::written_rows(py, rows.count, &[6, n], |i, out| {
+            chain.set(rows.row(i));
+            chain.jacobian_into(reference, &mut local);
+            scatter(&local, chain.coordinates(), n, out);
+            Ok(())
         })
     }
 
@@ -227,15 +220,14 @@ impl PyMechanism {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
         let mut local = vec![Matrix::zeros(6, chain.n()); chain.n()];
-        arrays::written(py, rows.count, &[n, 6, n], move |out| {
-            for (i, out) in out.chunks_exact_mut((6 * n * n).max(1)).enumerate() {
-                chain.set(rows.row(i));
-                chain.hessian_into(reference, &mut local);
-                for (matrix, &k) in local.iter().zip(chain.coordinates()) {
-                    let out = &mut out[6 * n * k..6 * n * (k + 1)];
-                    scatter(matrix, chain.coordinates(), n, out);
-                }
+        arrays::written_rows(py, rows.count, &[n, 6, n], |i, out| {
+            chain.set(rows.row(i));
+            chain.hessian_into(reference, &mut local);
+            for (matrix, &k) in local.iter().zip(chain.coordinates()) {
+                let out = &mut out[6 * n * k..6 * n * (k + 1)];
+                scatter(matrix, chain.coordinates(), n, out);
             }
+            Ok(())
         })
     }
 
@@ -279,20 +271,11 @@ impl PyMechanism {
         let (rows, rates) = self.pair(&q, &qd)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         let mut state = self.inner.state(self.inner.home())?;
-        let mut result = Ok(());
-        let array = arrays::written(py, rows.count, &[6, n], |out| {
-            let mut one = |i: usize, out: &mut [f64]| -> cylindroid::Result<()> {
-                state.set(rows.row(i))?;
-                arrays::put_rows(&state.jacobian_dot(rates.row(i), of, reference)?, out);
-                Ok(())
-            };
-            result = out
-                .chunks_exact_mut((6 * n).max(1))
-                .enumerate()
-                .try_for_each(|(i, out)| one(i, out));
-        })?;
-        result?;
-        Ok(array)
+        arrays::written_rows(py, rows.count, &[6, n], |i, out| {
+            state.set(rows.row(i))?;
+            arrays::put_rows(&state.jacobian_dot(rates.row(i), of, reference)?, out);
+            Ok(())
+        })
     }
 
     /// The Jacobian of position and angles instead of position and angular velocity, world axes.
@@ -338,15 +321,11 @@ impl PyMechanism {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         let mut state = self.inner.state(self.inner.home())?;
-        let mut result = Ok(());
-        let array = arrays::written(py, rows.count, &[6, n], |out| {
-            for (i, out) in out.chunks_exact_mut((6 * n).max(1)).enumerate() {
-                result = state.set(rows.row(i));
-                arrays::put_rows(&state.analytical_jacobian(of, rates).matrix, out);
-            }
-        })?;
-        result?;
-        Ok(array)
+        arrays::written_rows(py, rows.count, &[6, n], |i, out| {
+            state.set(rows.row(i))?;
+            arrays::put_rows(&state.analytical_jacobian(of, rates).matrix, out);
+            Ok(())
+        })
     }
 
     /// `q` moved by constant rates for `dt` seconds.
@@ -378,15 +357,9 @@ impl PyMechanism {
         let n = self.inner.n();
         let (rows, rates) = self.pair(&q, &qd)?;
         Error::check_finite("dt", &[dt])?;
-        let mut result = Ok(());
-        let array = arrays::written(py, rows.count, &[n], |out| {
-            result = out.chunks_exact_mut(n.max(1)).enumerate().try_for_each(|(i, out)| {
-                let next = self.inner.integrate(rows.row(i), rates.row(i), dt)?;
-                out.copy_from_slice(&next);
-                Ok::<(), Error>(())
-            });
-        })?;
-        result?;
-        Ok(array)
+        arrays::written_rows(py, rows.count, &[n], |i, out| {
+            out.copy_from_slice(&self.inner.integrate(rows.row(i), rates.row(i), dt)?);
+            Ok(())
+        })
     }
 }

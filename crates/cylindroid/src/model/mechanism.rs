@@ -261,6 +261,12 @@ impl Mechanism {
         Ok(FrameId { index, frame_key: self.data.frame_key })
     }
 
+    /// The ids of all frames, in the order of [`Mechanism::frames`].
+    pub fn frame_ids(&self) -> impl Iterator<Item = FrameId> + '_ {
+        let frame_key = self.data.frame_key;
+        (0..self.data.frames.len()).map(move |index| FrameId { index, frame_key })
+    }
+
     /// The frame of a link: those of the links come first.
     pub(crate) fn link_frame(&self, link: usize) -> FrameId {
         FrameId { index: link, frame_key: self.data.frame_key }
