@@ -46,7 +46,7 @@ def test_a_singular_posture_is_named():
     s = m.singularity
     assert s and not s.regular and s.kinds == ["type-i"] and len(s.blocked) == len(s.lost) == 1
     assert s.distances["type_i"] == 0.0 and s.generic["rank"] == 6 and s.compared_with > 0
-    assert "type-i" in repr(s) and "lost motion" in repr(s) and "<table>" in s._repr_html_()
+    assert "type I" in repr(s) and "lost motion" in repr(s) and "<table>" in s._repr_html_()
     J = arm.jacobian([0.0, -0.6, 0.0, 0.4, 1.0, 0.0], reference="world")
     wrench = np.concatenate([s.blocked[0].twist[3:], s.blocked[0].twist[:3]])
     np.testing.assert_allclose(J.T @ wrench, 0, atol=1e-9)
