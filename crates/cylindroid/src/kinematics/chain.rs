@@ -3,8 +3,9 @@
 //! What a control loop needs of a mechanism, and nothing else: a humanoid's arm costs what an arm
 //! costs. Nothing here allocates after construction.
 
-use super::forward::forward;
+use super::forward::{self, forward};
 use super::jacobian::{Reference, Tip};
+use super::serial::Serial;
 use super::state::EndEffector;
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Motion, Node};
@@ -14,6 +15,8 @@ use crate::spatial::{Padded, Pose, Vec3};
 #[derive(Debug, Clone)]
 pub struct Chain {
     nodes: Vec<Node>,
+    /// The same where joints turn and slide.
+    serial: Option<Serial>,
     slots: Vec<Padded>,
     coordinates: Vec<usize>,
     local: Vec<f64>,
@@ -63,6 +66,7 @@ impl Chain {
         let mut chain = Self {
             slots: vec![Padded::IDENTITY; nodes.len() + 1],
             local: vec![0.0; coordinates.len()],
+            serial: Serial::of(&nodes),
             nodes,
             coordinates,
             world_from_tool: slot_from_tool, // stays where nothing moves
@@ -162,7 +166,10 @@ impl Chain {
     }
 
     fn run(&mut self) {
-        forward(&self.nodes, &self.local, &mut self.slots);
+        match &self.serial {
+            Some(serial) => forward::along(serial, &self.local, &mut self.slots),
+            None => forward(&self.nodes, &self.local, &mut self.slots),
+        }
         if !self.nodes.is_empty() {
             self.world_from_tool = self.slots[self.nodes.len()].pose();
         }

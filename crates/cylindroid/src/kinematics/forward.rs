@@ -9,17 +9,35 @@
 //!          today's processors, and compiled twice: baseline and AVX2 with fused multiplication
 //! Checked  tests/it/pinocchio.rs, tests/it/kinematics.rs
 
+use super::serial::Serial;
 use crate::model::{Motion, Node};
-use crate::scalar::{MANY, sin_cos_many};
+#[cfg(target_arch = "x86_64")]
+use crate::scalar::has_avx2;
+use crate::scalar::{Real, sin_cos};
 #[cfg(target_arch = "x86_64")]
 use crate::spatial::Register;
-use crate::spatial::{Column, Columns, Padded, Pose, Rotation, Vec3};
+use crate::spatial::{Columns, Padded, Pose, Rotation, Single, Vec3};
+
+/// How many angles are taken at once.
+pub(super) const MANY: usize = 8;
+
+/// Sines and cosines of several angles, as many at once as there are lanes.
+#[inline(always)]
+pub(super) fn sines<W: Real>(x: &[f64; MANY]) -> ([f64; MANY], [f64; MANY]) {
+    let (mut sin, mut cos) = ([0.0; MANY], [0.0; MANY]);
+    for i in (0..MANY).step_by(W::LANES) {
+        let (s, c) = sin_cos(W::load(&x[i..]));
+        s.store(&mut sin[i..]);
+        c.store(&mut cos[i..]);
+    }
+    (sin, cos)
+}
 
 /// Writes the pose of each node into `slots[1..]`; `slots[0]` is the ground and stays.
 #[inline]
 pub(crate) fn forward(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+    if has_avx2() {
         #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
         // SAFETY: the processor has both features, as just asked.
         unsafe {
@@ -27,7 +45,7 @@ pub(crate) fn forward(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
         }
         return;
     }
-    forward_with::<[f64; 4]>(nodes, q, slots);
+    forward_with::<[f64; 3]>(nodes, q, slots);
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -38,16 +56,16 @@ fn forward_avx2(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
 
 /// The kernel; with fused products results differ in the last digits.
 #[inline(always)]
-fn forward_with<C: Column>(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
+fn forward_with<T: Single>(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
     for (chunk, nodes) in nodes.chunks(MANY).enumerate() {
         // All angles first: they wait for nothing, and go four to a register.
         let mut x = [0.0; MANY];
         for (x, node) in x.iter_mut().zip(nodes) {
             *x = q[node.coordinate] * node.multiplier + node.offset;
         }
-        let (sin, cos) = sin_cos_many(&x, C::FUSED);
+        let (sin, cos) = sines::<T::Wide>(&x);
         for (k, node) in nodes.iter().enumerate() {
-            let base = Columns::<C>::load(&slots[node.parent]).then(&node.placement);
+            let base = Columns::<T>::load(&slots[node.parent]).then(&node.placement);
             let moved = match node.motion {
                 Motion::Revolute => base.turned(sin[k], cos[k]),
                 Motion::Prismatic => base.slid(x[k]),
@@ -68,6 +86,47 @@ fn forward_with<C: Column>(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
             moved.store(&mut slots[chunk * MANY + k + 1]);
         }
     }
+}
+
+/// The same for a chain: the frames of its joints after they have moved, and the tool's, into
+/// `slots[1..]`.
+#[inline]
+pub(super) fn along(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
+    #[cfg(target_arch = "x86_64")]
+    if has_avx2() {
+        #[allow(unsafe_code)] // as above
+        // SAFETY: the processor has both features, as just asked.
+        unsafe {
+            along_avx2(serial, q, slots);
+        }
+        return;
+    }
+    along_with::<[f64; 3]>(serial, q, slots);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn along_avx2(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
+    along_with::<Register>(serial, q, slots);
+}
+
+#[inline(always)]
+fn along_with<T: Single>(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
+    let mut frame = serial.start::<T>();
+    for (chunk, joints) in serial.joints().chunks(MANY).enumerate() {
+        let mut x = [0.0; MANY];
+        for (x, joint) in x.iter_mut().zip(joints) {
+            *x = joint.angle(q[joint.coordinate]);
+        }
+        let (sin, cos) = sines::<T::Wide>(&x);
+        let slots = &mut slots[chunk * MANY + 1..][..joints.len()];
+        for (k, (joint, slot)) in joints.iter().zip(slots).enumerate() {
+            frame = joint.moved(frame, sin[k], cos[k], q[joint.coordinate]);
+            frame.store(slot);
+            frame = joint.passed(frame);
+        }
+    }
+    serial.end(frame).store(&mut slots[serial.joints().len() + 1]);
 }
 
 fn three(q: &[f64], i: usize) -> Vec3 {
@@ -113,7 +172,7 @@ mod tests {
         let q: Vec<f64> = (0..13).map(|i| 0.17 * f64::from(i) - 0.9).collect();
         let mut plain = vec![Padded::IDENTITY; 10];
         let mut fused = plain.clone();
-        forward_with::<[f64; 4]>(&nodes, &q, &mut plain);
+        forward_with::<[f64; 3]>(&nodes, &q, &mut plain);
         forward(&nodes, &q, &mut fused);
         for (a, b) in plain.iter().zip(&fused) {
             let (a, b) = (a.pose().to_matrix(), b.pose().to_matrix());

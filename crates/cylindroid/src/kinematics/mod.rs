@@ -9,6 +9,7 @@ mod conversion;
 mod forward;
 mod hessian;
 mod jacobian;
+mod serial;
 mod state;
 
 pub use analytical::{AnalyticalJacobian, OrientationRates};

@@ -11,6 +11,7 @@ mod padded;
 mod pose;
 mod rotation;
 mod series;
+mod triple;
 mod twist;
 mod vec3;
 
@@ -19,9 +20,10 @@ pub use exp::{
     Derivative6, exp, exp_derivative, log, log_derivative, rotation_exp_derivative,
     rotation_log_derivative,
 };
+pub(crate) use padded::Padded;
 #[cfg(target_arch = "x86_64")]
-pub(crate) use padded::Register;
-pub(crate) use padded::{Column, Columns, Padded};
+pub(crate) use triple::Register;
+pub(crate) use triple::{Columns, Single, Triple};
 pub use pose::Pose;
 pub use rotation::Rotation;
 pub use twist::{Twist, Wrench};

@@ -1,0 +1,77 @@
+//! Lanes as a plain array: what compilers make of it on processors without registers of their own
+//! here, and the form that those are compared with.
+
+use std::array::from_fn;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use super::Real;
+
+/// Several numbers side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Array<const N: usize>(pub(crate) [f64; N]);
+
+macro_rules! lane_by_lane {
+    ($trait:ident, $method:ident, $operator:tt) => {
+        impl<const N: usize> $trait for Array<N> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(from_fn(|i| self.0[i] $operator other.0[i]))
+            }
+        }
+    };
+}
+
+lane_by_lane!(Add, add, +);
+lane_by_lane!(Sub, sub, -);
+lane_by_lane!(Mul, mul, *);
+
+impl<const N: usize> Neg for Array<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|x| -x))
+    }
+}
+
+impl<const N: usize> Real for Array<N> {
+    const LANES: usize = N;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self([x; N])
+    }
+
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        Self(from_fn(|i| from[i]))
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[..N].copy_from_slice(&self.0);
+    }
+
+    #[inline(always)]
+    fn times_plus(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    #[inline(always)]
+    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
+        let pairs: [_; N] = from_fn(|i| f64::swap_where_odd(a.0[i], b.0[i], bits.0[i]));
+        (Self(pairs.map(|p| p.0)), Self(pairs.map(|p| p.1)))
+    }
+
+    #[inline(always)]
+    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
+        Self(from_fn(|i| self.0[i].negate_where_second_bit(bits.0[i], more)))
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: f64) -> bool {
+        self.0.iter().all(|x| x.abs() <= limit)
+    }
+}

@@ -1,0 +1,96 @@
+//! The numbers that kernels compute with: one f64, or several side by side.
+//!
+//! A kernel is written once over [`Real`] and compiled for plain numbers (the specification), for
+//! one register of four or eight, and for arrays where the processor is another one.
+
+mod array;
+mod sequence;
+mod trig;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+pub(crate) use array::Array;
+pub(crate) use sequence::uniform;
+pub(crate) use trig::sin_cos;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use x86::{Lanes4, Lanes8};
+
+/// True if the processor has AVX2 and fused products: what four lanes need.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+pub(crate) fn has_avx2() -> bool {
+    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+}
+
+/// True if the processor has AVX-512: what eight lanes need.
+#[cfg(target_arch = "x86_64")]
+pub(crate) fn has_avx512() -> bool {
+    std::arch::is_x86_feature_detected!("avx512f") && has_avx2()
+}
+
+/// Lanes at the most.
+pub(crate) const MOST_LANES: usize = 8;
+
+/// One number, or several that go the same way.
+pub(crate) trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// How many.
+    const LANES: usize;
+    /// The same number in all lanes.
+    fn splat(x: f64) -> Self;
+    /// The first `LANES` numbers.
+    fn load(from: &[f64]) -> Self;
+    /// Into the first `LANES` places.
+    fn store(self, to: &mut [f64]);
+    /// `self * b + c`, with one rounding where the processor can.
+    fn times_plus(self, b: Self, c: Self) -> Self;
+    /// `(a, b)`, in lanes where the lowest bit of `bits` is set `(b, a)`.
+    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self);
+    /// Negated in lanes where the second bit of `bits + more` (as integers) is set.
+    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self;
+    /// True if no lane is larger than `limit` or not a number.
+    fn all_within(self, limit: f64) -> bool;
+}
+
+impl Real for f64 {
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        from[0]
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[0] = self;
+    }
+
+    #[inline(always)]
+    fn times_plus(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    #[inline(always)]
+    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
+        if bits.to_bits() & 1 == 0 { (a, b) } else { (b, a) }
+    }
+
+    #[inline(always)]
+    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
+        let sign = (bits.to_bits().wrapping_add(more) & 2) << 62;
+        Self::from_bits(self.to_bits() ^ sign)
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: f64) -> bool {
+        self.abs() <= limit
+    }
+}

@@ -1,0 +1,218 @@
+//! Lanes in one register of x86-64: four with AVX2, eight with AVX-512.
+//!
+//! To be named only inside functions that are compiled for these features and run only where the
+//! processor has them: [`Lanes4`] needs AVX2 and FMA, [`Lanes8`] AVX-512F.
+
+#![allow(unsafe_code)] // intrinsics
+
+use std::arch::x86_64::{
+    __m256d, __m512d, _CMP_LE_OQ, _mm256_add_epi64, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd,
+    _mm256_blendv_pd, _mm256_castpd_si256, _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_fmadd_pd,
+    _mm256_loadu_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_epi64x, _mm256_set1_pd,
+    _mm256_slli_epi64, _mm256_storeu_pd, _mm256_sub_pd, _mm256_xor_pd, _mm512_abs_pd,
+    _mm512_add_epi64, _mm512_add_pd, _mm512_and_si512, _mm512_castpd_si512, _mm512_castsi512_pd,
+    _mm512_cmp_pd_mask, _mm512_fmadd_pd, _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mul_pd,
+    _mm512_set1_epi64, _mm512_set1_pd, _mm512_slli_epi64, _mm512_storeu_pd, _mm512_sub_pd,
+    _mm512_test_epi64_mask, _mm512_xor_si512,
+};
+use std::ops::{Add, Mul, Neg, Sub};
+
+use super::Real;
+
+/// The bit of the sign.
+const SIGN: i64 = i64::MIN;
+
+macro_rules! operators {
+    ($name:ident, $add:ident, $sub:ident, $mul:ident) => {
+        impl Add for $name {
+            type Output = Self;
+
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                // SAFETY: see the head of this file.
+                Self(unsafe { $add(self.0, other.0) })
+            }
+        }
+
+        impl Sub for $name {
+            type Output = Self;
+
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                // SAFETY: see the head of this file.
+                Self(unsafe { $sub(self.0, other.0) })
+            }
+        }
+
+        impl Mul for $name {
+            type Output = Self;
+
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                // SAFETY: see the head of this file.
+                Self(unsafe { $mul(self.0, other.0) })
+            }
+        }
+    };
+}
+
+/// Four numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lanes4(pub(crate) __m256d);
+
+operators!(Lanes4, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd);
+
+impl Neg for Lanes4 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_xor_pd(self.0, _mm256_set1_pd(-0.0)) })
+    }
+}
+
+impl Real for Lanes4 {
+    const LANES: usize = 4;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_set1_pd(x) })
+    }
+
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let from = &from[..4];
+        // SAFETY: four numbers are there; see the head of this file.
+        Self(unsafe { _mm256_loadu_pd(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        let to = &mut to[..4];
+        // SAFETY: four places are there; see the head of this file.
+        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) }
+    }
+
+    #[inline(always)]
+    fn times_plus(self, b: Self, c: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_fmadd_pd(self.0, b.0, c.0) })
+    }
+
+    #[inline(always)]
+    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
+        // SAFETY: see the head of this file.
+        unsafe {
+            // What is chosen by is the sign.
+            let odd = _mm256_castsi256_pd(_mm256_slli_epi64::<63>(_mm256_castpd_si256(bits.0)));
+            (Self(_mm256_blendv_pd(a.0, b.0, odd)), Self(_mm256_blendv_pd(b.0, a.0, odd)))
+        }
+    }
+
+    #[inline(always)]
+    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let sum = _mm256_castpd_si256(bits.0);
+            let sum = match more {
+                0 => sum,
+                _ => _mm256_add_epi64(sum, _mm256_set1_epi64x(more.cast_signed())),
+            };
+            let second = _mm256_castsi256_pd(_mm256_slli_epi64::<62>(sum));
+            Self(_mm256_xor_pd(self.0, _mm256_and_pd(second, _mm256_set1_pd(-0.0))))
+        }
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: f64) -> bool {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0);
+            _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(size, _mm256_set1_pd(limit))) == 0b1111
+        }
+    }
+}
+
+/// Eight numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lanes8(__m512d);
+
+operators!(Lanes8, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd);
+
+impl Neg for Lanes8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe {
+            _mm512_castsi512_pd(_mm512_xor_si512(
+                _mm512_castpd_si512(self.0),
+                _mm512_set1_epi64(SIGN),
+            ))
+        })
+    }
+}
+
+impl Real for Lanes8 {
+    const LANES: usize = 8;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_set1_pd(x) })
+    }
+
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let from = &from[..8];
+        // SAFETY: eight numbers are there; see the head of this file.
+        Self(unsafe { _mm512_loadu_pd(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        let to = &mut to[..8];
+        // SAFETY: eight places are there; see the head of this file.
+        unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) }
+    }
+
+    #[inline(always)]
+    fn times_plus(self, b: Self, c: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_fmadd_pd(self.0, b.0, c.0) })
+    }
+
+    #[inline(always)]
+    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let odd = _mm512_test_epi64_mask(_mm512_castpd_si512(bits.0), _mm512_set1_epi64(1));
+            (Self(_mm512_mask_blend_pd(odd, a.0, b.0)), Self(_mm512_mask_blend_pd(odd, b.0, a.0)))
+        }
+    }
+
+    #[inline(always)]
+    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let sum = _mm512_add_epi64(
+                _mm512_castpd_si512(bits.0),
+                _mm512_set1_epi64(more.cast_signed()),
+            );
+            let second = _mm512_and_si512(_mm512_slli_epi64::<62>(sum), _mm512_set1_epi64(SIGN));
+            Self(_mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(self.0), second)))
+        }
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: f64) -> bool {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let size = _mm512_abs_pd(self.0);
+            _mm512_cmp_pd_mask::<_CMP_LE_OQ>(size, _mm512_set1_pd(limit)) == 0xff
+        }
+    }
+}

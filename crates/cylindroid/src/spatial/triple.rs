@@ -1,0 +1,213 @@
+//! Vectors of three numbers as kernels hold them, and the frames that they make.
+//!
+//! A kernel is written once over [`Triple`]: for three scalars or three registers of lanes (an
+//! array, the specification), and for one configuration with the three numbers in one register.
+
+use super::padded::Padded;
+use crate::scalar::Real;
+
+/// A vector of three numbers.
+pub(crate) trait Triple: Copy {
+    /// What it is multiplied by.
+    type Scalar: Real;
+    /// The same in all lanes; the fourth number is 0.
+    fn load(from: &[f64; 4]) -> Self;
+    /// `self * s`
+    fn times(self, s: Self::Scalar) -> Self;
+    /// `self * s + b`
+    fn times_plus(self, s: Self::Scalar, b: Self) -> Self;
+    /// `self - b`
+    fn minus(self, b: Self) -> Self;
+    /// `self x b`
+    fn cross(self, b: Self) -> Self;
+}
+
+/// The vector of one configuration.
+pub(crate) trait Single: Triple<Scalar = f64> {
+    /// What several angles are computed with together.
+    type Wide: Real;
+    /// The numbers, the fourth one 0.
+    fn store(self, to: &mut [f64; 4]);
+}
+
+impl<R: Real> Triple for [R; 3] {
+    type Scalar = R;
+
+    #[inline(always)]
+    fn load(from: &[f64; 4]) -> Self {
+        [R::splat(from[0]), R::splat(from[1]), R::splat(from[2])]
+    }
+
+    #[inline(always)]
+    fn times(self, s: R) -> Self {
+        [self[0] * s, self[1] * s, self[2] * s]
+    }
+
+    #[inline(always)]
+    fn times_plus(self, s: R, b: Self) -> Self {
+        [self[0].times_plus(s, b[0]), self[1].times_plus(s, b[1]), self[2].times_plus(s, b[2])]
+    }
+
+    #[inline(always)]
+    fn minus(self, b: Self) -> Self {
+        [self[0] - b[0], self[1] - b[1], self[2] - b[2]]
+    }
+
+    #[inline(always)]
+    fn cross(self, b: Self) -> Self {
+        [
+            self[1].times_plus(b[2], -(self[2] * b[1])),
+            self[2].times_plus(b[0], -(self[0] * b[2])),
+            self[0].times_plus(b[1], -(self[1] * b[0])),
+        ]
+    }
+}
+
+impl Single for [f64; 3] {
+    type Wide = f64;
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64; 4]) {
+        *to = [self[0], self[1], self[2], 0.0];
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[allow(unsafe_code)] // the compiler does not put three numbers into one register by itself
+mod avx2 {
+    use std::arch::x86_64::{
+        __m256d, _mm256_fmadd_pd, _mm256_fmsub_pd, _mm256_loadu_pd, _mm256_mul_pd,
+        _mm256_permute4x64_pd, _mm256_set1_pd, _mm256_storeu_pd, _mm256_sub_pd,
+    };
+
+    /// One register: three numbers and a 0. To be named only inside functions that are compiled for
+    /// AVX2 and FMA and run only where the processor has them.
+    #[derive(Debug, Clone, Copy)]
+    pub(crate) struct Register(__m256d);
+
+    // SAFETY, for every call below: as said above; loads are of arrays of four numbers and need no
+    // alignment.
+    impl super::Triple for Register {
+        type Scalar = f64;
+
+        #[inline(always)]
+        fn load(from: &[f64; 4]) -> Self {
+            // SAFETY: as above.
+            Self(unsafe { _mm256_loadu_pd(from.as_ptr()) })
+        }
+
+        #[inline(always)]
+        fn times(self, s: f64) -> Self {
+            // SAFETY: as above.
+            Self(unsafe { _mm256_mul_pd(self.0, _mm256_set1_pd(s)) })
+        }
+
+        #[inline(always)]
+        fn times_plus(self, s: f64, b: Self) -> Self {
+            // SAFETY: as above.
+            Self(unsafe { _mm256_fmadd_pd(self.0, _mm256_set1_pd(s), b.0) })
+        }
+
+        #[inline(always)]
+        fn minus(self, b: Self) -> Self {
+            // SAFETY: as above.
+            Self(unsafe { _mm256_sub_pd(self.0, b.0) })
+        }
+
+        #[inline(always)]
+        fn cross(self, b: Self) -> Self {
+            // y, z, x of each; a x b turned by one place is a b' - a' b
+            const NEXT: i32 = 0b11_00_10_01;
+            // SAFETY: as above.
+            unsafe {
+                let (a_next, b_next) =
+                    (_mm256_permute4x64_pd::<NEXT>(self.0), _mm256_permute4x64_pd::<NEXT>(b.0));
+                let turned = _mm256_fmsub_pd(self.0, b_next, _mm256_mul_pd(a_next, b.0));
+                Self(_mm256_permute4x64_pd::<NEXT>(turned))
+            }
+        }
+    }
+
+    impl super::Single for Register {
+        type Wide = crate::scalar::Lanes4;
+
+        #[inline(always)]
+        fn store(self, to: &mut [f64; 4]) {
+            // SAFETY: as above.
+            unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) }
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx2::Register;
+
+/// A pose `a_from_b` while it is computed with: axes and origin of b in a.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Columns<T> {
+    pub(crate) x: T,
+    pub(crate) y: T,
+    pub(crate) z: T,
+    pub(crate) p: T,
+}
+
+impl<T: Triple> Columns<T> {
+    #[inline(always)]
+    pub(crate) fn load(from: &Padded) -> Self {
+        Self { x: T::load(&from.x), y: T::load(&from.y), z: T::load(&from.z), p: T::load(&from.p) }
+    }
+
+    /// Turned about its own z axis.
+    #[inline(always)]
+    pub(crate) fn turned(self, sin: T::Scalar, cos: T::Scalar) -> Self {
+        Self {
+            x: self.y.times_plus(sin, self.x.times(cos)),
+            y: self.x.times_plus(-sin, self.y.times(cos)),
+            ..self
+        }
+    }
+
+    /// Turned about its own x axis.
+    #[inline(always)]
+    pub(crate) fn tilted(self, sin: T::Scalar, cos: T::Scalar) -> Self {
+        Self {
+            y: self.z.times_plus(sin, self.y.times(cos)),
+            z: self.y.times_plus(-sin, self.z.times(cos)),
+            ..self
+        }
+    }
+
+    /// Moved along its own z axis.
+    #[inline(always)]
+    pub(crate) fn slid(self, length: T::Scalar) -> Self {
+        Self { p: self.z.times_plus(length, self.p), ..self }
+    }
+
+    /// Moved by a vector in its own axes.
+    #[inline(always)]
+    pub(crate) fn moved(self, by: &[f64; 4]) -> Self {
+        let k = T::Scalar::splat;
+        let from_z = self.z.times_plus(k(by[2]), self.p);
+        Self { p: self.y.times_plus(k(by[1]), self.x.times_plus(k(by[0]), from_z)), ..self }
+    }
+
+    /// `a_from_b.then(b_from_c) = a_from_c`
+    #[inline(always)]
+    pub(crate) fn then(self, o: &Padded) -> Self {
+        let k = T::Scalar::splat;
+        let turn = |c: &[f64; 4]| {
+            self.y.times_plus(k(c[1]), self.x.times_plus(k(c[0]), self.z.times(k(c[2]))))
+        };
+        Self { x: turn(&o.x), y: turn(&o.y), z: turn(&o.z), p: self.moved(&o.p).p }
+    }
+}
+
+impl<T: Single> Columns<T> {
+    #[inline(always)]
+    pub(crate) fn store(self, to: &mut Padded) {
+        self.x.store(&mut to.x);
+        self.y.store(&mut to.y);
+        self.z.store(&mut to.z);
+        self.p.store(&mut to.p);
+    }
+}
