@@ -3,7 +3,8 @@
 //! What a control loop needs of a mechanism, and nothing else: a humanoid's arm costs what an arm
 //! costs. Nothing here allocates after construction.
 
-use super::forward::{self, forward};
+use super::along::{along, columns};
+use super::forward::forward;
 use super::jacobian::{Reference, Tip};
 use super::serial::Serial;
 use super::state::EndEffector;
@@ -17,10 +18,10 @@ pub struct Chain {
     nodes: Vec<Node>,
     /// The same where joints turn and slide.
     serial: Option<Serial>,
+    /// The ground, the nodes, the tool.
     slots: Vec<Padded>,
     coordinates: Vec<usize>,
     local: Vec<f64>,
-    world_from_tool: Pose,
 }
 
 impl Chain {
@@ -69,8 +70,10 @@ impl Chain {
             serial: Serial::of(&nodes),
             nodes,
             coordinates,
-            world_from_tool: slot_from_tool, // stays where nothing moves
         };
+        if chain.nodes.is_empty() {
+            chain.slots = vec![slot_from_tool.into()]; // it stays there
+        }
         chain.run();
         chain
     }
@@ -98,7 +101,7 @@ impl Chain {
             *x = q[c];
         }
         self.run();
-        self.world_from_tool
+        self.pose()
     }
 
     /// The coordinates of this chain at the last [`Chain::set`].
@@ -110,7 +113,12 @@ impl Chain {
     /// `world_from_tool` at the last [`Chain::set`].
     #[must_use]
     pub fn pose(&self) -> Pose {
-        self.world_from_tool
+        self.tool().pose()
+    }
+
+    #[inline]
+    fn tool(&self) -> &Padded {
+        &self.slots[self.nodes.len()]
     }
 
     /// The Jacobian for this chain's coordinates at the last [`Chain::set`], into `out` (6 x n).
@@ -120,7 +128,18 @@ impl Chain {
     #[inline]
     pub fn jacobian_into(&self, reference: Reference, out: &mut Matrix) {
         assert_eq!((out.rows(), out.cols()), (6, self.n()), "shape of the Jacobian");
-        self.tip().jacobian_into(reference, out);
+        match (&self.serial, reference) {
+            (Some(serial), Reference::World | Reference::LocalWorldAligned)
+                if serial.has_one_for_each(self.n()) =>
+            {
+                let p = match reference {
+                    Reference::World => &[0.0; 4],
+                    _ => &self.tool().p,
+                };
+                columns(serial, &self.slots, p, out);
+            }
+            _ => self.tip().jacobian_into(reference, out),
+        }
     }
 
     /// The Hessian for this chain's coordinates, into `out` (n matrices of 6 x n).
@@ -137,7 +156,7 @@ impl Chain {
 
     /// Origin of the first moving joint in world; it does not depend on q (m).
     pub(crate) fn first_origin(&self) -> Vec3 {
-        self.nodes.first().map_or(self.world_from_tool.translation, |n| n.placement.translation())
+        self.nodes.first().map_or(self.pose().translation, |n| n.placement.translation())
     }
 
     /// The farthest that the tool can be from the origin of the first joint (m): infinite where a
@@ -165,13 +184,15 @@ impl Chain {
         fixed + slides
     }
 
+    /// The chain as joints that turn and slide, where it is nothing else.
+    pub(super) fn serial(&self) -> Option<&Serial> {
+        self.serial.as_ref()
+    }
+
     fn run(&mut self) {
         match &self.serial {
-            Some(serial) => forward::along(serial, &self.local, &mut self.slots),
+            Some(serial) => along(serial, &self.local, &mut self.slots),
             None => forward(&self.nodes, &self.local, &mut self.slots),
-        }
-        if !self.nodes.is_empty() {
-            self.world_from_tool = self.slots[self.nodes.len()].pose();
         }
     }
 
@@ -180,7 +201,7 @@ impl Chain {
             nodes: &self.nodes,
             slots: &self.slots,
             slot: self.nodes.len(),
-            world_from_tip: self.world_from_tool,
+            world_from_tip: self.pose(),
         }
     }
 }

@@ -9,7 +9,6 @@
 //!          today's processors, and compiled twice: baseline and AVX2 with fused multiplication
 //! Checked  tests/it/pinocchio.rs, tests/it/kinematics.rs
 
-use super::serial::Serial;
 use crate::model::{Motion, Node};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::has_avx2;
@@ -23,10 +22,10 @@ pub(super) const MANY: usize = 8;
 
 /// Sines and cosines of several angles, as many at once as there are lanes.
 #[inline(always)]
-pub(super) fn sines<W: Real>(x: &[f64; MANY]) -> ([f64; MANY], [f64; MANY]) {
+pub(super) fn sines<W: Real>(angle: impl Fn(usize) -> f64) -> ([f64; MANY], [f64; MANY]) {
     let (mut sin, mut cos) = ([0.0; MANY], [0.0; MANY]);
     for i in (0..MANY).step_by(W::LANES) {
-        let (s, c) = sin_cos(W::load(&x[i..]));
+        let (s, c) = sin_cos(W::from_fn(|l| angle(i + l)));
         s.store(&mut sin[i..]);
         c.store(&mut cos[i..]);
     }
@@ -63,7 +62,7 @@ fn forward_with<T: Single>(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
         for (x, node) in x.iter_mut().zip(nodes) {
             *x = q[node.coordinate] * node.multiplier + node.offset;
         }
-        let (sin, cos) = sines::<T::Wide>(&x);
+        let (sin, cos) = sines::<T::Wide>(|k| x[k]);
         for (k, node) in nodes.iter().enumerate() {
             let base = Columns::<T>::load(&slots[node.parent]).then(&node.placement);
             let moved = match node.motion {
@@ -86,47 +85,6 @@ fn forward_with<T: Single>(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
             moved.store(&mut slots[chunk * MANY + k + 1]);
         }
     }
-}
-
-/// The same for a chain: the frames of its joints after they have moved, and the tool's, into
-/// `slots[1..]`.
-#[inline]
-pub(super) fn along(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
-    #[cfg(target_arch = "x86_64")]
-    if has_avx2() {
-        #[allow(unsafe_code)] // as above
-        // SAFETY: the processor has both features, as just asked.
-        unsafe {
-            along_avx2(serial, q, slots);
-        }
-        return;
-    }
-    along_with::<[f64; 3]>(serial, q, slots);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn along_avx2(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
-    along_with::<Register>(serial, q, slots);
-}
-
-#[inline(always)]
-fn along_with<T: Single>(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
-    let mut frame = serial.start::<T>();
-    for (chunk, joints) in serial.joints().chunks(MANY).enumerate() {
-        let mut x = [0.0; MANY];
-        for (x, joint) in x.iter_mut().zip(joints) {
-            *x = joint.angle(q[joint.coordinate]);
-        }
-        let (sin, cos) = sines::<T::Wide>(&x);
-        let slots = &mut slots[chunk * MANY + 1..][..joints.len()];
-        for (k, (joint, slot)) in joints.iter().zip(slots).enumerate() {
-            frame = joint.moved(frame, sin[k], cos[k], q[joint.coordinate]);
-            frame.store(slot);
-            frame = joint.passed(frame);
-        }
-    }
-    serial.end(frame).store(&mut slots[serial.joints().len() + 1]);
 }
 
 fn three(q: &[f64], i: usize) -> Vec3 {

@@ -3,16 +3,20 @@
 //! [`State`] is all frames of a mechanism at one `q`; that it exists proves that forward kinematics
 //! ran. [`Chain`] is the short way for a control loop: only the joints that move one end effector.
 
+mod along;
 mod analytical;
+mod batch;
 mod chain;
 mod conversion;
 mod forward;
 mod hessian;
 mod jacobian;
+mod lanes;
 mod serial;
 mod state;
 
 pub use analytical::{AnalyticalJacobian, OrientationRates};
+pub use batch::Batch;
 pub use chain::Chain;
 pub use conversion::velocity_conversion;
 pub use jacobian::Reference;

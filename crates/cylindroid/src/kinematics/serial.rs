@@ -12,6 +12,9 @@
 //! Source   the ZXZ angles of each fixed placement; the outer two belong to the joints beside it
 //! Checked  tests in this file, tests/it/pinocchio.rs
 
+use std::array::from_fn;
+
+use super::forward::MANY;
 use crate::model::{Motion, Node};
 use crate::scalar::Real;
 use crate::spatial::{Columns, Padded, Pose, Rotation, Triple, Vec3};
@@ -26,8 +29,49 @@ pub(crate) struct SerialJoint {
     slide: f64,
     angle: f64,
     by: [f64; 4],
-    /// Sine and cosine of the tilt.
-    tilt: (f64, f64),
+    tilt: Tilt,
+    /// True if it slides; if the way has a part along y; if a turn is not the coordinate itself.
+    slides: bool,
+    aside: bool,
+    scaled: bool,
+}
+
+/// The angles of [`MANY`] joints, those that are not there 0.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Angles {
+    coordinates: [usize; MANY],
+    turns: [f64; MANY],
+    angles: [f64; MANY],
+}
+
+impl Angles {
+    fn of(joints: &[SerialJoint]) -> Self {
+        let of = |k: usize, f: fn(&SerialJoint) -> f64| joints.get(k).map_or(0.0, f);
+        Self {
+            coordinates: from_fn(|k| joints.get(k).map_or(0, |j| j.coordinate)),
+            turns: from_fn(|k| of(k, |j| j.turn)),
+            angles: from_fn(|k| of(k, |j| j.angle)),
+        }
+    }
+
+    /// Of joint k.
+    #[inline(always)]
+    pub(crate) fn at(&self, k: usize, q: &[f64]) -> f64 {
+        q[self.coordinates[k]] * self.turns[k] + self.angles[k]
+    }
+}
+
+/// The turn about x from one joint axis to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Tilt {
+    /// Axes are parallel.
+    None,
+    /// By a right angle.
+    Right,
+    By {
+        sin: f64,
+        cos: f64,
+    },
 }
 
 /// The chain.
@@ -35,6 +79,7 @@ pub(crate) struct SerialJoint {
 pub(crate) struct Serial {
     first: Padded,
     joints: Vec<SerialJoint>,
+    angles: Vec<Angles>,
     last: Padded,
     /// True if two joints have one coordinate.
     shared: bool,
@@ -70,13 +115,17 @@ impl Serial {
                 angle: turned + carried + way.before,
                 by: [way.by.x, way.by.y, way.by.z + pitch * node.offset, 0.0],
                 tilt: way.tilt,
+                slides: slide != 0.0,
+                aside: way.by.y != 0.0,
+                scaled: turn != 1.0,
             });
             carried = way.after;
         }
         let mut coordinates: Vec<usize> = joints.iter().map(|j| j.coordinate).collect();
         coordinates.sort_unstable();
         let shared = coordinates.windows(2).any(|w| w[0] == w[1]);
-        Some(Self { first, joints, last: tool.placement, shared })
+        let angles = joints.chunks(MANY).map(Angles::of).collect();
+        Some(Self { first, joints, angles, last: tool.placement, shared })
     }
 
     /// The joints.
@@ -84,9 +133,16 @@ impl Serial {
         &self.joints
     }
 
-    /// True if two joints have one coordinate, so that their columns add.
-    pub(crate) fn is_shared(&self) -> bool {
-        self.shared
+    /// The joints, [`MANY`] at a time, and their angles.
+    #[inline(always)]
+    pub(crate) fn chunks(&self) -> impl Iterator<Item = (&[SerialJoint], &Angles)> {
+        self.joints.chunks(MANY).zip(&self.angles)
+    }
+
+    /// True if each of n coordinates has one joint: none where columns are zero or add.
+    #[inline]
+    pub(crate) fn has_one_for_each(&self, n: usize) -> bool {
+        !self.shared && self.joints.len() == n
     }
 
     /// The frame of the first joint before it moves.
@@ -103,13 +159,13 @@ impl Serial {
 }
 
 impl SerialJoint {
-    /// Its angle at q.
+    /// Its angle at a coordinate.
     #[inline(always)]
     pub(crate) fn angle<R: Real>(&self, q: R) -> R {
         q.times_plus(R::splat(self.turn), R::splat(self.angle))
     }
 
-    /// Its frame after it has moved.
+    /// Its frame after it has moved, its coordinate being q.
     #[inline(always)]
     pub(crate) fn moved<T: Triple>(
         &self,
@@ -119,28 +175,31 @@ impl SerialJoint {
         q: T::Scalar,
     ) -> Columns<T> {
         let turned = frame.turned(sin, cos);
-        let slide = T::Scalar::splat(self.slide);
-        if self.slide == 0.0 { turned } else { turned.slid(q * slide) }
+        if self.slides { turned.slid(q * T::Scalar::splat(self.slide)) } else { turned }
     }
 
     /// The frame of the next joint before it moves.
     #[inline(always)]
     pub(crate) fn passed<T: Triple>(&self, frame: Columns<T>) -> Columns<T> {
         let k = T::Scalar::splat;
-        let there = frame.moved(&self.by);
-        if self.tilt == (0.0, 1.0) { there } else { there.tilted(k(self.tilt.0), k(self.tilt.1)) }
+        let there = if self.aside { frame.moved(&self.by) } else { frame.moved_xz(&self.by) };
+        match self.tilt {
+            Tilt::None => there,
+            Tilt::Right => there.upended(),
+            Tilt::By { sin, cos } => there.tilted(k(sin), k(cos)),
+        }
     }
 
     /// What it does to the point p: linear and angular part, for an axis through `origin`.
     #[inline(always)]
     pub(crate) fn column<T: Triple>(&self, axis: T, origin: T, p: T) -> (T, T) {
         let k = T::Scalar::splat;
-        let angular = if self.turn == 1.0 { axis } else { axis.times(k(self.turn)) };
+        let angular = if self.scaled { axis.times(k(self.turn)) } else { axis };
         let linear = angular.cross(p.minus(origin));
-        if self.slide == 0.0 {
-            (linear, angular)
-        } else {
+        if self.slides {
             (axis.times_plus(k(self.slide), linear), angular)
+        } else {
+            (linear, angular)
         }
     }
 }
@@ -149,12 +208,12 @@ impl SerialJoint {
 struct Way {
     before: f64,
     by: Vec3,
-    tilt: (f64, f64),
+    tilt: Tilt,
     after: f64,
 }
 
 impl Way {
-    const NONE: Self = Self { before: 0.0, by: Vec3::ZERO, tilt: (0.0, 1.0), after: 0.0 };
+    const NONE: Self = Self { before: 0.0, by: Vec3::ZERO, tilt: Tilt::None, after: 0.0 };
 
     fn of(placement: Pose) -> Self {
         let z = placement.rotation.matrix().cols[2];
@@ -168,7 +227,11 @@ impl Way {
         Self {
             before,
             by: turn.inverse() * placement.translation,
-            tilt: (sin, cos),
+            tilt: match (sin, cos) {
+                (_, 0.0) => Tilt::Right,
+                (0.0, c) if c > 0.0 => Tilt::None,
+                _ => Tilt::By { sin, cos },
+            },
             after: rest.y.atan2(rest.x),
         }
     }

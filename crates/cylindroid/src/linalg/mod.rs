@@ -5,6 +5,7 @@ mod box_program;
 mod column_space;
 mod cs;
 mod hull;
+mod jacobi;
 mod lanes;
 mod matrix;
 mod metric;

@@ -16,11 +16,9 @@
 //! Source   Hestenes 1958; de Rijk 1989 (ordering); Maciejewski & Klein 1989 (warm start)
 //! Checked  tests/it/svd.rs
 
+use super::jacobi::{Rotations, Start};
 use super::matrix::Matrix;
-use crate::tolerance::{JACOBI_ORTHOGONAL, MACHINE_RANK};
-
-/// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost finite.
-const MAX_SWEEPS: usize = 40;
+use crate::tolerance::MACHINE_RANK;
 
 /// Warm starts between two repairs of W, whose columns drift by a rounding each time.
 const WARM_STARTS: usize = 8;
@@ -30,13 +28,8 @@ const WARM_STARTS: usize = 8;
 pub struct Svd {
     rows: usize,
     cols: usize,
-    /// B W, columns of length max(m, n), later Q.
-    b: PaddedColumns,
-    /// The accumulated rotations, k x k.
-    w: PaddedColumns,
-    scratch: Vec<f64>,
-    /// The order of a sweep.
-    pairs: Vec<(usize, usize)>,
+    /// B W, later Q, and W.
+    rotations: Rotations,
     sigma: Vec<f64>,
     order: Vec<usize>,
     /// Warm starts that are left before W is repaired; `None` before the first decomposition.
@@ -64,10 +57,7 @@ impl Svd {
         Self {
             rows: m,
             cols: n,
-            b: PaddedColumns::zeros(long, k),
-            w: PaddedColumns::zeros(k, k),
-            scratch: vec![0.0; k * k],
-            pairs: tournament(k),
+            rotations: Rotations::zeros(long, k),
             sigma: vec![0.0; k],
             order: (0..k).collect(),
             warm: None,
@@ -98,49 +88,28 @@ impl Svd {
     /// If `a` has not the shape of the workspace.
     pub fn decompose_warm(&mut self, a: &Matrix) {
         assert_eq!((a.rows(), a.cols()), (self.rows, self.cols), "shape of the SVD workspace");
-        let k = self.sigma.len();
         let largest = a.max_abs();
         if largest == 0.0 || !largest.is_finite() {
             self.sigma.fill(if largest == 0.0 { 0.0 } else { f64::NAN });
-            self.b.data.fill(0.0);
-            self.reset_rotations();
+            self.rotations.b.fill(0.0);
+            self.rotations.reset();
             self.order.iter_mut().enumerate().for_each(|(i, o)| *o = i);
             self.warm = None;
             return;
         }
         // Scaled by a power of two, which is exact, so that squares neither overflow nor vanish.
         let scale = power_of_two_below(largest);
-        match self.warm {
-            Some(left) => {
-                if left == 0 {
-                    self.reorthonormalise();
-                }
-                self.warm = Some(left.checked_sub(1).unwrap_or(WARM_STARTS));
-                self.load_times_w(a, 1.0 / scale);
-            }
-            None => {
-                self.warm = Some(WARM_STARTS);
-                self.reset_rotations();
-                self.load(a, 1.0 / scale);
-            }
-        }
-        self.sweeps = 0;
-        while self.sweeps < MAX_SWEEPS {
-            self.sweeps += 1;
-            if !self.sweep() {
-                break;
-            }
-        }
-        for j in 0..k {
-            self.sigma[j] = dot(self.b.padded(j), self.b.padded(j)).sqrt();
-        }
-        self.order.sort_unstable_by(|&i, &j| {
-            self.sigma[j].total_cmp(&self.sigma[i]).then_with(|| i.cmp(&j))
-        });
-        for j in 0..k {
-            let s = self.sigma[j];
-            let inverse = if s > 0.0 { 1.0 / s } else { 0.0 };
-            self.b.column_mut(j).iter_mut().for_each(|x| *x *= inverse);
+        let (start, left) = match self.warm {
+            None => (Start::Cold, WARM_STARTS),
+            Some(0) => (Start::Repaired, WARM_STARTS),
+            Some(left) => (Start::Warm, left - 1),
+        };
+        self.warm = Some(left);
+        self.sweeps = self.rotations.run(a, 1.0 / scale, start);
+        let lengths = &self.rotations.lengths;
+        self.order
+            .sort_unstable_by(|&i, &j| lengths[j].total_cmp(&lengths[i]).then_with(|| i.cmp(&j)));
+        for (j, &s) in lengths.iter().enumerate() {
             self.sigma[j] = (s * scale).min(f64::MAX);
         }
         debug_assert!(
@@ -180,7 +149,7 @@ impl Svd {
     #[inline]
     pub fn u(&self, i: usize) -> &[f64] {
         let j = self.order[i];
-        if self.rows > self.cols { self.b.column(j) } else { self.w.column(j) }
+        if self.rows > self.cols { self.rotations.b.column(j) } else { self.rotations.w.column(j) }
     }
 
     /// Right singular vector of the `i`-th value (n entries).
@@ -188,7 +157,7 @@ impl Svd {
     #[inline]
     pub fn v(&self, i: usize) -> &[f64] {
         let j = self.order[i];
-        if self.rows > self.cols { self.w.column(j) } else { self.b.column(j) }
+        if self.rows > self.cols { self.rotations.w.column(j) } else { self.rotations.b.column(j) }
     }
 
     /// Number of rows of the decomposed matrix.
@@ -278,198 +247,9 @@ impl Svd {
         }
         (difference / size).sqrt()
     }
-
-    fn reset_rotations(&mut self) {
-        let k = self.sigma.len();
-        self.w.data.fill(0.0);
-        for i in 0..k {
-            self.w.column_mut(i)[i] = 1.0;
-        }
-    }
-
-    /// B = scaled A, transposed if A is wide.
-    fn load(&mut self, a: &Matrix, factor: f64) {
-        if self.rows > self.cols {
-            for j in 0..self.cols {
-                for (b, x) in self.b.column_mut(j).iter_mut().zip(a.column(j)) {
-                    *b = x * factor;
-                }
-            }
-        } else {
-            for i in 0..self.rows {
-                for (j, b) in self.b.column_mut(i).iter_mut().enumerate() {
-                    *b = a[(i, j)] * factor;
-                }
-            }
-        }
-    }
-
-    /// B = scaled A (or A^T) times W.
-    fn load_times_w(&mut self, a: &Matrix, factor: f64) {
-        let k = self.sigma.len();
-        // A power of two again, so that the sums of large numbers do not overflow before `factor`.
-        let guard = if factor < 1.0 { 1.0 / 256.0 } else { 1.0 };
-        for l in 0..k {
-            let w = &mut self.scratch[..k];
-            w.iter_mut().zip(self.w.column(l)).for_each(|(x, w)| *x = w * guard);
-            let b = self.b.column_mut(l);
-            if self.rows > self.cols {
-                a.mul_vec_into(w, b);
-            } else {
-                a.tr_mul_vec_into(w, b);
-            }
-            b.iter_mut().for_each(|x| *x *= factor / guard);
-        }
-    }
-
-    /// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2.
-    fn reorthonormalise(&mut self) {
-        let k = self.sigma.len();
-        for i in 0..k {
-            for j in 0..k {
-                let dot = dot(self.w.padded(i), self.w.padded(j));
-                self.scratch[j * k + i] = if i == j { 1.5 - 0.5 * dot } else { -0.5 * dot };
-            }
-        }
-        // Row by row in place: a row of W is used by its own product only.
-        for row in 0..k {
-            for j in 0..k {
-                self.sigma[j] =
-                    (0..k).map(|l| self.w.column(l)[row] * self.scratch[j * k + l]).sum();
-            }
-            for j in 0..k {
-                self.w.column_mut(j)[row] = self.sigma[j];
-            }
-        }
-    }
-
-    /// One sweep over all pairs; true if anything was rotated. `sigma` holds the squared norms of
-    /// the columns meanwhile, measured at the start and kept up to date by the rotations.
-    fn sweep(&mut self) -> bool {
-        let k = self.sigma.len();
-        for j in 0..k {
-            self.sigma[j] = dot(self.b.padded(j), self.b.padded(j));
-        }
-        let mut rotated = false;
-        for &(i, j) in &self.pairs {
-            let (bi, bj) = self.b.pair(i, j);
-            let (aa, bb, ab) = (self.sigma[i], self.sigma[j], dot(bi, bj));
-            if !(ab * ab > JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL * aa * bb) {
-                continue;
-            }
-            rotated = true;
-            let (difference, double) = (bb - aa, 2.0 * ab);
-            let h = (difference * difference + double * double).sqrt();
-            let t = double.copysign(double * difference) / (difference.abs() + h);
-            let c = 1.0 / (1.0 + t * t).sqrt();
-            let s = c * t;
-            rotate(bi, bj, c, s);
-            let (wi, wj) = self.w.pair(i, j);
-            rotate(wi, wj, c, s);
-            self.sigma[i] = (aa - t * ab).max(0.0);
-            self.sigma[j] = bb + t * ab;
-        }
-        rotated
-    }
-}
-
-/// Columns padded with zeros to a multiple of four numbers, so that loops over them have no rest.
-#[derive(Debug, Clone)]
-struct PaddedColumns {
-    rows: usize,
-    stride: usize,
-    data: Vec<f64>,
-}
-
-impl PaddedColumns {
-    fn zeros(rows: usize, cols: usize) -> Self {
-        let stride = rows.next_multiple_of(LANES);
-        Self { rows, stride, data: vec![0.0; stride * cols] }
-    }
-
-    #[inline]
-    fn column(&self, j: usize) -> &[f64] {
-        &self.data[j * self.stride..j * self.stride + self.rows]
-    }
-
-    #[inline]
-    fn column_mut(&mut self, j: usize) -> &mut [f64] {
-        &mut self.data[j * self.stride..j * self.stride + self.rows]
-    }
-
-    #[inline]
-    fn padded(&self, j: usize) -> &[f64] {
-        &self.data[j * self.stride..(j + 1) * self.stride]
-    }
-
-    /// Two padded columns, i < j.
-    #[inline]
-    fn pair(&mut self, i: usize, j: usize) -> (&mut [f64], &mut [f64]) {
-        let (head, tail) = self.data.split_at_mut(j * self.stride);
-        (&mut head[i * self.stride..(i + 1) * self.stride], &mut tail[..self.stride])
-    }
-}
-
-const LANES: usize = 4;
-
-/// All pairs of k columns, ordered so that neighbours share no column: the processor works on
-/// several rotations at once, whose square roots would otherwise wait for each other.
-fn tournament(k: usize) -> Vec<(usize, usize)> {
-    let ring = (k + k % 2).saturating_sub(1);
-    let mut pairs = Vec::with_capacity(k * k / 2);
-    for round in 0..ring {
-        for i in 0..=ring / 2 {
-            let a = if i == 0 { ring } else { (round + i) % ring };
-            let b = (round + ring - i) % ring;
-            if a < k && b < k && a != b {
-                pairs.push((a.min(b), a.max(b)));
-            }
-        }
-    }
-    pairs
 }
 
 fn power_of_two_below(x: f64) -> f64 {
     // The exponent bits alone; subnormal numbers use the smallest normal power.
     f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
-}
-
-/// Scalar product of padded columns.
-#[inline]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = [0.0; LANES];
-    for (x, y) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
-        for l in 0..LANES {
-            sum[l] += x[l] * y[l];
-        }
-    }
-    (sum[0] + sum[2]) + (sum[1] + sum[3])
-}
-
-#[inline]
-fn rotate(a: &mut [f64], b: &mut [f64], c: f64, s: f64) {
-    let (a, b) = (a.as_chunks_mut::<LANES>().0, b.as_chunks_mut::<LANES>().0);
-    for (x, y) in a.iter_mut().zip(b) {
-        for l in 0..LANES {
-            let (p, q) = (x[l], y[l]);
-            x[l] = c * p - s * q;
-            y[l] = s * p + c * q;
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::tournament;
-
-    #[test]
-    fn every_pair_once() {
-        for k in 0..12 {
-            let mut pairs = tournament(k);
-            assert!(pairs.iter().all(|(i, j)| i < j && *j < k));
-            pairs.sort_unstable();
-            pairs.dedup();
-            assert_eq!(pairs.len(), k * k.saturating_sub(1) / 2, "{k}");
-        }
-    }
 }

@@ -38,6 +38,7 @@ impl<const N: usize> Neg for Array<N> {
 
 impl<const N: usize> Real for Array<N> {
     const LANES: usize = N;
+    const FUSED: bool = false;
 
     #[inline(always)]
     fn splat(x: f64) -> Self {
@@ -52,6 +53,34 @@ impl<const N: usize> Real for Array<N> {
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
         to[..N].copy_from_slice(&self.0);
+    }
+
+    #[inline(always)]
+    fn from_fn(f: impl Fn(usize) -> f64) -> Self {
+        Self(from_fn(f))
+    }
+
+    #[inline(always)]
+    fn scatter(from: &[Self], to: &mut [f64], stride: usize) {
+        for l in 0..N {
+            for (x, to) in from.iter().zip(&mut to[l * stride..]) {
+                *to = x.0[l];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        // The halves first, as registers do.
+        let mut lanes = self.0;
+        let mut half = N;
+        while half > 1 {
+            half /= 2;
+            for l in 0..half {
+                lanes[l] += lanes[l + half];
+            }
+        }
+        lanes[0]
     }
 
     #[inline(always)]

@@ -39,12 +39,20 @@ pub(crate) trait Real:
 {
     /// How many.
     const LANES: usize;
+    /// True if [`Real::times_plus`] rounds once.
+    const FUSED: bool;
     /// The same number in all lanes.
     fn splat(x: f64) -> Self;
     /// The first `LANES` numbers.
     fn load(from: &[f64]) -> Self;
     /// Into the first `LANES` places.
     fn store(self, to: &mut [f64]);
+    /// Lane l is `f(l)`.
+    fn from_fn(f: impl Fn(usize) -> f64) -> Self;
+    /// Lane l of the k-th goes to `to[l * stride + k]`.
+    fn scatter(from: &[Self], to: &mut [f64], stride: usize);
+    /// All lanes together.
+    fn sum(self) -> f64;
     /// `self * b + c`, with one rounding where the processor can.
     fn times_plus(self, b: Self, c: Self) -> Self;
     /// `(a, b)`, in lanes where the lowest bit of `bits` is set `(b, a)`.
@@ -57,6 +65,7 @@ pub(crate) trait Real:
 
 impl Real for f64 {
     const LANES: usize = 1;
+    const FUSED: bool = false;
 
     #[inline(always)]
     fn splat(x: f64) -> Self {
@@ -71,6 +80,21 @@ impl Real for f64 {
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
         to[0] = self;
+    }
+
+    #[inline(always)]
+    fn from_fn(f: impl Fn(usize) -> f64) -> Self {
+        f(0)
+    }
+
+    #[inline(always)]
+    fn scatter(from: &[Self], to: &mut [f64], _stride: usize) {
+        to[..from.len()].copy_from_slice(from);
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        self
     }
 
     #[inline(always)]

@@ -5,16 +5,7 @@
 
 #![allow(unsafe_code)] // intrinsics
 
-use std::arch::x86_64::{
-    __m256d, __m512d, _CMP_LE_OQ, _mm256_add_epi64, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd,
-    _mm256_blendv_pd, _mm256_castpd_si256, _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_fmadd_pd,
-    _mm256_loadu_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_epi64x, _mm256_set1_pd,
-    _mm256_slli_epi64, _mm256_storeu_pd, _mm256_sub_pd, _mm256_xor_pd, _mm512_abs_pd,
-    _mm512_add_epi64, _mm512_add_pd, _mm512_and_si512, _mm512_castpd_si512, _mm512_castsi512_pd,
-    _mm512_cmp_pd_mask, _mm512_fmadd_pd, _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mul_pd,
-    _mm512_set1_epi64, _mm512_set1_pd, _mm512_slli_epi64, _mm512_storeu_pd, _mm512_sub_pd,
-    _mm512_test_epi64_mask, _mm512_xor_si512,
-};
+use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::Real;
@@ -72,8 +63,37 @@ impl Neg for Lanes4 {
     }
 }
 
+/// The first of `rows` rows of `length` numbers, `stride` apart.
+///
+/// # Panics
+/// If they are not all there.
+#[inline(always)]
+fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize) -> *mut f64 {
+    assert!(to.len() >= (rows - 1) * stride + length, "rows are missing");
+    to.as_mut_ptr()
+}
+
+/// Row l holds lane l of all four.
+#[inline(always)]
+fn transposed(from: &[Lanes4; 4]) -> [Lanes4; 4] {
+    let [a, b, c, d] = from.map(|x| x.0);
+    // SAFETY: see the head of this file.
+    unsafe {
+        // a0 b0 a2 b2, a1 b1 a3 b3, and the same of c and d
+        let (ab_even, ab_odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+        let (cd_even, cd_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+        [
+            Lanes4(_mm256_permute2f128_pd::<0x20>(ab_even, cd_even)),
+            Lanes4(_mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd)),
+            Lanes4(_mm256_permute2f128_pd::<0x31>(ab_even, cd_even)),
+            Lanes4(_mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd)),
+        ]
+    }
+}
+
 impl Real for Lanes4 {
     const LANES: usize = 4;
+    const FUSED: bool = true;
 
     #[inline(always)]
     fn splat(x: f64) -> Self {
@@ -93,6 +113,45 @@ impl Real for Lanes4 {
         let to = &mut to[..4];
         // SAFETY: four places are there; see the head of this file.
         unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) }
+    }
+
+    #[inline(always)]
+    fn from_fn(f: impl Fn(usize) -> f64) -> Self {
+        let [a, b, c, d] = [f(0), f(1), f(2), f(3)];
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_setr_pd(a, b, c, d) })
+    }
+
+    #[inline(always)]
+    fn scatter(from: &[Self], to: &mut [f64], stride: usize) {
+        let (fours, rest) = from.as_chunks::<4>();
+        let to = rows_of(to, stride, from.len(), Self::LANES);
+        for (k, four) in fours.iter().enumerate() {
+            let rows = transposed(four);
+            for l in 0..4 {
+                // SAFETY: `rows_of` has looked that these four places are there.
+                unsafe { _mm256_storeu_pd(to.add(l * stride + 4 * k), rows[l].0) };
+            }
+        }
+        let done = 4 * fours.len();
+        for (k, x) in rest.iter().enumerate() {
+            let mut lanes = [0.0; 4];
+            x.store(&mut lanes);
+            for l in 0..4 {
+                // SAFETY: as above.
+                unsafe { *to.add(l * stride + done + k) = lanes[l] };
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let half =
+                _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+            _mm_cvtsd_f64(_mm_add_sd(half, _mm_unpackhi_pd(half, half)))
+        }
     }
 
     #[inline(always)]
@@ -141,6 +200,16 @@ pub(crate) struct Lanes8(__m512d);
 
 operators!(Lanes8, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd);
 
+impl Lanes8 {
+    #[inline(always)]
+    fn halves(self) -> [Lanes4; 2] {
+        // SAFETY: see the head of this file.
+        unsafe {
+            [Lanes4(_mm512_castpd512_pd256(self.0)), Lanes4(_mm512_extractf64x4_pd::<1>(self.0))]
+        }
+    }
+}
+
 impl Neg for Lanes8 {
     type Output = Self;
 
@@ -158,6 +227,7 @@ impl Neg for Lanes8 {
 
 impl Real for Lanes8 {
     const LANES: usize = 8;
+    const FUSED: bool = true;
 
     #[inline(always)]
     fn splat(x: f64) -> Self {
@@ -177,6 +247,46 @@ impl Real for Lanes8 {
         let to = &mut to[..8];
         // SAFETY: eight places are there; see the head of this file.
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) }
+    }
+
+    #[inline(always)]
+    fn from_fn(f: impl Fn(usize) -> f64) -> Self {
+        let x = [f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)];
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_setr_pd(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]) })
+    }
+
+    #[inline(always)]
+    fn scatter(from: &[Self], to: &mut [f64], stride: usize) {
+        // As twice four lanes.
+        let (fours, rest) = from.as_chunks::<4>();
+        let to = rows_of(to, stride, from.len(), Self::LANES);
+        for (k, [a, b, c, d]) in fours.iter().enumerate() {
+            let (a, b, c, d) = (a.halves(), b.halves(), c.halves(), d.halves());
+            for half in 0..2 {
+                let rows = transposed(&[a[half], b[half], c[half], d[half]]);
+                for l in 0..4 {
+                    let place = (4 * half + l) * stride + 4 * k;
+                    // SAFETY: `rows_of` has looked that these four places are there.
+                    unsafe { _mm256_storeu_pd(to.add(place), rows[l].0) };
+                }
+            }
+        }
+        let done = 4 * fours.len();
+        for (k, x) in rest.iter().enumerate() {
+            let mut lanes = [0.0; 8];
+            x.store(&mut lanes);
+            for l in 0..8 {
+                // SAFETY: as above.
+                unsafe { *to.add(l * stride + done + k) = lanes[l] };
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        let [low, high] = self.halves();
+        (low + high).sum()
     }
 
     #[inline(always)]

@@ -21,10 +21,10 @@ pub use exp::{
     rotation_log_derivative,
 };
 pub(crate) use padded::Padded;
+pub use pose::Pose;
+pub use rotation::Rotation;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use triple::Register;
 pub(crate) use triple::{Columns, Single, Triple};
-pub use pose::Pose;
-pub use rotation::Rotation;
 pub use twist::{Twist, Wrench};
 pub use vec3::{Mat3, Vec3};

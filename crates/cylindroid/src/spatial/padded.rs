@@ -11,10 +11,10 @@ use super::vec3::{Mat3, Vec3};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(32))]
 pub(crate) struct Padded {
-    pub(super) x: [f64; 4],
-    pub(super) y: [f64; 4],
-    pub(super) z: [f64; 4],
-    pub(super) p: [f64; 4],
+    pub(crate) x: [f64; 4],
+    pub(crate) y: [f64; 4],
+    pub(crate) z: [f64; 4],
+    pub(crate) p: [f64; 4],
 }
 
 impl Padded {

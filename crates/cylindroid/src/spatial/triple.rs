@@ -18,6 +18,8 @@ pub(crate) trait Triple: Copy {
     fn times_plus(self, s: Self::Scalar, b: Self) -> Self;
     /// `self - b`
     fn minus(self, b: Self) -> Self;
+    /// `-self`
+    fn negative(self) -> Self;
     /// `self x b`
     fn cross(self, b: Self) -> Self;
 }
@@ -28,6 +30,8 @@ pub(crate) trait Single: Triple<Scalar = f64> {
     type Wide: Real;
     /// The numbers, the fourth one 0.
     fn store(self, to: &mut [f64; 4]);
+    /// Three numbers and three more.
+    fn store_pair(first: Self, second: Self, to: &mut [f64; 6]);
 }
 
 impl<R: Real> Triple for [R; 3] {
@@ -54,6 +58,11 @@ impl<R: Real> Triple for [R; 3] {
     }
 
     #[inline(always)]
+    fn negative(self) -> Self {
+        [-self[0], -self[1], -self[2]]
+    }
+
+    #[inline(always)]
     fn cross(self, b: Self) -> Self {
         [
             self[1].times_plus(b[2], -(self[2] * b[1])),
@@ -70,14 +79,20 @@ impl Single for [f64; 3] {
     fn store(self, to: &mut [f64; 4]) {
         *to = [self[0], self[1], self[2], 0.0];
     }
+
+    #[inline(always)]
+    fn store_pair(first: Self, second: Self, to: &mut [f64; 6]) {
+        *to = [first[0], first[1], first[2], second[0], second[1], second[2]];
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[allow(unsafe_code)] // the compiler does not put three numbers into one register by itself
 mod avx2 {
     use std::arch::x86_64::{
-        __m256d, _mm256_fmadd_pd, _mm256_fmsub_pd, _mm256_loadu_pd, _mm256_mul_pd,
-        _mm256_permute4x64_pd, _mm256_set1_pd, _mm256_storeu_pd, _mm256_sub_pd,
+        __m256d, _mm_storeu_pd, _mm256_blend_pd, _mm256_castpd256_pd128, _mm256_fmadd_pd,
+        _mm256_fmsub_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_permute4x64_pd, _mm256_set1_pd,
+        _mm256_setzero_pd, _mm256_storeu_pd, _mm256_sub_pd,
     };
 
     /// One register: three numbers and a 0. To be named only inside functions that are compiled for
@@ -115,6 +130,12 @@ mod avx2 {
         }
 
         #[inline(always)]
+        fn negative(self) -> Self {
+            // SAFETY: as above.
+            Self(unsafe { _mm256_sub_pd(_mm256_setzero_pd(), self.0) })
+        }
+
+        #[inline(always)]
         fn cross(self, b: Self) -> Self {
             // y, z, x of each; a x b turned by one place is a b' - a' b
             const NEXT: i32 = 0b11_00_10_01;
@@ -135,6 +156,20 @@ mod avx2 {
         fn store(self, to: &mut [f64; 4]) {
             // SAFETY: as above.
             unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) }
+        }
+
+        #[inline(always)]
+        fn store_pair(first: Self, second: Self, to: &mut [f64; 6]) {
+            // x y z x' and y' z'
+            const TURNED: i32 = 0b00_10_01_00;
+            // SAFETY: as above; six places are there.
+            unsafe {
+                let turned = _mm256_permute4x64_pd::<TURNED>(second.0);
+                let four = _mm256_blend_pd::<0b1000>(first.0, turned);
+                let last = _mm256_permute4x64_pd::<0b11_11_10_01>(second.0);
+                _mm256_storeu_pd(to.as_mut_ptr(), four);
+                _mm_storeu_pd(to.as_mut_ptr().add(4), _mm256_castpd256_pd128(last));
+            }
         }
     }
 }
@@ -177,6 +212,12 @@ impl<T: Triple> Columns<T> {
         }
     }
 
+    /// Turned about its own x axis by a right angle.
+    #[inline(always)]
+    pub(crate) fn upended(self) -> Self {
+        Self { y: self.z, z: self.y.negative(), ..self }
+    }
+
     /// Moved along its own z axis.
     #[inline(always)]
     pub(crate) fn slid(self, length: T::Scalar) -> Self {
@@ -191,15 +232,45 @@ impl<T: Triple> Columns<T> {
         Self { p: self.y.times_plus(k(by[1]), self.x.times_plus(k(by[0]), from_z)), ..self }
     }
 
+    /// The same without a component along y.
+    #[inline(always)]
+    pub(crate) fn moved_xz(self, by: &[f64; 4]) -> Self {
+        let k = T::Scalar::splat;
+        Self { p: self.x.times_plus(k(by[0]), self.z.times_plus(k(by[2]), self.p)), ..self }
+    }
+
     /// `a_from_b.then(b_from_c) = a_from_c`
     #[inline(always)]
     pub(crate) fn then(self, o: &Padded) -> Self {
-        let k = T::Scalar::splat;
-        let turn = |c: &[f64; 4]| {
-            self.y.times_plus(k(c[1]), self.x.times_plus(k(c[0]), self.z.times(k(c[2]))))
-        };
-        Self { x: turn(&o.x), y: turn(&o.y), z: turn(&o.z), p: self.moved(&o.p).p }
+        Self {
+            x: self.rotated(&o.x),
+            y: self.rotated(&o.y),
+            z: self.rotated(&o.z),
+            p: self.moved(&o.p).p,
+        }
     }
+
+    /// A vector in the axes of b, seen in those of a.
+    // No closures here and in other kernels: only functions can be made to be inlined, and what is
+    // not inlined is compiled for the baseline.
+    #[inline(always)]
+    fn rotated(self, v: &[f64; 4]) -> T {
+        let k = T::Scalar::splat;
+        self.y.times_plus(k(v[1]), self.x.times_plus(k(v[0]), self.z.times(k(v[2]))))
+    }
+}
+
+impl<R: Real> Columns<[R; 3]> {
+    /// A vector in the axes of b.
+    #[inline(always)]
+    pub(crate) fn seen(&self, v: [R; 3]) -> [R; 3] {
+        [dot(self.x, v), dot(self.y, v), dot(self.z, v)]
+    }
+}
+
+#[inline(always)]
+fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[0].times_plus(b[0], a[1].times_plus(b[1], a[2] * b[2]))
 }
 
 impl<T: Single> Columns<T> {
@@ -207,6 +278,13 @@ impl<T: Single> Columns<T> {
     pub(crate) fn store(self, to: &mut Padded) {
         self.x.store(&mut to.x);
         self.y.store(&mut to.y);
+        self.z.store(&mut to.z);
+        self.p.store(&mut to.p);
+    }
+
+    /// Only axis z and origin.
+    #[inline(always)]
+    pub(crate) fn store_axis(self, to: &mut Padded) {
         self.z.store(&mut to.z);
         self.p.store(&mut to.p);
     }

@@ -1,0 +1,87 @@
+//! Forward kinematics and the Jacobian along a serial chain, one configuration at a time.
+//!
+//! Formula  serial.rs
+//! Shapes   `slots[1..]`: of each joint the axis z and the origin (x and y are not written), then
+//!          the tool; the Jacobian 6 x n
+//! Units    rad, m; m/s and rad/s for each unit of rate
+//! Frame    world axes; the point is the tool's origin or any other
+//! Why so   written once over [`Single`]: three numbers, or one register of them
+//! Checked  tests in this file, tests/it/pinocchio.rs
+
+use super::forward::{MANY, sines};
+use super::serial::Serial;
+use crate::linalg::Matrix;
+#[cfg(target_arch = "x86_64")]
+use crate::scalar::has_avx2;
+#[cfg(target_arch = "x86_64")]
+use crate::spatial::Register;
+use crate::spatial::{Padded, Single};
+
+/// Goes along the chain.
+#[inline]
+pub(super) fn along(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
+    #[cfg(target_arch = "x86_64")]
+    if has_avx2() {
+        #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
+        // SAFETY: the processor has both features, as just asked.
+        unsafe {
+            along_avx2(serial, q, slots);
+        }
+        return;
+    }
+    along_with::<[f64; 3]>(serial, q, slots);
+}
+
+/// The columns of the Jacobian in world axes at the point p, from the slots of [`along`]; two
+/// joints must not share a coordinate.
+#[inline]
+pub(super) fn columns(serial: &Serial, slots: &[Padded], p: &[f64; 4], out: &mut Matrix) {
+    #[cfg(target_arch = "x86_64")]
+    if has_avx2() {
+        #[allow(unsafe_code)] // as above
+        // SAFETY: the processor has both features, as just asked.
+        unsafe {
+            columns_avx2(serial, slots, p, out);
+        }
+        return;
+    }
+    columns_with::<[f64; 3]>(serial, slots, p, out);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn along_avx2(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
+    along_with::<Register>(serial, q, slots);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn columns_avx2(serial: &Serial, slots: &[Padded], p: &[f64; 4], out: &mut Matrix) {
+    columns_with::<Register>(serial, slots, p, out);
+}
+
+#[inline(always)]
+fn along_with<T: Single>(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
+    let mut frame = serial.start::<T>();
+    for (chunk, (joints, angles)) in serial.chunks().enumerate() {
+        // All angles first: they wait for nothing, and go four to a register.
+        let (sin, cos) = sines::<T::Wide>(|k| angles.at(k, q));
+        let slots = &mut slots[chunk * MANY + 1..][..joints.len()];
+        for (k, (joint, slot)) in joints.iter().zip(slots).enumerate() {
+            frame = joint.moved(frame, sin[k], cos[k], q[joint.coordinate]);
+            frame.store_axis(slot);
+            frame = joint.passed(frame);
+        }
+    }
+    serial.end(frame).store(&mut slots[serial.joints().len() + 1]);
+}
+
+#[inline(always)]
+fn columns_with<T: Single>(serial: &Serial, slots: &[Padded], p: &[f64; 4], out: &mut Matrix) {
+    let p = T::load(p);
+    let (columns, _) = out.as_mut_slice().as_chunks_mut::<6>();
+    for (joint, slot) in serial.joints().iter().zip(&slots[1..]) {
+        let (linear, angular) = joint.column(T::load(&slot.z), T::load(&slot.p), p);
+        T::store_pair(linear, angular, &mut columns[joint.coordinate]);
+    }
+}

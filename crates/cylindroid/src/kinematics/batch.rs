@@ -1,0 +1,204 @@
+//! Forward kinematics and Jacobians of one end effector at many configurations.
+//!
+//! Formula  serial.rs, with several configurations side by side
+//! Shapes   q: N x n, poses: N x 4 x 4, Jacobians: N x 6 x n; row-major, n of the mechanism
+//! Units    rad, m; m/s and rad/s for each unit of rate
+//! Frame    [`Reference`]
+//! Why so   the chain is gone along once for four or eight configurations, a register for each
+//!          number (structure of arrays); configurations are taken in at the start and put out as
+//!          rows at the end. Every configuration goes the same way whatever its place and the
+//!          number of threads, so results do not depend on them
+//! Checked  tests/it/batch.rs
+
+use rayon::prelude::*;
+
+use super::chain::Chain;
+use super::jacobian::Reference;
+use super::lanes::{self, Work};
+use super::state::EndEffector;
+use crate::error::{Error, Result};
+use crate::linalg::Matrix;
+use crate::model::Mechanism;
+
+/// Numbers of a pose.
+const POSE: usize = 16;
+/// Configurations that one thread takes at once: a millisecond of work at the most.
+const CHUNK: usize = 4096;
+
+/// The kinematics of one end effector, for many configurations in one call.
+///
+/// Calls with more than some thousand configurations use the threads of rayon
+/// (`RAYON_NUM_THREADS`, or `ThreadPool::install` around the call); results do not depend on how
+/// many there are.
+///
+/// ```
+/// use cylindroid::Reference;
+/// use cylindroid::kinematics::Batch;
+///
+/// let robot = cylindroid::load("panda")?;
+/// let batch = Batch::new(&robot, robot.tool());
+/// let q = [robot.home(), robot.home()].concat();
+/// let jacobians = batch.jacobians(&q, Reference::LocalWorldAligned)?;
+/// assert_eq!(jacobians.len(), 2 * 6 * robot.n());
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Batch {
+    mechanism: Mechanism,
+    chain: Chain,
+}
+
+impl Batch {
+    /// For an end effector.
+    #[must_use]
+    pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
+        Self { mechanism: mechanism.clone(), chain: Chain::new(mechanism, of) }
+    }
+
+    /// `world_from_tool` of each configuration.
+    ///
+    /// # Errors
+    /// A `q` that is not a whole number of configurations, or with an entry that is not finite.
+    pub fn poses(&self, q: &[f64]) -> Result<Vec<f64>> {
+        let mut out = vec![0.0; self.count(q)? * POSE];
+        self.run(q, Some(&mut out), None)?;
+        Ok(out)
+    }
+
+    /// [`Batch::poses`] into `out`.
+    ///
+    /// # Errors
+    /// As there; an `out` of another size.
+    pub fn poses_into(&self, q: &[f64], out: &mut [f64]) -> Result<()> {
+        self.run(q, Some(out), None)
+    }
+
+    /// The Jacobian of each configuration.
+    ///
+    /// # Errors
+    /// As [`Batch::poses`].
+    pub fn jacobians(&self, q: &[f64], reference: Reference) -> Result<Vec<f64>> {
+        let mut out = vec![0.0; self.count(q)? * 6 * self.mechanism.n()];
+        self.run(q, None, Some((reference, &mut out)))?;
+        Ok(out)
+    }
+
+    /// [`Batch::jacobians`] into `out`.
+    ///
+    /// # Errors
+    /// As there; an `out` of another size.
+    pub fn jacobians_into(&self, q: &[f64], reference: Reference, out: &mut [f64]) -> Result<()> {
+        self.run(q, None, Some((reference, out)))
+    }
+
+    /// [`Batch::poses_into`] and [`Batch::jacobians_into`] in one go, which costs little more than
+    /// either.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn poses_and_jacobians_into(
+        &self,
+        q: &[f64],
+        reference: Reference,
+        poses: &mut [f64],
+        jacobians: &mut [f64],
+    ) -> Result<()> {
+        self.run(q, Some(poses), Some((reference, jacobians)))
+    }
+
+    /// How many configurations `q` holds.
+    fn count(&self, q: &[f64]) -> Result<usize> {
+        let n = self.mechanism.n();
+        if q.len().checked_rem(n).unwrap_or(q.len()) != 0 {
+            return Err(Error::Dimension {
+                what: "q".to_owned(),
+                expected: q.len().next_multiple_of(n.max(1)),
+                got: q.len(),
+                hint: format!("{n} for each configuration"),
+            });
+        }
+        Ok(q.len().checked_div(n).unwrap_or(0))
+    }
+
+    fn run(
+        &self,
+        q: &[f64],
+        poses: Option<&mut [f64]>,
+        jacobians: Option<(Reference, &mut [f64])>,
+    ) -> Result<()> {
+        let (n, count) = (self.mechanism.n(), self.count(q)?);
+        // Many at once, without a branch for each.
+        if !q.chunks(64).all(|q| q.iter().fold(true, |ok, x| ok & x.is_finite())) {
+            q.chunks(n.max(1)).try_for_each(|row| self.mechanism.check_q("q", row))?;
+        }
+        let fits = |what: &str, got: usize, size: usize| {
+            let (expected, hint) = (count * size, format!("{size} for each configuration"));
+            if got == expected {
+                Ok(())
+            } else {
+                Err(Error::Dimension { what: what.to_owned(), expected, got, hint })
+            }
+        };
+        fits("poses", poses.as_ref().map_or(count * POSE, |p| p.len()), POSE)?;
+        fits("jacobians", jacobians.as_ref().map_or(count * 6 * n, |j| j.1.len()), 6 * n)?;
+        if count <= CHUNK {
+            if count > 0 {
+                self.chunk(q, poses, jacobians);
+            }
+            return Ok(());
+        }
+        let q = q.par_chunks(CHUNK * n);
+        match (poses, jacobians) {
+            (None, None) => {}
+            (Some(poses), None) => {
+                q.zip(poses.par_chunks_mut(CHUNK * POSE))
+                    .for_each(|(q, poses)| self.chunk(q, Some(poses), None));
+            }
+            (None, Some((reference, jacobians))) => {
+                q.zip(jacobians.par_chunks_mut(CHUNK * 6 * n))
+                    .for_each(|(q, j)| self.chunk(q, None, Some((reference, j))));
+            }
+            (Some(poses), Some((reference, jacobians))) => {
+                q.zip(poses.par_chunks_mut(CHUNK * POSE))
+                    .zip(jacobians.par_chunks_mut(CHUNK * 6 * n))
+                    .for_each(|((q, poses), j)| self.chunk(q, Some(poses), Some((reference, j))));
+            }
+        }
+        Ok(())
+    }
+
+    /// On one thread.
+    fn chunk(
+        &self,
+        q: &[f64],
+        poses: Option<&mut [f64]>,
+        jacobians: Option<(Reference, &mut [f64])>,
+    ) {
+        let n = self.mechanism.n();
+        if let Some(serial) = self.chain.serial() {
+            let coordinates = self.chain.coordinates();
+            return lanes::run(Work { serial, coordinates, n, q, poses, jacobians });
+        }
+        // One after the other.
+        let mut chain = self.chain.clone();
+        let (mut poses, mut jacobians) = (poses, jacobians);
+        let mut local = Matrix::zeros(6, chain.n());
+        for (i, q) in q.chunks(n).enumerate() {
+            let pose = chain.set(q);
+            if let Some(poses) = &mut poses {
+                let rows = pose.to_matrix();
+                poses[i * POSE..(i + 1) * POSE].copy_from_slice(rows.as_flattened());
+            }
+            if let Some((reference, out)) = &mut jacobians {
+                chain.jacobian_into(*reference, &mut local);
+                let out = &mut out[i * 6 * n..(i + 1) * 6 * n];
+                out.fill(0.0);
+                for (k, &c) in chain.coordinates().iter().enumerate() {
+                    for (row, x) in local.column(k).iter().enumerate() {
+                        out[row * n + c] = *x;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Many configurations in one call are what single calls give, whatever their number and place.
+
+use cylindroid::kinematics::{Batch, Chain};
+use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
+use cylindroid::spatial::{Pose, Rotation, Vec3};
+use cylindroid::{EndEffector, Error, Matrix, Mechanism, Reference, catalogue};
+
+use crate::support::{Random, assert_close, planar, zoo};
+
+const REFERENCES: [Reference; 3] =
+    [Reference::Local, Reference::World, Reference::LocalWorldAligned];
+
+/// Serial chains of all joints that turn and slide: axes anyhow, nearly parallel, perpendicular and
+/// parallel, a coordinate that two joints read and one that none of the chain reads.
+fn chains() -> Vec<Mechanism> {
+    let mut random = Random(11);
+    let kinds = [
+        JointKind::Revolute,
+        JointKind::Prismatic,
+        JointKind::Helical { pitch: 0.07 },
+        JointKind::Revolute,
+        JointKind::Continuous,
+        JointKind::Cylindrical,
+        JointKind::Revolute,
+        JointKind::Revolute,
+        JointKind::Prismatic,
+        JointKind::Revolute,
+    ];
+    let mut build = |name: &str, tilts: &[f64]| {
+        let mut b = Mechanism::builder(name);
+        for (i, kind) in kinds.into_iter().enumerate() {
+            let rotation = match tilts.get(i % tilts.len().max(1)) {
+                Some(&tilt) => {
+                    Rotation::exp(Vec3::new(0.0, 0.0, 0.4)) * Rotation::exp(Vec3::X * tilt)
+                }
+                None => random.rotation(),
+            };
+            b.joint(JointSpec {
+                parent_from_joint: Pose { rotation, translation: random.vec3(0.4) },
+                axis: Vec3::Z,
+                limits: Limits { lower: -2.0, upper: 2.0, ..Limits::NONE },
+                ..JointSpec::new(&format!("j{i}"), kind, &format!("l{i}"), &format!("l{}", i + 1))
+            });
+        }
+        b.joint(JointSpec {
+            mimic: Some(Mimic { joint: "j2".into(), multiplier: -1.7, offset: 0.2 }),
+            parent_from_joint: random.pose(),
+            ..JointSpec::new("follower", JointKind::Revolute, "l10", "l11")
+        });
+        b.joint(JointSpec::new("aside", JointKind::Prismatic, "l4", "side"));
+        b.frame("tip", "l11", random.pose());
+        b.build().unwrap()
+    };
+    let right = std::f64::consts::FRAC_PI_2;
+    vec![
+        build("anyhow", &[]),
+        build("nearly parallel", &[1e-9, 1e-15, 0.0, 3e-5]),
+        build("on a grid", &[right, 0.0, -right, std::f64::consts::PI]),
+    ]
+}
+
+fn robots() -> Vec<(Mechanism, EndEffector)> {
+    let mut random = Random(12);
+    let mut robots: Vec<Mechanism> =
+        catalogue::names().iter().map(|n| catalogue::load(n).unwrap()).collect();
+    robots.extend([planar(1), planar(2), planar(9), planar(30), zoo()]);
+    let with_tool = |robot: Mechanism| {
+        let of = EndEffector { frame: robot.tool(), frame_from_tool: random.pose() };
+        (robot, of)
+    };
+    let mut robots: Vec<_> = robots.into_iter().map(with_tool).collect();
+    robots.extend(chains().into_iter().map(|robot| {
+        let tip = robot.frame("tip").unwrap();
+        (robot, tip.into())
+    }));
+    robots
+}
+
+fn draw(robot: &Mechanism, count: usize, seed: u64) -> Vec<f64> {
+    let mut random = Random(seed);
+    (0..count).flat_map(|_| random.q(robot)).collect()
+}
+
+/// Poses and Jacobians of a batch are those of a state, in every reference.
+#[test]
+fn agrees_with_single_calls() {
+    for (robot, of) in robots() {
+        let (n, batch) = (robot.n(), Batch::new(&robot, of));
+        let scale = 1e-13 * (1.0 + robot.reach());
+        // Whole blocks of lanes, and what is left over.
+        for count in [1, 3, 4, 8, 13] {
+            let q = draw(&robot, count, 5);
+            let poses = batch.poses(&q).unwrap();
+            for reference in REFERENCES {
+                let jacobians = batch.jacobians(&q, reference).unwrap();
+                let (mut both_p, mut both_j) =
+                    (vec![f64::NAN; poses.len()], vec![f64::NAN; jacobians.len()]);
+                batch.poses_and_jacobians_into(&q, reference, &mut both_p, &mut both_j).unwrap();
+                assert!(both_p == poses && both_j == jacobians, "{} in one go", robot.name());
+                for i in 0..count {
+                    let state = robot.state(&q[i * n..(i + 1) * n]).unwrap();
+                    let what = format!("{} {reference:?} of {i} of {count}", robot.name());
+                    let rows = state.pose(of).to_matrix();
+                    assert_close(&what, &poses[i * 16..(i + 1) * 16], rows.as_flattened(), scale);
+                    let j = state.jacobian(of, reference);
+                    let j: Vec<f64> = (0..6 * n).map(|k| j[(k / n, k % n)]).collect();
+                    assert_close(&what, &jacobians[i * 6 * n..(i + 1) * 6 * n], &j, scale);
+                }
+            }
+        }
+    }
+}
+
+/// A chain gives the same as the whole tree, whose kernel is another one.
+#[test]
+fn chains_agree_with_trees() {
+    for (robot, of) in robots() {
+        let mut chain = Chain::new(&robot, of);
+        let mut local = Matrix::zeros(6, chain.n());
+        for q in draw(&robot, 20, 6).chunks(robot.n()) {
+            let state = robot.state(q).unwrap();
+            let (a, b) = (chain.set(q).to_matrix(), state.pose(of).to_matrix());
+            let scale = 1e-13 * (1.0 + robot.reach());
+            assert_close(robot.name(), a.as_flattened(), b.as_flattened(), scale);
+            for reference in REFERENCES {
+                chain.jacobian_into(reference, &mut local);
+                let whole = state.jacobian(of, reference);
+                for (k, &c) in chain.coordinates().iter().enumerate() {
+                    assert_close(robot.name(), local.column(k), whole.column(c), scale);
+                }
+            }
+        }
+    }
+}
+
+/// Bit for bit the same with one thread or three, at any place in the batch.
+#[test]
+fn does_not_depend_on_threads_or_places() {
+    let robot = catalogue::load("panda").unwrap();
+    let (n, batch) = (robot.n(), Batch::new(&robot, robot.tool()));
+    let count = 10_001;
+    let q = draw(&robot, count, 7);
+    let of = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| batch.jacobians(&q, Reference::Local).unwrap())
+    };
+    let (one, three) = (of(1), of(3));
+    assert!(one == three);
+    for i in [0, 4095, 4096, 5001, count - 1] {
+        let alone = batch.jacobians(&q[i * n..(i + 1) * n], Reference::Local).unwrap();
+        assert!(alone == one[i * 6 * n..(i + 1) * 6 * n], "{i}");
+    }
+}
+
+#[test]
+fn refuses_what_does_not_fit() {
+    let robot = catalogue::load("panda").unwrap();
+    let batch = Batch::new(&robot, robot.tool());
+    assert!(batch.poses(&[]).unwrap().is_empty());
+    let error = batch.poses(&[0.0; 15]).unwrap_err().to_string();
+    assert_eq!(error, "q has 15 entries, expected 21 (7 for each configuration)");
+    let mut q = vec![0.0; 14];
+    q[9] = f64::NAN;
+    let error = batch.poses(&q).unwrap_err().to_string();
+    assert!(error.contains("panda_joint3") && error.contains("NaN"), "{error}");
+    q[9] = 0.0;
+    let error = batch.poses_into(&q, &mut [0.0; 16]).unwrap_err();
+    assert!(matches!(&error, Error::Dimension { expected: 32, got: 16, .. }), "{error}");
+    let error = batch.jacobians_into(&q, Reference::Local, &mut [0.0; 85]).unwrap_err();
+    assert!(matches!(&error, Error::Dimension { expected: 84, got: 85, .. }), "{error}");
+}
+
+/// A mechanism without joints has no configurations to count.
+#[test]
+fn nothing_moves() {
+    let mut b = Mechanism::builder("table");
+    b.joint(JointSpec::new("bolt", JointKind::Fixed, "floor", "table"));
+    let table = b.build().unwrap();
+    let batch = Batch::new(&table, table.tool());
+    assert!(batch.poses(&[]).unwrap().is_empty());
+    assert!(batch.poses(&[1.0]).is_err());
+}
+
+/// An end effector that no joint moves stays where it is, with a Jacobian of zeros.
+#[test]
+fn the_ground_does_not_move() {
+    let robot = catalogue::load("panda").unwrap();
+    let batch = Batch::new(&robot, robot.frame(&robot.links()[0].name).unwrap());
+    let q = draw(&robot, 3, 8);
+    assert!(batch.jacobians(&q, Reference::World).unwrap().iter().all(|x| *x == 0.0));
+    let identity = Pose::IDENTITY.to_matrix();
+    assert!(batch.poses(&q).unwrap().chunks(16).all(|p| p == identity.as_flattened()));
+}
