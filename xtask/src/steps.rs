@@ -124,9 +124,11 @@ pub(crate) fn vectors() -> Result<()> {
     run(mujoco.arg("crates/cylindroid/tests/vectors/mujoco").args(files))
 }
 
-/// The kernels, and calls from Python, on this machine.
+/// The kernels, the servo step by step, and calls from Python, on this machine.
 pub(crate) fn bench() -> Result<()> {
-    run(&mut cargo(&["bench", "--package", "cylindroid", "--bench", "kernels"]))?;
+    for bench in ["kernels", "jitter"] {
+        run(&mut cargo(&["bench", "--package", "cylindroid", "--bench", bench]))?;
+    }
     python::bench()
 }
 

@@ -18,6 +18,7 @@ mod options;
 mod screws;
 mod servo;
 mod table;
+mod threads;
 
 use pyo3::prelude::*;
 

@@ -2,6 +2,7 @@
 
 import copy
 import pathlib
+import pickle
 
 import numpy as np
 import pytest
@@ -164,6 +165,24 @@ def test_text_paths_and_copies(tmp_path):
         np.testing.assert_allclose(r.fk([np.pi / 2, 2.0])[:3, 3], [0, 2, 0], atol=1e-15)
     for clone in (copy.copy(r), copy.deepcopy(r)):
         np.testing.assert_array_equal(clone.fk([1, 1]), r.fk([1, 1]))
+
+
+def test_pickling(tmp_path, monkeypatch):
+    """A mechanism is read again from what it was read from; a file is found from any folder."""
+    text = '<robot name="one"><link name="a"/><link name="b"/><joint name="j" type="continuous">\
+    <parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>'
+    (tmp_path / "one.urdf").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    read = [cy.load("panda"), cy.load("five-bar"), cy.load("one.urdf"), cy.parse(text, "urdf")]
+    kept = [pickle.dumps(r) for r in read]
+    monkeypatch.chdir("/")
+    for r, data in zip(read, kept):
+        again = pickle.loads(data)
+        assert again.joint_names == r.joint_names and again.report.format == r.report.format
+        np.testing.assert_array_equal(again.fk(r.home), r.fk(r.home))
+    (tmp_path / "one.urdf").unlink()
+    with pytest.raises(cy.CylindroidError, match="one.urdf"):
+        pickle.loads(kept[2])
 
 
 def test_a_mechanism_without_joints():

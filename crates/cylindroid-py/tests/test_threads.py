@@ -1,5 +1,6 @@
 """What is long leaves the interpreter to other threads; what is shared gives the same answers."""
 
+import os
 import sys
 import threading
 
@@ -88,3 +89,27 @@ def test_threads_run_side_by_side():
         t.join()
     for J in found:
         np.testing.assert_array_equal(J, expected)
+
+
+def test_batches_in_forked_processes():
+    """A child has none of its parent's threads: it makes its own."""
+    expected = panda.jacobian(Q)
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        same = np.array_equal(panda.jacobian(Q), expected)
+        os.write(write, b"y" if same else b"n")
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert os.read(read, 1) == b"y"
+
+
+def test_batches_are_single_calls_whatever_their_size():
+    for robot in (panda, stewart, linkage):
+        rng = np.random.default_rng(2)
+        for count in (1, 2, 5, 9000):
+            q = rng.uniform(-1.0, 1.0, (count, robot.n))
+            poses, jacobians = robot.fk(q), robot.jacobian(q)
+            for i in (0, count // 2, count - 1):
+                np.testing.assert_allclose(poses[i], robot.fk(q[i]), rtol=0, atol=1e-13)
+                np.testing.assert_allclose(jacobians[i], robot.jacobian(q[i]), rtol=0, atol=1e-13)

@@ -6,12 +6,13 @@ use std::f64::consts::PI;
 use cylindroid::closure::{Blocks, ClosedChain, Constraint, Mobility, Motions, assemble};
 use cylindroid::ik::{Goal, IkOptions, Solver};
 use cylindroid::inverse::{self, Method};
-use cylindroid::kinematics::Chain;
+use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::Coordinate;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, catalogue};
+use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
 fn main() {
@@ -55,6 +56,26 @@ fn forward_kinematics_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
         chain.set(black_box(&q[i]));
         chain.jacobian_into(Reference::LocalWorldAligned, &mut j);
         black_box(&j);
+    });
+}
+
+/// Poses and Jacobians of 100 000 configurations on one thread, into memory that is there; the time
+/// is that of one configuration.
+#[divan::bench(args = ROBOTS)]
+fn batch_of_jacobians(bencher: Bencher<'_, '_>, name: &str) {
+    const COUNT: usize = 100_000;
+    let robot = robot(name);
+    let batch = Batch::new(&robot, robot.tool());
+    let n = robot.n();
+    let q: Vec<f64> = (0..COUNT * n).map(|i| (i * 7919 % 6283) as f64 * 1e-3 - 3.1).collect();
+    let mut poses = vec![0.0; COUNT * 16];
+    let mut jacobians = vec![0.0; COUNT * 6 * n];
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
+        alone.install(|| {
+            let reference = Reference::LocalWorldAligned;
+            batch.poses_and_jacobians_into(&q, reference, &mut poses, &mut jacobians).unwrap();
+        });
     });
 }
 

@@ -1,6 +1,6 @@
 //! Kinematics: poses, Jacobians and their derivatives, of one configuration or many.
 
-use cylindroid::kinematics::{Chain, OrientationRates};
+use cylindroid::kinematics::{Batch, Chain, OrientationRates};
 use cylindroid::{Error, Matrix};
 use pyo3::prelude::*;
 
@@ -8,24 +8,20 @@ use super::{PyMechanism, reference_of};
 use crate::arrays::{self, Array, Numbers, Rows};
 use crate::error::{Failure, Result};
 use crate::options;
+use crate::threads;
 
 /// The columns of a Jacobian of a chain, among those of the whole mechanism, row by row.
-#[inline]
 fn scatter(local: &Matrix, coordinates: &[usize], n: usize, out: &mut [f64]) {
-    let columns = local.as_slice().as_chunks::<6>().0;
-    if columns.len() == n {
-        for i in 0..6 {
-            for (x, column) in out[i * n..(i + 1) * n].iter_mut().zip(columns) {
-                *x = column[i];
-            }
-        }
-        return;
-    }
-    for (column, &c) in columns.iter().zip(coordinates) {
+    for (column, &c) in local.as_slice().as_chunks::<6>().0.iter().zip(coordinates) {
         for (i, x) in column.iter().enumerate() {
             out[i * n + c] = *x;
         }
     }
+}
+
+/// True if there are rows that [`Batch`] can tell apart.
+fn is_batch(rows: &Rows<'_>) -> bool {
+    rows.count.is_some() && rows.width > 0
 }
 
 impl PyMechanism {
@@ -84,7 +80,14 @@ impl PyMechanism {
         tool: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
         let rows = Rows::of(&self.inner, "q", &q)?;
-        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
+        let of = self.end_effector(frame, tool.as_ref())?;
+        if is_batch(&rows) {
+            let batch = Batch::new(&self.inner, of);
+            return threads::written(py, rows.count, &[4, 4], |out| {
+                batch.poses_into(rows.values, out)
+            });
+        }
+        let mut chain = Chain::new(&self.inner, of);
         arrays::written_rows(py, rows.count, &[4, 4], |i, out| {
             arrays::put_pose(chain.set(rows.row(i)), out);
             Ok(())
@@ -168,7 +171,14 @@ impl PyMechanism {
     ) -> Result<Array<'py>> {
         let (n, reference) = (self.inner.n(), reference_of(reference)?);
         let rows = Rows::of(&self.inner, "q", &q)?;
-        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
+        let of = self.end_effector(frame, tool.as_ref())?;
+        if is_batch(&rows) {
+            let batch = Batch::new(&self.inner, of);
+            return threads::written(py, rows.count, &[6, n], |out| {
+                batch.jacobians_into(rows.values, reference, out)
+            });
+        }
+        let mut chain = Chain::new(&self.inner, of);
         let mut local = Matrix::zeros(6, chain.n());
         arrays::written_rows(py, rows.count, &[6, n], |i, out| {
             chain.set(rows.row(i));
@@ -218,7 +228,14 @@ impl PyMechanism {
     ) -> Result<Array<'py>> {
         let (n, reference) = (self.inner.n(), reference_of(reference)?);
         let rows = Rows::of(&self.inner, "q", &q)?;
-        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
+        let of = self.end_effector(frame, tool.as_ref())?;
+        if is_batch(&rows) {
+            let batch = Batch::new(&self.inner, of);
+            return threads::written(py, rows.count, &[6, n], |out| {
+                batch.jacobians_into(rows.values, reference, out)
+            });
+        }
+        let mut chain = Chain::new(&self.inner, of);
         let mut local = vec![Matrix::zeros(6, chain.n()); chain.n()];
         arrays::written_rows(py, rows.count, &[n, 6, n], |i, out| {
             chain.set(rows.row(i));

@@ -6,7 +6,7 @@ use cylindroid::Mechanism;
 use cylindroid::model::formats;
 use pyo3::prelude::*;
 
-use super::PyMechanism;
+use super::{Origin, PyMechanism};
 use crate::error::Result;
 use crate::options;
 use crate::table::{self, Table};
@@ -45,7 +45,14 @@ use crate::table::{self, Table};
 pub(crate) fn load(py: Python<'_>, model: PathBuf) -> Result<PyMechanism> {
     let name = model.to_string_lossy().into_owned();
     let inner = py.detach(|| cylindroid::load(&name))?;
-    Ok(PyMechanism { inner })
+    // A path is the same from another folder only if it is absolute.
+    let model = match std::path::absolute(&model) {
+        Ok(path) if !cylindroid::catalogue::names().contains(&name.as_str()) => {
+            path.to_string_lossy().into_owned()
+        }
+        _ => name,
+    };
+    Ok(PyMechanism { inner, origin: Origin::Model(model) })
 }
 
 /// Reads a model from text.
@@ -85,7 +92,9 @@ pub(crate) fn parse(
         ("toml", formats::toml::parse),
     ];
     let read = options::named("format", format, &readers)?;
-    Ok(PyMechanism { inner: py.detach(|| read(text, &path))? })
+    let inner = py.detach(|| read(text, &path))?;
+    let origin = Origin::Text { text: text.to_owned(), format: format.to_owned(), path };
+    Ok(PyMechanism { inner, origin })
 }
 
 /// The models inside the package.

@@ -8,6 +8,7 @@ pub(crate) mod load;
 use cylindroid::model::Dimension;
 use cylindroid::{EndEffector, Error, Mechanism, Pose, Reference};
 use pyo3::prelude::*;
+use pyo3::{IntoPyObjectExt, intern};
 
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
@@ -55,6 +56,17 @@ pub(crate) use load::PyLoadReport;
 #[derive(Debug)]
 pub(crate) struct PyMechanism {
     pub(crate) inner: Mechanism,
+    /// For pickling.
+    pub(crate) origin: Origin,
+}
+
+/// What a mechanism was read from.
+#[derive(Debug, Clone)]
+pub(crate) enum Origin {
+    /// A name of the catalogue, or a path.
+    Model(String),
+    /// Text, its format and its path.
+    Text { text: String, format: String, path: PathBuf },
 }
 
 pub(crate) fn reference_of(name: &str) -> Result<Reference> {
@@ -222,11 +234,25 @@ impl PyMechanism {
     }
 
     fn __copy__(&self) -> Self {
-        Self { inner: self.inner.clone() }
+        Self { inner: self.inner.clone(), origin: self.origin.clone() }
     }
 
     fn __deepcopy__(&self, _memo: Bound<'_, PyAny>) -> Self {
-        Self { inner: self.inner.clone() }
+        self.__copy__()
+    }
+
+    /// What it was read from is pickled, and read again: of a file its absolute path.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let package = py.import(intern!(py, "cylindroid"))?;
+        Ok(match &self.origin {
+            Origin::Model(model) => {
+                (package.getattr(intern!(py, "load"))?, (model,).into_bound_py_any(py)?)
+            }
+            Origin::Text { text, format, path } => (
+                package.getattr(intern!(py, "parse"))?,
+                (text, format, path.as_os_str()).into_bound_py_any(py)?,
+            ),
+        })
     }
 }
 

@@ -22,12 +22,12 @@ use crate::model::Mechanism;
 
 /// Numbers of a pose.
 const POSE: usize = 16;
-/// Configurations that one thread takes at once: a millisecond of work at the most.
-const CHUNK: usize = 4096;
+/// Configurations that one thread takes at once: some tenths of a millisecond of work.
+const CHUNK: usize = Batch::ALONE;
 
 /// The kinematics of one end effector, for many configurations in one call.
 ///
-/// Calls with more than some thousand configurations use the threads of rayon
+/// Calls with more than [`Batch::ALONE`] configurations use the threads of rayon
 /// (`RAYON_NUM_THREADS`, or `ThreadPool::install` around the call); results do not depend on how
 /// many there are.
 ///
@@ -49,6 +49,10 @@ pub struct Batch {
 }
 
 impl Batch {
+    /// As many configurations as one thread takes: calls with no more stay on the thread of the
+    /// caller.
+    pub const ALONE: usize = 4096;
+
     /// For an end effector.
     #[must_use]
     pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {

@@ -130,7 +130,7 @@ impl Rotations {
             self.measure::<R>(size);
             sweeps += 1;
             if !one_by_one {
-                let largest = self.find_angles::<R>(size);
+                let Angles { largest, nearly } = self.find_angles::<R>(size);
                 if largest == 0.0 {
                     break;
                 }
@@ -138,7 +138,7 @@ impl Rotations {
                 if !one_by_one {
                     together += 1;
                     self.turn::<R>(largest, size);
-                    if largest <= NONE {
+                    if nearly && largest <= NONE {
                         break; // what is left is the square of that
                     }
                     continue;
@@ -203,7 +203,7 @@ impl Rotations {
         for &(i, j) in &self.pairs {
             let (bi, bj) = pair(&mut self.b.data, size.long, i, j);
             let (aa, bb, ab) = (self.lengths[i], self.lengths[j], dot::<R>(bi, bj));
-            if !is_oblique(aa, bb, ab) {
+            if !is_oblique(aa, bb, ab, JACOBI_ORTHOGONAL) {
                 continue;
             }
             let (difference, double) = (bb - aa, 2.0 * ab);
@@ -221,23 +221,25 @@ impl Rotations {
         largest
     }
 
-    /// Writes the angles to first order; the largest of them, 0 if all columns are orthogonal.
+    /// Writes the angles to first order, 0 for columns that are orthogonal.
     #[inline(always)]
-    fn find_angles<R: Real>(&mut self, size: Size) -> f64 {
+    fn find_angles<R: Real>(&mut self, size: Size) -> Angles {
         let (b, lengths) = (&self.b.data[..size.k * size.long], &self.lengths[..size.k]);
         let angles = &mut self.angles.data[..size.k * size.short];
-        let mut largest = 0.0_f64;
+        let mut found = Angles { largest: 0.0, nearly: true };
         for j in 0..size.k {
             for i in 0..j {
                 let ab = dot::<R>(padded(b, size.long, i), padded(b, size.long, j));
                 let (aa, bb) = (lengths[i], lengths[j]);
-                let angle = if is_oblique(aa, bb, ab) { ab / (bb - aa) } else { 0.0 };
+                let oblique = is_oblique(aa, bb, ab, JACOBI_ORTHOGONAL);
+                let angle = if oblique { ab / (bb - aa) } else { 0.0 };
                 angles[j * size.short + i] = angle;
                 angles[i * size.short + j] = -angle;
-                largest = largest.max(angle.abs());
+                found.largest = found.largest.max(angle.abs());
+                found.nearly &= !is_oblique(aa, bb, ab, NONE);
             }
         }
-        largest
+        found
     }
 
     /// Turns all columns by the angles found.
@@ -275,10 +277,18 @@ struct Size {
     short: usize,
 }
 
-/// True if columns of these squared lengths and this scalar product are not orthogonal.
+/// What [`Rotations::find_angles`] found.
+struct Angles {
+    largest: f64,
+    /// True if the cosines between all columns, which for lengths far apart are larger than these
+    /// angles, are at most [`NONE`].
+    nearly: bool,
+}
+
+/// True if the cosine between columns of these squared lengths is larger.
 #[inline(always)]
-fn is_oblique(aa: f64, bb: f64, ab: f64) -> bool {
-    ab * ab > JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL * aa * bb
+fn is_oblique(aa: f64, bb: f64, ab: f64, cosine: f64) -> bool {
+    ab * ab > cosine * cosine * aa * bb
 }
 
 /// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2.

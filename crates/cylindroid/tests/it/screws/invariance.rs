@@ -1,6 +1,7 @@
 //! Rates of arms of fewer than six joints, seen from several frames and in two units.
 
 use cylindroid::inverse::{self, HyperbolicOptions};
+use cylindroid::linalg::Svd;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::spatial::{Pose, Twist, Vec3};
 use cylindroid::{Matrix, Reference, catalogue};
@@ -122,11 +123,15 @@ fn within_the_span_all_agree() {
             if found.exists {
                 assert!(difference(&found.matrix.mul_vec(&s), &rates) < 1e-9);
             }
-            let far = Pose::from_translation(Vec3::new(3.0, -2.0, 5.0));
-            let moved = View { name: "", there_from_base: far, unit: 1e3 };
-            let plain = inverse::truncated(&moved.see(&j), 1e-9).unwrap().matrix;
+            let there = Pose::from_translation(Vec3::new(3.0, -2.0, 5.0));
+            let moved = View { name: "", there_from_base: there, unit: 1e3 };
+            let far = moved.see(&j);
+            let plain = inverse::truncated(&far, 1e-9).unwrap().matrix;
             let seen = moved.see(&Matrix::from_fn(6, 1, |i, _| s[i]));
-            assert!(difference(&plain.mul_vec(seen.column(0)), &rates) < 1e-9);
+            // What rounding leaves: one posture here has a condition of 3e7.
+            let values: Vec<f64> = Svd::of(&far).values().collect();
+            let rounding = 10.0 * f64::EPSILON * values[0] / values[values.len() - 1];
+            assert!(difference(&plain.mul_vec(seen.column(0)), &rates) < rounding);
         }
     }
 }
