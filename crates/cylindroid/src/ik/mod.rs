@@ -14,12 +14,14 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 
+mod analytic;
 mod attempt;
 mod damped;
 mod goal;
 mod options;
 mod solve;
 
+pub use analytic::{Analytic, NoStructure, Posture, Postures, Structure};
 pub use goal::{Goal, Task};
 pub use options::{Budget, IkOptions};
 pub(crate) use solve::STEPS as ATTEMPT_STEPS;
