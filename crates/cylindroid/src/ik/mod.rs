@@ -17,6 +17,7 @@
 mod analytic;
 mod attempt;
 mod damped;
+mod formulas;
 mod goal;
 mod options;
 mod solve;
@@ -25,4 +26,4 @@ pub use analytic::{Analytic, NoStructure, Posture, Postures, Structure};
 pub use goal::{Goal, Task};
 pub use options::{Budget, IkOptions};
 pub(crate) use solve::STEPS as ATTEMPT_STEPS;
-pub use solve::{Solution, Solver, solve, solve_several};
+pub use solve::{FoundBy, Solution, Solver, solve, solve_several};

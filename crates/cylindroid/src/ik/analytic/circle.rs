@@ -6,8 +6,8 @@
 //!          X x + Y y = d, x and y on unit circles: one row first where it holds one of them alone,
 //!          else y = Y^-1 (d - X x), and |y| = 1 is a quartic in the tangent of half of x's angle,
 //!          measured from where the condition fails most, so that no root is near infinity
-//! Valid    any numbers. Where nothing determines a turn it is that of the start, and is called
-//!          free; a condition that fails by rounding is met as nearly as it can be: what comes out
+//! Valid    any numbers. Where nothing determines a turn it is that of the start, or the first that
+//!          is confirmed of seven others, and is called free; a condition that fails by rounding is met as nearly as it can be: what comes out
 //!          is a candidate, to be confirmed by forward kinematics
 //! Why so   sines and cosines are solved for, not angles: an arc tangent for each turn at the end
 //!          is all that is left of the trigonometry. Roots of the quartic are bracketed by those of
@@ -15,12 +15,14 @@
 //! Source   Paden 1986; Elias & Wen 2025, IK-Geo, subproblems 1, 3, 4, 5, 6
 //! Checked  tests/it/analytic.rs, tests in this file
 
+use std::f64::consts::FRAC_PI_4;
+
 use crate::scalar::sin_cos;
 use crate::spatial::{Mat3, Vec3};
 use crate::tolerance::{FREE_TURN, MISSED, TOUCHING};
 
-/// Candidates of one condition at most: four roots, three touching points, a free turn.
-const MOST: usize = 8;
+/// A free turn is tried at the angle of the start, then so many eighths of a turn from it.
+const EIGHTHS: [f64; 8] = [0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0];
 
 /// A turn by an angle.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +31,7 @@ pub(super) struct Turn {
     pub(super) sin: f64,
     /// (rad)
     pub(super) angle: f64,
-    /// True if nothing determines it: the angle is that of the start.
+    /// True if nothing determines it.
     pub(super) free: bool,
 }
 
@@ -67,45 +69,54 @@ impl Turn {
     }
 }
 
-/// The turns that meet a condition; a free one is the first.
+/// The turns that meet a condition, at most N.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Turns {
-    list: [Turn; MOST],
+pub(super) struct Turns<const N: usize> {
+    /// The angle of the start, where nothing determines the turn but rounding.
+    free: Option<f64>,
+    list: [Turn; N],
     len: usize,
 }
 
-impl Turns {
-    const NONE: Self = Self { list: [Turn::NONE; MOST], len: 0 };
+impl<const N: usize> Turns<N> {
+    const NONE: Self = Self { free: None, list: [Turn::NONE; N], len: 0 };
 
     fn push(&mut self, turn: Turn) {
-        if self.len < MOST {
+        if self.len < N {
             self.list[self.len] = turn;
             self.len += 1;
         }
     }
 
+    /// True if nothing determines the turn but rounding.
+    pub(super) fn is_free(&self) -> bool {
+        self.free.is_some()
+    }
+
     /// Calls `f`, which says whether anything was confirmed, for each turn, and tells whether
-    /// anything was. Where a free turn is confirmed the others, which differ from it by rounding,
-    /// are not asked.
+    /// anything was. Of free turns the first that is confirmed is enough.
+    #[inline]
     pub(super) fn any(&self, mut f: impl FnMut(Turn) -> bool) -> bool {
+        if let Some(start) = self.free
+            && EIGHTHS.iter().any(|i| f(Turn::free(start + i * FRAC_PI_4)))
+        {
+            return true;
+        }
         let mut any = false;
         for turn in &self.list[..self.len] {
             any |= f(*turn);
-            if turn.free && any {
-                break;
-            }
         }
         any
     }
 }
 
 /// `a cos q + b sin q = c`, numbers of size `scale`.
-pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Turns {
+pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Turns<2> {
     let mut turns = Turns::NONE;
     let square = a * a + b * b;
     let least = FREE_TURN * scale;
     if square <= least * least && c.abs() <= least {
-        turns.push(Turn::free(start));
+        turns.free = Some(start);
     }
     let height = square - c * c;
     if square == 0.0 || !(height >= -MISSED * square) {
@@ -123,12 +134,12 @@ pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Turns 
 
 /// The turn about `k` that brings `p` onto `onto`, vectors of size `scale`.
 #[inline]
-pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Turns {
+pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Turns<2> {
     let mut turns = Turns::NONE;
     let beside = p - k * k.dot(p);
     let least = FREE_TURN * scale;
     if beside.dot(beside) <= least * least {
-        turns.push(Turn::free(start));
+        turns.free = Some(start);
     }
     let (cos, sin) = (beside.dot(onto), k.cross(p).dot(onto));
     if cos != 0.0 || sin != 0.0 {
@@ -215,7 +226,7 @@ struct Ellipse {
 
 impl Ellipse {
     /// The turns x whose points are at distance 1 from the origin.
-    fn on_circle(&self, start: f64) -> Turns {
+    fn on_circle(&self, start: f64) -> Turns<7> {
         let Self { p, q, d } = *self;
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let excess = |c: f64, s: f64| {
@@ -233,7 +244,7 @@ impl Ellipse {
         }
         let mut turns = Turns::NONE;
         if worst <= FREE_TURN {
-            turns.push(Turn::free(start));
+            turns.free = Some(start);
             return turns;
         }
         // The opposite place is the zero of the angle: x = -(c, s) there.
@@ -270,7 +281,8 @@ fn real_roots(a: [f64; 5], mut f: impl FnMut(f64)) {
     for degree in 1..=4 {
         // The derivative that has this degree, by its coefficients.
         let falling = |k: usize| (k + 1..=k + 4 - degree).map(|i| i as f64).product::<f64>();
-        let p = |t: f64| (0..=degree).rev().fold(0.0, |v, k| v * t + falling(k) * a[k + 4 - degree]);
+        let p =
+            |t: f64| (0..=degree).rev().fold(0.0, |v, k| v * t + falling(k) * a[k + 4 - degree]);
         let (mut roots, mut found) = ([0.0; 5], 0);
         for i in 0..=count {
             let low = if i == 0 { -bound } else { knots[i - 1] };
@@ -371,7 +383,8 @@ mod tests {
             });
             all
         };
-        assert_eq!(of([0.0, 0.0], 0.0), [(0.7, true)]);
+        let free = of([0.0, 0.0], 0.0);
+        assert!(free.len() == 8 && free[0] == (0.7, true) && free.iter().all(|f| f.1));
         assert!(of([0.0, 0.0], 0.1).is_empty());
         assert!(of([1.0, 0.0], 1.1).is_empty());
         assert_eq!(of([1.0, 0.0], 1.0), [(0.0, false)]);

@@ -103,16 +103,33 @@ pub(super) fn parallel(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]
             })
         };
         let unturned = |v: Vec3| first.back(h[0], aim.rotation * v);
+        let last = |whole: Turn| {
+            let seen = fifth.back(h[4], whole.back(n, unturned(g.side)));
+            across(h[5], g.side, seen)
+        };
         // The whole of the parallel turns; where only its sum with the last is determined, the
         // last is free.
-        onto(n, fifth.of(h[4], h[5]), unturned(h[5]), 1.0, start[5]).any(|turn| {
+        let wholes = onto(n, fifth.of(h[4], h[5]), unturned(h[5]), 1.0, start[5]);
+        let any = wholes.any(|turn| {
             if turn.free {
                 let seen = unturned(turn.back(h[5], fifth.back(h[4], g.level)));
                 arm(across(n, g.level, seen), turn)
             } else {
-                let seen = fifth.back(h[4], turn.back(n, unturned(g.side)));
-                arm(turn, across(h[5], g.side, seen))
+                arm(turn, last(turn))
             }
-        })
+        });
+        if !any && wholes.is_free() {
+            // The two links are too short or too long for those: amid what they can do.
+            let level = |v: Vec3| v - n * n.dot(v);
+            let (far, hand) = (level(shoulder), level(p45 + fifth.of(h[4], p56)));
+            let range = |a: f64, b: f64| ((a - b).abs(), a + b);
+            let (links, places) = (range(p23.norm(), p34.norm()), range(far.norm(), hand.norm()));
+            let distance = 0.5 * (links.0.max(places.0) + links.1.min(places.1));
+            let (amid, rest) = coefficients(far, n, hand);
+            let squares = far.dot(far) + hand.dot(hand) - distance * distance;
+            return linear(amid, 0.5 * squares - rest, reach * reach, 0.0)
+                .any(|turn| arm(turn, Turn { free: true, ..last(turn) }));
+        }
+        any
     });
 }

@@ -38,8 +38,9 @@ pub use self::structure::Structure;
 
 /// Newton steps for one candidate.
 const STEPS: usize = 2;
-/// Damping relative to the size of the squared Jacobian [-].
-const DAMPING: f64 = 1e-14;
+/// Damping relative to the size of the squared Jacobian [-]: with a free joint held that is singular,
+/// and steps are right to four digits.
+const DAMPING: f64 = 1e-12;
 
 /// Why formulas do not solve a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,8 +72,9 @@ impl fmt::Display for NoStructure {
 pub struct Posture {
     /// The angles of the six joints, in the order of [`Analytic::coordinates`] (rad).
     pub q: [f64; 6],
-    /// True for joints whose angle is that of the start because the pose leaves it free: the
-    /// posture is singular and one of a continuum of answers.
+    /// True for joints whose angle the pose leaves free: the posture is singular and one of a
+    /// continuum of answers. The angle is that of the start; where the other joints cannot follow
+    /// that, one that they can.
     pub free: [bool; 6],
     /// (m)
     pub position_error: f64,
@@ -85,6 +87,7 @@ pub struct Posture {
 pub struct Postures {
     list: [Posture; 8],
     len: usize,
+    open: bool,
 }
 
 impl Deref for Postures {
@@ -247,6 +250,7 @@ impl Analytic {
                 orientation_error: 0.0,
             }; 8],
             len: 0,
+            open: false,
         };
         let found = |turns: &[Turn; 6]| {
             let mut q = [0.0; 6];
@@ -256,6 +260,7 @@ impl Analytic {
                 q[place] = turn.angle * geometry.sign[i];
                 free[place] = turn.free;
             }
+            postures.open |= free != [false; 6];
             let Some(posture) = self.confirmed(q, free, &target, &near) else { return false };
             postures.insert(posture);
             true
@@ -285,7 +290,10 @@ impl Analytic {
                 q[i] = (q[i] + TAU * (first + k as f64)).clamp(lower, upper);
                 q
             };
-            all = all.iter().flat_map(|q| (0..=turns.max(0.0) as usize).map(|k| turned(q, k))).collect();
+            all = all
+                .iter()
+                .flat_map(|q| (0..=turns.max(0.0) as usize).map(|k| turned(q, k)))
+                .collect();
         }
         all
     }
@@ -336,8 +344,12 @@ impl Analytic {
             }
         }
         let (position_error, orientation_error) = errors;
-        self.are_below(errors, ANALYTIC_CONFIRMED)
-            .then_some(Posture { q, free, position_error, orientation_error })
+        self.are_below(errors, ANALYTIC_CONFIRMED).then_some(Posture {
+            q,
+            free,
+            position_error,
+            orientation_error,
+        })
     }
 
     fn are_below(&self, (position, orientation): (f64, f64), most: f64) -> bool {
@@ -361,9 +373,8 @@ impl Analytic {
     /// One Newton step from the posture that was looked at last; free joints stay.
     fn refine(&mut self, q: &mut [f64; 6], free: &[bool; 6], target: &Pose) {
         self.chain.jacobian_into(Reference::LocalWorldAligned, &mut self.jacobian);
-        let scaled = |twist: Twist| {
-            Twist { linear: twist.linear * (1.0 / self.reach), ..twist }.to_array()
-        };
+        let scaled =
+            |twist: Twist| Twist { linear: twist.linear * (1.0 / self.reach), ..twist }.to_array();
         let of_chain = self.chain.coordinates();
         for (i, c) in self.coordinates.iter().enumerate() {
             let column = self.jacobian.column(of_chain.partition_point(|x| x < c));
@@ -382,6 +393,12 @@ impl Analytic {
 }
 
 impl Postures {
+    /// True if the pose may leave a joint free: these are then some of many answers.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
     /// One that is not there yet, whole turns apart; the truer of two that are one.
     fn insert(&mut self, posture: Posture) {
         let same = |other: &Posture| {
