@@ -13,7 +13,7 @@
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use super::analytic::Structure;
+use super::analytic::Analytic;
 use super::attempt::{Errors, Problem, is_reached};
 use super::formulas::{Formulas, VALUES};
 use super::goal::Goal;
@@ -141,11 +141,11 @@ impl Solver {
         Ok(Self { problem, formulas, options: options.clone(), start })
     }
 
-    /// The structure of the axes that the answers are found by, where formulas give them; of seven
-    /// joints one is held at one value after another.
+    /// The formulas that answers are taken from, where there are some; of seven joints they hold
+    /// one, at one value after another.
     #[must_use]
-    pub fn structure(&self) -> Option<Structure> {
-        Some(self.formulas.as_ref()?.analytic.structure())
+    pub fn analytic(&self) -> Option<&Analytic> {
+        self.formulas.as_ref().map(|f| &f.analytic)
     }
 
     /// Starts the next call at `q`.

@@ -15,7 +15,7 @@
 //! Source   Paden 1986; Elias & Wen 2025, IK-Geo, subproblems 1, 3, 4, 5, 6
 //! Checked  tests/it/analytic.rs, tests in this file
 
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use crate::scalar::sin_cos;
 use crate::spatial::{Mat3, Vec3};
@@ -47,7 +47,7 @@ impl Turn {
     /// Along (cos, sin), of any length.
     fn along(cos: f64, sin: f64) -> Self {
         let length = (cos * cos + sin * sin).sqrt();
-        Self { cos: cos / length, sin: sin / length, angle: sin.atan2(cos), free: false }
+        Self { cos: cos / length, sin: sin / length, angle: angle(cos, sin), free: false }
     }
 
     /// `v` turned about the unit vector `k`.
@@ -67,6 +67,40 @@ impl Turn {
     pub(super) fn matrix(self, k: Vec3) -> Mat3 {
         Mat3::from_cols(self.of(k, Vec3::X), self.of(k, Vec3::Y), self.of(k, Vec3::Z))
     }
+}
+
+/// The angle of (cos, sin), of any length but zero, in [-pi, pi], to 3 ulp.
+///
+/// Half the time of the standard library's, of which formulas call thirty for a pose. Source:
+/// Cephes atan.c (the rational function).
+#[inline]
+fn angle(cos: f64, sin: f64) -> f64 {
+    const P: [f64; 5] = [
+        -8.750_608_600_031_904e-1,
+        -1.615_753_718_733_365e1,
+        -7.500_855_792_314_705e1,
+        -1.228_866_684_490_136_1e2,
+        -6.485_021_904_942_025e1,
+    ];
+    const Q: [f64; 5] = [
+        2.485_846_490_142_306_2e1,
+        1.650_270_098_316_988_5e2,
+        4.328_810_604_912_902_6e2,
+        4.853_903_996_359_137e2,
+        1.945_506_571_482_614e2,
+    ];
+    let (x, y) = (cos.abs(), sin.abs());
+    let (low, high) = if y > x { (x, y) } else { (y, x) };
+    // The tangent, or that of what is missing to an eighth of a turn.
+    let (up, down, base) =
+        if low > 0.66 * high { (low - high, low + high, FRAC_PI_4) } else { (low, high, 0.0) };
+    let t = up / down;
+    let z = t * t;
+    let p = (((P[0] * z + P[1]) * z + P[2]) * z + P[3]) * z + P[4];
+    let q = ((((z + Q[0]) * z + Q[1]) * z + Q[2]) * z + Q[3]) * z + Q[4];
+    let first = base + (t + t * (z * p / q));
+    let upper = if y > x { FRAC_PI_2 - first } else { first };
+    (if cos < 0.0 { PI - upper } else { upper }).copysign(sin)
 }
 
 /// The turns that meet a condition, at most N.
@@ -335,7 +369,24 @@ fn between(p: impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Order, Pair, linear, real_roots};
+    use super::{Order, Pair, angle, linear, real_roots};
+
+    #[test]
+    fn angles_agree_with_std() {
+        let mut x = -3.2_f64;
+        while x < 3.2 {
+            for size in [1e-12, 1.0, 3e9] {
+                let (s, c) = (size * x.sin(), size * x.cos());
+                let exact = s.atan2(c);
+                let error = (angle(c, s) - exact).abs() / (exact.abs() * f64::EPSILON);
+                assert!(error <= 3.0, "{x}: {error} ulp");
+            }
+            x += 1.234_567e-4;
+        }
+        assert_eq!((angle(1.0, 0.0), angle(0.0, 1.0)), (0.0, std::f64::consts::FRAC_PI_2));
+        assert_eq!((angle(-1.0, 0.0), angle(-1.0, -0.0)), (3.141592653589793, -3.141592653589793));
+        assert!(angle(f64::NAN, 1.0).is_nan() && angle(1.0, f64::NAN).is_nan());
+    }
 
     #[test]
     fn roots_are_found() {

@@ -15,7 +15,7 @@ mod circle;
 mod formulas;
 mod structure;
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::ops::Deref;
 
@@ -48,6 +48,8 @@ const DAMPING: f64 = 1e-12;
 pub enum NoStructure {
     /// Not six coordinates move the tool, those that are held left out: how many do.
     Joints(usize),
+    /// Loops or contacts couple the joints.
+    Loops,
     /// A joint that is no hinge of its own moves it.
     Kind,
     /// No three axes meet or are parallel where the formulas need it.
@@ -58,6 +60,7 @@ impl fmt::Display for NoStructure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Joints(n) => write!(f, "{n} joints move the tool, formulas take six"),
+            Self::Loops => f.write_str("loops or contacts couple the joints"),
             Self::Kind => f.write_str("a joint on the way to the tool is not a hinge of its own"),
             Self::Axes => f.write_str(
                 "neither the first nor the last three axes meet in a point, nor are axes 2 to 4 \
@@ -161,6 +164,9 @@ impl Analytic {
         end_effector: impl Into<EndEffector>,
         held: &[usize],
     ) -> std::result::Result<Self, NoStructure> {
+        if mechanism.is_closed() {
+            return Err(NoStructure::Loops);
+        }
         let end_effector = end_effector.into();
         let mut chain = Chain::new(mechanism, end_effector);
         let (held, free): (Vec<usize>, Vec<usize>) =
@@ -213,6 +219,12 @@ impl Analytic {
     #[must_use]
     pub fn coordinates(&self) -> [usize; 6] {
         self.coordinates
+    }
+
+    /// Places of the joints of the chain that keep the values of the start.
+    #[must_use]
+    pub fn held(&self) -> &[usize] {
+        &self.held
     }
 
     /// All answers within the limits for `world_from_tool`, confirmed by forward kinematics to
@@ -367,7 +379,8 @@ impl Analytic {
         let square: f64 = turned.cols.iter().map(|c| c.dot(*c)).sum();
         // |R - 1| = 2 sqrt 2 sin(angle / 2)
         let half = (square / 8.0).sqrt().min(1.0);
-        ((pose.translation - target.translation).norm(), 2.0 * half.asin())
+        let half = if half < 1e-6 { half } else { half.asin() };
+        ((pose.translation - target.translation).norm(), 2.0 * half)
     }
 
     /// One Newton step from the posture that was looked at last; free joints stay.
@@ -403,8 +416,9 @@ impl Postures {
     fn insert(&mut self, posture: Posture) {
         let same = |other: &Posture| {
             other.q.iter().zip(posture.q).all(|(a, b)| {
-                let apart = a - b;
-                (apart - TAU * (apart / TAU).round()).abs() < ANALYTIC_SAME
+                let apart = (a - b).abs();
+                let turned = |apart: f64| (apart - TAU * (apart / TAU).round()).abs();
+                apart < ANALYTIC_SAME || (apart > PI && turned(apart) < ANALYTIC_SAME)
             })
         };
         let error = |p: &Posture| p.position_error + p.orientation_error;
@@ -422,7 +436,8 @@ impl Postures {
 /// The angle with the whole turns that bring it nearest to `near` within the limits; at a limit
 /// that it misses by rounding. `None` outside.
 fn turned(angle: f64, near: f64, lower: f64, upper: f64) -> Option<f64> {
-    let mut q = angle + TAU * ((near - angle) / TAU).round();
+    let apart = near - angle;
+    let mut q = if apart.abs() <= PI { angle } else { angle + TAU * (apart / TAU).round() };
     if q > upper {
         q -= TAU * ((q - upper - ANALYTIC_AT_LIMIT) / TAU).ceil();
     } else if q < lower {
