@@ -383,8 +383,9 @@ mod tests {
             }
             x += 1.234_567e-4;
         }
-        assert_eq!((angle(1.0, 0.0), angle(0.0, 1.0)), (0.0, std::f64::consts::FRAC_PI_2));
-        assert_eq!((angle(-1.0, 0.0), angle(-1.0, -0.0)), (3.141592653589793, -3.141592653589793));
+        use std::f64::consts::{FRAC_PI_2, PI};
+        assert_eq!((angle(1.0, 0.0), angle(0.0, 1.0)), (0.0, FRAC_PI_2));
+        assert_eq!((angle(-1.0, 0.0), angle(-1.0, -0.0)), (PI, -PI));
         assert!(angle(f64::NAN, 1.0).is_nan() && angle(1.0, f64::NAN).is_nan());
     }
 
