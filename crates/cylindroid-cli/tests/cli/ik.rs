@@ -42,7 +42,7 @@ fn formulas_are_named() {
     assert!(panda["inverse_kinematics"]["structure"].is_null());
     assert!(panda["inverse_kinematics"]["reason"].as_str().unwrap().contains("7 joints"));
     let report = json(&["ik", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"], 0);
-    assert_eq!(report["analytic"]["held"][0], "joint7");
+    assert_eq!(report["analytic"]["held"][0], "panda_joint7");
     let part = json(&["ik", "ur5e", "--to", "0.3,0.4,0.5"], 0);
     assert_eq!(part["found_by"], "search");
     assert!(part.get("analytic").is_none());

@@ -45,9 +45,16 @@ impl Turn {
     }
 
     /// Along (cos, sin), of any length.
+    #[inline]
     fn along(cos: f64, sin: f64) -> Self {
-        let length = (cos * cos + sin * sin).sqrt();
-        Self { cos: cos / length, sin: sin / length, angle: angle(cos, sin), free: false }
+        Self::along_known(cos, sin, (cos * cos + sin * sin).sqrt())
+    }
+
+    /// The same where the length is known.
+    #[inline]
+    fn along_known(cos: f64, sin: f64, length: f64) -> Self {
+        let one_over = 1.0 / length;
+        Self { cos: cos * one_over, sin: sin * one_over, angle: angle(cos, sin), free: false }
     }
 
     /// `v` turned about the unit vector `k`.
@@ -160,8 +167,8 @@ pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Turns<
         turns.push(Turn::along(a * c, b * c));
     } else {
         let h = height.sqrt();
-        turns.push(Turn::along(a * c - b * h, b * c + a * h));
-        turns.push(Turn::along(a * c + b * h, b * c - a * h));
+        turns.push(Turn::along_known(a * c - b * h, b * c + a * h, square));
+        turns.push(Turn::along_known(a * c + b * h, b * c - a * h, square));
     }
     turns
 }

@@ -73,7 +73,7 @@ pub(super) fn parallel(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]
     let Geometry { h, p: [p01, p12, p23, p34, p45, p56, p6t], reach, .. } = *g;
     let (n, start) = (h[1], aim.start);
     let p = aim.position - p01 - aim.rotation * p6t;
-    let pointing = aim.rotation * h[5];
+    let (pointing, sideways) = (aim.rotation * h[5], aim.rotation * g.side);
     let ([x1, x2], x_rest) = coefficients(n, -h[0], p);
     let ([y1, y2], y_rest) = coefficients(n, h[4], p56);
     let ([u1, u2], u_rest) = coefficients(n, -h[0], pointing);
@@ -102,17 +102,18 @@ pub(super) fn parallel(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]
                 })
             })
         };
-        let unturned = |v: Vec3| first.back(h[0], aim.rotation * v);
+        let (pointing, sideways) = (first.back(h[0], pointing), first.back(h[0], sideways));
         let last = |whole: Turn| {
-            let seen = fifth.back(h[4], whole.back(n, unturned(g.side)));
+            let seen = fifth.back(h[4], whole.back(n, sideways));
             across(h[5], g.side, seen)
         };
         // The whole of the parallel turns; where only its sum with the last is determined, the
         // last is free.
-        let wholes = onto(n, fifth.of(h[4], h[5]), unturned(h[5]), 1.0, start[5]);
+        let wholes = onto(n, fifth.of(h[4], h[5]), pointing, 1.0, start[5]);
         let any = wholes.any(|turn| {
             if turn.free {
-                let seen = unturned(turn.back(h[5], fifth.back(h[4], g.level)));
+                let hand = turn.back(h[5], fifth.back(h[4], g.level));
+                let seen = first.back(h[0], aim.rotation * hand);
                 arm(across(n, g.level, seen), turn)
             } else {
                 arm(turn, last(turn))

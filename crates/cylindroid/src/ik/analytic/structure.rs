@@ -19,7 +19,7 @@ use crate::spatial::{Rotation, Vec3};
 use crate::tolerance::{ALIGNED_AXES, OBLIQUE_AXES};
 
 /// The axes of a chain whose inverse kinematics is solved by formulas. Printed it says which: the
-/// numbers count the moving joints from the ground, from 1.
+/// numbers count the joints from the ground, from 1, those that are held left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Structure {
     pub(super) three: Three,
