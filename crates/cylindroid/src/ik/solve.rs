@@ -272,9 +272,20 @@ impl Solver {
             let postures = formulas.solve(goal.target, &mut start, calls)?;
             calls += 1;
             let mut q = start.clone();
-            for posture in postures.iter() {
+            // The nearest first: often it is enough.
+            let places = formulas.analytic.coordinates();
+            let far = |i: &usize| -> f64 {
+                postures[*i].q.iter().zip(places).map(|(x, c)| (x - self.start[c]).powi(2)).sum()
+            };
+            let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
+            let order = &mut order[..postures.len()];
+            order.sort_unstable_by(|a, b| far(a).total_cmp(&far(b)));
+            for posture in order.iter().map(|&i| postures[i]) {
+                if enough(answers.len()) && !answers.is_empty() {
+                    break;
+                }
                 q.copy_from_slice(&start);
-                for (&c, angle) in formulas.analytic.coordinates().iter().zip(posture.q) {
+                for (c, angle) in places.into_iter().zip(posture.q) {
                     q[c] = angle;
                 }
                 if posture.free != [false; 6] {
