@@ -17,6 +17,7 @@ def test_answers_reach_within_limits(name):
     np.testing.assert_allclose(r.fk(found.q), targets, atol=3e-6)
     assert ((r.lower <= found.q) & (found.q <= r.upper)).all()
     assert (found.position_error <= 1e-6).all() and (found.iterations > 0).all()
+    assert found.analytic.all() or name == "panda"
     one = r.ik(targets[0])
     np.testing.assert_array_equal(one.q, found.q[0])
     assert one.success is True and one.iterations == found.iterations[0] and one.attempts >= 1
@@ -48,6 +49,8 @@ def test_all_answers_of_six_joints():
     r = cy.load("ur5e")
     target = r.fk([0.3, -1.2, 1.1, -0.4, 0.9, 0.2])
     all_of_them = r.ik_all(target, 8)
+    assert r.ik(target).analytic is True and "analytic" in repr(r.ik(target))
+    assert r.ik(target, task="position").analytic is False
     assert all_of_them.shape[1] == 6 and len(all_of_them) >= 4
     np.testing.assert_allclose(r.fk(all_of_them), np.tile(target, (len(all_of_them), 1, 1)), atol=3e-6)
     assert len(np.unique(all_of_them.round(2), axis=0)) == len(all_of_them)

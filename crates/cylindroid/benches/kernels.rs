@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use cylindroid::closure::{Blocks, ClosedChain, Constraint, Mobility, Motions, assemble};
-use cylindroid::ik::{Goal, IkOptions, Solver};
+use cylindroid::ik::{Analytic, Goal, IkOptions, Solver};
 use cylindroid::inverse::{self, Method};
 use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::linalg::Svd;
@@ -320,22 +320,39 @@ fn object_servo_step(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
+/// Postures drawn within the limits, or half a turn where they are wider.
+fn drawn(robot: &Mechanism) -> impl FnMut() -> Vec<f64> + '_ {
+    let mut state = 9_u64;
+    let mut one = move |c: &Coordinate| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let share = (state >> 11) as f64 / (1_u64 << 53) as f64;
+        let (lower, upper) = (c.limits.lower.max(-PI), c.limits.upper.min(PI));
+        lower + (upper - lower) * share
+    };
+    move || robot.coordinates().iter().map(&mut one).collect()
+}
+
+/// All answers for random reachable targets by formulas, in turn.
+#[divan::bench(args = ["ur5e", "puma560"], sample_count = 2000)]
+fn inverse_kinematics_by_formulas(bencher: Bencher<'_, '_>, name: &str) {
+    let robot = robot(name);
+    let mut draw = drawn(&robot);
+    let tasks: Vec<(Vec<f64>, Pose)> =
+        (0..2000).map(|_| (draw(), robot.state(&draw()).unwrap().pose(robot.tool()))).collect();
+    let mut ik = Analytic::of(&robot, robot.tool()).unwrap();
+    let mut i = 0;
+    bencher.bench_local(|| {
+        i = (i + 1) % tasks.len();
+        black_box(ik.solve(tasks[i].1, &tasks[i].0).unwrap())
+    });
+}
+
 /// Random reachable targets to 1e-5 from random starts, in turn.
 #[divan::bench(args = ["panda", "ur5e", "iiwa14", "puma560"], sample_count = 2000)]
 fn inverse_kinematics(bencher: Bencher<'_, '_>, name: &str) {
     let robot = robot(name);
-    let mut state = 9_u64;
-    let mut draw = || -> Vec<f64> {
-        let mut one = |c: &Coordinate| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            let share = (state >> 11) as f64 / (1_u64 << 53) as f64;
-            let (lower, upper) = (c.limits.lower.max(-PI), c.limits.upper.min(PI));
-            lower + (upper - lower) * share
-        };
-        robot.coordinates().iter().map(&mut one).collect()
-    };
+    let mut draw = drawn(&robot);
     let tasks: Vec<(Vec<f64>, Goal)> = (0..2000)
         .map(|_| {
             let target = robot.state(&draw()).unwrap().pose(robot.tool());

@@ -222,6 +222,46 @@ pub const IK_POSITION: f64 = 1e-6;
 /// The same of the orientation (rad).
 pub const IK_ORIENTATION: f64 = 1e-6;
 
+/// Axes that are parallel within this angle (rad), or meet within this distance over the reach,
+/// count as such for formulas of inverse kinematics: files print 1.5708, which is 4e-6 off, and two
+/// Newton steps make 1e-10 of it and then rounding.
+pub const ALIGNED_AXES: f64 = 1e-5;
+
+/// Axes that cross at an angle whose sine is below this have no point where they meet that formulas
+/// could rest on [-]: a hundred times the departures of [`ALIGNED_AXES`] would remain.
+pub const OBLIQUE_AXES: f64 = 1e-2;
+
+/// Axes that depart from their structure by no more than this have it to rounding [rad, reaches]:
+/// bases a hundred reaches from the origin leave less.
+pub const ANALYTIC_EXACT: f64 = 1e-12;
+
+/// A turn is not determined where the arm that it would be read from is shorter than this, in
+/// reaches or as a sine [-]: angles at a double root are right to the root of rounding, 2e-8, times
+/// ratios of lengths.
+pub const FREE_TURN: f64 = 1e-7;
+
+/// A condition on a turn that is missed by this share of the square of its largest value may still
+/// be one that rounding, or the departures of [`ALIGNED_AXES`], keep from being met [-].
+pub const MISSED: f64 = 1e-4;
+
+/// Where a polynomial has an extremum of this size, relative to the sum of its terms, it may touch
+/// zero [-]; forward kinematics decides.
+pub const TOUCHING: f64 = 1e-9;
+
+/// An answer of formulas with errors below this needs no Newton step [rad, reaches].
+pub const ANALYTIC_REFINED: f64 = 1e-12;
+
+/// One with larger errors than this is none [rad, reaches].
+pub const ANALYTIC_CONFIRMED: f64 = 1e-10;
+
+/// Answers of formulas whose angles differ by less than this, whole turns apart, are one (rad): far
+/// above rounding at a double root, 2e-8 times ratios of lengths.
+pub const ANALYTIC_SAME: f64 = 1e-6;
+
+/// An angle that is outside a limit by less than this is put on it (rad), and forward kinematics
+/// decides whether that is still an answer.
+pub const ANALYTIC_AT_LIMIT: f64 = 1e-7;
+
 /// Efficiencies that differ by less than this, relative to each other, count as equal where a
 /// derivative is asked for: nearer ones turn their directions by rounding alone [-].
 pub const REPEATED: f64 = 1e-7;

@@ -8,6 +8,7 @@ use cylindroid::control::{
     Admittance, AdmittanceGain, Gain, HybridInput, HybridLaw, Projection, Secondary, SharedInput,
     SharedLaw, Task,
 };
+use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
 use cylindroid::kinematics::Chain;
 use cylindroid::screws::{Along, Projector, ScrewOptions};
@@ -108,6 +109,25 @@ fn hot_paths_allocate_nothing() {
         if *name == "youbot" {
             projections(&robot, start);
         }
+    }
+}
+
+/// All answers by formulas.
+#[test]
+fn formulas_allocate_nothing() {
+    for (name, held) in [("ur5e", &[][..]), ("puma560", &[]), ("panda", &[6])] {
+        let robot = catalogue::load(name).unwrap();
+        let mut ik = Analytic::holding(&robot, robot.tool(), held).unwrap();
+        let mut start = robot.home().to_vec();
+        let target = robot.state(&start).unwrap().pose(robot.tool());
+        let mut answers = 0;
+        let counted = count(|| {
+            for _ in 0..100 {
+                held.iter().for_each(|&c| start[c] += 0.01);
+                answers += ik.solve(target, &start).unwrap().len();
+            }
+        });
+        assert!(counted == 0 && answers > 100, "{name}: {counted} allocations, {answers} answers");
     }
 }
 

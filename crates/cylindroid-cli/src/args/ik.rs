@@ -8,7 +8,9 @@ use super::{FrameArgs, PostureArgs, TargetArgs};
 pub(crate) const ABOUT: &str = "\
 Inverse kinematics: configurations that put a frame at a target, within all limits
 
-Attempts start at --q (moved within the limits), then at postures drawn within them, until one reaches the target; \
+Where six joints are hinges and three of their axes meet or are parallel (a spherical wrist, a UR arm), \
+formulas give all answers; where there are seven, those for one value after another of one of them. Else \
+attempts start at --q (moved within the limits), then at postures drawn within them, until one reaches the target; \
 what is claimed was checked by forward kinematics. The same seed gives the same answer. Where \
 nothing is found the nearest posture is printed: a proof that none reaches only where the target \
 is farther away than the arm is long.

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::ik::{Budget, Goal, IkOptions, Solution, Task, solve, solve_several};
+use cylindroid::ik::{Budget, FoundBy, Goal, IkOptions, Solution, Solver, Task};
 use serde::Serialize;
 
 use super::target::{errors, target_pose, task};
@@ -23,6 +23,11 @@ struct IkJson<'a> {
     q: &'a [f64],
     position_error: f64,
     orientation_error: f64,
+    /// "analytic" or "search".
+    found_by: &'static str,
+    /// The formulas that there are for this frame.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    analytic: Option<AnalyticJson<'a>>,
     iterations: usize,
     attempts: usize,
     /// How far the target is from the first joint and how long the arm is from there [m], where
@@ -33,6 +38,13 @@ struct IkJson<'a> {
     solutions: Vec<&'a [f64]>,
     start: &'a [f64],
     target: PoseJson,
+}
+
+#[derive(Debug, Serialize)]
+struct AnalyticJson<'a> {
+    structure: String,
+    /// Joints that are held at one value after another.
+    held: Vec<&'a str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -58,24 +70,32 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         ..IkOptions::default()
     };
     let goals = [Goal { end_effector, target, task }];
+    let mut solver = Solver::new(&robot, &goals, &options)?;
     let found = match args.all {
-        None => vec![solve(&robot, &goals, &options)?],
-        Some(count) => match solve_several(&robot, &goals, &options, count)? {
-            none if none.is_empty() => vec![solve(&robot, &goals, &options)?],
+        None => vec![solver.solve(&goals)?],
+        Some(count) => match solver.solve_several(&goals, count)? {
+            none if none.is_empty() => vec![solver.solve(&goals)?],
             some => some,
         },
     };
+    let joint_names = output::joint_names(&robot);
+    let analytic = solver.analytic().map(|analytic| AnalyticJson {
+        structure: analytic.structure().to_string(),
+        held: analytic.held().iter().map(|&c| joint_names[c]).collect(),
+    });
     let Some(first) = found.first() else { anyhow::bail!("no posture was looked at") };
     let frame = robot.frame_of(end_effector.frame).name.as_str();
     let report = IkJson {
         model: robot.name(),
         frame,
         tool: end_effector.frame_from_tool.translation.to_array(),
-        joint_names: output::joint_names(&robot),
+        joint_names,
         success: first.success,
         q: &first.q,
         position_error: first.position_error,
         orientation_error: first.orientation_error,
+        found_by: first.found_by.name(),
+        analytic,
         iterations: first.iterations,
         attempts: first.attempts,
         out_of_reach: first.out_of_reach.map(|(distance, length)| ReachJson { distance, length }),
@@ -121,6 +141,7 @@ fn print(
             ("result", result),
             position_error,
             orientation_error,
+            ("found by", found_by(report)),
             ("attempts", format!("{}, {} steps", report.attempts, report.iterations)),
             ("q [rad or m]", output::entries(report.q)),
         ],
@@ -136,4 +157,19 @@ fn print(
         output::table(out, &columns, rows)?;
     }
     Ok(())
+}
+
+/// Empty without an answer.
+fn found_by(report: &IkJson<'_>) -> String {
+    match &report.analytic {
+        _ if !report.success => String::new(),
+        Some(analytic) if report.found_by == FoundBy::Analytic.name() => {
+            let held = match analytic.held.as_slice() {
+                [] => String::new(),
+                names => format!("; {} held", names.join(", ")),
+            };
+            format!("formulas ({}{held})", analytic.structure)
+        }
+        _ => report.found_by.to_owned(),
+    }
 }

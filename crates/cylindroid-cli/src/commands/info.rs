@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use cylindroid::Mechanism;
+use cylindroid::ik::Analytic;
 use cylindroid::model::{CoordinateKind, Joint};
 use serde::Serialize;
 
@@ -27,6 +28,7 @@ struct InfoJson<'a> {
     tool: &'a str,
     home: &'a [f64],
     reach: f64,
+    inverse_kinematics: AnalyticJson,
     report: ReportJson<'a>,
 }
 
@@ -93,6 +95,13 @@ struct ReferenceJson<'a> {
 struct FrameJson<'a> {
     name: &'a str,
     link: &'a str,
+}
+
+/// Of the tool frame by formulas, or why not.
+#[derive(Debug, Serialize)]
+struct AnalyticJson {
+    structure: Option<String>,
+    reason: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -167,6 +176,10 @@ fn describe(robot: &Mechanism) -> InfoJson<'_> {
     });
     let reference = robot.frame_of(robot.reference());
     let ignored = robot.report().ignored.iter();
+    let (structure, reason) = match Analytic::of(robot, robot.tool()) {
+        Ok(analytic) => (Some(analytic.structure().to_string()), None),
+        Err(reason) => (None, Some(reason.to_string())),
+    };
     InfoJson {
         name: robot.name(),
         n: robot.n(),
@@ -186,6 +199,7 @@ fn describe(robot: &Mechanism) -> InfoJson<'_> {
         tool: &robot.frame_of(robot.tool()).name,
         home: robot.home(),
         reach: robot.reach(),
+        inverse_kinematics: AnalyticJson { structure, reason },
         report: ReportJson {
             format: robot.report().format,
             source: &robot.report().source,
@@ -222,6 +236,7 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
             ("tool frame", info.tool.to_owned()),
             ("named frames", named.join(", ")),
             ("reach [m]", output::number(info.reach)),
+            ("formulas for ik", info.inverse_kinematics.structure.clone().unwrap_or_default()),
             ("format", info.report.format.to_owned()),
             ("source", info.report.source.to_owned()),
         ],

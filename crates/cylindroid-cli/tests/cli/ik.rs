@@ -26,7 +26,26 @@ fn several_answers() {
     let report = json(&command, 0);
     let count = report["solutions"].as_array().unwrap().len();
     assert_eq!(count, 8);
-    assert!(text(&command).contains("8 postures"));
+    assert_eq!(report["found_by"], "analytic");
+    assert_eq!(report["analytic"]["structure"], "parallel axes 2, 3 and 4, axes 5 and 6 meet");
+    let table = text(&command);
+    assert!(table.contains("8 postures") && table.contains("formulas (parallel axes"), "{table}");
+}
+
+#[test]
+fn formulas_are_named() {
+    let puma = json(&["info", "puma560"], 0);
+    let words = "spherical wrist, parallel axes 2 and 3";
+    assert_eq!(puma["inverse_kinematics"]["structure"], words);
+    assert!(text(&["info", "puma560"]).contains(words));
+    let panda = json(&["info", "panda"], 0);
+    assert!(panda["inverse_kinematics"]["structure"].is_null());
+    assert!(panda["inverse_kinematics"]["reason"].as_str().unwrap().contains("7 joints"));
+    let report = json(&["ik", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"], 0);
+    assert_eq!(report["analytic"]["held"][0], "panda_joint7");
+    let part = json(&["ik", "ur5e", "--to", "0.3,0.4,0.5"], 0);
+    assert_eq!(part["found_by"], "search");
+    assert!(part.get("analytic").is_none());
 }
 
 #[test]

@@ -18,7 +18,8 @@ pub(crate) use solution::PySolution;
 impl PyMechanism {
     /// A configuration that puts a frame at a target, within all limits.
     ///
-    /// Attempts start at `q0`, then at postures drawn within the limits, until one reaches. The
+    /// By formulas where the arm has a structure that they take: then the answer nearest to `q0`.
+    /// Else attempts start at `q0`, then at postures drawn within the limits, until one reaches. The
     /// same seed gives the same answer.
     ///
     /// Parameters

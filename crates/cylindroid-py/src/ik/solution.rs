@@ -1,6 +1,6 @@
 //! The class `Solution`: what came of a search.
 
-use cylindroid::ik::Solution;
+use cylindroid::ik::{FoundBy, Solution};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Many};
@@ -17,6 +17,8 @@ use crate::table::{self, Table};
 ///     The configuration, within the limits; without success the nearest that was found.
 /// position_error, orientation_error : float or ndarray, (N,)
 ///     Of the components that matter (m, rad).
+/// analytic : bool or ndarray of bool, (N,)
+///     True where formulas gave the answer: for arms whose axes have a structure that they take.
 /// iterations, attempts : int or ndarray of int, (N,)
 /// out_of_reach : bool or ndarray of bool, (N,)
 ///     True where it is proved that nothing reaches: the target is farther from the first joint
@@ -46,6 +48,7 @@ impl PySolution {
         }
         let errors = format!("{:.1e} m, {:.1e} rad", s.position_error, s.orientation_error);
         table.row("errors", errors);
+        table.row("found by", s.found_by.name());
         table.row("iterations", format!("{} in {} attempts", s.iterations, s.attempts));
         table.row("q", table::list(&s.q));
         table
@@ -73,6 +76,11 @@ impl PySolution {
     #[getter]
     fn orientation_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         arrays::each(py, &self.inner, |s| s.orientation_error)
+    }
+
+    #[getter]
+    fn analytic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::each(py, &self.inner, |s| s.found_by == FoundBy::Analytic)
     }
 
     #[getter]

@@ -2,7 +2,8 @@
 //!
 //! [`solve`] takes any tree, any number of joints and end effectors, whole poses or some components
 //! of them, and keeps all position limits. It answers with a configuration that was checked by
-//! forward kinematics, or with the nearest one that it found and why it stopped.
+//! forward kinematics, or with the nearest one that it found and why it stopped. Whole poses of arms
+//! whose axes have a structure are solved by formulas, which [`Analytic`] gives alone.
 //!
 //! ```
 //! use cylindroid::ik::{Goal, IkOptions, solve};
@@ -14,13 +15,16 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 
+mod analytic;
 mod attempt;
 mod damped;
+mod formulas;
 mod goal;
 mod options;
 mod solve;
 
+pub use analytic::{Analytic, NoStructure, Posture, Postures, Structure};
 pub use goal::{Goal, Task};
 pub use options::{Budget, IkOptions};
 pub(crate) use solve::STEPS as ATTEMPT_STEPS;
-pub use solve::{Solution, Solver, solve, solve_several};
+pub use solve::{FoundBy, Solution, Solver, solve, solve_several};

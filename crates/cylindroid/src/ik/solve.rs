@@ -1,6 +1,7 @@
 //! Inverse kinematics: attempts from the start and from drawn postures, until one reaches.
 //!
-//! Method   the first attempt starts at the given posture, the others at postures drawn evenly
+//! Method   formulas first, where the axes have a structure that they take. Else, or where they leave
+//!          something open, attempts: the first starts at the given posture, the others at postures drawn evenly
 //!          within the limits (in [-pi, pi] where there are none, or where a whole turn changes
 //!          nothing), the same on every run. What an attempt reaches is an answer: within the
 //!          limits, and within tolerance by forward kinematics
@@ -12,7 +13,9 @@
 use std::f64::consts::PI;
 use std::time::Instant;
 
+use super::analytic::Analytic;
 use super::attempt::{Errors, Problem, is_reached};
+use super::formulas::{Formulas, VALUES};
 use super::goal::Goal;
 use super::options::IkOptions;
 use crate::error::{Error, Result};
@@ -30,6 +33,26 @@ const NEARBY: f64 = 1.0;
 /// Answers whose coordinates differ by less than this, whole turns apart, are one [rad, lengths].
 const SAME: f64 = 1e-3;
 
+/// How an answer was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FoundBy {
+    /// By formulas: see [`Analytic`](super::Analytic).
+    Analytic,
+    /// By attempts from the start and from drawn postures; also where nothing was found.
+    Search,
+}
+
+impl FoundBy {
+    /// Its name: "analytic" or "search".
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Analytic => "analytic",
+            Self::Search => "search",
+        }
+    }
+}
+
 /// What came of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
@@ -41,9 +64,11 @@ pub struct Solution {
     pub position_error: f64,
     /// Largest orientation error of all goals, of the components that matter (rad).
     pub orientation_error: f64,
-    /// Steps of all attempts.
+    /// How it was found.
+    pub found_by: FoundBy,
+    /// Steps of all attempts, one for each call of formulas.
     pub iterations: usize,
-    /// Attempts.
+    /// Attempts, calls of formulas among them.
     pub attempts: usize,
     /// A proof that nothing can reach: how far the target is from the first joint, and how long
     /// the chain is from there (m).
@@ -55,8 +80,27 @@ pub struct Solution {
 #[derive(Debug, Clone)]
 pub struct Solver {
     problem: Problem,
+    formulas: Option<Formulas>,
     options: IkOptions,
     start: Vec<f64>,
+}
+
+/// A configuration that reaches, with its distance from the start.
+#[derive(Debug, Clone)]
+struct Answer {
+    distance: f64,
+    q: Vec<f64>,
+    errors: Errors,
+    found_by: FoundBy,
+}
+
+/// What formulas leave to the search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Left {
+    /// There may be answers that they do not give.
+    Open,
+    /// None but what tolerances allow: there is nothing, or all there is was found.
+    Nothing,
 }
 
 /// A configuration that reaches all `goals`.
@@ -93,7 +137,15 @@ impl Solver {
         let problem = Problem::new(mechanism, goals, options);
         let mut start = options.start.clone().unwrap_or_else(|| mechanism.home().to_vec());
         problem.clamp(&mut start);
-        Ok(Self { problem, options: options.clone(), start })
+        let formulas = Formulas::of(mechanism, goals, options);
+        Ok(Self { problem, formulas, options: options.clone(), start })
+    }
+
+    /// The formulas that answers are taken from, where there are some; of seven joints they hold
+    /// one, at one value after another.
+    #[must_use]
+    pub fn analytic(&self) -> Option<&Analytic> {
+        self.formulas.as_ref().map(|f| &f.analytic)
     }
 
     /// Starts the next call at `q`.
@@ -144,41 +196,44 @@ impl Solver {
         let out_of_reach = self.problem.out_of_reach();
         let begin = Instant::now();
         let mut random = self.options.seed;
-        let (mut iterations, mut attempts, mut since_first) = (0, 0, 0);
-        let mut answers: Vec<(f64, Vec<f64>, Errors)> = Vec::new();
+        let (mut iterations, mut since_first) = (0, 0);
+        let mut answers: Vec<Answer> = Vec::new();
         let mut best: Option<(Vec<f64>, Errors)> = None;
+        let (left, mut attempts) = self.by_formulas(goals, &enough, &mut answers)?;
+        iterations += attempts;
+        let first = attempts;
         let mut q = self.start.clone();
         let budget = self.options.budget;
         let in_time = |begin: Instant| budget.time.is_none_or(|most| begin.elapsed() < most);
-        loop {
-            let left = budget.iterations.saturating_sub(iterations).min(STEPS);
-            let (errors, steps) = self.problem.run(&mut q, &self.options, left);
+        let found_all = !answers.is_empty() && left == Left::Nothing;
+        while !(found_all || enough(answers.len()) && !answers.is_empty()) {
+            let steps = budget.iterations.saturating_sub(iterations).min(STEPS);
+            let (errors, steps) = self.problem.run(&mut q, &self.options, steps);
             iterations += steps.max(1);
             attempts += 1;
             if is_reached(errors, &self.options) {
                 self.unwind(&mut q);
                 self.approach(&mut q);
-                if !answers.iter().any(|(_, other, _)| self.is_same(other, &q)) {
-                    let errors = self.problem.look(&q);
-                    answers.push((self.distance(&q), q.clone(), errors));
-                }
+                self.add(&mut answers, &q, FoundBy::Search);
             } else if best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared) {
                 best = Some((q.clone(), errors));
             }
             since_first += usize::from(!answers.is_empty());
             let over = iterations >= budget.iterations || !in_time(begin);
-            let hopeless = out_of_reach.is_some() && attempts >= NEARER;
+            let nowhere = out_of_reach.is_some() || left == Left::Nothing;
+            let hopeless = nowhere && attempts >= first + NEARER;
             if enough(answers.len()) || since_first > after_first || over || hopeless {
                 break;
             }
-            let near = self.options.nearest && attempts % 2 == 1;
+            let near = self.options.nearest && (attempts - first) % 2 == 1;
             self.draw(&mut q, near, &mut random);
         }
-        let solution = |success: bool, q: Vec<f64>, errors: Errors| Solution {
+        let solution = |success: bool, answer: Answer| Solution {
             success,
-            q,
-            position_error: errors.position,
-            orientation_error: errors.orientation,
+            q: answer.q,
+            position_error: answer.errors.position,
+            orientation_error: answer.errors.orientation,
+            found_by: answer.found_by,
             iterations,
             attempts,
             // Farther by less than the tolerance is reached.
@@ -188,10 +243,71 @@ impl Solver {
             let (mut q, _) =
                 best.unwrap_or_else(|| (self.start.clone(), self.problem.look(&self.start)));
             let errors = self.problem.settle(&mut q, LAST_STEPS);
-            return Ok(vec![solution(false, q, errors)]);
+            let nearest = Answer { distance: 0.0, q, errors, found_by: FoundBy::Search };
+            return Ok(vec![solution(false, nearest)]);
         }
-        answers.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(answers.into_iter().map(|(_, q, errors)| solution(true, q, errors)).collect())
+        answers.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        Ok(answers.into_iter().map(|answer| solution(true, answer)).collect())
+    }
+
+    /// Adds the answers that formulas give, and tells what is left and in how many calls.
+    fn by_formulas(
+        &mut self,
+        goals: &[Goal],
+        enough: &impl Fn(usize) -> bool,
+        answers: &mut Vec<Answer>,
+    ) -> Result<(Left, usize)> {
+        let (Some(mut formulas), [goal]) = (self.formulas.take(), goals) else {
+            return Ok((Left::Open, 0));
+        };
+        let (mut left, mut calls) = (Left::Open, 0);
+        // Along the answers of a redundant arm the search comes nearer than values of one joint.
+        let most = match (formulas.are_all(), self.options.nearest) {
+            (true, _) => 1,
+            (false, true) => 0,
+            (false, false) => VALUES.min(self.options.budget.iterations - 1),
+        };
+        let mut start = self.start.clone();
+        while calls < most && (calls == 0 || !enough(answers.len())) {
+            let postures = formulas.solve(goal.target, &mut start, calls)?;
+            calls += 1;
+            let mut q = start.clone();
+            // The nearest first: often it is enough.
+            let places = formulas.analytic.coordinates();
+            let far = |i: &usize| -> f64 {
+                postures[*i].q.iter().zip(places).map(|(x, c)| (x - self.start[c]).powi(2)).sum()
+            };
+            let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
+            let order = &mut order[..postures.len()];
+            order.sort_unstable_by(|a, b| far(a).total_cmp(&far(b)));
+            for posture in order.iter().map(|&i| postures[i]) {
+                if enough(answers.len()) && !answers.is_empty() {
+                    break;
+                }
+                q.copy_from_slice(&start);
+                for (c, angle) in places.into_iter().zip(posture.q) {
+                    q[c] = angle;
+                }
+                if posture.free != [false; 6] {
+                    self.approach(&mut q);
+                }
+                self.add(answers, &q, FoundBy::Analytic);
+            }
+            if formulas.are_all() && formulas.analytic.is_exact() && !postures.is_open() {
+                left = Left::Nothing;
+            }
+        }
+        self.formulas = Some(formulas);
+        Ok((left, calls))
+    }
+
+    /// Adds an answer that is none of those that are there.
+    fn add(&mut self, answers: &mut Vec<Answer>, q: &[f64], found_by: FoundBy) {
+        let errors = self.problem.look(q);
+        let known = answers.iter().any(|other| self.is_same(&other.q, q));
+        if !known && is_reached(errors, &self.options) {
+            answers.push(Answer { distance: self.distance(q), q: q.to_vec(), errors, found_by });
+        }
     }
 
     /// A posture drawn within the limits, anywhere or near the start.

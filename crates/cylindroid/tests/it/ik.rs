@@ -1,6 +1,8 @@
 //! Inverse kinematics against forward kinematics.
 
-use cylindroid::ik::{Budget, Goal, IkOptions, Solution, Solver, Task, solve, solve_several};
+use cylindroid::ik::{
+    Budget, FoundBy, Goal, IkOptions, Solution, Solver, Task, solve, solve_several,
+};
 use cylindroid::model::Mechanism;
 use cylindroid::{Pose, Reference, Vec3, catalogue};
 
@@ -36,7 +38,8 @@ fn checked(robot: &Mechanism, goals: &[Goal], options: &IkOptions, found: &Solut
     assert_eq!(found.success, within);
 }
 
-/// Every reachable pose of every arm of the catalogue is found, from anywhere, at both tolerances.
+/// Every reachable pose of every arm of the catalogue is found, from anywhere, at both tolerances;
+/// also by the search alone, which a goal that is said twice keeps from formulas.
 #[test]
 fn reachable_poses_are_reached() {
     let mut random = Random(61);
@@ -55,6 +58,10 @@ fn reachable_poses_are_reached() {
                 checked(&robot, &goals, &options, &found);
                 assert!(found.success, "{} at {tolerance}: {found:?}", robot.name());
                 assert_eq!(found, solve(&robot, &goals, &options).unwrap());
+                let twice = [goals[0], goals[0]];
+                let found = solve(&robot, &twice, &options).unwrap();
+                checked(&robot, &twice, &options, &found);
+                assert!(found.success && found.found_by == FoundBy::Search, "{found:?}");
             }
         }
     }

@@ -7,6 +7,7 @@
     clippy::float_cmp_const
 )]
 
+mod analytic;
 mod batch;
 mod box_program;
 mod closure;

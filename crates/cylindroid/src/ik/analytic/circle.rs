@@ -1,0 +1,487 @@
+//! Subproblems: turns that bring vectors where linear conditions want them.
+//!
+//! Formula  a cos q + b sin q = c: (cos, sin) = ((a, b) c +- (-b, a) h) / r^2, r^2 = a^2 + b^2,
+//!          h^2 = r^2 - c^2;
+//!          turn of p about k onto p': q = atan2((k x p) . p', p . p' - (k . p)(k . p'));
+//!          X x + Y y = d, x and y on unit circles: one row first where it holds one of them alone,
+//!          else y = Y^-1 (d - X x), and |y| = 1 is a quartic in the tangent of half of x's angle,
+//!          measured from where the condition fails most, so that no root is near infinity
+//! Valid    any numbers. Where nothing determines a turn it is that of the start, or the first that
+//!          is confirmed of seven others, and is called free; a condition that fails by rounding is met as nearly as it can be: what comes out
+//!          is a candidate, to be confirmed by forward kinematics
+//! Why so   sines and cosines are solved for, not angles: an arc tangent for each turn at the end
+//!          is all that is left of the trigonometry. Roots of the quartic are bracketed by those of
+//!          its derivatives, which loses no double ones, where Ferrari's formulas lose digits
+//! Source   Paden 1986; Elias & Wen 2025, IK-Geo, subproblems 1, 3, 4, 5, 6
+//! Checked  tests/it/analytic.rs, tests in this file
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+use crate::scalar::sin_cos;
+use crate::spatial::{Mat3, Vec3};
+use crate::tolerance::{FREE_TURN, MISSED, TOUCHING};
+
+/// A free turn is tried at the angle of the start, then so many eighths of a turn from it.
+const EIGHTHS: [f64; 8] = [0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0];
+
+/// A turn by an angle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    pub(super) cos: f64,
+    pub(super) sin: f64,
+    /// (rad)
+    pub(super) angle: f64,
+    /// True if nothing determines it.
+    pub(super) free: bool,
+}
+
+impl Turn {
+    pub(super) const NONE: Self = Self { cos: 1.0, sin: 0.0, angle: 0.0, free: false };
+
+    /// By an angle that the conditions leave free.
+    fn free(angle: f64) -> Self {
+        let (sin, cos) = sin_cos(angle);
+        Self { cos, sin, angle, free: true }
+    }
+
+    /// Along (cos, sin), of any length.
+    #[inline]
+    fn along(cos: f64, sin: f64) -> Self {
+        Self::along_known(cos, sin, (cos * cos + sin * sin).sqrt())
+    }
+
+    /// The same where the length is known.
+    #[inline]
+    fn along_known(cos: f64, sin: f64, length: f64) -> Self {
+        let one_over = 1.0 / length;
+        Self { cos: cos * one_over, sin: sin * one_over, angle: angle(cos, sin), free: false }
+    }
+
+    /// `v` turned about the unit vector `k`.
+    #[inline]
+    pub(super) fn of(self, k: Vec3, v: Vec3) -> Vec3 {
+        v * self.cos + k.cross(v) * self.sin + k * (k.dot(v) * (1.0 - self.cos))
+    }
+
+    /// `v` turned back.
+    #[inline]
+    pub(super) fn back(self, k: Vec3, v: Vec3) -> Vec3 {
+        Self { sin: -self.sin, ..self }.of(k, v)
+    }
+
+    /// The matrix of the turn about `k`.
+    #[inline]
+    pub(super) fn matrix(self, k: Vec3) -> Mat3 {
+        Mat3::from_cols(self.of(k, Vec3::X), self.of(k, Vec3::Y), self.of(k, Vec3::Z))
+    }
+}
+
+/// The angle of (cos, sin), of any length but zero, in [-pi, pi], to 3 ulp.
+///
+/// Half the time of the standard library's, of which formulas call thirty for a pose. Source:
+/// Cephes atan.c (the rational function).
+#[inline]
+fn angle(cos: f64, sin: f64) -> f64 {
+    const P: [f64; 5] = [
+        -8.750_608_600_031_904e-1,
+        -1.615_753_718_733_365e1,
+        -7.500_855_792_314_705e1,
+        -1.228_866_684_490_136_1e2,
+        -6.485_021_904_942_025e1,
+    ];
+    const Q: [f64; 5] = [
+        2.485_846_490_142_306_2e1,
+        1.650_270_098_316_988_5e2,
+        4.328_810_604_912_902_6e2,
+        4.853_903_996_359_137e2,
+        1.945_506_571_482_614e2,
+    ];
+    let (x, y) = (cos.abs(), sin.abs());
+    let (low, high) = if y > x { (x, y) } else { (y, x) };
+    // The tangent, or that of what is missing to an eighth of a turn.
+    let (up, down, base) =
+        if low > 0.66 * high { (low - high, low + high, FRAC_PI_4) } else { (low, high, 0.0) };
+    let t = up / down;
+    let z = t * t;
+    let p = (((P[0] * z + P[1]) * z + P[2]) * z + P[3]) * z + P[4];
+    let q = ((((z + Q[0]) * z + Q[1]) * z + Q[2]) * z + Q[3]) * z + Q[4];
+    let first = base + (t + t * (z * p / q));
+    let upper = if y > x { FRAC_PI_2 - first } else { first };
+    (if cos < 0.0 { PI - upper } else { upper }).copysign(sin)
+}
+
+/// The turns that meet a condition, at most N.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turns<const N: usize> {
+    /// The angle of the start, where nothing determines the turn but rounding.
+    free: Option<f64>,
+    list: [Turn; N],
+    len: usize,
+}
+
+impl<const N: usize> Turns<N> {
+    const NONE: Self = Self { free: None, list: [Turn::NONE; N], len: 0 };
+
+    fn push(&mut self, turn: Turn) {
+        if self.len < N {
+            self.list[self.len] = turn;
+            self.len += 1;
+        }
+    }
+
+    /// True if nothing determines the turn but rounding.
+    pub(super) fn is_free(&self) -> bool {
+        self.free.is_some()
+    }
+
+    /// Calls `f`, which says whether anything was confirmed, for each turn, and tells whether
+    /// anything was. Of free turns the first that is confirmed is enough.
+    #[inline]
+    pub(super) fn any(&self, mut f: impl FnMut(Turn) -> bool) -> bool {
+        if let Some(start) = self.free
+            && EIGHTHS.iter().any(|i| f(Turn::free(start + i * FRAC_PI_4)))
+        {
+            return true;
+        }
+        let mut any = false;
+        for turn in &self.list[..self.len] {
+            any |= f(*turn);
+        }
+        any
+    }
+}
+
+/// `a cos q + b sin q = c`, numbers of size `scale`.
+pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Turns<2> {
+    let mut turns = Turns::NONE;
+    let square = a * a + b * b;
+    let least = FREE_TURN * scale;
+    if square <= least * least && c.abs() <= least {
+        turns.free = Some(start);
+    }
+    let height = square - c * c;
+    if square == 0.0 || !(height >= -MISSED * square) {
+        return turns;
+    }
+    if height <= 0.0 {
+        turns.push(Turn::along(a * c, b * c));
+    } else {
+        let h = height.sqrt();
+        turns.push(Turn::along_known(a * c - b * h, b * c + a * h, square));
+        turns.push(Turn::along_known(a * c + b * h, b * c - a * h, square));
+    }
+    turns
+}
+
+/// The turn about `k` that brings `p` onto `onto`, vectors of size `scale`.
+#[inline]
+pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Turns<2> {
+    let mut turns = Turns::NONE;
+    let beside = p - k * k.dot(p);
+    let least = FREE_TURN * scale;
+    if beside.dot(beside) <= least * least {
+        turns.free = Some(start);
+    }
+    let (cos, sin) = (beside.dot(onto), k.cross(p).dot(onto));
+    if cos != 0.0 || sin != 0.0 {
+        turns.push(Turn::along(cos, sin));
+    }
+    turns
+}
+
+/// The one turn about `k` that brings `p`, which is across it, onto `onto`.
+#[inline]
+pub(super) fn across(k: Vec3, p: Vec3, onto: Vec3) -> Turn {
+    Turn::along(p.dot(onto), k.cross(p).dot(onto))
+}
+
+/// Coefficients of `w . R v = c[0] cos q + c[1] sin q + rest`, R the turn about `k` by q.
+#[inline]
+pub(super) fn coefficients(w: Vec3, k: Vec3, v: Vec3) -> ([f64; 2], f64) {
+    let rest = w.dot(k) * k.dot(v);
+    ([w.dot(v) - rest, w.dot(k.cross(v))], rest)
+}
+
+/// Which of two equations holds one of the turns alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Order {
+    /// This row only x.
+    FirstX(usize),
+    /// This row only y.
+    FirstY(usize),
+    /// None of them.
+    Together,
+}
+
+/// Two equations `x[i] . (cos, sin of one turn) + y[i] . (cos, sin of another) = d[i]`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pair {
+    pub(super) x: [[f64; 2]; 2],
+    pub(super) y: [[f64; 2]; 2],
+    pub(super) d: [f64; 2],
+    /// Sizes of the numbers of each row.
+    pub(super) scale: [f64; 2],
+    /// Angles of the start.
+    pub(super) start: [f64; 2],
+}
+
+impl Pair {
+    /// Calls `f` for all pairs of turns, as [`Turns::any`].
+    pub(super) fn any(&self, order: Order, mut f: impl FnMut(Turn, Turn) -> bool) -> bool {
+        let dot = |a: [f64; 2], t: Turn| a[0] * t.cos + a[1] * t.sin;
+        let Self { x, y, d, scale, start } = *self;
+        match order {
+            Order::FirstX(i) => linear(x[i], d[i], scale[i], start[0]).any(|first| {
+                let i = 1 - i;
+                let rest = d[i] - dot(x[i], first);
+                linear(y[i], rest, scale[i], start[1]).any(|second| f(first, second))
+            }),
+            Order::FirstY(i) => linear(y[i], d[i], scale[i], start[1]).any(|second| {
+                let i = 1 - i;
+                let rest = d[i] - dot(y[i], second);
+                linear(x[i], rest, scale[i], start[0]).any(|first| f(first, second))
+            }),
+            Order::Together => {
+                let [[a, b], [c, e]] = y;
+                let determinant = a * e - b * c;
+                let inverse = |v: [f64; 2]| {
+                    [(e * v[0] - b * v[1]) / determinant, (a * v[1] - c * v[0]) / determinant]
+                };
+                let (p, q) = (inverse([x[0][0], x[1][0]]), inverse([x[0][1], x[1][1]]));
+                let d = inverse(d);
+                Ellipse { p, q, d }.on_circle(start[0]).any(|first| {
+                    let y = |i: usize| d[i] - p[i] * first.cos - q[i] * first.sin;
+                    f(first, Turn::along(y(0), y(1)))
+                })
+            }
+        }
+    }
+}
+
+/// The points `d - p cos x - q sin x`.
+struct Ellipse {
+    p: [f64; 2],
+    q: [f64; 2],
+    d: [f64; 2],
+}
+
+impl Ellipse {
+    /// The turns x whose points are at distance 1 from the origin.
+    fn on_circle(&self, start: f64) -> Turns<7> {
+        let Self { p, q, d } = *self;
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let excess = |c: f64, s: f64| {
+            let v = [0, 1].map(|i: usize| d[i] - p[i] * c - q[i] * s);
+            dot(v, v) - 1.0
+        };
+        // Where the condition fails most, of eight places.
+        let side = std::f64::consts::FRAC_1_SQRT_2;
+        let axes = [(1.0, 0.0), (side, side), (0.0, 1.0), (-side, side)];
+        let (mut worst, mut c, mut s) = (0.0, 1.0, 0.0);
+        for (x, y) in axes.into_iter().flat_map(|(x, y)| [(x, y), (-x, -y)]) {
+            if excess(x, y).abs() > worst {
+                (worst, c, s) = (excess(x, y).abs(), x, y);
+            }
+        }
+        let mut turns = Turns::NONE;
+        if worst <= FREE_TURN {
+            turns.free = Some(start);
+            return turns;
+        }
+        // The opposite place is the zero of the angle: x = -(c, s) there.
+        let (p, q) = (
+            [0, 1].map(|i: usize| -c * p[i] - s * q[i]),
+            [0, 1].map(|i: usize| s * p[i] - c * q[i]),
+        );
+        let (m11, m12, m22) = (dot(p, p), dot(p, q), dot(q, q));
+        let (b1, b2, e) = (dot(p, d), dot(q, d), dot(d, d) - 1.0);
+        let quartic = [
+            m11 - 2.0 * b1 + e,
+            4.0 * (m12 - b2),
+            4.0 * m22 - 2.0 * m11 + 2.0 * e,
+            -4.0 * (m12 + b2),
+            m11 + 2.0 * b1 + e,
+        ];
+        real_roots(quartic, |t| {
+            let (x, y) = (1.0 - t * t, 2.0 * t);
+            turns.push(Turn::along(-c * x + s * y, -s * x - c * y));
+        });
+        turns
+    }
+}
+
+/// Calls `f` with the real roots of `a[0] + a[1] t + ... + a[4] t^4`, and with the places where it
+/// touches zero but for rounding. The last coefficient is not zero.
+fn real_roots(a: [f64; 5], mut f: impl FnMut(f64)) {
+    let bound = 1.0 + a[..4].iter().fold(0.0, |m: f64, x| m.max((x / a[4]).abs()));
+    if !bound.is_finite() {
+        return;
+    }
+    // Between neighbouring roots of its derivative a polynomial has one root or none.
+    let (mut knots, mut count) = ([0.0; 5], 0);
+    for degree in 1..=4 {
+        // The derivative that has this degree, by its coefficients.
+        let falling = |k: usize| (k + 1..=k + 4 - degree).map(|i| i as f64).product::<f64>();
+        let p =
+            |t: f64| (0..=degree).rev().fold(0.0, |v, k| v * t + falling(k) * a[k + 4 - degree]);
+        let (mut roots, mut found) = ([0.0; 5], 0);
+        for i in 0..=count {
+            let low = if i == 0 { -bound } else { knots[i - 1] };
+            let high = if i == count { bound } else { knots[i] };
+            if let Some(root) = between(p, low, high) {
+                roots[found] = root;
+                found += 1;
+            }
+        }
+        if degree == 4 {
+            roots[..found].iter().for_each(|t| f(*t));
+            for t in &knots[..count] {
+                let size = (0..=4).rev().fold(0.0, |v, k| v * t.abs() + a[k].abs());
+                if p(*t).abs() <= TOUCHING * size {
+                    f(*t);
+                }
+            }
+        }
+        (knots, count) = (roots, found);
+    }
+}
+
+/// The root of a function that is monotonous between `low` and `high`, if its sign changes there.
+fn between(p: impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
+    let (mut a, mut b, mut at_a, mut at_b) = (low, high, p(low), p(high));
+    if !(at_a <= 0.0 && at_b >= 0.0 || at_a >= 0.0 && at_b <= 0.0) {
+        return None;
+    }
+    // Secants whose standing end loses half its weight (Illinois), and halves now and then.
+    for i in 0..100 {
+        if at_a == 0.0 || at_a == at_b {
+            return Some(a);
+        }
+        let secant = b - at_b * (b - a) / (at_b - at_a);
+        let t = if i % 4 == 3 || !secant.is_finite() { 0.5 * (a + b) } else { secant };
+        let at_t = p(t);
+        if (at_t < 0.0) == (at_b < 0.0) {
+            at_a *= 0.5;
+        } else {
+            (a, at_a) = (b, at_b);
+        }
+        let moved = (t - b).abs();
+        (b, at_b) = (t, at_t);
+        if at_b == 0.0 || moved <= f64::EPSILON * b.abs() {
+            break;
+        }
+    }
+    Some(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Order, Pair, angle, linear, real_roots};
+
+    #[test]
+    fn angles_agree_with_std() {
+        let mut x = -3.2_f64;
+        while x < 3.2 {
+            for size in [1e-12, 1.0, 3e9] {
+                let (s, c) = (size * x.sin(), size * x.cos());
+                let exact = s.atan2(c);
+                let error = (angle(c, s) - exact).abs() / (exact.abs() * f64::EPSILON);
+                assert!(error <= 3.0, "{x}: {error} ulp");
+            }
+            x += 1.234_567e-4;
+        }
+        use std::f64::consts::{FRAC_PI_2, PI};
+        assert_eq!((angle(1.0, 0.0), angle(0.0, 1.0)), (0.0, FRAC_PI_2));
+        assert_eq!((angle(-1.0, 0.0), angle(-1.0, -0.0)), (PI, -PI));
+        assert!(angle(f64::NAN, 1.0).is_nan() && angle(1.0, f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn roots_are_found() {
+        // Roots of (t - a)(t - b)(t - c)(t - d), double ones too.
+        let mut worst: f64 = 0.0;
+        for [a, b, c, d] in [
+            [-2.0, -0.5, 0.25, 3.0],
+            [1.0, 1.0, -1.0, 2.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [0.3, 0.3, -0.7, -0.7],
+        ] {
+            let mut p = [1.0, 0.0, 0.0, 0.0, 0.0];
+            for (n, root) in [a, b, c, d].into_iter().enumerate() {
+                for k in (0..=n + 1).rev() {
+                    p[k] = if k > 0 { p[k - 1] } else { 0.0 } - root * p[k];
+                }
+            }
+            let mut found = Vec::new();
+            real_roots(p, |t| found.push(t));
+            for root in [a, b, c, d] {
+                let near = found.iter().map(|t| (t - root).abs()).fold(1.0, f64::min);
+                assert!(near < 1e-5, "{root} in {found:?}");
+            }
+            for t in found {
+                let near = [a, b, c, d].map(|r| (t - r).abs()).into_iter().fold(1.0, f64::min);
+                worst = worst.max(near);
+            }
+        }
+        assert!(worst < 1e-4, "{worst}");
+        let mut none = 0;
+        real_roots([1.0, 0.0, 1.0, 0.0, 1.0], |_| none += 1);
+        assert_eq!(none, 0);
+        real_roots([f64::NAN, 0.0, 1.0, 0.0, 1.0], |_| none += 1);
+        assert_eq!(none, 0);
+    }
+
+    /// What is free is said to be, what cannot be is not found.
+    #[test]
+    fn conditions_on_one_turn() {
+        let of = |ab: [f64; 2], c: f64| {
+            let mut all = Vec::new();
+            linear(ab, c, 1.0, 0.7).any(|t| {
+                all.push((t.angle, t.free));
+                false
+            });
+            all
+        };
+        let free = of([0.0, 0.0], 0.0);
+        assert!(free.len() == 8 && free[0] == (0.7, true) && free.iter().all(|f| f.1));
+        assert!(of([0.0, 0.0], 0.1).is_empty());
+        assert!(of([1.0, 0.0], 1.1).is_empty());
+        assert_eq!(of([1.0, 0.0], 1.0), [(0.0, false)]);
+        let two = of([3.0, 4.0], 2.0);
+        assert_eq!(two.len(), 2);
+        for (angle, _) in two {
+            assert!((3.0 * angle.cos() + 4.0 * angle.sin() - 2.0).abs() < 1e-14);
+        }
+    }
+
+    /// A pair of turns that is known is found again, whichever way.
+    #[test]
+    fn conditions_on_two_turns() {
+        let mut state = 5_u64;
+        let mut random = || 2.0 * crate::scalar::uniform(&mut state) - 1.0;
+        for i in 0..3000 {
+            let mut pair = Pair {
+                x: [[random(), random()], [random(), random()]],
+                y: [[random(), random()], [random(), random()]],
+                d: [0.0; 2],
+                scale: [1.0; 2],
+                start: [0.0; 2],
+            };
+            let order = [Order::FirstX(0), Order::FirstY(1), Order::Together][i % 3];
+            match order {
+                Order::FirstX(i) => pair.y[i] = [0.0; 2],
+                Order::FirstY(i) => pair.x[i] = [0.0; 2],
+                Order::Together => {}
+            }
+            let (a, b) = (3.0 * random(), 3.0 * random());
+            let dot = |v: [f64; 2], q: f64| v[0] * q.cos() + v[1] * q.sin();
+            pair.d = [0, 1].map(|i: usize| dot(pair.x[i], a) + dot(pair.y[i], b));
+            let mut near: f64 = 9.0;
+            pair.any(order, |first, second| {
+                near = near.min((first.angle - a).abs() + (second.angle - b).abs());
+                false
+            });
+            assert!(near < 1e-5, "{order:?}: {near} {pair:?}");
+        }
+    }
+}

@@ -1,0 +1,481 @@
+//! All configurations of six hinges that put a tool at a pose, by formulas.
+//!
+//! Method   the structure of the axes is found once; its formulas give candidates. Each is turned
+//!          into the limits, confirmed by forward kinematics, and made good by at most two Newton
+//!          steps where the axes depart from the structure by what files round away
+//! Units    rad, m; errors are compared with lengths over the reach
+//! Valid    six revolute joints on the way from the ground to the tool, none following another,
+//!          besides any that are held. Nearer to a singular posture than the root of what the axes
+//!          depart from their structure an answer may be missing
+//! Why so   what is answered is true by forward kinematics, not by the formulas
+//! Source   see [`structure`] and [`formulas`]
+//! Checked  tests/it/analytic.rs
+
+mod circle;
+mod formulas;
+mod structure;
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+use std::ops::Deref;
+
+use self::circle::Turn;
+use self::formulas::Aim;
+use self::structure::{Axes, Geometry, Three};
+use super::damped::{Damped, Wanted};
+use crate::error::{Error, Result};
+use crate::kinematics::{Chain, EndEffector, Reference};
+use crate::linalg::Matrix;
+use crate::model::{Mechanism, Motion};
+use crate::scalar::uniform;
+use crate::screws::Screw;
+use crate::spatial::{Pose, Rotation, Twist};
+use crate::tolerance::{
+    ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED, ANALYTIC_SAME,
+};
+
+pub use self::structure::Structure;
+
+/// Newton steps for one candidate.
+const STEPS: usize = 2;
+/// Damping relative to the size of the squared Jacobian [-]: with a free joint held that is singular,
+/// and steps are right to four digits.
+const DAMPING: f64 = 1e-12;
+
+/// Why formulas do not solve a chain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NoStructure {
+    /// Not six coordinates move the tool, those that are held left out: how many do.
+    Joints(usize),
+    /// Loops or contacts couple the joints.
+    Loops,
+    /// A joint that is no hinge of its own moves it.
+    Kind,
+    /// No three axes meet or are parallel where the formulas need it.
+    Axes,
+}
+
+impl fmt::Display for NoStructure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Joints(n) => write!(f, "{n} joints move the tool, formulas take six"),
+            Self::Loops => f.write_str("loops or contacts couple the joints"),
+            Self::Kind => f.write_str("a joint on the way to the tool is not a hinge of its own"),
+            Self::Axes => f.write_str(
+                "neither the first nor the last three axes meet in a point, nor are axes 2 to 4 \
+                 or 3 to 5 parallel",
+            ),
+        }
+    }
+}
+
+/// One answer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Posture {
+    /// The angles of the six joints, in the order of [`Analytic::coordinates`] (rad).
+    pub q: [f64; 6],
+    /// True for joints whose angle the pose leaves free: the posture is singular and one of a
+    /// continuum of answers. The angle is that of the start; where the other joints cannot follow
+    /// that, one that they can.
+    pub free: [bool; 6],
+    /// (m)
+    pub position_error: f64,
+    /// (rad)
+    pub orientation_error: f64,
+}
+
+/// The answers for a pose: at most eight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Postures {
+    list: [Posture; 8],
+    len: usize,
+    open: bool,
+}
+
+impl Deref for Postures {
+    type Target = [Posture];
+
+    fn deref(&self) -> &[Posture] {
+        &self.list[..self.len]
+    }
+}
+
+/// Inverse kinematics of one end effector by formulas. [`Analytic::solve`] allocates nothing.
+#[derive(Debug, Clone)]
+pub struct Analytic {
+    chain: Chain,
+    structure: Structure,
+    departure: f64,
+    geometry: Geometry,
+    /// Of the tool at zero.
+    zero: Rotation,
+    /// Places of the six in `q`, and those of the chain that are held.
+    coordinates: [usize; 6],
+    held: Vec<usize>,
+    lower: [f64; 6],
+    upper: [f64; 6],
+    reach: f64,
+    /// The whole configuration.
+    q: Vec<f64>,
+    jacobian: Matrix,
+    a: [f64; 36],
+    damped: Damped,
+}
+
+impl Analytic {
+    /// For the six joints that move an end effector.
+    ///
+    /// ```
+    /// use cylindroid::ik::Analytic;
+    ///
+    /// let arm = cylindroid::load("ur5e")?;
+    /// let mut ik = Analytic::of(&arm, arm.tool()).expect("three axes are parallel");
+    /// assert_eq!(ik.structure().to_string(), "parallel axes 2, 3 and 4, axes 5 and 6 meet");
+    /// let q = [0.3, -1.1, 1.4, 0.2, 1.0, 0.4];
+    /// let answers = ik.solve(arm.state(&q)?.pose(arm.tool()), &q)?;
+    /// assert_eq!(answers.len(), 8);
+    /// assert!(answers.iter().any(|a| a.q.iter().zip(&q).all(|(a, b)| (a - b).abs() < 1e-9)));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The reason why there are no formulas.
+    ///
+    /// # Panics
+    /// If the frame is of another mechanism.
+    pub fn of(
+        mechanism: &Mechanism,
+        end_effector: impl Into<EndEffector>,
+    ) -> std::result::Result<Self, NoStructure> {
+        Self::holding(mechanism, end_effector, &[])
+    }
+
+    /// The same with some coordinates held: they keep the values of the start in each call. Of an
+    /// arm with seven joints formulas give the answers for any value of one that is held.
+    ///
+    /// # Errors
+    /// The reason why there are no formulas.
+    ///
+    /// # Panics
+    /// If the frame is of another mechanism.
+    pub fn holding(
+        mechanism: &Mechanism,
+        end_effector: impl Into<EndEffector>,
+        held: &[usize],
+    ) -> std::result::Result<Self, NoStructure> {
+        if mechanism.is_closed() {
+            return Err(NoStructure::Loops);
+        }
+        let end_effector = end_effector.into();
+        let mut chain = Chain::new(mechanism, end_effector);
+        let (held, free): (Vec<usize>, Vec<usize>) =
+            chain.coordinates().iter().partition(|c| held.contains(c));
+        let coordinates: [usize; 6] =
+            free.as_slice().try_into().map_err(|_| NoStructure::Joints(free.len()))?;
+        if !are_hinges(mechanism, end_effector, &coordinates) {
+            return Err(NoStructure::Kind);
+        }
+        let mut jacobian = Matrix::zeros(6, chain.n());
+        // What holds at drawn values of the held joints holds at all but special ones.
+        let mut state = 1;
+        let mut q = vec![0.0; mechanism.n()];
+        held.iter().for_each(|&c| q[c] = 2.0 * uniform(&mut state) - 1.0);
+        let reach = mechanism.reach();
+        let axes = axes(&mut chain, &coordinates, &q, &mut jacobian).ok_or(NoStructure::Kind)?;
+        let (structure, departure) = axes.structure(reach).ok_or(NoStructure::Axes)?;
+        let limits = coordinates.map(|c| mechanism.coordinates()[c].limits);
+        Ok(Self {
+            geometry: axes.geometry(structure, reach),
+            zero: chain.pose().rotation,
+            chain,
+            structure,
+            departure,
+            coordinates,
+            held,
+            lower: limits.map(|l| l.lower),
+            upper: limits.map(|l| l.upper),
+            reach,
+            q,
+            jacobian,
+            a: [0.0; 36],
+            damped: Damped::new(6, 6),
+        })
+    }
+
+    /// What the formulas rest on.
+    #[must_use]
+    pub fn structure(&self) -> Structure {
+        self.structure
+    }
+
+    /// True if the axes have the structure to rounding: then no answer is missing.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.departure <= ANALYTIC_EXACT
+    }
+
+    /// Places of the six joints in the mechanism's `q`, from the ground.
+    #[must_use]
+    pub fn coordinates(&self) -> [usize; 6] {
+        self.coordinates
+    }
+
+    /// Places of the joints of the chain that keep the values of the start.
+    #[must_use]
+    pub fn held(&self) -> &[usize] {
+        &self.held
+    }
+
+    /// All answers within the limits for `world_from_tool`, confirmed by forward kinematics to
+    /// 1e-10 (rad, and reaches). Of angles that differ by whole turns it is the one nearest to
+    /// `start` (all n coordinates), whose values the held joints keep and the free ones get.
+    ///
+    /// # Errors
+    /// A `start` of the wrong size, numbers that are not finite.
+    pub fn solve(&mut self, target: Pose, start: &[f64]) -> Result<Postures> {
+        self.check(target, start)?;
+        if self.held.iter().any(|&c| self.q[c] != start[c]) {
+            self.hold(start);
+        }
+        self.q.copy_from_slice(start);
+        let rotation = target.rotation.matrix() * self.zero.inverse().matrix();
+        let near = self.coordinates.map(|c| start[c]);
+        let Structure { three, reversed, .. } = self.structure;
+        let mut angles = near;
+        let mut aim = Aim { rotation, position: target.translation, start: near };
+        if reversed {
+            angles.reverse();
+            let back = rotation.transpose();
+            (aim.rotation, aim.position) = (back, -(back * target.translation));
+        }
+        let geometry = self.geometry;
+        for (angle, sign) in angles.iter_mut().zip(geometry.sign) {
+            *angle *= sign;
+        }
+        aim.start = angles;
+        let mut postures = Postures {
+            list: [Posture {
+                q: [0.0; 6],
+                free: [false; 6],
+                position_error: 0.0,
+                orientation_error: 0.0,
+            }; 8],
+            len: 0,
+            open: false,
+        };
+        let found = |turns: &[Turn; 6]| {
+            let mut q = [0.0; 6];
+            let mut free = [false; 6];
+            for (i, turn) in turns.iter().enumerate() {
+                let place = if reversed { 5 - i } else { i };
+                q[place] = turn.angle * geometry.sign[i];
+                free[place] = turn.free;
+            }
+            postures.open |= free != [false; 6];
+            let Some(posture) = self.confirmed(q, free, &target, &near) else { return false };
+            postures.insert(posture);
+            true
+        };
+        match three {
+            Three::Meet => formulas::meeting(&geometry, &aim, found),
+            Three::Parallel => formulas::parallel(&geometry, &aim, found),
+        }
+        Ok(postures)
+    }
+
+    /// Every angle of a posture with all whole turns that the limits allow, the posture itself among
+    /// them; of joints without limits that of the posture alone.
+    #[must_use]
+    pub fn with_whole_turns(&self, posture: &Posture) -> Vec<[f64; 6]> {
+        let mut all = vec![posture.q];
+        for i in 0..6 {
+            let (lower, upper) = (self.lower[i], self.upper[i]);
+            if !(lower.is_finite() && upper.is_finite()) {
+                continue;
+            }
+            let first = ((lower - posture.q[i]) / TAU).ceil();
+            let turns = ((upper - posture.q[i]) / TAU).floor() - first;
+            let turned = |q: &[f64; 6], k: usize| {
+                let mut q = *q;
+                // The posture itself may stand at a limit to the last bit.
+                q[i] = (q[i] + TAU * (first + k as f64)).clamp(lower, upper);
+                q
+            };
+            all = all
+                .iter()
+                .flat_map(|q| (0..=turns.max(0.0) as usize).map(|k| turned(q, k)))
+                .collect();
+        }
+        all
+    }
+
+    fn check(&self, target: Pose, start: &[f64]) -> Result<()> {
+        Error::check_len("start", self.q.len(), start.len())?;
+        Error::check_finite("start", start)?;
+        Error::check_finite("target position", &target.translation.to_array())?;
+        if !target.is_finite() {
+            return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
+        }
+        Ok(())
+    }
+
+    /// The formulas for other values of the held joints.
+    fn hold(&mut self, start: &[f64]) {
+        self.q.copy_from_slice(start);
+        self.coordinates.iter().for_each(|&c| self.q[c] = 0.0);
+        let axes = axes(&mut self.chain, &self.coordinates, &self.q, &mut self.jacobian);
+        if let Some(axes) = axes {
+            self.zero = self.chain.pose().rotation;
+            self.geometry = axes.geometry(self.structure, self.reach);
+        }
+    }
+
+    /// The posture, if there is one within the limits that reaches the target.
+    fn confirmed(
+        &mut self,
+        mut q: [f64; 6],
+        free: [bool; 6],
+        target: &Pose,
+        near: &[f64; 6],
+    ) -> Option<Posture> {
+        for i in 0..6 {
+            q[i] = turned(q[i], near[i], self.lower[i], self.upper[i])?;
+        }
+        let mut errors = self.errors(&mut q, target);
+        for _ in 0..STEPS {
+            if self.are_below(errors, ANALYTIC_REFINED) || !self.are_below(errors, 1.0) {
+                break;
+            }
+            let before = (q, errors);
+            self.refine(&mut q, &free, target);
+            errors = self.errors(&mut q, target);
+            if errors.0 / self.reach + errors.1 >= before.1.0 / self.reach + before.1.1 {
+                (q, errors) = before;
+                break;
+            }
+        }
+        let (position_error, orientation_error) = errors;
+        self.are_below(errors, ANALYTIC_CONFIRMED).then_some(Posture {
+            q,
+            free,
+            position_error,
+            orientation_error,
+        })
+    }
+
+    fn are_below(&self, (position, orientation): (f64, f64), most: f64) -> bool {
+        position <= most * self.reach && orientation <= most
+    }
+
+    /// Of a posture that is moved into the limits (m, rad).
+    fn errors(&mut self, q: &mut [f64; 6], target: &Pose) -> (f64, f64) {
+        for (i, &c) in self.coordinates.iter().enumerate() {
+            q[i] = q[i].clamp(self.lower[i], self.upper[i]);
+            self.q[c] = q[i];
+        }
+        let pose = self.chain.set(&self.q);
+        let turned = pose.rotation.matrix() - target.rotation.matrix();
+        let square: f64 = turned.cols.iter().map(|c| c.dot(*c)).sum();
+        // |R - 1| = 2 sqrt 2 sin(angle / 2)
+        let half = (square / 8.0).sqrt().min(1.0);
+        let half = if half < 1e-6 { half } else { half.asin() };
+        ((pose.translation - target.translation).norm(), 2.0 * half)
+    }
+
+    /// One Newton step from the posture that was looked at last; free joints stay.
+    fn refine(&mut self, q: &mut [f64; 6], free: &[bool; 6], target: &Pose) {
+        self.chain.jacobian_into(Reference::LocalWorldAligned, &mut self.jacobian);
+        let scaled =
+            |twist: Twist| Twist { linear: twist.linear * (1.0 / self.reach), ..twist }.to_array();
+        let of_chain = self.chain.coordinates();
+        for (i, c) in self.coordinates.iter().enumerate() {
+            let column = self.jacobian.column(of_chain.partition_point(|x| x < c));
+            let mut six = [0.0; 6];
+            six.copy_from_slice(&column[..6]);
+            self.a[6 * i..6 * i + 6].copy_from_slice(&scaled(Twist::from_array(six)));
+        }
+        let e = scaled(self.chain.pose().error_to(*target));
+        let size: f64 = self.a.iter().map(|x| x * x).sum();
+        let mut d = [0.0; 6];
+        let wanted = Wanted { a: &self.a, e: &e, held: free, damping: DAMPING * size };
+        if self.damped.solve(wanted, &mut d) {
+            q.iter_mut().zip(d).for_each(|(q, d)| *q += d);
+        }
+    }
+}
+
+impl Postures {
+    /// True if the pose may leave a joint free: these are then some of many answers.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// One that is not there yet, whole turns apart; the truer of two that are one.
+    fn insert(&mut self, posture: Posture) {
+        let same = |other: &Posture| {
+            other.q.iter().zip(posture.q).all(|(a, b)| {
+                let apart = (a - b).abs();
+                let turned = |apart: f64| (apart - TAU * (apart / TAU).round()).abs();
+                apart < ANALYTIC_SAME || (apart > PI && turned(apart) < ANALYTIC_SAME)
+            })
+        };
+        let error = |p: &Posture| p.position_error + p.orientation_error;
+        if let Some(other) = self.list[..self.len].iter_mut().find(|other| same(other)) {
+            if error(&posture) < error(other) {
+                *other = posture;
+            }
+        } else if self.len < self.list.len() {
+            self.list[self.len] = posture;
+            self.len += 1;
+        }
+    }
+}
+
+/// The angle with the whole turns that bring it nearest to `near` within the limits; at a limit
+/// that it misses by rounding. `None` outside.
+fn turned(angle: f64, near: f64, lower: f64, upper: f64) -> Option<f64> {
+    let apart = near - angle;
+    let mut q = if apart.abs() <= PI { angle } else { angle + TAU * (apart / TAU).round() };
+    if q > upper {
+        q -= TAU * ((q - upper - ANALYTIC_AT_LIMIT) / TAU).ceil();
+    } else if q < lower {
+        q += TAU * ((lower - q - ANALYTIC_AT_LIMIT) / TAU).ceil();
+    }
+    (q >= lower - ANALYTIC_AT_LIMIT && q <= upper + ANALYTIC_AT_LIMIT).then_some(q)
+}
+
+/// True if each of the coordinates turns one hinge on the way to the end effector, and no more.
+fn are_hinges(mechanism: &Mechanism, end_effector: EndEffector, coordinates: &[usize; 6]) -> bool {
+    let mut slot = mechanism.frame_of(end_effector.frame).slot;
+    let mut hinges = 0;
+    while slot > 0 {
+        let node = &mechanism.nodes()[slot - 1];
+        if coordinates.contains(&node.coordinate) && node.motion.dof() > 0 {
+            if node.motion != Motion::Revolute || (node.multiplier, node.offset) != (1.0, 0.0) {
+                return false;
+            }
+            hinges += 1;
+        }
+        slot = node.parent;
+    }
+    hinges == 6
+}
+
+/// The axes where the six coordinates are zero and the others those of `q`.
+fn axes(
+    chain: &mut Chain,
+    coordinates: &[usize; 6],
+    q: &[f64],
+    jacobian: &mut Matrix,
+) -> Option<Axes> {
+    let tool = chain.set(q).translation;
+    chain.jacobian_into(Reference::World, jacobian);
+    let mut lines = [crate::screws::Line { point: tool, direction: crate::spatial::Vec3::Z }; 6];
+    for (line, c) in lines.iter_mut().zip(coordinates) {
+        let column = jacobian.column(chain.coordinates().partition_point(|x| x < c));
+        *line = Screw::of(Twist::from_array(column.try_into().ok()?))?.axis;
+    }
+    Some(Axes { lines, tool })
+}

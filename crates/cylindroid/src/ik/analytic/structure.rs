@@ -1,0 +1,253 @@
+//! What makes the inverse kinematics of six hinges a matter of formulas.
+//!
+//! Method   the six axes as lines, at zero: three that meet in a point (the last, or the first) or
+//!          three neighbours that are parallel (2 to 4, or 3 to 5), and beside them two that are
+//!          parallel or meet, which splits the two equations that are left. What holds of the last
+//!          axes holds of the first in the chain that is read from the tool: axes and lengths turn
+//!          their signs, angles do not
+//! Units    m; departures are in reaches and rad
+//! Valid    axes that depart from the pattern by less than `ALIGNED_AXES`, which Newton's method makes good
+//! Source   Pieper 1968; Elias & Wen 2025 (IK-Geo), section on decompositions; Ostermeier, Kuelz &
+//!          Althoff 2025 (EAIK): patterns read from the axes
+//! Checked  tests/it/analytic.rs
+
+use std::fmt;
+
+use super::circle::Order;
+use crate::screws::Line;
+use crate::spatial::{Rotation, Vec3};
+use crate::tolerance::{ALIGNED_AXES, OBLIQUE_AXES};
+
+/// The axes of a chain whose inverse kinematics is solved by formulas. Printed it says which: the
+/// numbers count the joints from the ground, from 1, those that are held left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Structure {
+    pub(super) three: Three,
+    /// True if the pattern is that of the chain read from the tool.
+    pub(super) reversed: bool,
+    pub(super) two: Two,
+}
+
+/// Three of six axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Three {
+    /// 4, 5 and 6 meet.
+    Meet,
+    /// 2, 3 and 4 are parallel.
+    Parallel,
+}
+
+/// Two more, the first of the pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Two {
+    Parallel(usize),
+    Meet(usize),
+    None,
+}
+
+impl fmt::Display for Structure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let pair = |first: usize| {
+            if self.reversed { (6 - first, 7 - first) } else { (first, first + 1) }
+        };
+        f.write_str(match (self.three, self.reversed) {
+            (Three::Meet, false) => "spherical wrist",
+            (Three::Meet, true) => "spherical shoulder",
+            (Three::Parallel, false) => "parallel axes 2, 3 and 4",
+            (Three::Parallel, true) => "parallel axes 3, 4 and 5",
+        })?;
+        match self.two {
+            Two::Parallel(first) => {
+                let (a, b) = pair(first);
+                write!(f, ", parallel axes {a} and {b}")
+            }
+            Two::Meet(first) => {
+                let (a, b) = pair(first);
+                write!(f, ", axes {a} and {b} meet")
+            }
+            Two::None => Ok(()),
+        }
+    }
+}
+
+/// The axes of six hinges at zero, and the tool's origin there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Axes {
+    pub(super) lines: [Line; 6],
+    pub(super) tool: Vec3,
+}
+
+/// What the formulas work with, in the order in which the chain is read: axis i turns about `h[i]`
+/// through `o[i]`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Geometry {
+    pub(super) h: [Vec3; 6],
+    /// From the base to the first axis, from axis to axis, to the tool.
+    pub(super) p: [Vec3; 7],
+    /// The angles of the formulas count the other way for axes where this is -1.
+    pub(super) sign: [f64; 6],
+    /// Across the last axis.
+    pub(super) side: Vec3,
+    /// Across the second axis.
+    pub(super) level: Vec3,
+    pub(super) reach: f64,
+    pub(super) order: Order,
+}
+
+impl Axes {
+    fn reversed(&self) -> [Line; 6] {
+        let [a, b, c, d, e, f] = self.lines;
+        [f, e, d, c, b, a].map(|line| Line { direction: -line.direction, ..line })
+    }
+
+    fn read(&self, reversed: bool) -> [Line; 6] {
+        if reversed { self.reversed() } else { self.lines }
+    }
+
+    /// The structure of these axes, `None` if there is none; one that splits the equations before
+    /// one that does not. Beside it how far the axes depart from it (rad, or reaches).
+    pub(super) fn structure(&self, reach: f64) -> Option<(Structure, f64)> {
+        let mut found: Option<(Structure, f64)> = None;
+        for three in [Three::Meet, Three::Parallel] {
+            for reversed in [false, true] {
+                let lines = self.read(reversed);
+                let Some(departure) = three.departure(&lines, reach) else { continue };
+                let (two, more) = match three {
+                    Three::Meet => [Two::Parallel(2), Two::Parallel(1), Two::Meet(2), Two::Meet(1)]
+                        .into_iter()
+                        .find_map(|two| Some((two, two.departure(&lines, reach)?)))
+                        .unwrap_or((Two::None, 0.0)),
+                    Three::Parallel => Two::Meet(5)
+                        .departure(&lines, reach)
+                        .map_or((Two::None, 0.0), |more| (Two::Meet(5), more)),
+                };
+                let better = match found {
+                    None => true,
+                    Some((before, _)) => before.two == Two::None && two != Two::None,
+                };
+                if better {
+                    found = Some((Structure { three, reversed, two }, departure.max(more)));
+                }
+            }
+        }
+        found
+    }
+
+    /// The numbers of the formulas.
+    pub(super) fn geometry(&self, structure: Structure, reach: f64) -> Geometry {
+        let lines = self.read(structure.reversed);
+        let mut h = lines.map(|line| line.direction);
+        let mut sign = [1.0; 6];
+        let between = |i: usize| {
+            let normal = lines[i].common_normal(&lines[i + 1]);
+            (normal.from + normal.to) * 0.5
+        };
+        let mut o = lines.map(|line| line.point);
+        let normal = lines[0].common_normal(&lines[1]);
+        (o[0], o[1]) = (normal.from, normal.to);
+        match structure.two {
+            Two::Meet(1) => o[0..2].fill(between(0)),
+            Two::Meet(2) => {
+                o[1..3].fill(between(1));
+                o[0] = lines[0].nearest(o[1]);
+            }
+            Two::Meet(_) => o[4..6].fill(between(4)),
+            _ => {}
+        }
+        if structure.two != Two::Meet(2) {
+            o[2] = lines[2].nearest(o[1]);
+        }
+        match structure.three {
+            Three::Meet => o[3..6].fill(meeting(&lines)),
+            Three::Parallel => {
+                o[3] = lines[3].nearest(o[2]);
+                if structure.two == Two::None {
+                    let normal = lines[4].common_normal(&lines[5]);
+                    (o[4], o[5]) = (normal.from, normal.to);
+                }
+                for i in [2, 3] {
+                    sign[i] = if h[i].dot(h[1]) < 0.0 { -1.0 } else { 1.0 };
+                    h[i] = h[1];
+                }
+            }
+        }
+        let (base, tool) = match structure.reversed {
+            false => (Vec3::ZERO, self.tool),
+            true => (self.tool, Vec3::ZERO),
+        };
+        let step = |i: usize| match i {
+            0 => o[0] - base,
+            6 => tool - o[5],
+            _ => o[i] - o[i - 1],
+        };
+        Geometry {
+            h,
+            p: [0, 1, 2, 3, 4, 5, 6].map(step),
+            sign,
+            side: perpendicular(h[5]),
+            level: perpendicular(h[1]),
+            reach,
+            order: match (structure.three, structure.two) {
+                (_, Two::None) => Order::Together,
+                (Three::Parallel, _) | (Three::Meet, Two::Parallel(2)) => Order::FirstX(0),
+                (Three::Meet, Two::Parallel(_)) => Order::FirstY(0),
+                (Three::Meet, Two::Meet(2)) => Order::FirstX(1),
+                (Three::Meet, Two::Meet(_)) => Order::FirstY(1),
+            },
+        }
+    }
+}
+
+impl Three {
+    /// How far the axes depart from it; `None` if too far.
+    fn departure(self, lines: &[Line; 6], reach: f64) -> Option<f64> {
+        let departure = match self {
+            Self::Meet => {
+                if sine(lines, 3) < OBLIQUE_AXES || sine(lines, 4) < OBLIQUE_AXES {
+                    return None;
+                }
+                let point = meeting(lines);
+                let far = |line: &Line| (line.nearest(point) - point).norm();
+                lines[3..].iter().map(far).fold(0.0, f64::max) / reach
+            }
+            Self::Parallel => {
+                // The inner axis 2 turns with 1, the outer 4 with 5; 5 and 6 turn the tool.
+                if [0, 3, 4].iter().any(|i| sine(lines, *i) < OBLIQUE_AXES) {
+                    return None;
+                }
+                sine(lines, 1).max(sine(lines, 2))
+            }
+        };
+        (departure <= ALIGNED_AXES).then_some(departure)
+    }
+}
+
+impl Two {
+    fn departure(self, lines: &[Line; 6], reach: f64) -> Option<f64> {
+        let departure = match self {
+            Self::Parallel(first) => sine(lines, first - 1),
+            Self::Meet(first) if sine(lines, first - 1) >= OBLIQUE_AXES => {
+                lines[first - 1].common_normal(&lines[first]).distance / reach
+            }
+            _ => return None,
+        };
+        (departure <= ALIGNED_AXES).then_some(departure)
+    }
+}
+
+/// Sine of the angle between an axis and the next.
+fn sine(lines: &[Line; 6], i: usize) -> f64 {
+    lines[i].direction.cross(lines[i + 1].direction).norm()
+}
+
+/// Where the last three meet: from the two neighbours that cross at the larger angle.
+fn meeting(lines: &[Line; 6]) -> Vec3 {
+    let i = if sine(lines, 3) > sine(lines, 4) { 3 } else { 4 };
+    let normal = lines[i].common_normal(&lines[i + 1]);
+    (normal.from + normal.to) * 0.5
+}
+
+/// A unit vector across a unit vector.
+fn perpendicular(n: Vec3) -> Vec3 {
+    Rotation::z_to(n).map_or(Vec3::X, Rotation::x_axis)
+}
