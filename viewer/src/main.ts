@@ -54,7 +54,7 @@ function start(): void {
   });
   const recorder = new Recorder();
   let fitWanted = true;
-  const fit = (): void => stage.fit(robot.box());
+  const fit = (): void => stage.fit(target.within(robot.box()));
   const tools = new Tools(page.tools, target, stage, fit);
   const joints = new Joints(session);
   const servo = new ServoControls(session);
@@ -131,7 +131,7 @@ function start(): void {
       fitWanted = false;
       const box = robot.box();
       stage.scale(scene.reach, Math.min(scene.dimension === 2 ? -0.02 * scene.reach : box.min.z, box.isEmpty() ? 0 : box.max.z));
-      stage.fit(box);
+      fit();
       stage.view(scene.dimension === 2 ? "top" : "corner");
       restore.camera();
     }

@@ -1,5 +1,5 @@
 /** The target of the servo as a frame that can be dragged, and a second handle for a reference point. */
-import { AxesHelper, Color, Group, Mesh, Object3D, OctahedronGeometry, Vector3 } from "three";
+import { AxesHelper, type Box3, Color, Group, Mesh, Object3D, OctahedronGeometry, Vector3 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { Pose, Scene, State, Vec3 } from "./protocol";
 import { drawn, hair } from "./scene/palette";
@@ -61,6 +61,12 @@ export class Target {
     this.way.clear();
     const [from, to] = [new Vector3(...state.tool.position), this.target.position];
     if (from.distanceTo(to) > 0.004 * reach) this.way.add(rod(from, to, 0.0022 * reach, drawn("c-target", 0.6)));
+  }
+
+  /** A box with the target and its handle in it. */
+  within(box: Box3): Box3 {
+    const room = this.axes.target.scale.x * 1.6;
+    return box.expandByPoint(this.target.position.clone().addScalar(room)).expandByPoint(this.target.position.clone().addScalar(-room));
   }
 
   setMode(mode: Mode): void {

@@ -70,7 +70,7 @@ export class Joints {
     const free = unit === "rad" ? FREE_TURN : scene.reach;
     const [low, high] = [coordinate.lower ?? -free, coordinate.upper ?? free];
     const slider = h("input", { type: "range", min: low, max: high, step: "any", disabled: !adjustable, "aria-label": `${name} [${unit}]`, "data-joint": name });
-    const field = h("input", { type: "number", class: "field", step: "0.01", disabled: !adjustable, "aria-label": `${name} as a number [${unit}]` });
+    const field = h("input", { type: "number", class: "field", step: "any", disabled: !adjustable, "aria-label": `${name} as a number [${unit}]` });
     if (coordinate.lower !== null) field.min = String(low);
     if (coordinate.upper !== null) field.max = String(high);
     const label = drive ? this.driveSwitch(scene, drive, name) : h("span", { class: "name", title: name }, name);

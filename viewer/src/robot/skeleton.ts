@@ -27,7 +27,10 @@ export function linkBody(scene: Scene, index: number, size: Sizes): Group {
   const body = solid(index % 2 === 0 ? "body" : "body-2");
   const slide = slideOf(scene, index);
   if (isGround) {
-    for (const place of places) group.add(foot(place, size, scene.dimension === 2));
+    const [only] = places;
+    const column = places.length === 1 && scene.dimension === 3 && only && only.length() > size.joint;
+    if (column) group.add(capsule(new Vector3(), only, size.rod * 1.15, solid("body-2")));
+    for (const place of column ? [new Vector3()] : places) group.add(foot(place, size, scene.dimension === 2));
     if (places.length >= 3 && scene.dimension === 3) group.add(plate(places, size, true));
   } else if (places.length >= 3 && inRing(places)) {
     group.add(plate(places, size, false));
