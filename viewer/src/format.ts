@@ -28,3 +28,9 @@ export function short(value: number | null | undefined, digits = 3): string {
 export function count(value: number, one: string, many = `${one}s`): string {
   return `${value} ${value === 1 ? one : many}`;
 }
+
+/** For a field in which one types: an ordinary minus, and none before zero. */
+export function plain(value: number, digits = 4): string {
+  const shown = value.toFixed(digits);
+  return Number(shown) === 0 ? shown.replace("-", "") : shown;
+}

@@ -10,8 +10,9 @@ import { h } from "./dom";
 import { layout } from "./layout";
 import { LinkBanner } from "./link_banner";
 import { Overlays } from "./overlays/overlays";
+import { capabilityPanel } from "./panels/capability";
 import { Compare } from "./panels/compare";
-import { capabilityPanel, mobilityPanel } from "./panels/mobility";
+import { mobilityPanel } from "./panels/mobility";
 import { posePanel } from "./panels/pose";
 import { Reports } from "./panels/reports";
 import { screwsPanel } from "./panels/screws";
@@ -137,6 +138,7 @@ function start(): void {
     }
     bar.show(state);
     joints.show(scene, state);
+    servo.show(state);
     for (const panel of [pose, singular, screws]) panel.show(scene, state);
   };
   session.on("state", (state) => {
@@ -163,7 +165,7 @@ function start(): void {
   stage.onFrame(() => session.takeNewest());
   stage.onFrame(() => labels.place(stage.camera));
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { viewer: { session, stage, target, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.camera).toArray() } });
+  Object.assign(window, { viewer: { session, stage, target, robot, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.camera).toArray() } });
 }
 
 try {

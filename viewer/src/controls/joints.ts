@@ -1,6 +1,6 @@
 /** A slider for each coordinate, with limits and unit; a driven switch where loops leave the choice. */
 import { fill, h } from "../dom";
-import { fixed } from "../format";
+import { fixed, plain } from "../format";
 import { panel } from "../panels/panel";
 import type { Coordinate, Drive, Scene, State } from "../protocol";
 import type { Session } from "../session";
@@ -60,7 +60,7 @@ export class Joints {
       if (now - row.touched < QUIET) return;
       setSlider(row.slider, value);
       row.slider.setAttribute("aria-valuetext", `${fixed(value, 3)} ${scene.coordinates[i]?.unit ?? ""}`);
-      if (document.activeElement !== row.field) row.field.value = value.toFixed(4);
+      if (document.activeElement !== row.field) row.field.value = plain(value);
     });
     if (this.selfSlider && document.activeElement !== this.selfSlider) setSlider(this.selfSlider, state.servo.self_motion);
   }
@@ -90,7 +90,7 @@ export class Joints {
       this.session.sendSoon(`joint ${name}`, { type: "joint", name, value });
     };
     slider.addEventListener("input", () => {
-      field.value = slider.valueAsNumber.toFixed(4);
+      field.value = plain(slider.valueAsNumber);
       move(slider.valueAsNumber);
     });
     slider.addEventListener("keydown", (event) => stepByKey(event, slider, (high - low) / 200));

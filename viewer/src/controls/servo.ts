@@ -1,21 +1,30 @@
 /** What the servo drives and how: frame, components, inverse. */
 import { fill, h } from "../dom";
 import { panel } from "../panels/panel";
-import type { ChosenMethod, Method, Scene } from "../protocol";
+import type { ChosenMethod, Method, Scene, State } from "../protocol";
 import type { Session } from "../session";
+import { TargetFields } from "./target_fields";
 
 const TASKS: [string, string][] = [
-  ["pose", "position and orientation"],
-  ["position", "position only"],
-  ["orientation", "orientation only"],
-  ["pointing", "position and pointing"],
+  ["pose", "whole pose"],
+  ["position", "position alone"],
+  ["orientation", "orientation alone"],
+  ["pointing", "place and pointing"],
 ];
 const PITCH = 0.1;
 
 export class ServoControls {
   readonly panel = panel("servo", "Servo", true);
 
-  constructor(private readonly session: Session) {}
+  private readonly target: TargetFields;
+
+  constructor(private readonly session: Session) {
+    this.target = new TargetFields(session);
+  }
+
+  show(state: State): void {
+    this.target.show(state);
+  }
 
   build(scene: Scene): void {
     const { method } = scene;
@@ -23,6 +32,7 @@ export class ServoControls {
     this.panel.note(method.name.replaceAll("-", " "));
     fill(
       this.panel.body,
+      this.target.element,
       this.choice("Frame", scene.frames.map(({ name }) => [name, name]), scene.frame, (name) => this.session.send({ type: "frame", name })),
       this.choice("Task", this.tasks(scene), scene.task.name, (name) => this.session.send({ type: "task", name })),
       this.choice(
@@ -33,7 +43,7 @@ export class ServoControls {
       ),
       chosen && this.numbers(chosen, method),
       scene.methods.some((other) => !other.servo) &&
-        h("p", { class: "note" }, "More inverses are compared below on the right; they need a task of all six components."),
+        h("p", { class: "note" }, "Hyperbolic inverses need a task of all six components; Compare has them always."),
     );
   }
 

@@ -1,6 +1,6 @@
 /** How a screw looks: its axis, and its pitch as a helix of true advance. */
 import { Curve, TorusGeometry, TubeGeometry, Mesh, Vector3, type Group, type Material } from "three";
-import { fixed } from "../format";
+import { short } from "../format";
 import type { Screw } from "../protocol";
 import { across, arrow, along, rod, tip, vector } from "../scene/shapes";
 
@@ -86,5 +86,5 @@ function turn(group: Group, center: Vector3, direction: Vector3, look: Look): vo
 }
 
 export function pitchText(pitch: number | null): string {
-  return pitch === null ? "h = ∞" : `h = ${fixed(pitch, Math.abs(pitch) < 0.01 ? 4 : 3)}`;
+  return pitch === null ? "h = ∞" : `h = ${Math.abs(pitch) < 1e-9 ? 0 : short(pitch)}`;
 }

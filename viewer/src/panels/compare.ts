@@ -1,6 +1,6 @@
 /** Two inverses side by side, and what moving the reference point does to their rates. */
 import { fill, h } from "../dom";
-import { fixed, short } from "../format";
+import { fixed, plain, short } from "../format";
 import type { Comparison, Scene, Vec3 } from "../protocol";
 import type { Session } from "../session";
 import { empty, panel, type Panel } from "./panel";
@@ -12,8 +12,9 @@ export class Compare {
   point: Vec3 | null = null;
   private readonly first = h("select", { class: "select", "aria-label": "First inverse" });
   private readonly second = h("select", { class: "select", "aria-label": "Second inverse" });
-  private readonly pitch = h("input", { class: "field", type: "number", step: "0.01", value: "0.1", "aria-label": "Pitch h of hyperbolic inverses (m/rad)" });
-  private readonly fields = [0, 1, 2].map((i) => h("input", { class: "field", type: "number", step: "0.05", "aria-label": `Reference point ${"xyz"[i]} (m)`, oninput: () => this.typed() }));
+  private readonly pitch = h("input", { class: "field", type: "number", step: "any", value: "0.1", "aria-label": "Pitch h of hyperbolic inverses (m/rad)" });
+  private readonly fields = [0, 1, 2].map((i) => h("input", { class: "field", type: "number", step: "any", "aria-label": `Reference point ${"xyz"[i]} (m)`, oninput: () => this.typed() }));
+  private readonly pitchRow = h("p", { class: "row" }, h("label", {}, h("span", { class: "note" }, "pitch h"), this.pitch, h("span", { class: "unit" }, "m/rad")));
   private readonly form: HTMLElement;
   private readonly result = h("div", {});
   private timer = 0;
@@ -25,7 +26,7 @@ export class Compare {
     this.form = h(
       "div", {},
       h("p", { class: "row" }, this.first, h("span", { class: "note" }, "and"), this.second),
-      h("p", { class: "row" }, h("label", {}, h("span", { class: "note" }, "pitch h"), this.pitch, h("span", { class: "unit" }, "m/rad"))),
+      this.pitchRow,
       h("h3", {}, "Reference point in world [m] (a handle in the view moves it)"),
       h("p", { class: "row" }, ...this.fields),
     );
@@ -63,7 +64,7 @@ export class Compare {
   movePoint(point: Vec3): void {
     this.point = point;
     this.fields.forEach((field, i) => {
-      if (document.activeElement !== field) field.value = (point[i] ?? 0).toFixed(3);
+      if (document.activeElement !== field) field.value = plain(point[i] ?? 0, 3);
     });
     this.later();
   }
@@ -97,9 +98,11 @@ export class Compare {
       this.pointMoved(this.point);
     }
     const h = this.pitch.valueAsNumber;
+    const chosen = scene.methods.filter(({ name }) => name === this.first.value || name === this.second.value);
+    this.pitchRow.hidden = !chosen.some((method) => method.pitch);
     this.asked = this.session.send({
       type: "compare", methods: [this.first.value, this.second.value], point: this.point ?? [0, 0, 0],
-      h: Number.isFinite(h) ? h : null, twist: null,
+      h: Number.isFinite(h) && !this.pitchRow.hidden ? h : null, twist: null,
     });
   }
 

@@ -1,7 +1,7 @@
 /** The mobility report: how many motions, which are idle, held twice or singular. */
 import { fill, h } from "../dom";
-import { count, fixed, short } from "../format";
-import { empty, numbers, pairs, panel } from "./panel";
+import { count, short } from "../format";
+import { empty, pairs, panel } from "./panel";
 import { listIn, numberIn, objectIn, type Watch } from "./reports";
 
 type Json = Record<string, unknown>;
@@ -66,36 +66,4 @@ function motions(report: Json): HTMLElement | null {
     still.length > 0 && h("p", { class: "note" }, `${count(still.length, "joint")} cannot move: ${still.join(", ")}`),
     idle.length > 0 && h("p", { class: "note" }, `Idle: ${idle.join(", ")}`),
   );
-}
-
-const EFFICIENCIES: [string, string][] = [
-  ["kinematic", "motion"],
-  ["active_force", "active force"],
-  ["passive_force", "passive force"],
-];
-
-/** Manipulability in numbers: the efficiencies that the command line prints. */
-export function capabilityPanel(): Watch {
-  const made = panel("capability", "Manipulability", false);
-  return {
-    panel: made,
-    fail: (sentence) => fill(made.body, empty(sentence)),
-    show(report) {
-      made.note(String(report["metric"] ?? ""));
-      const rows = EFFICIENCIES.map(([key, words]) => {
-        const part = objectIn(report, key);
-        const finite = listIn(part, "finite").filter((value) => typeof value === "number");
-        const cell = h("span", { "data-efficiency": key, "data-values": JSON.stringify(finite) }, finite.map((value) => short(value, 4)).join("  ") || "–");
-        return [words, cell, text(part["zeros"]), text(part["infinite"])];
-      });
-      const measures = objectIn(objectIn(report, "measures"), "kinematic");
-      fill(
-        made.body,
-        numbers("Efficiencies", ["", "finite, squared", "zero", "∞"], rows),
-        h("h3", {}, "Measures of motion"),
-        pairs(...["volume", "largest", "smallest", "anisotropy"].map((key): [string, string] => [key, fixed(numberIn(measures, key), 4)])),
-        h("p", { class: "note" }, `Driven: ${listIn(report, "actuated").join(", ") || "all"}`),
-      );
-    },
-  };
 }

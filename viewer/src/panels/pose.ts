@@ -2,7 +2,7 @@
 import { fill, h } from "../dom";
 import { fixed, short } from "../format";
 import type { Pose, Scene, State } from "../protocol";
-import { numbers, panel, type Panel } from "./panel";
+import { numbers, pairs, panel, type Panel } from "./panel";
 
 const WORDS = { moving: "moving", reached: "reached", stalled: "stalled", paused: "paused", unavailable: "not available" };
 
@@ -29,9 +29,9 @@ export function posePanel(): Panel & { show: (scene: Scene, state: State) => voi
         numbers("Pose of tool and target", ["", "tool", "target"], [
           ...rows("position", ["x", "y", "z"], state, "m"),
           ...rows("quaternion", ["qw", "qx", "qy", "qz"], state, ""),
-          [h("span", {}, "distance"), fixed(state.error.position, 6), "m"],
-          [h("span", {}, "angle"), fixed(state.error.orientation, 6), "rad"],
         ]),
+        h("h3", {}, "Error of the components that matter"),
+        pairs(["distance [m]", fixed(state.error.position, 6)], ["angle [rad]", fixed(state.error.orientation, 6)]),
       );
     },
   };

@@ -36,7 +36,7 @@ export class Stage {
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "application");
-    canvas.setAttribute("aria-label", "View of the robot. Drag to turn, wheel to zoom, right button to pan; arrow keys pan, F shows all.");
+    canvas.setAttribute("aria-label", "View of the robot. Drag to turn, wheel to zoom, right button to pan; arrow keys pan, with Shift they turn, F shows all.");
     element.prepend(canvas);
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
