@@ -95,9 +95,8 @@ impl InverseChoice {
         let at = |p: Vec3| self.at_point(state, (tool, pose), &coordinates, asked, p);
         let (at_tool, at_point) = (at(pose.translation)?, at(point)?);
         let both = at_tool.rates.as_ref().zip(at_point.rates.as_ref());
-        let difference = both.map(|(a, b)| {
-            norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>())
-        });
+        let difference =
+            both.map(|(a, b)| norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()));
         let size = at_tool.rates.as_ref().map_or(0.0, |rates| norm(rates));
         let invariant = difference.is_some_and(|d| d <= SAME_RATES * size);
         Ok(ReferencePoints { coordinates, at_tool, at_point, difference, invariant })

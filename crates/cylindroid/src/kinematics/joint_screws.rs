@@ -41,13 +41,9 @@ impl State {
         let on_b: Pose = self.pose(mechanism.link_frame(joint.b)) * joint.link_b_from_joint;
         let origin = on_a.translation;
         let axis = on_a.rotation * joint.axis;
-        let turn = |direction: Vec3| Twist {
-            linear: origin.cross(direction),
-            angular: direction,
-        };
+        let turn = |direction: Vec3| Twist { linear: origin.cross(direction), angular: direction };
         let slide = |direction: Vec3| Twist { linear: direction, angular: Vec3::ZERO };
-        let [x, y, z] =
-            [on_a.rotation.x_axis(), on_a.rotation.y_axis(), on_a.rotation.z_axis()];
+        let [x, y, z] = [on_a.rotation.x_axis(), on_a.rotation.y_axis(), on_a.rotation.z_axis()];
         let twists = match joint.kind {
             JointKind::Fixed | JointKind::Free => Vec::new(),
             JointKind::Revolute | JointKind::Continuous => vec![turn(axis)],
@@ -58,7 +54,8 @@ impl State {
             JointKind::Spherical => vec![turn(x), turn(y), turn(z)],
             JointKind::Planar => {
                 let across = [x, y, z].map(|d| d - axis * d.dot(axis));
-                let mut across: Vec<Vec3> = across.into_iter().filter_map(|d| d.unit(0.5)).collect();
+                let mut across: Vec<Vec3> =
+                    across.into_iter().filter_map(|d| d.unit(0.5)).collect();
                 across.truncate(1);
                 let first = across.pop().unwrap_or(x);
                 vec![slide(first), slide(axis.cross(first)), turn(axis)]

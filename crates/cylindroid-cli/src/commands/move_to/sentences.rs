@@ -137,9 +137,7 @@ fn way_out(stall: &Stall) -> &'static str {
         Stall::GivenUp { .. } => {
             "Choose another --h, other motions to give up, or another --inverse."
         }
-        Stall::Uncontrolled { .. } => {
-            "Move on another way, or drive other joints (--actuated)."
-        }
+        Stall::Uncontrolled { .. } => "Move on another way, or drive other joints (--actuated).",
         Stall::Slow => {
             "Try less damping (--damping), another --inverse, or a higher --gain or --speed."
         }

@@ -74,7 +74,8 @@ impl Servo {
         let basis = RowSpace::exact(&svd).complement_basis();
         let motions = (0..basis.cols()).filter_map(|j| self.at_full_speed(basis.column(j)));
         let upwards = |mut motion: Vec<f64>| {
-            let largest = motion.iter().fold(0.0, |m: f64, x| if x.abs() > m.abs() { *x } else { m });
+            let largest =
+                motion.iter().fold(0.0, |m: f64, x| if x.abs() > m.abs() { *x } else { m });
             motion.iter_mut().for_each(|x| *x *= 1_f64.copysign(largest));
             motion
         };
