@@ -9,6 +9,7 @@ mod conversion;
 mod forward;
 mod hessian;
 mod jacobian;
+mod joint_screws;
 mod state;
 
 pub use analytical::{AnalyticalJacobian, OrientationRates};
