@@ -60,10 +60,11 @@ test("a slider moves by the keyboard, and keeps its limits", async () => {
 test("the target is dragged by its handle, and the servo converges", async () => {
   const { page, troubles, close } = await open(browser, server.url);
   const before = await state(page);
+  await page.getByRole("button", { name: "front" }).click();
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   const at = await page.evaluate(() => {
     /** @type {any} */
     const viewer = /** @type {any} */ (window).viewer;
-    viewer.stage.view("front");
     const box = viewer.stage.renderer.domElement.getBoundingClientRect();
     const gizmo = viewer.target.gizmo;
     const origin = viewer.target.target.position.toArray();

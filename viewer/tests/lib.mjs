@@ -14,7 +14,7 @@ const SCREENSHOTS = process.env["CYLINDROID_SCREENSHOTS"] ?? "";
 if (!existsSync(BINARY)) throw new Error("run these tests by `cargo xtask viewer --test`: they need its binary and robots");
 
 /** Generous: pixels are made by the processor, and other work may go on beside. */
-export const PATIENCE = 60_000;
+export const PATIENCE = Number(process.env["CYLINDROID_PATIENCE"] ?? 60_000);
 
 /**
  * `cylindroid view`, until it is stopped.
@@ -133,16 +133,19 @@ export function scene(page) {
 }
 
 /**
- * Waits until the drawn state satisfies a condition, which runs in the page.
+ * Waits until the drawn state satisfies a condition. Asked from here: the page's policy forbids it to evaluate words.
  * @param {Page} page
  * @param {string} condition of `state`
  */
 export async function until(page, condition) {
-  try {
-    await page.waitForFunction(`(() => { const state = window.viewer.session.state; return state && (${condition}); })()`);
-  } catch (error) {
-    const { servo, error: off, q } = await state(page);
-    throw new Error(`never came: ${condition}; last ${JSON.stringify({ servo, off, q })}`, { cause: error });
+  const end = performance.now() + PATIENCE;
+  const asked = `(() => { const state = window.viewer.session.state; return Boolean(state && (${condition})); })()`;
+  while (!(await page.evaluate(asked))) {
+    if (performance.now() > end) {
+      const { servo, error, q } = await state(page);
+      throw new Error(`never came: ${condition}; last ${JSON.stringify({ servo, error, q })}`);
+    }
+    await new Promise((resolve) => setTimeout(resolve, 50));
   }
 }
 

@@ -6,6 +6,9 @@ import { drawn, glass, hair } from "../scene/palette";
 import { across, arrow, basis, rod, vector } from "../scene/shapes";
 import type { Context } from "./overlay";
 
+/** Of a drawn semi-axis, over the reach. */
+const LONGEST = 0.33;
+
 const BALL = new SphereGeometry(1, 36, 24);
 BALL.userData["shared"] = true;
 const RIM = new BufferGeometry();
@@ -23,7 +26,8 @@ export function ellipsoid(colour: string) {
     colour,
     draw(group: Group, data: Ellipsoid, context: Context): void {
       const center = vector(data.center);
-      const [x, y, z] = threeAxes(data, context.line * 0.25);
+      const factor = fitting(data, context.reach);
+      const [x, y, z] = threeAxes(data, factor, context.line * 0.25);
       const body = new Mesh(BALL, glass(colour, 0.2));
       place(body, basis(x, y, z, center));
       group.add(body);
@@ -34,7 +38,7 @@ export function ellipsoid(colour: string) {
         group.add(rim);
       }
       for (const axis of data.axes) {
-        const way = vector(axis.vector);
+        const way = vector(axis.vector).multiplyScalar(factor);
         group.add(rod(center.clone().sub(way), center.clone().add(way), context.line * 0.32, drawn(colour, 0.9)));
       }
       for (const direction of data.infinite) {
@@ -55,9 +59,15 @@ function place(object: Mesh | LineLoop, matrix: ReturnType<typeof basis>): void 
   object.matrix.copy(matrix);
 }
 
+/** Makes the whole drawing smaller where it would hide the robot. */
+function fitting(data: Ellipsoid, reach: number): number {
+  const longest = Math.max(0, ...data.axes.map((axis) => vector(axis.vector).length()));
+  return longest > LONGEST * reach ? (LONGEST * reach) / longest : 1;
+}
+
 /** Three semi-axes; those that are missing are thin. */
-function threeAxes(data: Ellipsoid, thin: number): [Vector3, Vector3, Vector3] {
-  const [a, b, c] = data.axes.map((axis) => vector(axis.vector));
+function threeAxes(data: Ellipsoid, factor: number, thin: number): [Vector3, Vector3, Vector3] {
+  const [a, b, c] = data.axes.map((axis) => vector(axis.vector).multiplyScalar(factor));
   const x = a && a.lengthSq() > 0 ? a : new Vector3(thin, 0, 0);
   const y = b && b.lengthSq() > 0 ? b : across(x)[0].multiplyScalar(thin);
   const z = c && c.lengthSq() > 0 ? c : x.clone().cross(y).normalize().multiplyScalar(thin);

@@ -4,7 +4,6 @@ import { short } from "../format";
 import type { Scene, Singular, State } from "../protocol";
 import { empty, pairs, panel, type Panel } from "./panel";
 
-const WIDTH = 300;
 const LEFT = 24;
 const RIGHT = 62;
 const ROW = 17;
@@ -23,7 +22,7 @@ export function singularPanel(): Panel & { show: (scene: Scene, state: State) =>
       }
       fill(
         made.body,
-        bars(singular),
+        bars(singular, Math.max(made.body.clientWidth - 28, 180)),
         pairs(
           ["rank", String(singular.rank)],
           ["gap, kept over lost", singular.gap === null ? "none lost" : short(singular.gap)],
@@ -36,12 +35,12 @@ export function singularPanel(): Panel & { show: (scene: Scene, state: State) =>
   };
 }
 
-function bars(singular: Singular): SVGElement {
+function bars(singular: Singular, width: number): SVGElement {
   const largest = Math.max(...singular.values, singular.threshold, Number.MIN_VALUE);
   const top = Math.ceil(Math.log10(largest) + 1e-9);
   const decades = Math.max(DECADES, Math.ceil(top - Math.log10(Math.max(singular.threshold, 1e-12)) + 0.3));
   const bottom = top - decades;
-  const across = WIDTH - LEFT - RIGHT;
+  const across = width - LEFT - RIGHT;
   const x = (value: number): number => LEFT + (Math.max(0, Math.log10(Math.max(value, 1e-300)) - bottom) / decades) * across;
   const height = singular.values.length * ROW + 32;
   const foot = singular.values.length * ROW + 4;
@@ -49,7 +48,7 @@ function bars(singular: Singular): SVGElement {
   const line = x(singular.threshold);
   return s(
     "svg",
-    { class: "bars", viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": `Singular values ${singular.values.map((v) => short(v)).join(", ")}; threshold ${short(singular.threshold)}` },
+    { class: "bars", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Singular values ${singular.values.map((v) => short(v)).join(", ")}; threshold ${short(singular.threshold)}` },
     ...ticks.map((power) => s("line", { class: "tick", x1: x(10 ** power), x2: x(10 ** power), y1: 0, y2: foot })),
     ...ticks.map((power) => s("text", { x: x(10 ** power), y: foot + 13, "text-anchor": "middle" }, power === 0 ? "1" : `1e${String(power).replace("-", "−")}`)),
     ...singular.values.flatMap((value, i) => {
@@ -58,11 +57,11 @@ function bars(singular: Singular): SVGElement {
       return [
         s("text", { x: LEFT - 6, y: y + 10, "text-anchor": "end" }, `σ${subscript(i + 1)}`),
         s("rect", { class: lost ? "bar-lost" : "bar-kept", x: LEFT, y, width: Math.max(x(value) - LEFT, 1), height: ROW - 5, rx: 2 }),
-        s("text", { class: "figure", x: WIDTH, y: y + 10, "text-anchor": "end" }, `${short(value)}${lost ? " lost" : ""}`),
+        s("text", { class: "figure", x: width, y: y + 10, "text-anchor": "end" }, `${short(value)}${lost ? " lost" : ""}`),
       ];
     }),
     s("line", { class: "threshold", x1: line, x2: line, y1: 0, y2: foot + 2 }),
-    s("text", { class: "threshold-label", x: line, y: foot + 26, "text-anchor": line > WIDTH / 2 ? "end" : "start" }, "threshold"),
+    s("text", { class: "threshold-label", x: line, y: foot + 26, "text-anchor": line > width / 2 ? "end" : "start" }, "threshold"),
   );
 }
 

@@ -10,7 +10,7 @@ const SAME = 1e-6;
 export function sizes(scene: Scene): Sizes {
   const lengths: number[] = [];
   for (const link of scene.links) {
-    const [first, ...others] = points(link, scene.reach);
+    const [first, ...others] = points(scene, link);
     for (const other of others) if (first) lengths.push(first.distanceTo(other));
   }
   lengths.sort((a, b) => a - b);
@@ -19,13 +19,15 @@ export function sizes(scene: Scene): Sizes {
   return { rod: Math.max(rod, 0.006 * scene.reach), joint: Math.max(1.55 * rod, 0.01 * scene.reach) };
 }
 
-/** The places of a link that joints, contacts and the tool take, no place twice, its own joint first. */
-export function points(link: SceneLink, reach: number): ReturnType<typeof vector>[] {
+/** The places of a link that joints, contacts and the tool take, no place twice, its own joint first; a free body hangs on nothing. */
+export function points(scene: Scene, link: SceneLink): ReturnType<typeof vector>[] {
   const found: ReturnType<typeof vector>[] = [];
-  const anchors = [...link.anchors].sort((a, b) => Number(b.kind === "joint") - Number(a.kind === "joint"));
+  const loose = new Set(scene.joints.filter(({ kind }) => kind === "free" || kind === "planar").map(({ name }) => name));
+  const kept = link.anchors.filter((anchor) => anchor.kind === "frame" || !loose.has(anchor.name));
+  const anchors = kept.sort((a, b) => Number(b.kind === "joint") - Number(a.kind === "joint"));
   for (const anchor of anchors) {
     const point = vector(anchor.position);
-    if (!found.some((other) => other.distanceTo(point) < SAME * reach)) found.push(point);
+    if (!found.some((other) => other.distanceTo(point) < SAME * scene.reach)) found.push(point);
   }
   return found;
 }

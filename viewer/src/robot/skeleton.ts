@@ -1,6 +1,6 @@
 /** Rods, plates and joints for links that bring no shapes of their own. */
 import {
-  BufferGeometry, Float32BufferAttribute, Group, Matrix4, Mesh, Quaternion, SphereGeometry, Vector3,
+  Box3, BoxGeometry, BufferGeometry, Float32BufferAttribute, Group, Matrix4, Mesh, Quaternion, SphereGeometry, Vector3,
   type Object3D,
 } from "three";
 import type { Pose, Scene, SceneJoint } from "../protocol";
@@ -22,7 +22,7 @@ export function linkBody(scene: Scene, index: number, size: Sizes): Group {
   const group = new Group();
   const link = scene.links[index];
   if (!link) return group;
-  const places = points(link, scene.reach);
+  const places = points(scene, link);
   const isGround = !scene.joints.some((joint) => joint.child === index);
   const body = solid(index % 2 === 0 ? "body" : "body-2");
   const slide = slideOf(scene, index);
@@ -32,6 +32,8 @@ export function linkBody(scene: Scene, index: number, size: Sizes): Group {
     if (column) group.add(capsule(new Vector3(), only, size.rod * 1.15, solid("body-2")));
     for (const place of column ? [new Vector3()] : places) group.add(foot(place, size, scene.dimension === 2));
     if (places.length >= 3 && scene.dimension === 3) group.add(plate(places, size, true));
+  } else if (isLoose(scene, index)) {
+    group.add(thing(places, size));
   } else if (places.length >= 3 && inRing(places)) {
     group.add(plate(places, size, false));
   } else {
@@ -48,6 +50,22 @@ export function linkBody(scene: Scene, index: number, size: Sizes): Group {
     part.receiveShadow = !isGround;
   });
   return group;
+}
+
+/** Whether a link is carried by nothing: an object that is held. */
+function isLoose(scene: Scene, link: number): boolean {
+  return scene.joints.some(({ child, kind }) => child === link && (kind === "free" || kind === "planar"));
+}
+
+/** A held object: a block with its contacts on it. */
+function thing(places: Vector3[], size: Sizes): Mesh {
+  const box = new Box3().setFromPoints(places);
+  const edges = box.getSize(new Vector3());
+  const least = Math.max(2.2 * size.joint, 0.45 * Math.max(edges.x, edges.y, edges.z));
+  const block = new BoxGeometry(Math.max(edges.x, least), Math.max(edges.y, least), Math.max(edges.z, least));
+  const mesh = new Mesh(block, glass("object", 0.8));
+  box.getCenter(mesh.position);
+  return mesh;
 }
 
 /** Where another link slides along this one's rod. */
