@@ -1,5 +1,5 @@
 /** Puts the parts together. The server computes; this page asks, draws and lets be dragged. */
-import { Vector3 } from "three";
+import { Sphere, Vector3 } from "three";
 import { Bar } from "./controls/bar";
 import { Joints } from "./controls/joints";
 import { ServoControls } from "./controls/servo";
@@ -40,7 +40,8 @@ function start(): void {
       if (sentences.length > 0) {
         page.toast(`${sentences.length === 1 ? "A shape is" : `${sentences.length} shapes are`} missing and drawn as rods. ${sentences[0] ?? ""}`, true);
       }
-      if (fitWanted) fit();
+      if (robot.hasShapes && untouched) fitWanted = true;
+      if (session.scene && session.state) draw(session.scene, session.state);
     },
   });
   const labels = new Labels(page.stage);
@@ -113,7 +114,7 @@ function start(): void {
     if (scene.name !== known.name) fitWanted = true;
     if (scene.name !== known.name || bodies !== known.bodies) robot.build(scene);
     Object.assign(known, { name: scene.name, bodies });
-    target.scale(scene);
+    target.build(scene);
     bar.build(scene);
     joints.build(scene);
     servo.build(scene);
@@ -124,18 +125,28 @@ function start(): void {
     stage.invalidate();
   });
 
+  /** Nobody has turned the view yet. */
+  let untouched = true;
+  stage.orbit.addEventListener("start", () => {
+    untouched = false;
+  });
+  /** What is drawn beside the robot is as large as suits it. */
+  let size = 1;
+  const fitAll = (scene: Scene): void => {
+    fitWanted = false;
+    const box = robot.box();
+    size = Math.max(2.2 * box.getBoundingSphere(new Sphere()).radius, 0.1 * scene.reach);
+    target.scale(size);
+    stage.scale(size, scene.dimension === 2 ? -0.03 * size : box.min.z);
+    fit();
+    stage.view(scene.dimension === 2 ? "top" : "corner");
+    if (restore.camera()) untouched = false;
+  };
   const draw = (scene: Scene, state: State): void => {
     robot.place(state);
-    target.place(state, scene.reach);
-    overlays.draw(scene, state, { jointPlace: (coordinate) => robot.jointPlace(scene, coordinate) });
-    if (fitWanted) {
-      fitWanted = false;
-      const box = robot.box();
-      stage.scale(scene.reach, Math.min(scene.dimension === 2 ? -0.02 * scene.reach : box.min.z, box.isEmpty() ? 0 : box.max.z));
-      fit();
-      stage.view(scene.dimension === 2 ? "top" : "corner");
-      restore.camera();
-    }
+    target.place(state, size);
+    if (fitWanted) fitAll(scene);
+    overlays.draw(scene, state, { size, jointPlace: (coordinate) => robot.jointPlace(scene, coordinate) });
     bar.show(state);
     joints.show(scene, state);
     servo.show(state);

@@ -50,14 +50,16 @@ export class Restore {
     this.apply(scene);
   }
 
-  camera(): void {
+  /** Looks from where the address says; false where it says nothing. */
+  camera(): boolean {
     const numbers = this.shownCamera;
     this.shownCamera = null;
-    if (!numbers) return;
+    if (!numbers) return false;
     const [x = 0, y = 0, z = 1, tx = 0, ty = 0, tz = 0] = numbers;
     this.stage.orbit.target.set(tx, ty, tz);
     this.stage.camera.position.set(x, y, z);
     this.stage.orbit.update();
+    return true;
   }
 
   private shownCamera: number[] | null = null;

@@ -47,20 +47,23 @@ export class Target {
     this.gizmo.attach(this.target);
   }
 
-  scale(scene: Scene): void {
-    this.axes.target.scale.setScalar(0.085 * scene.reach);
-    this.axes.tool.scale.setScalar(0.06 * scene.reach);
-    this.point.getObjectByName("ball")?.scale.setScalar(0.014 * scene.reach);
+  scale(size: number): void {
+    this.axes.target.scale.setScalar(0.11 * size);
+    this.axes.tool.scale.setScalar(0.08 * size);
+    this.point.getObjectByName("ball")?.scale.setScalar(0.018 * size);
+  }
+
+  build(scene: Scene): void {
     this.task = scene.task.components;
     this.choose();
   }
 
-  place(state: State, reach: number): void {
+  place(state: State, size: number): void {
     if (!this.dragging && performance.now() > this.quietUntil) setPose(this.target, state.target);
     setPose(this.axes.tool, state.tool);
     this.way.clear();
     const [from, to] = [new Vector3(...state.tool.position), this.target.position];
-    if (from.distanceTo(to) > 0.004 * reach) this.way.add(rod(from, to, 0.0022 * reach, drawn("c-target", 0.6)));
+    if (from.distanceTo(to) > 0.005 * size) this.way.add(rod(from, to, 0.003 * size, drawn("c-target", 0.6)));
   }
 
   /** A box with the target and its handle in it. */

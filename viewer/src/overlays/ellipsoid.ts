@@ -6,8 +6,8 @@ import { drawn, glass, hair } from "../scene/palette";
 import { across, arrow, basis, rod, vector } from "../scene/shapes";
 import type { Context } from "./overlay";
 
-/** Of a drawn semi-axis, over the reach. */
-const LONGEST = 0.33;
+/** Of a drawn semi-axis, over the size of the robot. */
+const LONGEST = 0.32;
 
 const BALL = new SphereGeometry(1, 36, 24);
 BALL.userData["shared"] = true;
@@ -26,9 +26,9 @@ export function ellipsoid(colour: string) {
     colour,
     draw(group: Group, data: Ellipsoid, context: Context): void {
       const center = vector(data.center);
-      const factor = fitting(data, context.reach);
+      const factor = fitting(data, context.size);
       const [x, y, z] = threeAxes(data, factor, context.line * 0.25);
-      const body = new Mesh(BALL, glass(colour, 0.2));
+      const body = new Mesh(BALL, glass(colour, 0.16));
       place(body, basis(x, y, z, center));
       group.add(body);
       for (const [a, b] of [[x, y], [y, z], [z, x]] as const) {
@@ -42,7 +42,7 @@ export function ellipsoid(colour: string) {
         group.add(rod(center.clone().sub(way), center.clone().add(way), context.line * 0.32, drawn(colour, 0.9)));
       }
       for (const direction of data.infinite) {
-        const way = vector(direction).multiplyScalar(0.55 * context.reach);
+        const way = vector(direction).multiplyScalar(0.55 * context.size);
         for (const side of [1, -1]) group.add(arrow(center, way.clone().multiplyScalar(side), context.line * 0.6, drawn(colour)));
       }
     },
@@ -60,9 +60,9 @@ function place(object: Mesh | LineLoop, matrix: ReturnType<typeof basis>): void 
 }
 
 /** Makes the whole drawing smaller where it would hide the robot. */
-function fitting(data: Ellipsoid, reach: number): number {
+function fitting(data: Ellipsoid, size: number): number {
   const longest = Math.max(0, ...data.axes.map((axis) => vector(axis.vector).length()));
-  return longest > LONGEST * reach ? (LONGEST * reach) / longest : 1;
+  return longest > LONGEST * size ? (LONGEST * size) / longest : 1;
 }
 
 /** Three semi-axes; those that are missing are thin. */

@@ -18,7 +18,7 @@ export const lostDirection = {
     const angular = vector(data.angular);
     if (data.screw) {
       const end = drawScrew(group, data.screw, tool, {
-        length: 0.5 * context.reach, radius: 0.045 * context.reach, line: context.line * 0.6, material,
+        length: 0.5 * context.size, radius: 0.045 * context.size, line: context.line * 0.6, material,
       });
       context.label({ text: data.lost ? "lost" : "almost lost", at: end, colour: "c-lost" });
     } else if (angular.lengthSq() > 0) {

@@ -7,7 +7,7 @@ export type Context = {
   scene: Scene;
   state: State;
   /** Lengths that look right for this robot (m). */
-  reach: number;
+  size: number;
   line: number;
   /** Where a coordinate's joint is now. */
   jointPlace: (coordinate: number) => Vector3 | null;

@@ -61,7 +61,7 @@ export class Overlays {
     return [...new Set([...this.on, ...this.wanted])].filter((name) => name in ALL);
   }
 
-  draw(scene: Scene, state: State, places: Pick<Context, "jointPlace">): void {
+  draw(scene: Scene, state: State, places: Pick<Context, "jointPlace" | "size">): void {
     for (const child of [...this.group.children]) discard(child);
     const labels: Label[] = [];
     const lines: HTMLElement[] = [];
@@ -71,8 +71,7 @@ export class Overlays {
       group.renderOrder = 2;
       const words = drawOne(info.name, group, {
         scene, state, ...places,
-        reach: scene.reach,
-        line: scene.reach * 0.006,
+        line: places.size * 0.0075,
         label: (label) => labels.push(label),
       });
       this.group.add(group);

@@ -14,8 +14,8 @@ export const jointAxes = {
     for (const { name, screw, actuated, coordinate } of data.axes) {
       const place = coordinate === null ? null : context.jointPlace(coordinate);
       const end = drawScrew(group, screw, place ?? (screw.point ? vector(screw.point) : about), {
-        length: 0.26 * context.reach,
-        radius: 0.035 * context.reach,
+        length: 0.26 * context.size,
+        radius: 0.035 * context.size,
         line: context.line * 0.5,
         material: drawn(actuated ? "c-axes" : "line-strong", 0.9),
       });
@@ -31,8 +31,8 @@ export const principalScrews = {
     const center = vector(data.canonical.position);
     data.screws.forEach((screw) => {
       const end = drawScrew(group, screw, center, {
-        length: 0.62 * context.reach,
-        radius: 0.05 * context.reach,
+        length: 0.62 * context.size,
+        radius: 0.05 * context.size,
         line: context.line * 0.8,
         material: drawn("c-principal"),
       });
@@ -51,8 +51,8 @@ export const reciprocalSystem = {
     const about = vector(context.state.tool.position);
     for (const screw of data.screws) {
       const end = drawScrew(group, screw, about, {
-        length: 0.7 * context.reach,
-        radius: 0.03 * context.reach,
+        length: 0.7 * context.size,
+        radius: 0.03 * context.size,
         line: context.line * 0.6,
         material: drawn("c-reciprocal", 0.95),
       });

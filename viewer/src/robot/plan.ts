@@ -14,9 +14,9 @@ export function sizes(scene: Scene): Sizes {
     for (const other of others) if (first) lengths.push(first.distanceTo(other));
   }
   lengths.sort((a, b) => a - b);
-  const middle = lengths[Math.floor(lengths.length / 2)] ?? scene.reach;
-  const rod = Math.min(0.02 * scene.reach, 0.13 * middle);
-  return { rod: Math.max(rod, 0.006 * scene.reach), joint: Math.max(1.55 * rod, 0.01 * scene.reach) };
+  const long = lengths[Math.floor(lengths.length * 0.75)] ?? scene.reach;
+  const rod = Math.min(0.02 * scene.reach, 0.09 * long);
+  return { rod: Math.max(rod, 0.006 * scene.reach), joint: Math.max(1.45 * rod, 0.01 * scene.reach) };
 }
 
 /** The places of a link that joints, contacts and the tool take, no place twice, its own joint first; a free body hangs on nothing. */

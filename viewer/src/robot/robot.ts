@@ -154,14 +154,14 @@ export class Robot {
   private contact(): { arrow: Object3D; open: Mesh } {
     const group = new Group();
     const up = new Vector3(0, 1, 0);
-    group.add(arrow(new Vector3(), up.clone().multiplyScalar(this.size.joint * 5), this.size.joint * 0.22, drawn("c-contact")));
+    group.add(arrow(new Vector3(), up.clone().multiplyScalar(this.size.joint * 3.5), this.size.joint * 0.18, drawn("c-contact")));
     group.add(drum(new Vector3(), up, this.size.joint * 1.5, this.size.joint * 0.15, glass("c-contact", 0.5)));
     const { ball, open } = this.withGap(group);
     return { arrow: ball, open };
   }
 
   private withGap(ball: Object3D): { ball: Object3D; open: Mesh } {
-    const open = rod(new Vector3(), new Vector3(0, 1, 0), 1, drawn("c-lost"));
+    const open = rod(new Vector3(), new Vector3(), 0, drawn("c-lost"));
     this.group.add(ball, open);
     return { ball, open };
   }

@@ -25,7 +25,6 @@ export class Stage {
   private readonly floor = new Mesh(new PlaneGeometry(1, 1), new ShadowMaterial({ opacity: 0.2 }));
   private grid: Ground | null = null;
   private scheduled = false;
-  private size = 1;
   private fitted = new Sphere(new Vector3(), 1);
   /** Frames drawn, for tests that a page at rest draws none. */
   frames = 0;
@@ -63,9 +62,8 @@ export class Stage {
     this.before.add(work);
   }
 
-  /** Sets the scale of grid, shadow and clipping; `size` is the robot's reach (m). */
+  /** Sets the scale of grid, shadow and clipping; `size` is that of the robot (m). */
   scale(size: number, floor: number): void {
-    this.size = size;
     this.camera.near = size * 0.005;
     this.camera.far = size * 60;
     this.sun.position.set(1.2, -1.6, 3).multiplyScalar(size);
@@ -156,10 +154,6 @@ export class Stage {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.draw();
-  }
-
-  get reach(): number {
-    return this.size;
   }
 }
 
