@@ -21,7 +21,7 @@ for wheel in sorted(source.glob('*.whl')):
     with zipfile.ZipFile(wheel) as archive:
         for name in archive.namelist():
             model = name.endswith(('.urdf', '.xacro', '.sdf', '.srdf', '.xml'))
-            arm = any(f'/{arm}_description/meshes/' in name for arm in ('panda', 'xarm'))
+            arm = any(f'/robots/{arm}_description/meshes/' in name for arm in ('panda', 'xarm'))
             if model or arm:
                 archive.extract(name, target)
 ";

@@ -7,10 +7,19 @@ import { vector } from "../scene/shapes";
 import type { Context } from "./overlay";
 import { drawScrew, pitchText } from "./screw";
 
+/** How much of a robot's joint names is its own name: `panda_`. */
+function sharedStart(names: string[]): number {
+  const [first = "", ...others] = names;
+  let length = others.length > 0 ? first.length : 0;
+  for (const name of others) while (!name.startsWith(first.slice(0, length))) length -= 1;
+  return Math.max(first.lastIndexOf("_", length - 1), first.lastIndexOf("/", length - 1)) + 1;
+}
+
 export const jointAxes = {
   colour: "c-axes",
   draw(group: Group, data: JointAxes, context: Context): void {
     const about = vector(context.state.tool.position);
+    const start = sharedStart(data.axes.map((axis) => axis.name));
     for (const { name, screw, actuated, coordinate } of data.axes) {
       const place = coordinate === null ? null : context.jointPlace(coordinate);
       const end = drawScrew(group, screw, place ?? (screw.point ? vector(screw.point) : about), {
@@ -19,7 +28,7 @@ export const jointAxes = {
         line: context.line * 0.5,
         material: drawn(actuated ? "c-axes" : "line-strong", 0.9),
       });
-      if (data.axes.length <= 12) context.label({ text: name, at: end, colour: "c-axes" });
+      if (data.axes.length <= 12) context.label({ text: name.slice(start), at: end, colour: "c-axes" });
     }
   },
   words: (data: JointAxes) => `${count(data.axes.length, "axis", "axes")}; passive ones are paler`,
