@@ -125,6 +125,23 @@ test("the null-space slider moves the joints and holds the tool", async () => {
   await close();
 });
 
+test("frame, task and inverse are chosen; the handle offers what the task minds", async () => {
+  const { page, troubles, close } = await open(browser, server.url);
+  await page.getByLabel("Frame", { exact: true }).selectOption("link5");
+  await page.waitForFunction(() => /** @type {any} */ (window).viewer.session.scene.frame === "link5");
+  const { pose } = await cylindroid("fk", "panda", "--frame", "link5");
+  await until(page, `state.tool.position.every((value, i) => Math.abs(value - [${pose.position}][i]) < 1e-9)`);
+  await page.getByLabel("Task", { exact: true }).selectOption("position");
+  await page.waitForFunction(() => /** @type {any} */ (window).viewer.session.scene.task.components.join() === "x,y,z");
+  assert.ok(await page.getByRole("button", { name: "Turn" }).isDisabled());
+  await page.getByLabel("Inverse", { exact: true }).selectOption("damped");
+  await page.getByLabel("damping", { exact: true }).fill("0.07");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /** @type {any} */ (window).viewer.session.scene.method.numbers.damping === 0.07);
+  assert.deepEqual(troubles, []);
+  await close();
+});
+
 test("two inverses side by side: one changes with the reference point, the hyperbolic one does not", async () => {
   const server = await serve("ur5e");
   try {

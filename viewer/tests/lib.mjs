@@ -44,13 +44,16 @@ export async function serve(...args) {
   };
 }
 
-/** A browser without a window; WebGL by the processor. */
-export function launch() {
+/**
+ * A browser without a window; WebGL by the processor.
+ * @param {string[]} more
+ */
+export function launch(...more) {
   return chromium.launch({
     executablePath: process.env["CYLINDROID_CHROMIUM"] ?? "/usr/bin/chromium",
     args: [
       "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
-      "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
+      "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", ...more,
     ],
   });
 }

@@ -115,6 +115,19 @@ function eye(page) {
   return page.evaluate(() => /** @type {any} */ (window).viewer.stage.camera.position.toArray());
 }
 
+test("a browser without WebGL is told what is missing", async () => {
+  const server = await serve("panda");
+  const bare = await launch("--disable-3d-apis");
+  try {
+    const page = await bare.newPage();
+    await page.goto(server.url);
+    await page.getByText("The view cannot be drawn.").waitFor();
+  } finally {
+    await bare.close();
+    await server.stop();
+  }
+});
+
 test("everything is reached by the keyboard and has a name; the theme is kept", async () => {
   const server = await serve("five-bar");
   try {

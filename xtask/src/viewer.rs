@@ -27,7 +27,7 @@ pub(crate) fn task(option: Option<&str>) -> Result<()> {
         }
         Some("--picture") => {
             build()?;
-            in_browser("tests/picture.mjs", &["run"])
+            in_browser(&["tests/picture.mjs".into()])
         }
         Some(other) => bail!("no option '{other}': cargo xtask viewer [--test | --picture]"),
     }
@@ -97,11 +97,18 @@ fn fingerprint(page: &Path) -> Result<u64> {
 
 /// The page in headless Chromium against the server; pictures land in `target/viewer-screenshots`.
 pub(crate) fn test() -> Result<()> {
-    in_browser("tests", &["--test", "--test-concurrency=1"])
+    let mut arguments = vec!["--test".into(), "--test-concurrency=1".into()];
+    let mut files: Vec<PathBuf> = fs::read_dir(root().join(PAGE).join("tests"))?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<Result<_>>()?;
+    files.retain(|file| file.to_string_lossy().ends_with(".test.mjs"));
+    files.sort();
+    arguments.extend(files);
+    in_browser(&arguments)
 }
 
-/// Runs a script of the page's tests with a browser and the command line.
-fn in_browser(script: &str, options: &[&str]) -> Result<()> {
+/// Runs Node.js on the page's tests, with a browser and the command line.
+fn in_browser(arguments: &[PathBuf]) -> Result<()> {
     let chromium = chromium()?;
     let robots = models::fetch()?;
     run(&mut cargo(&["build", "--quiet", "--package", "cylindroid-cli"]))?;
@@ -111,15 +118,16 @@ fn in_browser(script: &str, options: &[&str]) -> Result<()> {
     let screenshots = root().join("target/viewer-screenshots");
     fs::create_dir_all(&screenshots)?;
     let mut node = Command::new("node");
-    if options != ["run"] {
-        node.args(options);
-    }
-    node.arg(root().join(PAGE).join(script))
+    node.args(arguments)
         .env("CYLINDROID_BINARY", binary)
         .env("CYLINDROID_TEST_ROBOTS", robots)
         .env("CYLINDROID_SCREENSHOTS", screenshots)
         .env("CYLINDROID_CHROMIUM", chromium);
-    run(&mut node)
+    let status = node.current_dir(root().join(PAGE)).status().context(NO_NODE)?;
+    if !status.success() {
+        bail!("the viewer's page failed in the browser ({status})");
+    }
+    Ok(())
 }
 
 /// The browser: `CHROMIUM`, or Debian's, which is installed where it is missing and can be.

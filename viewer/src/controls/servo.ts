@@ -53,7 +53,7 @@ export class ServoControls {
   }
 
   private choice(label: string, options: [string, string][], value: string, chosen: (value: string) => void): HTMLElement {
-    const select = h("select", { class: "select" }, ...options.map(([name, words]) => h("option", { value: name }, words)));
+    const select = h("select", { class: "select", "aria-label": label }, ...options.map(([name, words]) => h("option", { value: name }, words)));
     select.value = value;
     select.addEventListener("change", () => chosen(select.value));
     return h("label", { class: "line" }, h("span", { class: "note" }, label), select);

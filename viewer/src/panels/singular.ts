@@ -7,6 +7,7 @@ import { empty, pairs, panel, type Panel } from "./panel";
 const LEFT = 24;
 const RIGHT = 62;
 const ROW = 17;
+const TICK = 44; // room of a number below the bars
 const DECADES = 5; // below the largest value
 
 export function singularPanel(): Panel & { show: (scene: Scene, state: State) => void } {
@@ -44,13 +45,14 @@ function bars(singular: Singular, width: number): SVGElement {
   const x = (value: number): number => LEFT + (Math.max(0, Math.log10(Math.max(value, 1e-300)) - bottom) / decades) * across;
   const height = singular.values.length * ROW + 32;
   const foot = singular.values.length * ROW + 4;
-  const ticks = Array.from({ length: decades + 1 }, (_, i) => bottom + i).filter((power) => (power - bottom) % (decades > 8 ? 3 : decades > 6 ? 2 : 1) === 0);
+  const every = Math.ceil((TICK * decades) / across);
+  const ticks = Array.from({ length: decades + 1 }, (_, i) => bottom + i).filter((power) => (power - bottom) % every === 0);
   const line = x(singular.threshold);
   return s(
     "svg",
     { class: "bars", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Singular values ${singular.values.map((v) => short(v)).join(", ")}; threshold ${short(singular.threshold)}` },
     ...ticks.map((power) => s("line", { class: "tick", x1: x(10 ** power), x2: x(10 ** power), y1: 0, y2: foot })),
-    ...ticks.map((power) => s("text", { x: x(10 ** power), y: foot + 13, "text-anchor": "middle" }, power === 0 ? "1" : `1e${String(power).replace("-", "−")}`)),
+    ...ticks.map((power) => s("text", { x: x(10 ** power), y: foot + 13, "text-anchor": "middle" }, power === 0 ? "1" : power === 1 ? "10" : `1e${String(power).replace("-", "−")}`)),
     ...singular.values.flatMap((value, i) => {
       const lost = value < singular.threshold;
       const y = i * ROW + 3;

@@ -7,9 +7,14 @@ import { ColladaLoader } from "three/addons/loaders/ColladaLoader.js";
 import { MTLLoader } from "three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
 import { STLLoader } from "three/addons/loaders/STLLoader.js";
+import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import type { Colour, Visual } from "../protocol";
 import { solid } from "../scene/palette";
 import { setPose } from "./skeleton";
+
+/** STL has facets alone: edges flatter than this (rad) are rounded, in meshes of fewer corners than that. */
+const CREASE = 0.6;
+const SMOOTHED = 300_000;
 
 type MeshVisual = Extract<Visual, { kind: "mesh" }>;
 const loaded = new Map<string, Promise<Object3D>>();
@@ -78,8 +83,8 @@ async function mesh(visual: MeshVisual): Promise<Object3D> {
 async function read(url: string, visual: MeshVisual): Promise<Object3D> {
   if (visual.format === "stl") {
     const geometry = await new STLLoader().loadAsync(url);
-    geometry.computeVertexNormals();
-    return new Mesh(geometry, material(visual.rgba));
+    const isSmall = (geometry.getAttribute("position")?.count ?? 0) < SMOOTHED;
+    return new Mesh(isSmall ? toCreasedNormals(geometry, CREASE) : geometry, material(visual.rgba));
   }
   if (visual.format === "dae") return collada(url);
   return wavefront(url, visual.rgba);

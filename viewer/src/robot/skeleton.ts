@@ -130,9 +130,9 @@ function foot(at: Vector3, size: Sizes, flat: boolean): Group {
   const group = new Group();
   const up = new Vector3(0, 0, 1);
   if (flat) {
-    group.add(drum(at.clone().addScaledVector(up, -size.joint * 1.2), up, size.joint * 1.9, size.joint * 0.9, solid("body-2")));
+    group.add(drum(at.clone().addScaledVector(up, -size.joint * 1.2), up, size.joint * 1.7, size.joint * 0.9, solid("body-2")));
   } else {
-    group.add(drum(at.clone().addScaledVector(up, -size.joint * 0.5), up, size.joint * 2, size.joint, solid("body-2")));
+    group.add(drum(at.clone().addScaledVector(up, -size.joint * 0.5), up, size.joint * 1.7, size.joint, solid("body-2")));
   }
   return group;
 }
