@@ -113,7 +113,8 @@ impl Session {
             trouble: None,
             task: "pose".to_owned(),
             is_playing: true,
-            is_resting: false,
+            // The target is at the tool: there is nothing to do until somebody wants something.
+            is_resting: true,
             last: None,
             self_motion: None,
             overlays: Vec::new(),
@@ -212,6 +213,11 @@ impl Session {
             h: self.method.h,
             fallback: self.method.fallback.as_deref(),
         }
+    }
+
+    /// True where another step would change nothing.
+    pub(super) fn is_resting(&self) -> bool {
+        self.is_resting
     }
 
     /// True while steps change something.
@@ -350,6 +356,8 @@ impl Session {
         self.target = self.state.pose(self.options.end_effector);
         self.self_motion = None;
         self.wake();
+        // Nothing to do; above all, joints stay where they were put.
+        self.is_resting = true;
         Ok(())
     }
 
@@ -463,15 +471,13 @@ impl Session {
         Ok(())
     }
 
-    /// The pitch whose projector is smallest here.
+    /// The pitch whose projector is smallest here; it may be infinite.
     pub(super) fn best_pitch(&self) -> Result<f64> {
         let system = super::overlays::system(self)?;
-        let h = system.choose_pitch().pitch.filter(|h| h.is_finite());
-        h.ok_or_else(|| Error::InvalidOption {
+        system.choose_pitch().pitch.ok_or_else(|| Error::InvalidOption {
             option: "h",
             value: "null".to_owned(),
-            reason: "no finite pitch is proposed for the joints here; give one in m/rad, of the \
-                     order of the arm's length"
+            reason: "the joints have no hyperbolic inverse here, whatever the pitch; take another"
                 .to_owned(),
         })
     }

@@ -181,6 +181,9 @@ fn servo(session: &Session) -> ServoJson {
             }
             _ => told("moving", None, "On its way to the target.".to_owned()),
         },
+        None if session.is_resting() => {
+            told("reached", None, "The target is at the tool.".to_owned())
+        }
         None => told("moving", None, "On its way to the target.".to_owned()),
     }
 }
