@@ -4,7 +4,8 @@ import { h } from "./dom";
 export type Layout = {
   bar: HTMLElement; left: HTMLElement; right: HTMLElement; stage: HTMLElement;
   tools: HTMLElement; legend: HTMLElement; banner: HTMLElement;
-  toast: (words: string, bad?: boolean) => void;
+  /** One of a `key` takes the place of the last. */
+  toast: (words: string, bad?: boolean, key?: string) => void;
 };
 
 const TOAST_TIME = 9000;
@@ -20,11 +21,10 @@ export function layout(root: HTMLElement): Layout {
   const toasts = h("div", { class: "toasts", role: "status", "aria-live": "polite" });
   const stage = h("main", { class: "stage", "aria-label": "Robot" }, legend, tools, banner, toasts);
   root.append(h("div", { class: "shell" }, bar, left, stage, right));
-  const toast = (words: string, bad = false): void => {
-    const known = [...toasts.children].find((child) => child.firstElementChild?.textContent === words);
-    known?.remove();
+  const toast = (words: string, bad = false, key = words): void => {
+    [...toasts.children].find((child) => child.getAttribute("data-key") === key)?.remove();
     const close = h("button", { type: "button", "aria-label": "Close", onclick: () => made.remove() }, "×");
-    const made = h("div", { class: bad ? "toast bad" : "toast" }, h("span", {}, words), close);
+    const made = h("div", { class: bad ? "toast bad" : "toast", "data-key": key }, h("span", {}, words), close);
     toasts.append(made);
     while (toasts.children.length > MOST_TOASTS) toasts.firstElementChild?.remove();
     setTimeout(() => made.remove(), TOAST_TIME);

@@ -34,12 +34,15 @@ const page = layout(root);
 function start(): void {
   const stage = new Stage(page.stage);
   const session = new Session(socketUrl("./ws"), () => stage.invalidate());
+  let problemsTold = "";
   const robot = new Robot({
     changed: () => stage.invalidate(),
     problems: (sentences) => {
-      if (sentences.length > 0) {
+      const told = sentences.join();
+      if (sentences.length > 0 && told !== problemsTold) {
         page.toast(`${sentences.length === 1 ? "A shape is" : `${sentences.length} shapes are`} missing and drawn as rods. ${sentences[0] ?? ""}`, true);
       }
+      problemsTold = told;
       if (robot.hasShapes && untouched) fitWanted = true;
       if (session.scene && session.state) draw(session.scene, session.state);
     },
@@ -127,9 +130,11 @@ function start(): void {
 
   /** Nobody has turned the view yet. */
   let untouched = true;
-  stage.orbit.addEventListener("start", () => {
+  const touch = (): void => {
     untouched = false;
-  });
+  };
+  stage.orbit.addEventListener("start", touch);
+  page.tools.addEventListener("click", touch);
   /** What is drawn beside the robot is as large as suits it. */
   let size = 1;
   const fitAll = (scene: Scene): void => {
@@ -161,8 +166,8 @@ function start(): void {
     if (recorder.isFull) recorder.stop();
     bar.recorded(recorder.recording, recorder.length);
   });
-  session.on("failure", ({ reply_to, message }) => {
-    if (!reports.owns(reply_to) && !compare.owns(reply_to)) page.toast(message, true);
+  session.on("failure", ({ reply_to, message, culprit, place }) => {
+    if (!reports.owns(reply_to) && !compare.owns(reply_to)) page.toast(message, true, `${place} ${culprit}`);
   });
   const banner = new LinkBanner(page.banner, () => session.retry());
   session.on("link", ({ link, wait }) => {

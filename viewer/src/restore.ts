@@ -84,6 +84,7 @@ export class Restore {
     if (shot.frame && shot.frame !== scene.frame) session.send({ type: "frame", name: shot.frame });
     if (shot.task && shot.task !== scene.task.name) session.send({ type: "task", name: shot.task });
     if (shot.actuated && scene.drives.length > 0) session.send({ type: "actuated", names: shot.actuated });
+    if (shot.method && JSON.stringify(shot.method) !== JSON.stringify(scene.method)) session.send({ type: "method", ...shot.method });
     if (shot.playing === false) session.send({ type: "pause" });
     session.send({ type: "configuration", q: shot.q });
     if (shot.target) session.send({ type: "target", ...shot.target });

@@ -12,6 +12,9 @@ export type Mode = "translate" | "rotate";
 export type Handle = "target" | "point";
 type Moved = { target: (pose: Pose) => void; point: (position: Vec3) => void };
 
+/** How long after a drag states may still be of before its end (ms). */
+const QUIET = 300;
+
 export class Target {
   mode: Mode = "translate";
   handle: Handle = "target";
@@ -23,7 +26,8 @@ export class Target {
   private readonly way = new Group();
   private task: string[] = [];
   private dragging = false;
-  private quietUntil = 0;
+  private quiet = false;
+  private last: Pose | null = null;
 
   constructor(private readonly stage: Stage, private readonly moved: Moved) {
     this.gizmo = new TransformControls(stage.camera, stage.renderer.domElement);
@@ -31,7 +35,8 @@ export class Target {
     this.gizmo.addEventListener("dragging-changed", (event) => {
       this.dragging = event.value === true;
       stage.orbit.enabled = !this.dragging;
-      this.quietUntil = performance.now() + 250;
+      this.quiet = true;
+      if (!this.dragging) setTimeout(() => this.settle(), QUIET);
     });
     this.gizmo.addEventListener("objectChange", () => this.tell());
     this.gizmo.addEventListener("change", () => stage.invalidate());
@@ -59,7 +64,8 @@ export class Target {
   }
 
   place(state: State, size: number): void {
-    if (!this.dragging && performance.now() > this.quietUntil) setPose(this.target, state.target);
+    this.last = state.target;
+    if (!this.quiet) setPose(this.target, state.target);
     setPose(this.axes.tool, state.tool);
     this.way.clear();
     const [from, to] = [new Vector3(...state.tool.position), this.target.position];
@@ -91,6 +97,14 @@ export class Target {
   showPoint(position: Vec3 | null): void {
     this.point.visible = position !== null;
     if (position && !this.dragging) this.point.position.set(...position);
+    this.stage.invalidate();
+  }
+
+  /** After a drag the states on the way are old; then the target is where the server has it. */
+  private settle(): void {
+    if (this.dragging) return;
+    this.quiet = false;
+    if (this.last) setPose(this.target, this.last);
     this.stage.invalidate();
   }
 

@@ -18,6 +18,7 @@ export class Joints {
   private readonly selfMotion = h("div", {});
   private rows: Row[] = [];
   private selfSlider: HTMLInputElement | null = null;
+  private timer = 0;
 
   constructor(private readonly session: Session) {
     this.panel.body.append(this.list, this.selfMotion);
@@ -65,6 +66,12 @@ export class Joints {
     if (this.selfSlider && document.activeElement !== this.selfSlider) setSlider(this.selfSlider, state.servo.self_motion);
   }
 
+  /** What was asked for may not have been reached: shows what is. */
+  private settle(): void {
+    const { scene, state } = this.session;
+    if (scene && state) this.show(scene, state);
+  }
+
   private row(scene: Scene, coordinate: Coordinate, drive: Drive | undefined): Row {
     const { name, unit, adjustable } = coordinate;
     const free = unit === "rad" ? FREE_TURN : scene.reach;
@@ -88,6 +95,8 @@ export class Joints {
       row.touched = performance.now();
       setSlider(slider, value);
       this.session.sendSoon(`joint ${name}`, { type: "joint", name, value });
+      clearTimeout(this.timer);
+      this.timer = window.setTimeout(() => this.settle(), QUIET + 30);
     };
     slider.addEventListener("input", () => {
       field.value = plain(slider.valueAsNumber);

@@ -7,7 +7,7 @@ import { empty, pairs, panel, type Panel } from "./panel";
 const LEFT = 24;
 const RIGHT = 62;
 const ROW = 17;
-const TICK = 44; // room of a number below the bars
+const TICK = 34; // room of a number below the bars
 const DECADES = 5; // below the largest value
 
 export function singularPanel(): Panel & { show: (scene: Scene, state: State) => void } {

@@ -20,10 +20,10 @@ export function sizes(scene: Scene): Sizes {
 }
 
 /** The places of a link that joints, contacts and the tool take, no place twice, its own joint first; a free body hangs on nothing. */
-export function points(scene: Scene, link: SceneLink): ReturnType<typeof vector>[] {
+export function points(scene: Scene, link: SceneLink, withFrame = true): ReturnType<typeof vector>[] {
   const found: ReturnType<typeof vector>[] = [];
   const loose = new Set(scene.joints.filter(({ kind }) => kind === "free" || kind === "planar").map(({ name }) => name));
-  const kept = link.anchors.filter((anchor) => anchor.kind === "frame" || !loose.has(anchor.name));
+  const kept = link.anchors.filter((anchor) => (anchor.kind === "frame" ? withFrame : !loose.has(anchor.name)));
   const anchors = kept.sort((a, b) => Number(b.kind === "joint") - Number(a.kind === "joint"));
   for (const anchor of anchors) {
     const point = vector(anchor.position);

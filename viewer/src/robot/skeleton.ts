@@ -22,7 +22,9 @@ export function linkBody(scene: Scene, index: number, size: Sizes): Group {
   const group = new Group();
   const link = scene.links[index];
   if (!link) return group;
-  const places = points(scene, link);
+  const corners = points(scene, link, false);
+  // The driven frame is a place to hold on to, but no corner of a plate.
+  const places = corners.length >= 3 ? corners : points(scene, link);
   const isGround = !scene.joints.some((joint) => joint.child === index);
   const body = solid(index % 2 === 0 ? "body" : "body-2");
   const slide = slideOf(scene, index);
