@@ -1,7 +1,7 @@
 /** Closed chains: driven joints toggled one by one, the object dragged; numbers agree with the command line. */
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { apart, cylindroid, launch, open, openPanel, picture, scene, serve, state, until } from "./lib.mjs";
+import { apart, cylindroid, drag, launch, open, openPanel, picture, scene, serve, state, until } from "./lib.mjs";
 
 /** @type {import("playwright-core").Browser} */
 let browser;
@@ -46,6 +46,25 @@ test("with one drive of the five-bar the object is free, and the page says so", 
     await until(page, 'state.servo.status === "unavailable"');
     const shown = await page.locator('[data-panel="pose"]').innerText();
     assert.ok(shown.includes((await state(page)).servo.sentence));
+    await close();
+  } finally {
+    await server.stop();
+  }
+});
+
+test("the coupler of the five-bar is dragged, and the loop stays closed", async () => {
+  const server = await serve("five-bar");
+  try {
+    const { page, troubles, close } = await open(browser, server.url);
+    await page.getByLabel("Task", { exact: true }).selectOption("position");
+    await page.waitForFunction(() => /** @type {any} */ (window).viewer.session.scene.task.components.join() === "x,y");
+    const before = (await state(page)).target.position;
+    await drag(page, [0, -0.4, 0]);
+    await until(page, `state.target.position[1] < ${before[1] - 0.2} && state.servo.status === "reached"`);
+    const now = await state(page);
+    assert.ok(now.error.position < 2e-3 && now.gap?.closed);
+    assert.ok(Math.abs(now.target.position[0] - before[0]) < 1e-6);
+    assert.deepEqual(troubles, []);
     await close();
   } finally {
     await server.stop();

@@ -1,7 +1,7 @@
 /** An arm is driven: by a slider, by its target, by the null space, by the keyboard; numbers agree with the command line. */
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { apart, cylindroid, drawn, launch, open, openPanel, scene, serve, state, until } from "./lib.mjs";
+import { apart, cylindroid, drag, drawn, launch, open, openPanel, scene, serve, state, until } from "./lib.mjs";
 
 /** @type {import("playwright-core").Browser} */
 let browser;
@@ -61,26 +61,7 @@ test("the target is dragged by its handle, and the servo converges", async () =>
   const { page, troubles, close } = await open(browser, server.url);
   const before = await state(page);
   await page.getByRole("button", { name: "front" }).click();
-  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-  const at = await page.evaluate(() => {
-    /** @type {any} */
-    const viewer = /** @type {any} */ (window).viewer;
-    const box = viewer.stage.renderer.domElement.getBoundingClientRect();
-    const gizmo = viewer.target.gizmo;
-    const origin = viewer.target.target.position.toArray();
-    const size = viewer.stage.camera.position.distanceTo(viewer.target.target.position) * Math.min(1.9 * Math.tan((Math.PI * viewer.stage.camera.fov) / 360), 7) * gizmo.size / 4;
-    const pixel = (/** @type {number[]} */ point) => {
-      const [x, y] = viewer.project(point);
-      return [box.left + ((x + 1) / 2) * box.width, box.top + ((1 - y) / 2) * box.height];
-    };
-    return { from: pixel([origin[0], origin[1], origin[2] + 0.45 * size]), to: pixel([origin[0], origin[1], origin[2] + 0.45 * size - 0.12]) };
-  });
-  const [[x0, y0], [x1, y1]] = /** @type {[[number, number], [number, number]]} */ ([at.from, at.to]);
-  await page.mouse.move(x0, y0);
-  await page.waitForTimeout(300);
-  await page.mouse.down();
-  for (let i = 1; i <= 6; i += 1) await page.mouse.move(x0 + ((x1 - x0) * i) / 6, y0 + ((y1 - y0) * i) / 6);
-  await page.mouse.up();
+  await drag(page, [0, 0, -0.12]);
   await until(page, `state.target.position[2] < ${(before.target.position[2] ?? 0) - 0.05}`);
   await until(page, 'state.servo.status === "reached"');
   const now = await state(page);

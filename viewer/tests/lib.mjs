@@ -171,3 +171,31 @@ export function apart(a, b) {
   if (a.length !== b.length) return Infinity;
   return Math.max(0, ...a.map((value, i) => Math.abs(value - (b[i] ?? NaN))));
 }
+
+/**
+ * Drags the target by the arrow of its handle that points along this way (or against it).
+ * @param {Page} page
+ * @param {[number, number, number]} way along an axis of the world (m)
+ */
+export async function drag(page, way) {
+  // The camera's matrices are those of the last frame.
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  const { from, to } = await page.evaluate((by) => {
+    const { stage, target, project } = /** @type {any} */ (window).viewer;
+    const box = stage.renderer.domElement.getBoundingClientRect();
+    const place = target.target.position;
+    const far = stage.camera.position.distanceTo(place);
+    const size = (far * Math.min(1.9 * Math.tan((Math.PI * stage.camera.fov) / 360), 7) * target.gizmo.size) / 4;
+    const grip = by.map((part, i) => place.getComponent(i) + (part === 0 ? 0 : 0.45 * size));
+    const pixel = (/** @type {number[]} */ point) => {
+      const [x, y] = project(point);
+      return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
+    };
+    return { from: pixel(grip), to: pixel(grip.map((part, i) => part + (by[i] ?? 0))) };
+  }, way);
+  await page.mouse.move(from.x, from.y);
+  await page.waitForTimeout(300); // the arrow under the pointer is found when it rests
+  await page.mouse.down();
+  for (let i = 1; i <= 6; i += 1) await page.mouse.move(from.x + ((to.x - from.x) * i) / 6, from.y + ((to.y - from.y) * i) / 6);
+  await page.mouse.up();
+}
