@@ -163,7 +163,10 @@ function start(): void {
   session.on("raw", (raw) => {
     if (!recorder.recording) return;
     recorder.take(raw);
-    if (recorder.isFull) recorder.stop();
+    if (recorder.isFull) {
+      recorder.stop();
+      page.toast("The recorder is full and has stopped: save its states.");
+    }
     bar.recorded(recorder.recording, recorder.length);
   });
   session.on("failure", ({ reply_to, message, culprit, place }) => {

@@ -37,9 +37,11 @@ export function singularPanel(): Panel & { show: (scene: Scene, state: State) =>
 }
 
 function bars(singular: Singular, width: number): SVGElement {
-  const largest = Math.max(...singular.values, singular.threshold, Number.MIN_VALUE);
+  const all = Math.max(0, ...singular.values);
+  const largest = all > 0 ? Math.max(all, singular.threshold) : 1;
+  const threshold = Math.max(singular.threshold, 1e-12 * largest);
   const top = Math.ceil(Math.log10(largest) + 1e-9);
-  const decades = Math.max(DECADES, Math.ceil(top - Math.log10(Math.max(singular.threshold, 1e-12)) + 0.3));
+  const decades = Math.max(DECADES, Math.ceil(top - Math.log10(threshold) + 0.3));
   const bottom = top - decades;
   const across = width - LEFT - RIGHT;
   const x = (value: number): number => LEFT + (Math.max(0, Math.log10(Math.max(value, 1e-300)) - bottom) / decades) * across;
@@ -47,7 +49,7 @@ function bars(singular: Singular, width: number): SVGElement {
   const foot = singular.values.length * ROW + 4;
   const every = Math.ceil((TICK * decades) / across);
   const ticks = Array.from({ length: decades + 1 }, (_, i) => bottom + i).filter((power) => (power - bottom) % every === 0);
-  const line = x(singular.threshold);
+  const line = x(threshold);
   return s(
     "svg",
     { class: "bars", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Singular values ${singular.values.map((v) => short(v)).join(", ")}; threshold ${short(singular.threshold)}` },

@@ -172,8 +172,8 @@ function stretch(object: Mesh, from: Vector3, to: Vector3, radius: number): void
   const way = to.clone().sub(from);
   const length = way.length();
   object.visible = length > radius * 0.05;
-  if (!object.visible) return;
   object.position.copy(from).addScaledVector(way, 0.5);
+  if (!object.visible) return;
   object.scale.set(radius, length, radius);
   along(object, way);
 }

@@ -5,7 +5,7 @@ import {
 } from "three";
 import type { Pose, Scene, SceneJoint } from "../protocol";
 import { glass, solid } from "../scene/palette";
-import { along, capsule, drum, vector } from "../scene/shapes";
+import { along, block, capsule, drum, vector } from "../scene/shapes";
 import { points, type Sizes } from "./plan";
 
 const TURNING = new Set(["revolute", "continuous", "helical"]);
@@ -64,8 +64,8 @@ function thing(places: Vector3[], size: Sizes): Mesh {
   const box = new Box3().setFromPoints(places);
   const edges = box.getSize(new Vector3());
   const least = Math.max(2.2 * size.joint, 0.45 * Math.max(edges.x, edges.y, edges.z));
-  const block = new BoxGeometry(Math.max(edges.x, least), Math.max(edges.y, least), Math.max(edges.z, least));
-  const mesh = new Mesh(block, glass("object", 0.8));
+  const shape = new BoxGeometry(Math.max(edges.x, least), Math.max(edges.y, least), Math.max(edges.z, least));
+  const mesh = new Mesh(shape, glass("object", 0.8));
   box.getCenter(mesh.position);
   return mesh;
 }
@@ -111,7 +111,7 @@ export function mark(kind: string, at: Vector3, axis: Vector3, driven: boolean, 
     group.add(drum(none, axis, r, flat ? r * 1.5 : r * 2.5, colour));
     group.add(drum(none, axis, r * 0.5, flat ? r * 1.62 : r * 2.62, solid(driven ? "body" : "joint-driven")));
   } else if (SLIDING.has(kind)) {
-    group.add(drum(none, axis, r * 1.05, r * 2.6, colour));
+    group.add(block(none, axis, r * 1.9, r * 2.5, colour));
   } else if (kind === "universal") {
     group.add(new Mesh(new SphereGeometry(r * 0.95, 24, 16), colour));
     group.add(drum(none, axis, r * 0.5, r * 2.7, colour));
@@ -184,9 +184,8 @@ export class Slide {
     const way = to.clone().sub(from);
     const length = way.length();
     this.object.visible = length > 0;
-    if (length === 0) return;
     this.object.position.copy(from).addScaledVector(way, 0.5);
-    this.object.scale.set(1, length, 1);
+    this.object.scale.set(1, Math.max(length, 1e-9), 1);
     along(this.object, way);
   }
 }

@@ -1,6 +1,6 @@
 /** Simple bodies in metres; what the page makes of points and directions that the server gave. */
 import {
-  BufferGeometry, CapsuleGeometry, ConeGeometry, CylinderGeometry, Group, Matrix4, Mesh, Object3D,
+  BoxGeometry, BufferGeometry, CapsuleGeometry, ConeGeometry, CylinderGeometry, Group, Matrix4, Mesh, Object3D,
   Quaternion, Vector3, type Material,
 } from "three";
 
@@ -30,6 +30,14 @@ export function capsule(from: Vector3, to: Vector3, radius: number, material: Ma
 /** A cylinder about an axis, its middle at `at`. */
 export function drum(at: Vector3, axis: Vector3, radius: number, length: number, material: Material): Mesh {
   const mesh = new Mesh(new CylinderGeometry(radius, radius, length, 28), material);
+  mesh.position.copy(at);
+  along(mesh, axis);
+  return mesh;
+}
+
+/** A block about an axis, its middle at `at`. */
+export function block(at: Vector3, axis: Vector3, width: number, length: number, material: Material): Mesh {
+  const mesh = new Mesh(new BoxGeometry(width, length, width), material);
   mesh.position.copy(at);
   along(mesh, axis);
   return mesh;
