@@ -84,6 +84,7 @@ function start(): void {
     record: () => {
       if (recorder.recording) recorder.stop();
       else recorder.start();
+      session.eager = recorder.recording;
       bar.recorded(recorder.recording, recorder.length);
     },
     save: (format) => {
@@ -165,6 +166,7 @@ function start(): void {
     recorder.take(raw);
     if (recorder.isFull) {
       recorder.stop();
+      session.eager = false;
       page.toast("The recorder is full and has stopped: save its states.");
     }
     bar.recorded(recorder.recording, recorder.length);

@@ -16,11 +16,14 @@ type Events = {
 
 const STATE_START = '{"type":"state"';
 const ACK = /"ack":(\d+)/;
+const SEQ = /"seq":(\d+)/;
 
 export class Session {
   scene: Scene | null = null;
   state: State | null = null;
   link: Link = "connecting";
+  /** Wants every state, drawn or not: the server then holds none back for a slow page. */
+  eager = false;
   private readonly listeners: { [K in keyof Events]?: ((event: Events[K]) => void)[] } = {};
   private readonly connection: Connection;
   private newest: string | null = null;
@@ -68,7 +71,7 @@ export class Session {
     this.newest = null;
     this.state = JSON.parse(raw) as State;
     this.emit("state", this.state);
-    this.connection.send({ type: "seen", seq: this.state.seq });
+    if (!this.eager) this.connection.send({ type: "seen", seq: this.state.seq });
   }
 
   private receive(raw: string): void {
@@ -100,8 +103,11 @@ export class Session {
 
   private receiveState(raw: string): void {
     this.emit("raw", raw);
-    const ack = ACK.exec(raw.slice(0, 200))?.[1];
+    const start = raw.slice(0, 200);
+    const ack = ACK.exec(start)?.[1];
     if (ack) this.outbox.answered(Number(ack));
+    const seq = SEQ.exec(start)?.[1];
+    if (this.eager && seq) this.connection.send({ type: "seen", seq: Number(seq) });
     this.newest = raw; // older ones that nobody has drawn are gone
     this.wake();
   }

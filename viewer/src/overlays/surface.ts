@@ -26,7 +26,7 @@ export const cylindroid = {
     data.rulings.forEach((ruling, i) => {
       const next = data.rulings[i + 1] ?? swapped(data.rulings[0]);
       const own = shade(ruling.pitch).toArray();
-      if (i % 3 === 0) {
+      if (i % 5 === 0) {
         lines.push(...ruling.from, ...ruling.to);
         linePaint.push(...own, ...own);
       }

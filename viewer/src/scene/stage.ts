@@ -30,8 +30,9 @@ export class Stage {
   frames = 0;
 
   constructor(private readonly element: HTMLElement) {
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    const slow = softwareRendered();
+    this.renderer = new WebGLRenderer({ antialias: !slow, alpha: true });
+    this.renderer.setPixelRatio(slow ? 1 : Math.min(devicePixelRatio, 2));
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "application");
@@ -41,7 +42,7 @@ export class Stage {
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.addEventListener("change", () => this.invalidate());
     this.orbit.listenToKeyEvents(canvas);
-    this.lights();
+    this.lights(!slow);
     new ResizeObserver(() => this.resize()).observe(element);
     onTheme(() => this.paint());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
@@ -127,12 +128,12 @@ export class Stage {
     this.frames += 1;
   }
 
-  private lights(): void {
+  private lights(shadows: boolean): void {
     this.scene.add(new HemisphereLight(0xffffff, 0x8a8f98, 1.35), new AmbientLight(0xffffff, 0.35), this.sun);
     const rim = new DirectionalLight(0xdfe8f5, 0.9);
     rim.position.set(-2, 1.5, 1);
     this.scene.add(rim);
-    if (softwareRendered(this.renderer)) return; // shadows cost more there than they show
+    if (!shadows) return;
     this.renderer.shadowMap.enabled = true;
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
@@ -157,11 +158,13 @@ export class Stage {
   }
 }
 
-/** Whether pixels are made by the processor; `?quality=high` says to draw shadows all the same. */
-function softwareRendered(renderer: WebGLRenderer): boolean {
+/** Whether the processor makes the pixels: smooth edges and shadows would cost it more than they show. */
+function softwareRendered(): boolean {
   if (new URLSearchParams(location.search).get("quality") === "high") return false;
-  const gl = renderer.getContext();
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return false;
   const info = gl.getExtension("WEBGL_debug_renderer_info");
   const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|software/i.test(name);
 }
