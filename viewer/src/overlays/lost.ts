@@ -1,6 +1,5 @@
 /** The motion of the tool that is lost at a singularity, or about to be. */
 import type { Group } from "three";
-import { short } from "../format";
 import type { LostDirection } from "../protocol";
 import { drawn } from "../scene/palette";
 import { arrow, vector } from "../scene/shapes";
@@ -25,5 +24,5 @@ export const lostDirection = {
       group.add(arrow(tool, angular, context.line * 0.6, material));
     }
   },
-  words: (data: LostDirection) => `${data.sentence} Smallest over largest singular value ${short(data.ratio)}.`,
+  words: (data: LostDirection) => data.sentence,
 };

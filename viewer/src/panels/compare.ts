@@ -25,10 +25,10 @@ export class Compare {
     this.pitch.addEventListener("input", () => this.later());
     this.form = h(
       "div", {},
-      h("p", { class: "row" }, this.first, h("span", { class: "note" }, "and"), this.second),
+      h("p", { class: "pair" }, this.first, this.second),
       this.pitchRow,
-      h("h3", {}, "Reference point in world [m] (a handle in the view moves it)"),
-      h("p", { class: "row" }, ...this.fields),
+      h("h3", {}, "Reference point in world [m], also a handle in the view"),
+      h("p", { class: "three" }, ...this.fields),
     );
     this.panel.body.append(this.form, this.result);
     this.panel.onToggle((open) => {
@@ -109,13 +109,13 @@ export class Compare {
   private show(comparison: Comparison): void {
     const { names, results } = comparison;
     const head = h("tr", {}, h("td", {}), ...results.map((result) => h("th", { colspan: 2, scope: "colgroup" }, result.method.replaceAll("-", " "))));
-    const under = h("tr", {}, h("td", {}), ...results.flatMap(() => [h("th", { scope: "col" }, "at tool"), h("th", { scope: "col" }, "at point")]));
+    const under = h("tr", {}, h("td", {}), ...results.flatMap(() => [h("th", { scope: "col" }, "tool"), h("th", { scope: "col" }, "point")]));
     const rows = names.map((name, i) =>
-      h("tr", {}, h("th", { scope: "row" }, name), ...results.flatMap((r) => [h("td", {}, fixed(r.rates?.[i], 3)), h("td", {}, fixed(r.rates_at_point?.[i], 3))])),
+      h("tr", {}, h("th", { scope: "row", class: "cut", title: name }, name), ...results.flatMap((r) => [h("td", {}, fixed(r.rates?.[i], 3)), h("td", {}, fixed(r.rates_at_point?.[i], 3))])),
     );
     fill(
       this.result,
-      h("h3", {}, "Joint rates [rad/s, m/s] for one and the same motion"),
+      h("h3", {}, "Joint rates [rad/s, m/s] for one motion, taken at tool and point"),
       h("div", { class: "scroll" }, h("table", { class: "numbers" }, h("caption", { class: "hidden-label" }, "Joint rates by both inverses"), h("thead", {}, head, under), h("tbody", {}, ...rows))),
       ...results.map((result) =>
         h("p", {}, h("b", {}, `${result.method.replaceAll("-", " ")}: `),
