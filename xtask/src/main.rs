@@ -25,6 +25,8 @@ cargo xtask <task>
             short
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
+  viewer-load [seconds]
+            serves the viewer to 20 clients for a minute, and prints memory and lateness
   figures   draws the figures of the README";
 
 fn main() -> ExitCode {
@@ -48,6 +50,7 @@ fn run() -> Result<()> {
         Some("layers") => layers::check(),
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),
+        Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
             println!("{HELP}");

@@ -133,6 +133,14 @@ pub(crate) fn bench() -> Result<()> {
     python::bench()
 }
 
+/// The viewer's server under load; what it prints is a measurement, not a check.
+pub(crate) fn viewer_load(seconds: Option<&str>) -> Result<()> {
+    let filter = ["test", "--release", "--package", "cylindroid-cli", "--test", "cli"];
+    let show = ["--", "--ignored", "--exact", "--nocapture", "view::load::load"];
+    let arguments = [&filter[..], &show].concat();
+    run(cargo(&arguments).env("CYLINDROID_LOAD", seconds.unwrap_or("60")))
+}
+
 /// The figures of the README, by the command line that users have.
 pub(crate) fn figures() -> Result<()> {
     let [to, rpy] = ["0.45,0.15,0.35", "3.1416,0,0.6"];

@@ -255,6 +255,23 @@ mod tests {
         assert!(super::read(r#"{"type": "null_space", "rate": 0.5}"#).is_ok());
     }
 
+    /// Every type and its fields stand there as they are read.
+    #[test]
+    fn examples_of_the_protocol_are_read() {
+        const PAGE: &str = include_str!("../../../../docs/viewer.md");
+        let (_, examples) = PAGE.split_once("## Messages of the client").unwrap();
+        let (examples, _) = examples.split_once("## Messages of the server").unwrap();
+        let lines: Vec<&str> = examples.lines().filter(|l| l.starts_with("{\"type\"")).collect();
+        for line in &lines {
+            assert!(read(line).is_ok(), "{line}: {:?}", read(line));
+        }
+        for kind in TYPES {
+            let shown = format!("{{\"type\": \"{kind}\"");
+            assert!(lines.iter().any(|l| l.starts_with(&shown)), "no example of {kind}");
+            assert!(examples.contains(&format!("`{kind}`")), "{kind} is not explained");
+        }
+    }
+
     #[test]
     fn complaints_name_the_place_and_the_way_out() {
         let wrong =

@@ -6,6 +6,7 @@
 
 mod assets;
 mod compare;
+mod inverting;
 mod messages;
 mod overlays;
 mod reaching;

@@ -7,6 +7,7 @@ use cylindroid::model::{Coordinate, CoordinateKind, Geometry, Link, Mechanism, V
 use cylindroid::{Method, Pose, Servo};
 use serde::Serialize;
 
+use super::inverting::Chosen;
 use super::overlays::Overlay;
 use super::session::Session;
 
@@ -44,7 +45,7 @@ pub(super) struct Scene<'a> {
     objects: Vec<ObjectJson<'a>>,
     drives: Vec<DriveJson<'a>>,
     self_motions: usize,
-    method: MethodJson<'a>,
+    method: &'a Chosen,
     methods: Vec<ChoiceJson>,
     overlays: Vec<OverlayJson>,
     reports: [&'static str; 4],
@@ -176,15 +177,6 @@ struct DriveJson<'a> {
     name: &'a str,
     kind: &'static str,
     actuated: bool,
-}
-
-/// The inverse of the servo.
-#[derive(Debug, Clone, Serialize)]
-pub(super) struct MethodJson<'a> {
-    pub(super) name: &'a str,
-    pub(super) numbers: BTreeMap<&'static str, f64>,
-    pub(super) h: Option<f64>,
-    pub(super) fallback: Option<&'a str>,
 }
 
 #[derive(Debug, Serialize)]

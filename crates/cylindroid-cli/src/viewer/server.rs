@@ -14,11 +14,13 @@ use axum::{Router, middleware};
 use tokio::net::TcpListener;
 
 use super::assets::Page;
-use super::messages::LARGEST;
 use super::safety::{Names, guard};
 use super::session::Start;
 use super::socket::talk;
 
+/// Longest frame that is read at all [bytes]: what is longer than a message may be is answered up to
+/// here, beyond the connection ends.
+const LONGEST: usize = 1024 * 1024;
 /// Sessions at once: far more than one robot is looked at by, few enough for any machine.
 const MOST_SESSIONS: usize = 100;
 
@@ -92,7 +94,7 @@ async fn session(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Res
         let what = "There are too many sessions; close one.";
         return (StatusCode::SERVICE_UNAVAILABLE, what).into_response();
     };
-    upgrade.max_message_size(LARGEST).max_frame_size(LARGEST).on_upgrade(async move |socket| {
+    upgrade.max_message_size(LONGEST).max_frame_size(LONGEST).on_upgrade(async move |socket| {
         talk(socket, shared.start).await;
         drop(place);
     })

@@ -4,23 +4,19 @@
 
 use std::sync::Arc;
 
-use cylindroid::control::{Projection, Stall, Status, Step, Target};
+use cylindroid::control::{Stall, Status, Step, Target};
 use cylindroid::ik::Task;
 use cylindroid::spatial::Quaternion;
-use cylindroid::{
-    EndEffector, Error, Mechanism, Method, Pose, Result, Servo, ServoOptions, State, Vec3,
-};
+use cylindroid::{EndEffector, Error, Mechanism, Pose, Result, Servo, ServoOptions, State, Vec3};
 use serde_json::Value;
 
 use super::assets::Folders;
 use super::compare::compare;
-use super::messages::{Complaint, Message, MethodChoice, NullSpace, Request, TargetPose};
+use super::inverting::{Chosen, invert_by};
+use super::messages::{Complaint, Message, NullSpace, Request, TargetPose};
 use super::overlays::Overlay;
 use super::reaching::{Reached, assembled, reach};
 use super::reports::Report;
-use super::scene::{MethodJson, damping, hyperbolic, numbers};
-use crate::args::InverseArgs;
-use crate::commands::move_to::inverse;
 
 /// Steps of the servo in a second of its clock.
 pub(super) const STEPS: u32 = 240;
@@ -58,7 +54,7 @@ pub(super) struct Session {
     state: State,
     options: ServoOptions,
     task: String,
-    method: Inverse,
+    method: Chosen,
     /// Or why there is none.
     servo: Result<Servo>,
     /// What ended the last step.
@@ -75,18 +71,10 @@ pub(super) struct Session {
     ack: Option<Value>,
 }
 
-/// The inverse as it was asked for.
-#[derive(Debug)]
-struct Inverse {
-    name: String,
-    h: Option<f64>,
-    damping: std::collections::BTreeMap<&'static str, f64>,
-    fallback: Option<String>,
-}
-
 #[derive(Debug)]
 struct SelfMotion {
     rate: f64,
+    index: usize,
     /// Rates at full speed.
     motion: Vec<f64>,
 }
@@ -101,12 +89,7 @@ impl Session {
         options.dt = 1.0 / f64::from(STEPS);
         options.secondary = options.usual_secondary(&mechanism)?;
         let state = mechanism.state(&start.q)?;
-        let method = Inverse {
-            name: options.method.name().to_owned(),
-            h: None,
-            damping: std::collections::BTreeMap::new(),
-            fallback: None,
-        };
+        let method = Chosen::plain(options.method);
         Ok(Self {
             target: state.pose(options.end_effector),
             servo: Servo::new(&mechanism, options.clone()),
@@ -199,20 +182,8 @@ impl Session {
         self.ack.as_ref()
     }
 
-    pub(super) fn method(&self) -> MethodJson<'_> {
-        let mut numbers = match self.options.projection {
-            Projection::Orthogonal => numbers(self.options.method),
-            _ => self.method.damping.clone(),
-        };
-        if self.method.h.is_none() && self.options.projection == Projection::Orthogonal {
-            numbers = super::scene::numbers(self.options.method);
-        }
-        MethodJson {
-            name: &self.method.name,
-            numbers,
-            h: self.method.h,
-            fallback: self.method.fallback.as_deref(),
-        }
+    pub(super) fn method(&self) -> &Chosen {
+        &self.method
     }
 
     /// True where another step would change nothing.
@@ -225,9 +196,12 @@ impl Session {
         self.is_playing && self.servo.is_ok() && !self.is_resting
     }
 
-    /// Moves by this many steps of the servo, fewer if it comes to rest.
-    pub(super) fn advance(&mut self, steps: u64) {
-        let mut q = self.state.q().to_vec();
+    /// Moves by this many steps of the servo, fewer if it comes to rest; false where that has
+    /// changed nothing that is seen.
+    pub(super) fn advance(&mut self, steps: u64) -> bool {
+        let before = self.state.q().to_vec();
+        let first = self.last.is_none();
+        let mut q = before.clone();
         let mut moved = Ok(());
         for _ in 0..steps {
             if !self.is_moving() || moved.is_err() {
@@ -239,6 +213,7 @@ impl Session {
         if let Err(error) = moved.and_then(|()| self.state.set(&q)) {
             (self.trouble, self.is_resting) = (Some(error), true);
         }
+        self.state.q() != before || self.is_resting || first
     }
 
     fn step(&mut self, q: &mut [f64]) -> Result<()> {
@@ -330,7 +305,11 @@ impl Session {
                 return Ok(Reply::Scene);
             }
             Message::Method(choice) => {
-                self.invert_by(choice)?;
+                let options = self.options.clone();
+                let best_pitch = || self.best_pitch();
+                let (chosen, options) = invert_by(choice, &self.state, options, best_pitch)?;
+                self.take(options).map_err(at("method"))?;
+                self.method = chosen;
                 return Ok(Reply::Scene);
             }
             Message::Overlays(wanted) => {
@@ -387,7 +366,8 @@ impl Session {
     }
 
     /// Another servo, if the options make one; drives that do not steer the tool leave none.
-    fn take(&mut self, options: ServoOptions) -> Result<()> {
+    fn take(&mut self, mut options: ServoOptions) -> Result<()> {
+        options.secondary = options.usual_secondary(&self.mechanism)?;
         options.check(&self.mechanism)?;
         self.servo = Servo::new(&self.mechanism, options.clone());
         self.options = options;
@@ -423,10 +403,11 @@ impl Session {
             let way_out = "leave components of the pose free (task), or choose another index";
             return Err(refuse("index", wanted.index.to_string(), &what, way_out));
         };
-        // A slider that is dragged keeps its motion.
+        let (rate, index) = (wanted.rate, wanted.index);
         match &mut self.self_motion {
-            Some(own) => own.rate = wanted.rate,
-            None => self.self_motion = Some(SelfMotion { rate: wanted.rate, motion }),
+            // A slider that is dragged keeps its motion.
+            Some(own) if own.index == index => own.rate = rate,
+            _ => self.self_motion = Some(SelfMotion { rate, index, motion }),
         }
         self.is_resting = false;
         Ok(())
@@ -449,28 +430,6 @@ impl Session {
         Ok(())
     }
 
-    fn invert_by(&mut self, choice: MethodChoice) -> std::result::Result<(), Complaint> {
-        let at = |error| Complaint::of("method", &error);
-        let chooses = hyperbolic().any(|name| name == choice.name);
-        let h = match choice.h {
-            None if chooses => Some(self.best_pitch().map_err(at)?),
-            h => h,
-        };
-        let mut given = if chooses { damping(&choice.name) } else { Default::default() };
-        let mut all: std::collections::BTreeMap<String, f64> =
-            given.iter().map(|(name, x)| ((*name).to_owned(), *x)).collect();
-        all.extend(choice.numbers);
-        for (name, number) in &mut given {
-            *number = all.get(*name).copied().unwrap_or(*number);
-        }
-        let args = arguments(&choice.name, h, choice.fallback.clone(), &all)?;
-        let mut options = self.options.clone();
-        inverse::apply(&args, self.state.q(), &self.mechanism, &mut options).map_err(at)?;
-        self.take(options).map_err(at)?;
-        self.method = Inverse { name: choice.name, h, damping: given, fallback: choice.fallback };
-        Ok(())
-    }
-
     /// The pitch whose projector is smallest here; it may be infinite.
     pub(super) fn best_pitch(&self) -> Result<f64> {
         let system = super::overlays::system(self)?;
@@ -481,52 +440,4 @@ impl Session {
                 .to_owned(),
         })
     }
-}
-
-/// The options of `move` that say the same.
-fn arguments(
-    name: &str,
-    h: Option<f64>,
-    fallback: Option<String>,
-    numbers: &std::collections::BTreeMap<String, f64>,
-) -> std::result::Result<InverseArgs, Complaint> {
-    let mut args = InverseArgs {
-        inverse: name.to_owned(),
-        eps: None,
-        damping: None,
-        onset: None,
-        filter: None,
-        max_rate: None,
-        shape: None,
-        floor: None,
-        h,
-        mu: None,
-        lambda: None,
-        give_up: Vec::new(),
-        fallback,
-    };
-    for (number, value) in numbers {
-        let place = match number.as_str() {
-            "eps" => &mut args.eps,
-            "damping" => &mut args.damping,
-            "onset" => &mut args.onset,
-            "filter" => &mut args.filter,
-            "max_rate" => &mut args.max_rate,
-            "shape" => &mut args.shape,
-            "floor" => &mut args.floor,
-            "mu" => &mut args.mu,
-            "lambda" => &mut args.lambda,
-            _ => {
-                let all: Vec<&str> = Method::ALL
-                    .into_iter()
-                    .flat_map(|m| super::scene::numbers(m).into_keys())
-                    .chain(["mu", "lambda"])
-                    .collect();
-                let error = Error::unknown("number of an inverse", number, all);
-                return Err(Complaint::of("method.numbers", &error));
-            }
-        };
-        *place = Some(*value);
-    }
-    Ok(args)
 }

@@ -14,7 +14,7 @@ use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
 use tokio::time::{Interval, MissedTickBehavior, interval, timeout};
 
-use super::messages::{Complaint, read};
+use super::messages::{Complaint, LARGEST, read};
 use super::scene::Scene;
 use super::session::{Reply, STEPS, Session, Start};
 use super::snapshot::snapshot;
@@ -62,6 +62,7 @@ pub(super) async fn talk(socket: WebSocket, start: Arc<Start>) {
             }
         }
         Err(error) => {
+            let answers = answers;
             let complaint = text(&Complaint::of("session", &error));
             // Nothing waits yet.
             let _ = answers.try_send(Frame::Text(complaint.into()));
@@ -132,14 +133,16 @@ impl Client {
             let steps = self.owed.as_nanos() / step.as_nanos();
             let steps = u32::try_from(steps).unwrap_or(0);
             self.owed -= step * steps;
-            self.session.advance(u64::from(steps));
+            self.is_dirty |= self.session.advance(u64::from(steps));
             self.last = Some(now);
         }
         if !self.session.is_moving() {
             (self.last, self.owed) = (None, Duration::ZERO);
         }
+        if !std::mem::take(&mut self.is_dirty) {
+            return;
+        }
         self.seq += 1;
-        self.is_dirty = false;
         // A state that cannot be told (numbers that overflow) is told with the next.
         if let Ok(state) = snapshot(&mut self.session, self.seq) {
             self.states.send_replace(Arc::new((self.seq, state)));
@@ -148,6 +151,12 @@ impl Client {
 
     fn hear(&mut self, frame: &Frame) -> Result<(), Gone> {
         let said = match frame {
+            Frame::Text(said) if said.len() > LARGEST => Err(Complaint::new(
+                "message",
+                &format!("{} bytes", said.len()),
+                &format!("a message has at most {LARGEST} bytes"),
+                "send less",
+            )),
             Frame::Text(said) => read(said),
             Frame::Binary(_) => Err(Complaint::new(
                 "message",
@@ -200,7 +209,7 @@ impl Client {
         } else {
             close_code::PROTOCOL
         };
-        let reason = "messages are at most 64 KiB of text".into();
+        let reason = "this is no message of docs/viewer.md".into();
         // If there is no room, there is no reader.
         let _ = self.answers.try_send(Frame::Close(Some(CloseFrame { code, reason })));
     }

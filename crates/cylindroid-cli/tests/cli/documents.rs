@@ -83,7 +83,7 @@ fn coded(text: &str) -> BTreeSet<&str> {
 }
 
 /// All keys of an object and of what is in it.
-fn keys<'a>(value: &'a Value, found: &mut BTreeSet<&'a str>) {
+pub(crate) fn keys<'a>(value: &'a Value, found: &mut BTreeSet<&'a str>) {
     match value {
         Value::Object(map) => {
             found.extend(map.keys().map(String::as_str));

@@ -172,6 +172,40 @@ fn overlays_come_with_their_numbers() {
     }
 }
 
+/// Every key of every message is named on the page of the protocol.
+#[test]
+fn messages_have_the_keys_of_their_page() {
+    const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/viewer.md");
+    let page = std::fs::read_to_string(PAGE).unwrap();
+    let check = |message: &Value| {
+        // A report is the matter of docs/json.md.
+        let mut message = message.clone();
+        message.as_object_mut().unwrap().remove("report");
+        let mut found = std::collections::BTreeSet::new();
+        crate::documents::keys(&message, &mut found);
+        let named = |key: &&&str| {
+            page.contains(&format!("\"{key}\"")) || page.contains(&format!("`{key}`"))
+        };
+        let missing: Vec<_> = found.iter().filter(|key| !named(key)).collect();
+        assert!(missing.is_empty(), "{missing:?} of {}", message["type"]);
+    };
+    for arguments in [&["youbot", "--frame", "arm_link_2"][..], &["two-arm"], &["five-bar"]] {
+        let server = Server::new(arguments);
+        let mut client = server.client();
+        let scene = client.next("scene");
+        check(&scene);
+        let names: Vec<&Value> =
+            scene["overlays"].as_array().unwrap().iter().map(|o| &o["name"]).collect();
+        check(&client.done(json!({"type": "overlays", "names": names})));
+        check(&client.complaint(&json!({"type": "jump"})));
+        client.say(&json!({"type": "report", "name": "info"}));
+        check(&client.next("report"));
+        let methods = ["damped", "hyperbolic-gram"];
+        client.say(&json!({"type": "compare", "methods": methods, "point": [0, 0, 1], "h": 0.1}));
+        check(&client.until(|m| m["type"] == "compare" || m["type"] == "error"));
+    }
+}
+
 #[test]
 fn ellipsoids_and_screws_are_those_of_the_commands() {
     let server = Server::new(&["five-bar"]);
