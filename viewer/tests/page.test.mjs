@@ -33,6 +33,36 @@ test("a stopped server is shown, and reconnected to with the configuration", asy
   }
 });
 
+test("a page that draws slowly is sent no queue of old states", async () => {
+  const server = await serve("panda");
+  try {
+    const { page, close } = await open(browser, server.url);
+    await page.evaluate(() => {
+      /** @type {any} */
+      const { session, stage } = /** @type {any} */ (window).viewer;
+      /** @type {{ drawn: number[], came: number }} */
+      const counts = { drawn: [], came: 0 };
+      Object.assign(window, { counts });
+      session.on("raw", () => (counts.came += 1));
+      session.on("state", (/** @type {any} */ state) => counts.drawn.push(state.seq));
+      stage.onFrame(() => {
+        const end = performance.now() + 200;
+        while (performance.now() < end);
+      });
+    });
+    const { position } = (await state(page)).target;
+    await page.locator('[data-target="z"]').fill(String((position[2] ?? 0) - 0.25));
+    await page.keyboard.press("Enter");
+    await until(page, `state.servo.status === "reached" && state.target.position[2] < ${(position[2] ?? 0) - 0.2}`);
+    const { drawn, came } = await page.evaluate(() => /** @type {any} */ (window).counts);
+    assert.ok(came <= 2 * drawn.length + 2, `${came} states came, ${drawn.length} were drawn`);
+    assert.ok(drawn.at(-1) - drawn[0] > 2 * drawn.length, "states between those drawn are left out");
+    await close();
+  } finally {
+    await server.stop();
+  }
+});
+
 test("the recorder gives every state as JSON and as CSV, and a PNG of the view", async () => {
   const server = await serve("panda");
   try {

@@ -4,7 +4,6 @@ import {
   Quaternion, Vector3, type Material,
 } from "three";
 
-export type Triple = readonly [number, number, number];
 const Y = new Vector3(0, 1, 0);
 
 export function vector(triple: readonly number[]): Vector3 {
