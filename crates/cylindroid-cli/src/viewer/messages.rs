@@ -134,11 +134,11 @@ pub(super) struct Seen {
 #[serde(tag = "type", rename = "error")]
 pub(super) struct Complaint {
     pub(super) reply_to: Option<Value>,
-    pub(super) culprit: String,
+    pub(super) culprit: Box<str>,
     /// Message and field.
-    pub(super) place: String,
-    pub(super) message: String,
-    pub(super) way_out: String,
+    pub(super) place: Box<str>,
+    pub(super) message: Box<str>,
+    pub(super) way_out: Box<str>,
     /// The value that a joint reached.
     pub(super) nearest: Option<f64>,
 }
@@ -149,10 +149,10 @@ impl Complaint {
             if way_out.is_empty() { what.to_owned() } else { format!("{what}; {way_out}") };
         Self {
             reply_to: None,
-            culprit: culprit.to_owned(),
-            place: place.to_owned(),
-            message,
-            way_out: way_out.to_owned(),
+            culprit: culprit.into(),
+            place: place.into(),
+            message: message.into(),
+            way_out: way_out.into(),
             nearest: None,
         }
     }
@@ -175,10 +175,10 @@ impl Complaint {
         };
         Self {
             reply_to: None,
-            culprit,
-            place: place.to_owned(),
-            message: error.to_string(),
-            way_out,
+            culprit: culprit.into(),
+            place: place.into(),
+            message: error.to_string().into(),
+            way_out: way_out.into(),
             nearest: None,
         }
     }
@@ -276,10 +276,10 @@ mod tests {
     fn complaints_name_the_place_and_the_way_out() {
         let wrong =
             refused(r#"{"type": "target", "position": [0, 1, "2"], "quaternion": [1, 0, 0, 0]}"#);
-        assert_eq!((wrong.place.as_str(), wrong.culprit.as_str()), ("target.position[2]", "\"2\""));
+        assert_eq!((&*wrong.place, &*wrong.culprit), ("target.position[2]", "\"2\""));
         let short =
             refused(r#"{"type": "target", "position": [0, 1], "quaternion": [1, 0, 0, 0]}"#);
-        assert_eq!(short.place, "target.position");
+        assert_eq!(&*short.place, "target.position");
         assert!(short.message.contains("length 2"), "{}", short.message);
         let more = refused(r#"{"type": "pause", "now": true, "id": "a"}"#);
         assert!(more.message.contains("now") && more.reply_to == Some("a".into()), "{more:?}");
@@ -287,13 +287,13 @@ mod tests {
         assert!(unknown.message.contains("joint"), "{}", unknown.message);
         for text in ["", "[]", "7", "{\"type\": 3}", "{}", "{\"type\": \"joint\", \"value\": NaN}"]
         {
-            assert_eq!(refused(text).place, "message", "{text}");
+            assert_eq!(&*refused(text).place, "message", "{text}");
         }
-        assert_eq!(refused(r#"{"type": "play", "id": {}}"#).place, "message.id");
+        assert_eq!(&*refused(r#"{"type": "play", "id": {}}"#).place, "message.id");
         assert_eq!(
-            refused(r#"{"type": "joint", "name": "a", "value": null}"#).place,
+            &*refused(r#"{"type": "joint", "name": "a", "value": null}"#).place,
             "joint.value"
         );
-        assert_eq!(refused(r#"{"type": "joint", "name": "a", "value": 1e999}"#).place, "message");
+        assert_eq!(&*refused(r#"{"type": "joint", "name": "a", "value": 1e999}"#).place, "message");
     }
 }

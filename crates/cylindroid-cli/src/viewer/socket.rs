@@ -7,12 +7,13 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message as Frame, WebSocket, close_code};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
-use tokio::time::{Interval, MissedTickBehavior, interval, timeout};
+use tokio::time::{Interval, MissedTickBehavior, interval, sleep_until, timeout};
 
 use super::messages::{Complaint, LARGEST, read};
 use super::scene::Scene;
@@ -32,6 +33,9 @@ const UNSEEN: usize = 2;
 const REPORTS: usize = 4;
 /// A client that takes nothing for so long is gone.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// Time between two pings, and how long a client may say nothing at all, not even to these.
+const PING: Duration = Duration::from_secs(20);
+const SILENCE: Duration = Duration::from_secs(90);
 
 /// The newest state and its number; empty before the first.
 type State = Arc<(u64, String)>;
@@ -97,11 +101,15 @@ impl Client {
         }
         let mut clock: Interval = interval(Duration::from_secs(1) / RATE);
         clock.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut silent = tokio::time::Instant::now() + SILENCE;
         loop {
             let is_live = self.session.is_moving() || self.is_dirty;
             let done = tokio::select! {
                 frame = stream.next() => match frame {
-                    Some(Ok(frame)) => self.hear(&frame),
+                    Some(Ok(frame)) => {
+                        silent = tokio::time::Instant::now() + SILENCE;
+                        self.hear(&frame)
+                    }
                     Some(Err(error)) => {
                         self.close(&error);
                         return;
@@ -112,6 +120,7 @@ impl Client {
                     self.turn();
                     Ok(())
                 }
+                () = sleep_until(silent) => return,
                 Some(report) = self.reports.join_next(), if !self.reports.is_empty() => {
                     report.map_or(Ok(()), |report| self.answer(report))
                 }
@@ -227,6 +236,7 @@ async fn write(
     mut seen: watch::Receiver<Option<u64>>,
 ) {
     let mut unseen: VecDeque<u64> = VecDeque::new();
+    let mut pings = interval(PING);
     loop {
         let drawn = *seen.borrow_and_update();
         while unseen.front().is_some_and(|seq| drawn.is_some_and(|d| *seq <= d)) {
@@ -241,6 +251,7 @@ async fn write(
                 None => return,
             },
             Ok(()) = seen.changed(), if !is_ready => continue,
+            _ = pings.tick() => Frame::Ping(Bytes::new()),
             Ok(()) = states.changed(), if is_ready => {
                 let state = Arc::clone(&states.borrow_and_update());
                 unseen.push_back(state.0);

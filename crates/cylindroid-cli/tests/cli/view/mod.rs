@@ -1,5 +1,7 @@
 //! `view`: the protocol of docs/viewer.md, spoken to the binary.
 
+#![allow(clippy::panic)] // helpers say what they found
+
 mod choices;
 mod load;
 mod motion;

@@ -38,7 +38,7 @@ impl Servo {
     /// As [`Servo::step`].
     pub fn posture(&mut self, q: &[f64]) -> Result<Posture> {
         let svd = self.decomposed(q)?;
-        let weakest = (svd.len() > 0 && svd.value(0) > 0.0).then(|| {
+        let weakest = (!svd.is_empty() && svd.value(0) > 0.0).then(|| {
             let twist = self.space.twist(svd.u(svd.len() - 1));
             if self.options.task.axes == Reference::Local {
                 let turn = self.chain.pose().rotation;
