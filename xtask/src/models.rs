@@ -1,7 +1,7 @@
 //! Robot files for the tests: URDF and SDF of the PyPI package `example-robot-data`, MJCF of
-//! `robosuite`.
+//! `robosuite`, and the meshes of two arms for the viewer.
 //!
-//! Fetched once into `target/test-data`; only model files are unpacked (4 MB of 570).
+//! Fetched once into `target/test-data`; only these are unpacked (17 MB of 570).
 
 use std::fs;
 use std::path::PathBuf;
@@ -20,7 +20,9 @@ source, target = map(pathlib.Path, sys.argv[1:])
 for wheel in sorted(source.glob('*.whl')):
     with zipfile.ZipFile(wheel) as archive:
         for name in archive.namelist():
-            if name.endswith(('.urdf', '.xacro', '.sdf', '.srdf', '.xml')):
+            model = name.endswith(('.urdf', '.xacro', '.sdf', '.srdf', '.xml'))
+            arm = any(f'/robots/{arm}_description/meshes/' in name for arm in ('panda', 'xarm'))
+            if model or arm:
                 archive.extract(name, target)
 ";
 
@@ -33,7 +35,11 @@ pub(crate) fn fetch() -> Result<PathBuf> {
     let robots = folder.join("models/cmeel.prefix/share/example-robot-data/robots");
     let wanted = fs::read_to_string(root().join(REQUIREMENTS)).context(REQUIREMENTS)?;
     let stamp = folder.join("requirements-test.txt");
-    if robots.is_dir() && fs::read_to_string(&stamp).is_ok_and(|got| got == wanted) {
+    let meshes = robots.join("xarm_description/meshes");
+    if robots.is_dir()
+        && meshes.is_dir()
+        && fs::read_to_string(&stamp).is_ok_and(|got| got == wanted)
+    {
         return Ok(robots);
     }
     let wheels = folder.join("wheels");

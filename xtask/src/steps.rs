@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{layers, models, python};
+use crate::{layers, models, python, viewer};
 
 /// The workspace.
 pub(crate) fn root() -> PathBuf {
@@ -28,7 +28,7 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-fn cargo(arguments: &[&str]) -> Command {
+pub(crate) fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new(std::env::var("CARGO").unwrap_or_else(|_| "cargo".into()));
     command.args(arguments);
     command
@@ -62,6 +62,8 @@ pub(crate) fn quick() -> Result<()> {
 /// Everything: this is the whole CI.
 pub(crate) fn test() -> Result<()> {
     let robots = models::fetch()?;
+    // Before anything is compiled: the command line embeds the page.
+    step("viewer page", viewer::build)?;
     quick()?;
     step("documentation", || {
         // The library's alone: the command line documents itself with --help.
@@ -71,6 +73,7 @@ pub(crate) fn test() -> Result<()> {
     step("tests", || {
         run(cargo(&["test", "--quiet", "--workspace"]).env("CYLINDROID_TEST_ROBOTS", &robots))
     })?;
+    step("viewer in a browser", viewer::test)?;
     step("Python package", python::test)
 }
 
@@ -130,6 +133,14 @@ pub(crate) fn bench() -> Result<()> {
         run(&mut cargo(&["bench", "--package", "cylindroid", "--bench", bench]))?;
     }
     python::bench()
+}
+
+/// The viewer's server under load; what it prints is a measurement, not a check.
+pub(crate) fn viewer_load(seconds: Option<&str>) -> Result<()> {
+    let filter = ["test", "--release", "--package", "cylindroid-cli", "--test", "cli"];
+    let show = ["--", "--ignored", "--exact", "--nocapture", "view::load::load"];
+    let arguments = [&filter[..], &show].concat();
+    run(cargo(&arguments).env("CYLINDROID_LOAD", seconds.unwrap_or("60")))
 }
 
 /// The figures of the README, by the command line that users have.

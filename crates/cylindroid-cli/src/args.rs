@@ -6,6 +6,7 @@ mod closed;
 mod ik;
 mod move_to;
 mod screws;
+mod view;
 pub(crate) use closed::{
     AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, StaticsArgs,
 };
@@ -15,6 +16,7 @@ pub(crate) use move_to::{
 };
 
 pub(crate) use screws::ScrewsArgs;
+pub(crate) use view::ViewArgs;
 
 use crate::values::{Joints, Numbers};
 
@@ -77,6 +79,9 @@ pub(crate) enum Command {
     /// Force closure of the contacts on an object, and its quality
     #[command(long_about = closed::GRASP, after_long_help = closed::GRASP_EXAMPLES)]
     Grasp(Box<GraspArgs>),
+    /// The web viewer: see a model, drag its tool or object, and watch its measures
+    #[command(long_about = view::ABOUT, after_long_help = view::EXAMPLES)]
+    View(Box<ViewArgs>),
 }
 
 #[derive(Debug, Args)]

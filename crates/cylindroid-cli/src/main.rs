@@ -10,6 +10,7 @@ mod output;
 mod plot;
 mod trajectory;
 mod values;
+mod viewer;
 
 use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;

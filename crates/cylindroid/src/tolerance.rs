@@ -302,3 +302,8 @@ pub const CONTRADICTION: f64 = 1e-6;
 /// Where a way through closed configurations ends is found to this share of it [-]: a fold is
 /// then a distance of about its root away, 1e-6, or nearer.
 pub const SHARE_FOUND: f64 = 1e-12;
+
+/// Rates that differ by less than this, relative to their size, are the same: above the rounding of
+/// two inverses of one Jacobian that is a thousand times from singular, far below what a reference
+/// point a millimetre away changes [-].
+pub const SAME_RATES: f64 = 1e-9;

@@ -13,7 +13,7 @@ use crate::args::InfoArgs;
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
-struct InfoJson<'a> {
+pub(crate) struct InfoJson<'a> {
     name: &'a str,
     n: usize,
     joint_names: Vec<&'a str>,
@@ -128,7 +128,8 @@ pub(crate) fn run(args: &InfoArgs, style: Style, out: &mut dyn Write) -> anyhow:
     Ok(ExitCode::SUCCESS)
 }
 
-fn describe(robot: &Mechanism) -> InfoJson<'_> {
+/// What a mechanism is.
+pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
     let link = |i: usize| robot.links()[i].name.as_str();
     let coordinates = robot.coordinates().iter().zip(robot.home()).map(|(c, &home)| {
         let joint = &robot.joints()[c.joint];

@@ -1,14 +1,15 @@
 //! One file per command: arguments in, text or JSON out, an exit code.
 
-mod closed;
+pub(crate) mod closed;
 mod fk;
 mod ik;
-mod info;
+pub(crate) mod info;
 mod jacobian;
 mod models;
-mod move_to;
-mod screws;
+pub(crate) mod move_to;
+pub(crate) mod screws;
 mod target;
+mod view;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -41,6 +42,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Manipulability(args) => closed::manipulability::run(args, style, out),
         Command::Statics(args) => closed::statics::run(args, style, out),
         Command::Grasp(args) => closed::grasp::run(args, style, out),
+        Command::View(args) => view::run(args, style, out),
     }
 }
 
@@ -71,4 +73,16 @@ fn end_effector(robot: &Mechanism, args: &FrameArgs) -> cylindroid::Result<EndEf
     let tool = args.tool.map_or([0.0; 3], |t| t.0);
     Error::check_finite("--tool", &tool)?;
     Ok(EndEffector { frame, frame_from_tool: Pose::from_translation(Vec3::from_array(tool)) })
+}
+
+/// Joints of trees are all driven.
+fn all_driven(robot: &Mechanism) -> Error {
+    Error::InvalidOption {
+        option: "--actuated",
+        value: robot.name().to_owned(),
+        reason: format!(
+            "'{}' has no loops or contacts, so all joints are driven; leave the option out",
+            robot.name()
+        ),
+    }
 }

@@ -60,7 +60,11 @@ fn examples_run_as_they_stand() {
     let all = counts[6..].iter().all(|n| *n > 1);
     assert!(commands.len() > 11 && counts[0] > 15 && counts[1] > 3 && all, "{counts:?}");
     for example in found.iter().flatten() {
-        let words = example.replace("path/to/ur5_robot.urdf", &urdf.to_string_lossy());
+        let mut words = example.replace("path/to/ur5_robot.urdf", &urdf.to_string_lossy());
+        // It serves until it is stopped; --check stops it when it could.
+        if words.starts_with("view ") && !words.contains("--check") {
+            words.push_str(" --check");
+        }
         let output = Command::new(env!("CARGO_BIN_EXE_cylindroid"))
             .args(words.split(' '))
             .current_dir(folder.path())
@@ -79,7 +83,7 @@ fn coded(text: &str) -> BTreeSet<&str> {
 }
 
 /// All keys of an object and of what is in it.
-fn keys<'a>(value: &'a Value, found: &mut BTreeSet<&'a str>) {
+pub(crate) fn keys<'a>(value: &'a Value, found: &mut BTreeSet<&'a str>) {
     match value {
         Value::Object(map) => {
             found.extend(map.keys().map(String::as_str));
@@ -138,6 +142,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec![GRASP, "--wrench", "0,0,-9,0,0,0"],
             vec!["five-bar", "--actuated", "q1,q2,q3,q4,q5", "--wrench", "3,-1,0.2"],
         ],
+        "view" => vec![vec!["panda", "--check"]],
         "grasp" => vec![vec![GRASP, "--torsion", "0.01"]],
         _ => vec![vec![]],
     };

@@ -11,6 +11,7 @@ mod motion;
 mod screws;
 mod shape;
 mod statics;
+mod view;
 
 use std::process::{Command, Output};
 

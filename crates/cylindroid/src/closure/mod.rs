@@ -37,6 +37,7 @@ mod marks;
 mod mobility;
 mod modes;
 mod motions;
+mod reference_motions;
 mod relation;
 mod singularity;
 mod statics;

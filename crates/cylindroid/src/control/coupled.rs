@@ -85,6 +85,11 @@ impl Coupled {
         self.drives
     }
 
+    /// Number of independent motions that the drives steer: the columns of M that are not zero.
+    pub(super) fn steered(&self) -> usize {
+        self.steering.motions.cols()
+    }
+
     /// Looks at the loops of `q`, with `self.task` as the task there, and writes J M. `space`
     /// scales the rates.
     ///

@@ -15,7 +15,10 @@
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
+mod posture;
 mod stages;
+
+pub use posture::Posture;
 
 use super::coupled::Coupled;
 use super::limits::{LimitKind, RateBounds};

@@ -107,7 +107,8 @@ impl Task {
 
     /// The error from `pose` to `target` in the axes of the task, zero in components that do not
     /// matter.
-    pub(crate) fn error(self, pose: Pose, target: Pose) -> Twist {
+    #[must_use]
+    pub fn error(self, pose: Pose, target: Pose) -> Twist {
         self.seen(pose, pose.error_to(target))
     }
 

@@ -11,6 +11,7 @@ mod conversion;
 mod forward;
 mod hessian;
 mod jacobian;
+mod joint_screws;
 mod lanes;
 mod serial;
 mod state;

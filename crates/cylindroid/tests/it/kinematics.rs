@@ -351,3 +351,66 @@ fn bad_q_is_refused_by_name_and_leaves_the_state() {
     let error = robot.frame("hand_tpc").unwrap_err().to_string();
     assert!(error.contains("nearest: hand_tcp"), "{error}");
 }
+
+/// The screw of a joint is its axis where it stands, whatever the links before it do.
+#[test]
+fn screws_of_joints() {
+    let mut random = Random(77);
+    let mut looked = 0;
+    for robot in robots() {
+        let q: Vec<f64> = (0..robot.n()).map(|_| random.within(-1.0, 1.0)).collect();
+        let state = robot.state(&q).unwrap();
+        let pose = |link: usize| state.pose(robot.frame(&robot.links()[link].name).unwrap());
+        for (i, joint) in robot.joints().iter().enumerate() {
+            let screws = state.joint_screws(i);
+            assert_eq!(screws.len(), joint.coordinates.len(), "{}", joint.name);
+            let frame = pose(joint.parent) * joint.parent_from_joint;
+            let (p, axis) = (frame.translation, frame.rotation * joint.axis);
+            let turn = Twist { linear: p.cross(axis), angular: axis };
+            let slide = Twist { linear: axis, angular: Vec3::ZERO };
+            let size = joint.mimic.as_ref().map_or(1.0, |m| m.multiplier);
+            let expected = match joint.kind {
+                JointKind::Revolute | JointKind::Continuous => turn,
+                JointKind::Prismatic => slide,
+                JointKind::Helical { pitch } => turn + slide * pitch,
+                JointKind::Spherical => {
+                    // About the child's axes, through its origin.
+                    let at = frame.translation;
+                    assert!(screws.iter().all(|s| (s.axis.nearest(at) - at).norm() < 1e-12));
+                    continue;
+                }
+                _ => continue,
+            } * size;
+            looked += 1;
+            let limit = 1e-12 * (1.0 + p.norm());
+            assert_close(&joint.name, &screws[0].twist().to_array(), &expected.to_array(), limit);
+        }
+        assert!(state.joint_screws(robot.joints().len()).is_empty());
+    }
+    assert!(looked > 50, "{looked}");
+}
+
+/// What a closing joint holds does no work in its screws, and they are as many as it leaves.
+#[test]
+fn screws_of_closing_joints() {
+    let mut looked = 0;
+    for name in catalogue::names() {
+        let mechanism = catalogue::load(name).unwrap();
+        let state = mechanism.state(mechanism.home()).unwrap();
+        for (i, joint) in mechanism.loops().iter().enumerate() {
+            let link = mechanism.frame(&mechanism.links()[joint.a].name).unwrap();
+            let frame = state.pose(link) * joint.link_a_from_joint;
+            let screws = state.loop_screws(i);
+            assert_eq!(screws.len(), joint.kind.dof(), "{}", joint.name);
+            for wrench in joint.kind.held(joint.axis, mechanism.dimension()) {
+                let wrench = frame.coadjoint(wrench);
+                for screw in &screws {
+                    looked += 1;
+                    assert!(screw.twist().power(wrench).abs() < 1e-12, "{name} {}", joint.name);
+                }
+            }
+        }
+        assert!(state.loop_screws(mechanism.loops().len()).is_empty());
+    }
+    assert!(looked > 20, "{looked}");
+}

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use cylindroid::closure::{Counts, Diagnosis, JointMobility, Mobility};
 use serde::Serialize;
+use serde_json::value::{RawValue, to_raw_value};
 
 use super::singularity::{self, FiniteJson, SingularityJson};
 use super::{HeadJson, Posed, list};
@@ -62,16 +63,26 @@ pub(crate) fn run(
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
     let posed = Posed::new(args)?;
-    let chain = &posed.chain;
-    let mobility = Mobility::of(&chain.constraint);
-    let state = posed.mechanism.state(&posed.q)?;
-    let length = chain.constraint.length();
-    let diagnosis = Diagnosis::of(&state, Some(chain.reference), Some(length))?;
+    let (mobility, diagnosis) = find(&posed)?;
     match style {
         Style::Json => output::json(out, &describe(&posed, &mobility, &diagnosis))?,
         Style::Table => print(out, &posed, &mobility, &diagnosis)?,
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The object of `--json`.
+pub(crate) fn report(posed: &Posed) -> anyhow::Result<Box<RawValue>> {
+    let (mobility, diagnosis) = find(posed)?;
+    Ok(to_raw_value(&describe(posed, &mobility, &diagnosis))?)
+}
+
+fn find(posed: &Posed) -> cylindroid::Result<(Mobility, Diagnosis)> {
+    let chain = &posed.chain;
+    let mobility = Mobility::of(&chain.constraint);
+    let length = chain.constraint.length();
+    let diagnosis = Diagnosis::of(&posed.state()?, Some(chain.reference), Some(length))?;
+    Ok((mobility, diagnosis))
 }
 
 fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJson<'a> {

@@ -2,14 +2,14 @@
 
 pub(super) mod assemble;
 pub(super) mod grasp;
-pub(super) mod manipulability;
+pub(crate) mod manipulability;
 mod measured;
-pub(super) mod mobility;
-mod singularity;
+pub(crate) mod mobility;
+pub(crate) mod singularity;
 pub(super) mod statics;
 
 use cylindroid::closure::{ClosedChain, Gap};
-use cylindroid::model::Mechanism;
+use cylindroid::model::{FrameId, Mechanism};
 use cylindroid::{Error, Result, State};
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ use crate::output::{self, number};
 use crate::values::components;
 
 /// A mechanism, its configuration and its constraint there.
-struct Posed {
+pub(crate) struct Posed {
     mechanism: Mechanism,
     q: Vec<f64>,
     chain: ClosedChain,
@@ -33,7 +33,16 @@ impl Posed {
         if let Some(length) = args.length {
             Error::check_positive("--length", length)?;
         }
-        let chain = ClosedChain::of(&mechanism.state(&q)?, frame, args.length)?;
+        Self::at(mechanism, q, frame, args.length)
+    }
+
+    pub(crate) fn at(
+        mechanism: Mechanism,
+        q: Vec<f64>,
+        frame: Option<FrameId>,
+        length: Option<f64>,
+    ) -> Result<Self> {
+        let chain = ClosedChain::of(&mechanism.state(&q)?, frame, length)?;
         Ok(Self { mechanism, q, chain })
     }
 

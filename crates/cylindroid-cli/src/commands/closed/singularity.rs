@@ -232,7 +232,7 @@ fn pitch(screw: &Screw) -> Option<String> {
 }
 
 /// A motion as a screw, in words.
-pub(super) fn motion_in_words(s: &Screw, planar: bool) -> String {
+pub(crate) fn motion_in_words(s: &Screw, planar: bool) -> String {
     let along = direction(s, planar);
     if s.is_translation() {
         return format!("a translation along {along}");

@@ -13,7 +13,7 @@ use crate::output::number;
 const PLAIN: &str = "truncated";
 
 /// Sets method, projection and fallback.
-pub(super) fn apply(
+pub(crate) fn apply(
     args: &InverseArgs,
     start: &[f64],
     robot: &Mechanism,

@@ -8,7 +8,7 @@ use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
 use super::super::target::{target_pose, task};
-use super::super::{configuration, end_effector, load};
+use super::super::{all_driven, configuration, end_effector, load};
 use super::{inverse, joints};
 use crate::args::{LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs};
 use crate::values::Named;
@@ -113,18 +113,6 @@ impl Job {
             detour,
             defaults,
         })
-    }
-}
-
-/// Joints of trees are all driven.
-fn all_driven(robot: &Mechanism) -> Error {
-    Error::InvalidOption {
-        option: "--actuated",
-        value: robot.name().to_owned(),
-        reason: format!(
-            "'{}' has no loops or contacts, so all joints are driven; leave the option out",
-            robot.name()
-        ),
     }
 }
 

@@ -1,10 +1,10 @@
 //! `move`: drives a frame to a target and says whether and how it got there.
 
-mod inverse;
+pub(crate) mod inverse;
 mod job;
 mod joints;
 mod report;
-mod sentences;
+pub(crate) mod sentences;
 
 use std::io::Write;
 use std::process::ExitCode;

@@ -2,6 +2,7 @@
 
 use cylindroid::Reference;
 use cylindroid::control::{Outcome, Stall, Task};
+use cylindroid::model::Mechanism;
 
 use super::job::Job;
 use crate::output::number;
@@ -57,49 +58,10 @@ pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[
              --time-limit, or move faster (--gain, --speed).",
             job.time_limit
         ),
-        Some(Stall::OutOfReach { distance, length }) => format!(
-            "The target is out of reach: it is {} m from the first joint, but the arm stretched \
-             is {} m long from there. Bring the target nearer by at least {} m.",
-            number(*distance),
-            number(*length),
-            number(distance - length)
-        ),
-        Some(Stall::Limits { coordinates }) => limits(job, outcome, coordinates),
-        Some(Stall::Singular { ratio, direction }) => format!(
-            "The arm is in a singular pose: its smallest singular value is {} of the largest, and \
-             the remaining error ({}) lies along a direction that is lost there. Start from \
-             another posture (--q), or let a damped inverse through (--inverse damped).",
-            number(*ratio),
-            along(job, direction)
-        ),
-        Some(Stall::TooFewJoints { rank, task, direction }) => format!(
-            "The arm has {rank} independent motion{} here, the task asks for {task} components; \
-             the remaining error ({}) is outside of what it can do. Leave components free with \
-             --task (position, pointing, or a list like x,y,rz), or change the target.",
-            if *rank == 1 { "" } else { "s" },
-            along(job, direction)
-        ),
-        Some(Stall::NoInverse(reason)) => format!(
-            "The inverse that was asked for does not exist here: {reason}. Or name what shall take \
-             over there (--fallback truncated).",
-        ),
-        Some(Stall::GivenUp { direction }) => format!(
-            "The remaining error ({}) is what the inverse gives up; the arm itself could lessen \
-             it. Choose another --h, other motions to give up, or another --inverse.",
-            along(job, direction)
-        ),
-        Some(Stall::Uncontrolled { share, direction }) => format!(
-            "A motion of the object ({}) is about to escape the drives: {} of it still belongs to \
-             them (type II singularity), and beyond it passive joints would choose the way. Move \
-             on another way, or drive other joints (--actuated).",
-            along(job, direction),
-            number(*share)
-        ),
-        Some(Stall::Slow) => "The error fell by less than 0.1 % in the last second, and neither \
-             limits nor a singular pose stop it: the inverse is damped too much or a rate limit is \
-             too tight. Try less damping (--damping), another --inverse, or a higher --gain or \
-             --speed."
-            .to_owned(),
+        Some(stall) => {
+            let cause = cause(&job.robot, job.options.task, &outcome.q, stall);
+            format!("{cause} {}", way_out(stall)).trim_end().to_owned()
+        }
     };
     text.push_str(&without_inverse(outcome));
     if let Some(q) = other_posture {
@@ -110,6 +72,76 @@ pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[
         ));
     }
     text
+}
+
+/// Why a servo got no nearer at `q`, without what the command line offers against it.
+pub(crate) fn cause(robot: &Mechanism, task: Task, q: &[f64], stall: &Stall) -> String {
+    match stall {
+        Stall::OutOfReach { distance, length } => format!(
+            "The target is out of reach: it is {} m from the first joint, but the arm stretched \
+             is {} m long from there. Bring the target nearer by at least {} m.",
+            number(*distance),
+            number(*length),
+            number(distance - length)
+        ),
+        Stall::Limits { coordinates } => limits(robot, q, coordinates),
+        Stall::Singular { ratio, direction } => format!(
+            "The arm is in a singular pose: its smallest singular value is {} of the largest, and \
+             the remaining error ({}) lies along a direction that is lost there.",
+            number(*ratio),
+            along(task, direction)
+        ),
+        Stall::TooFewJoints { rank, task: components, direction } => format!(
+            "The arm has {rank} independent motion{} here, the task asks for {components} \
+             components; the remaining error ({}) is outside of what it can do.",
+            if *rank == 1 { "" } else { "s" },
+            along(task, direction)
+        ),
+        Stall::NoInverse(reason) => {
+            format!("The inverse that was asked for does not exist here: {reason}.")
+        }
+        Stall::GivenUp { direction } => format!(
+            "The remaining error ({}) is what the inverse gives up; the arm itself could lessen \
+             it.",
+            along(task, direction)
+        ),
+        Stall::Uncontrolled { share, direction } => format!(
+            "A motion of the object ({}) is about to escape the drives: {} of it still belongs to \
+             them (type II singularity), and beyond it passive joints would choose the way.",
+            along(task, direction),
+            number(*share)
+        ),
+        Stall::Slow => "The error fell by less than 0.1 % in the last second, and neither limits \
+             nor a singular pose stop it: the inverse is damped too much or a rate limit is too \
+             tight."
+            .to_owned(),
+    }
+}
+
+/// What the options of `move` can do about it.
+fn way_out(stall: &Stall) -> &'static str {
+    match stall {
+        Stall::OutOfReach { .. } => "",
+        Stall::Limits { .. } => {
+            "Start from another posture (--q), keep the joints away from their limits (--secondary \
+             centring), or leave components free (--task)."
+        }
+        Stall::Singular { .. } => {
+            "Start from another posture (--q), or let a damped inverse through (--inverse damped)."
+        }
+        Stall::TooFewJoints { .. } => {
+            "Leave components free with --task (position, pointing, or a list like x,y,rz), or \
+             change the target."
+        }
+        Stall::NoInverse(_) => "Or name what shall take over there (--fallback truncated).",
+        Stall::GivenUp { .. } => {
+            "Choose another --h, other motions to give up, or another --inverse."
+        }
+        Stall::Uncontrolled { .. } => "Move on another way, or drive other joints (--actuated).",
+        Stall::Slow => {
+            "Try less damping (--damping), another --inverse, or a higher --gain or --speed."
+        }
+    }
 }
 
 /// A sentence about the steps that the fallback took, if any.
@@ -136,9 +168,9 @@ fn pasteable(job: &Job, q: &[f64]) -> String {
     entries.collect::<Vec<_>>().join(", ")
 }
 
-fn limits(job: &Job, outcome: &Outcome, coordinates: &[usize]) -> String {
+fn limits(robot: &Mechanism, q: &[f64], coordinates: &[usize]) -> String {
     let ends = coordinates.iter().map(|&i| {
-        let (c, q) = (&job.robot.coordinates()[i], outcome.q[i]);
+        let (c, q) = (&robot.coordinates()[i], q[i]);
         let is_lower = q - c.limits.lower < c.limits.upper - q;
         let (end, limit) =
             if is_lower { ("lower", c.limits.lower) } else { ("upper", c.limits.upper) };
@@ -157,22 +189,20 @@ fn limits(job: &Job, outcome: &Outcome, coordinates: &[usize]) -> String {
         }
     };
     format!(
-        "{stands}. Without that the tool would get nearer; the other joints cannot do it alone. \
-         Start from another posture (--q), keep the joints away from their limits (--secondary \
-         centring), or leave components free (--task)."
+        "{stands}. Without that the tool would get nearer; the other joints cannot do it alone."
     )
 }
 
 /// The larger components of a unit vector in task space, in words.
-fn along(job: &Job, direction: &[f64]) -> String {
+fn along(task: Task, direction: &[f64]) -> String {
     /// Components below this are not named.
     const SMALL: f64 = 0.1;
-    let names = Task::COMPONENTS.iter().zip(job.options.task.components).filter(|(_, on)| *on);
+    let names = Task::COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
     let parts: Vec<String> = names
         .zip(direction)
         .filter(|(_, share)| share.abs() >= SMALL)
         .map(|((name, _), share)| format!("{share:.2} {name}"))
         .collect();
-    let axes = if job.options.task.axes == Reference::Local { "tool" } else { "world" };
+    let axes = if task.axes == Reference::Local { "tool" } else { "world" };
     format!("{}, {axes} axes", parts.join(", "))
 }

@@ -1,6 +1,6 @@
 //! `screws`: what the joint twists span and what can be done with it.
 
-mod report;
+pub(crate) mod report;
 mod twists;
 
 use std::io::Write;
@@ -8,7 +8,8 @@ use std::process::ExitCode;
 
 use cylindroid::inverse::{PointDirection, point_direction};
 use cylindroid::screws::{Involution, Line, Screw, ScrewOptions, ScrewSystem, involution};
-use cylindroid::{Result, Vec3};
+use cylindroid::{EndEffector, Result, State, Vec3};
+use serde_json::value::RawValue;
 
 use self::twists::Twists;
 use super::Style;
@@ -40,7 +41,7 @@ pub(crate) fn run(
             return Err(cylindroid::Error::NotFinite { what: "--h".into(), value: *h }.into());
         }
     }
-    let found = find(args)?;
+    let found = find(Twists::read(args)?, args)?;
     if let Some(path) = &args.plot {
         plot::screws::draw(&found.twists.title(), &found.twists.matrix(), &found.system, path)?;
     }
@@ -48,8 +49,16 @@ pub(crate) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-fn find(args: &ScrewsArgs) -> Result<Found> {
-    let twists = Twists::read(args)?;
+/// The object of `--json` for a mechanism; `args` say everything but which and where.
+pub(crate) fn report(
+    state: &State,
+    of: EndEffector,
+    args: &ScrewsArgs,
+) -> anyhow::Result<Box<RawValue>> {
+    report::raw(&find(Twists::of(state, of), args)?, &args.h)
+}
+
+fn find(twists: Twists, args: &ScrewsArgs) -> Result<Found> {
     let options = ScrewOptions {
         length: args.length.unwrap_or(twists.length),
         center: args.center.map(|c| Vec3::from_array(c.0)),

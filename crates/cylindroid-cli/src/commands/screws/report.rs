@@ -7,6 +7,7 @@ use cylindroid::inverse::PointDirection;
 use cylindroid::screws::{Existence, Involution, Screw, ScrewSystem, Transversals};
 use cylindroid::{Twist, Vec3};
 use serde::Serialize;
+use serde_json::value::{RawValue, to_raw_value};
 
 use super::Found;
 use crate::commands::Style;
@@ -141,6 +142,11 @@ pub(super) fn write(
     }
 }
 
+/// The JSON object.
+pub(super) fn raw(found: &Found, pitches: &[f64]) -> anyhow::Result<Box<RawValue>> {
+    Ok(to_raw_value(&describe(found, pitches))?)
+}
+
 fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
     let (twists, system) = (&found.twists, &found.system);
     let (form, choice) = (system.normal_form(), system.choose_pitch());
@@ -219,7 +225,7 @@ fn involution_json(i: &Involution) -> InvolutionJson {
 }
 
 /// Principal screws where they span the reciprocal system, else those of a basis.
-fn reciprocal_screws(system: &ScrewSystem) -> Vec<Screw> {
+pub(crate) fn reciprocal_screws(system: &ScrewSystem) -> Vec<Screw> {
     let reciprocal = system.reciprocal();
     let form = reciprocal.normal_form();
     let generators = form.twists();

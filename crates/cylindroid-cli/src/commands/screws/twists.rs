@@ -5,7 +5,7 @@ use std::path::Path;
 
 use cylindroid::kinematics::Chain;
 use cylindroid::model::Mechanism;
-use cylindroid::{Error, Matrix, Reference, Result, Twist, Vec3};
+use cylindroid::{EndEffector, Error, Matrix, Reference, Result, State, Twist, Vec3};
 
 use super::super::{configuration, end_effector};
 use crate::args::ScrewsArgs;
@@ -71,19 +71,24 @@ impl Twists {
         let robot = cylindroid::load(&args.posture.model)?;
         let q = configuration(&robot, &args.posture)?;
         let end_effector = end_effector(&robot, &args.frame)?;
+        Ok(Self::of(&robot.state(&q)?, end_effector))
+    }
+
+    /// Of the joints that move a tool: others have no twist there.
+    pub(super) fn of(state: &State, end_effector: EndEffector) -> Self {
+        let robot = state.mechanism();
         let frame = robot.frame_of(end_effector.frame).name.clone();
-        // Joints that do not move the frame have no twist there.
-        let chain = Chain::new(&robot, end_effector);
-        let jacobian = robot.state(&q)?.jacobian(end_effector, Reference::World);
+        let chain = Chain::new(robot, end_effector);
+        let jacobian = state.jacobian(end_effector, Reference::World);
         let column = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
         let names = chain.coordinates().iter().map(|&c| robot.coordinates()[c].name.clone());
-        Ok(Self {
-            file: args.posture.model.clone(),
+        Self {
+            file: String::new(),
             names: names.collect(),
             twists: chain.coordinates().iter().map(column).collect(),
             length: robot.reach(),
-            robot: Some((robot, frame, q)),
-        })
+            robot: Some((robot.clone(), frame, state.q().to_vec())),
+        }
     }
 
     /// The twists as columns.

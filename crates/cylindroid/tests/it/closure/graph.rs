@@ -158,3 +158,43 @@ fn bad_requests_are_refused() {
     let chain = ClosedChain::of(&finger.state(&[0.0]).unwrap(), None, None).unwrap();
     assert_eq!(Mobility::of(&chain.constraint).dof.dimension(), 1, "it turns about the point");
 }
+
+/// Of a tree what its Jacobian spans; of a linkage the way that its reference really goes.
+#[test]
+fn motions_of_the_reference() {
+    use cylindroid::closure::{FollowOptions, follow};
+    use cylindroid::screws::{Screw, ScrewOptions, ScrewSystem};
+    use cylindroid::spatial::log;
+
+    let options = ScrewOptions::with_length(1.0);
+    for name in ["panda", "youbot", "3r"] {
+        let robot = catalogue::load(name).unwrap();
+        let q: Vec<f64> = (0..robot.n()).map(|i| 0.3 + 0.4 * i as f64).collect();
+        let state = robot.state(&q).unwrap();
+        let chain = ClosedChain::of(&state, None, None).unwrap();
+        let system = ScrewSystem::of(&chain.reference_twists(&state), &options).unwrap();
+        let j = state.jacobian(robot.reference(), Reference::World);
+        let columns = ScrewSystem::of_columns(&j, &options).unwrap();
+        assert_eq!(system.order(), columns.order(), "{name}");
+        assert!(system.sine_to_system(&columns) < 1e-9, "{name}");
+    }
+
+    let linkage = catalogue::load("four-bar").unwrap();
+    let start = follow(&linkage, &[0.0; 3], &[0], &[0.4], FollowOptions::default()).unwrap().q;
+    let state = linkage.state(&start).unwrap();
+    let chain = ClosedChain::of(&state, None, None).unwrap();
+    let [twist] = chain.reference_twists(&state)[..] else { panic!("one motion") };
+    let h = 1e-5;
+    let pose = |to: f64| {
+        let way = follow(&linkage, &start, &[0], &[to], FollowOptions::default()).unwrap();
+        linkage.state(&way.q).unwrap().pose(linkage.reference())
+    };
+    let moved = log(pose(0.4 + h) * pose(0.4 - h).inverse());
+    let (a, b) = (Screw::of(moved).unwrap(), Screw::of(twist).unwrap());
+    // The centre of rotation, and that it is a rotation.
+    assert!((a.axis.point - b.axis.point).norm() < 1e-6, "{a:?} and {b:?}");
+    assert!(a.pitch.abs() < 1e-6 && b.pitch.abs() < 1e-12);
+    let stewart = catalogue::load("stewart").unwrap();
+    let state = stewart.state(stewart.home()).unwrap();
+    assert_eq!(ClosedChain::of(&state, None, None).unwrap().reference_twists(&state).len(), 6);
+}

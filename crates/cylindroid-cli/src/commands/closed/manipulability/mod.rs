@@ -12,6 +12,7 @@ use cylindroid::manipulability::{
     velocity_polytope, velocity_range,
 };
 use cylindroid::{Error, Result};
+use serde_json::value::RawValue;
 
 use super::Posed;
 use super::measured::{self, Quantity, Task};
@@ -52,7 +53,7 @@ pub(crate) fn run(
     if let Some(path) = &args.plot {
         plot::check(path)?;
     }
-    let found = find(args)?;
+    let found = find(Posed::new(&args.closed)?, args)?;
     if let Some(path) = &args.plot {
         let [rates, torques] = [Quantity::Rate, Quantity::Torque];
         let drawing = plot::ellipses::Drawing {
@@ -69,8 +70,12 @@ pub(crate) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-fn find(args: &ManipulabilityArgs) -> Result<Found> {
-    let posed = Posed::new(&args.closed)?;
+/// The object of `--json`; `args` say everything but the posture.
+pub(crate) fn report(posed: Posed, args: &ManipulabilityArgs) -> anyhow::Result<Box<RawValue>> {
+    report::raw(&find(posed, args)?)
+}
+
+fn find(posed: Posed, args: &ManipulabilityArgs) -> Result<Found> {
     let task = Task::new(&posed, args)?;
     let metrics = measured::metrics(&posed, args, task.as_ref())?;
     let relation = Motions::of(&posed.chain.constraint).relation();

@@ -5,6 +5,7 @@ use std::io::Write;
 use cylindroid::linalg::Interval;
 use cylindroid::manipulability::{Direction, Gradient, Index, Spectrum};
 use serde::Serialize;
+use serde_json::value::{RawValue, to_raw_value};
 
 use super::super::HeadJson;
 use super::{Bounded, Found, Reached};
@@ -156,6 +157,11 @@ pub(super) fn write(found: &Found, style: Style, out: &mut dyn Write) -> anyhow:
         Style::Json => output::json(out, &describe(found)),
         Style::Table => print(found, out),
     }
+}
+
+/// The JSON object.
+pub(super) fn raw(found: &Found) -> anyhow::Result<Box<RawValue>> {
+    Ok(to_raw_value(&describe(found))?)
 }
 
 fn describe(found: &Found) -> ManipulabilityJson<'_> {

@@ -1,0 +1,78 @@
+//! `view`: serves the web viewer.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use cylindroid::{Error, Result};
+use serde::Serialize;
+
+use super::{Style, all_driven, configuration, end_effector, load};
+use crate::args::ViewArgs;
+use crate::viewer::{Server, Start, page_is_built};
+
+#[derive(Debug, Serialize)]
+struct ViewJson<'a> {
+    url: &'a str,
+    model: &'a str,
+    /// False where the page is not built.
+    page: bool,
+}
+
+pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let start = start(args)?;
+    let model = start.mechanism.name().to_owned();
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
+    runtime.block_on(async {
+        let server = Server::bind(start, &args.host, args.port).await;
+        let server = server.with_context(|| {
+            format!(
+                "cannot listen at {} port {}; choose others with --host and --port",
+                args.host, args.port
+            )
+        })?;
+        let (url, page) = (server.url(), page_is_built());
+        match style {
+            Style::Table => writeln!(out, "{url}")?,
+            Style::Json => {
+                let line = ViewJson { url: &url, model: &model, page };
+                writeln!(out, "{}", serde_json::to_string(&line)?)?;
+            }
+        }
+        out.flush()?;
+        if !page {
+            note();
+        }
+        if !args.check {
+            server.serve().await?;
+        }
+        anyhow::Ok(())
+    })?;
+    // Reports in the making are of no use any more.
+    runtime.shutdown_background();
+    Ok(ExitCode::SUCCESS)
+}
+
+#[allow(clippy::print_stderr)] // it is no output
+fn note() {
+    eprintln!(
+        "note: the page is not built, only the protocol is served; run `cargo xtask viewer` in the \
+         source of cylindroid (it needs Node.js), then build it again"
+    );
+}
+
+fn start(args: &ViewArgs) -> Result<Start> {
+    let robot = load(&args.posture.model, &args.actuated)?;
+    if !args.actuated.is_empty() && !robot.is_closed() {
+        return Err(all_driven(&robot));
+    }
+    let q = configuration(&robot, &args.posture)?;
+    let mut tool = end_effector(&robot, &args.frame)?;
+    if args.frame.frame.is_none() && robot.is_closed() {
+        tool.frame = robot.reference();
+    }
+    if !tool.frame_from_tool.is_finite() {
+        return Err(Error::NotFinite { what: "--tool".to_owned(), value: f64::NAN });
+    }
+    Start::new((robot, &args.posture.model), &q, tool, &args.meshes)
+}

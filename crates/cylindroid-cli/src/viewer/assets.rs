@@ -1,0 +1,218 @@
+//! Files that the server gives out: the page inside the binary, and meshes inside the model's own
+//! folders.
+//!
+//! A mesh file names its textures relative to itself, so that a whole folder has to be open. It is
+//! open for meshes and images only, and for nothing that a link or `..` leads out to.
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::path::{Component, Path, PathBuf};
+
+use cylindroid::Mechanism;
+use cylindroid::model::Geometry;
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+
+/// The page, as `cargo xtask viewer` left it.
+#[derive(rust_embed::RustEmbed)]
+#[folder = "../../viewer/dist"]
+#[allow_missing = true]
+pub(super) struct Page;
+
+impl Page {
+    pub(super) fn is_built() -> bool {
+        Self::get("index.html").is_some()
+    }
+}
+
+/// What is a mesh, and what may belong to one.
+const MESHES: [&str; 3] = ["stl", "dae", "obj"];
+const COMPANIONS: [&str; 10] =
+    ["mtl", "png", "jpg", "jpeg", "gif", "bmp", "tga", "tif", "tiff", "webp"];
+
+const PATH: &AsciiSet =
+    &NON_ALPHANUMERIC.remove(b'/').remove(b'.').remove(b'-').remove(b'_').remove(b'~');
+
+/// The model's own folders, without links, and what the page may know of its meshes.
+#[derive(Debug, Default)]
+pub(super) struct Folders {
+    open: Vec<PathBuf>,
+}
+
+/// A mesh as the page gets it.
+#[derive(Debug, PartialEq)]
+pub(super) struct Served {
+    pub(super) url: Option<String>,
+    /// `stl`, `dae` or `obj`.
+    pub(super) format: Option<&'static str>,
+    /// Why it has no URL.
+    pub(super) problem: Option<String>,
+}
+
+impl Folders {
+    /// Of the model in this file (or with this name of the catalogue, which has none), and others
+    /// that the user opens.
+    pub(super) fn of(
+        mechanism: &Mechanism,
+        model: &str,
+        more: &[PathBuf],
+    ) -> cylindroid::Result<Self> {
+        let mut open = BTreeSet::new();
+        if mechanism.report().format != "catalogue"
+            && let Ok(file) = Path::new(model).canonicalize()
+            && let Some(folder) = file.parent()
+        {
+            let package = folder.ancestors().find(|f| f.join("package.xml").is_file());
+            open.insert(package.unwrap_or(folder).to_owned());
+        }
+        for (uri, path) in meshes(mechanism) {
+            open.extend(path.and_then(|path| package(uri, path)));
+        }
+        for folder in more {
+            let found = folder.canonicalize().map_err(|error| cylindroid::Error::Io {
+                path: folder.clone(),
+                action: "read",
+                message: error.to_string(),
+            })?;
+            open.insert(found);
+        }
+        // The root of the disk is nobody's own folder.
+        open.retain(|folder| folder.parent().is_some());
+        Ok(Self { open: open.into_iter().collect() })
+    }
+
+    /// How the page gets a mesh.
+    pub(super) fn served(&self, uri: &str, path: Option<&Path>) -> Served {
+        let refused = |problem: String| Served { url: None, format: None, problem: Some(problem) };
+        let Some(path) = path else {
+            return refused(format!("The file of mesh '{uri}' was not found."));
+        };
+        let Some(format) = MESHES.into_iter().find(|m| extension(path).as_deref() == Some(m))
+        else {
+            let kinds = MESHES.join(", ");
+            return refused(format!("Mesh '{uri}' is of a kind that is not shown ({kinds} are)."));
+        };
+        let found = path.canonicalize().ok().and_then(|file| {
+            self.open.iter().enumerate().find_map(|(i, folder)| {
+                let inside = file.strip_prefix(folder).ok()?.to_str()?;
+                let inside = inside.replace(std::path::MAIN_SEPARATOR, "/");
+                Some(format!("/mesh/{i}/{}", utf8_percent_encode(&inside, PATH)))
+            })
+        });
+        match found {
+            Some(url) => Served { url: Some(url), format: Some(format), problem: None },
+            None => refused(format!(
+                "Mesh '{uri}' lies outside of the model's own folders; open its folder with \
+                 --meshes."
+            )),
+        }
+    }
+
+    /// The file behind `/mesh/<folder>/<path>`, if it may be given out. `path` is decoded.
+    pub(super) fn file(&self, folder: usize, path: &str) -> Option<PathBuf> {
+        let folder = self.open.get(folder)?;
+        let relative = Path::new(path);
+        let plain = relative.components().all(|c| matches!(c, Component::Normal(_)));
+        if !plain || path.contains(['\\', '\0']) || !is_given_out(relative) {
+            return None;
+        }
+        let file = folder.join(relative).canonicalize().ok()?;
+        // Where links lead, the file itself has to be of a kind that is given out, too.
+        (file.starts_with(folder) && file.is_file() && is_given_out(&file)).then_some(file)
+    }
+}
+
+fn is_given_out(path: &Path) -> bool {
+    extension(path)
+        .is_some_and(|e| MESHES.contains(&e.as_str()) || COMPANIONS.contains(&e.as_str()))
+}
+
+fn extension(path: &Path) -> Option<String> {
+    path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase)
+}
+
+/// The names of all visual meshes and the files that were found.
+fn meshes(mechanism: &Mechanism) -> impl Iterator<Item = (&str, Option<&Path>)> {
+    let visuals = mechanism.links().iter().flat_map(|l| &l.visuals);
+    visuals.filter_map(|v| match &v.geometry {
+        Geometry::Mesh { uri, path, .. } => Some((uri.as_str(), path.as_deref())),
+        _ => None,
+    })
+}
+
+/// The folder of the package that `package://NAME/rest` was found in.
+fn package(uri: &str, path: &Path) -> Option<PathBuf> {
+    let uri = uri.trim();
+    let rest = uri.strip_prefix("package://").or_else(|| uri.strip_prefix("model://"))?;
+    let rest = rest.trim_start_matches('/').split_once('/')?.1.trim_start_matches('/');
+    let rest = Path::new(rest);
+    if !rest.components().all(|c| matches!(c, Component::Normal(_))) {
+        return None;
+    }
+    let depth = rest.components().count();
+    path.ancestors().nth(depth)?.canonicalize().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn only_meshes_and_images_inside() {
+        let all = tempfile::tempdir().unwrap();
+        let folder = all.path().join("robot");
+        fs::create_dir_all(folder.join("meshes")).unwrap();
+        for name in ["robot/meshes/a b.stl", "robot/meshes/t.PNG", "robot/key.pem", "out.stl"] {
+            fs::write(all.path().join(name), name).unwrap();
+        }
+        let folder = folder.canonicalize().unwrap();
+        let open = Folders { open: vec![folder.clone()] };
+        assert!(open.file(0, "meshes/a b.stl").is_some() && open.file(0, "meshes/t.PNG").is_some());
+        for path in [
+            "../out.stl",
+            "meshes/../../out.stl",
+            "/etc/passwd",
+            "key.pem",
+            "meshes",
+            "",
+            "./meshes/a b.stl",
+            "meshes/none.stl",
+            "meshes\\..\\..\\out.stl",
+            "meshes/a b.stl\0",
+        ] {
+            assert_eq!(open.file(0, path), None, "{path:?}");
+        }
+        assert_eq!(open.file(1, "meshes/a b.stl"), None);
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::symlink;
+            symlink(all.path().join("out.stl"), folder.join("link.stl")).unwrap();
+            symlink(folder.join("key.pem"), folder.join("key.stl")).unwrap();
+            symlink(all.path(), folder.join("up")).unwrap();
+            symlink(folder.join("meshes/a b.stl"), folder.join("inside.stl")).unwrap();
+            assert_eq!(open.file(0, "link.stl"), None);
+            assert_eq!(open.file(0, "key.stl"), None);
+            assert_eq!(open.file(0, "up/out.stl"), None);
+            assert!(open.file(0, "inside.stl").is_some());
+        }
+        let served = open.served("a", Some(&folder.join("meshes/a b.stl")));
+        assert_eq!(served.url.as_deref(), Some("/mesh/0/meshes/a%20b.stl"));
+        assert!(open.served("b", Some(&all.path().join("out.stl"))).problem.is_some());
+        assert!(open.served("c", None).url.is_none());
+        assert!(open.served("d", Some(&folder.join("key.pem"))).url.is_none());
+    }
+
+    #[test]
+    fn packages_are_found_from_their_names() {
+        let all = tempfile::tempdir().unwrap();
+        let file = all.path().join("arm/meshes/visual/hand.dae");
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(&file, "").unwrap();
+        let arm = all.path().join("arm").canonicalize().unwrap();
+        assert_eq!(package("package://arm/meshes/visual/hand.dae", &file), Some(arm.clone()));
+        assert_eq!(package("package://arm//meshes/visual/hand.dae", &file), Some(arm));
+        assert_eq!(package("package://arm/x/../meshes/visual/hand.dae", &file), None);
+        assert_eq!(package("meshes/visual/hand.dae", &file), None);
+    }
+}

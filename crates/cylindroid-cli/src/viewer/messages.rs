@@ -1,0 +1,299 @@
+//! What a client may say, read strictly, and what it is told when it says something else.
+
+use std::collections::BTreeMap;
+
+use cylindroid::Error;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+/// Largest message [bytes].
+pub(super) const LARGEST: usize = 64 * 1024;
+
+/// A message with the mark that its sender wants back.
+#[derive(Debug)]
+pub(super) struct Request {
+    pub(super) id: Option<Value>,
+    pub(super) message: Message,
+}
+
+/// docs/viewer.md says what each does.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum Message {
+    Joint(Joint),
+    Configuration(Configuration),
+    Target(TargetPose),
+    Frame(Name),
+    Task(Name),
+    Play(Nothing),
+    Pause(Nothing),
+    Reset(Nothing),
+    NullSpace(NullSpace),
+    Actuated(Names),
+    Method(MethodChoice),
+    Overlays(Names),
+    Compare(Compare),
+    Report(Name),
+    Seen(Seen),
+}
+
+const TYPES: [&str; 15] = [
+    "joint",
+    "configuration",
+    "target",
+    "frame",
+    "task",
+    "play",
+    "pause",
+    "reset",
+    "null_space",
+    "actuated",
+    "method",
+    "overlays",
+    "compare",
+    "report",
+    "seen",
+];
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Nothing {}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Name {
+    pub(super) name: String,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Names {
+    pub(super) names: Vec<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Joint {
+    pub(super) name: String,
+    pub(super) value: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Configuration {
+    pub(super) q: Vec<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TargetPose {
+    pub(super) position: [f64; 3],
+    /// w, x, y, z.
+    pub(super) quaternion: [f64; 4],
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct NullSpace {
+    pub(super) rate: f64,
+    #[serde(default)]
+    pub(super) index: usize,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MethodChoice {
+    pub(super) name: String,
+    #[serde(default)]
+    pub(super) numbers: BTreeMap<String, f64>,
+    #[serde(default)]
+    pub(super) h: Option<f64>,
+    #[serde(default)]
+    pub(super) fallback: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Compare {
+    pub(super) methods: [String; 2],
+    pub(super) point: [f64; 3],
+    #[serde(default)]
+    pub(super) h: Option<f64>,
+    #[serde(default)]
+    pub(super) twist: Option<[f64; 6]>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Seen {
+    pub(super) seq: u64,
+}
+
+/// What is wrong with a message.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "type", rename = "error")]
+pub(super) struct Complaint {
+    pub(super) reply_to: Option<Value>,
+    pub(super) culprit: Box<str>,
+    /// Message and field.
+    pub(super) place: Box<str>,
+    pub(super) message: Box<str>,
+    pub(super) way_out: Box<str>,
+    /// The value that a joint reached.
+    pub(super) nearest: Option<f64>,
+}
+
+impl Complaint {
+    pub(super) fn new(place: &str, culprit: &str, what: &str, way_out: &str) -> Self {
+        let message =
+            if way_out.is_empty() { what.to_owned() } else { format!("{what}; {way_out}") };
+        Self {
+            reply_to: None,
+            culprit: culprit.into(),
+            place: place.into(),
+            message: message.into(),
+            way_out: way_out.into(),
+            nearest: None,
+        }
+    }
+
+    /// An error of the library about the field at `place`.
+    pub(super) fn of(place: &str, error: &Error) -> Self {
+        let (culprit, way_out) = match error {
+            Error::UnknownName { name, similar, .. } => {
+                let offer = similar.join(", ");
+                (name.clone(), if offer.is_empty() { offer } else { format!("use {offer}") })
+            }
+            Error::Dimension { what, hint, .. } => (what.clone(), hint.clone()),
+            Error::NotFinite { what, .. } => (what.clone(), "give finite numbers".to_owned()),
+            Error::InvalidOption { option, reason, .. } => ((*option).to_owned(), reason.clone()),
+            Error::Model { model, culprit, message } => {
+                let culprit = if culprit.is_empty() { model } else { culprit };
+                (culprit.clone(), message.clone())
+            }
+            _ => (String::new(), String::new()),
+        };
+        Self {
+            reply_to: None,
+            culprit: culprit.into(),
+            place: place.into(),
+            message: error.to_string().into(),
+            way_out: way_out.into(),
+            nearest: None,
+        }
+    }
+}
+
+/// Reads a message; a complaint names the place and has the mark of the sender where it was found.
+pub(super) fn read(text: &str) -> Result<Request, Complaint> {
+    let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
+        let what = format!("a message is one JSON object: {error}");
+        Complaint::new("message", &short(text), &what, "send {\"type\": ..., ...}")
+    })?;
+    let mut object = object;
+    let id = object.remove("id");
+    let marked = |complaint| Complaint { reply_to: id.clone(), ..complaint };
+    if let Some(id) = id.as_ref().filter(|id| !(id.is_string() || id.is_number())) {
+        let (what, way_out) =
+            ("the id is neither a string nor a number", "give one, or leave it out");
+        return Err(Complaint::new("message.id", &short(&id.to_string()), what, way_out));
+    }
+    let kind = match object.remove("type") {
+        Some(Value::String(kind)) if TYPES.contains(&kind.as_str()) => kind,
+        Some(Value::String(kind)) => {
+            return Err(marked(Complaint::of("message", &Error::unknown("message", &kind, TYPES))));
+        }
+        other => {
+            let culprit = other.map_or_else(|| "type".to_owned(), |o| short(&o.to_string()));
+            let what = "a message has a \"type\" that is a string";
+            let way_out = format!("one of {}", TYPES.join(", "));
+            return Err(marked(Complaint::new("message", &culprit, what, &way_out)));
+        }
+    };
+    let fields = Value::Object(object);
+    let tagged = Value::Object(Map::from_iter([(kind.clone(), fields)]));
+    let message = serde_path_to_error::deserialize(&tagged).map_err(|error| {
+        let place = error.path().to_string();
+        let culprit = at(&tagged, &place).unwrap_or_else(|| kind.clone());
+        let what = error.inner().to_string();
+        let way_out = format!("docs/viewer.md has the fields of '{kind}'");
+        marked(Complaint::new(&place, &culprit, &what, &way_out))
+    })?;
+    Ok(Request { id, message })
+}
+
+/// The value at a path like `target.position[2]`, short; none for objects.
+fn at(value: &Value, path: &str) -> Option<String> {
+    let pointer = path.replace(['.', '['], "/").replace(']', "");
+    let found = value.pointer(&format!("/{pointer}"))?;
+    (!found.is_object()).then(|| short(&found.to_string()))
+}
+
+/// The beginning of a text.
+fn short(text: &str) -> String {
+    const MOST: usize = 60;
+    if text.chars().count() <= MOST {
+        return text.to_owned();
+    }
+    text.chars().take(MOST).chain("...".chars()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> Complaint {
+        read(text).unwrap_err()
+    }
+
+    #[test]
+    fn messages_are_read_with_their_mark() {
+        let read = read(r#"{"id": 7, "type": "joint", "name": "q1", "value": 1}"#).unwrap();
+        assert_eq!(read.id, Some(7.into()));
+        assert!(matches!(read.message, Message::Joint(Joint { value: 1.0, .. })));
+        assert!(super::read(r#"{"type": "play"}"#).is_ok());
+        assert!(super::read(r#"{"type": "null_space", "rate": 0.5}"#).is_ok());
+    }
+
+    /// Every type and its fields stand there as they are read.
+    #[test]
+    fn examples_of_the_protocol_are_read() {
+        const PAGE: &str = include_str!("../../../../docs/viewer.md");
+        let (_, examples) = PAGE.split_once("## Messages of the client").unwrap();
+        let (examples, _) = examples.split_once("## Messages of the server").unwrap();
+        let lines: Vec<&str> = examples.lines().filter(|l| l.starts_with("{\"type\"")).collect();
+        for line in &lines {
+            assert!(read(line).is_ok(), "{line}: {:?}", read(line));
+        }
+        for kind in TYPES {
+            let shown = format!("{{\"type\": \"{kind}\"");
+            assert!(lines.iter().any(|l| l.starts_with(&shown)), "no example of {kind}");
+            assert!(examples.contains(&format!("`{kind}`")), "{kind} is not explained");
+        }
+    }
+
+    #[test]
+    fn complaints_name_the_place_and_the_way_out() {
+        let wrong =
+            refused(r#"{"type": "target", "position": [0, 1, "2"], "quaternion": [1, 0, 0, 0]}"#);
+        assert_eq!((&*wrong.place, &*wrong.culprit), ("target.position[2]", "\"2\""));
+        let short =
+            refused(r#"{"type": "target", "position": [0, 1], "quaternion": [1, 0, 0, 0]}"#);
+        assert_eq!(&*short.place, "target.position");
+        assert!(short.message.contains("length 2"), "{}", short.message);
+        let more = refused(r#"{"type": "pause", "now": true, "id": "a"}"#);
+        assert!(more.message.contains("now") && more.reply_to == Some("a".into()), "{more:?}");
+        let unknown = refused(r#"{"type": "jont"}"#);
+        assert!(unknown.message.contains("joint"), "{}", unknown.message);
+        for text in ["", "[]", "7", "{\"type\": 3}", "{}", "{\"type\": \"joint\", \"value\": NaN}"]
+        {
+            assert_eq!(&*refused(text).place, "message", "{text}");
+        }
+        assert_eq!(&*refused(r#"{"type": "play", "id": {}}"#).place, "message.id");
+        assert_eq!(
+            &*refused(r#"{"type": "joint", "name": "a", "value": null}"#).place,
+            "joint.value"
+        );
+        assert_eq!(&*refused(r#"{"type": "joint", "name": "a", "value": 1e999}"#).place, "message");
+    }
+}

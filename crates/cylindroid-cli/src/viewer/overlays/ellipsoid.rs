@@ -1,0 +1,103 @@
+//! Ellipsoids of velocity and force at the tool point.
+
+use cylindroid::closure::{ClosedChain, Motions, Unit};
+use cylindroid::manipulability::{Manipulability, Metrics};
+use cylindroid::{Matrix, Result, Twist, Vec3};
+use serde::Serialize;
+
+use super::super::session::Session;
+use super::{Shown, empty};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ellipsoid {
+    Velocity,
+    AngularVelocity,
+    ActiveForce,
+    PassiveForce,
+}
+
+#[derive(Debug, Serialize)]
+pub(in super::super) struct EllipsoidJson {
+    center: [f64; 3],
+    axes: Vec<SemiAxisJson>,
+    /// [m of drawing per unit]
+    scale: f64,
+    infinite: Vec<[f64; 3]>,
+    unit: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct SemiAxisJson {
+    vector: [f64; 3],
+    size: f64,
+    cut: bool,
+}
+
+/// The ellipsoid of what comes out for an input of length one, in the unit metrics of
+/// `manipulability`.
+pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Shown> {
+    let (mechanism, state) = (session.mechanism(), session.state());
+    let of = session.options().end_effector;
+    let chain = ClosedChain::of(state, Some(of.frame), None)?;
+    let components = mechanism.dimension().components();
+    let center = state.pose(of).translation;
+    let offset = center - state.pose(of.frame).translation;
+    let angular = kind == Ellipsoid::AngularVelocity;
+    let chosen: Vec<usize> = components.iter().copied().filter(|&c| (c >= 3) == angular).collect();
+    // The twist of the tool point, from that of the frame.
+    let map = Matrix::from_fn(chosen.len(), components.len(), |i, j| {
+        let mut unit = [0.0; 6];
+        unit[components[j]] = 1.0;
+        Twist::from_array(unit).at_point(offset).to_array()[chosen[i]]
+    });
+    let relation = Motions::of(&chain.constraint).relation().task(&map)?;
+    let all = Manipulability::of(&relation, &Metrics::UNIT)?;
+    let (spectrum, unit) = match kind {
+        Ellipsoid::Velocity => (all.kinematic, "m/s"),
+        Ellipsoid::AngularVelocity => (all.kinematic, "rad/s"),
+        Ellipsoid::ActiveForce => (all.active_force(), "N"),
+        Ellipsoid::PassiveForce => (all.passive_force(), "N"),
+    };
+    let vector = |column: &[f64]| {
+        let mut all = [0.0; 3];
+        chosen.iter().zip(column).for_each(|(&c, x)| all[c % 3] = *x);
+        Vec3::from_array(all)
+    };
+    let reach = mechanism.reach();
+    let sliding = chain.units.actuated.iter().all(|u| *u == Unit::Length);
+    let scale = SHARE * reach / usual(kind, sliding, reach);
+    let semi_axes = spectrum.semi_axes();
+    let axes: Vec<SemiAxisJson> = (0..semi_axes.cols())
+        .map(|j| {
+            let axis = vector(semi_axes.column(j));
+            let size = axis.norm();
+            let cut = size * scale > LARGEST * reach;
+            let length = if cut { LARGEST * reach / size } else { scale };
+            SemiAxisJson { vector: (axis * length).to_array(), size, cut }
+        })
+        .collect();
+    let infinite: Vec<[f64; 3]> = (0..spectrum.infinite.cols())
+        .filter_map(|j| vector(spectrum.infinite.column(j)).unit(0.0))
+        .map(Vec3::to_array)
+        .collect();
+    if axes.is_empty() && infinite.is_empty() {
+        return Ok(empty("The drives do nothing at the tool point here."));
+    }
+    Ok(Shown::Ellipsoid(EllipsoidJson { center: center.to_array(), axes, scale, infinite, unit }))
+}
+
+/// Length of a semi-axis of the usual size, in reaches.
+const SHARE: f64 = 0.25;
+/// Longest drawing, in reaches.
+const LARGEST: f64 = 0.8;
+
+/// What drives of unit rate (torque) make at the end of an arm of this reach.
+fn usual(kind: Ellipsoid, sliding: bool, reach: f64) -> f64 {
+    match (kind, sliding) {
+        (Ellipsoid::Velocity, false) => reach,
+        (Ellipsoid::Velocity | Ellipsoid::ActiveForce | Ellipsoid::PassiveForce, true)
+        | (Ellipsoid::AngularVelocity, false) => 1.0,
+        (Ellipsoid::AngularVelocity, true)
+        | (Ellipsoid::ActiveForce | Ellipsoid::PassiveForce, false) => 1.0 / reach,
+    }
+}

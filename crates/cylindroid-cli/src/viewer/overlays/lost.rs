@@ -1,0 +1,63 @@
+//! The motion of the tool that is lost next, near a singularity.
+
+use cylindroid::model::Dimension;
+use cylindroid::screws::Screw;
+use cylindroid::tolerance::DAMPING_ONSET;
+use serde::Serialize;
+
+use super::super::session::Session;
+use super::super::snapshot::Measures;
+use super::{Shown, empty};
+use crate::commands::closed::singularity::motion_in_words;
+use crate::output::{ScrewJson, number};
+
+/// Length of the drawing, in reaches.
+const SHARE: f64 = 0.3;
+
+#[derive(Debug, Serialize)]
+pub(in super::super) struct LostJson {
+    ratio: f64,
+    lost: bool,
+    linear: [f64; 3],
+    angular: [f64; 3],
+    screw: ScrewJson,
+    sentence: String,
+}
+
+pub(super) fn lost(session: &Session, measures: Option<&Measures>) -> Shown {
+    let Some(Measures { posture, .. }) = measures else {
+        let why = session.fault().map(ToString::to_string);
+        return empty(why.unwrap_or_else(|| "There is no servo.".to_owned()));
+    };
+    let ratio = posture.singular_ratio;
+    let Some(weakest) = posture.weakest else {
+        return empty("No motion of the tool is possible here.");
+    };
+    if ratio > DAMPING_ONSET {
+        return empty(format!(
+            "No direction is near to being lost: the smallest singular value is {} of the largest.",
+            number(ratio)
+        ));
+    }
+    let (mechanism, state) = (session.mechanism(), session.state());
+    let tool = state.pose(session.options().end_effector).translation;
+    let Some(screw) = Screw::of(weakest.at_point(-tool)) else {
+        return empty("No motion of the tool is possible here.");
+    };
+    let lost = posture.inverse.rank < posture.inverse.singular_values.len();
+    let planar = mechanism.dimension() == Dimension::Planar;
+    let words = motion_in_words(&screw, planar);
+    let state = if lost { "is lost here" } else { "is nearly lost" };
+    let reach = mechanism.reach();
+    Shown::Lost(LostJson {
+        ratio,
+        lost,
+        linear: (weakest.linear * SHARE).to_array(),
+        angular: (weakest.angular * (SHARE * reach)).to_array(),
+        screw: (&screw).into(),
+        sentence: format!(
+            "The motion of the tool {words} {state}: its singular value is {} of the largest.",
+            number(ratio)
+        ),
+    })
+}

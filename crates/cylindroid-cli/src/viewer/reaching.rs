@@ -1,0 +1,162 @@
+//! Configurations that a client asks for: one coordinate, or all of them, with loops kept closed.
+
+use cylindroid::closure::{FollowOptions, PathEnd, assemble, follow};
+use cylindroid::model::Mechanism;
+use cylindroid::{Error, Result, State};
+
+use super::messages::Complaint;
+use super::scene::is_adjustable;
+use crate::output::number;
+
+/// How far a joint got, and what kept it from going on.
+#[derive(Debug)]
+pub(super) struct Reached {
+    pub(super) q: Vec<f64>,
+    pub(super) complaint: Option<Complaint>,
+}
+
+/// Moves the coordinate `name` to `value`, within limits and with loops closed: the other drives
+/// rest where they can.
+pub(super) fn reach(
+    state: &State,
+    name: &str,
+    value: f64,
+) -> std::result::Result<Reached, Complaint> {
+    let mechanism = state.mechanism();
+    let names = || mechanism.coordinates().iter().map(|c| c.name.as_str());
+    let Some(i) = names().position(|n| n == name) else {
+        return Err(Complaint::of("joint.name", &Error::unknown("joint", name, names())));
+    };
+    let c = &mechanism.coordinates()[i];
+    if !is_adjustable(mechanism, c) {
+        let what = format!("coordinate '{name}' is a part of a joint that is held as a whole");
+        return Err(Complaint::new("joint.name", name, &what, "move another joint, or the target"));
+    }
+    let (lower, upper, unit) = (c.limits.lower, c.limits.upper, c.kind.unit());
+    // The way through closed configurations is searched step by step.
+    let most = match (mechanism.is_closed(), c.kind.is_length()) {
+        (false, _) => f64::INFINITY,
+        (true, true) => 2.0 * mechanism.reach(),
+        (true, false) => std::f64::consts::TAU,
+    };
+    let here = state.q()[i];
+    let (lower, upper) = (lower.max(here - most), upper.min(here + most));
+    let goal = value.max(lower).min(upper);
+    let beyond = (goal != value).then(|| {
+        let what =
+            format!("{name} = {value} is beyond its limits, or too far away for one message");
+        let way_out = format!("give {lower} to {upper} {unit}");
+        Complaint::new("joint.value", &value.to_string(), &what, &way_out)
+    });
+    let (q, complaint) = if mechanism.is_closed() {
+        let (q, end) = along(state, i, goal).map_err(|e| Complaint::of("joint.value", &e))?;
+        let stop = sentence(mechanism, name, &end);
+        let stop = stop.map(|(what, way_out)| {
+            Complaint::new("joint.value", &value.to_string(), &what, way_out)
+        });
+        (q, stop.or(beyond))
+    } else {
+        let mut q = state.q().to_vec();
+        q[i] = goal;
+        (q, beyond)
+    };
+    let nearest = Some(q[i]);
+    Ok(Reached { complaint: complaint.map(|c| Complaint { nearest, ..c }), q })
+}
+
+/// Along the branch of closed configurations: with the other drives at rest, or where they
+/// contradict that, with this coordinate alone.
+fn along(state: &State, i: usize, goal: f64) -> Result<(Vec<f64>, PathEnd)> {
+    let (mechanism, q) = (state.mechanism(), state.q());
+    let mut held: Vec<usize> = Vec::new();
+    if mechanism.coordinates()[i].actuated {
+        let whole = |&c: &usize| is_adjustable(mechanism, &mechanism.coordinates()[c]);
+        held = mechanism.actuated().filter(whole).collect();
+    }
+    for held in [held, vec![i]] {
+        if !held.contains(&i) {
+            continue;
+        }
+        let goals: Vec<f64> = held.iter().map(|&c| if c == i { goal } else { q[c] }).collect();
+        let way = follow(mechanism, q, &held, &goals, FollowOptions::default())?;
+        let contradicted = matches!(way.end, PathEnd::Contradiction | PathEnd::Open);
+        if !contradicted || held.len() == 1 {
+            let closed = way.gap.is_closed(mechanism.reach());
+            return Ok((if closed { way.q } else { q.to_vec() }, way.end));
+        }
+    }
+    Ok((q.to_vec(), PathEnd::Contradiction))
+}
+
+/// What stopped a joint, and what to do about it.
+fn sentence(mechanism: &Mechanism, name: &str, end: &PathEnd) -> Option<(String, &'static str)> {
+    Some(match end {
+        PathEnd::Reached => return None,
+        PathEnd::Singular(s) => (
+            format!(
+                "{name} stops before a singular posture (distance {}), beyond which the other \
+                 joints would choose their way ({})",
+                number(s.distance),
+                s.kind
+            ),
+            "come from another side, or drive other joints",
+        ),
+        PathEnd::Limit { coordinate } => {
+            let c = &mechanism.coordinates()[*coordinate];
+            let what = format!(
+                "{name} stops where {} would leave its limits, {} to {} {}",
+                c.name,
+                number(c.limits.lower),
+                number(c.limits.upper),
+                c.kind.unit()
+            );
+            (what, "move another joint first")
+        }
+        PathEnd::Open => (
+            format!("the loops do not close with {name} there"),
+            "reset, or move another joint first",
+        ),
+        PathEnd::Contradiction => {
+            (format!("the loops do not let {name} move"), "drive fewer joints, or move the target")
+        }
+        PathEnd::Lost => (
+            format!("{name} got stuck on its way"),
+            "move it in smaller steps, or another joint first",
+        ),
+    })
+}
+
+/// `q`, with loops and contacts closed near it.
+pub(super) fn assembled(mechanism: &Mechanism, q: &[f64]) -> Result<Vec<f64>> {
+    mechanism.check_q("q", q)?;
+    if let Some(i) = mechanism.outside_limits(q).next() {
+        let c = &mechanism.coordinates()[i];
+        return Err(Error::InvalidOption {
+            option: "q",
+            value: format!("{} at {} {}", c.name, q[i], c.kind.unit()),
+            reason: format!(
+                "its limits are {} and {} {}",
+                c.limits.lower,
+                c.limits.upper,
+                c.kind.unit()
+            ),
+        });
+    }
+    if !mechanism.is_closed() {
+        return Ok(q.to_vec());
+    }
+    let found = assemble(mechanism, q, &[])?;
+    if found.closed {
+        return Ok(found.q);
+    }
+    Err(Error::InvalidOption {
+        option: "q",
+        value: format!(
+            "loops open by {} m, {} rad",
+            number(found.gap.distance),
+            number(found.gap.angle)
+        ),
+        reason: "no closed configuration was found near it; begin nearer to one that closes"
+            .to_owned(),
+    })
+}

@@ -1,0 +1,410 @@
+//! What there is to see: links, joints, frames and choices of a session, as the page gets them.
+
+use std::collections::BTreeMap;
+
+use cylindroid::control::Projection;
+use cylindroid::model::{Coordinate, CoordinateKind, Geometry, Link, Mechanism, Visual};
+use cylindroid::{Method, Pose, Servo};
+use serde::Serialize;
+
+use super::inverting::Chosen;
+use super::overlays::Overlay;
+use super::session::Session;
+
+/// A pose of docs/viewer.md.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct PoseJson {
+    position: [f64; 3],
+    /// w, x, y, z.
+    quaternion: [f64; 4],
+}
+
+impl From<Pose> for PoseJson {
+    fn from(pose: Pose) -> Self {
+        let q = pose.rotation.to_quaternion();
+        Self { position: pose.translation.to_array(), quaternion: [q.w, q.x, q.y, q.z] }
+    }
+}
+
+#[derive(Debug, Serialize)]
+#[serde(tag = "type", rename = "scene")]
+pub(super) struct Scene<'a> {
+    name: &'a str,
+    format: &'a str,
+    closed: bool,
+    dimension: usize,
+    reach: f64,
+    links: Vec<LinkJson<'a>>,
+    joints: Vec<JointJson<'a>>,
+    coordinates: Vec<CoordinateJson<'a>>,
+    frames: Vec<FrameJson<'a>>,
+    frame: &'a str,
+    task: TaskJson<'a>,
+    loops: Vec<LoopJson<'a>>,
+    contacts: Vec<ContactJson<'a>>,
+    objects: Vec<ObjectJson<'a>>,
+    drives: Vec<DriveJson<'a>>,
+    self_motions: usize,
+    method: &'a Chosen,
+    methods: Vec<ChoiceJson>,
+    overlays: Vec<OverlayJson>,
+    reports: [&'static str; 4],
+    home: &'a [f64],
+    ignored: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct LinkJson<'a> {
+    name: &'a str,
+    visuals: Vec<VisualJson<'a>>,
+    anchors: Vec<AnchorJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct VisualJson<'a> {
+    #[serde(flatten)]
+    shape: ShapeJson<'a>,
+    pose: PoseJson,
+    rgba: Option<[f64; 4]>,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum ShapeJson<'a> {
+    Box {
+        size: [f64; 3],
+    },
+    Cylinder {
+        radius: f64,
+        length: f64,
+    },
+    Capsule {
+        radius: f64,
+        length: f64,
+    },
+    Sphere {
+        radius: f64,
+    },
+    Mesh {
+        url: Option<String>,
+        format: Option<&'static str>,
+        scale: [f64; 3],
+        uri: &'a str,
+        problem: Option<String>,
+    },
+}
+
+/// A point of a link, in its frame.
+#[derive(Debug, Serialize)]
+struct AnchorJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    position: [f64; 3],
+}
+
+#[derive(Debug, Serialize)]
+struct JointJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    parent: usize,
+    child: usize,
+    origin: PoseJson,
+    axis: [f64; 3],
+    coordinates: Vec<usize>,
+    actuated: bool,
+    mimic: Option<MimicJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct MimicJson<'a> {
+    joint: &'a str,
+    multiplier: f64,
+    offset: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct CoordinateJson<'a> {
+    name: &'a str,
+    joint: usize,
+    unit: &'static str,
+    lower: f64,
+    upper: f64,
+    velocity: f64,
+    actuated: bool,
+    adjustable: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct FrameJson<'a> {
+    name: &'a str,
+    link: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct TaskJson<'a> {
+    name: &'a str,
+    components: Vec<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+struct LoopJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    a: usize,
+    b: usize,
+    axis: [f64; 3],
+    actuated: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct ContactJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    a: usize,
+    b: usize,
+    friction: Option<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct ObjectJson<'a> {
+    link: usize,
+    name: &'a str,
+    reference: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct DriveJson<'a> {
+    name: &'a str,
+    kind: &'static str,
+    actuated: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct ChoiceJson {
+    name: &'static str,
+    numbers: BTreeMap<&'static str, f64>,
+    pitch: bool,
+    servo: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct OverlayJson {
+    name: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    frame: &'static str,
+}
+
+/// The numbers of a method by their names.
+pub(super) fn numbers(mut method: Method) -> BTreeMap<&'static str, f64> {
+    method.numbers_mut().into_iter().map(|(name, number)| (name, *number)).collect()
+}
+
+/// Default numbers of the damped hyperbolic inverses, by their names.
+pub(super) fn damping(name: &str) -> BTreeMap<&'static str, f64> {
+    /// [m/rad]; what the help of `move` advises to try.
+    const DAMPING: f64 = 0.01;
+    match name {
+        "hyperbolic-damped" => BTreeMap::from([("mu", DAMPING)]),
+        "hyperbolic-gram" => BTreeMap::from([("lambda", DAMPING)]),
+        _ => BTreeMap::new(),
+    }
+}
+
+/// The hyperbolic inverses: those that a pitch chooses.
+pub(super) fn hyperbolic() -> impl Iterator<Item = &'static str> {
+    Projection::NAMES.into_iter().filter(|name| name.starts_with("hyperbolic"))
+}
+
+/// True where one coordinate can be set alone.
+pub(super) fn is_adjustable(mechanism: &Mechanism, c: &Coordinate) -> bool {
+    !mechanism.is_closed() || matches!(c.kind, CoordinateKind::Angle | CoordinateKind::Length)
+}
+
+impl<'a> Scene<'a> {
+    pub(super) fn of(session: &'a Session) -> Self {
+        let mechanism = session.mechanism();
+        let options = session.options();
+        let link = |i: usize| mechanism.links()[i].name.as_str();
+        let joints = mechanism.joints().iter().map(|j| JointJson {
+            name: &j.name,
+            kind: j.kind.name(),
+            parent: j.parent,
+            child: j.child,
+            origin: j.parent_from_joint.into(),
+            axis: j.axis.to_array(),
+            coordinates: j.coordinates.clone().collect(),
+            actuated: j.actuated,
+            mimic: j.mimic.as_ref().map(|m| MimicJson {
+                joint: &m.joint,
+                multiplier: m.multiplier,
+                offset: m.offset,
+            }),
+        });
+        let coordinates = mechanism.coordinates().iter().map(|c| CoordinateJson {
+            name: &c.name,
+            joint: c.joint,
+            unit: c.kind.unit(),
+            lower: c.limits.lower,
+            upper: c.limits.upper,
+            velocity: c.limits.velocity,
+            actuated: c.actuated,
+            adjustable: is_adjustable(mechanism, c),
+        });
+        let loops = mechanism.loops().iter().map(|l| LoopJson {
+            name: &l.name,
+            kind: l.kind.name(),
+            a: l.a,
+            b: l.b,
+            axis: l.axis.to_array(),
+            actuated: l.actuated,
+        });
+        let contacts = mechanism.contacts().iter().map(|c| ContactJson {
+            name: &c.name,
+            kind: c.kind.name(),
+            a: c.a,
+            b: c.b,
+            friction: c.friction,
+        });
+        let all = cylindroid::ik::Task::COMPONENTS.into_iter().zip(options.task.components);
+        Self {
+            name: mechanism.name(),
+            format: mechanism.report().format,
+            closed: mechanism.is_closed(),
+            dimension: mechanism.dimension().number(),
+            reach: mechanism.reach(),
+            links: links(session),
+            joints: joints.collect(),
+            coordinates: coordinates.collect(),
+            frames: mechanism
+                .frames()
+                .iter()
+                .map(|f| FrameJson { name: &f.name, link: f.link })
+                .collect(),
+            frame: session.frame(),
+            task: TaskJson {
+                name: session.task_name(),
+                components: all.filter(|(_, on)| *on).map(|(name, _)| name).collect(),
+            },
+            loops: loops.collect(),
+            contacts: contacts.collect(),
+            objects: objects(mechanism)
+                .into_iter()
+                .map(|(i, reference)| ObjectJson { link: i, name: link(i), reference })
+                .collect(),
+            drives: drives(mechanism),
+            self_motions: session.servo().map_or(0, Servo::redundancy),
+            method: session.method(),
+            methods: methods(session),
+            overlays: Overlay::ALL.into_iter().map(overlay).collect(),
+            reports: super::reports::NAMES,
+            home: session.home(),
+            ignored: mechanism.report().ignored.len(),
+        }
+    }
+}
+
+fn overlay(o: Overlay) -> OverlayJson {
+    OverlayJson { name: o.name(), title: o.title(), unit: o.unit(), frame: o.frame() }
+}
+
+fn methods(session: &Session) -> Vec<ChoiceJson> {
+    let whole = session.options().task.components == [true; 6];
+    let plain = Method::ALL.into_iter().map(|method| ChoiceJson {
+        name: method.name(),
+        numbers: numbers(method),
+        pitch: false,
+        servo: true,
+    });
+    let chosen = hyperbolic().map(|name| ChoiceJson {
+        name,
+        numbers: damping(name),
+        pitch: true,
+        servo: whole,
+    });
+    plain.chain(chosen).collect()
+}
+
+fn links(session: &Session) -> Vec<LinkJson<'_>> {
+    let mechanism = session.mechanism();
+    let mut all: Vec<LinkJson<'_>> = mechanism
+        .links()
+        .iter()
+        .map(|l| LinkJson { name: &l.name, visuals: visuals(session, l), anchors: Vec::new() })
+        .collect();
+    let mut add = |link: usize, name, kind, pose: Pose| {
+        all[link].anchors.push(AnchorJson { name, kind, position: pose.translation.to_array() });
+    };
+    for j in mechanism.joints() {
+        add(j.child, &j.name, "joint", j.joint_from_child.inverse());
+        add(j.parent, &j.name, "child", j.parent_from_joint);
+    }
+    for l in mechanism.loops() {
+        add(l.a, &l.name, "loop", l.link_a_from_joint);
+        add(l.b, &l.name, "loop", l.link_b_from_joint);
+    }
+    for c in mechanism.contacts() {
+        add(c.a, &c.name, "contact", c.link_a_from_contact);
+        add(c.b, &c.name, "contact", c.link_b_from_contact);
+    }
+    let driven = mechanism.frame_of(session.options().end_effector.frame);
+    let tool = driven.link_from_frame * session.options().end_effector.frame_from_tool;
+    add(driven.link, &driven.name, "frame", tool);
+    all
+}
+
+fn visuals<'a>(session: &'a Session, link: &'a Link) -> Vec<VisualJson<'a>> {
+    let shape = |v: &'a Visual| match &v.geometry {
+        Geometry::Box { size } => ShapeJson::Box { size: size.to_array() },
+        Geometry::Cylinder { radius, length } => {
+            ShapeJson::Cylinder { radius: *radius, length: *length }
+        }
+        Geometry::Capsule { radius, length } => {
+            ShapeJson::Capsule { radius: *radius, length: *length }
+        }
+        Geometry::Sphere { radius } => ShapeJson::Sphere { radius: *radius },
+        Geometry::Mesh { uri, path, scale } => {
+            let served = session.folders().served(uri, path.as_deref());
+            ShapeJson::Mesh {
+                url: served.url,
+                format: served.format,
+                scale: scale.to_array(),
+                uri,
+                problem: served.problem,
+            }
+        }
+    };
+    let visual = |v: &'a Visual| VisualJson {
+        shape: shape(v),
+        pose: v.link_from_shape.into(),
+        rgba: v.rgba,
+    };
+    link.visuals.iter().map(visual).collect()
+}
+
+/// The link of the reference, then what is touched.
+fn objects(mechanism: &Mechanism) -> Vec<(usize, bool)> {
+    if !mechanism.is_closed() {
+        return Vec::new();
+    }
+    let mut all = vec![(mechanism.frame_of(mechanism.reference()).link, true)];
+    for contact in mechanism.contacts() {
+        if all.iter().all(|(link, _)| *link != contact.b) {
+            all.push((contact.b, false));
+        }
+    }
+    all
+}
+
+/// The joints that can be driven: they move, and follow no other.
+fn drives(mechanism: &Mechanism) -> Vec<DriveJson<'_>> {
+    if !mechanism.is_closed() {
+        return Vec::new();
+    }
+    let tree = mechanism.joints().iter().filter(|j| j.kind.dof() > 0 && j.mimic.is_none());
+    let tree = tree.map(|j| DriveJson { name: &j.name, kind: j.kind.name(), actuated: j.actuated });
+    let closing = mechanism.loops().iter().filter(|l| l.kind.dof() == 1);
+    let closing =
+        closing.map(|l| DriveJson { name: &l.name, kind: l.kind.name(), actuated: l.actuated });
+    tree.chain(closing).collect()
+}

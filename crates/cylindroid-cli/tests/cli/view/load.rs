@@ -1,0 +1,153 @@
+//! Many clients at once.
+
+use std::fs;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+use tungstenite::Message;
+
+use super::{Client, Server};
+
+const CLIENTS: usize = 20;
+
+/// What a client found: states, and how far the servo's clock was behind at the most [s].
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    states: usize,
+    late: f64,
+    end: f64,
+}
+
+/// Drags the target to and fro for so long and measures the servo's clock against the wall's.
+fn drag(mut client: Client, tool: [f64; 3], seconds: f64) -> Found {
+    let first = client.next("state");
+    let quaternion = first["tool"]["quaternion"].clone();
+    let mut found = Found { states: 0, late: 0.0, end: 0.0 };
+    let begin = Instant::now();
+    let mut origin = None;
+    let mut side = 1.0;
+    let mut turn = Instant::now();
+    while begin.elapsed().as_secs_f64() < seconds {
+        if origin.is_none() || turn.elapsed() > Duration::from_millis(500) {
+            let position = [tool[0], tool[1] + side * 0.05, tool[2]];
+            client.say(&json!({"type": "target", "position": position, "quaternion": quaternion}));
+            (side, turn) = (-side, Instant::now());
+        }
+        let state = client.next("state");
+        client.say(&json!({"type": "seen", "seq": state["seq"]}));
+        found.states += 1;
+        let lag = begin.elapsed().as_secs_f64() - state["time"].as_f64().unwrap();
+        // From the first state on: the connection took its time.
+        let lag = lag - *origin.get_or_insert(lag);
+        found.late = found.late.max(lag);
+        found.end = lag;
+    }
+    found
+}
+
+fn together(server: &Server, seconds: f64) -> Vec<Found> {
+    let clients: Vec<_> = (0..CLIENTS).map(|_| server.client()).collect();
+    let tool = {
+        let state = server.client().next("state");
+        std::array::from_fn(|i| state["tool"]["position"][i].as_f64().unwrap())
+    };
+    let threads: Vec<_> =
+        clients.into_iter().map(|c| thread::spawn(move || drag(c, tool, seconds))).collect();
+    threads.into_iter().map(|t| t.join().unwrap()).collect()
+}
+
+#[test]
+fn twenty_clients_have_sessions_of_their_own() {
+    let server = Server::new(&["panda"]);
+    let found = together(&server, 1.0);
+    assert!(found.iter().all(|f| f.states > 1), "{found:?}");
+    // None of them has moved what a new one sees.
+    let state = server.client().next("state");
+    let home = crate::json(&["info", "panda"], 0)["home"].clone();
+    assert_eq!(crate::numbers(&state["q"]), crate::numbers(&home));
+}
+
+#[test]
+fn a_client_that_dies_while_it_drags_leaves_the_others_alone() {
+    let server = Server::new(&["panda"]);
+    let (mut dying, mut other) = (server.client(), server.client());
+    let before = other.next("state");
+    for i in 0..20 {
+        let y = 0.01 * f64::from(i);
+        dying
+            .say(&json!({"type": "target", "position": [0.4, y, 0.4], "quaternion": [0, 1, 0, 0]}));
+    }
+    dying.next("state");
+    // No closing handshake: the socket is gone.
+    drop(dying);
+    let after = other.done(json!({"type": "pause"}));
+    assert_eq!(after["q"], before["q"]);
+    assert!(server.client().hear()["type"] == "scene");
+}
+
+/// A browser that draws slowly never gets a state older than those under way.
+#[test]
+fn states_do_not_queue_for_who_says_what_it_has_seen() {
+    let server = Server::new(&["panda"]);
+    let mut client = server.client();
+    let first = client.next("state")["seq"].as_u64().unwrap();
+    client.say(&json!({"type": "seen", "seq": first}));
+    client.say(&json!({"type": "null_space", "rate": 0.05}));
+    let mut last = client.next("state")["seq"].as_u64().unwrap();
+    for _ in 0..3 {
+        thread::sleep(Duration::from_millis(500));
+        // Two were under way; after them comes the newest.
+        let second = client.next("state")["seq"].as_u64().unwrap();
+        assert!(second <= last + 8, "{second} after {last}");
+        client.say(&json!({"type": "seen", "seq": second}));
+        last = client.next("state")["seq"].as_u64().unwrap();
+        assert!(last > second + 5, "{last} after {second}");
+    }
+}
+
+#[test]
+fn pings_are_answered() {
+    let server = Server::new(&["panda"]);
+    let mut client = server.client();
+    client.next("state");
+    client.socket.send(Message::Ping(vec![7].into())).unwrap();
+    loop {
+        if let Message::Pong(data) = client.socket.read().unwrap() {
+            assert_eq!(data.as_ref(), [7]);
+            return;
+        }
+    }
+}
+
+/// `cargo xtask viewer-load`: prints memory and lateness under load.
+#[test]
+#[ignore = "a measurement, for CYLINDROID_LOAD seconds"]
+fn load() {
+    let seconds: f64 =
+        std::env::var("CYLINDROID_LOAD").ok().and_then(|s| s.parse().ok()).unwrap_or(60.0);
+    for model in ["panda", "stewart"] {
+        let server = Server::new(&[model]);
+        let resident = || -> f64 {
+            let status = fs::read_to_string(format!("/proc/{}/status", server.child.id())).unwrap();
+            let line = status.lines().find(|l| l.starts_with("VmRSS:")).unwrap();
+            line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap() / 1024.0
+        };
+        let alone = resident();
+        together(&server, seconds.min(5.0));
+        let early = resident();
+        let found = together(&server, seconds);
+        let late = resident();
+        let rate = |f: &Found| f.states as f64 / seconds;
+        let most = |of: &dyn Fn(&Found) -> f64| found.iter().map(of).fold(0.0, f64::max);
+        let least = found.iter().map(rate).fold(f64::INFINITY, f64::min);
+        println!(
+            "{model}: {CLIENTS} clients for {seconds} s: {least:.1} to {:.1} states a second; the \
+             servo at most {:.0} ms late, {:.0} ms at the end; memory {alone:.1} MiB alone, \
+             {early:.1} after 5 s, {late:.1} after {seconds} s",
+            most(&rate),
+            1e3 * most(&|f| f.late),
+            1e3 * most(&|f| f.end),
+        );
+    }
+}

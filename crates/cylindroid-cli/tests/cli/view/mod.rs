@@ -1,0 +1,146 @@
+//! `view`: the protocol of docs/viewer.md, spoken to the binary.
+
+#![allow(clippy::panic)] // helpers say what they found
+
+mod choices;
+mod load;
+mod motion;
+mod refused;
+mod served;
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Message, WebSocket, client};
+
+/// Longest wait for anything.
+const WAIT: Duration = Duration::from_secs(60);
+
+/// A running `cylindroid view`, stopped when it is dropped.
+pub(crate) struct Server {
+    child: Child,
+    port: u16,
+}
+
+impl Server {
+    pub(crate) fn new(arguments: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_cylindroid"))
+            .arg("view")
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
+        let port = line.trim().trim_end_matches('/').rsplit(':').next().unwrap().parse();
+        Self { child, port: port.unwrap_or_else(|_| panic!("no URL: {line:?}")) }
+    }
+
+    fn address(&self) -> String {
+        format!("127.0.0.1:{}", self.port)
+    }
+
+    /// Status and the whole answer to a request of these header lines.
+    fn ask(&self, request: &str) -> (u16, String) {
+        let mut stream = TcpStream::connect(self.address()).unwrap();
+        stream.set_read_timeout(Some(WAIT)).unwrap();
+        write!(stream, "{request}\r\nConnection: close\r\n\r\n").unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        let answer = String::from_utf8_lossy(&answer).into_owned();
+        let status = answer.split(' ').nth(1).and_then(|s| s.parse().ok());
+        (status.unwrap_or_else(|| panic!("no status: {answer}")), answer)
+    }
+
+    fn get(&self, path: &str) -> (u16, String) {
+        self.ask(&format!("GET {path} HTTP/1.1\r\nHost: {}", self.address()))
+    }
+
+    pub(crate) fn client(&self) -> Client {
+        let stream = TcpStream::connect(self.address()).unwrap();
+        stream.set_read_timeout(Some(WAIT)).unwrap();
+        let request = format!("ws://{}/ws", self.address()).into_client_request().unwrap();
+        let (socket, _) = client(request, stream).unwrap();
+        Client { socket }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+pub(crate) struct Client {
+    socket: WebSocket<TcpStream>,
+}
+
+impl Client {
+    pub(crate) fn say(&mut self, message: &Value) {
+        self.text(&message.to_string());
+    }
+
+    fn text(&mut self, message: &str) {
+        self.socket.send(Message::text(message)).unwrap();
+    }
+
+    /// The next message.
+    pub(crate) fn hear(&mut self) -> Value {
+        loop {
+            if let Message::Text(text) = self.socket.read().unwrap() {
+                return serde_json::from_str(&text).unwrap();
+            }
+        }
+    }
+
+    /// The next message of this type.
+    pub(crate) fn next(&mut self, kind: &str) -> Value {
+        self.until(|m| m["type"] == kind)
+    }
+
+    /// The next message that is so.
+    pub(crate) fn until(&mut self, is_so: impl Fn(&Value) -> bool) -> Value {
+        let begin = Instant::now();
+        let mut last = Value::Null;
+        while begin.elapsed() < WAIT {
+            last = self.hear();
+            if is_so(&last) {
+                return last;
+            }
+        }
+        panic!("it did not come; the last was {last}");
+    }
+
+    /// Says something with a mark, and waits for the state that it is in.
+    fn done(&mut self, mut message: Value) -> Value {
+        let mark = format!("mark {}", message["type"]);
+        message["id"] = json!(mark);
+        self.say(&message);
+        self.until(|m| m["type"] == "state" && m["ack"] == mark.as_str())
+    }
+
+    /// The complaint about a message.
+    fn complaint(&mut self, message: &Value) -> Value {
+        self.say(message);
+        self.next("error")
+    }
+
+    /// The state in which the servo is at rest.
+    fn ended(&mut self) -> Value {
+        self.until(|m| {
+            m["type"] == "state"
+                && ["reached", "stalled"].contains(&m["servo"]["status"].as_str().unwrap())
+        })
+    }
+}
+
+/// A configuration as `--q` takes it.
+fn posture(state: &Value) -> String {
+    crate::numbers(&state["q"]).iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+}

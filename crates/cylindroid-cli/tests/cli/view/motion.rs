@@ -1,0 +1,165 @@
+//! Joints, targets and self-motions.
+
+use serde_json::json;
+
+use super::{Server, posture};
+use crate::{difference, numbers};
+
+#[test]
+fn a_scene_comes_first_and_poses_are_those_of_fk() {
+    let server = Server::new(&["panda"]);
+    let mut client = server.client();
+    let scene = client.hear();
+    assert_eq!((&scene["type"], &scene["name"]), (&"scene".into(), &"panda".into()));
+    assert_eq!((&scene["closed"], &scene["self_motions"]), (&false.into(), &1.into()));
+    assert_eq!(scene["frame"], "hand_tcp");
+    assert_eq!(scene["coordinates"][3]["upper"], -0.0698);
+    let state = client.done(json!({"type": "joint", "name": "panda_joint2", "value": 0.3}));
+    assert!((state["q"][1].as_f64().unwrap() - 0.3).abs() < 1e-12);
+    let all = crate::json(&["fk", "panda", "--all", "--q", &posture(&state)], 0);
+    for (link, pose) in
+        scene["links"].as_array().unwrap().iter().zip(state["links"].as_array().unwrap())
+    {
+        let frames = all["frames"].as_array().unwrap();
+        let own = &frames.iter().find(|f| f["frame"] == link["name"]).unwrap()["pose"];
+        assert!(difference(&numbers(&own["position"]), &numbers(&pose["position"])) < 1e-12);
+        let q = &own["quaternion"];
+        let q: Vec<f64> = ["w", "x", "y", "z"].iter().map(|k| q[k].as_f64().unwrap()).collect();
+        assert!(difference(&q, &numbers(&pose["quaternion"])) < 1e-12);
+    }
+    // The target went along: nothing is to be done.
+    assert_eq!(state["target"], state["tool"]);
+}
+
+#[test]
+fn a_target_is_reached_and_then_nothing_is_sent() {
+    let server = Server::new(&["panda"]);
+    let mut client = server.client();
+    let first = client.next("state");
+    let mut target = first["tool"].clone();
+    target["position"][2] = json!(target["position"][2].as_f64().unwrap() - 0.1);
+    let mut message = target.clone();
+    message["type"] = json!("target");
+    client.say(&message);
+    let state = client.until(|m| m["servo"]["status"] == "reached");
+    assert!(state["error"]["position"].as_f64().unwrap() < 1e-6);
+    assert!(state["singular"]["rank"] == 6 && state["singular"]["values"][5].as_f64() > Some(0.0));
+    let fk = crate::json(&["fk", "panda", "--q", &posture(&state)], 0);
+    assert!(difference(&numbers(&fk["pose"]["position"]), &numbers(&target["position"])) < 2e-6);
+    // It comes to rest, and is silent.
+    std::thread::sleep(std::time::Duration::from_secs(4));
+    client.say(&json!({"type": "frame", "name": "none"}));
+    let mut states = 0;
+    while client.hear()["type"] != "error" {
+        states += 1;
+    }
+    assert!(states < 4 * 60 - 20, "{states} states in 4 s");
+    let last = client.next("state")["seq"].as_u64();
+    client.say(&json!({"type": "pause"}));
+    assert_eq!(client.next("state")["seq"].as_u64(), last.map(|n| n + 1));
+}
+
+#[test]
+fn targets_out_of_reach_stall_with_their_reason_in_words() {
+    let server = Server::new(&["ur5e"]);
+    let mut client = server.client();
+    let target = json!({"type": "target", "position": [3, 0, 0], "quaternion": [1, 0, 0, 0]});
+    client.say(&target);
+    let state = client.until(|m| m["servo"]["status"] == "stalled");
+    assert_eq!(state["servo"]["reason"], "out-of-reach");
+    assert!(state["servo"]["sentence"].as_str().unwrap().contains("out of reach"), "{state}");
+}
+
+#[test]
+fn pause_holds_and_reset_goes_home() {
+    let server = Server::new(&["panda"]);
+    let mut client = server.client();
+    let home = client.next("state");
+    assert_eq!(client.done(json!({"type": "pause"}))["servo"]["status"], "paused");
+    let away = json!({"type": "target", "position": [0.4, 0.2, 0.4], "quaternion": [0, 2, 0, 0]});
+    let held = client.done(away);
+    assert!(held["q"] == home["q"] && held["error"]["position"].as_f64() > Some(0.1));
+    assert_eq!(numbers(&held["target"]["quaternion"]), [0.0, 1.0, 0.0, 0.0]);
+    client.say(&json!({"type": "play"}));
+    let there = client.ended();
+    assert_ne!(there["q"], home["q"]);
+    assert_eq!(client.done(json!({"type": "reset"}))["q"], home["q"]);
+}
+
+#[test]
+fn a_self_motion_leaves_the_tool_where_it_is() {
+    let server = Server::new(&["panda"]);
+    let mut client = server.client();
+    let home = client.next("state");
+    client.say(&json!({"type": "null_space", "rate": 0.2}));
+    let begin = home["time"].as_f64().unwrap();
+    let state = client.until(|m| m["time"].as_f64() > Some(begin + 0.5));
+    assert_eq!(state["servo"]["self_motion"], 0.2);
+    assert!(difference(&numbers(&state["q"]), &numbers(&home["q"])) > 0.05, "{state}");
+    let apart =
+        difference(&numbers(&state["tool"]["position"]), &numbers(&home["tool"]["position"]));
+    assert!(apart < 1e-3, "{apart}");
+    assert!(
+        client.complaint(&json!({"type": "null_space", "rate": 2}))["message"]
+            .as_str()
+            .unwrap()
+            .contains("-1 to 1")
+    );
+    assert_eq!(client.done(json!({"type": "null_space", "rate": 0}))["servo"]["self_motion"], 0.0);
+}
+
+#[test]
+fn joints_stop_at_their_limits_and_say_so() {
+    let server = Server::new(&["panda"]);
+    let mut client = server.client();
+    client.next("scene");
+    let far = json!({"type": "joint", "name": "panda_joint4", "value": 1, "id": 7});
+    let complaint = client.complaint(&far);
+    assert_eq!((&complaint["reply_to"], &complaint["nearest"]), (&7.into(), &(-0.0698).into()));
+    assert_eq!(complaint["place"], "joint.value");
+    assert_eq!(client.until(|m| m["ack"] == 7)["q"][3], -0.0698);
+}
+
+#[test]
+fn loops_stay_closed_whatever_is_moved() {
+    let server = Server::new(&["five-bar"]);
+    let mut client = server.client();
+    let scene = client.hear();
+    assert_eq!((&scene["closed"], &scene["objects"][0]["name"]), (&true.into(), &"coupler".into()));
+    for (name, value) in [("q1", 0.05), ("q2", -0.1), ("q3", 0.02)] {
+        let state = client.done(json!({"type": "joint", "name": name, "value": value}));
+        assert_eq!(state["gap"]["closed"], true, "{name}: {state}");
+        let i = ["q1", "q2", "q3"].iter().position(|n| *n == name).unwrap();
+        assert!((state["q"][i].as_f64().unwrap() - value).abs() < 1e-9, "{name}: {state}");
+        let [a, b] = ["a", "b"].map(|side| numbers(&state["loops"][0][side]));
+        assert!(difference(&a, &b) < 1e-9);
+    }
+    let mut target = client.done(json!({"type": "reset"}))["tool"].clone();
+    target["position"] = json!([1.2, 1.8, 0]);
+    target["type"] = json!("target");
+    client.say(&json!({"type": "task", "name": "x,y"}));
+    client.say(&target);
+    let state = client.until(|m| {
+        m["servo"]["status"] == "reached" && m["error"]["position"].as_f64() < Some(1e-6)
+    });
+    assert!(difference(&numbers(&state["tool"]["position"])[..2], &[1.2, 1.8]) < 1e-5);
+    assert_eq!(state["gap"]["closed"], true);
+    // Beyond what the rods allow it stops, with the nearest.
+    let complaint = client.complaint(&json!({"type": "joint", "name": "q1", "value": 3}));
+    let (nearest, message) = (complaint["nearest"].as_f64().unwrap(), &complaint["message"]);
+    assert!(nearest < 3.0 && message.as_str().unwrap().contains("q1"), "{complaint}");
+    assert!(complaint["way_out"].as_str().is_some_and(|w| !w.is_empty()));
+}
+
+#[test]
+fn configurations_are_assembled() {
+    let server = Server::new(&["stewart"]);
+    let mut client = server.client();
+    let n = client.hear()["coordinates"].as_array().unwrap().len();
+    let mut q = vec![0.0; n];
+    q[0] = 0.02;
+    let state = client.done(json!({"type": "configuration", "q": q}));
+    assert_eq!(state["gap"]["closed"], true);
+    let short = client.complaint(&json!({"type": "configuration", "q": [0, 1]}));
+    assert!(short["message"].as_str().unwrap().contains("expected"), "{short}");
+}

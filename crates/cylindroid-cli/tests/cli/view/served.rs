@@ -1,0 +1,128 @@
+//! URLs, pages and meshes.
+
+use std::fs;
+
+use serde_json::json;
+
+use super::Server;
+use crate::{cylindroid, json as printed, refused, text};
+
+#[test]
+fn it_prints_one_line_and_can_stop_there() {
+    let line = text(&["view", "panda", "--check"]);
+    assert!(line.starts_with("http://127.0.0.1:") && line.ends_with("/\n"), "{line}");
+    assert_eq!(line.lines().count(), 1);
+    let object = printed(&["view", "five-bar", "--check", "--actuated", "q1,q5"], 0);
+    assert_eq!(object["model"], "five-bar");
+    assert!(object["page"].is_boolean() && object["url"].as_str().unwrap().starts_with("http://"));
+    let server = Server::new(&["panda"]);
+    let port = server.port.to_string();
+    assert!(refused(&["view", "panda", "--port", &port]).contains("--port"));
+    assert!(refused(&["view", "pnda"]).contains("panda"));
+    assert!(refused(&["view", "panda", "--actuated", "panda_joint1"]).contains("no loops"));
+    assert!(refused(&["view", "panda", "--q", "0,0,0,9,0,0,0"]).contains("limits"));
+    assert!(refused(&["view", "panda", "--meshes", "no such folder"]).contains("no such folder"));
+    assert_eq!(cylindroid(&["view", "panda", "--port", "70000"]).status.code(), Some(2));
+}
+
+#[test]
+fn answers_carry_the_security_headers() {
+    let server = Server::new(&["panda"]);
+    for path in ["/", "/no/such/page", "/mesh/0/x.stl"] {
+        let (_, answer) = server.get(path);
+        let head = answer.to_ascii_lowercase();
+        for header in [
+            "x-content-type-options: nosniff",
+            "content-security-policy: default-src 'self'",
+            "frame-ancestors 'none'",
+            "x-frame-options: deny",
+            "cross-origin-resource-policy: same-origin",
+        ] {
+            assert!(head.contains(header), "{path}: {answer}");
+        }
+        assert!(!head.contains("access-control-allow-origin"));
+    }
+    assert_eq!(server.ask(&format!("POST / HTTP/1.1\r\nHost: {}", server.address())).0, 405);
+    assert_eq!(server.get("/no/such/page").0, 404);
+    assert_eq!(server.get("/../Cargo.toml").0, 404);
+}
+
+const ARM: &str = r#"<robot name="arm">
+  <link name="base"><visual><geometry><mesh filename="meshes/base.stl" scale="0.5 0.5 0.5"/></geometry></visual></link>
+  <link name="arm"><visual><geometry><mesh filename="package://arm/meshes/arm.obj"/></geometry></visual></link>
+  <link name="hand"><visual><geometry><mesh filename="../outside.stl"/></geometry></visual></link>
+  <link name="tip"><visual><geometry><mesh filename="meshes/none.stl"/></geometry></visual></link>
+  <joint name="a" type="continuous"><parent link="base"/><child link="arm"/></joint>
+  <joint name="b" type="continuous"><parent link="arm"/><child link="hand"/></joint>
+  <joint name="c" type="continuous"><parent link="hand"/><child link="tip"/></joint>
+</robot>"#;
+
+/// Meshes and what belongs to them, and nothing that leads out.
+#[test]
+fn only_files_of_the_model_are_given_out() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("arm");
+    fs::create_dir_all(folder.join("meshes")).unwrap();
+    let files = [
+        ("arm/arm.urdf", ARM),
+        ("arm/meshes/base.stl", "solid base"),
+        ("arm/meshes/arm.obj", "mtllib arm.mtl"),
+        ("arm/meshes/arm.mtl", "newmtl a"),
+        ("arm/meshes/notes.txt", "secret"),
+        ("outside.stl", "secret"),
+    ];
+    for (name, content) in files {
+        fs::write(all.path().join(name), content).unwrap();
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::symlink;
+        symlink(all.path().join("outside.stl"), folder.join("meshes/link.stl")).unwrap();
+        symlink(all.path(), folder.join("up")).unwrap();
+    }
+    let model = folder.join("arm.urdf");
+    let server = Server::new(&[model.to_str().unwrap()]);
+    let scene = server.client().next("scene");
+    let mesh = |link: usize| scene["links"][link]["visuals"][0].clone();
+    assert_eq!((&mesh(0)["scale"], &mesh(0)["format"]), (&json!([0.5, 0.5, 0.5]), &json!("stl")));
+    let url = mesh(0)["url"].as_str().unwrap().to_owned();
+    let (status, answer) = server.get(&url);
+    assert!(status == 200 && answer.ends_with("solid base"), "{answer}");
+    let object = mesh(1)["url"].as_str().unwrap().to_owned();
+    assert!(server.get(&object).1.ends_with("mtllib arm.mtl"));
+    assert!(server.get(&object.replace("arm.obj", "arm.mtl")).1.ends_with("newmtl a"));
+    for (link, word) in [(2, "--meshes"), (3, "not found")] {
+        assert!(mesh(link)["url"].is_null());
+        assert!(mesh(link)["problem"].as_str().unwrap().contains(word), "{}", mesh(link));
+    }
+    let root = url.strip_suffix("meshes/base.stl").unwrap();
+    for path in [
+        "../outside.stl",
+        "%2e%2e/outside.stl",
+        "%2E%2E%2Foutside.stl",
+        "meshes/../../outside.stl",
+        "meshes/%2e%2e/%2e%2e/outside.stl",
+        "..%2foutside.stl",
+        "..%5coutside.stl",
+        "meshes/link.stl",
+        "up/outside.stl",
+        "meshes/notes.txt",
+        "arm.urdf",
+        "meshes/",
+        "",
+        "/etc/passwd",
+        "%2fetc%2fpasswd",
+        "meshes/base.stl%00.txt",
+    ] {
+        let (status, answer) = server.get(&format!("{root}{path}"));
+        assert!(status == 404 || status == 400, "{path}: {answer}");
+        assert!(!answer.contains("secret"), "{path}: {answer}");
+    }
+    assert_eq!(server.get("/mesh/99/meshes/base.stl").0, 404);
+    assert_eq!(server.get("/mesh/-1/meshes/base.stl").0, 400);
+
+    let open = Server::new(&[model.to_str().unwrap(), "--meshes", all.path().to_str().unwrap()]);
+    let scene = open.client().next("scene");
+    let url = scene["links"][2]["visuals"][0]["url"].as_str().unwrap().to_owned();
+    assert!(open.get(&url).1.ends_with("secret"), "the user has opened it");
+}

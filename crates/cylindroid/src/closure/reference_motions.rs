@@ -1,0 +1,38 @@
+//! The motions of the reference link, as twists: what its screw system is made of.
+//!
+//! Formula  columns (object) of the coordinate and the indeterminate directions of the relation
+//!          between driven joints and object, their reference point moved from the frame's origin
+//!          to that of the world
+//! Shapes   a twist for each independent motion, at most d (6, in the plane 3)
+//! Units    m, rad
+//! Frame    world, at the world's origin
+//! Valid    any mechanism; for a tree they span the columns of its Jacobian
+//! Checked  tests/it/closure/graph.rs::motions_of_the_reference
+
+use super::graph::ClosedChain;
+use super::motions::Motions;
+use crate::kinematics::State;
+use crate::model::Dimension;
+use crate::spatial::Twist;
+
+impl ClosedChain {
+    /// A basis of the motions of the reference link at `state`, for which this chain was made:
+    /// twists at the world's origin, world axes.
+    #[must_use]
+    pub fn reference_twists(&self, state: &State) -> Vec<Twist> {
+        let parts = Motions::of(&self.constraint).relation().motions();
+        let planar = self.constraint.object() == Dimension::Planar.freedoms();
+        let components = if planar { Dimension::Planar } else { Dimension::Spatial }.components();
+        let origin = state.pose(self.reference).translation;
+        let twist = |column: &[f64]| {
+            let mut all = [0.0; 6];
+            components.iter().zip(column).for_each(|(&i, x)| all[i] = *x);
+            // The point of the body that is at the world's origin.
+            Twist::from_array(all).at_point(-origin)
+        };
+        let columns = |m: &crate::linalg::Matrix| -> Vec<Twist> {
+            (0..m.cols()).map(|j| twist(m.column(j))).collect()
+        };
+        [columns(&parts.object), columns(&parts.infinite)].concat()
+    }
+}

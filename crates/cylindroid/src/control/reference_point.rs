@@ -1,0 +1,175 @@
+//! Rates of an inverse when the reference point of the twist is moved: the same motion of the same
+//! tool, written at another point.
+//!
+//! Formula  rates_t = J_t+ s_t and rates_p = J_p+ s_p, s_p = [v + w x (p - t); w], J_p likewise
+//! Shapes   J: 6 x m, m joints that move the tool; rates: m
+//! Units    m, rad, s; linear rows over L where the inverse mixes lengths with angles
+//! Frame    world axes; reference points: the tool's origin t and the point p, carried by the tool
+//! Valid    trees, any rank. Hyperbolic inverses give the same rates at every point, others where
+//!          nothing is given up (rank 6 and no damping)
+//! Why so   the Moore-Penrose inverse of an arm with fewer than six joints, and damping of any arm,
+//!          weigh metres against radians, and the metres depend on the point
+//! Source   Donelan & Selig, sections 1 and 5; Doty, Melchiorri & Bonivento 1993
+//! Checked  tests/it/servo/reference_point.rs
+
+use super::projection::Projection;
+use crate::error::{Error, Result};
+use crate::inverse::{
+    HyperbolicDamping, HyperbolicOptions, Inverse, Method, hyperbolic_with, oblique,
+    selectively_damped,
+};
+use crate::kinematics::{Chain, EndEffector, Reference, State};
+use crate::linalg::{Matrix, norm};
+use crate::screws::{NoInverse, ScrewOptions};
+use crate::spatial::{Pose, Twist, Vec3};
+use crate::tolerance::SAME_RATES;
+
+/// A way to invert: what [`ServoOptions`](super::ServoOptions) has of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InverseChoice {
+    /// The inverse near singularities.
+    pub method: Method,
+    /// Which part of a motion is taken on; the method has no part in it unless it is orthogonal.
+    pub projection: Projection,
+    /// Characteristic length (m).
+    pub length: f64,
+}
+
+/// What an inverse makes of a twist with one reference point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RatesAtPoint {
+    /// Rates of the joints that move the tool [rad/s or m/s]; `None` where there is no inverse.
+    pub rates: Option<Vec<f64>>,
+    /// The twist of the tool that they make, at the tool, world axes.
+    pub done: Option<Twist>,
+    /// Why there is none.
+    pub reason: Option<NoInverse>,
+}
+
+/// The same twist inverted at the tool and at another reference point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferencePoints {
+    /// Places in `q` of the joints that move the tool.
+    pub coordinates: Vec<usize>,
+    /// With the tool's origin as reference point.
+    pub at_tool: RatesAtPoint,
+    /// With the other one.
+    pub at_point: RatesAtPoint,
+    /// Length of the difference of the rates [rad/s or m/s]; `None` where one of them is missing.
+    pub difference: Option<f64>,
+    /// True where it is rounding (`tolerance::SAME_RATES` of the rates).
+    pub invariant: bool,
+}
+
+impl InverseChoice {
+    /// Inverts `asked`, the twist of the tool (at the tool, world axes), there and with the
+    /// reference point moved to `point` (world).
+    ///
+    /// # Errors
+    /// A closed chain, whose joints do not move one by one; an end effector of another mechanism;
+    /// numbers that are not finite or outside the domain of the method.
+    pub fn at_two_points(
+        &self,
+        state: &State,
+        tool: EndEffector,
+        asked: Twist,
+        point: Vec3,
+    ) -> Result<ReferencePoints> {
+        let mechanism = state.mechanism();
+        mechanism.check_frame(tool.frame)?;
+        if mechanism.is_closed() {
+            return Err(Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: String::new(),
+                message: "inverses of Jacobians are compared on arms without loops; here loops \
+                          choose the rates"
+                    .to_owned(),
+            });
+        }
+        Error::check_finite("twist", &asked.to_array())?;
+        Error::check_finite("point", &point.to_array())?;
+        Error::check_positive("length", self.length)?;
+        self.projection.check()?;
+        let pose = state.pose(tool);
+        let coordinates = Chain::new(mechanism, tool).coordinates().to_vec();
+        let at = |p: Vec3| self.at_point(state, (tool, pose), &coordinates, asked, p);
+        let (at_tool, at_point) = (at(pose.translation)?, at(point)?);
+        let both = at_tool.rates.as_ref().zip(at_point.rates.as_ref());
+        let difference =
+            both.map(|(a, b)| norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()));
+        let size = at_tool.rates.as_ref().map_or(0.0, |rates| norm(rates));
+        let invariant = difference.is_some_and(|d| d <= SAME_RATES * size);
+        Ok(ReferencePoints { coordinates, at_tool, at_point, difference, invariant })
+    }
+
+    /// With the reference point `p` (world).
+    fn at_point(
+        &self,
+        state: &State,
+        (tool, pose): (EndEffector, Pose),
+        coordinates: &[usize],
+        asked: Twist,
+        p: Vec3,
+    ) -> Result<RatesAtPoint> {
+        let moved = pose.inverse() * Pose { translation: p, ..pose };
+        let there = EndEffector { frame_from_tool: tool.frame_from_tool * moved, ..tool };
+        let all = state.jacobian(there, Reference::LocalWorldAligned);
+        let j = Matrix::from_fn(6, coordinates.len(), |i, k| all[(i, coordinates[k])]);
+        let twist = asked.at_point(p - pose.translation).to_array();
+        let (inverse, twist) = self.inverse(&j, twist, (pose, p))?;
+        if !inverse.exists {
+            return Ok(RatesAtPoint { rates: None, done: None, reason: inverse.reason });
+        }
+        let rates = inverse.matrix.mul_vec(&twist);
+        let done = j.mul_vec(&rates);
+        let done = Twist::from_array(std::array::from_fn(|i| done[i]));
+        let done = done.at_point(pose.translation - p);
+        Ok(RatesAtPoint { rates: Some(rates), done: Some(done), reason: None })
+    }
+
+    /// The inverse at the reference point `p`, and the twist in the units that it takes.
+    fn inverse(
+        &self,
+        j: &Matrix,
+        twist: [f64; 6],
+        (pose, p): (Pose, Vec3),
+    ) -> Result<(Inverse, [f64; 6])> {
+        let options = |damping| HyperbolicOptions {
+            scale: ScrewOptions::with_length(self.length),
+            damping,
+            ..HyperbolicOptions::default()
+        };
+        let found = match &self.projection {
+            Projection::Orthogonal => {
+                let scale = |i: usize| if i < 3 { 1.0 / self.length } else { 1.0 };
+                let scaled = j.clone().scale_rows(&std::array::from_fn::<f64, 6, _>(scale));
+                let twist = std::array::from_fn(|i| twist[i] * scale(i));
+                let inverse = match self.method {
+                    Method::SelectivelyDamped { max_rate } => {
+                        selectively_damped(&scaled, &twist, max_rate)?
+                    }
+                    method => method.inverse(&scaled)?,
+                };
+                return Ok((inverse, twist));
+            }
+            Projection::Hyperbolic { h } => {
+                hyperbolic_with(j, *h, &options(HyperbolicDamping::None))?
+            }
+            Projection::DampedHyperbolic { h, damping } => {
+                hyperbolic_with(j, *h, &options(*damping))?
+            }
+            Projection::Oblique { complement, reference } => {
+                let at_p = |t: Twist| match reference {
+                    Reference::Local => pose.adjoint(t).at_point(p),
+                    Reference::World => t.at_point(p),
+                    Reference::LocalWorldAligned => t.at_point(p - pose.translation),
+                };
+                let given_up: Vec<[f64; 6]> =
+                    complement.iter().map(|t| at_p(*t).to_array()).collect();
+                let complement = Matrix::from_fn(6, given_up.len(), |i, k| given_up[k][i]);
+                oblique(j, &complement, &options(HyperbolicDamping::None))?
+            }
+        };
+        Ok((found, twist))
+    }
+}

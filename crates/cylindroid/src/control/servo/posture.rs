@@ -1,0 +1,139 @@
+//! What a configuration is to a servo: singular values of its task, the direction that is lost
+//! next, and the motions that leave the tool at rest.
+//!
+//! Formula  J_task = U S V^T (`task_space.rs`, of closed chains `coupled.rs`): the weakest motion is
+//!          the last column of U; self-motions are ker J_task, carried along by projecting the last
+//!          one on the next kernel
+//! Shapes   J_task: m x n; self-motions have the n coordinates of the mechanism
+//! Units    singular values scaled as the servo's; the weakest motion in m and rad
+//! Frame    the weakest motion at the tool, world axes
+//! Valid    any rank. A self-motion is scaled so that the fastest joint moves at its speed limit
+//!          (1 rad/s or m/s where it has none); its sign is open, its largest entry positive
+//! Checked  tests/it/servo/posture.rs
+
+use super::Servo;
+use crate::error::{Error, Result};
+use crate::inverse::Inverse;
+use crate::kinematics::Reference;
+use crate::linalg::{RowSpace, Svd, norm};
+use crate::spatial::Twist;
+use crate::tolerance::UNSTEERED;
+
+/// A configuration as a servo sees it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posture {
+    /// The servo's inverse of the scaled task Jacobian, with its report.
+    pub inverse: Inverse,
+    /// Smallest singular value over the largest.
+    pub singular_ratio: f64,
+    /// The motion of the tool that is lost next, of length one in scaled units (m, rad): at the
+    /// tool, world axes, its sign open. `None` where there is no motion at all.
+    pub weakest: Option<Twist>,
+}
+
+impl Servo {
+    /// Looks at a configuration as a step would; rates, target and the watch for stalls stay.
+    ///
+    /// # Errors
+    /// As [`Servo::step`].
+    pub fn posture(&mut self, q: &[f64]) -> Result<Posture> {
+        let svd = self.decomposed(q)?;
+        let weakest = (!svd.is_empty() && svd.value(0) > 0.0).then(|| {
+            let twist = self.space.twist(svd.u(svd.len() - 1));
+            if self.options.task.axes == Reference::Local {
+                let turn = self.chain.pose().rotation;
+                Twist { linear: turn * twist.linear, angular: turn * twist.angular }
+            } else {
+                twist
+            }
+        });
+        let singular_ratio = match weakest {
+            Some(_) => svd.value(svd.len() - 1) / svd.value(0),
+            None => 0.0,
+        };
+        Ok(Posture { inverse: self.options.method.inverse(&self.task)?, singular_ratio, weakest })
+    }
+
+    /// How many independent motions leave the tool at rest in postures that are not singular.
+    #[must_use]
+    pub fn redundancy(&self) -> usize {
+        let unknowns = match &self.coupled {
+            Some(coupled) => coupled.steered(),
+            None => self.free_coordinates().count(),
+        };
+        unknowns.saturating_sub(self.generic_rank)
+    }
+
+    /// The independent motions of all n coordinates that leave the tool at rest at `q`
+    /// [rad/s or m/s].
+    ///
+    /// # Errors
+    /// As [`Servo::step`].
+    pub fn self_motions(&mut self, q: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let svd = self.decomposed(q)?;
+        let basis = RowSpace::exact(&svd).complement_basis();
+        let motions = (0..basis.cols()).filter_map(|j| self.at_full_speed(basis.column(j)));
+        let upwards = |mut motion: Vec<f64>| {
+            let largest =
+                motion.iter().fold(0.0, |m: f64, x| if x.abs() > m.abs() { *x } else { m });
+            motion.iter_mut().for_each(|x| *x *= 1_f64.copysign(largest));
+            motion
+        };
+        Ok(motions.map(upwards).collect())
+    }
+
+    /// The self-motion at `q` that is nearest to `last`, one of a moment before; `None` where there
+    /// is none left of it.
+    ///
+    /// # Errors
+    /// As [`Servo::step`]; a motion of the wrong size or not finite.
+    pub fn next_self_motion(&mut self, q: &[f64], last: &[f64]) -> Result<Option<Vec<f64>>> {
+        self.mechanism.check_q("last self-motion", last)?;
+        let svd = self.decomposed(q)?;
+        let mut x = if let Some(coupled) = &self.coupled {
+            let mut rates = last.to_vec();
+            rates.resize(self.limits.len(), 0.0);
+            coupled.effort_of(&rates)
+        } else {
+            let own = self.chain.coordinates().iter().enumerate();
+            own.map(|(i, &c)| self.space.scaled_rate(i, last[c])).collect()
+        };
+        RowSpace::exact(&svd).project_out(&mut x);
+        Ok(self.at_full_speed(&x))
+    }
+
+    /// The decomposition of the task Jacobian at `q`.
+    fn decomposed(&mut self, q: &[f64]) -> Result<Svd> {
+        self.mechanism.check_q("q", q)?;
+        self.chain.set(q);
+        self.load_jacobian(q)?;
+        Error::check_finite("Jacobian of the task", self.task.as_slice())?;
+        Ok(Svd::of(&self.task))
+    }
+
+    /// Rates of all coordinates for the unknowns `x` of the servo, the fastest at its limit; `None`
+    /// where nothing moves.
+    fn at_full_speed(&self, x: &[f64]) -> Option<Vec<f64>> {
+        if norm(x) <= UNSTEERED {
+            return None;
+        }
+        let mut own = vec![0.0; self.limits.len()];
+        match &self.coupled {
+            Some(coupled) => coupled.lift(x, &mut own),
+            None => own.copy_from_slice(x),
+        }
+        own.iter_mut().zip(&self.space.columns).for_each(|(rate, scale)| *rate *= scale);
+        let share = |(rate, l): (&f64, &crate::model::Limits)| {
+            rate.abs() / if l.velocity.is_finite() { l.velocity } else { 1.0 }
+        };
+        let fastest = own.iter().zip(&self.limits).map(share).fold(0.0, f64::max);
+        if !(fastest > UNSTEERED && fastest.is_finite()) {
+            return None;
+        }
+        let mut rates = vec![0.0; self.mechanism.n()];
+        for (rate, &c) in own.iter().zip(self.chain.coordinates()) {
+            rates[c] = rate / fastest;
+        }
+        Some(rates)
+    }
+}

@@ -1,0 +1,66 @@
+//! The screws of joints: the motions that a joint leaves its second link against its first.
+//!
+//! Formula  joint of the tree: the columns of J_child - J_parent that belong to its coordinates;
+//!          closing joint: its axis where it stands on its first link (the second axis of a
+//!          universal joint on its second)
+//! Shapes   a screw for each coordinate; closing joints as many as their kind has
+//! Units    m, rad; amplitude 1 but for mimic joints, which have the size of their multiplier
+//! Frame    world, at the world's origin
+//! Valid    any configuration; the screws of a closing joint are those of the closed loop
+//! Checked  tests/it/kinematics.rs::screws_of_joints, screws_of_closing_joints
+
+use super::jacobian::Reference;
+use super::state::State;
+use crate::model::JointKind;
+use crate::screws::Screw;
+use crate::spatial::{Pose, Twist, Vec3};
+
+impl State {
+    /// The screws of a joint of the tree (place in `Mechanism::joints`), one for each coordinate
+    /// that moves it; none for a fixed joint and a place that does not exist.
+    #[must_use]
+    pub fn joint_screws(&self, joint: usize) -> Vec<Screw> {
+        let mechanism = self.mechanism();
+        let Some(joint) = mechanism.joints().get(joint) else { return Vec::new() };
+        let of = |link| self.jacobian(mechanism.link_frame(link), Reference::World);
+        let (child, parent) = (of(joint.child), of(joint.parent));
+        let twist = |c: usize| {
+            let entry = |i: usize| child.column(c)[i] - parent.column(c)[i];
+            Screw::of(Twist::from_array(std::array::from_fn(entry)))
+        };
+        joint.coordinates.clone().filter_map(twist).collect()
+    }
+
+    /// The screws of a closing joint (place in `Mechanism::loops`); none for a fixed or free joint
+    /// and a place that does not exist.
+    #[must_use]
+    pub fn loop_screws(&self, closing: usize) -> Vec<Screw> {
+        let mechanism = self.mechanism();
+        let Some(joint) = mechanism.loops().get(closing) else { return Vec::new() };
+        let on_a: Pose = self.pose(mechanism.link_frame(joint.a)) * joint.link_a_from_joint;
+        let on_b: Pose = self.pose(mechanism.link_frame(joint.b)) * joint.link_b_from_joint;
+        let origin = on_a.translation;
+        let axis = on_a.rotation * joint.axis;
+        let turn = |direction: Vec3| Twist { linear: origin.cross(direction), angular: direction };
+        let slide = |direction: Vec3| Twist { linear: direction, angular: Vec3::ZERO };
+        let [x, y, z] = [on_a.rotation.x_axis(), on_a.rotation.y_axis(), on_a.rotation.z_axis()];
+        let twists = match joint.kind {
+            JointKind::Fixed | JointKind::Free => Vec::new(),
+            JointKind::Revolute | JointKind::Continuous => vec![turn(axis)],
+            JointKind::Prismatic => vec![slide(axis)],
+            JointKind::Helical { pitch } => vec![turn(axis) + slide(axis) * pitch],
+            JointKind::Cylindrical => vec![slide(axis), turn(axis)],
+            JointKind::Universal { second } => vec![turn(axis), turn(on_b.rotation * second)],
+            JointKind::Spherical => vec![turn(x), turn(y), turn(z)],
+            JointKind::Planar => {
+                let across = [x, y, z].map(|d| d - axis * d.dot(axis));
+                let mut across: Vec<Vec3> =
+                    across.into_iter().filter_map(|d| d.unit(0.5)).collect();
+                across.truncate(1);
+                let first = across.pop().unwrap_or(x);
+                vec![slide(first), slide(axis.cross(first)), turn(axis)]
+            }
+        };
+        twists.into_iter().filter_map(Screw::of).collect()
+    }
+}

@@ -1,0 +1,68 @@
+/** The line to the server: says whether it is open, comes back by itself with growing pauses. */
+
+export type Link = "connecting" | "open" | "lost";
+type Handlers = {
+  message: (raw: string) => void;
+  /** `wait` is the pause before the next attempt (s), while the line is lost. */
+  link: (link: Link, wait: number) => void;
+};
+
+const FIRST_PAUSE = 0.5;
+const LONGEST_PAUSE = 8;
+
+export class Connection {
+  private socket: WebSocket | null = null;
+  private pause = FIRST_PAUSE;
+  private timer = 0;
+  private link: Link = "connecting";
+
+  constructor(private readonly url: string, private readonly handlers: Handlers) {
+    this.open();
+    addEventListener("online", () => this.retry());
+  }
+
+  /** Sends a message; false where there is no line. */
+  send(message: object): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(message));
+    return true;
+  }
+
+  /** Tries now instead of after the pause. */
+  retry(): void {
+    if (this.link !== "lost") return;
+    clearTimeout(this.timer);
+    this.open();
+  }
+
+  private open(): void {
+    const socket = new WebSocket(this.url);
+    this.socket = socket;
+    socket.onopen = () => {
+      this.pause = FIRST_PAUSE;
+      this.tell("open", 0);
+    };
+    socket.onmessage = (event) => {
+      if (socket === this.socket && typeof event.data === "string") this.handlers.message(event.data);
+    };
+    socket.onclose = () => {
+      if (socket !== this.socket) return;
+      this.tell("lost", this.pause);
+      this.timer = window.setTimeout(() => this.open(), this.pause * 1000);
+      this.pause = Math.min(this.pause * 1.7, LONGEST_PAUSE);
+    };
+  }
+
+  private tell(link: Link, wait: number): void {
+    this.link = link;
+    this.handlers.link(link, wait);
+  }
+}
+
+/** The address of the server that gave this page. */
+export function socketUrl(path: string): string {
+  const url = new URL(path, location.href);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  url.hash = "";
+  return url.href;
+}

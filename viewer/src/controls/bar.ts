@@ -1,0 +1,98 @@
+/** The bar: which model, play and reset, the recorder, picture and address, theme. */
+import { fill, h, text } from "../dom";
+import { count } from "../format";
+import { icon, type Icon } from "../icons";
+import type { Scene, State } from "../protocol";
+import { nextTheme, onTheme, theme } from "../theme";
+import type { Link } from "../connection";
+
+export type BarActions = {
+  play: () => void; pause: () => void; reset: () => void;
+  record: () => void; save: (format: "json" | "csv") => void; picture: () => void; share: () => void;
+};
+
+function button(label: string, name: Icon, action: () => void, shown = label): HTMLButtonElement {
+  return h("button", { class: "button", type: "button", title: label, "aria-label": label, onclick: action }, icon(name), shown && h("span", {}, shown));
+}
+
+export class Bar {
+  private readonly model = h("div", { class: "model" }, "no model yet");
+  private readonly status = h("span", { class: "status", role: "status" }, "connecting");
+  private readonly play: HTMLButtonElement;
+  private readonly record: HTMLButtonElement;
+  private readonly saves: HTMLElement;
+  private readonly themeButton = button("Theme", "system", () => nextTheme(), "");
+  private playing = true;
+
+  constructor(bar: HTMLElement, actions: BarActions) {
+    this.play = button("Pause", "pause", () => (this.playing ? actions.pause() : actions.play()));
+    this.record = button("Record", "record", actions.record);
+    this.record.setAttribute("aria-pressed", "false");
+    this.saves = h(
+      "span", { class: "group" },
+      h("button", { class: "button", type: "button", onclick: () => actions.save("json"), "aria-label": "Save the record as JSON" }, "JSON"),
+      h("button", { class: "button", type: "button", onclick: () => actions.save("csv"), "aria-label": "Save the record as CSV" }, "CSV"),
+    );
+    this.saves.hidden = true;
+    bar.append(
+      h("div", { class: "brand" }, h("img", { src: "./icon.svg", alt: "" }), "cylindroid"),
+      this.model,
+      h("div", { class: "spread" }),
+      this.play,
+      button("Reset", "reset", actions.reset),
+      h("span", { class: "rule" }),
+      this.record,
+      this.saves,
+      button("Save a picture", "picture", actions.picture, "PNG"),
+      button("Copy an address of this configuration", "share", actions.share, "Link"),
+      this.themeButton,
+      this.status,
+    );
+    onTheme(() => this.paint());
+    this.paint();
+  }
+
+  build(scene: Scene): void {
+    const facts = [
+      count(scene.coordinates.length, "coordinate"),
+      scene.loops.length > 0 && count(scene.loops.length, "loop"),
+      scene.contacts.length > 0 && count(scene.contacts.length, "contact"),
+      scene.ignored > 0 && `${scene.ignored} ignored in the file`,
+    ].filter(Boolean);
+    fill(this.model, h("b", {}, scene.name), ` ${facts.join(", ")}`);
+    this.model.title = `${scene.name}: ${facts.join(", ")} (${scene.format})`;
+    document.title = `${scene.name} – cylindroid`;
+  }
+
+  show(state: State): void {
+    if (state.playing === this.playing) return;
+    this.playing = state.playing;
+    const label = this.playing ? "Pause" : "Play";
+    this.play.setAttribute("aria-label", label);
+    this.play.title = label;
+    fill(this.play, icon(this.playing ? "pause" : "play"), h("span", {}, label));
+  }
+
+  link(link: Link): void {
+    this.status.dataset["state"] = link;
+    text(this.status, { open: "connected", connecting: "connecting", lost: "no server" }[link]);
+  }
+
+  recorded(recording: boolean, states: number): void {
+    this.record.setAttribute("aria-pressed", String(recording));
+    this.record.classList.toggle("recording", recording);
+    const label = recording ? `Stop (${states})` : "Record";
+    const words = this.record.querySelector("span");
+    if (words) text(words, label);
+    this.record.setAttribute("aria-label", recording ? `Stop recording, ${count(states, "state")}` : "Record");
+    this.saves.hidden = recording || states === 0;
+  }
+
+  private paint(): void {
+    const now = theme();
+    const label = { system: "Theme: as the system", light: "Theme: light", dark: "Theme: dark" }[now];
+    this.themeButton.title = label;
+    this.themeButton.setAttribute("aria-label", label);
+    fill(this.themeButton, icon(now));
+  }
+}

@@ -1,0 +1,169 @@
+/** A slider for each coordinate, with limits and unit; a driven switch where loops leave the choice. */
+import { fill, h } from "../dom";
+import { fixed, plain } from "../format";
+import { panel } from "../panels/panel";
+import type { Coordinate, Drive, Scene, State } from "../protocol";
+import type { Session } from "../session";
+
+/** Where the file gives no limit a slider still needs an end (rad, or share of the reach). */
+const FREE_TURN = Math.PI;
+/** A slider that was touched is not moved by states for a while (ms). */
+const QUIET = 300;
+
+type Row = { element: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; touched: number };
+
+export class Joints {
+  readonly panel = panel("joints", "Joints", true);
+  private readonly list = h("div", {});
+  private readonly selfMotion = h("div", {});
+  private rows: Row[] = [];
+  private selfSlider: HTMLInputElement | null = null;
+  private timer = 0;
+
+  constructor(private readonly session: Session) {
+    this.panel.body.append(this.list, this.selfMotion);
+  }
+
+  build(scene: Scene): void {
+    const drives = new Map(scene.drives.map((drive) => [drive.name, drive]));
+    const placed = new Set<string>();
+    this.rows = scene.coordinates.map((coordinate) => {
+      const joint = scene.joints[coordinate.joint]?.name ?? coordinate.name;
+      const drive = placed.has(joint) ? undefined : drives.get(joint);
+      placed.add(joint);
+      return this.row(scene, coordinate, drive);
+    });
+    const closing = scene.drives.filter((drive) => !placed.has(drive.name));
+    const split = scene.closed && scene.coordinates.length > 12;
+    const driven = this.rows.filter((_, i) => !split || scene.coordinates[i]?.actuated);
+    const passive = this.rows.filter((_, i) => split && !scene.coordinates[i]?.actuated);
+    const hidden = (this.list.querySelector("details.more") as HTMLDetailsElement | null)?.open ?? false;
+    const more = h("details", { class: "more" }, h("summary", {}, `${passive.length} passive coordinates`), ...passive.map((row) => row.element));
+    more.open = hidden;
+    fill(
+      this.list,
+      scene.coordinates.length === 0 && h("p", { class: "empty" }, "This model has no joint that moves."),
+      scene.drives.length > 0 && h("p", { class: "note" }, "The switch before a name says whether the joint is driven."),
+      ...driven.map((row) => row.element),
+      ...closing.map((drive) => h("div", { class: "joint" }, this.driveSwitch(scene, drive), h("span", { class: "note" }, "closes a loop"))),
+      passive.length > 0 && more,
+    );
+    this.panel.note(`${scene.coordinates.length} coordinates`);
+    this.buildSelfMotion(scene);
+  }
+
+  show(scene: Scene, state: State): void {
+    const now = performance.now();
+    const outside = new Set(state.outside_limits);
+    this.rows.forEach((row, i) => {
+      const value = state.q[i] ?? 0;
+      row.element.classList.toggle("outside", outside.has(i));
+      if (now - row.touched < QUIET) return;
+      setSlider(row.slider, value);
+      row.slider.setAttribute("aria-valuetext", `${fixed(value, 3)} ${scene.coordinates[i]?.unit ?? ""}`);
+      if (document.activeElement !== row.field) row.field.value = plain(value);
+    });
+    if (this.selfSlider && document.activeElement !== this.selfSlider) setSlider(this.selfSlider, state.servo.self_motion);
+  }
+
+  /** What was asked for may not have been reached: shows what is. */
+  private settle(): void {
+    const { scene, state } = this.session;
+    if (scene && state) this.show(scene, state);
+  }
+
+  private row(scene: Scene, coordinate: Coordinate, drive: Drive | undefined): Row {
+    const { name, unit, adjustable } = coordinate;
+    const free = unit === "rad" ? FREE_TURN : scene.reach;
+    const [low, high] = [coordinate.lower ?? -free, coordinate.upper ?? free];
+    const slider = h("input", { type: "range", min: low, max: high, step: "any", disabled: !adjustable, "aria-label": `${name} [${unit}]`, "data-joint": name });
+    const field = h("input", { type: "number", class: "field", step: "any", disabled: !adjustable, "aria-label": `${name} as a number [${unit}]` });
+    if (coordinate.lower !== null) field.min = String(low);
+    if (coordinate.upper !== null) field.max = String(high);
+    const label = drive ? this.driveSwitch(scene, drive, name) : h("span", { class: "name", title: name }, name);
+    const element = h(
+      "div", { class: "joint" },
+      label,
+      h("span", { class: "value" }, field, h("span", { class: "unit" }, unit)),
+      h("div", { class: "track" },
+        h("span", { class: "limit" }, coordinate.lower === null ? "−∞" : fixed(low, 2)), slider,
+        h("span", { class: "limit" }, coordinate.upper === null ? "∞" : fixed(high, 2))),
+    );
+    const row: Row = { element, slider, field, touched: -Infinity };
+    const move = (value: number): void => {
+      if (!Number.isFinite(value)) return;
+      row.touched = performance.now();
+      setSlider(slider, value);
+      this.session.sendSoon(`joint ${name}`, { type: "joint", name, value });
+      clearTimeout(this.timer);
+      this.timer = window.setTimeout(() => this.settle(), QUIET + 30);
+    };
+    slider.addEventListener("input", () => {
+      field.value = plain(slider.valueAsNumber);
+      move(slider.valueAsNumber);
+    });
+    slider.addEventListener("keydown", (event) => stepByKey(event, slider, (high - low) / 200));
+    field.addEventListener("change", () => move(field.valueAsNumber));
+    return row;
+  }
+
+  /** The whole set goes to the server: what is driven is one choice. */
+  private driveSwitch(scene: Scene, drive: Drive, shown = drive.name): HTMLElement {
+    const box = h("input", { type: "checkbox", class: "switch", role: "switch", "aria-label": `${drive.name} driven`, "data-drive": drive.name });
+    box.checked = drive.actuated;
+    box.addEventListener("change", () => {
+      const names = scene.drives.filter((other) => (other.name === drive.name ? box.checked : other.actuated)).map((other) => other.name);
+      this.session.send({ type: "actuated", names });
+    });
+    return h("label", { class: "drive" }, box, h("span", { class: "name", title: shown }, shown));
+  }
+
+  private buildSelfMotion(scene: Scene): void {
+    this.selfSlider = null;
+    if (scene.self_motions === 0) {
+      fill(this.selfMotion);
+      return;
+    }
+    const which = h("select", { class: "select", "aria-label": "Which self-motion" }, ...Array.from({ length: scene.self_motions }, (_, i) => h("option", { value: i }, `motion ${i + 1}`)));
+    const slider = h("input", { type: "range", min: -1, max: 1, step: "any", "aria-label": "Self-motion: rate as a share of the fastest" });
+    const send = (): void => this.session.sendSoon("null_space", { type: "null_space", rate: slider.valueAsNumber, index: Number(which.value) });
+    const rest = (): void => {
+      setSlider(slider, 0);
+      send();
+    };
+    setSlider(slider, 0);
+    slider.addEventListener("input", () => {
+      setSlider(slider, slider.valueAsNumber);
+      send();
+    });
+    slider.addEventListener("keydown", (event) => stepByKey(event, slider, 0.1));
+    slider.addEventListener("pointerup", rest);
+    slider.addEventListener("blur", rest);
+    this.selfSlider = slider;
+    fill(
+      this.selfMotion,
+      h("h3", {}, "Self-motion with the tool at rest"),
+      h("div", { class: "row" }, scene.self_motions > 1 && which),
+      slider,
+      h("p", { class: "note" }, "Null space of the task: hold it off the middle to move, let go to stop."),
+    );
+  }
+}
+
+/** Sliders with step "any" would jump by the browser's own step. */
+function stepByKey(event: KeyboardEvent, slider: HTMLInputElement, step: number): void {
+  const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
+  if (way === undefined) return;
+  event.preventDefault();
+  const value = slider.valueAsNumber + way * step;
+  slider.value = String(Math.min(Number(slider.max), Math.max(Number(slider.min), value)));
+  slider.dispatchEvent(new Event("input"));
+}
+
+function setSlider(slider: HTMLInputElement, value: number): void {
+  slider.value = String(value);
+  const [low, high] = [Number(slider.min), Number(slider.max)];
+  const share = high > low ? (Math.min(high, Math.max(low, value)) - low) / (high - low) : 0.5;
+  slider.style.setProperty("--filled", `${(share * 100).toFixed(2)}%`);
+}
+

@@ -1,0 +1,43 @@
+/** A switch for each overlay, with its unit and frame; and for the model's own shapes. */
+import { fill, h } from "../dom";
+import { overlayColour, type Overlays } from "../overlays/overlays";
+import { panel } from "../panels/panel";
+import type { Scene } from "../protocol";
+
+export class Switches {
+  readonly panel = panel("show", "Show", true);
+  private readonly boxes = new Map<string, HTMLInputElement>();
+  private readonly shapes: HTMLInputElement;
+
+  constructor(private readonly overlays: Overlays, private readonly showShapes: (shown: boolean) => void) {
+    this.shapes = h("input", { type: "checkbox", class: "switch", role: "switch", "data-overlay": "shapes" });
+    this.shapes.checked = true;
+    this.shapes.addEventListener("change", () => this.showShapes(this.shapes.checked));
+    overlays.onChange(() => {
+      for (const [name, box] of this.boxes) box.checked = [...overlays.on].some((on) => on === name);
+    });
+  }
+
+  build(scene: Scene, hasShapes: boolean): void {
+    this.boxes.clear();
+    const rows = scene.overlays.map((info) => {
+      const box = h("input", { type: "checkbox", class: "switch", role: "switch", "data-overlay": info.name });
+      box.checked = this.overlays.on.has(info.name);
+      box.addEventListener("change", () => this.overlays.show(info.name, box.checked));
+      this.boxes.set(info.name, box);
+      return row(box, overlayColour(info.name), info.title, `${info.unit}; ${info.frame}`);
+    });
+    fill(
+      this.panel.body,
+      ...rows,
+      rows.length === 0 && h("p", { class: "empty" }, "Nothing can be drawn over this model."),
+      hasShapes && row(this.shapes, "body-2", "Shapes of the model", "m; off: rods and joints"),
+    );
+  }
+}
+
+function row(box: HTMLInputElement, colour: string, title: string, note: string): HTMLElement {
+  const swatch = h("span", { class: "swatch" });
+  swatch.style.setProperty("--swatch", `var(--${colour})`);
+  return h("label", { class: "overlay" }, box, swatch, h("span", { class: "what" }, title), h("span", { class: "note" }, note));
+}

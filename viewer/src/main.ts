@@ -1,0 +1,199 @@
+/** Puts the parts together. The server computes; this page asks, draws and lets be dragged. */
+import { Sphere, Vector3 } from "three";
+import { Bar } from "./controls/bar";
+import { Joints } from "./controls/joints";
+import { ServoControls } from "./controls/servo";
+import { Switches } from "./controls/switches";
+import { Tools } from "./controls/tools";
+import { socketUrl } from "./connection";
+import { h } from "./dom";
+import { layout } from "./layout";
+import { LinkBanner } from "./link_banner";
+import { Overlays } from "./overlays/overlays";
+import { capabilityPanel } from "./panels/capability";
+import { Compare } from "./panels/compare";
+import { mobilityPanel } from "./panels/mobility";
+import { posePanel } from "./panels/pose";
+import { Reports } from "./panels/reports";
+import { screwsPanel } from "./panels/screws";
+import { singularPanel } from "./panels/singular";
+import type { Scene, State } from "./protocol";
+import { download, Recorder } from "./recorder";
+import { Restore } from "./restore";
+import { Robot } from "./robot/robot";
+import { Labels } from "./scene/labels";
+import { Stage } from "./scene/stage";
+import { Session } from "./session";
+import { fragment } from "./share";
+import { Target } from "./target";
+
+const root = document.getElementById("app");
+if (!root) throw new Error("the page has no place for the viewer");
+const page = layout(root);
+
+function start(): void {
+  const stage = new Stage(page.stage);
+  const session = new Session(socketUrl("./ws"), () => stage.invalidate());
+  let problemsTold = "";
+  const robot = new Robot({
+    changed: () => stage.invalidate(),
+    problems: (sentences) => {
+      const told = sentences.join();
+      if (sentences.length > 0 && told !== problemsTold) {
+        page.toast(`${sentences.length === 1 ? "A shape is" : `${sentences.length} shapes are`} missing and drawn as rods. ${sentences[0] ?? ""}`, true);
+      }
+      problemsTold = told;
+      if (robot.hasShapes && untouched) fitWanted = true;
+      if (session.scene && session.state) draw(session.scene, session.state);
+    },
+  });
+  const labels = new Labels(page.stage);
+  const overlays = new Overlays(page.legend, labels, (names) => session.send({ type: "overlays", names }));
+  const compare = new Compare(session, (point) => {
+    target.showPoint(point);
+    tools.offerPoint(point !== null);
+  });
+  const target = new Target(stage, {
+    target: (pose) => session.sendSoon("target", { type: "target", ...pose }),
+    point: (position) => compare.movePoint(position),
+  });
+  const recorder = new Recorder();
+  let fitWanted = true;
+  const fit = (): void => stage.fit(target.within(robot.box()));
+  const tools = new Tools(page.tools, target, stage, fit);
+  const joints = new Joints(session);
+  const servo = new ServoControls(session);
+  const switches = new Switches(overlays, (shown) => robot.showShapes(shown));
+  const [pose, singular, screws] = [posePanel(), singularPanel(), screwsPanel()];
+  const reports = new Reports(session);
+  const [mobility, capability] = [mobilityPanel(), capabilityPanel()];
+  reports.watch("mobility", mobility);
+  reports.watch("manipulability", capability);
+  page.left.append(joints.panel.element, switches.panel.element, servo.panel.element);
+  page.right.append(...[pose, singular, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
+  stage.scene.add(robot.group, overlays.group);
+
+  const wantScrews = (open: boolean): void => overlays.want("principal-screws", open);
+  screws.onToggle(wantScrews);
+  if (screws.isOpen()) wantScrews(true);
+
+  const bar = new Bar(page.bar, {
+    play: () => session.send({ type: "play" }),
+    pause: () => session.send({ type: "pause" }),
+    reset: () => session.send({ type: "reset" }),
+    record: () => {
+      if (recorder.recording) recorder.stop();
+      else recorder.start();
+      session.eager = recorder.recording;
+      bar.recorded(recorder.recording, recorder.length);
+    },
+    save: (format) => {
+      if (session.scene) download(format === "json" ? recorder.json(session.scene) : recorder.csv(session.scene), `${session.scene.name}.${format}`);
+    },
+    picture: () => {
+      stage.png().then(
+        (blob) => download(blob, `${session.scene?.name ?? "cylindroid"}.png`),
+        (error: unknown) => page.toast(`No picture: ${String(error)}`, true),
+      );
+    },
+    share: () => void share(),
+  });
+  const restore = new Restore(session, overlays, stage, page.toast);
+
+  async function share(): Promise<void> {
+    const shot = restore.now();
+    if (!shot) return;
+    history.replaceState(null, "", fragment(shot));
+    try {
+      await navigator.clipboard.writeText(location.href);
+      page.toast("The address of this configuration is copied, and stands in the address bar.");
+    } catch {
+      page.toast("The address bar holds this configuration.");
+    }
+  }
+
+  const known = { name: "", bodies: "" };
+  session.on("scene", (scene) => {
+    const bodies = JSON.stringify([scene.links, scene.joints, scene.loops, scene.contacts]);
+    if (scene.name !== known.name) fitWanted = true;
+    if (scene.name !== known.name || bodies !== known.bodies) robot.build(scene);
+    Object.assign(known, { name: scene.name, bodies });
+    target.build(scene);
+    bar.build(scene);
+    joints.build(scene);
+    servo.build(scene);
+    tools.build(scene);
+    switches.build(scene, robot.hasShapes);
+    compare.offer(scene);
+    restore.scene(scene);
+    stage.invalidate();
+  });
+
+  /** Nobody has turned the view yet. */
+  let untouched = true;
+  const touch = (): void => {
+    untouched = false;
+  };
+  stage.orbit.addEventListener("start", touch);
+  page.tools.addEventListener("click", touch);
+  /** What is drawn beside the robot is as large as suits it. */
+  let size = 1;
+  const fitAll = (scene: Scene): void => {
+    fitWanted = false;
+    const box = robot.box();
+    size = Math.max(2.2 * box.getBoundingSphere(new Sphere()).radius, 0.1 * scene.reach);
+    target.scale(size);
+    stage.scale(size, scene.dimension === 2 ? -0.03 * size : box.min.z);
+    fit();
+    stage.view(scene.dimension === 2 ? "top" : "corner");
+    if (restore.camera()) untouched = false;
+  };
+  const draw = (scene: Scene, state: State): void => {
+    robot.place(state);
+    target.place(state, size);
+    if (fitWanted) fitAll(scene);
+    overlays.draw(scene, state, { size, jointPlace: (coordinate) => robot.jointPlace(scene, coordinate) });
+    bar.show(state);
+    joints.show(scene, state);
+    servo.show(state);
+    for (const panel of [pose, singular, screws]) panel.show(scene, state);
+  };
+  session.on("state", (state) => {
+    if (session.scene) draw(session.scene, state);
+  });
+  session.on("raw", (raw) => {
+    if (!recorder.recording) return;
+    recorder.take(raw);
+    if (recorder.isFull) {
+      recorder.stop();
+      session.eager = false;
+      page.toast("The recorder is full and has stopped: save its states.");
+    }
+    bar.recorded(recorder.recording, recorder.length);
+  });
+  session.on("failure", ({ reply_to, message, culprit, place }) => {
+    if (!reports.owns(reply_to) && !compare.owns(reply_to)) page.toast(message, true, `${place} ${culprit}`);
+  });
+  const banner = new LinkBanner(page.banner, () => session.retry());
+  session.on("link", ({ link, wait }) => {
+    bar.link(link);
+    banner.show(link, wait);
+  });
+  overlays.onChange(() => {
+    if (session.scene && session.state) draw(session.scene, session.state);
+    stage.invalidate();
+  });
+  stage.onFrame(() => session.takeNewest());
+  stage.onFrame(() => labels.place(stage.camera));
+  // For tests: what is drawn, without reading pixels.
+  Object.assign(window, { viewer: { session, stage, target, robot, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.camera).toArray() } });
+}
+
+try {
+  start();
+} catch (error) {
+  page.banner.hidden = false;
+  page.banner.append(
+    h("p", {}, h("b", {}, "The view cannot be drawn. "), "This browser gives the page no WebGL 2: turn on hardware acceleration, or try another browser. ", h("span", { class: "note" }, String(error))),
+  );
+}

@@ -1,0 +1,107 @@
+/** All overlays: which are on, their drawings, and their words in the legend. */
+import { Group } from "three";
+import { fill, h } from "../dom";
+import { isEmpty, type OverlayInfo, type OverlayName, type Scene, type State } from "../protocol";
+import type { Label, Labels } from "../scene/labels";
+import { discard } from "../scene/shapes";
+import { ellipsoid } from "./ellipsoid";
+import { lostDirection } from "./lost";
+import type { Context, Overlay } from "./overlay";
+import { cylindroid } from "./surface";
+import { jointAxes, principalScrews, reciprocalSystem } from "./systems";
+
+const ALL: { [K in OverlayName]: Overlay<K> } = {
+  "velocity-ellipsoid": ellipsoid("c-velocity"),
+  "angular-velocity-ellipsoid": ellipsoid("c-angular"),
+  "active-force-ellipsoid": ellipsoid("c-active-force"),
+  "passive-force-ellipsoid": ellipsoid("c-passive-force"),
+  "joint-axes": jointAxes,
+  "principal-screws": principalScrews,
+  "reciprocal-system": reciprocalSystem,
+  cylindroid,
+  "lost-direction": lostDirection,
+};
+
+export function overlayColour(name: OverlayName): string {
+  return ALL[name].colour;
+}
+
+export class Overlays {
+  readonly group = new Group();
+  /** What is drawn. */
+  readonly on = new Set<OverlayName>();
+  /** What panels want to know of without a drawing. */
+  private readonly wanted = new Set<OverlayName>();
+  private readonly listeners = new Set<() => void>();
+
+  constructor(
+    private readonly legend: HTMLElement,
+    private readonly labels: Labels,
+    private readonly changed: (names: OverlayName[]) => void,
+  ) {}
+
+  onChange(listener: () => void): void {
+    this.listeners.add(listener);
+  }
+
+  show(name: OverlayName, shown: boolean): void {
+    if (shown) this.on.add(name);
+    else this.on.delete(name);
+    this.tell();
+  }
+
+  want(name: OverlayName, wanted: boolean): void {
+    if (wanted) this.wanted.add(name);
+    else this.wanted.delete(name);
+    this.tell();
+  }
+
+  /** All that the server shall send. */
+  names(): OverlayName[] {
+    return [...new Set([...this.on, ...this.wanted])].filter((name) => name in ALL);
+  }
+
+  draw(scene: Scene, state: State, places: Pick<Context, "jointPlace" | "size">): void {
+    for (const child of [...this.group.children]) discard(child);
+    const labels: Label[] = [];
+    const lines: HTMLElement[] = [];
+    for (const info of scene.overlays) {
+      if (!this.on.has(info.name)) continue;
+      const group = new Group();
+      group.renderOrder = 2;
+      const words = drawOne(info.name, group, {
+        scene, state, ...places,
+        line: places.size * 0.0075,
+        label: (label) => labels.push(label),
+      });
+      this.group.add(group);
+      lines.push(legendLine(info, words));
+    }
+    this.labels.set(labels);
+    fill(this.legend, ...lines);
+  }
+
+  private tell(): void {
+    this.changed(this.names());
+    for (const listener of this.listeners) listener();
+  }
+}
+
+function drawOne<K extends OverlayName>(name: K, group: Group, context: Context): string {
+  const overlay = ALL[name];
+  const data = context.state.overlays[name];
+  if (!data) return "on its way";
+  if (isEmpty(data)) return data.empty;
+  const full = data as Parameters<typeof overlay.draw>[1];
+  overlay.draw(group, full, context);
+  group.traverse((part) => {
+    part.renderOrder = 2;
+  });
+  return overlay.words(full);
+}
+
+function legendLine(info: OverlayInfo, words: string): HTMLElement {
+  const swatch = h("span", { class: "swatch" });
+  swatch.style.setProperty("--swatch", `var(--${overlayColour(info.name)})`);
+  return h("div", {}, swatch, h("span", {}, h("b", {}, info.title), words ? ` ${words}` : ""));
+}

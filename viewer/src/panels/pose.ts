@@ -1,0 +1,46 @@
+/** Where the tool is, where it should be, and what the servo says. */
+import { fill, h } from "../dom";
+import { fixed, short } from "../format";
+import type { Pose, Scene, State } from "../protocol";
+import { numbers, pairs, panel, type Panel } from "./panel";
+
+const WORDS = { moving: "moving", reached: "reached", stalled: "stalled", paused: "paused", unavailable: "not available" };
+
+export function posePanel(): Panel & { show: (scene: Scene, state: State) => void } {
+  const made = panel("pose", "Pose and error", true);
+  const table = h("div", {});
+  const servo = h("div", {});
+  made.body.append(servo, table);
+  return {
+    ...made,
+    show(scene, state) {
+      const { status, sentence, limits } = state.servo;
+      made.note(`${scene.frame} in world`);
+      const names = limits.map((limit) => `${scene.coordinates[limit.coordinate]?.name ?? "?"} (${limit.kind})`);
+      fill(
+        servo,
+        h("p", { "data-status": status }, h("span", { class: `verdict ${status === "reached" ? "good" : status === "stalled" || status === "unavailable" ? "bad" : ""}` }, WORDS[status]), " ", h("span", { class: "note" }, sentence)),
+        names.length > 0 && h("p", { class: "note" }, `At limits: ${names.join(", ")}`),
+        state.gap && !state.gap.closed &&
+          h("p", { class: "doubt" }, `Loops are open by ${short(state.gap.distance)} m, ${short(state.gap.angle)} rad`),
+      );
+      fill(
+        table,
+        numbers("Pose of tool and target", ["", "tool", "target"], [
+          ...rows("position", ["x", "y", "z"], state, "m"),
+          ...rows("quaternion", ["qw", "qx", "qy", "qz"], state, ""),
+        ]),
+        h("h3", {}, "Error of the components that matter"),
+        pairs(["distance [m]", fixed(state.error.position, 6)], ["angle [rad]", fixed(state.error.orientation, 6)]),
+      );
+    },
+  };
+}
+
+function rows(field: keyof Pose, names: string[], state: State, unit: string): (string | Node)[][] {
+  return names.map((name, i) => [
+    h("span", { "data-pose": name, "data-value": state.tool[field][i] ?? "" }, name, unit && h("span", { class: "unit" }, ` ${unit}`)),
+    fixed(state.tool[field][i], 5),
+    fixed(state.target[field][i], 5),
+  ]);
+}

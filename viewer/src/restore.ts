@@ -1,0 +1,94 @@
+/** Brings a session to a configuration: that of the address on load, the last one after the server came back. */
+import type { Overlays } from "./overlays/overlays";
+import type { Scene } from "./protocol";
+import type { Stage } from "./scene/stage";
+import type { Session } from "./session";
+import { parse, snapshot, type Snapshot } from "./share";
+
+export class Restore {
+  private wanted: Snapshot | null = null;
+  private last: Snapshot | null = null;
+  private fresh = true;
+
+  constructor(
+    private readonly session: Session,
+    private readonly overlays: Overlays,
+    private readonly stage: Stage,
+    private readonly say: (words: string, bad?: boolean) => void,
+  ) {
+    this.read();
+    addEventListener("hashchange", () => {
+      this.read();
+      if (this.session.scene) this.apply(this.session.scene);
+      this.camera();
+    });
+    session.on("link", ({ link }) => {
+      if (link !== "lost" || this.fresh) return;
+      this.fresh = true;
+      this.last = this.now();
+    });
+  }
+
+  /** The configuration as it is. */
+  now(): Snapshot | null {
+    const { scene, state } = this.session;
+    if (!scene || !state) return null;
+    const { camera, orbit } = this.stage;
+    return snapshot(scene, state, this.overlays.on, [...camera.position.toArray(), ...orbit.target.toArray()]);
+  }
+
+  /** The first scene of a connection: the session on the other side is new. */
+  scene(scene: Scene): void {
+    if (!this.fresh) return;
+    this.fresh = false;
+    if (this.last?.model === scene.name) {
+      this.wanted = this.last;
+      this.say("The server is back; the configuration has been restored.");
+    }
+    this.last = null;
+    this.session.send({ type: "overlays", names: this.overlays.names() });
+    this.apply(scene);
+  }
+
+  /** Looks from where the address says; false where it says nothing. */
+  camera(): boolean {
+    const numbers = this.shownCamera;
+    this.shownCamera = null;
+    if (!numbers) return false;
+    const [x = 0, y = 0, z = 1, tx = 0, ty = 0, tz = 0] = numbers;
+    this.stage.orbit.target.set(tx, ty, tz);
+    this.stage.camera.position.set(x, y, z);
+    this.stage.orbit.update();
+    return true;
+  }
+
+  private shownCamera: number[] | null = null;
+
+  private read(): void {
+    const read = parse(location.hash);
+    if (typeof read === "string") this.say(read, true);
+    else this.wanted = read;
+    this.shownCamera = this.wanted?.camera ?? null;
+  }
+
+  private apply(scene: Scene): void {
+    const shot = this.wanted;
+    this.wanted = null;
+    if (!shot) return;
+    if (shot.model !== scene.name) {
+      this.shownCamera = null;
+      this.say(`The address is for ${shot.model}; this is ${scene.name}, so it is left as it is.`, true);
+      return;
+    }
+    const { session } = this;
+    if (shot.frame && shot.frame !== scene.frame) session.send({ type: "frame", name: shot.frame });
+    if (shot.task && shot.task !== scene.task.name) session.send({ type: "task", name: shot.task });
+    if (shot.actuated && scene.drives.length > 0) session.send({ type: "actuated", names: shot.actuated });
+    if (shot.method && JSON.stringify(shot.method) !== JSON.stringify(scene.method)) session.send({ type: "method", ...shot.method });
+    if (shot.playing === false) session.send({ type: "pause" });
+    session.send({ type: "configuration", q: shot.q });
+    if (shot.target) session.send({ type: "target", ...shot.target });
+    const known = new Set<string>(scene.overlays.map((info) => info.name));
+    for (const name of shot.overlays ?? []) if (known.has(name)) this.overlays.show(name, true);
+  }
+}

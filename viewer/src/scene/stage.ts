@@ -1,0 +1,170 @@
+/** The view: camera, lights, ground; draws only when somebody said that something changed. */
+import {
+  AmbientLight, Box3, Color, DirectionalLight, HemisphereLight, Mesh, PerspectiveCamera,
+  PlaneGeometry, Scene, ShadowMaterial, Sphere, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { colour, onTheme } from "../theme";
+import { ground, type Ground } from "./ground";
+
+export type View = "corner" | "front" | "side" | "top";
+const FROM: Record<View, [number, number, number]> = {
+  corner: [1.1, -1.5, 0.85],
+  front: [0, -1, 0.0001],
+  side: [1, 0, 0.0001],
+  top: [0, -0.0001, 1],
+};
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(35, 1, 0.01, 100);
+  readonly renderer: WebGLRenderer;
+  readonly orbit: OrbitControls;
+  private readonly before = new Set<() => void>();
+  private readonly sun = new DirectionalLight(0xffffff, 2.1);
+  private readonly floor = new Mesh(new PlaneGeometry(1, 1), new ShadowMaterial({ opacity: 0.2 }));
+  private grid: Ground | null = null;
+  private scheduled = false;
+  private fitted = new Sphere(new Vector3(), 1);
+  /** Frames drawn, for tests that a page at rest draws none. */
+  frames = 0;
+
+  constructor(private readonly element: HTMLElement) {
+    const slow = softwareRendered();
+    this.renderer = new WebGLRenderer({ antialias: !slow, alpha: true });
+    this.renderer.setPixelRatio(slow ? 1 : Math.min(devicePixelRatio, 2));
+    const canvas = this.renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "application");
+    canvas.setAttribute("aria-label", "View of the robot. Drag to turn, wheel to zoom, right button to pan; arrow keys pan, with Shift they turn, F shows all.");
+    element.prepend(canvas);
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.addEventListener("change", () => this.invalidate());
+    this.orbit.listenToKeyEvents(canvas);
+    this.lights(!slow);
+    new ResizeObserver(() => this.resize()).observe(element);
+    onTheme(() => this.paint());
+    canvas.addEventListener("webglcontextrestored", () => this.invalidate());
+  }
+
+  /** Something changed: draw it in the next frame. */
+  invalidate(): void {
+    if (this.scheduled) return;
+    this.scheduled = true;
+    requestAnimationFrame(() => {
+      this.scheduled = false;
+      this.draw();
+    });
+  }
+
+  /** Called before each drawing. */
+  onFrame(work: () => void): void {
+    this.before.add(work);
+  }
+
+  /** Sets the scale of grid, shadow and clipping; `size` is that of the robot (m). */
+  scale(size: number, floor: number): void {
+    this.camera.near = size * 0.005;
+    this.camera.far = size * 60;
+    this.sun.position.set(1.2, -1.6, 3).multiplyScalar(size);
+    const shadow = this.sun.shadow.camera;
+    [shadow.left, shadow.right, shadow.top, shadow.bottom] = [-1.6 * size, 1.6 * size, 1.6 * size, -1.6 * size];
+    [shadow.near, shadow.far] = [0.1 * size, 8 * size];
+    shadow.updateProjectionMatrix();
+    this.floor.scale.setScalar(8 * size);
+    this.floor.position.z = floor - 0.001 * size;
+    if (this.grid) this.scene.remove(this.grid.object);
+    this.grid = ground(size);
+    this.grid.object.position.z = floor - 0.002 * size;
+    this.scene.add(this.grid.object);
+    this.paint();
+  }
+
+  /** Shows all of a box. */
+  fit(box: Box3): void {
+    if (box.isEmpty()) return;
+    box.getBoundingSphere(this.fitted);
+    this.look(this.camera.position.clone().sub(this.orbit.target));
+  }
+
+  view(view: View): void {
+    this.look(new Vector3(...FROM[view]));
+  }
+
+  private look(direction: Vector3): void {
+    const { center, radius } = this.fitted;
+    const across = Math.min(1, this.camera.aspect);
+    const distance = (radius * 1.06) / Math.sin((this.camera.fov * Math.PI) / 360) / across;
+    this.orbit.target.copy(center);
+    this.camera.position.copy(center).addScaledVector(direction.normalize(), distance);
+    this.camera.updateProjectionMatrix();
+    this.orbit.update();
+    this.invalidate();
+  }
+
+  /** The view as a PNG, on its background. */
+  async png(): Promise<Blob> {
+    this.draw();
+    const source = this.renderer.domElement;
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [source.width, source.height];
+    const context = canvas.getContext("2d");
+    if (!context) throw new Error("this browser gives no 2D canvas");
+    const gradient = context.createLinearGradient(0, 0, 0, canvas.height);
+    gradient.addColorStop(0, colour("stage-top"));
+    gradient.addColorStop(1, colour("stage-bottom"));
+    context.fillStyle = gradient;
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(source, 0, 0);
+    return new Promise((resolve, reject) => {
+      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture could not be encoded"))), "image/png");
+    });
+  }
+
+  private draw(): void {
+    for (const work of this.before) work();
+    this.renderer.render(this.scene, this.camera);
+    this.frames += 1;
+  }
+
+  private lights(shadows: boolean): void {
+    this.scene.add(new HemisphereLight(0xffffff, 0x8a8f98, 1.35), new AmbientLight(0xffffff, 0.35), this.sun);
+    const rim = new DirectionalLight(0xdfe8f5, 0.9);
+    rim.position.set(-2, 1.5, 1);
+    this.scene.add(rim);
+    if (!shadows) return;
+    this.renderer.shadowMap.enabled = true;
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.normalBias = 0.01;
+    this.sun.shadow.radius = 5;
+    this.floor.receiveShadow = true;
+    this.scene.add(this.floor);
+  }
+
+  private paint(): void {
+    this.grid?.paint(new Color(colour("grid")), new Color(colour("grid-strong")));
+    this.invalidate();
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.element;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+}
+
+/** Whether the processor makes the pixels: smooth edges and shadows would cost it more than they show. */
+function softwareRendered(): boolean {
+  if (new URLSearchParams(location.search).get("quality") === "high") return false;
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return false;
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}

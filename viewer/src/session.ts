@@ -1,0 +1,118 @@
+/** One session with the server: the newest scene and state, and everything that wants to know of them. */
+import { Connection, type Link } from "./connection";
+import { Outbox } from "./outbox";
+import type { Comparison, Failure, FromServer, Report, Scene, State, ToServer } from "./protocol";
+
+type Events = {
+  scene: Scene;
+  state: State;
+  compare: Comparison;
+  report: Report;
+  failure: Failure;
+  link: { link: Link; wait: number };
+  /** A state as it came, before any is dropped: for the recorder. */
+  raw: string;
+};
+
+const STATE_START = '{"type":"state"';
+const ACK = /"ack":(\d+)/;
+const SEQ = /"seq":(\d+)/;
+
+export class Session {
+  scene: Scene | null = null;
+  state: State | null = null;
+  link: Link = "connecting";
+  /** Wants every state, drawn or not: the server then holds none back for a slow page. */
+  eager = false;
+  private readonly listeners: { [K in keyof Events]?: ((event: Events[K]) => void)[] } = {};
+  private readonly connection: Connection;
+  private newest: string | null = null;
+  private ids = 0;
+  private readonly outbox: Outbox;
+
+  /** `wake` asks for a frame; `takeNewest` is to be called in it. */
+  constructor(url: string, private readonly wake: () => void) {
+    this.outbox = new Outbox((message) => this.send(message));
+    this.connection = new Connection(url, {
+      message: (raw) => this.receive(raw),
+      link: (link, wait) => {
+        this.link = link;
+        if (link !== "open") this.newest = null;
+        this.outbox.clear();
+        this.emit("link", { link, wait });
+      },
+    });
+  }
+
+  on<K extends keyof Events>(event: K, listener: (event: Events[K]) => void): void {
+    const all = (this.listeners[event] ??= []) as ((event: Events[K]) => void)[];
+    all.push(listener);
+  }
+
+  /** Sends at once; gives the id that the answer will carry. */
+  send(message: ToServer): number | null {
+    const id = (this.ids += 1);
+    return this.connection.send({ id, ...message }) ? id : null;
+  }
+
+  /** Sends what is dragged: of several under one key the newest, when the last one is answered. */
+  sendSoon(key: string, message: ToServer): void {
+    this.outbox.put(key, message);
+  }
+
+  retry(): void {
+    this.connection.retry();
+  }
+
+  /** Hands the newest state on, once. */
+  takeNewest(): void {
+    if (this.newest === null) return;
+    const raw = this.newest;
+    this.newest = null;
+    this.state = JSON.parse(raw) as State;
+    this.emit("state", this.state);
+    if (!this.eager) this.connection.send({ type: "seen", seq: this.state.seq });
+  }
+
+  private receive(raw: string): void {
+    if (raw.startsWith(STATE_START)) {
+      this.receiveState(raw);
+      return;
+    }
+    let message: FromServer;
+    try {
+      message = JSON.parse(raw) as FromServer;
+    } catch {
+      console.warn("the server sent something that is no JSON");
+      return;
+    }
+    if (message.type === "scene") {
+      const same = this.scene?.links.length === message.links.length && this.scene.name === message.name;
+      this.scene = message;
+      if (!same) this.state = null;
+      this.emit("scene", message);
+    } else if (message.type === "state") {
+      this.receiveState(raw);
+    } else if (message.type === "error") {
+      this.outbox.answered(message.reply_to);
+      this.emit("failure", message);
+    } else if (message.type === "compare" || message.type === "report") {
+      this.emit(message.type as "compare", message as Comparison);
+    }
+  }
+
+  private receiveState(raw: string): void {
+    this.emit("raw", raw);
+    const start = raw.slice(0, 200);
+    const ack = ACK.exec(start)?.[1];
+    if (ack) this.outbox.answered(Number(ack));
+    const seq = SEQ.exec(start)?.[1];
+    if (this.eager && seq) this.connection.send({ type: "seen", seq: Number(seq) });
+    this.newest = raw; // older ones that nobody has drawn are gone
+    this.wake();
+  }
+
+  private emit<K extends keyof Events>(event: K, value: Events[K]): void {
+    for (const listener of this.listeners[event] ?? []) listener(value);
+  }
+}

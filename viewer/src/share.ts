@@ -1,0 +1,89 @@
+/** A configuration as the fragment of an address, and back. Nothing of it reaches a server by itself. */
+import type { ChosenMethod, OverlayName, Pose, Scene, State } from "./protocol";
+
+export type Snapshot = {
+  model: string;
+  frame?: string; task?: string; actuated?: string[]; method?: ChosenMethod;
+  q: number[]; target?: Pose; playing?: boolean;
+  overlays?: OverlayName[];
+  camera?: number[];
+};
+
+export function snapshot(scene: Scene, state: State, overlays: Iterable<OverlayName>, camera: number[]): Snapshot {
+  return {
+    model: scene.name,
+    frame: scene.frame,
+    task: scene.task.name,
+    method: scene.method,
+    ...(scene.drives.length > 0 ? { actuated: scene.drives.filter((d) => d.actuated).map((d) => d.name) } : {}),
+    q: state.q,
+    target: state.target,
+    playing: state.playing,
+    overlays: [...overlays],
+    camera,
+  };
+}
+
+const list = (values: number[]): string => values.map((value) => Number(value.toPrecision(9))).join(",");
+
+export function fragment(shot: Snapshot): string {
+  const fields = new URLSearchParams({ model: shot.model, q: list(shot.q) });
+  if (shot.frame) fields.set("frame", shot.frame);
+  if (shot.task) fields.set("task", shot.task);
+  if (shot.method) fields.set("inverse", JSON.stringify(shot.method));
+  if (shot.actuated) fields.set("actuated", JSON.stringify(shot.actuated));
+  if (shot.target) fields.set("target", list([...shot.target.position, ...shot.target.quaternion]));
+  if (shot.playing === false) fields.set("paused", "1");
+  if (shot.overlays?.length) fields.set("show", shot.overlays.join(","));
+  if (shot.camera) fields.set("camera", list(shot.camera));
+  return `#${fields.toString()}`;
+}
+
+/** What a fragment says; null where it says nothing, a sentence where it is broken. */
+export function parse(hash: string): Snapshot | string | null {
+  if (hash.length < 2) return null;
+  const fields = new URLSearchParams(hash.slice(1));
+  const model = fields.get("model");
+  const q = numbers(fields.get("q"));
+  if (!model || !q) return "The address carries no configuration that can be read; the robot starts as it is.";
+  const target = numbers(fields.get("target"), 7);
+  const camera = numbers(fields.get("camera"), 6);
+  const actuated = names(fields.get("actuated"));
+  const inverse = method(fields.get("inverse"));
+  return {
+    model, q,
+    ...(fields.has("frame") ? { frame: fields.get("frame") ?? "" } : {}),
+    ...(fields.has("task") ? { task: fields.get("task") ?? "" } : {}),
+    ...(actuated ? { actuated } : {}),
+    ...(inverse ? { method: inverse } : {}),
+    ...(target ? { target: { position: target.slice(0, 3), quaternion: target.slice(3) } as Pose } : {}),
+    playing: fields.get("paused") !== "1",
+    overlays: (fields.get("show") ?? "").split(",").filter(Boolean) as OverlayName[],
+    ...(camera ? { camera } : {}),
+  };
+}
+
+function numbers(text: string | null, length?: number): number[] | null {
+  if (text === null) return null;
+  const values = text === "" ? [] : text.split(",").map(Number);
+  return values.every(Number.isFinite) && (length === undefined || values.length === length) ? values : null;
+}
+
+function json(text: string | null): unknown {
+  try {
+    return text === null ? null : JSON.parse(text);
+  } catch {
+    return null;
+  }
+}
+
+function names(text: string | null): string[] | null {
+  const value = json(text);
+  return Array.isArray(value) && value.every((name) => typeof name === "string") ? value : null;
+}
+
+function method(text: string | null): ChosenMethod | null {
+  const value = json(text) as Partial<ChosenMethod> | null;
+  if (typeof value?.name !== "string") return null;
+  return { name: value.name, numbers: value.numbers ?? {}, h: value.h ?? null, fallback: value.fallback ?? null };
+}

@@ -1,0 +1,201 @@
+/** What the tests share: the real server, a headless browser, the command line. */
+import { execFile, spawn } from "node:child_process";
+import { existsSync } from "node:fs";
+import { join } from "node:path";
+import { promisify } from "node:util";
+import { chromium } from "playwright-core";
+
+/** @typedef {import("playwright-core").Page} Page */
+/** @typedef {import("playwright-core").Browser} Browser */
+
+export const BINARY = process.env["CYLINDROID_BINARY"] ?? "";
+export const ROBOTS = process.env["CYLINDROID_TEST_ROBOTS"] ?? "";
+const SCREENSHOTS = process.env["CYLINDROID_SCREENSHOTS"] ?? "";
+if (!existsSync(BINARY)) throw new Error("run these tests by `cargo xtask viewer --test`: they need its binary and robots");
+
+/** Generous: pixels are made by the processor, and other work may go on beside. */
+export const PATIENCE = Number(process.env["CYLINDROID_PATIENCE"] ?? 60_000);
+
+/**
+ * `cylindroid view`, until it is stopped.
+ * @param {string[]} args
+ */
+export async function serve(...args) {
+  const child = spawn(BINARY, ["view", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+  let said = "";
+  child.stderr.on("data", (data) => (said += data));
+  const url = await new Promise((resolve, reject) => {
+    let out = "";
+    child.stdout.on("data", (data) => {
+      out += data;
+      const found = /http:\/\/\S+/.exec(out)?.[0];
+      if (found) resolve(found);
+    });
+    child.on("exit", (code) => reject(new Error(`view ended with ${code}: ${said}`)));
+  });
+  return {
+    url: /** @type {string} */ (url),
+    async stop() {
+      if (child.exitCode !== null) return;
+      const gone = new Promise((resolve) => child.once("exit", resolve));
+      child.kill("SIGKILL");
+      await gone;
+    },
+  };
+}
+
+/**
+ * A browser without a window; WebGL by the processor.
+ * @param {string[]} more
+ */
+export function launch(...more) {
+  return chromium.launch({
+    executablePath: process.env["CYLINDROID_CHROMIUM"] ?? "/usr/bin/chromium",
+    args: [
+      "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
+      "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", ...more,
+    ],
+  });
+}
+
+/**
+ * A page of the viewer that has drawn its robot. `troubles` collects what the console calls errors.
+ * @param {Browser} browser
+ * @param {string} url
+ * @param {{ dark?: boolean, width?: number, height?: number, expect?: RegExp }} [options]
+ */
+export async function open(browser, url, { dark = false, width = 960, height = 540, expect } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? "dark" : "light", acceptDownloads: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE);
+  /** @type {string[]} */
+  const troubles = [];
+  const note = (/** @type {string} */ trouble) => {
+    if (!expect?.test(trouble)) troubles.push(trouble);
+  };
+  page.on("console", (message) => {
+    if (message.type() === "error") note(`${message.text()} ${message.location().url}`);
+  });
+  page.on("pageerror", (error) => note(String(error)));
+  await page.goto(url);
+  await drawn(page);
+  return { page, troubles, close: () => context.close() };
+}
+
+/**
+ * Waits until a state has been drawn.
+ * @param {Page} page
+ */
+export async function drawn(page) {
+  await page.waitForFunction(() => {
+    const viewer = /** @type {any} */ (window).viewer;
+    return viewer?.session.state && viewer.stage.frames > 1;
+  });
+}
+
+/**
+ * A picture that is kept.
+ * @param {Page} page
+ * @param {string} name
+ */
+export async function picture(page, name) {
+  if (SCREENSHOTS) await page.screenshot({ path: join(SCREENSHOTS, `${name}.png`) });
+}
+
+/**
+ * What a command prints with `--json`; exit code 1 is a negative answer, no failure.
+ * @param {string[]} args
+ * @returns {Promise<any>}
+ */
+export async function cylindroid(...args) {
+  try {
+    const { stdout } = await promisify(execFile)(BINARY, [...args, "--json"], { maxBuffer: 1 << 26 });
+    return JSON.parse(stdout);
+  } catch (error) {
+    const failed = /** @type {{ code?: number, stdout?: string }} */ (error);
+    if (failed.code === 1 && failed.stdout) return JSON.parse(failed.stdout);
+    throw error;
+  }
+}
+
+/**
+ * The state that was drawn last.
+ * @param {Page} page
+ * @returns {Promise<import("../src/protocol").State>}
+ */
+export function state(page) {
+  return page.evaluate(() => /** @type {any} */ (window).viewer.session.state);
+}
+
+/**
+ * @param {Page} page
+ * @returns {Promise<import("../src/protocol").Scene>}
+ */
+export function scene(page) {
+  return page.evaluate(() => /** @type {any} */ (window).viewer.session.scene);
+}
+
+/**
+ * Waits until the drawn state satisfies a condition. Asked from here: the page's policy forbids it to evaluate words.
+ * @param {Page} page
+ * @param {string} condition of `state`
+ */
+export async function until(page, condition) {
+  const end = performance.now() + PATIENCE;
+  const asked = `(() => { const state = window.viewer.session.state; return Boolean(state && (${condition})); })()`;
+  while (!(await page.evaluate(asked))) {
+    if (performance.now() > end) {
+      const { servo, error, q } = await state(page);
+      throw new Error(`never came: ${condition}; last ${JSON.stringify({ servo, error, q })}`);
+    }
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+/**
+ * @param {Page} page
+ * @param {string} name
+ */
+export async function openPanel(page, name) {
+  const panel = page.locator(`[data-panel="${name}"]`);
+  if ((await panel.getAttribute("open")) === null) await panel.locator("summary").first().click();
+  return panel;
+}
+
+/**
+ * Largest difference of two lists of numbers.
+ * @param {number[]} a
+ * @param {number[]} b
+ */
+export function apart(a, b) {
+  if (a.length !== b.length) return Infinity;
+  return Math.max(0, ...a.map((value, i) => Math.abs(value - (b[i] ?? NaN))));
+}
+
+/**
+ * Drags the target by the arrow of its handle that points along this way (or against it).
+ * @param {Page} page
+ * @param {[number, number, number]} way along an axis of the world (m)
+ */
+export async function drag(page, way) {
+  // The camera's matrices are those of the last frame.
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  const { from, to } = await page.evaluate((by) => {
+    const { stage, target, project } = /** @type {any} */ (window).viewer;
+    const box = stage.renderer.domElement.getBoundingClientRect();
+    const place = target.target.position;
+    const far = stage.camera.position.distanceTo(place);
+    const size = (far * Math.min(1.9 * Math.tan((Math.PI * stage.camera.fov) / 360), 7) * target.gizmo.size) / 4;
+    const grip = by.map((part, i) => place.getComponent(i) + (part === 0 ? 0 : 0.45 * size));
+    const pixel = (/** @type {number[]} */ point) => {
+      const [x, y] = project(point);
+      return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
+    };
+    return { from: pixel(grip), to: pixel(grip.map((part, i) => part + (by[i] ?? 0))) };
+  }, way);
+  await page.mouse.move(from.x, from.y);
+  await page.waitForTimeout(300); // the arrow under the pointer is found when it rests
+  await page.mouse.down();
+  for (let i = 1; i <= 6; i += 1) await page.mouse.move(from.x + ((to.x - from.x) * i) / 6, from.y + ((to.y - from.y) * i) / 6);
+  await page.mouse.up();
+}

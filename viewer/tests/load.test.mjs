@@ -1,0 +1,131 @@
+/** Every kind of model loads and is drawn, light and dark, without an error in the console. */
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { launch, open, openPanel, picture, ROBOTS, serve, state, until } from "./lib.mjs";
+
+/** @type {import("playwright-core").Browser} */
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+const SHAPES = fileURLToPath(new URL("robots/shapes/shapes.urdf", import.meta.url));
+
+/** @type {{ name: string, args: string[], dark?: boolean, show: string[] }[]} */
+const MODELS = [
+  { name: "panda", args: ["panda"], show: ["velocity-ellipsoid", "joint-axes"] },
+  { name: "xarm7-meshes", args: [`${ROBOTS}/xarm_description/urdf/xarm7.urdf`], dark: true, show: ["active-force-ellipsoid"] },
+  { name: "five-bar", args: ["five-bar"], show: ["velocity-ellipsoid", "active-force-ellipsoid", "passive-force-ellipsoid"] },
+  { name: "stewart", args: ["stewart"], dark: true, show: ["principal-screws", "angular-velocity-ellipsoid"] },
+  { name: "two-arm", args: ["two-arm"], show: ["lost-direction"] },
+  { name: "youbot-cylindroid", args: ["youbot", "--frame", "arm_link_2"], dark: true, show: ["cylindroid", "reciprocal-system"] },
+];
+
+for (const { name, args, dark = false, show } of MODELS) {
+  test(`${name} loads and is drawn`, async () => {
+    const server = await serve(...args);
+    try {
+      const { page, troubles, close } = await open(browser, server.url, { dark, width: 1280, height: 720 });
+      for (const overlay of show) {
+        await page.locator(`[data-overlay="${overlay}"]`).check();
+        await until(page, `state.overlays["${overlay}"] !== undefined`);
+      }
+      const seen = await state(page);
+      assert.ok(seen.links.length > 1);
+      assert.equal(await page.locator(".legend > div").count(), show.length);
+      await page.waitForLoadState("networkidle");
+      assert.deepEqual(await emptyView(page), false, "the view shows nothing");
+      await picture(page, name);
+      assert.deepEqual(troubles, []);
+      await close();
+    } finally {
+      await server.stop();
+    }
+  });
+}
+
+test("meshes of all three formats are shown; a missing one becomes rods and a sentence", async () => {
+  const server = await serve(SHAPES);
+  try {
+    const { page, troubles, close } = await open(browser, server.url, { expect: /not_there|404/ });
+    await page.locator(".toast").waitFor();
+    assert.match(await page.locator(".toast").innerText(), /not_there\.stl/);
+    const links = await page.evaluate(() => {
+      /** @type {any} */
+      const robot = /** @type {any} */ (window).viewer.robot;
+      return robot.links.map((/** @type {any} */ link) => ({ shapes: link.shapes.children.length, rods: link.skeleton.visible }));
+    });
+    assert.deepEqual(links.map((/** @type {any} */ link) => link.shapes).slice(0, 5), [1, 1, 1, 1, 0]);
+    assert.deepEqual(links.map((/** @type {any} */ link) => link.rods).slice(0, 5), [false, false, false, false, true]);
+    assert.ok((await sizes(page)).every((/** @type {number} */ height) => Math.abs(height - 0.4) < 1e-3), "all boxes are 0.4 m high, whatever their file's unit");
+    await picture(page, "mesh-formats");
+    assert.deepEqual(troubles, []);
+    await close();
+  } finally {
+    await server.stop();
+  }
+});
+
+test("all panels and overlays of one arm fit together", async () => {
+  const server = await serve("panda");
+  try {
+    for (const dark of [false, true]) {
+      const { page, troubles, close } = await open(browser, server.url, { dark, width: 1280, height: 1500 });
+      for (const panel of ["mobility", "capability", "compare"]) await openPanel(page, panel);
+      await page.locator('[data-panel="compare"] table').waitFor();
+      await page.locator('[data-panel="mobility"] dl').first().waitFor();
+      for (const name of ["velocity-ellipsoid", "principal-screws"]) await page.locator(`[data-overlay="${name}"]`).check();
+      await until(page, 'state.overlays["velocity-ellipsoid"] !== undefined');
+      const cut = await page.evaluate(() => [...document.querySelectorAll(".side *")].filter((element) => element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible" && element.clientWidth > 0).map((element) => `${element.tagName}.${element.className}`));
+      assert.deepEqual(cut, [], "text runs out of its place");
+      await picture(page, `panels-${dark ? "dark" : "light"}`);
+      assert.deepEqual(troubles, []);
+      await close();
+    }
+  } finally {
+    await server.stop();
+  }
+});
+
+/**
+ * Whether the picture has one colour only.
+ * @param {import("playwright-core").Page} page
+ */
+function emptyView(page) {
+  return page.evaluate(async () => {
+    const blob = await /** @type {any} */ (window).viewer.stage.png();
+    const bitmap = await createImageBitmap(blob);
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    if (!context) return true;
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    const colours = new Set();
+    for (let i = 0; i < data.length; i += 4 * 37) colours.add(((data[i] ?? 0) << 16) | ((data[i + 1] ?? 0) << 8) | (data[i + 2] ?? 0));
+    return colours.size < 100;
+  });
+}
+
+/**
+ * Heights of the meshes of the test robot along its links.
+ * @param {import("playwright-core").Page} page
+ */
+function sizes(page) {
+  return page.evaluate(() => {
+    /** @type {any} */
+    const { robot } = /** @type {any} */ (window).viewer;
+    return robot.links.slice(1, 4).map((/** @type {any} */ link) => {
+      let [low, high] = [Infinity, -Infinity];
+      const back = link.frame.matrixWorld.clone().invert();
+      link.shapes.traverse((/** @type {any} */ part) => {
+        const places = part.geometry?.attributes.position;
+        for (let i = 0; places && i < places.count; i += 1) {
+          const z = link.frame.position.clone().fromBufferAttribute(places, i).applyMatrix4(part.matrixWorld).applyMatrix4(back).z;
+          [low, high] = [Math.min(low, z), Math.max(high, z)];
+        }
+      });
+      return high - low;
+    });
+  });
+}
