@@ -1,6 +1,7 @@
 //! The project's own tasks: `cargo xtask` lists them.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person
 
+mod bench_peers;
 mod layers;
 mod models;
 mod python;
@@ -22,6 +23,10 @@ cargo xtask <task>
             short
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
+  bench-peers [--quick] [--only NAMES]
+            installs other libraries in target/bench-peers (Python, PyPI, crates.io, Debian's
+            packages, g++), compares with them and writes docs/benchmarks.* (--quick: a
+            fiftieth of the work, written to target/bench-peers/quick)
   figures   draws the figures of the README";
 
 fn main() -> ExitCode {
@@ -44,6 +49,9 @@ fn run() -> Result<()> {
         Some("layers") => layers::check(),
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),
+        Some("bench-peers") => {
+            bench_peers::compare(&std::env::args().skip(2).collect::<Vec<String>>())
+        }
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
             println!("{HELP}");
