@@ -22,12 +22,12 @@ PEERS = {
     "pinocchio": {"tasks": {SINGLE, BATCH, TREE, SERVO, IK}, "targets": 100_000, "far": 50},
     "generated": {"tasks": {SINGLE, BATCH}},
     "mujoco": {"tasks": {SINGLE, TREE}},
-    "kdl": {"tasks": {SINGLE, IK}, "targets": 10_000, "far": 20},
+    "kdl": {"tasks": {SINGLE, IK}, "targets": 5_000, "far": 20},
     "dynibo": {"tasks": {SINGLE}},
     "k": {"tasks": {SINGLE}},
     "optik": {"tasks": {SINGLE, IK}, "targets": 10_000, "far": 20},
     "rtb": {"tasks": {SINGLE, IK}, "targets": 10_000, "far": 20},
-    "tracik": {"tasks": {IK}, "targets": 10_000, "far": 20},
+    "tracik": {"tasks": {IK}, "targets": 2_000, "far": 20},
     "eaik": {"tasks": {IK}, "targets": 10_000, "far": 20, "robots": ["ur5"]},
 }
 TOLERANCES = [1e-5, 1e-9]

@@ -13,7 +13,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::models;
 use crate::python::{environment, pip};
-use crate::steps::{cargo, root, run};
+use crate::steps::{captured, cargo, root, run};
 
 const SOURCES: &str = "benches/peers";
 /// Every version is pinned: a comparison can be repeated.
@@ -310,18 +310,6 @@ fn locked(name: &str) -> Result<String> {
     let after = text.split(&format!("name = \"{name}\"\nversion = \"")).nth(1);
     let version = after.and_then(|t| t.split('"').next());
     version.map(str::to_owned).with_context(|| format!("{name} is not in the lock file"))
-}
-
-/// What a command prints.
-fn captured(command: &mut Command) -> Result<String> {
-    let output = command
-        .current_dir(root())
-        .output()
-        .with_context(|| format!("cannot start {}", command.get_program().to_string_lossy()))?;
-    if !output.status.success() {
-        bail!("{command:?}: {}", String::from_utf8_lossy(&output.stderr).trim());
-    }
-    Ok(String::from_utf8(output.stdout)?.trim_end().to_owned())
 }
 
 fn commit() -> Result<String> {

@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person
 
 mod bench_peers;
+mod instructions;
 mod layers;
 mod models;
 mod python;
@@ -27,6 +28,9 @@ cargo xtask <task>
             installs other libraries in target/bench-peers (Python, PyPI, crates.io, Debian's
             packages, g++), compares with them and writes docs/benchmarks.* (--quick: a
             fiftieth of the work, written to target/bench-peers/quick)
+  instructions [--write]
+            counts instructions of the kernels (valgrind) and compares with the file in
+            crates/cylindroid/benches, or writes it
   figures   draws the figures of the README";
 
 fn main() -> ExitCode {
@@ -51,6 +55,9 @@ fn run() -> Result<()> {
         Some("bench") => steps::bench(),
         Some("bench-peers") => {
             bench_peers::compare(&std::env::args().skip(2).collect::<Vec<String>>())
+        }
+        Some("instructions") => {
+            instructions::check(std::env::args().nth(2).as_deref() == Some("--write"))
         }
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
