@@ -1,6 +1,7 @@
 """Peers with a Python face, each a process of its own: `peers.py NAME FOLDER`, commands as in
 common.hpp."""
 
+import math
 import sys
 import time
 
@@ -22,6 +23,7 @@ class Peer:
         self.tip = np.vstack([np.reshape([float(x) for x in rows[self.n][2:]], (3, 4)),
                               [0, 0, 0, 1]])
         self.lower, self.upper = (np.array([r[i] for r in self.numbers]) for i in (15, 16))
+        self.limits = list(zip(self.lower.tolist(), self.upper.tolist()))
         self.middle = 0.5 * (self.lower + self.upper)
         self.q = np.fromfile(f"{folder}/{name}.q").reshape(-1, self.n)
         self.poses = {}
@@ -40,9 +42,14 @@ class Peer:
 
     def within(self, q):
         """The answer with whole turns taken away where it is outside, if it is inside then."""
-        outside = (q < self.lower) | (q > self.upper)
-        q = np.where(outside, np.remainder(q + np.pi, 2 * np.pi) - np.pi, q)
-        return q if np.all((q >= self.lower) & (q <= self.upper)) else None
+        out = []
+        for x, (lower, upper) in zip(q, self.limits):
+            if not lower <= x <= upper:
+                x = math.remainder(x, 2 * math.pi)
+                if not lower <= x <= upper:
+                    return None
+            out.append(x)
+        return out
 
     def answer(self, path, task, words):
         if task == "check":
@@ -65,9 +72,9 @@ class Peer:
         self.prepare(float(words[0]))
         targets, out = self.targets(task), []
         for target in targets[int(words[1]):int(words[2])]:
-            begin = time.perf_counter_ns()
+            begin = time.process_time_ns()
             q = self.solve(target)
-            out.append([time.perf_counter_ns() - begin, q is not None,
+            out.append([time.process_time_ns() - begin, q is not None,
                         *(self.middle if q is None else q)])
         np.array(out).tofile(path)
         return "ok"
@@ -152,26 +159,24 @@ class Eaik(Peer):
         if not self.robot.hasKnownDecomposition():
             raise RuntimeError("no analytic decomposition of this arm")
         # Its answers are for the last joint's frame.
-        self.joint_from_tip = np.linalg.inv(self.tip)
-        zero = robots_zero(self)
-        self.correction = np.linalg.inv(zero) @ np.asarray(self.robot.fwdKin(np.zeros(self.n)))
+        zero = np.asarray(self.robot.fwdKin(np.zeros(self.n)))
+        self.correction = np.linalg.inv(self.tip) @ np.linalg.inv(self.zero()) @ zero
 
     def solve(self, target):
-        found = self.robot.IK(target @ self.joint_from_tip @ self.correction)
+        found = self.robot.IK(target @ self.correction)
         for q, approximate in zip(found.Q, found.is_LS):
             if not approximate:
-                q = self.within(np.asarray(q))
+                q = self.within(q)
                 if q is not None:
                     return q
         return None
 
-
-def robots_zero(peer):
-    """world_from_last_joint at zero."""
-    pose = np.eye(4)
-    for row in peer.numbers:
-        pose = pose @ np.vstack([np.reshape(row[:12], (3, 4)), [0, 0, 0, 1]])
-    return pose
+    def zero(self):
+        """world_from_last_joint at zero."""
+        pose = np.eye(4)
+        for row in self.numbers:
+            pose = pose @ np.vstack([np.reshape(row[:12], (3, 4)), [0, 0, 0, 1]])
+        return pose
 
 
 def quaternion(m):

@@ -50,7 +50,7 @@ bool damped_loop(Arm& arm, const Robot& robot, Draw& draw, const double* wanted,
   for (int i = 0; i < n; ++i) lower[i] = robot.joints[i].lower, upper[i] = robot.joints[i].upper;
   for (int attempt = 0; attempt < 200; ++attempt) {
     if (attempt > 0) draw(robot, q.data());
-    for (int step = 0; step < 30; ++step) {
+    for (int step = 0; step < 50; ++step) {
       const auto& pose = arm.set(q, pinocchio::LOCAL);
       Vector6 error;
       error << pose.rotation().transpose() * (target.translation() - pose.translation()),
@@ -60,7 +60,7 @@ bool damped_loop(Arm& arm, const Robot& robot, Draw& draw, const double* wanted,
         return true;
       }
       Matrix6 square = arm.jacobian * arm.jacobian.transpose();
-      square.diagonal().array() += 1e-6 + 0.1 * error.squaredNorm();
+      square.diagonal().array() += 1e-9 + 0.1 * error.squaredNorm();
       q += arm.jacobian.transpose() * square.llt().solve(error);
       q = q.cwiseMax(lower).cwiseMin(upper);
     }

@@ -96,8 +96,8 @@ class Report:
         text = f"""# Benchmarks
 
 `cargo xtask bench-peers` installs the peers in `target/bench-peers`, runs everything below and
-writes this file, `benchmarks.json` and `benchmarks.svg`. {m['processor']}, {m['system']}, one
-core; {m['compilers']}; commit {m['commit']}, {m['date']}.
+writes this file, `benchmarks.json` and `benchmarks.svg`. This run: one core of {m['processor']};
+{m['system']}; {m['compilers']}; commit {m['commit']}; {m['date']}.
 
 The robots are the URDFs of `example-robot-data` and `rtb-data`, reduced to the joints in question
 (`benches/peers/robots.py`): the same numbers for everybody. Peers take turns in slices of 0.1 s
@@ -138,11 +138,11 @@ Pose, Jacobian, truncated inverse, posture in the null space, limits, along a ci
 
 ## Inverse kinematics
 Targets are poses of postures drawn evenly within the limits. Everybody starts at the middle of
-the limits (EAIK needs no start). A target is solved if the answer
-is within the limits and within tolerance, in metres and radians, by the referee; outside and
-wrong are answers that were claimed. `Pinocchio, C++` is a damped loop of 20 lines with restarts;
-KDL's solver is restarted until an answer is within the limits, and takes turns below 1e-6 rad for
-none, which makes its answers wrong at 1e-9.
+the limits (EAIK needs no start). A target is solved if the answer is within the limits and within
+tolerance, in metres and radians, by the referee; outside and wrong are answers that were claimed.
+Time is processor time, of all threads: nobody is charged for interruptions. `Pinocchio, C++` is a
+damped loop of 20 lines with restarts; KDL's solver is restarted until an answer is within the
+limits, and takes turns below 1e-6 rad for none, which makes its answers wrong at 1e-9.
 """
         for tolerance in sorted({x["tolerance"] for x in r["ik"]}, reverse=True):
             for robot in robots.ARMS:

@@ -6,6 +6,8 @@ use std::hint::black_box;
 use std::io::{BufRead, Write};
 use std::time::Instant;
 
+use cpu_time::ProcessTime;
+
 /// Whatever went wrong: it becomes a row of the table.
 pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -85,7 +87,7 @@ pub fn write(path: &str, numbers: &[f64]) -> Result<String> {
     Ok("ok".to_owned())
 }
 
-/// ns, success and q of each target; `solve(target, q)` answers true if q reaches it.
+/// ns of processor time, success and q of each target; `solve(target, q)` answers true if q reaches it.
 pub fn ik(
     robot: &Robot,
     targets: &[f64],
@@ -95,7 +97,7 @@ pub fn ik(
     let mut out = Vec::new();
     for target in targets.chunks_exact(12) {
         let mut q = robot.middle();
-        let begin = Instant::now();
+        let begin = ProcessTime::now();
         let success = solve(target, &mut q);
         out.push(begin.elapsed().as_nanos() as f64);
         out.push(f64::from(u8::from(success)));
