@@ -12,8 +12,11 @@ use cylindroid::linalg::Svd;
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Vec3, catalogue};
 use std::hint::black_box;
 
+/// Calls a kernel so many times.
+type Kernel = fn(usize);
+
 /// Names and kernels.
-const KERNELS: [(&str, fn(usize)); 8] = [
+const KERNELS: [(&str, Kernel); 8] = [
     ("forward_panda", forward),
     ("jacobian_panda", jacobian),
     ("batch_of_1000_panda", batch),
