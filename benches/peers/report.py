@@ -22,7 +22,7 @@ def machine(commit, compilers):
     wide = "AVX-512" if "avx512f" in flags else "AVX2" if "avx2" in flags else "baseline"
     name = f"{field('model name') or platform.machine()} (family {field('cpu family')}, model " \
            f"{field('model')}; {wide})"
-    return {"processor": name, "system": platform.platform(terse=True), "commit": commit,
+    return {"processor": name, "system": f"{platform.system()} {platform.release().split('-')[0]}", "commit": commit,
             "compilers": compilers,
             "date": datetime.date.today().isoformat()}
 
@@ -143,8 +143,8 @@ the limits (EAIK needs no start). A target is solved if the answer is within the
 tolerance, in metres and radians, by the referee; outside and wrong are answers that were claimed.
 Time is processor time, of all threads: nobody is charged for interruptions, but everybody for
 reading that clock, about 0.6 us. `Pinocchio, C++` is a damped loop of 20 lines with restarts;
-KDL's solver is restarted until an answer is within the limits, and takes turns below 1e-6 rad for
-none, which makes its answers wrong at 1e-9.
+KDL's solver is restarted until an answer is within the limits; KDL takes turns below 1e-6 rad for
+none, which makes its answers at 1e-9 wrong, and some of TRAC-IK's, which is built on it.
 """
         for tolerance in sorted({x["tolerance"] for x in r["ik"]}, reverse=True):
             for robot in robots.ARMS:
