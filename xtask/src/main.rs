@@ -1,6 +1,8 @@
 //! The project's own tasks: `cargo xtask` lists them.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person
 
+mod bench_peers;
+mod instructions;
 mod layers;
 mod models;
 mod python;
@@ -27,6 +29,13 @@ cargo xtask <task>
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   viewer-load [seconds]
             serves the viewer to 20 clients for a minute, and prints memory and lateness
+  bench-peers [--quick] [--only NAMES]
+            installs other libraries in target/bench-peers (Python, PyPI, crates.io, Debian's
+            packages, g++), compares with them and writes docs/benchmarks.* (--quick: a
+            fiftieth of the work, written to target/bench-peers/quick)
+  instructions [--write]
+            counts instructions of the kernels (valgrind) and compares with the file in
+            crates/cylindroid/benches, or writes it
   figures   draws the figures of the README";
 
 fn main() -> ExitCode {
@@ -51,6 +60,12 @@ fn run() -> Result<()> {
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),
         Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),
+        Some("bench-peers") => {
+            bench_peers::compare(&std::env::args().skip(2).collect::<Vec<String>>())
+        }
+        Some("instructions") => {
+            instructions::check(std::env::args().nth(2).as_deref() == Some("--write"))
+        }
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
             println!("{HELP}");

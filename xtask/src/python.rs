@@ -19,7 +19,7 @@ fn python(venv: &Path) -> PathBuf {
 }
 
 /// A virtual environment.
-fn environment(venv: &Path) -> Result<PathBuf> {
+pub(crate) fn environment(venv: &Path) -> Result<PathBuf> {
     let python = python(venv);
     if !python.exists() {
         run(Command::new("python3").args(["-m", "venv"]).arg(venv))
@@ -28,7 +28,7 @@ fn environment(venv: &Path) -> Result<PathBuf> {
     Ok(python)
 }
 
-fn pip(python: &Path, arguments: &[&str]) -> Result<()> {
+pub(crate) fn pip(python: &Path, arguments: &[&str]) -> Result<()> {
     let quiet = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
     run(Command::new(python).args(quiet).args(arguments))
 }

@@ -6,7 +6,7 @@ use super::jacobian::{Reference, Tip};
 use crate::error::Result;
 use crate::linalg::Matrix;
 use crate::model::{FrameId, Mechanism};
-use crate::spatial::{Padded, Pose, Twist};
+use crate::spatial::{Padded, Pose, Twist, Vec3};
 
 /// A frame of a mechanism and a tool point fixed to it.
 ///
@@ -101,6 +101,30 @@ impl State {
     ) {
         assert_eq!((out.rows(), out.cols()), (6, self.mechanism.n()), "shape of the Jacobian");
         self.tip(of.into()).jacobian_into(reference, out);
+    }
+
+    /// All joints at once, into `out` (6 x n): the twist that a unit rate of each coordinate gives
+    /// the links behind its joint, in world axes at the world's origin. The Jacobian of any frame
+    /// with [`Reference::World`] has these columns where the coordinate moves the frame and zeros
+    /// elsewhere; joints that mimic another come on top, each with its own twist, and are not in
+    /// here.
+    ///
+    /// # Panics
+    /// If `out` is not 6 x n.
+    pub fn joint_twists_into(&self, out: &mut Matrix) {
+        assert_eq!((out.rows(), out.cols()), (6, self.mechanism.n()), "shape of the twists");
+        let slot = |link: usize| self.mechanism.frames()[link].slot; // frames of links come first
+        for joint in self.mechanism.joints().iter().filter(|j| j.mimic.is_none()) {
+            let tip = Tip {
+                nodes: self.mechanism.nodes(),
+                slots: &self.slots,
+                slot: slot(joint.child),
+                world_from_tip: Pose::IDENTITY,
+            };
+            tip.for_each_column_above(slot(joint.parent), Vec3::ZERO, |_, c, twist| {
+                out.column_mut(c).copy_from_slice(&twist.to_array());
+            });
+        }
     }
 
     /// The derivative of the Jacobian in time while the coordinates move with `rates`, 6 x n.

@@ -32,6 +32,32 @@ fn unit(n: usize, k: usize) -> Vec<f64> {
     e
 }
 
+/// The twists of all joints are the columns that the Jacobians of their links have; a link has none
+/// of a joint that does not move it.
+#[test]
+fn joint_twists_are_the_columns_of_all_jacobians() {
+    let mut random = Random(37);
+    for robot in robots() {
+        let state = robot.state(&random.q(&robot)).unwrap();
+        let mut twists = Matrix::from_fn(6, robot.n(), |_, _| f64::NAN);
+        state.joint_twists_into(&mut twists);
+        for joint in robot.joints().iter().filter(|j| j.mimic.is_none()) {
+            let link = robot.frame(&robot.links()[joint.child].name).unwrap();
+            let jacobian = state.jacobian(link, Reference::World);
+            for c in 0..robot.n() {
+                let follows = |c| {
+                    robot.joints().iter().any(|j| j.mimic.is_some() && j.coordinates.contains(&c))
+                };
+                let own = joint.coordinates.contains(&c);
+                let column = jacobian.column(c);
+                if own || (!follows(c) && column.iter().any(|x| *x != 0.0)) {
+                    assert_eq!(column, twists.column(c), "{} {}", robot.name(), joint.name);
+                }
+            }
+        }
+    }
+}
+
 /// The Jacobian is the derivative of the pose, in each reference.
 #[test]
 fn jacobian_by_finite_differences() {

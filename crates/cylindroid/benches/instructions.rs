@@ -1,0 +1,146 @@
+//! Kernels at fixed inputs, for counting their instructions: `cargo xtask instructions`.
+//!
+//! `instructions KERNEL CALLS` calls one kernel so many times and prints nothing; the difference
+//! between two counts is what calls cost without what comes before them. Without arguments it
+//! prints the names.
+#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
+
+use cylindroid::closure::{ClosedChain, Mobility};
+use cylindroid::ik::{Goal, IkOptions, Solver};
+use cylindroid::kinematics::Chain;
+use cylindroid::linalg::Svd;
+use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Vec3, catalogue};
+use std::hint::black_box;
+
+/// Calls a kernel so many times.
+type Kernel = fn(usize);
+
+/// Names and kernels.
+const KERNELS: [(&str, Kernel); 8] = [
+    ("forward_panda", forward),
+    ("jacobian_panda", jacobian),
+    ("batch_of_1000_panda", batch),
+    ("servo_step_panda", servo_step),
+    ("svd_6x7_cold", svd_cold),
+    ("svd_6x7_warm", svd_warm),
+    ("ik_panda", inverse_kinematics),
+    ("mobility_five_bar", mobility),
+];
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let [name, calls] = &words[..] else {
+        KERNELS.iter().for_each(|(name, _)| println!("{name}"));
+        return;
+    };
+    let (_, kernel) = KERNELS.iter().find(|(known, _)| known == name).unwrap();
+    kernel(calls.parse().unwrap());
+}
+
+fn panda() -> Mechanism {
+    catalogue::load("panda").unwrap()
+}
+
+/// Home and a posture near it in turn, so that nothing can be kept from call to call.
+fn posture(robot: &Mechanism, i: usize) -> Vec<f64> {
+    robot.home().iter().map(|x| x + 1e-3 * (i % 2) as f64).collect()
+}
+
+fn forward(calls: usize) {
+    let robot = panda();
+    let mut chain = Chain::new(&robot, robot.tool());
+    let q = [posture(&robot, 0), posture(&robot, 1)];
+    for i in 0..calls {
+        black_box(chain.set(black_box(&q[i % 2])));
+    }
+}
+
+fn jacobian(calls: usize) {
+    let robot = panda();
+    let mut chain = Chain::new(&robot, robot.tool());
+    let mut j = Matrix::zeros(6, chain.n());
+    let q = [posture(&robot, 0), posture(&robot, 1)];
+    for i in 0..calls {
+        black_box(chain.set(black_box(&q[i % 2])));
+        chain.jacobian_into(Reference::LocalWorldAligned, &mut j);
+        black_box(&j);
+    }
+}
+
+/// Poses and Jacobians of 1000 configurations.
+fn batch(calls: usize) {
+    let robot = panda();
+    let mut chain = Chain::new(&robot, robot.tool());
+    let mut j = Matrix::zeros(6, chain.n());
+    let q: Vec<Vec<f64>> = (0..1000).map(|i| posture(&robot, i)).collect();
+    for _ in 0..calls {
+        for q in &q {
+            black_box(chain.set(black_box(q)));
+            chain.jacobian_into(Reference::LocalWorldAligned, &mut j);
+            black_box(&j);
+        }
+    }
+}
+
+/// Towards a target 14 cm away, as a control loop would go.
+fn servo_step(calls: usize) {
+    let robot = panda();
+    let mut servo = Servo::new(&robot, ServoOptions::new(&robot)).unwrap();
+    let mut q = robot.home().to_vec();
+    let start = robot.state(&q).unwrap().pose(robot.tool());
+    let translation = start.translation + Vec3::new(0.0, 0.1, 0.1);
+    for _ in 0..calls {
+        black_box(servo.step(&q, Pose { translation, ..start }).unwrap());
+        servo.advance(&mut q);
+    }
+}
+
+fn near_jacobians() -> [Matrix; 2] {
+    let robot = panda();
+    [0, 1].map(|i| {
+        let state = robot.state(&posture(&robot, i)).unwrap();
+        state.jacobian(robot.tool(), Reference::LocalWorldAligned)
+    })
+}
+
+fn svd_cold(calls: usize) {
+    let j = near_jacobians();
+    let mut svd = Svd::workspace(6, 7);
+    for i in 0..calls {
+        svd.decompose(black_box(&j[i % 2]));
+        black_box(svd.value(0));
+    }
+}
+
+fn svd_warm(calls: usize) {
+    let j = near_jacobians();
+    let mut svd = Svd::workspace(6, 7);
+    for i in 0..calls {
+        svd.decompose_warm(black_box(&j[i % 2]));
+        black_box(svd.value(0));
+    }
+}
+
+/// From home to one pose far from it, to 1e-5.
+fn inverse_kinematics(calls: usize) {
+    let robot = panda();
+    let target = robot.state(&[1.1, -0.4, 0.6, -1.7, 0.9, 2.2, -0.5]).unwrap().pose(robot.tool());
+    let goal = [Goal::pose(robot.tool(), target)];
+    let options =
+        IkOptions { position_tolerance: 1e-5, orientation_tolerance: 1e-5, ..IkOptions::default() };
+    let mut solver = Solver::new(&robot, &goal, &options).unwrap();
+    for _ in 0..calls {
+        assert!(black_box(solver.solve(black_box(&goal)).unwrap()).success);
+    }
+}
+
+/// From joint positions to the mobility of the linkage.
+fn mobility(calls: usize) {
+    let linkage = catalogue::load("five-bar").unwrap();
+    let mut state = linkage.state(linkage.home()).unwrap();
+    for _ in 0..calls {
+        state.set(black_box(linkage.home())).unwrap();
+        let chain = ClosedChain::of(&state, None, None).unwrap();
+        black_box(Mobility::of(&chain.constraint));
+    }
+}
