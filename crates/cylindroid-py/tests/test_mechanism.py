@@ -180,6 +180,8 @@ def test_pickling(tmp_path, monkeypatch):
         again = pickle.loads(data)
         assert again.joint_names == r.joint_names and again.report.format == r.report.format
         np.testing.assert_array_equal(again.fk(r.home), r.fk(r.home))
+    driven = read[1].with_actuated(["q1", "q3"])
+    assert pickle.loads(pickle.dumps(driven)).actuated == driven.actuated == ["q1", "q3"]
     (tmp_path / "one.urdf").unlink()
     with pytest.raises(cy.CylindroidError, match="one.urdf"):
         pickle.loads(kept[2])

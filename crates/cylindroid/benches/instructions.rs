@@ -7,7 +7,7 @@
 
 use cylindroid::closure::{ClosedChain, Mobility};
 use cylindroid::ik::{Goal, IkOptions, Solver};
-use cylindroid::kinematics::Chain;
+use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::linalg::Svd;
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Vec3, catalogue};
 use std::hint::black_box;
@@ -70,15 +70,13 @@ fn jacobian(calls: usize) {
 /// Poses and Jacobians of 1000 configurations.
 fn batch(calls: usize) {
     let robot = panda();
-    let mut chain = Chain::new(&robot, robot.tool());
-    let mut j = Matrix::zeros(6, chain.n());
-    let q: Vec<Vec<f64>> = (0..1000).map(|i| posture(&robot, i)).collect();
+    let batch = Batch::new(&robot, robot.tool());
+    let (mut poses, mut jacobians) = (vec![0.0; 1000 * 16], vec![0.0; 1000 * 6 * robot.n()]);
+    let q: Vec<f64> = (0..1000).flat_map(|i| posture(&robot, i)).collect();
     for _ in 0..calls {
-        for q in &q {
-            black_box(chain.set(black_box(q)));
-            chain.jacobian_into(Reference::LocalWorldAligned, &mut j);
-            black_box(&j);
-        }
+        let reference = Reference::LocalWorldAligned;
+        batch.poses_and_jacobians_into(&q, reference, &mut poses, &mut jacobians).unwrap();
+        black_box((&poses, &jacobians));
     }
 }
 

@@ -5,6 +5,8 @@ mod kinematics;
 mod limits;
 pub(crate) mod load;
 
+use std::path::PathBuf;
+
 use cylindroid::model::Dimension;
 use cylindroid::{EndEffector, Error, Mechanism, Pose, Reference};
 use pyo3::prelude::*;
@@ -53,7 +55,7 @@ pub(crate) use load::PyLoadReport;
 /// report : LoadReport
 ///     What was read and what was not used.
 #[pyclass(frozen, name = "Mechanism", module = "cylindroid")]
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct PyMechanism {
     pub(crate) inner: Mechanism,
     /// For pickling.
@@ -67,6 +69,8 @@ pub(crate) enum Origin {
     Model(String),
     /// Text, its format and its path.
     Text { text: String, format: String, path: PathBuf },
+    /// Another mechanism, with other drives.
+    Driven { of: Box<PyMechanism>, names: Vec<String> },
 }
 
 pub(crate) fn reference_of(name: &str) -> Result<Reference> {
@@ -210,7 +214,8 @@ impl PyMechanism {
     ///     For a joint that does not move or follows another.
     #[pyo3(signature = (names))]
     fn with_actuated(&self, names: Vec<String>) -> Result<Self> {
-        Ok(Self { inner: self.inner.with_actuated(&names)? })
+        let inner = self.inner.with_actuated(&names)?;
+        Ok(Self { inner, origin: Origin::Driven { of: Box::new(self.clone()), names } })
     }
 
     fn __repr__(&self) -> String {
@@ -234,7 +239,7 @@ impl PyMechanism {
     }
 
     fn __copy__(&self) -> Self {
-        Self { inner: self.inner.clone(), origin: self.origin.clone() }
+        self.clone()
     }
 
     fn __deepcopy__(&self, _memo: Bound<'_, PyAny>) -> Self {
@@ -251,6 +256,10 @@ impl PyMechanism {
             Origin::Text { text, format, path } => (
                 package.getattr(intern!(py, "parse"))?,
                 (text, format, path.as_os_str()).into_bound_py_any(py)?,
+            ),
+            Origin::Driven { of, names } => (
+                py.get_type::<Self>().getattr(intern!(py, "with_actuated"))?,
+                ((**of).clone(), names).into_bound_py_any(py)?,
             ),
         })
     }

@@ -59,6 +59,12 @@ impl Batch {
         Self { mechanism: mechanism.clone(), chain: Chain::new(mechanism, of) }
     }
 
+    /// Numbers of a configuration: those of the mechanism.
+    #[must_use]
+    pub fn n(&self) -> usize {
+        self.mechanism.n()
+    }
+
     /// `world_from_tool` of each configuration.
     ///
     /// # Errors

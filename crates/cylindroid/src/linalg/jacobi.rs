@@ -189,9 +189,9 @@ impl Rotations {
     #[inline(always)]
     fn measure<R: Real>(&mut self, size: Size) {
         let (b, lengths) = (&self.b.data[..size.k * size.long], &mut self.lengths[..size.k]);
-        for j in 0..size.k {
+        for (j, length) in lengths.iter_mut().enumerate() {
             let b = padded(b, size.long, j);
-            lengths[j] = dot::<R>(b, b);
+            *length = dot::<R>(b, b);
         }
     }
 

@@ -128,18 +128,18 @@ impl Real for Lanes4 {
         let to = rows_of(to, stride, from.len(), Self::LANES);
         for (k, four) in fours.iter().enumerate() {
             let rows = transposed(four);
-            for l in 0..4 {
+            for (l, row) in rows.into_iter().enumerate() {
                 // SAFETY: `rows_of` has looked that these four places are there.
-                unsafe { _mm256_storeu_pd(to.add(l * stride + 4 * k), rows[l].0) };
+                unsafe { _mm256_storeu_pd(to.add(l * stride + 4 * k), row.0) };
             }
         }
         let done = 4 * fours.len();
         for (k, x) in rest.iter().enumerate() {
             let mut lanes = [0.0; 4];
             x.store(&mut lanes);
-            for l in 0..4 {
+            for (l, x) in lanes.into_iter().enumerate() {
                 // SAFETY: as above.
-                unsafe { *to.add(l * stride + done + k) = lanes[l] };
+                unsafe { *to.add(l * stride + done + k) = x };
             }
         }
     }
@@ -265,10 +265,10 @@ impl Real for Lanes8 {
             let (a, b, c, d) = (a.halves(), b.halves(), c.halves(), d.halves());
             for half in 0..2 {
                 let rows = transposed(&[a[half], b[half], c[half], d[half]]);
-                for l in 0..4 {
+                for (l, row) in rows.into_iter().enumerate() {
                     let place = (4 * half + l) * stride + 4 * k;
                     // SAFETY: `rows_of` has looked that these four places are there.
-                    unsafe { _mm256_storeu_pd(to.add(place), rows[l].0) };
+                    unsafe { _mm256_storeu_pd(to.add(place), row.0) };
                 }
             }
         }
@@ -276,9 +276,9 @@ impl Real for Lanes8 {
         for (k, x) in rest.iter().enumerate() {
             let mut lanes = [0.0; 8];
             x.store(&mut lanes);
-            for l in 0..8 {
+            for (l, x) in lanes.into_iter().enumerate() {
                 // SAFETY: as above.
-                unsafe { *to.add(l * stride + done + k) = lanes[l] };
+                unsafe { *to.add(l * stride + done + k) = x };
             }
         }
     }

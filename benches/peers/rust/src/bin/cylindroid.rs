@@ -7,7 +7,7 @@ use std::time::Instant;
 use cylindroid::control::{Gain, Secondary, Target};
 use cylindroid::ik::{Budget, Goal, IkOptions, Solver};
 use cylindroid::inverse::Method;
-use cylindroid::kinematics::Chain;
+use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::spatial::Mat3;
 use cylindroid::{
     FrameId, Matrix, Mechanism, Pose, Reference, Rotation, Servo, ServoOptions, State, Twist, Vec3,
@@ -20,8 +20,9 @@ struct Arm {
     chain: Chain,
     state: State,
     jacobian: Matrix,
-    /// Results of batches.
-    out: Vec<f64>,
+    batch: Batch,
+    poses: Vec<f64>,
+    jacobians: Vec<f64>,
     /// Solver and its tolerance.
     solver: Option<(f64, Solver)>,
 }
@@ -37,10 +38,12 @@ fn make(robot: &Robot) -> Result<Arm> {
     Ok(Arm {
         state: mechanism.state(&vec![0.0; mechanism.n()])?,
         jacobian: Matrix::zeros(6, mechanism.n()),
+        batch: Batch::new(&mechanism, tip),
+        poses: Vec::new(),
+        jacobians: Vec::new(),
         mechanism,
         tip,
         chain,
-        out: Vec::new(),
         solver: None,
     })
 }
@@ -52,6 +55,7 @@ fn main() -> Result<()> {
             for (i, row) in out.chunks_exact_mut(12 + 6 * robot.n()).enumerate() {
                 pose_and_jacobian(arm, robot.configuration(i), row);
             }
+            check_many(robot, arm, &out)?;
             write(command.path, &out)
         }
         "single" => Ok(single(robot, command.number(0)?, |q| {
@@ -59,7 +63,7 @@ fn main() -> Result<()> {
             arm.chain.jacobian_into(Reference::LocalWorldAligned, &mut arm.jacobian);
             black_box(&arm.jacobian);
         })),
-        "batch" => Ok(batch(robot, arm, command.number(0)?)),
+        "batch" => batch(robot, arm, command.number(0)?),
         "tree" => Ok(single(robot, command.number(0)?, |q| whole_tree(arm, q))),
         "treecheck" => {
             let mut out = Vec::new();
@@ -93,26 +97,45 @@ fn pose_and_jacobian(arm: &mut Arm, q: &[f64], out: &mut [f64]) {
 }
 
 /// ns a configuration; results of `chunk` configurations are kept at a time.
-fn batch(robot: &Robot, arm: &mut Arm, chunk: usize) -> String {
-    let (n, mut out) = (robot.n(), std::mem::take(&mut arm.out));
-    let row = 12 + 6 * n;
-    out.resize(chunk * row, 1.0);
+fn batch(robot: &Robot, arm: &mut Arm, chunk: usize) -> Result<String> {
+    let n = robot.n();
+    arm.poses.resize(chunk * 16, 1.0);
+    arm.jacobians.resize(chunk * 6 * n, 1.0);
     let begin = Instant::now();
     for q in robot.q.chunks(chunk * n) {
-        many(arm, q, &mut out);
-        black_box(&out);
+        many(arm, q)?;
+        black_box((&arm.poses, &arm.jacobians));
     }
-    let ns = begin.elapsed().as_nanos() as f64 / (robot.q.len() / n) as f64;
-    arm.out = out;
-    ns.to_string()
+    Ok((begin.elapsed().as_nanos() as f64 / (robot.q.len() / n) as f64).to_string())
 }
 
 /// Poses and Jacobians of many configurations.
-fn many(arm: &mut Arm, q: &[f64], out: &mut [f64]) {
-    let n = arm.mechanism.n();
-    for (q, row) in q.chunks_exact(n).zip(out.chunks_exact_mut(12 + 6 * n)) {
-        pose_and_jacobian(arm, q, row);
+fn many(arm: &mut Arm, q: &[f64]) -> Result<()> {
+    let Arm { batch, poses, jacobians, .. } = arm;
+    let (n, count) = (batch.n(), q.len() / batch.n());
+    Ok(batch.poses_and_jacobians_into(
+        q,
+        Reference::LocalWorldAligned,
+        &mut poses[..count * 16],
+        &mut jacobians[..count * 6 * n],
+    )?)
+}
+
+/// Of many configurations in one call, in the form of [`pose_and_jacobian`].
+fn check_many(robot: &Robot, arm: &mut Arm, expected: &[f64]) -> Result<()> {
+    let n = robot.n();
+    arm.poses.resize(BLOCK * 16, 1.0);
+    arm.jacobians.resize(BLOCK * 6 * n, 1.0);
+    many(arm, &robot.q[..BLOCK * n])?;
+    let rows = arm.poses.chunks_exact(16).zip(arm.jacobians.chunks_exact(6 * n));
+    for ((pose, jacobian), row) in rows.zip(expected.chunks_exact(12 + 6 * n)) {
+        let rotation = (0..9).map(|k| pose[k / 3 * 4 + k % 3]);
+        let found = rotation.chain((0..3).map(|i| pose[i * 4 + 3])).chain(jacobian.iter().copied());
+        if let Some((x, y)) = found.zip(row).find(|(x, y)| (x - **y).abs() > 1e-12) {
+            return Err(format!("{x} in a batch, {y} alone").into());
+        }
     }
+    Ok(())
 }
 
 /// All poses of the tree, and the twists of all joints in world axes at the world's origin.
