@@ -19,7 +19,7 @@ use super::reaching::{Reached, assembled, reach};
 use super::reports::Report;
 
 /// Steps of the servo in a second of its clock.
-pub(super) const STEPS: u32 = 240;
+pub(super) const STEPS: u32 = 120;
 /// A servo that is at its target, or stalled, and slower than this is at rest [rad/s or m/s].
 const REST: f64 = 1e-7;
 

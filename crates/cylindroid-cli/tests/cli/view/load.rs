@@ -134,20 +134,30 @@ fn load() {
             line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap() / 1024.0
         };
         let alone = resident();
+        // Once before, so that what every session takes is there.
         together(&server, seconds.min(5.0));
-        let early = resident();
-        let found = together(&server, seconds);
-        let late = resident();
+        let (found, memory) = thread::scope(|scope| {
+            let samples = scope.spawn(|| {
+                (0..4)
+                    .map(|_| {
+                        thread::sleep(Duration::from_secs_f64(0.24 * seconds));
+                        format!("{:.1}", resident())
+                    })
+                    .collect::<Vec<_>>()
+            });
+            (together(&server, seconds), samples.join().unwrap())
+        });
         let rate = |f: &Found| f.states as f64 / seconds;
         let most = |of: &dyn Fn(&Found) -> f64| found.iter().map(of).fold(0.0, f64::max);
         let least = found.iter().map(rate).fold(f64::INFINITY, f64::min);
         println!(
             "{model}: {CLIENTS} clients for {seconds} s: {least:.1} to {:.1} states a second; the \
-             servo at most {:.0} ms late, {:.0} ms at the end; memory {alone:.1} MiB alone, \
-             {early:.1} after 5 s, {late:.1} after {seconds} s",
+             servo at most {:.0} ms late, {:.0} ms at the end; memory {alone:.1} MiB alone, then {} \
+             in quarters of the time",
             most(&rate),
             1e3 * most(&|f| f.late),
             1e3 * most(&|f| f.end),
+            memory.join(", "),
         );
     }
 }
