@@ -1,6 +1,6 @@
 //! The screws of joints: the motions that a joint leaves its second link against its first.
 //!
-//! Formula  joint of the tree: the columns of J_child - J_parent that belong to its coordinates;
+//! Formula  joint of the tree: the columns of the Jacobian of its child that it adds itself;
 //!          closing joint: its axis where it stands on its first link (the second axis of a
 //!          universal joint on its second)
 //! Shapes   a screw for each coordinate; closing joints as many as their kind has
@@ -9,7 +9,6 @@
 //! Valid    any configuration; the screws of a closing joint are those of the closed loop
 //! Checked  tests/it/kinematics.rs::screws_of_joints, screws_of_closing_joints
 
-use super::jacobian::Reference;
 use super::state::State;
 use crate::model::JointKind;
 use crate::screws::Screw;
@@ -20,15 +19,11 @@ impl State {
     /// that moves it; none for a fixed joint and a place that does not exist.
     #[must_use]
     pub fn joint_screws(&self, joint: usize) -> Vec<Screw> {
-        let mechanism = self.mechanism();
-        let Some(joint) = mechanism.joints().get(joint) else { return Vec::new() };
-        let of = |link| self.jacobian(mechanism.link_frame(link), Reference::World);
-        let (child, parent) = (of(joint.child), of(joint.parent));
-        let twist = |c: usize| {
-            let entry = |i: usize| child.column(c)[i] - parent.column(c)[i];
-            Screw::of(Twist::from_array(std::array::from_fn(entry)))
-        };
-        joint.coordinates.clone().filter_map(twist).collect()
+        let Some(joint) = self.mechanism().joints().get(joint) else { return Vec::new() };
+        let mut screws: Vec<(usize, Option<Screw>)> = Vec::new();
+        self.for_each_twist_of(joint, |c, twist| screws.push((c, Screw::of(twist))));
+        screws.sort_by_key(|(c, _)| *c);
+        screws.into_iter().filter_map(|(_, screw)| screw).collect()
     }
 
     /// The screws of a closing joint (place in `Mechanism::loops`); none for a fixed or free joint

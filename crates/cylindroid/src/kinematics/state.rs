@@ -5,7 +5,7 @@ use super::forward::forward;
 use super::jacobian::{Reference, Tip};
 use crate::error::Result;
 use crate::linalg::Matrix;
-use crate::model::{FrameId, Mechanism};
+use crate::model::{FrameId, Joint, Mechanism};
 use crate::spatial::{Padded, Pose, Twist, Vec3};
 
 /// A frame of a mechanism and a tool point fixed to it.
@@ -113,18 +113,24 @@ impl State {
     /// If `out` is not 6 x n.
     pub fn joint_twists_into(&self, out: &mut Matrix) {
         assert_eq!((out.rows(), out.cols()), (6, self.mechanism.n()), "shape of the twists");
-        let slot = |link: usize| self.mechanism.frames()[link].slot; // frames of links come first
         for joint in self.mechanism.joints().iter().filter(|j| j.mimic.is_none()) {
-            let tip = Tip {
-                nodes: self.mechanism.nodes(),
-                slots: &self.slots,
-                slot: slot(joint.child),
-                world_from_tip: Pose::IDENTITY,
-            };
-            tip.for_each_column_above(slot(joint.parent), Vec3::ZERO, |_, c, twist| {
+            self.for_each_twist_of(joint, |c, twist| {
                 out.column_mut(c).copy_from_slice(&twist.to_array());
             });
         }
+    }
+
+    /// Calls `f(coordinate, twist)` for what a unit rate of each coordinate of one joint does to its
+    /// child against its parent, in world axes at the world's origin, the last coordinate first.
+    pub(super) fn for_each_twist_of(&self, joint: &Joint, mut f: impl FnMut(usize, Twist)) {
+        let slot = |link: usize| self.mechanism.frames()[link].slot; // frames of links come first
+        let tip = Tip {
+            nodes: self.mechanism.nodes(),
+            slots: &self.slots,
+            slot: slot(joint.child),
+            world_from_tip: Pose::IDENTITY,
+        };
+        tip.for_each_column_above(slot(joint.parent), Vec3::ZERO, |_, c, twist| f(c, twist));
     }
 
     /// The derivative of the Jacobian in time while the coordinates move with `rates`, 6 x n.
