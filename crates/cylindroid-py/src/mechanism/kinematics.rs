@@ -228,14 +228,7 @@ impl PyMechanism {
     ) -> Result<Array<'py>> {
         let (n, reference) = (self.inner.n(), reference_of(reference)?);
         let rows = Rows::of(&self.inner, "q", &q)?;
-        let of = self.end_effector(frame, tool.as_ref())?;
-        if is_batch(&rows) {
-            let batch = Batch::new(&self.inner, of);
-            return threads::written(py, rows.count, &[6, n], |out| {
-                batch.jacobians_into(rows.values, reference, out)
-            });
-        }
-        let mut chain = Chain::new(&self.inner, of);
+        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
         let mut local = vec![Matrix::zeros(6, chain.n()); chain.n()];
         arrays::written_rows(py, rows.count, &[n, 6, n], |i, out| {
             chain.set(rows.row(i));
