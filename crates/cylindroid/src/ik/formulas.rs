@@ -19,7 +19,7 @@ use crate::spatial::Pose;
 /// Values of the held joint before the search takes over.
 pub(super) const VALUES: usize = 32;
 /// Values without any answer before it does: arms whose limits or axes leave the formulas nothing
-/// must not pay for all of them. An attempt of the search costs as much as four.
+/// must not pay for all of them.
 pub(super) const FRUITLESS: usize = 4;
 /// Steps of this share of a range spread evenly, however many there are: the golden ratio.
 const SHARE: f64 = 0.618_033_988_749_894_9;
