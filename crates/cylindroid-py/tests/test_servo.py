@@ -132,7 +132,9 @@ def test_secondary_wishes_do_not_disturb_the_task():
     rates = cy.Servo(r, secondary="none").step(q, target, wish)
     assert np.linalg.norm(rates) > 0.01
     np.testing.assert_allclose(J @ rates, 0, atol=1e-12)
-    np.testing.assert_allclose(cy.Servo(r, secondary="none").step(q, target), 0, atol=1e-15)
+    # Trees and chains have kernels of their own: a rounding of the pose, times the gain, over the
+    # smallest singular value.
+    np.testing.assert_allclose(cy.Servo(r, secondary="none").step(q, target), 0, atol=1e-13)
 
 
 def test_hyperbolic_servo_of_five_joints():

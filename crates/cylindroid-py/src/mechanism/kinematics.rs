@@ -87,9 +87,11 @@ impl PyMechanism {
                 batch.poses_into(rows.values, out)
             });
         }
-        let mut chain = Chain::new(&self.inner, of);
+        // For one configuration the whole tree costs less than what a chain prepares.
+        let mut state = self.inner.state(self.inner.home())?;
         arrays::written_rows(py, rows.count, &[4, 4], |i, out| {
-            arrays::put_pose(chain.set(rows.row(i)), out);
+            state.set(rows.row(i))?;
+            arrays::put_pose(state.pose(of), out);
             Ok(())
         })
     }
@@ -178,12 +180,12 @@ impl PyMechanism {
                 batch.jacobians_into(rows.values, reference, out)
             });
         }
-        let mut chain = Chain::new(&self.inner, of);
-        let mut local = Matrix::zeros(6, chain.n());
+        let mut state = self.inner.state(self.inner.home())?;
+        let mut whole = Matrix::zeros(6, n);
         arrays::written_rows(py, rows.count, &[6, n], |i, out| {
-            chain.set(rows.row(i));
-            chain.jacobian_into(reference, &mut local);
-            scatter(&local, chain.coordinates(), n, out);
+            state.set(rows.row(i))?;
+            state.jacobian_into(of, reference, &mut whole);
+            arrays::put_rows(&whole, out);
             Ok(())
         })
     }
