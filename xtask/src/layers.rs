@@ -1,5 +1,5 @@
-//! The modules of the library form one line: each imports only those before it. No file of a crate
-//! is longer than a newcomer reads.
+//! The modules of the library form one line: each imports only those before it. No file is longer
+//! than a newcomer reads.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,8 +27,8 @@ const LINE: [&str; 15] = [
 
 /// More lines than this and a newcomer no longer finds the room.
 const LONGEST_FILE: usize = 500;
-/// Whose files are so short.
-const CRATES: [&str; 3] = ["cylindroid", "cylindroid-cli", "cylindroid-py"];
+/// Where files are so short, tests and benchmarks among them.
+const SHORT: [&str; 5] = ["crates", "xtask/src", "benches", "viewer/src", "viewer/tests"];
 
 /// Checks every `use crate::...` and `crate::...` path of the library, and the length of files.
 ///
@@ -36,8 +36,8 @@ const CRATES: [&str; 3] = ["cylindroid", "cylindroid-cli", "cylindroid-py"];
 /// A module that imports one to its right, or is missing from the line; a file that is too long.
 pub(crate) fn check() -> Result<()> {
     let mut faults = line_faults()?;
-    for name in CRATES {
-        faults.extend(length_faults(name)?);
+    for folder in SHORT {
+        faults.extend(length_faults(&crate::steps::root().join(folder))?);
     }
     if faults.is_empty() {
         return Ok(());
@@ -45,15 +45,14 @@ pub(crate) fn check() -> Result<()> {
     bail!("files are not where they belong, or too long:\n  {}", faults.join("\n  "))
 }
 
-/// Files of a crate that are too long.
-fn length_faults(name: &str) -> Result<Vec<String>> {
-    let source = source_of(name);
+/// Files that are too long.
+fn length_faults(folder: &Path) -> Result<Vec<String>> {
     let mut faults = Vec::new();
-    for file in rust_files(&source)? {
+    for file in files(folder, &["rs", "py", "ts", "mjs", "cpp", "hpp"])? {
         let lines = text_of(&file)?.lines().count();
         if lines > LONGEST_FILE {
-            let short = file.strip_prefix(&source).unwrap_or(&file).display();
-            faults.push(format!("{name}/{short}: {lines} lines, at most {LONGEST_FILE}"));
+            let short = file.strip_prefix(crate::steps::root()).unwrap_or(&file).display();
+            faults.push(format!("{short}: {lines} lines, at most {LONGEST_FILE}"));
         }
     }
     Ok(faults)
@@ -61,9 +60,9 @@ fn length_faults(name: &str) -> Result<Vec<String>> {
 
 /// Imports of the library that break the line.
 fn line_faults() -> Result<Vec<String>> {
-    let source = source_of("cylindroid");
+    let source = crate::steps::root().join("crates/cylindroid/src");
     let mut faults = Vec::new();
-    for file in rust_files(&source)? {
+    for file in files(&source, &["rs"])? {
         let text = text_of(&file)?;
         let short = file.strip_prefix(&source).unwrap_or(&file);
         let first = short.iter().next().map(|s| s.to_string_lossy().into_owned());
@@ -103,10 +102,6 @@ fn line_faults() -> Result<Vec<String>> {
     Ok(faults)
 }
 
-fn source_of(name: &str) -> PathBuf {
-    crate::steps::root().join("crates").join(name).join("src")
-}
-
 fn text_of(file: &Path) -> Result<String> {
     fs::read_to_string(file).with_context(|| file.display().to_string())
 }
@@ -115,16 +110,21 @@ fn place(module: &str) -> Option<usize> {
     LINE.iter().position(|m| *m == module)
 }
 
-fn rust_files(folder: &Path) -> Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
+/// Files with one of these endings, in a folder and those below it; what tools put there is not
+/// ours.
+fn files(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         if path.is_dir() {
-            files.extend(rust_files(&path)?);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            files.push(path);
+            let built = path.file_name().is_some_and(|n| n == "target" || n == "node_modules");
+            if !built {
+                found.extend(files(&path, endings)?);
+            }
+        } else if path.extension().is_some_and(|e| endings.iter().any(|ending| e == *ending)) {
+            found.push(path);
         }
     }
-    files.sort();
-    Ok(files)
+    found.sort();
+    Ok(found)
 }

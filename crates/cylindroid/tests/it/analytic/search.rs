@@ -1,0 +1,140 @@
+//! Seven joints, arms without a structure, and the search that takes formulas where it can.
+
+use std::f64::consts::PI;
+
+use cylindroid::ik::{Analytic, FoundBy, Goal, IkOptions, NoStructure, Solver, solve_several};
+use cylindroid::model::{JointKind, JointSpec, Limits};
+use cylindroid::{Mechanism, Pose, Vec3, catalogue};
+
+use super::arms::{arm, unit};
+use super::law::apart;
+use crate::support::{Random, unlimited};
+
+/// Seven joints are six where one is held, at any value.
+#[test]
+fn seven_joints_with_one_held() {
+    let mut random = Random(80);
+    let cases = [
+        ("iiwa14", 2, "spherical wrist, "),
+        ("iiwa14", 6, "spherical shoulder, "),
+        ("panda", 6, "spherical shoulder, axes 5 and 6 meet"),
+    ];
+    for (name, held, words) in cases {
+        let robot = unlimited(&catalogue::load(name).unwrap());
+        let mut ik = Analytic::holding(&robot, robot.tool(), &[held]).unwrap();
+        assert!(ik.structure().to_string().starts_with(words), "{}", ik.structure());
+        for _ in 0..500 {
+            let q: Vec<f64> = random.vector(7).iter().map(|x| 3.0 * x).collect();
+            let target = robot.state(&q).unwrap().pose(robot.tool());
+            let mut start = random.vector(7);
+            start[held] = q[held];
+            let answers = ik.solve(target, &start).unwrap();
+            let mut near = 9.0_f64;
+            for answer in answers.iter() {
+                let mut whole = start.clone();
+                ik.coordinates().iter().zip(answer.q).for_each(|(&c, x)| whole[c] = x);
+                let error = robot.state(&whole).unwrap().pose(robot.tool()).error_to(target);
+                assert!(error.linear.norm() < 2e-10 && error.angular.norm() < 1e-10);
+                near = near.min(apart(&whole, &q));
+            }
+            assert!(near < 1e-6, "{name}: {near:e} {q:?} {answers:?}");
+        }
+    }
+}
+
+#[test]
+fn why_not() {
+    let of = |name: &str| {
+        let robot = catalogue::load(name).unwrap();
+        Analytic::of(&robot, robot.tool()).unwrap_err()
+    };
+    assert_eq!(of("panda"), NoStructure::Joints(7));
+    assert_eq!(of("youbot"), NoStructure::Joints(5));
+    assert_eq!(of("two-arm"), NoStructure::Loops);
+    assert!(of("panda").to_string().contains('7'));
+    let mut random = Random(81);
+    let axes: Vec<_> = (0..6).map(|_| (unit(&mut random), random.vec3(0.5))).collect();
+    let skew = arm(&axes, Pose::IDENTITY, Pose::IDENTITY, Limits::NONE);
+    assert_eq!(Analytic::of(&skew, skew.tool()).unwrap_err(), NoStructure::Axes);
+    let mut b = Mechanism::builder("slides");
+    for i in 0..6 {
+        let kind = if i == 3 { JointKind::Prismatic } else { JointKind::Revolute };
+        let (parent, child) = (format!("l{i}"), format!("l{}", i + 1));
+        b.joint(JointSpec::new(&format!("q{i}"), kind, &parent, &child));
+    }
+    let slides = b.build().unwrap();
+    assert_eq!(Analytic::of(&slides, slides.tool()).unwrap_err(), NoStructure::Kind);
+    let ur5e = catalogue::load("ur5e").unwrap();
+    let mut ik = Analytic::of(&ur5e, ur5e.tool()).unwrap();
+    assert!(ik.solve(Pose::IDENTITY, &[0.0; 5]).is_err());
+    assert!(ik.solve(Pose::IDENTITY, &[f64::NAN; 6]).is_err());
+    let nan = Pose::from_translation(Vec3::new(f64::NAN, 0.0, 0.0));
+    assert!(ik.solve(nan, &[0.0; 6]).is_err());
+    let far = Pose::from_translation(Vec3::new(1e300, 1e300, 0.0));
+    assert!(ik.solve(far, &[1e300; 6]).unwrap().is_empty());
+}
+
+/// The search takes formulas where there are some, and says so.
+#[test]
+fn the_search_uses_formulas() {
+    let mut random = Random(82);
+    for (name, structure) in [
+        ("ur5e", Some("parallel axes 2, 3 and 4, axes 5 and 6 meet")),
+        ("puma560", Some("spherical wrist, parallel axes 2 and 3")),
+        ("panda", Some("spherical shoulder, axes 5 and 6 meet")),
+        ("iiwa14", Some("spherical shoulder, axes 4 and 5 meet")),
+        ("youbot", None),
+    ] {
+        let robot = catalogue::load(name).unwrap();
+        let mut by_formulas = 0;
+        for nearest in [false, true] {
+            let mut solver = None;
+            for _ in 0..50 {
+                let known = random.q(&robot);
+                let target = robot.state(&known).unwrap().pose(robot.tool());
+                let goals = [Goal::pose(robot.tool(), target)];
+                let start: Vec<f64> = known.iter().map(|x| x + random.within(-0.3, 0.3)).collect();
+                let options =
+                    IkOptions { nearest, start: Some(start.clone()), ..IkOptions::default() };
+                let solver =
+                    solver.get_or_insert_with(|| Solver::new(&robot, &goals, &options).unwrap());
+                assert_eq!(
+                    solver.analytic().map(|a| a.structure().to_string()).as_deref(),
+                    structure
+                );
+                solver.start_at(&start).unwrap();
+                let found = solver.solve(&goals).unwrap();
+                assert!(found.success && robot.outside_limits(&found.q).next().is_none());
+                let formulas = found.found_by == FoundBy::Analytic;
+                by_formulas += usize::from(formulas);
+                assert!(structure.is_some() || !formulas);
+                if robot.n() == 6 && formulas {
+                    assert_eq!(found.attempts, 1);
+                    assert!(found.position_error < 1e-9 && found.orientation_error < 1e-9);
+                }
+            }
+        }
+        let least = if structure.is_none() {
+            0
+        } else if robot.n() == 6 {
+            95
+        } else {
+            40
+        };
+        assert!(by_formulas >= least, "{name}: {by_formulas}");
+    }
+    // What limits exclude is given up soon.
+    let puma = catalogue::load("puma560").unwrap();
+    let mut q = puma.home().to_vec();
+    q[0] = PI;
+    q[2] = -0.5;
+    let target = puma.state(&q).unwrap().pose(puma.tool());
+    let free = unlimited(&puma);
+    let mut ik = Analytic::of(&free, free.tool()).unwrap();
+    assert!(!ik.solve(target, &q).unwrap().is_empty());
+    let goals = [Goal::pose(puma.tool(), target)];
+    let found = solve_several(&puma, &goals, &IkOptions::default(), 8).unwrap();
+    let alone = cylindroid::ik::solve(&puma, &goals, &IkOptions::default()).unwrap();
+    assert_eq!(found.is_empty(), !alone.success);
+    assert!(alone.success || alone.attempts < 60, "{alone:?}");
+}
