@@ -22,15 +22,14 @@ use crate::tolerance::JACOBI_ORTHOGONAL;
 /// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost finite.
 const MAX_SWEEPS: usize = 40;
 
-/// Angles up to this are turned together [rad]: four terms of the exponential leave 1e-11 of
-/// orthogonality, which one Newton step squares.
-const SMALL: f64 = 1.0 / 32.0;
+/// Angles up to this, as the spectral norm of K, are turned together: four terms of the exponential
+/// then leave 1e-11 of orthogonality, which one Newton step squares.
+const TOGETHER: f64 = 1.0 / 32.0;
 
-/// Below this the four terms are exact to rounding [rad]; below the next two are; below the last
-/// the angles themselves.
-const SMALLER: f64 = 1.0 / 256.0;
-const TINY: f64 = 1e-4;
-const NONE: f64 = 4e-9;
+/// Up to these four terms (K^6 / 72), two (K^4 / 4) and one (K^2) leave less than a rounding.
+const FOUR_TERMS: f64 = 1.0 / 256.0;
+const TWO_TERMS: f64 = 1e-4;
+const ONE_TERM: f64 = 4e-9;
 
 /// Steps with all angles together, before rotations one by one take over for good.
 const MOST_TOGETHER: usize = 8;
@@ -53,7 +52,7 @@ pub(super) struct Rotations {
     pub(super) b: PaddedColumns,
     /// The accumulated rotations.
     pub(super) w: PaddedColumns,
-    /// Lengths that the columns of B W had.
+    /// Lengths that the columns of B W had; [`super::Svd`] scales them to singular values.
     pub(super) lengths: Vec<f64>,
     /// The order of a sweep.
     pairs: Vec<(usize, usize)>,
@@ -121,7 +120,7 @@ impl Rotations {
             if start == Start::Repaired {
                 newton::<R>(&mut self.w.data, &mut self.square.data, size, &mut self.row);
             }
-            self.times_b::<R>(size, false);
+            times::<R>(&mut self.b.data, size.long, &self.w.data, size, &mut self.row);
         }
         let (mut sweeps, mut together) = (0, 0);
         // Rotations one by one while angles are large.
@@ -130,15 +129,15 @@ impl Rotations {
             self.measure::<R>(size);
             sweeps += 1;
             if !one_by_one {
-                let Angles { largest, nearly } = self.find_angles::<R>(size);
-                if largest == 0.0 {
+                let Angles { norm, nearly } = self.find_angles::<R>(size);
+                if norm == 0.0 {
                     break;
                 }
-                one_by_one = largest > SMALL || together == MOST_TOGETHER;
+                one_by_one = norm > TOGETHER || together == MOST_TOGETHER;
                 if !one_by_one {
                     together += 1;
-                    self.turn::<R>(largest, size);
-                    if nearly && largest <= NONE {
+                    self.turn::<R>(norm, size);
+                    if nearly && norm <= ONE_TERM {
                         break; // what is left is the square of that
                     }
                     continue;
@@ -148,7 +147,7 @@ impl Rotations {
             if largest == 0.0 {
                 break;
             }
-            one_by_one = largest > SMALL || together == MOST_TOGETHER;
+            one_by_one = largest > TOGETHER || together == MOST_TOGETHER;
         }
         self.measure::<R>(size);
         for (j, length) in self.lengths.iter_mut().enumerate() {
@@ -157,13 +156,6 @@ impl Rotations {
             scale::<R>(&mut self.b.data[j * size.long..][..size.long], inverse);
         }
         sweeps
-    }
-
-    /// `B = B W` or `B = B turn`.
-    #[inline(always)]
-    fn times_b<R: Real>(&mut self, size: Size, by_turn: bool) {
-        let by = if by_turn { &self.turn.data } else { &self.w.data };
-        times::<R>(&mut self.b.data, size.long, by, size, &mut self.row);
     }
 
     #[inline(always)]
@@ -226,7 +218,7 @@ impl Rotations {
     fn find_angles<R: Real>(&mut self, size: Size) -> Angles {
         let (b, lengths) = (&self.b.data[..size.k * size.long], &self.lengths[..size.k]);
         let angles = &mut self.angles.data[..size.k * size.short];
-        let mut found = Angles { largest: 0.0, nearly: true };
+        let (mut squares, mut nearly) = (0.0, true);
         for j in 0..size.k {
             for i in 0..j {
                 let ab = dot::<R>(padded(b, size.long, i), padded(b, size.long, j));
@@ -235,22 +227,23 @@ impl Rotations {
                 let angle = if oblique { ab / (bb - aa) } else { 0.0 };
                 angles[j * size.short + i] = angle;
                 angles[i * size.short + j] = -angle;
-                found.largest = found.largest.max(angle.abs());
-                found.nearly &= !is_oblique(aa, bb, ab, NONE);
+                squares += angle * angle;
+                nearly &= !is_oblique(aa, bb, ab, ONE_TERM);
             }
         }
-        found
+        // Singular values of a skew matrix come in pairs: its norm is at most this.
+        Angles { norm: f64::sqrt(squares), nearly }
     }
 
     /// Turns all columns by the angles found.
     #[inline(always)]
-    fn turn<R: Real>(&mut self, largest: f64, size: Size) {
+    fn turn<R: Real>(&mut self, norm: f64, size: Size) {
         // 1 + K (1 + K / 2 (1 + K / 3 (1 + K / 4))), as far as it counts
         let turn = &mut self.turn.data;
         turn.copy_from_slice(&self.angles.data);
-        let terms: &[f64] = if largest > TINY {
+        let terms: &[f64] = if norm > TWO_TERMS {
             &[4.0, 3.0, 2.0]
-        } else if largest > NONE {
+        } else if norm > ONE_TERM {
             &[2.0]
         } else {
             &[]
@@ -261,10 +254,10 @@ impl Rotations {
             times::<R>(turn, size.short, &self.angles.data, size, &mut self.row);
         }
         add_identity(turn, size);
-        if largest > SMALLER {
+        if norm > FOUR_TERMS {
             newton::<R>(turn, &mut self.square.data, size, &mut self.row);
         }
-        self.times_b::<R>(size, true);
+        times::<R>(&mut self.b.data, size.long, &self.turn.data, size, &mut self.row);
         times::<R>(&mut self.w.data, size.short, &self.turn.data, size, &mut self.row);
     }
 }
@@ -279,9 +272,10 @@ struct Size {
 
 /// What [`Rotations::find_angles`] found.
 struct Angles {
-    largest: f64,
+    /// A bound of the spectral norm of K; 0 if all columns are orthogonal.
+    norm: f64,
     /// True if the cosines between all columns, which for lengths far apart are larger than these
-    /// angles, are at most [`NONE`].
+    /// angles, are at most [`ONE_TERM`].
     nearly: bool,
 }
 

@@ -30,7 +30,6 @@ pub struct Svd {
     cols: usize,
     /// B W, later Q, and W.
     rotations: Rotations,
-    sigma: Vec<f64>,
     order: Vec<usize>,
     /// Warm starts that are left before W is repaired; `None` before the first decomposition.
     warm: Option<usize>,
@@ -58,7 +57,6 @@ impl Svd {
             rows: m,
             cols: n,
             rotations: Rotations::zeros(long, k),
-            sigma: vec![0.0; k],
             order: (0..k).collect(),
             warm: None,
             sweeps: 0,
@@ -90,7 +88,7 @@ impl Svd {
         assert_eq!((a.rows(), a.cols()), (self.rows, self.cols), "shape of the SVD workspace");
         let largest = a.max_abs();
         if largest == 0.0 || !largest.is_finite() {
-            self.sigma.fill(if largest == 0.0 { 0.0 } else { f64::NAN });
+            self.rotations.lengths.fill(if largest == 0.0 { 0.0 } else { f64::NAN });
             self.rotations.b.fill(0.0);
             self.rotations.reset();
             self.order.iter_mut().enumerate().for_each(|(i, o)| *o = i);
@@ -106,11 +104,10 @@ impl Svd {
         };
         self.warm = Some(left);
         self.sweeps = self.rotations.run(a, 1.0 / scale, start);
-        let lengths = &self.rotations.lengths;
-        self.order
-            .sort_unstable_by(|&i, &j| lengths[j].total_cmp(&lengths[i]).then_with(|| i.cmp(&j)));
-        for (j, &s) in lengths.iter().enumerate() {
-            self.sigma[j] = (s * scale).min(f64::MAX);
+        let sigma = &mut self.rotations.lengths;
+        self.order.sort_unstable_by(|&i, &j| sigma[j].total_cmp(&sigma[i]).then_with(|| i.cmp(&j)));
+        for s in sigma {
+            *s = (*s * scale).min(f64::MAX);
         }
         debug_assert!(
             self.value(0) == f64::MAX || self.residual(a) < 1e-11,
@@ -122,26 +119,26 @@ impl Svd {
     /// Number of singular values, min(m, n).
     #[must_use]
     pub fn len(&self) -> usize {
-        self.sigma.len()
+        self.rotations.lengths.len()
     }
 
     /// True for a matrix without rows or without columns.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.sigma.is_empty()
+        self.rotations.lengths.is_empty()
     }
 
     /// The `i`-th largest singular value.
     #[must_use]
     #[inline]
     pub fn value(&self, i: usize) -> f64 {
-        self.sigma[self.order[i]]
+        self.rotations.lengths[self.order[i]]
     }
 
     /// The singular values, largest first.
     #[must_use]
     pub fn values(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
-        self.order.iter().map(|&i| self.sigma[i])
+        self.order.iter().map(|&i| self.rotations.lengths[i])
     }
 
     /// Left singular vector of the `i`-th value (m entries).

@@ -147,16 +147,18 @@ fn zero_empty_and_bad_matrices() {
     assert!(Svd::of(&a).values().all(f64::is_nan));
 }
 
-/// A slowly turning Jacobian: the warm decomposition equals a cold one, and is cheaper.
+/// A turning Jacobian: the warm decomposition equals a cold one whatever the step, on both sides of
+/// every number of terms, and is cheaper where steps are small.
 #[test]
 fn warm_starts_do_not_drift() {
     let mut random = Random(14);
-    for (m, n) in [(6, 7), (6, 6), (6, 4), (3, 7)] {
+    let shapes = [(6, 7), (6, 6), (6, 4), (3, 7), (5, 12)];
+    for ((m, n), size) in shapes.iter().flat_map(|&s| [1e-1, 1e-2, 1e-3, 1e-5].map(|h| (s, h))) {
         let (a, b) = (random.matrix(m, n), random.matrix(m, n));
         let mut warm = Svd::workspace(m, n);
         let (mut cold_sweeps, mut warm_sweeps) = (0, 0);
         for step in 0..5000 {
-            let t = f64::from(step) * 1e-3;
+            let t = f64::from(step) * size;
             let now = Matrix::from_fn(m, n, |i, j| a[(i, j)] * t.cos() + b[(i, j)] * t.sin());
             warm.decompose_warm(&now);
             let cold = Svd::of(&now);
@@ -166,7 +168,10 @@ fn warm_starts_do_not_drift() {
             cold_sweeps += cold.sweeps();
             warm_sweeps += warm.sweeps();
         }
-        assert!(warm_sweeps < cold_sweeps, "{warm_sweeps} warm, {cold_sweeps} cold");
+        assert!(
+            warm_sweeps < cold_sweeps || size > 1e-3,
+            "{warm_sweeps} warm, {cold_sweeps} cold, {m} x {n}, steps of {size}"
+        );
     }
 }
 
