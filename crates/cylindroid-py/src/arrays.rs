@@ -210,13 +210,9 @@ impl<'a> Rows<'a> {
             mechanism.check_q(name, &vec![0.0; width])?;
         }
         let rows = Self { values: numbers.values(), width, count };
-        // Many at once, without a branch for each.
-        if rows.values.chunks(64).all(|x| x.iter().fold(true, |ok, x| ok & x.is_finite())) {
-            return Ok(rows);
-        }
-        for i in 0..rows.len() {
-            let what = count.map_or(name.to_owned(), |_| format!("{name}[{i}]"));
-            mechanism.check_q(&what, rows.row(i))?;
+        match count {
+            None => mechanism.check_q(name, rows.values)?,
+            Some(_) => mechanism.check_rows(name, rows.values)?,
         }
         Ok(rows)
     }

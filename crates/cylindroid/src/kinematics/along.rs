@@ -6,7 +6,7 @@
 //! Units    rad, m; m/s and rad/s for each unit of rate
 //! Frame    world axes; the point is the tool's origin or any other
 //! Why so   written once over [`Single`]: three numbers, or one register of them
-//! Checked  tests in this file, tests/it/pinocchio.rs
+//! Checked  tests/it/batch.rs::chains_agree_with_trees, tests/it/pinocchio.rs
 
 use super::forward::{MANY, sines};
 use super::serial::Serial;

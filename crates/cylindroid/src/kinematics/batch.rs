@@ -22,8 +22,6 @@ use crate::model::Mechanism;
 
 /// Numbers of a pose.
 const POSE: usize = 16;
-/// Configurations that one thread takes at once: some tenths of a millisecond of work.
-const CHUNK: usize = Batch::ALONE;
 
 /// The kinematics of one end effector, for many configurations in one call.
 ///
@@ -50,8 +48,8 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// As many configurations as one thread takes: calls with no more stay on the thread of the
-    /// caller.
+    /// Configurations that one thread takes at once, some tenths of a millisecond of work: calls
+    /// with no more stay on the thread of the caller.
     pub const ALONE: usize = 4096;
 
     /// For an end effector.
@@ -121,12 +119,7 @@ impl Batch {
     fn count(&self, q: &[f64]) -> Result<usize> {
         let n = self.mechanism.n();
         if q.len().checked_rem(n).unwrap_or(q.len()) != 0 {
-            return Err(Error::Dimension {
-                what: "q".to_owned(),
-                expected: q.len().next_multiple_of(n.max(1)),
-                got: q.len(),
-                hint: format!("{n} for each configuration"),
-            });
+            return Err(size("q", q.len().next_multiple_of(n.max(1)), q.len(), n));
         }
         Ok(q.len().checked_div(n).unwrap_or(0))
     }
@@ -138,42 +131,28 @@ impl Batch {
         jacobians: Option<(Reference, &mut [f64])>,
     ) -> Result<()> {
         let (n, count) = (self.mechanism.n(), self.count(q)?);
-        // Many at once, without a branch for each.
-        if !q.chunks(64).all(|q| q.iter().fold(true, |ok, x| ok & x.is_finite())) {
-            q.chunks(n.max(1)).try_for_each(|row| self.mechanism.check_q("q", row))?;
+        self.mechanism.check_rows("q", q)?;
+        for (what, got, each) in [
+            ("poses", poses.as_ref().map(|p| p.len()), POSE),
+            ("jacobians", jacobians.as_ref().map(|j| j.1.len()), 6 * n),
+        ] {
+            if let Some(got) = got.filter(|got| *got != count * each) {
+                return Err(size(what, count * each, got, each));
+            }
         }
-        let fits = |what: &str, got: usize, size: usize| {
-            let (expected, hint) = (count * size, format!("{size} for each configuration"));
-            if got == expected {
-                Ok(())
-            } else {
-                Err(Error::Dimension { what: what.to_owned(), expected, got, hint })
-            }
-        };
-        fits("poses", poses.as_ref().map_or(count * POSE, |p| p.len()), POSE)?;
-        fits("jacobians", jacobians.as_ref().map_or(count * 6 * n, |j| j.1.len()), 6 * n)?;
-        if count <= CHUNK {
-            if count > 0 {
-                self.chunk(q, poses, jacobians);
-            }
-            return Ok(());
-        }
-        let q = q.par_chunks(CHUNK * n);
-        match (poses, jacobians) {
-            (None, None) => {}
-            (Some(poses), None) => {
-                q.zip(poses.par_chunks_mut(CHUNK * POSE))
-                    .for_each(|(q, poses)| self.chunk(q, Some(poses), None));
-            }
-            (None, Some((reference, jacobians))) => {
-                q.zip(jacobians.par_chunks_mut(CHUNK * 6 * n))
-                    .for_each(|(q, j)| self.chunk(q, None, Some((reference, j))));
-            }
-            (Some(poses), Some((reference, jacobians))) => {
-                q.zip(poses.par_chunks_mut(CHUNK * POSE))
-                    .zip(jacobians.par_chunks_mut(CHUNK * 6 * n))
-                    .for_each(|((q, poses), j)| self.chunk(q, Some(poses), Some((reference, j))));
-            }
+        let mut poses = poses.map(|p| p.chunks_mut(Self::ALONE * POSE));
+        let mut jacobians = jacobians.map(|(r, j)| (r, j.chunks_mut(Self::ALONE * 6 * n)));
+        let mut chunks: Vec<_> = q
+            .chunks(Self::ALONE * n.max(1))
+            .map(|q| {
+                let poses = poses.as_mut().and_then(Iterator::next);
+                (q, poses, jacobians.as_mut().and_then(|(r, j)| Some((*r, j.next()?))))
+            })
+            .collect();
+        if chunks.len() > 1 {
+            chunks.into_par_iter().for_each(|(q, poses, j)| self.chunk(q, poses, j));
+        } else if let Some((q, poses, j)) = chunks.pop() {
+            self.chunk(q, poses, j);
         }
         Ok(())
     }
@@ -212,4 +191,9 @@ impl Batch {
             }
         }
     }
+}
+
+fn size(what: &str, expected: usize, got: usize, each: usize) -> Error {
+    let hint = format!("{each} for each configuration");
+    Error::Dimension { what: what.to_owned(), expected, got, hint }
 }

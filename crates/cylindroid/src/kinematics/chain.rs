@@ -129,14 +129,13 @@ impl Chain {
     #[inline]
     pub fn jacobian_into(&self, reference: Reference, out: &mut Matrix) {
         assert_eq!((out.rows(), out.cols()), (6, self.n()), "shape of the Jacobian");
-        match (&self.serial, reference) {
-            (Some(serial), Reference::World | Reference::LocalWorldAligned)
-                if serial.has_one_for_each(self.n()) =>
-            {
-                let p = match reference {
-                    Reference::World => &[0.0; 4],
-                    _ => &self.tool().p,
-                };
+        let point = match reference {
+            Reference::World => Some(&[0.0; 4]),
+            Reference::LocalWorldAligned => Some(&self.tool().p),
+            Reference::Local => None,
+        };
+        match (&self.serial, point) {
+            (Some(serial), Some(p)) if serial.has_one_for_each(self.n()) => {
                 columns(serial, &self.slots, p, out);
             }
             _ => self.tip().jacobian_into(reference, out),

@@ -10,7 +10,7 @@
 //!          tilted about x alone: 33 products for a joint instead of 48, less where the next axis
 //!          is parallel; what a joint does with its angle waits for nothing
 //! Source   the ZXZ angles of each fixed placement; the outer two belong to the joints beside it
-//! Checked  tests in this file, tests/it/pinocchio.rs
+//! Checked  tests/it/batch.rs::chains_agree_with_trees, tests/it/pinocchio.rs
 
 use std::array::from_fn;
 
@@ -30,7 +30,8 @@ pub(crate) struct SerialJoint {
     angle: f64,
     by: [f64; 4],
     tilt: Tilt,
-    /// True if it slides; if the way has a part along y; if a turn is not the coordinate itself.
+    /// What kernels ask in their loops: true if it slides; if the way has a part along y; if a turn
+    /// is not the coordinate itself.
     slides: bool,
     aside: bool,
     scaled: bool,

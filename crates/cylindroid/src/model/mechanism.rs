@@ -355,6 +355,19 @@ impl Mechanism {
         }
     }
 
+    /// Refuses rows of n numbers of which one is not finite, naming row and joint.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; [`Error::Dimension`] for a last row that is too short.
+    pub fn check_rows(&self, what: &str, rows: &[f64]) -> Result<()> {
+        // Many at once, without a branch for each.
+        if rows.chunks(64).all(|x| x.iter().fold(true, |ok, x| ok & x.is_finite())) {
+            return Ok(());
+        }
+        let mut rows = rows.chunks(self.n().max(1)).enumerate();
+        rows.try_for_each(|(i, row)| self.check_q(&format!("{what}[{i}]"), row))
+    }
+
     /// Coordinates that are outside their position limits.
     pub fn outside_limits<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
         self.data
