@@ -12,17 +12,20 @@ use super::analytic::{Analytic, Postures};
 use super::goal::{Goal, Task};
 use super::options::IkOptions;
 use crate::error::Result;
-use crate::kinematics::Chain;
+use crate::kinematics::{Chain, EndEffector, Reference};
+use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
+use crate::scalar::uniform;
 use crate::spatial::Pose;
 
 /// Values of the held joint before the search takes over.
-pub(super) const VALUES: usize = 32;
-/// Values without any answer before it does: arms whose limits or axes leave the formulas nothing
-/// must not pay for all of them.
-pub(super) const FRUITLESS: usize = 4;
+pub(super) const VALUES: usize = 16;
 /// Steps of this share of a range spread evenly, however many there are: the golden ratio.
 const SHARE: f64 = 0.618_033_988_749_894_9;
+/// Values whose equations split, in the time of one whose do not, about.
+const QUARTIC: f64 = 2.5;
+/// Postures at which self-motions are looked at.
+const LOOKS: usize = 8;
 
 /// Formulas for the goal of a solver.
 #[derive(Debug, Clone)]
@@ -40,19 +43,25 @@ impl Formulas {
             return None;
         }
         let chain = Chain::new(mechanism, goal.end_effector);
-        let free = chain.coordinates().iter().filter(|c| !options.fixed.contains(c));
-        let free: Vec<usize> = free.copied().collect();
+        let all = chain.coordinates();
+        let free: Vec<_> = (0..all.len()).filter(|&i| !options.fixed.contains(&all[i])).collect();
         let holding = |held: &[usize]| Analytic::holding(mechanism, goal.end_effector, held).ok();
         if free.len() != 7 {
             return Some(Self { analytic: holding(&options.fixed)?, held: None });
         }
-        // The last first: of arms with ball joints at both ends the elbow must not be held.
-        free.into_iter().rev().find_map(|c| {
-            let analytic = holding(&[&options.fixed[..], &[c]].concat())?;
-            let limits = mechanism.coordinates()[c].limits;
-            let range = [limits.lower.max(limits.upper.min(PI) - 2.0 * PI), limits.upper.min(PI)];
-            Some(Self { analytic, held: Some((c, range)) })
-        })
+        let mut best: Option<(f64, Self)> = None;
+        for (&i, moves) in free.iter().zip(self_motion(mechanism, chain.clone(), &free)) {
+            let c = all[i];
+            let Some(analytic) = holding(&[&options.fixed[..], &[c]].concat()) else { continue };
+            let value = moves / if analytic.structure().splits() { 1.0 } else { QUARTIC };
+            if best.as_ref().is_none_or(|(most, _)| value > *most) {
+                let limits = mechanism.coordinates()[c].limits;
+                let upper = limits.upper.min(PI);
+                let range = [limits.lower.max(upper - 2.0 * PI), upper];
+                best = Some((value, Self { analytic, held: Some((c, range)) }));
+            }
+        }
+        best.map(|(_, formulas)| formulas)
     }
 
     /// True if they give all answers there are.
@@ -69,4 +78,29 @@ impl Formulas {
         }
         self.analytic.solve(target, start)
     }
+}
+
+/// How much each of seven joints takes part in the self-motion that leaves the tool where it is,
+/// the mean over some postures. One that hardly does, as the elbow between two ball joints, has its
+/// value from the target, and to hold it at another leaves nothing.
+fn self_motion(mechanism: &Mechanism, mut chain: Chain, free: &[usize]) -> [f64; 7] {
+    let mut q = mechanism.home().to_vec();
+    let mut all = Matrix::zeros(6, chain.n());
+    let (mut svd, mut random, mut sum) = (Svd::workspace(6, 7), 0, [0.0; 7]);
+    for _ in 0..LOOKS {
+        for &i in free {
+            let c = chain.coordinates()[i];
+            let limits = mechanism.coordinates()[c].limits;
+            let (lower, upper) = (limits.lower.max(-PI), limits.upper.min(PI));
+            q[c] = lower + (upper - lower) * uniform(&mut random);
+        }
+        chain.set(&q);
+        chain.jacobian_into(Reference::LocalWorldAligned, &mut all);
+        svd.decompose(&Matrix::from_fn(6, 7, |i, j| all[(i, free[j])]));
+        for (j, sum) in sum.iter_mut().enumerate() {
+            let elsewhere: f64 = (0..6).map(|i| svd.v(i)[j].powi(2)).sum();
+            *sum += (1.0 - elsewhere).max(0.0).sqrt() / LOOKS as f64;
+        }
+    }
+    sum
 }

@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use super::analytic::Analytic;
 use super::attempt::{Errors, Problem, is_reached};
-use super::formulas::{FRUITLESS, Formulas, VALUES};
+use super::formulas::{Formulas, VALUES};
 use super::goal::Goal;
 use super::options::IkOptions;
 use crate::error::{Error, Result};
@@ -269,9 +269,6 @@ impl Solver {
         };
         let mut start = self.start.clone();
         while calls < most && (calls == 0 || !enough(answers.len())) {
-            if calls == FRUITLESS && answers.is_empty() {
-                break;
-            }
             let postures = formulas.solve(goal.target, &mut start, calls)?;
             calls += 1;
             let mut q = start.clone();

@@ -45,6 +45,13 @@ pub(super) enum Two {
     None,
 }
 
+impl Structure {
+    /// True if two more axes split the equations that three leave.
+    pub(in crate::ik) fn splits(&self) -> bool {
+        self.two != Two::None
+    }
+}
+
 impl fmt::Display for Structure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let pair = |first: usize| {
