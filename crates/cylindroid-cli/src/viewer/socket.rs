@@ -37,13 +37,13 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const PING: Duration = Duration::from_secs(20);
 const SILENCE: Duration = Duration::from_secs(90);
 
-/// The newest state and its number; empty before the first.
-type State = Arc<(u64, String)>;
+/// The newest state and its number; none where the last scene has none yet.
+type State = Option<Arc<(u64, String)>>;
 
 /// Serves a client until it leaves.
 pub(super) async fn talk(socket: WebSocket, start: Arc<Start>) {
     let (sink, stream) = socket.split();
-    let (states, newest) = watch::channel(State::default());
+    let (states, newest) = watch::channel(None);
     let (answers, waiting) = mpsc::channel(ANSWERS);
     let (seen, drawn) = watch::channel(None);
     let mut writer = tokio::spawn(write(sink, newest, waiting, drawn));
@@ -154,7 +154,7 @@ impl Client {
         self.seq += 1;
         // A state that cannot be told (numbers that overflow) is told with the next.
         if let Ok(state) = snapshot(&mut self.session, self.seq) {
-            self.states.send_replace(Arc::new((self.seq, state)));
+            self.states.send_replace(Some(Arc::new((self.seq, state))));
         }
     }
 
@@ -202,6 +202,8 @@ impl Client {
     }
 
     fn scene(&self) -> Result<(), Gone> {
+        // One that waits is of the scene before.
+        self.states.send_replace(None);
         self.answer(text(&Scene::of(&self.session)))
     }
 
@@ -253,7 +255,7 @@ async fn write(
             Ok(()) = seen.changed(), if !is_ready => continue,
             _ = pings.tick() => Frame::Ping(Bytes::new()),
             Ok(()) = states.changed(), if is_ready => {
-                let state = Arc::clone(&states.borrow_and_update());
+                let Some(state) = states.borrow_and_update().clone() else { continue };
                 unseen.push_back(state.0);
                 if unseen.len() > UNSEEN {
                     unseen.pop_front();
