@@ -64,6 +64,22 @@ fn configuration(robot: &Mechanism, args: &PostureArgs) -> cylindroid::Result<Ve
     Ok(q)
 }
 
+/// Refuses a configuration outside the position limits.
+pub(crate) fn within_limits(
+    robot: &Mechanism,
+    option: &'static str,
+    q: &[f64],
+) -> cylindroid::Result<()> {
+    let Some(i) = robot.outside_limits(q).next() else { return Ok(()) };
+    let c = &robot.coordinates()[i];
+    let (lower, upper, unit) = (c.limits.lower, c.limits.upper, c.kind.unit());
+    Err(Error::InvalidOption {
+        option,
+        value: format!("{} at {} {unit}", c.name, q[i]),
+        reason: format!("its limits are {lower} and {upper} {unit}"),
+    })
+}
+
 /// The frame and tool point that are meant.
 fn end_effector(robot: &Mechanism, args: &FrameArgs) -> cylindroid::Result<EndEffector> {
     let frame = match &args.frame {

@@ -4,10 +4,10 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use cylindroid::{Error, Result};
+use cylindroid::Result;
 use serde::Serialize;
 
-use super::{Style, all_driven, configuration, end_effector, load};
+use super::{Style, all_driven, configuration, end_effector, load, within_limits};
 use crate::args::ViewArgs;
 use crate::viewer::{Server, Start, page_is_built};
 
@@ -67,12 +67,13 @@ fn start(args: &ViewArgs) -> Result<Start> {
         return Err(all_driven(&robot));
     }
     let q = configuration(&robot, &args.posture)?;
+    // What a file calls its home is taken as it is, as by the other commands.
+    if q != robot.home() {
+        within_limits(&robot, "--q", &q)?;
+    }
     let mut tool = end_effector(&robot, &args.frame)?;
     if args.frame.frame.is_none() && robot.is_closed() {
         tool.frame = robot.reference();
-    }
-    if !tool.frame_from_tool.is_finite() {
-        return Err(Error::NotFinite { what: "--tool".to_owned(), value: f64::NAN });
     }
     Start::new((robot, &args.posture.model), &q, tool, &args.meshes)
 }

@@ -46,7 +46,7 @@ impl Start {
         end_effector: EndEffector,
         meshes: &[PathBuf],
     ) -> Result<Self> {
-        let q = reaching::assembled(&mechanism, q)?;
+        let q = reaching::closed(&mechanism, q)?;
         let folders = assets::Folders::of(&mechanism, model, meshes)?;
         Ok(Self { mechanism, q, end_effector, folders })
     }

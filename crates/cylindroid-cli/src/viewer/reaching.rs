@@ -6,6 +6,7 @@ use cylindroid::{Error, Result, State};
 
 use super::messages::Complaint;
 use super::scene::is_adjustable;
+use crate::commands::within_limits;
 use crate::output::number;
 
 /// How far a joint got, and what kept it from going on.
@@ -126,22 +127,15 @@ fn sentence(mechanism: &Mechanism, name: &str, end: &PathEnd) -> Option<(String,
     })
 }
 
-/// `q`, with loops and contacts closed near it.
+/// `q`, within limits, with loops and contacts closed near it.
 pub(super) fn assembled(mechanism: &Mechanism, q: &[f64]) -> Result<Vec<f64>> {
     mechanism.check_q("q", q)?;
-    if let Some(i) = mechanism.outside_limits(q).next() {
-        let c = &mechanism.coordinates()[i];
-        return Err(Error::InvalidOption {
-            option: "q",
-            value: format!("{} at {} {}", c.name, q[i], c.kind.unit()),
-            reason: format!(
-                "its limits are {} and {} {}",
-                c.limits.lower,
-                c.limits.upper,
-                c.kind.unit()
-            ),
-        });
-    }
+    within_limits(mechanism, "q", q)?;
+    closed(mechanism, q)
+}
+
+/// `q`, with loops and contacts closed near it.
+pub(super) fn closed(mechanism: &Mechanism, q: &[f64]) -> Result<Vec<f64>> {
     if !mechanism.is_closed() {
         return Ok(q.to_vec());
     }

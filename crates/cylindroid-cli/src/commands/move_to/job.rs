@@ -8,7 +8,7 @@ use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
 use super::super::target::{target_pose, task};
-use super::super::{all_driven, configuration, end_effector, load};
+use super::super::{all_driven, configuration, end_effector, load, within_limits};
 use super::{inverse, joints};
 use crate::args::{LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs};
 use crate::values::Named;
@@ -126,17 +126,6 @@ fn no_loops(robot: &Mechanism) -> Result<()> {
         value: robot.name().to_owned(),
         reason: "its loops would open if every joint moved straight; give a pose (--to, --rpy)"
             .to_owned(),
-    })
-}
-
-fn within_limits(robot: &Mechanism, option: &'static str, q: &[f64]) -> Result<()> {
-    let Some(i) = robot.outside_limits(q).next() else { return Ok(()) };
-    let c = &robot.coordinates()[i];
-    let (lower, upper, unit) = (c.limits.lower, c.limits.upper, c.kind.unit());
-    Err(Error::InvalidOption {
-        option,
-        value: format!("{} at {} {unit}", c.name, q[i]),
-        reason: format!("its limits are {lower} and {upper} {unit}"),
     })
 }
 

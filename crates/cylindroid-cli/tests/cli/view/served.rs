@@ -47,6 +47,34 @@ fn answers_carry_the_security_headers() {
     assert_eq!(server.get("/../Cargo.toml").0, 404);
 }
 
+/// Loops may close only where a file has a joint beyond its limits: it is shown there, as `fk` and
+/// `mobility` take it, and says so when a joint is to move.
+#[test]
+fn a_home_beyond_its_limits_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("bar.toml");
+    fs::write(&file, BAR).unwrap();
+    let server = Server::new(&[file.to_str().unwrap()]);
+    let mut client = server.client();
+    assert_eq!(client.next("state")["q"], json!([0.0, 0.0, 0.0]));
+    client.say(&json!({"type": "joint", "name": "q1", "value": 0.1}));
+    let error = client.next("error");
+    assert!(error["message"].as_str().unwrap().contains("q2"), "{error}");
+    // What is asked for is held to the limits.
+    assert!(refused(&["view", file.to_str().unwrap(), "--q", "0.1,0,0"]).contains("q2"));
+}
+
+/// A parallelogram whose second joint is beyond its limits at zero.
+const BAR: &str = r#"name = "bar"
+dimension = 2
+joint = [
+  { name = "q1", type = "revolute", between = ["ground", "crank"], origin = [0, 0], actuated = true },
+  { name = "q2", type = "revolute", between = ["crank", "coupler"], origin = [0.3, 1], limits = { lower = 0.5, upper = 2 } },
+  { name = "q3", type = "revolute", between = ["coupler", "rocker"], origin = [2.3, 1] },
+  { name = "q4", type = "revolute", between = ["rocker", "ground"], origin = [2, 0] },
+]
+"#;
+
 const ARM: &str = r#"<robot name="arm">
   <link name="base"><visual><geometry><mesh filename="meshes/base.stl" scale="0.5 0.5 0.5"/></geometry></visual></link>
   <link name="arm"><visual><geometry><mesh filename="package://arm/meshes/arm.obj"/></geometry></visual></link>
