@@ -273,7 +273,8 @@ impl Batch {
             return None;
         }
         // Sines of the pairs: what is left of the rank, and the farthest from its loss.
-        let sine = |sigma: f64| sigma / sigma.hypot(1.0);
+        let whole = |sigma: f64| (1.0 + sigma * sigma).sqrt();
+        let sine = |sigma: f64| sigma / whole(sigma);
         let (mut coordinate, mut least, mut most) = (0, f64::INFINITY, 0.0_f64);
         for &sigma in found.scaled {
             if sine(sigma) > CLEAR_DISTANCE {
@@ -282,7 +283,7 @@ impl Batch {
                 return None;
             }
         }
-        let cosine = 1.0 / most.hypot(1.0);
+        let cosine = 1.0 / whole(most);
         if coordinate == 0 || !(cosine > CLEAR_DISTANCE) {
             return None;
         }
@@ -322,7 +323,11 @@ impl Batch {
 fn measured(values: &[f64], count: usize) -> Option<(f64, f64, f64)> {
     /// What is kept is this much larger than what is not.
     const APART: f64 = 1e3;
-    let mut sorted = values.to_vec();
+    /// Components of a twist.
+    const MOST: usize = 6;
+    let mut sorted = [0.0; MOST];
+    let sorted = sorted.get_mut(..values.len())?;
+    sorted.copy_from_slice(values);
     sorted.sort_unstable_by(|a, b| b.total_cmp(a));
     let (kept, others) = sorted.split_at(count);
     let (largest, smallest) = (*kept.first()?, *kept.last()?);
@@ -398,7 +403,6 @@ mod tests {
             kernel.run(&q, mechanism.n(), &mut numbers);
             let clear = |n: &&[f64]| batch.clear(kernel, kernel.read(n)).is_some();
             let count = numbers.chunks(width).filter(clear).count();
-            println!("{name} {count}");
             assert!(count > 95, "{name}: {count} of 100");
         }
     }
