@@ -23,16 +23,18 @@ pub(crate) fn written<'py>(
     write: impl FnOnce(&mut [f64]) -> cylindroid::Result<()> + Send,
 ) -> Result<Array<'py>> {
     // Short ones stay on the thread that asks.
-    let pool = if count.unwrap_or(1) > Batch::ALONE { Some(pool()?) } else { None };
-    let mut result = Ok(());
+    let long = count.unwrap_or(1) > Batch::ALONE;
+    let mut result = Ok(Ok(()));
     let array = arrays::written(py, count, shape, |out| {
-        result = match pool {
-            Some(pool) => pool.install(|| write(out)),
-            None => write(out),
-        };
+        result = within(long, || write(out));
     })?;
-    result?;
+    result??;
     Ok(array)
+}
+
+/// Runs `work`, where it is long in the threads for it.
+pub(crate) fn within<T: Send>(long: bool, work: impl FnOnce() -> T + Send) -> Result<T> {
+    Ok(if long { pool()?.install(work) } else { work() })
 }
 
 fn pool() -> Result<Arc<ThreadPool>> {
