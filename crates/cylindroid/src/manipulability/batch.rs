@@ -4,12 +4,11 @@
 //! Shapes   q: N x n, results: N rows of [`Batch::COLUMNS`]; row-major, n of the mechanism
 //! Units    gaps m and rad; counts and distances none; indices those of the metrics
 //! Frame    the reference frame's origin, world axes
-//! Valid    any mechanism. Where a distance to a singularity is below [`CLEAR_DISTANCE`], an axis
-//!          or a loop is near to what a count hangs on, or the mechanism holds more than it needs
-//!          in all postures (hyperstatic), idles or cannot be held by its drives in all of them,
-//!          the configuration is given to the analysis of one: counts and kinds are always its own.
-//!          Distances differ from its by at most 1e-13 over the smallest of them, indices by
-//!          1e-13 relative times the condition of the metrics over the smallest distance
+//! Valid    any mechanism. Where a distance to a singularity is below [`CLEAR_DISTANCE`], where an
+//!          axis or a loop is near to what a verdict hangs on, and where ordinary postures are
+//!          hyperstatic, idle or not held by the drives, the configuration is given to the analysis
+//!          of one: counts are always its own. Distances differ from its by at most 1e-13 over the
+//!          smallest of them, indices by 1e-12 relative over it, times the condition of the metrics
 //! Why so   what a designer plots over a workspace are numbers: without bases there is a tenth of
 //!          the work, and without pivots four configurations go the same way, one for each lane of
 //!          a register. Every configuration goes its way alone, whatever its place and the number
