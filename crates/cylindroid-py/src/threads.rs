@@ -23,18 +23,29 @@ pub(crate) fn written<'py>(
     write: impl FnOnce(&mut [f64]) -> cylindroid::Result<()> + Send,
 ) -> Result<Array<'py>> {
     // Short ones stay on the thread that asks.
-    let long = count.unwrap_or(1) > Batch::ALONE;
-    let mut result = Ok(Ok(()));
+    let pool = if count.unwrap_or(1) > Batch::ALONE { Some(pool()?) } else { None };
+    let mut result = Ok(());
     let array = arrays::written(py, count, shape, |out| {
-        result = within(long, || write(out));
+        result = match pool {
+            Some(pool) => pool.install(|| write(out)),
+            None => write(out),
+        };
     })?;
-    result??;
+    result?;
     Ok(array)
 }
 
-/// Runs `work`, where it is long in the threads for it.
-pub(crate) fn within<T: Send>(long: bool, work: impl FnOnce() -> T + Send) -> Result<T> {
-    Ok(if long { pool()?.install(work) } else { work() })
+/// What `work` gives, without the interpreter; on all threads where it is long.
+pub(crate) fn run<T: Send>(
+    py: Python<'_>,
+    is_long: bool,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T> {
+    let pool = if is_long { Some(pool()?) } else { None };
+    Ok(py.detach(|| match pool {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }))
 }
 
 fn pool() -> Result<Arc<ThreadPool>> {

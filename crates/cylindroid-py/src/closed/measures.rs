@@ -101,10 +101,9 @@ impl PyMechanism {
             metrics: question.metrics(&home)?,
             generic: None,
         };
-        let numbers = py.detach(|| -> Result<Vec<f64>> {
-            let batch = Batch::new(mechanism, &options)?;
-            Ok(threads::within(rows.len() > Batch::ALONE, || batch.analyse(rows.values))??)
-        })?;
+        let numbers = threads::run(py, rows.len() > Batch::ALONE, || {
+            Batch::new(mechanism, &options)?.analyse(rows.values)
+        })??;
         let found = PyDict::new(py);
         for (i, name) in Batch::COLUMNS.into_iter().enumerate() {
             let column = || numbers.iter().skip(i).step_by(Batch::WIDTH).copied();

@@ -15,7 +15,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub(crate) use array::Array;
 pub(crate) use field::Field;
 pub(crate) use sequence::uniform;
-pub(crate) use trig::sin_cos;
+pub(crate) use trig::{sin_cos, sines_cosines};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use x86::{Lanes4, Lanes8};
 

@@ -245,10 +245,9 @@ fn logarithmic_derivatives<R: Field, const E: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{Four, abreast, four};
+    use super::super::tests::{abreast, four};
     use super::*;
     use crate::linalg::{Matrix, Svd};
-    use crate::scalar::Real;
 
     fn ends<R: Field>(squares: &mut [R], n: usize) -> [R; 2] {
         let zero = R::splat(0.0);
