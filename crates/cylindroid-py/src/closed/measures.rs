@@ -101,7 +101,7 @@ impl PyMechanism {
             metrics: question.metrics(&home)?,
             generic: None,
         };
-        let numbers = threads::run(py, rows.len() > Batch::ALONE, || {
+        let numbers = threads::run(py, rows.count.unwrap_or(1) > Batch::ALONE, || {
             Batch::new(mechanism, &options)?.analyse(rows.values)
         })??;
         let found = PyDict::new(py);
