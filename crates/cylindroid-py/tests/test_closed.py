@@ -148,8 +148,10 @@ def test_measures_are_the_numbers_of_reports():
                 "dof coordinate redundancy indeterminacy internal zero_torque hyperstatic idle"
             ).split():
                 assert found[name][i] == getattr(m, name), name
-            for name in "volume largest smallest anisotropy".split():
+            for name in ("volume", "anisotropy"):
                 np.testing.assert_allclose(found[name][i], getattr(k.kinematic, name), rtol=1e-10)
+            ends = [found["largest"][i], found["smallest"][i]]
+            np.testing.assert_allclose(ends, np.array(k.kinematic.finite)[[0, -1]], rtol=1e-10)
             for name in "type_i type_ii configuration_space passive".split():
                 np.testing.assert_allclose(found[name][i], m.singularity.distances[name], atol=1e-12)
             assert found["closed"][i] and abs(found["gap_distance"][i] - m.gap.distance) < 1e-13
