@@ -8,7 +8,7 @@ use cylindroid::ik::{Analytic, Goal, IkOptions, Solver};
 use cylindroid::inverse::{self, Method};
 use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::linalg::Svd;
-use cylindroid::manipulability::{Batch as Survey, BatchOptions, Manipulability, Metrics};
+use cylindroid::manipulability::{Batch as Numbers, BatchOptions, Manipulability, Metrics};
 use cylindroid::model::Coordinate;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, catalogue};
@@ -310,7 +310,7 @@ fn report(constraint: &Constraint) -> (Mobility, Manipulability) {
 fn batch_of_mobility_and_manipulability(bencher: Bencher<'_, '_>, name: &str) {
     const COUNT: usize = 4096;
     let mechanism = robot(name);
-    let batch = Survey::new(&mechanism, &BatchOptions::default()).unwrap();
+    let batch = Numbers::new(&mechanism, &BatchOptions::default()).unwrap();
     // As many closed postures as are soon found, again and again.
     let mut closed = Vec::new();
     for i in 0..64 {
@@ -319,7 +319,7 @@ fn batch_of_mobility_and_manipulability(bencher: Bencher<'_, '_>, name: &str) {
         closed.extend(assemble(&mechanism, &guess, &[]).unwrap().q);
     }
     let q = closed.repeat(COUNT / 64);
-    let mut out = vec![0.0; COUNT * Survey::WIDTH];
+    let mut out = vec![0.0; COUNT * Numbers::WIDTH];
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
         alone.install(|| batch.analyse_into(black_box(&q), &mut out).unwrap());

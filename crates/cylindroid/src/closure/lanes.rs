@@ -332,11 +332,7 @@ fn poses<R: Field>(frame: &Frame<R>) -> [Pose; MOST_LANES] {
 #[inline(always)]
 fn turned<R: Field>(frame: &Frame<R>, v: Vec3) -> [R; 3] {
     let (x, y, z) = (R::splat(v.x), R::splat(v.y), R::splat(v.z));
-    let mut out = [x; 3];
-    for i in 0..3 {
-        out[i] = frame.x[i].times_plus(x, frame.y[i].times_plus(y, frame.z[i] * z));
-    }
-    out
+    frame.seen_outside([x, y, z])
 }
 
 #[inline(always)]

@@ -47,27 +47,16 @@ fn turned<R: Field>(base: Frame<R>, angle: R) -> Frame<R> {
 fn moved<R: Field>(base: Frame<R>, by: &[R], turn: &[R]) -> Frame<R> {
     let turn = exponential(turn);
     Frame {
-        x: rotated(&base, turn.x),
-        y: rotated(&base, turn.y),
-        z: rotated(&base, turn.z),
-        p: plus(rotated(&base, [by[0], by[1], by[2]]), base.p),
+        x: base.seen_outside(turn.x),
+        y: base.seen_outside(turn.y),
+        z: base.seen_outside(turn.z),
+        p: plus(base.seen_outside([by[0], by[1], by[2]]), base.p),
     }
 }
 
 #[inline(always)]
 fn plus<R: Field>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-/// A vector in the axes of a frame, seen in those of the world.
-#[inline(always)]
-fn rotated<R: Field>(frame: &Frame<R>, v: [R; 3]) -> [R; 3] {
-    let mut out = [v[0]; 3];
-    for i in 0..3 {
-        let rest = frame.y[i].times_plus(v[1], frame.z[i] * v[2]);
-        out[i] = frame.x[i].times_plus(v[0], rest);
-    }
-    out
 }
 
 /// The rotation of a rotation vector, lane by lane as for one configuration.

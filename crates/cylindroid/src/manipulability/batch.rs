@@ -4,12 +4,11 @@
 //! Shapes   q: N x n, results: N rows of [`Batch::COLUMNS`]; row-major, n of the mechanism
 //! Units    gaps m and rad; counts and distances none; indices those of the metrics
 //! Frame    the reference frame's origin, world axes
-//! Valid    any mechanism. Where a distance to a singularity is below [`CLEAR_DISTANCE`], an axis
-//!          or a loop is near to what a count hangs on, or the mechanism holds more than it needs
-//!          in all postures (hyperstatic), idles or cannot be held by its drives in all of them,
-//!          the configuration is given to the analysis of one: counts and kinds are always its own.
-//!          Distances differ from its by at most 1e-13 over the smallest of them, indices by
-//!          1e-13 relative times the condition of the metrics over the smallest distance
+//! Valid    any mechanism. Where a distance to a singularity is below [`CLEAR_DISTANCE`], where an
+//!          axis or a loop is near to what a verdict hangs on, and where ordinary postures are
+//!          hyperstatic, idle or not held by the drives, the configuration is given to the analysis
+//!          of one: counts are always its own. Distances differ from its by at most 1e-13 over the
+//!          smallest of them, indices by 1e-12 relative over it, times the condition of the metrics
 //! Why so   what a designer plots over a workspace are numbers: without bases there is a tenth of
 //!          the work, and without pivots four configurations go the same way, one for each lane of
 //!          a register. Every configuration goes its way alone, whatever its place and the number
@@ -273,7 +272,8 @@ impl Batch {
             return None;
         }
         // Sines of the pairs: what is left of the rank, and the farthest from its loss.
-        let sine = |sigma: f64| sigma / sigma.hypot(1.0);
+        let whole = |sigma: f64| (1.0 + sigma * sigma).sqrt();
+        let sine = |sigma: f64| sigma / whole(sigma);
         let (mut coordinate, mut least, mut most) = (0, f64::INFINITY, 0.0_f64);
         for &sigma in found.scaled {
             if sine(sigma) > CLEAR_DISTANCE {
@@ -282,7 +282,7 @@ impl Batch {
                 return None;
             }
         }
-        let cosine = 1.0 / most.hypot(1.0);
+        let cosine = 1.0 / whole(most);
         if coordinate == 0 || !(cosine > CLEAR_DISTANCE) {
             return None;
         }
@@ -322,7 +322,11 @@ impl Batch {
 fn measured(values: &[f64], count: usize) -> Option<(f64, f64, f64)> {
     /// What is kept is this much larger than what is not.
     const APART: f64 = 1e3;
-    let mut sorted = values.to_vec();
+    /// Components of a twist.
+    const MOST: usize = 6;
+    let mut sorted = [0.0; MOST];
+    let sorted = sorted.get_mut(..values.len())?;
+    sorted.copy_from_slice(values);
     sorted.sort_unstable_by(|a, b| b.total_cmp(a));
     let (kept, others) = sorted.split_at(count);
     let (largest, smallest) = (*kept.first()?, *kept.last()?);
@@ -398,7 +402,6 @@ mod tests {
             kernel.run(&q, mechanism.n(), &mut numbers);
             let clear = |n: &&[f64]| batch.clear(kernel, kernel.read(n)).is_some();
             let count = numbers.chunks(width).filter(clear).count();
-            println!("{name} {count}");
             assert!(count > 95, "{name}: {count} of 100");
         }
     }

@@ -19,7 +19,8 @@ use crate::closure::Plan;
 use crate::kinematics::Frame;
 use crate::linalg::Matrix;
 use crate::linalg::abreast::{
-    End, Reflections, divide_by_upper, extreme_eigenvalues, singular_values, tridiagonal,
+    End, Reflections, divide_by_upper, extreme_eigenvalues, singular_values, tournament,
+    tridiagonal,
 };
 use crate::scalar::{Array, Field};
 #[cfg(target_arch = "x86_64")]
@@ -38,6 +39,8 @@ pub(super) struct Kernel {
     joint: Matrix,
     /// The second where it is a multiple of the identity.
     alike: Option<f64>,
+    /// All pairs of singular values.
+    pairs: Vec<(usize, usize)>,
 }
 
 /// What the kernel finds of a configuration.
@@ -68,7 +71,8 @@ impl Kernel {
         let first = joint[(0, 0)];
         let same = Matrix::diagonal(&vec![first; joint.rows()]);
         let alike = (joint == same).then_some(first);
-        Some(Self { plan: Box::new(plan), object, joint, alike })
+        let pairs = tournament(k.min(plan.object()));
+        Some(Self { plan: Box::new(plan), object, joint, alike, pairs })
     }
 
     /// Degrees of freedom k.
@@ -184,10 +188,16 @@ impl Kernel {
         divide_by_upper(&mut s.ratios, &s.driven, a, &s.driven_diagonal);
         let (scaled, measured) = s.numbers[BEFORE..].split_at_mut(values);
         columns_of(&s.ratios, k, &mut s.columns, d);
-        singular_values(&mut s.columns, k.max(d), scaled);
-        // In the metrics.
-        if let Some(alike) = self.alike {
-            times(&self.object, 1.0 / alike, &s.ratios, k, &mut s.twists);
+        singular_values(&mut s.columns, k.max(d), &self.pairs, scaled);
+        // In the metrics. What is orthogonal in one is so nearly in the other: where it can be, the
+        // columns that were turned are the start.
+        if let (Some(alike), true) = (self.alike, k <= d) {
+            for (own, column) in s.ratios.chunks_exact_mut(d).zip(s.columns.chunks_exact(d)) {
+                times(&self.object, 1.0 / alike, column, 1, own);
+            }
+            s.columns.copy_from_slice(&s.ratios);
+        } else if let Some(alike) = self.alike {
+            times(&self.object, 1.0 / alike, &s.ratios, k, &mut s.columns);
         } else {
             times(&self.object, 1.0, &s.twists, k, &mut s.ratios);
             for (own, column) in s.driven.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
@@ -201,10 +211,9 @@ impl Kernel {
             };
             upper.run();
             divide_by_upper(&mut s.ratios, &s.driven, a, &s.driven_diagonal);
-            s.twists.copy_from_slice(&s.ratios);
+            columns_of(&s.ratios, k, &mut s.columns, d);
         }
-        columns_of(&s.twists, k, &mut s.columns, d);
-        singular_values(&mut s.columns, k.max(d), measured);
+        singular_values(&mut s.columns, k.max(d), &self.pairs, measured);
         let [smallest, largest] = self.extremes(s);
         let numbers = [written.distance, written.angle, written.usable, smallest, largest, share];
         s.numbers[..BEFORE].copy_from_slice(&numbers);

@@ -17,6 +17,7 @@ pub(crate) use extremes::{End, extreme_eigenvalues, tridiagonal};
 pub(crate) use reflections::{Reflections, divide_by_upper};
 pub(crate) use values::singular_values;
 
+pub(crate) use super::jacobi::tournament;
 use crate::scalar::Field;
 
 /// Scalar product of vectors of one length.
@@ -56,11 +57,40 @@ fn reflector<R: Field>(x: &mut [R]) -> (R, R) {
     (target, R::where_less(zero, square, factor, zero))
 }
 
-/// `x <- (1 - factor v v^T) x`
+/// `x <- (1 - factor v v^T) x` of entries `from..` of columns of length n, four at a time: none of
+/// their sums waits for the others, and v is read once.
 #[inline(always)]
-fn reflect<R: Field>(x: &mut [R], v: &[R], factor: R) {
-    let along = factor * dot(v, x);
-    add_times(x, -along, v);
+fn reflect<R: Field>(columns: &mut [R], n: usize, from: usize, v: &[R], factor: R) {
+    let m = v.len();
+    let mut fours = columns.chunks_exact_mut(4 * n);
+    for four in &mut fours {
+        let (one, rest) = four.split_at_mut(n);
+        let (two, rest) = rest.split_at_mut(n);
+        let (three, four) = rest.split_at_mut(n);
+        let (one, two) = (&mut one[from..][..m], &mut two[from..][..m]);
+        let (three, four) = (&mut three[from..][..m], &mut four[from..][..m]);
+        let mut along = [R::splat(0.0); 4];
+        for i in 0..m {
+            along[0] = one[i].times_plus(v[i], along[0]);
+            along[1] = two[i].times_plus(v[i], along[1]);
+            along[2] = three[i].times_plus(v[i], along[2]);
+            along[3] = four[i].times_plus(v[i], along[3]);
+        }
+        for x in &mut along {
+            *x = -(factor * *x);
+        }
+        for i in 0..m {
+            one[i] = along[0].times_plus(v[i], one[i]);
+            two[i] = along[1].times_plus(v[i], two[i]);
+            three[i] = along[2].times_plus(v[i], three[i]);
+            four[i] = along[3].times_plus(v[i], four[i]);
+        }
+    }
+    for column in fours.into_remainder().chunks_exact_mut(n) {
+        let x = &mut column[from..][..m];
+        let along = factor * dot(v, x);
+        add_times(x, -along, v);
+    }
 }
 
 #[cfg(test)]

@@ -32,9 +32,7 @@ impl<R: Field> Reflections<'_, R> {
             let v = &mut head[j * n + j..];
             let (diagonal, factor) = reflector(v);
             (self.diagonal[j], self.factors[j]) = (diagonal, factor);
-            for column in rest.chunks_exact_mut(n) {
-                reflect(&mut column[j..], v, factor);
-            }
+            reflect(rest, n, j, v, factor);
         }
     }
 
@@ -42,12 +40,12 @@ impl<R: Field> Reflections<'_, R> {
     #[inline(always)]
     pub(crate) fn complement(&self, out: &mut [R]) {
         let (n, steps) = (self.n, self.diagonal.len());
+        out.fill(R::splat(0.0));
         for (l, column) in out.chunks_exact_mut(n).enumerate() {
-            column.fill(R::splat(0.0));
             column[steps + l] = R::splat(1.0);
-            for j in (0..steps).rev() {
-                reflect(&mut column[j..], &self.columns[j * n + j..(j + 1) * n], self.factors[j]);
-            }
+        }
+        for j in (0..steps).rev() {
+            reflect(out, n, j, &self.columns[j * n + j..(j + 1) * n], self.factors[j]);
         }
     }
 }

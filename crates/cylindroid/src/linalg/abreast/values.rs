@@ -19,36 +19,56 @@ const SWEEPS: usize = 30;
 /// after it.
 const NEARLY: f64 = 0.25 * f64::EPSILON;
 
-/// The singular values of columns of length `rows`; the columns are turned.
+/// The singular values of columns of length `rows`; the columns are turned. `pairs` are all pairs
+/// of columns, neighbours without a column in common: roots and quotients of several are then on
+/// their way at a time.
 #[inline(always)]
-pub(crate) fn singular_values<R: Field>(columns: &mut [R], rows: usize, values: &mut [R]) {
+pub(crate) fn singular_values<R: Field>(
+    columns: &mut [R],
+    rows: usize,
+    pairs: &[(usize, usize)],
+    values: &mut [R],
+) {
+    // Once more for twists, whose loops are then known.
+    match rows {
+        6 => of_length(columns, 6, pairs, values),
+        3 => of_length(columns, 3, pairs, values),
+        _ => of_length(columns, rows, pairs, values),
+    }
+}
+
+#[inline(always)]
+fn of_length<R: Field>(columns: &mut [R], rows: usize, pairs: &[(usize, usize)], values: &mut [R]) {
     let k = R::splat;
     let (zero, one) = (k(0.0), k(1.0));
-    let count = values.len();
     // Cosines whose square is larger are turned away: none, in lanes that have come to an end.
     let mut limit = k(JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL);
     for _ in 0..SWEEPS {
+        // Squares of lengths are measured once a sweep, and kept up to date by the rotations.
+        for (value, column) in values.iter_mut().zip(columns.chunks_exact(rows)) {
+            *value = dot(column, column);
+        }
         let mut oblique = zero;
-        for j in 1..count {
+        for &(i, j) in pairs {
             let (head, tail) = columns.split_at_mut(j * rows);
-            let b = &mut tail[..rows];
-            for a in head.chunks_exact_mut(rows) {
-                let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
-                let (square, product) = (ab * ab, aa * bb);
-                let difference = bb - aa;
-                let double = ab + ab;
-                let h = difference.times_plus(difference, double * double).root();
-                let t = double.signed_as(double * difference) / (difference.size() + h);
-                let t = R::where_less(limit * product, square, t, zero);
-                let c = one / t.times_plus(t, one).root();
-                let s = c * t;
-                for (x, y) in a.iter_mut().zip(&mut *b) {
-                    let (p, q) = (*x, *y);
-                    *x = c.times_plus(p, -(s * q));
-                    *y = s.times_plus(p, c * q);
-                }
-                oblique = R::where_less(k(NEARLY) * product, square, one, oblique);
+            let (a, b) = (&mut head[i * rows..][..rows], &mut tail[..rows]);
+            let (aa, bb, ab) = (values[i], values[j], dot(a, b));
+            let (square, product) = (ab * ab, aa * bb);
+            let difference = bb - aa;
+            let double = ab + ab;
+            let h = difference.times_plus(difference, double * double).root();
+            let t = double.signed_as(double * difference) / (difference.size() + h);
+            let t = R::where_less(limit * product, square, t, zero);
+            let c = one / t.times_plus(t, one).root();
+            let s = c * t;
+            for (x, y) in a.iter_mut().zip(&mut *b) {
+                let (p, q) = (*x, *y);
+                *x = c.times_plus(p, -(s * q));
+                *y = s.times_plus(p, c * q);
             }
+            values[i] = (-t).times_plus(ab, aa).larger(zero);
+            values[j] = t.times_plus(ab, bb);
+            oblique = R::where_less(k(NEARLY) * product, square, one, oblique);
         }
         limit = R::where_less(zero, oblique, limit, k(f64::MAX));
         if oblique.all_within(0.0) {
@@ -64,6 +84,7 @@ pub(crate) fn singular_values<R: Field>(columns: &mut [R], rows: usize, values: 
 mod tests {
     use super::super::tests::{Four, abreast, four};
     use super::*;
+    use crate::linalg::abreast::tournament;
     use crate::linalg::{Matrix, Svd};
     use crate::scalar::Real;
 
@@ -77,7 +98,7 @@ mod tests {
             a[3] = Matrix::from_fn(rows, cols, |i, j| a[3][(i, j)] * 10.0_f64.powi(-3 * j as i32));
             let mut columns = abreast(&a);
             let mut values = vec![Four::splat(0.0); cols];
-            singular_values(&mut columns, rows, &mut values);
+            singular_values(&mut columns, rows, &tournament(cols), &mut values);
             for (l, a) in a.iter().enumerate() {
                 let mut got: Vec<f64> = values.iter().map(|v| v.0[l]).collect();
                 got.sort_by(|x, y| y.total_cmp(x));
@@ -89,7 +110,7 @@ mod tests {
                 // The same alone.
                 let mut alone: Vec<f64> = a.as_slice().to_vec();
                 let mut own = vec![0.0; cols];
-                singular_values(&mut alone, rows, &mut own);
+                singular_values(&mut alone, rows, &tournament(cols), &mut own);
                 let lane: Vec<f64> = values.iter().map(|v| v.0[l]).collect();
                 assert_eq!(own, lane, "{rows} x {cols}, {l}");
             }
