@@ -139,9 +139,26 @@ test("everything is reached by the keyboard and has a name; the theme is kept", 
 
     const theme = () => page.evaluate(() => document.documentElement.dataset["theme"]);
     assert.equal(await theme(), "light");
+    assert.ok((await drawnColours(page)).has("35495e"), "driven joints as the style sheet has them by day");
     await page.getByRole("button", { name: /^Theme/ }).click();
     await page.getByRole("button", { name: "Theme: light" }).click();
     assert.equal(await theme(), "dark");
+    assert.ok((await drawnColours(page)).has("3f6686"), "driven joints as the style sheet has them by night");
     await page.reload();
     await page.waitForFunction(() => document.documentElement.dataset["theme"] === "dark");
   }));
+
+/**
+ * Colours of the robot's bodies, six hexadecimal digits each.
+ * @param {import("playwright-core").Page} page
+ */
+async function drawnColours(page) {
+  return new Set(await page.evaluate(() => {
+    /** @type {string[]} */
+    const colours = [];
+    /** @type {any} */ (window).viewer.robot.group.traverse((/** @type {any} */ part) => {
+      if (part.material) colours.push(part.material.color.getHexString());
+    });
+    return colours;
+  }));
+}
