@@ -1,7 +1,7 @@
 /** Closed chains: driven joints toggled one by one, the object dragged; numbers agree with the command line. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { apart, browserOfFile, cylindroid, drag, moveTarget, openPanel, picture, scene, state, until, untilReached } from "./lib.mjs";
+import { apart, browserOfFile, cylindroid, drag, moveTarget, openPanel, picture, scene, showOverlay, state, until, untilReached } from "./lib.mjs";
 
 const { visit } = browserOfFile();
 
@@ -25,6 +25,14 @@ test("toggling drives of the five-bar shows the numbers of manipulability", () =
     assert.deepEqual(drives.sort(), ["q1", "q5"]);
     await picture(page, "five-bar-manipulability");
   }, { width: 1280, height: 720 }));
+
+test("a semi-axis of the five-bar that is too long for its scale is marked, the other is not", () =>
+  visit(["five-bar"], async (page) => {
+    await showOverlay(page, "active-force-ellipsoid");
+    assert.match(await page.locator(".legend").innerText(), /1\.14\s\(shortened\) · 0\.437\sN/);
+    await showOverlay(page, "velocity-ellipsoid");
+    assert.match(await page.locator(".legend").innerText(), /2\.29 · 0\.874\sm\/s/);
+  }));
 
 test("with one drive of the five-bar the object is free, and the page says so", () =>
   visit(["five-bar"], async (page) => {
