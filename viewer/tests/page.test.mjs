@@ -23,7 +23,7 @@ test("a stopped server is shown, and reconnected to with the configuration", () 
       await page.getByText("The server has stopped.").waitFor({ state: "hidden" });
       await until(page, "state !== window.last && Math.abs(state.q[1] + 0.3) < 1e-6");
     });
-  }, { width: 1280, height: 720, expect: /ERR_CONNECTION/ }));
+  }, { width: 1280, height: 720, expect: /WebSocket|net::ERR_/ }));
 
 test("a page that draws slowly is sent no queue of old states", () =>
   visit(["panda"], async (page) => {
