@@ -44,7 +44,11 @@ export function onTheme(listener: () => void): void {
   listeners.add(listener);
 }
 
-/** A colour of the style sheet, by its name there without the dashes. */
+/** Wears the colour that is asked for: the style sheet's own words are `light-dark(…)`. */
+const probe = document.head.appendChild(document.createElement("i"));
+
+/** A colour of the style sheet in the theme that is shown, by its name there without the dashes. */
 export function colour(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  probe.style.color = `var(--${name})`;
+  return getComputedStyle(probe).color;
 }

@@ -1,19 +1,12 @@
 /** Closed chains: driven joints toggled one by one, the object dragged; numbers agree with the command line. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { apart, cylindroid, drag, launch, open, openPanel, picture, scene, serve, state, until } from "./lib.mjs";
+import { test } from "node:test";
+import { apart, browserOfFile, cylindroid, drag, moveTarget, openPanel, picture, scene, showOverlay, state, until, untilReached } from "./lib.mjs";
 
-/** @type {import("playwright-core").Browser} */
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+const { visit } = browserOfFile();
 
-test("toggling drives of the five-bar shows the numbers of manipulability", async () => {
-  const server = await serve("five-bar");
-  try {
-    const { page, troubles, close } = await open(browser, server.url, { width: 1280, height: 720 });
+test("toggling drives of the five-bar shows the numbers of manipulability", () =>
+  visit(["five-bar"], async (page) => {
     await openPanel(page, "capability");
     for (const [toggle, driven] of /** @type {[string, string][]} */ ([["", "q1,q2"], ["q5", "q1,q2,q5"], ["q2", "q1,q5"]])) {
       if (toggle) await page.locator(`[data-drive="${toggle}"]`).click();
@@ -31,61 +24,48 @@ test("toggling drives of the five-bar shows the numbers of manipulability", asyn
     const drives = (await scene(page)).drives.filter((drive) => drive.actuated).map((drive) => drive.name);
     assert.deepEqual(drives.sort(), ["q1", "q5"]);
     await picture(page, "five-bar-manipulability");
-    assert.deepEqual(troubles, []);
-    await close();
-  } finally {
-    await server.stop();
-  }
-});
+  }, { width: 1280, height: 720 }));
 
-test("with one drive of the five-bar the object is free, and the page says so", async () => {
-  const server = await serve("five-bar");
-  try {
-    const { page, close } = await open(browser, server.url);
+for (const [model, overlay, words] of /** @type {[string, string, RegExp][]} */ ([
+  ["five-bar", "velocity-ellipsoid", /2\.29 · 0\.874\sm\/s/],
+  ["five-bar", "active-force-ellipsoid", /1\.14\s\(shortened\) · 0\.437\sN/],
+  // The server shortens all three: those of one scale are true beside each other.
+  ["stewart", "angular-velocity-ellipsoid", /1\.27\s\(shortened\) · 1\.19 · 1\.19\srad\/s/],
+])) {
+  test(`semi-axes of the ${overlay} of the ${model} are marked where they are too short beside the others`, () =>
+    visit([model], async (page) => {
+      await showOverlay(page, overlay);
+      assert.match(await page.locator(".legend").innerText(), words);
+    }));
+}
+
+test("with one drive of the five-bar the object is free, and the page says so", () =>
+  visit(["five-bar"], async (page) => {
     await page.locator('[data-drive="q2"]').click();
     await until(page, 'state.servo.status === "unavailable"');
     const shown = await page.locator('[data-panel="pose"]').innerText();
     assert.ok(shown.includes((await state(page)).servo.sentence));
-    await close();
-  } finally {
-    await server.stop();
-  }
-});
+  }));
 
-test("the coupler of the five-bar is dragged, and the loop stays closed", async () => {
-  const server = await serve("five-bar");
-  try {
-    const { page, troubles, close } = await open(browser, server.url);
+test("the coupler of the five-bar is dragged, and the loop stays closed", () =>
+  visit(["five-bar"], async (page) => {
     await page.getByLabel("Task", { exact: true }).selectOption("position");
-    await page.waitForFunction(() => /** @type {any} */ (window).viewer.session.scene.task.components.join() === "x,y");
+    await until(page, 'scene.task.components.join() === "x,y"');
     const before = (await state(page)).target.position;
-    await drag(page, [0, -0.4, 0]);
-    await until(page, `state.target.position[1] < ${before[1] - 0.2} && state.servo.status === "reached"`);
+    const place = await drag(page, [0, -0.4, 0]);
+    await untilReached(page, place);
     const now = await state(page);
+    assert.ok(now.target.position[1] < before[1] - 0.2);
     assert.ok(now.error.position < 2e-3 && now.gap?.closed);
     assert.ok(Math.abs(now.target.position[0] - before[0]) < 1e-6);
-    assert.deepEqual(troubles, []);
-    await close();
-  } finally {
-    await server.stop();
-  }
-});
+  }));
 
-test("the platform of the stewart follows its target with closed loops", async () => {
-  const server = await serve("stewart");
-  try {
-    const { page, troubles, close } = await open(browser, server.url);
-    const { position } = (await state(page)).target;
-    const field = page.locator('[data-target="z"]');
-    await field.fill(String((position[2] ?? 0) + 0.08));
-    await field.press("Enter");
-    await until(page, `state.servo.status === "reached" && Math.abs(state.tool.position[2] - ${(position[2] ?? 0) + 0.08}) < 2e-3`);
+test("the platform of the stewart follows its target with closed loops", () =>
+  visit(["stewart"], async (page) => {
+    const target = await moveTarget(page, "z", 0.08);
+    await untilReached(page, target);
     const now = await state(page);
+    assert.ok(apart(now.tool.position.slice(2), target.slice(2)) < 2e-3);
     assert.ok(now.gap?.closed);
     for (const { a, b } of now.loops) assert.ok(apart(a, b) < 1e-6);
-    assert.deepEqual(troubles, []);
-    await close();
-  } finally {
-    await server.stop();
-  }
-});
+  }));

@@ -1,12 +1,15 @@
 /** What the tests share: the real server, a headless browser, the command line. */
+import assert from "node:assert/strict";
 import { execFile, spawn } from "node:child_process";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
+import { after, before } from "node:test";
 import { promisify } from "node:util";
 import { chromium } from "playwright-core";
 
 /** @typedef {import("playwright-core").Page} Page */
 /** @typedef {import("playwright-core").Browser} Browser */
+/** @typedef {{ dark?: boolean, width?: number, height?: number, expect?: RegExp }} Look */
 
 export const BINARY = process.env["CYLINDROID_BINARY"] ?? "";
 export const ROBOTS = process.env["CYLINDROID_TEST_ROBOTS"] ?? "";
@@ -36,12 +39,28 @@ export async function serve(...args) {
   return {
     url: /** @type {string} */ (url),
     async stop() {
-      if (child.exitCode !== null) return;
+      if (child.exitCode !== null || child.signalCode !== null) return;
       const gone = new Promise((resolve) => child.once("exit", resolve));
       child.kill("SIGKILL");
       await gone;
     },
   };
+}
+
+/** @typedef {Awaited<ReturnType<typeof serve>>} Server */
+
+/**
+ * `cylindroid view` while some work is done.
+ * @param {string[]} args
+ * @param {(server: Server) => Promise<void>} work
+ */
+export async function served(args, work) {
+  const server = await serve(...args);
+  try {
+    await work(server);
+  } finally {
+    await server.stop();
+  }
 }
 
 /**
@@ -58,11 +77,44 @@ export function launch(...more) {
   });
 }
 
+/** One browser for the tests of a file, and the two ways to use it. */
+export function browserOfFile() {
+  /** @type {Browser} */
+  let browser;
+  before(async () => {
+    browser = await launch();
+  });
+  after(() => browser.close());
+  /**
+   * A page at an address. An error in its console fails the test.
+   * @param {string} url
+   * @param {(page: Page) => Promise<void>} work
+   * @param {Look} [options]
+   */
+  async function look(url, work, options) {
+    const { page, troubles, close } = await open(browser, url, options);
+    try {
+      await work(page);
+      assert.deepEqual(troubles, []);
+    } finally {
+      await close();
+    }
+  }
+  /**
+   * A page at a server of its own.
+   * @param {string[]} args of `cylindroid view`
+   * @param {(page: Page, server: Server) => Promise<void>} work
+   * @param {Look} [options]
+   */
+  const visit = (args, work, options) => served(args, (server) => look(server.url, (page) => work(page, server), options));
+  return { look, visit };
+}
+
 /**
- * A page of the viewer that has drawn its robot. `troubles` collects what the console calls errors.
+ * A page of the viewer that has drawn its robot. `troubles` collects what the console calls errors but those expected.
  * @param {Browser} browser
  * @param {string} url
- * @param {{ dark?: boolean, width?: number, height?: number, expect?: RegExp }} [options]
+ * @param {Look} [look]
  */
 export async function open(browser, url, { dark = false, width = 960, height = 540, expect } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? "dark" : "light", acceptDownloads: true });
@@ -136,13 +188,14 @@ export function scene(page) {
 }
 
 /**
- * Waits until the drawn state satisfies a condition. Asked from here: the page's policy forbids it to evaluate words.
+ * Waits until what is drawn satisfies a condition. Asked from here: the page's policy forbids it to evaluate words.
+ * A condition that was true before the action it waits for shows nothing: name what the action changes.
  * @param {Page} page
- * @param {string} condition of `state`
+ * @param {string} condition of `state` and `scene`
  */
 export async function until(page, condition) {
   const end = performance.now() + PATIENCE;
-  const asked = `(() => { const state = window.viewer.session.state; return Boolean(state && (${condition})); })()`;
+  const asked = `(() => { const { scene, state } = window.viewer.session; return Boolean(scene && state && (${condition})); })()`;
   while (!(await page.evaluate(asked))) {
     if (performance.now() > end) {
       const { servo, error, q } = await state(page);
@@ -150,6 +203,63 @@ export async function until(page, condition) {
     }
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
+}
+
+/**
+ * Waits until numbers of what is drawn are these.
+ * @param {Page} page
+ * @param {string} path to a list, from `state` or `scene`
+ * @param {number[]} wanted
+ * @param {number} [tolerance]
+ */
+export function untilNear(page, path, wanted, tolerance = 1e-9) {
+  const list = JSON.stringify(wanted);
+  return until(page, `${path}.length === ${wanted.length} && ${path}.every((value, i) => Math.abs(value - ${list}[i]) <= ${tolerance})`);
+}
+
+/**
+ * Waits until the server has this target and the tool is at it.
+ * @param {Page} page
+ * @param {number[]} target its position (m)
+ */
+export async function untilReached(page, target) {
+  await untilNear(page, "state.target.position", target, 1e-6);
+  await until(page, 'state.servo.status === "reached" && state.error.position < 1e-3 && state.error.orientation < 1e-3');
+}
+
+/**
+ * Types a value in, as one does who then presses Enter.
+ * @param {import("playwright-core").Locator} field
+ * @param {number} value
+ */
+export async function enter(field, value) {
+  await field.fill(String(value));
+  await field.press("Enter");
+}
+
+/**
+ * Moves the target by its fields; waits until the server has it, and gives where it is.
+ * @param {Page} page
+ * @param {"x" | "y" | "z"} axis of the world
+ * @param {number} by (m)
+ */
+export async function moveTarget(page, axis, by) {
+  const target = [...(await state(page)).target.position];
+  const i = "xyz".indexOf(axis);
+  target[i] = (target[i] ?? 0) + by;
+  await enter(page.locator(`[data-target="${axis}"]`), target[i]);
+  await untilNear(page, "state.target.position", target, 1e-6);
+  return target;
+}
+
+/**
+ * Turns an overlay on, and waits for its first data.
+ * @param {Page} page
+ * @param {string} name
+ */
+export async function showOverlay(page, name) {
+  await page.locator(`[data-overlay="${name}"]`).check();
+  await until(page, `state.overlays["${name}"] !== undefined`);
 }
 
 /**
@@ -173,7 +283,7 @@ export function apart(a, b) {
 }
 
 /**
- * Drags the target by the arrow of its handle that points along this way (or against it).
+ * Drags the target by the arrow of its handle that points along this way (or against it); gives where it was let go.
  * @param {Page} page
  * @param {[number, number, number]} way along an axis of the world (m)
  */
@@ -197,5 +307,7 @@ export async function drag(page, way) {
   await page.waitForTimeout(300); // the arrow under the pointer is found when it rests
   await page.mouse.down();
   for (let i = 1; i <= 6; i += 1) await page.mouse.move(from.x + ((to.x - from.x) * i) / 6, from.y + ((to.y - from.y) * i) / 6);
+  const place = await page.evaluate(() => /** @type {number[]} */ (/** @type {any} */ (window).viewer.target.target.position.toArray()));
   await page.mouse.up();
+  return place;
 }

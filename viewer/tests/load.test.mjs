@@ -1,15 +1,10 @@
 /** Every kind of model loads and is drawn, light and dark, without an error in the console. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { launch, open, openPanel, picture, ROBOTS, serve, state, until } from "./lib.mjs";
+import { browserOfFile, openPanel, picture, ROBOTS, served, showOverlay, state } from "./lib.mjs";
 
-/** @type {import("playwright-core").Browser} */
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+const { look, visit } = browserOfFile();
 
 const SHAPES = fileURLToPath(new URL("robots/shapes/shapes.urdf", import.meta.url));
 
@@ -24,32 +19,20 @@ const MODELS = [
 ];
 
 for (const { name, args, dark = false, show } of MODELS) {
-  test(`${name} loads and is drawn`, async () => {
-    const server = await serve(...args);
-    try {
-      const { page, troubles, close } = await open(browser, server.url, { dark, width: 1280, height: 720 });
-      for (const overlay of show) {
-        await page.locator(`[data-overlay="${overlay}"]`).check();
-        await until(page, `state.overlays["${overlay}"] !== undefined`);
-      }
+  test(`${name} loads and is drawn`, () =>
+    visit(args, async (page) => {
+      for (const overlay of show) await showOverlay(page, overlay);
       const seen = await state(page);
       assert.ok(seen.links.length > 1);
       assert.equal(await page.locator(".legend > div").count(), show.length);
       await page.waitForLoadState("networkidle");
       assert.deepEqual(await emptyView(page), false, "the view shows nothing");
       await picture(page, name);
-      assert.deepEqual(troubles, []);
-      await close();
-    } finally {
-      await server.stop();
-    }
-  });
+    }, { dark, width: 1280, height: 720 }));
 }
 
-test("meshes of all three formats are shown; a missing one becomes rods and a sentence", async () => {
-  const server = await serve(SHAPES);
-  try {
-    const { page, troubles, close } = await open(browser, server.url, { expect: /not_there|404/ });
+test("meshes of all three formats are shown; a missing one becomes rods and a sentence", () =>
+  visit([SHAPES], async (page) => {
     await page.locator(".toast").waitFor();
     assert.match(await page.locator(".toast").innerText(), /not_there\.stl/);
     const links = await page.evaluate(() => {
@@ -61,33 +44,22 @@ test("meshes of all three formats are shown; a missing one becomes rods and a se
     assert.deepEqual(links.map((/** @type {any} */ link) => link.rods).slice(0, 5), [false, false, false, false, true]);
     assert.ok((await sizes(page)).every((/** @type {number} */ height) => Math.abs(height - 0.4) < 1e-3), "all boxes are 0.4 m high, whatever their file's unit");
     await picture(page, "mesh-formats");
-    assert.deepEqual(troubles, []);
-    await close();
-  } finally {
-    await server.stop();
-  }
-});
+  }, { expect: /not_there|404/ }));
 
-test("all panels and overlays of one arm fit together", async () => {
-  const server = await serve("panda");
-  try {
+test("all panels and overlays of one arm fit together", () =>
+  served(["panda"], async ({ url }) => {
     for (const dark of [false, true]) {
-      const { page, troubles, close } = await open(browser, server.url, { dark, width: 1280, height: 1500 });
-      for (const panel of ["mobility", "capability", "compare"]) await openPanel(page, panel);
-      await page.locator('[data-panel="compare"] table').waitFor();
-      await page.locator('[data-panel="mobility"] dl').first().waitFor();
-      for (const name of ["velocity-ellipsoid", "principal-screws"]) await page.locator(`[data-overlay="${name}"]`).check();
-      await until(page, 'state.overlays["velocity-ellipsoid"] !== undefined');
-      const cut = await page.evaluate(() => [...document.querySelectorAll(".side *")].filter((element) => element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible" && element.clientWidth > 0).map((element) => `${element.tagName}.${element.className}`));
-      assert.deepEqual(cut, [], "text runs out of its place");
-      await picture(page, `panels-${dark ? "dark" : "light"}`);
-      assert.deepEqual(troubles, []);
-      await close();
+      await look(url, async (page) => {
+        for (const panel of ["mobility", "capability", "compare"]) await openPanel(page, panel);
+        await page.locator('[data-panel="compare"] table').waitFor();
+        await page.locator('[data-panel="mobility"] dl').first().waitFor();
+        for (const name of ["velocity-ellipsoid", "principal-screws"]) await showOverlay(page, name);
+        const cut = await page.evaluate(() => [...document.querySelectorAll(".side *")].filter((element) => element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible" && element.clientWidth > 0).map((element) => `${element.tagName}.${element.className}`));
+        assert.deepEqual(cut, [], "text runs out of its place");
+        await picture(page, `panels-${dark ? "dark" : "light"}`);
+      }, { dark, width: 1280, height: 1500 });
     }
-  } finally {
-    await server.stop();
-  }
-});
+  }));
 
 /**
  * Whether the picture has one colour only.

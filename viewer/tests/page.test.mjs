@@ -1,42 +1,32 @@
 /** The page beside the robot: lost servers, the recorder, addresses, theme, keyboard. */
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
-import { after, before, test } from "node:test";
-import { apart, launch, open, picture, serve, state, until } from "./lib.mjs";
+import { test } from "node:test";
+import {
+  apart, browserOfFile, enter, launch, moveTarget, picture, served, showOverlay, state, until, untilNear, untilReached,
+} from "./lib.mjs";
 
-/** @type {import("playwright-core").Browser} */
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+const { look, visit } = browserOfFile();
 
-test("a stopped server is shown, and reconnected to with the configuration", async () => {
-  const first = await serve("panda");
-  const port = new URL(first.url).port;
-  const { page, close } = await open(browser, first.url, { width: 1280, height: 720 });
-  await page.getByLabel("panda_joint2 as a number").fill("-0.3");
-  await page.keyboard.press("Enter");
-  await until(page, "Math.abs(state.q[1] + 0.3) < 1e-9");
-  await first.stop();
-  await page.getByText("The server has stopped.").waitFor();
-  await page.locator('.status[data-state="lost"]').waitFor();
-  await picture(page, "server-stopped");
-  const second = await serve("panda", "--port", port);
-  try {
-    await page.locator('.status[data-state="open"]').waitFor();
-    await page.getByText("The server has stopped.").waitFor({ state: "hidden" });
-    await until(page, "Math.abs(state.q[1] + 0.3) < 1e-6");
-    await close();
-  } finally {
-    await second.stop();
-  }
-});
+test("a stopped server is shown, and reconnected to with the configuration", () =>
+  visit(["panda"], async (page, first) => {
+    await enter(page.getByLabel("panda_joint2 as a number"), -0.3);
+    await until(page, "Math.abs(state.q[1] + 0.3) < 1e-9");
+    await first.stop();
+    await page.getByText("The server has stopped.").waitFor();
+    await page.locator('.status[data-state="lost"]').waitFor();
+    await picture(page, "server-stopped");
+    // The page holds on to its last state until one of the new server is there.
+    await page.evaluate(() => Object.assign(window, { last: /** @type {any} */ (window).viewer.session.state }));
+    await served(["panda", "--port", new URL(first.url).port], async () => {
+      await page.locator('.status[data-state="open"]').waitFor();
+      await page.getByText("The server has stopped.").waitFor({ state: "hidden" });
+      await until(page, "state !== window.last && Math.abs(state.q[1] + 0.3) < 1e-6");
+    });
+  }, { width: 1280, height: 720, expect: /WebSocket|net::ERR_/ }));
 
-test("a page that draws slowly is sent no queue of old states", async () => {
-  const server = await serve("panda");
-  try {
-    const { page, close } = await open(browser, server.url);
+test("a page that draws slowly is sent no queue of old states", () =>
+  visit(["panda"], async (page) => {
     await page.evaluate(() => {
       /** @type {any} */
       const { session, stage } = /** @type {any} */ (window).viewer;
@@ -50,29 +40,16 @@ test("a page that draws slowly is sent no queue of old states", async () => {
         while (performance.now() < end);
       });
     });
-    const { position } = (await state(page)).target;
-    await page.locator('[data-target="z"]').fill(String((position[2] ?? 0) - 0.25));
-    await page.keyboard.press("Enter");
-    await until(page, `state.servo.status === "reached" && state.target.position[2] < ${(position[2] ?? 0) - 0.2}`);
+    await untilReached(page, await moveTarget(page, "z", -0.25));
     const { drawn, came } = await page.evaluate(() => /** @type {any} */ (window).counts);
     assert.ok(came <= 2 * drawn.length + 2, `${came} states came, ${drawn.length} were drawn`);
     assert.ok(drawn.at(-1) - drawn[0] > 2 * drawn.length, "states between those drawn are left out");
-    await close();
-  } finally {
-    await server.stop();
-  }
-});
+  }));
 
-test("the recorder gives every state as JSON and as CSV, and a PNG of the view", async () => {
-  const server = await serve("panda");
-  try {
-    const { page, close } = await open(browser, server.url);
+test("the recorder gives every state as JSON and as CSV, and a PNG of the view", () =>
+  visit(["panda"], async (page) => {
     await page.getByRole("button", { name: "Record" }).click();
-    const wanted = ((await state(page)).target.position[0] ?? 0) + 0.05;
-    await page.locator('[data-target="x"]').fill(String(wanted));
-    await page.keyboard.press("Enter");
-    // The state before the target came is one of rest too.
-    await until(page, `state.servo.status === "reached" && Math.abs(state.tool.position[0] - ${wanted}) < 1e-3`);
+    await untilReached(page, await moveTarget(page, "x", 0.05));
     await page.getByRole("button", { name: /^Stop recording/ }).click();
     const json = JSON.parse(await saved(page, "Save the record as JSON"));
     assert.equal(json.joint_names.length, 7);
@@ -84,11 +61,7 @@ test("the recorder gives every state as JSON and as CSV, and a PNG of the view",
     assert.equal(Number(lines[1]?.split(",")[0]), json.states[0].time);
     const picture = await saved(page, "Save a picture", "latin1");
     assert.equal(picture.slice(1, 4), "PNG");
-    await close();
-  } finally {
-    await server.stop();
-  }
-});
+  }));
 
 /**
  * What a button saves.
@@ -102,41 +75,30 @@ async function saved(page, name, encoding = "utf8") {
   return readFile(await (await coming).path(), encoding);
 }
 
-test("an address carries the configuration, overlays and camera; a foreign one is refused in words", async () => {
-  const server = await serve("panda");
-  try {
-    const { page, close } = await open(browser, server.url);
-    await page.getByLabel("panda_joint6 as a number").fill("2.1");
-    await page.keyboard.press("Enter");
-    await until(page, "Math.abs(state.q[5] - 2.1) < 1e-9");
-    await page.locator('[data-overlay="joint-axes"]').check();
-    await page.getByRole("button", { name: "top" }).click();
-    await page.getByRole("button", { name: /Copy an address/ }).click();
-    await page.waitForFunction(() => location.hash.includes("q="));
-    const address = page.url();
-    const here = await state(page);
-    const camera = await eye(page);
-    await close();
-
-    const again = await open(browser, address);
-    await until(again.page, "Math.abs(state.q[5] - 2.1) < 1e-6");
-    await until(again.page, 'state.overlays["joint-axes"] !== undefined');
-    assert.ok(apart((await state(again.page)).q, here.q) < 1e-6);
-    assert.ok(apart(await eye(again.page), camera) < 1e-6);
-    assert.deepEqual(again.troubles, []);
-    await again.close();
-
-    const foreign = await open(browser, `${server.url}#model=ur5e&q=0,0,0,0,0,0`);
-    await foreign.page.getByText("The address is for ur5e").waitFor();
-    await foreign.close();
-    const broken = await open(browser, `${server.url}#q=one,two`);
-    await broken.page.getByText("no configuration that can be read").waitFor();
-    assert.deepEqual(broken.troubles, []);
-    await broken.close();
-  } finally {
-    await server.stop();
-  }
-});
+test("an address carries the configuration, overlays and camera; a foreign one is refused in words", () =>
+  served(["panda"], async ({ url }) => {
+    let address = "";
+    /** @type {number[]} */
+    let q = [];
+    /** @type {number[]} */
+    let camera = [];
+    await look(url, async (page) => {
+      await enter(page.getByLabel("panda_joint6 as a number"), 2.1);
+      await until(page, "Math.abs(state.q[5] - 2.1) < 1e-9");
+      await showOverlay(page, "joint-axes");
+      await page.getByRole("button", { name: "top" }).click();
+      await page.getByRole("button", { name: /Copy an address/ }).click();
+      await page.waitForFunction(() => location.hash.includes("q="));
+      [address, q, camera] = [page.url(), (await state(page)).q, await eye(page)];
+    });
+    await look(address, async (page) => {
+      await untilNear(page, "state.q", q, 1e-6);
+      await until(page, 'state.overlays["joint-axes"] !== undefined');
+      assert.ok(apart(await eye(page), camera) < 1e-6);
+    });
+    await look(`${url}#model=ur5e&q=0,0,0,0,0,0`, (page) => page.getByText("The address is for ur5e").waitFor());
+    await look(`${url}#q=one,two`, (page) => page.getByText("no configuration that can be read").waitFor());
+  }));
 
 /**
  * @param {import("playwright-core").Page} page
@@ -146,23 +108,20 @@ function eye(page) {
   return page.evaluate(() => /** @type {any} */ (window).viewer.stage.camera.position.toArray());
 }
 
-test("a browser without WebGL is told what is missing", async () => {
-  const server = await serve("panda");
-  const bare = await launch("--disable-3d-apis");
-  try {
-    const page = await bare.newPage();
-    await page.goto(server.url);
-    await page.getByText("The view cannot be drawn.").waitFor();
-  } finally {
-    await bare.close();
-    await server.stop();
-  }
-});
+test("a browser without WebGL is told what is missing", () =>
+  served(["panda"], async ({ url }) => {
+    const bare = await launch("--disable-3d-apis");
+    try {
+      const page = await bare.newPage();
+      await page.goto(url);
+      await page.getByText("The view cannot be drawn.").waitFor();
+    } finally {
+      await bare.close();
+    }
+  }));
 
-test("everything is reached by the keyboard and has a name; the theme is kept", async () => {
-  const server = await serve("five-bar");
-  try {
-    const { page, close } = await open(browser, server.url);
+test("everything is reached by the keyboard and has a name; the theme is kept", () =>
+  visit(["five-bar"], async (page) => {
     const nameless = await page.evaluate(() =>
       [...document.querySelectorAll("button, input, select")]
         .filter((element) => !element.getAttribute("aria-label") && !element.textContent?.trim() && !(/** @type {HTMLInputElement} */ (element).labels?.length))
@@ -180,13 +139,26 @@ test("everything is reached by the keyboard and has a name; the theme is kept", 
 
     const theme = () => page.evaluate(() => document.documentElement.dataset["theme"]);
     assert.equal(await theme(), "light");
+    assert.ok((await drawnColours(page)).has("35495e"), "driven joints as the style sheet has them by day");
     await page.getByRole("button", { name: /^Theme/ }).click();
     await page.getByRole("button", { name: "Theme: light" }).click();
     assert.equal(await theme(), "dark");
+    assert.ok((await drawnColours(page)).has("3f6686"), "driven joints as the style sheet has them by night");
     await page.reload();
     await page.waitForFunction(() => document.documentElement.dataset["theme"] === "dark");
-    await close();
-  } finally {
-    await server.stop();
-  }
-});
+  }));
+
+/**
+ * Colours of the robot's bodies, six hexadecimal digits each.
+ * @param {import("playwright-core").Page} page
+ */
+async function drawnColours(page) {
+  return new Set(await page.evaluate(() => {
+    /** @type {string[]} */
+    const colours = [];
+    /** @type {any} */ (window).viewer.robot.group.traverse((/** @type {any} */ part) => {
+      if (part.material) colours.push(part.material.color.getHexString());
+    });
+    return colours;
+  }));
+}

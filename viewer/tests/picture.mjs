@@ -2,7 +2,7 @@
 import { writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import { smallPng } from "./png.mjs";
-import { launch, open, ROBOTS, serve, until } from "./lib.mjs";
+import { launch, open, ROBOTS, serve, showOverlay } from "./lib.mjs";
 
 const [WIDTH, HEIGHT] = [1280, 720];
 const OUT = fileURLToPath(new URL("../../docs/viewer.png", import.meta.url));
@@ -11,10 +11,7 @@ const server = await serve(`${ROBOTS}/panda_description/urdf/panda.urdf`, `--q=$
 const browser = await launch();
 try {
   const { page, close } = await open(browser, `${server.url}?quality=high`, { width: WIDTH, height: HEIGHT });
-  for (const name of ["velocity-ellipsoid", "active-force-ellipsoid"]) {
-    await page.locator(`[data-overlay="${name}"]`).check();
-    await until(page, `state.overlays["${name}"] !== undefined`);
-  }
+  for (const name of ["velocity-ellipsoid", "active-force-ellipsoid"]) await showOverlay(page, name);
   await page.waitForLoadState("networkidle");
   await page.waitForTimeout(3000); // the last meshes are drawn
   await page.locator(".side.left").evaluate((side) => side.scrollTo(0, 0));

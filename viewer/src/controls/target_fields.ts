@@ -9,8 +9,8 @@ export class TargetFields {
   private readonly fields: HTMLInputElement[];
 
   constructor(private readonly session: Session) {
-    this.fields = ["x", "y", "z"].map((name) =>
-      h("input", { class: "field", type: "number", step: "any", "aria-label": `Target ${name} in world (m)`, "data-target": name, onchange: () => this.send() }),
+    this.fields = ["x", "y", "z"].map((name, i) =>
+      h("input", { class: "field", type: "number", step: "any", "aria-label": `Target ${name} in world (m)`, "data-target": name, onchange: () => this.send(i) }),
     );
     this.element = h("div", { class: "line" }, h("span", { class: "note" }, "Target [m]"), h("span", { class: "three" }, ...this.fields));
   }
@@ -21,10 +21,12 @@ export class TargetFields {
     });
   }
 
-  private send(): void {
+  /** The fields show fewer digits than the target has: those that nobody typed stay as they are. */
+  private send(typed: number): void {
     const { state } = this.session;
-    const position = this.fields.map((field) => field.valueAsNumber);
-    if (!state || !position.every(Number.isFinite)) return;
-    this.session.sendSoon("target", { type: "target", position: position as Vec3, quaternion: state.target.quaternion });
+    const value = this.fields[typed]?.valueAsNumber ?? NaN;
+    if (!state || !Number.isFinite(value)) return;
+    const { position, quaternion } = state.target;
+    this.session.sendSoon("target", { type: "target", position: position.map((was, i) => (i === typed ? value : was)) as Vec3, quaternion });
   }
 }

@@ -8,6 +8,8 @@ import type { Context } from "./overlay";
 
 /** Of a drawn semi-axis, over the size of the robot. */
 const LONGEST = 0.32;
+/** A semi-axis whose scale is below this share of another's looks too short beside it. */
+const SEEN = 0.99;
 
 const BALL = new SphereGeometry(1, 36, 24);
 BALL.userData["shared"] = true;
@@ -47,9 +49,11 @@ export function ellipsoid(colour: string) {
       }
     },
     words(data: Ellipsoid): string {
-      const sizes = data.axes.map((axis) => short(axis.size) + (axis.cut ? " (cut)" : "")).join(" · ");
+      const scales = data.axes.map((axis) => (axis.cut ? vector(axis.vector).length() / axis.size : data.scale));
+      const shorter = (i: number): boolean => (scales[i] ?? 0) < SEEN * Math.max(...scales);
+      const sizes = data.axes.map((axis, i) => short(axis.size) + (shorter(i) ? "\u00a0(shortened)" : "")).join(" · ");
       const free = data.infinite.length > 0 ? `${sizes ? "; " : ""}infinite along ${data.infinite.length}` : "";
-      return `${sizes}${sizes ? ` ${data.unit}` : ""}${free}`;
+      return `${sizes}${sizes ? `\u00a0${data.unit}` : ""}${free}`;
     },
   };
 }
