@@ -263,7 +263,7 @@ impl Saturator {
 /// `out = V diag(gains) U^T x`
 pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], out: &mut [f64]) {
     method.gains(svd, x, gains);
-    svd.apply_gains_into(x, |i, _| gains[i], out);
+    svd.apply_gains_into(x, gains, out);
 }
 
 /// Where `a + s b` keeps the bounds.

@@ -1,6 +1,7 @@
 //! Small dense linear algebra: matrices, singular values, rank with its gap, the spaces of columns
 //! and of kernels, angles between spaces, metrics, hulls of convex bodies.
 
+mod blocks;
 mod box_program;
 mod column_space;
 mod cs;
@@ -10,6 +11,7 @@ mod lanes;
 mod matrix;
 mod metric;
 mod null_space;
+mod padded;
 mod qr;
 mod singular_values;
 mod svd;

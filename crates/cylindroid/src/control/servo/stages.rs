@@ -32,10 +32,10 @@ impl Servo {
                 let way = |(w, rate): (&mut f64, &f64)| *w = rate / gain.position;
                 self.wish.iter_mut().zip(&self.primary).for_each(way);
             } else if let Some(coupled) = &mut self.coupled {
-                self.svd.apply_gains_into(&self.possible, |i, _| self.gains[i], &mut coupled.wish);
+                self.svd.apply_gains_into(&self.possible, &self.gains, &mut coupled.wish);
                 coupled.lift(&coupled.wish, &mut self.wish);
             } else {
-                self.svd.apply_gains_into(&self.possible, |i, _| self.gains[i], &mut self.wish);
+                self.svd.apply_gains_into(&self.possible, &self.gains, &mut self.wish);
             }
             let dt = self.options.dt;
             let share =
