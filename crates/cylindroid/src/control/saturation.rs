@@ -31,6 +31,11 @@ pub struct Saturation {
     pub bent: bool,
 }
 
+impl Saturation {
+    /// No limit bites.
+    pub(super) const NONE: Self = Self { scale: 1.0, bent: false };
+}
+
 /// Memory for the decompositions.
 #[derive(Debug, Clone)]
 pub(super) struct Saturator {
@@ -83,7 +88,7 @@ impl Saturator {
             for ((rate, z), bound) in rates.iter_mut().zip(secondary).zip(bounds) {
                 *rate = bound.clamp(*rate + span.most * z);
             }
-            return Saturation { scale: 1.0, bent: false };
+            return Saturation::NONE;
         }
         // While joints gain speed the twist is scaled and grows from step to step; only lasting
         // limits are worth another distribution of the motion over the joints.
