@@ -11,10 +11,51 @@ pub(crate) struct Row {
     pub(crate) numbers: Vec<f64>,
 }
 
+/// The rows of a file, and the names of the columns where a first line has them.
+struct Table {
+    names: Option<Vec<String>>,
+    rows: Vec<Row>,
+}
+
 /// The rows of a file; CSV unless its name ends in .json. A first line of CSV that is no numbers
 /// names the columns.
 pub(crate) fn rows(path: &Path) -> Result<Vec<Row>> {
+    Ok(table(path)?.rows)
+}
+
+fn table(path: &Path) -> Result<Table> {
     if path.extension().is_some_and(|e| e == "json") { json(path) } else { csv(path) }
+}
+
+/// Configurations one after the other, of the coordinates `names`. Where columns are named, those
+/// of the coordinates are read, `name` or as in a motion of `move` `q.name`, and others are not;
+/// else a row has a number for each.
+pub(crate) fn configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
+    let table = table(path)?;
+    let places: Vec<usize> = match &table.names {
+        None => (0..names.len()).collect(),
+        Some(columns) => {
+            let place = |name: &&str| {
+                let is_it = |c: &String| c == name || c.strip_prefix("q.") == Some(name);
+                columns.iter().position(is_it).ok_or_else(|| {
+                    let known = columns.join(", ");
+                    cannot_read(path, &format!("no column '{name}' among {known}"))
+                })
+            };
+            names.iter().map(place).collect::<Result<_>>()?
+        }
+    };
+    let expected = table.names.as_ref().map_or(names.len(), Vec::len);
+    let mut q = Vec::with_capacity(table.rows.len() * names.len());
+    for Row { place, numbers } in &table.rows {
+        if numbers.len() != expected {
+            let (given, names) = (numbers.len(), names.join(", "));
+            let message = format!("{place} has {given} numbers, not {expected} ({names})");
+            return Err(cannot_read(path, &message));
+        }
+        q.extend(places.iter().map(|&i| numbers[i]));
+    }
+    Ok(q)
 }
 
 /// The rows of a file as a matrix of `columns` columns.
@@ -27,7 +68,7 @@ pub(crate) fn matrix(path: &Path, columns: usize) -> Result<Matrix> {
     Ok(Matrix::from_fn(rows.len(), columns, |i, j| rows[i].numbers[j]))
 }
 
-fn csv(path: &Path) -> Result<Vec<Row>> {
+fn csv(path: &Path) -> Result<Table> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .comment(Some(b'#'))
@@ -35,7 +76,7 @@ fn csv(path: &Path) -> Result<Vec<Row>> {
         .flexible(true)
         .from_path(path)
         .map_err(|e| cannot_read(path, &e.to_string()))?;
-    let mut rows = Vec::new();
+    let (mut names, mut rows) = (None, Vec::new());
     for (i, record) in reader.records().enumerate() {
         let record = record.map_err(|e| cannot_read(path, &e.to_string()))?;
         let line = record.position().map_or(i as u64 + 1, csv::Position::line);
@@ -43,22 +84,22 @@ fn csv(path: &Path) -> Result<Vec<Row>> {
             record.iter().map(str::parse::<f64>).collect();
         match numbers {
             Ok(numbers) => rows.push(Row { place: format!("line {line}"), numbers }),
-            Err(_) if i == 0 => {}
+            Err(_) if i == 0 => names = Some(record.iter().map(str::to_owned).collect()),
             Err(_) => {
                 let text = record.iter().collect::<Vec<_>>().join(",");
                 return Err(cannot_read(path, &format!("line {line} is not all numbers: {text}")));
             }
         }
     }
-    Ok(rows)
+    Ok(Table { names, rows })
 }
 
-fn json(path: &Path) -> Result<Vec<Row>> {
+fn json(path: &Path) -> Result<Table> {
     let text = std::fs::read_to_string(path).map_err(|e| cannot_read(path, &e.to_string()))?;
     let rows: Vec<Vec<f64>> = serde_json::from_str(&text)
         .map_err(|e| cannot_read(path, &format!("not a list of lists of numbers: {e}")))?;
     let row = |(i, numbers)| Row { place: format!("row {}", i + 1), numbers };
-    Ok(rows.into_iter().enumerate().map(row).collect())
+    Ok(Table { names: None, rows: rows.into_iter().enumerate().map(row).collect() })
 }
 
 pub(crate) fn cannot_read(path: &Path, message: &str) -> Error {

@@ -144,7 +144,7 @@ impl Numbers<'_> {
     }
 }
 
-fn matrix_of(values: &[f64], rows: usize, cols: usize) -> Matrix {
+pub(crate) fn matrix_of(values: &[f64], rows: usize, cols: usize) -> Matrix {
     Matrix::from_fn(rows, cols, |i, j| values[i * cols + j])
 }
 
@@ -215,10 +215,6 @@ impl<'a> Rows<'a> {
             Some(_) => mechanism.check_rows(name, rows.values)?,
         }
         Ok(rows)
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.count.unwrap_or(1)
     }
 
     pub(crate) fn row(&self, i: usize) -> &'a [f64] {

@@ -35,6 +35,19 @@ pub(crate) fn written<'py>(
     Ok(array)
 }
 
+/// What `work` gives, without the interpreter; on all threads where it is long.
+pub(crate) fn run<T: Send>(
+    py: Python<'_>,
+    is_long: bool,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T> {
+    let pool = if is_long { Some(pool()?) } else { None };
+    Ok(py.detach(|| match pool {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }))
+}
+
 fn pool() -> Result<Arc<ThreadPool>> {
     let process = std::process::id();
     let mut kept = POOL.lock().unwrap_or_else(PoisonError::into_inner);

@@ -136,6 +136,37 @@ def test_metrics():
         r.manipulability(q, Wq=-np.eye(7))
 
 
+def test_measures_are_the_numbers_of_reports():
+    r = cy.load("five-bar")
+    Q = np.array([r.assemble(r.home + rng.uniform(-0.3, 0.3, r.n)).q for _ in range(9)])
+    for given in ({}, {"actuated": ["q1", "q5"], "Wu": [1, 2, 3]}, {"metric": "length", "length": 2.0}):
+        found = r.measures(Q, **given)
+        drives = {k: v for k, v in given.items() if k in ("actuated", "length")}
+        for i, q in enumerate(Q):
+            m, k = r.mobility(q, **drives), r.manipulability(q, **given)
+            for name in (
+                "dof coordinate redundancy indeterminacy internal zero_torque hyperstatic idle"
+            ).split():
+                assert found[name][i] == getattr(m, name), name
+            for name in ("volume", "anisotropy"):
+                np.testing.assert_allclose(found[name][i], getattr(k.kinematic, name), rtol=1e-10)
+            ends = [found["largest"][i], found["smallest"][i]]
+            np.testing.assert_allclose(ends, np.array(k.kinematic.finite)[[0, -1]], rtol=1e-10)
+            for name in "type_i type_ii configuration_space passive".split():
+                np.testing.assert_allclose(found[name][i], m.singularity.distances[name], atol=1e-12)
+            assert found["closed"][i] and abs(found["gap_distance"][i] - m.gap.distance) < 1e-13
+    assert found["dof"].dtype.kind == "i" and found["closed"].dtype == bool
+    one = r.measures(Q[0])
+    assert one["dof"] == 2 and isinstance(one["volume"], float)
+    assert all(len(x) == 0 for x in r.measures(np.zeros((0, 4))).values())
+    many = r.measures(np.repeat(Q, 50, axis=0))
+    np.testing.assert_array_equal(many["volume"][::50], r.measures(Q)["volume"])
+    with pytest.raises(cy.DimensionError):
+        r.measures([0.0, 0.0])
+    with pytest.raises(cy.NotFiniteError, match="q2"):
+        r.measures([[0, 0, 0, 0], [0, np.nan, 0, 0]])
+
+
 def test_batches_of_reports():
     r = cy.load("panda")
     Q = rng.uniform(r.lower, r.upper, (4, 7))

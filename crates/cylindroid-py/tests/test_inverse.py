@@ -56,6 +56,21 @@ def test_weights_are_metrics():
         np.testing.assert_allclose(found.matrix, expected, atol=1e-11)
 
 
+def test_long_stacks_are_the_single_inverses():
+    rng = np.random.default_rng(31)
+    stack = rng.normal(size=(2000, 6, 7))
+    stack[77, 5] = stack[77, 4]
+    found = cy.pinv(stack)
+    np.testing.assert_allclose(found.matrix, np.linalg.pinv(stack, 1e-3), atol=1e-11)
+    assert found.rank[77] == 5 and len(found.dropped[77]) == 1
+    one = cy.pinv(stack[77])
+    assert (one.matrix == found.matrix[77]).all()
+    assert (one.dropped[0].direction == found.dropped[77][0].direction).all()
+    assert "2000 Jacobians of 6 x 7" in repr(found)
+    with pytest.raises(cy.NotFiniteError, match=r"J\[3\]"):
+        cy.pinv(np.where(np.arange(10 * 42).reshape(10, 6, 7) == 150, np.nan, 1.0))
+
+
 @pytest.mark.parametrize(
     "method",
     [

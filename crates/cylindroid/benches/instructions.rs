@@ -9,6 +9,7 @@ use cylindroid::closure::{ClosedChain, Mobility};
 use cylindroid::ik::{Goal, IkOptions, Solver};
 use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::linalg::Svd;
+use cylindroid::manipulability::{Batch as Numbers, BatchOptions};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Vec3, catalogue};
 use std::hint::black_box;
 
@@ -16,7 +17,7 @@ use std::hint::black_box;
 type Kernel = fn(usize);
 
 /// Names and kernels.
-const KERNELS: [(&str, Kernel); 8] = [
+const KERNELS: [(&str, Kernel); 9] = [
     ("forward_panda", forward),
     ("jacobian_panda", jacobian),
     ("batch_of_1000_panda", batch),
@@ -25,6 +26,7 @@ const KERNELS: [(&str, Kernel); 8] = [
     ("svd_6x7_warm", svd_warm),
     ("ik_panda", inverse_kinematics),
     ("mobility_five_bar", mobility),
+    ("batch_of_128_stewart", many),
 ];
 
 fn main() {
@@ -129,6 +131,18 @@ fn inverse_kinematics(calls: usize) {
     let mut solver = Solver::new(&robot, &goal, &options).unwrap();
     for _ in 0..calls {
         assert!(black_box(solver.solve(black_box(&goal)).unwrap()).success);
+    }
+}
+
+/// Mobility and manipulability of 128 postures near home, as numbers.
+fn many(calls: usize) {
+    let platform = catalogue::load("stewart").unwrap();
+    let batch = Numbers::new(&platform, &BatchOptions::default()).unwrap();
+    let q: Vec<f64> = (0..128).flat_map(|i| posture(&platform, i)).collect();
+    let mut out = vec![0.0; 128 * Numbers::WIDTH];
+    for _ in 0..calls {
+        batch.analyse_into(black_box(&q), &mut out).unwrap();
+        black_box(&out);
     }
 }
 

@@ -8,7 +8,7 @@ use cylindroid::ik::{Analytic, Goal, IkOptions, Solver};
 use cylindroid::inverse::{self, Method};
 use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::linalg::Svd;
-use cylindroid::manipulability::{Manipulability, Metrics};
+use cylindroid::manipulability::{Batch as Numbers, BatchOptions, Manipulability, Metrics};
 use cylindroid::model::Coordinate;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, catalogue};
@@ -302,6 +302,33 @@ fn report(constraint: &Constraint) -> (Mobility, Manipulability) {
     let relation = motions.relation();
     let mobility = Mobility::from_parts(constraint, &motions, &relation);
     (mobility, Manipulability::of(&relation, &Metrics::UNIT).unwrap())
+}
+
+/// The numbers of both for 4096 configurations around home on one thread, into memory that is
+/// there; the time is that of one configuration.
+#[divan::bench(args = MECHANISMS)]
+fn batch_of_mobility_and_manipulability(bencher: Bencher<'_, '_>, name: &str) {
+    const COUNT: usize = 4096;
+    let mechanism = robot(name);
+    let batch = Numbers::new(&mechanism, &BatchOptions::default()).unwrap();
+    // As many closed postures as are soon found, again and again.
+    let mut closed = Vec::new();
+    for i in 0..64 {
+        let guess: Vec<f64> =
+            (0..mechanism.n()).map(|j| mechanism.home()[j] + 0.2 * drift(i * 31 + j)).collect();
+        closed.extend(assemble(&mechanism, &guess, &[]).unwrap().q);
+    }
+    let q = closed.repeat(COUNT / 64);
+    let mut out = vec![0.0; COUNT * Numbers::WIDTH];
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
+        alone.install(|| batch.analyse_into(black_box(&q), &mut out).unwrap());
+    });
+}
+
+/// In [-1, 1], without pattern.
+fn drift(i: usize) -> f64 {
+    (i as f64 * 12.9898).sin()
 }
 
 /// A step of a servo that drives the object of a closed chain.

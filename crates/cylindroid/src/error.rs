@@ -141,6 +141,12 @@ impl Error {
         })
     }
 
+    /// A size that is not `each` numbers for each configuration.
+    pub(crate) fn rows(what: &str, expected: usize, got: usize, each: usize) -> Self {
+        let hint = format!("{each} for each configuration");
+        Self::Dimension { what: what.to_owned(), expected, got, hint }
+    }
+
     /// Refuses a size other than `expected`.
     pub fn check_len(what: &str, expected: usize, got: usize) -> Result<()> {
         if expected == got {

@@ -311,3 +311,16 @@ pub const SHARE_FOUND: f64 = 1e-12;
 /// two inverses of one Jacobian that is a thousand times from singular, far below what a reference
 /// point a millimetre away changes [-].
 pub const SAME_RATES: f64 = 1e-9;
+
+/// The axes of a closing universal joint line up where the sine of their angle is below this [-]:
+/// what it holds is then for the analysis of one configuration to say.
+pub const CROSSED_AXES: f64 = 1e-6;
+
+/// A distance to a singularity above this is clear without a decision about rank: a hundred
+/// thousand times [`CLOSURE_RANK`] and [`CLOSURE_BLOCK`], and far above what rounding at that
+/// distance does to it, 1e-11 [-].
+pub const CLEAR_DISTANCE: f64 = 1e-4;
+
+/// A share of a motion below this is nothing, without a decision: a thousandth of
+/// [`CLOSURE_BLOCK`], and above rounding [-].
+pub const CLEARLY_NOTHING: f64 = 1e-12;

@@ -34,7 +34,8 @@ pub(crate) const MANIPULABILITY_EXAMPLES: &str = "\
 Examples:
   cylindroid manipulability five-bar --actuated q2,q4 --plot ellipses.svg
   cylindroid manipulability panda --metric limits --task x,y,z --polytope
-  cylindroid manipulability stewart --metric length --gradient smallest";
+  cylindroid manipulability stewart --metric length --gradient smallest
+  cylindroid manipulability stewart --configurations postures.csv --json";
 
 #[derive(Debug, Args)]
 pub(crate) struct ClosedArgs {
@@ -160,6 +161,15 @@ pub(crate) struct ManipulabilityArgs {
     /// `smallest`, `largest`, `anisotropy`
     #[arg(long, value_name = "MEASURE")]
     pub(crate) gradient: Option<MeasureName>,
+
+    /// In place of one configuration those of a .csv or .json file, a row each [rad or m]: mobility,
+    /// distances to singularities and measures of motion as numbers. A first line of CSV names the
+    /// columns, in any order and others beside them, as in the files of `move --out`
+    #[arg(long, value_name = "FILE", conflicts_with_all = [
+        "q", "degrees", "ww", "wtau", "task", "task_map", "polytope", "torque_limits", "gradient",
+        "plot",
+    ])]
+    pub(crate) configurations: Option<PathBuf>,
 
     /// Draw the mechanism with its ellipses of velocity and force and, where limits are known,
     /// polytopes; projections of the linear part for mechanisms in space

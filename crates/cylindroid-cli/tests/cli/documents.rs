@@ -50,6 +50,8 @@ fn examples_run_as_they_stand() {
     fs::create_dir(&docs).unwrap();
     fs::copy(GRASP, docs.join("grasp.toml")).unwrap();
     fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
+    let home = ["0"; 21].join(",");
+    fs::write(folder.path().join("postures.csv"), format!("{home}\n{home}\n")).unwrap();
     let urdf = robots().join("ur_description/urdf/ur5_robot.urdf");
     let mut pages = vec![document("README.md"), text(&["--help"])];
     let commands = commands();
@@ -137,7 +139,10 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec!["five-bar", "--to", "q1=1", "--hold", "q1"],
         ],
         "mobility" => vec![vec!["stewart"], vec![SLIDING]],
-        "manipulability" => vec![vec!["five-bar", "--polytope", "--gradient", "volume"]],
+        "manipulability" => vec![
+            vec!["five-bar", "--polytope", "--gradient", "volume"],
+            vec!["five-bar", "--configurations", "tests/data/five-bar.csv"],
+        ],
         "statics" => vec![
             vec![GRASP, "--wrench", "0,0,-9,0,0,0"],
             vec!["five-bar", "--actuated", "q1,q2,q3,q4,q5", "--wrench", "3,-1,0.2"],

@@ -212,3 +212,52 @@ fn plots() {
     let clash = refused(&with(&["--plot", path, "--task", "x"]));
     assert!(clash.contains("--task"), "{clash}");
 }
+
+/// Rows of a file, its columns by name and in any order, are what single calls say.
+#[test]
+fn many_configurations() {
+    const FILE: &str = "tests/data/five-bar.csv";
+    let report = json(&with(&["--configurations", FILE]), 0);
+    let columns: Vec<&str> =
+        report["columns"].as_array().unwrap().iter().map(|c| c.as_str().unwrap()).collect();
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    for (row, q) in rows.iter().zip(["0,0,0,0", "-0.2,0.1,0,0.01"]) {
+        let of = |name: &str| row[columns.iter().position(|c| *c == name).unwrap()].clone();
+        let close = |name: &str, expected: &serde_json::Value| {
+            let (got, expected) = (of(name).as_f64().unwrap(), expected.as_f64().unwrap());
+            assert!((got - expected).abs() < 1e-12 * (1.0 + expected), "{q} {name}: {got}");
+        };
+        let mobility = json(&["mobility", "five-bar", "--actuated", "q1,q5", "--q", q], 0);
+        for name in ["dof", "coordinate", "redundancy", "internal", "zero_torque", "idle"] {
+            close(name, &mobility[name]);
+        }
+        close("gap_distance", &mobility["gap"]["distance"]);
+        for name in ["type_i", "type_ii", "configuration_space", "passive"] {
+            close(name, &mobility["singularity"]["distances"][name]);
+        }
+        let measures = &json(&with(&["--q", q]), 0)["measures"]["kinematic"];
+        for name in ["volume", "largest", "smallest", "anisotropy"] {
+            close(name, &measures[name]);
+        }
+    }
+    let table = text(&with(&["--configurations", FILE]));
+    assert!(table.contains("dof 2") && table.contains("gap_distance"), "{table}");
+
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("q.csv");
+    let path = file.to_str().unwrap();
+    fs::write(&file, "q1,q2,q3\n0,0,0\n").unwrap();
+    let message = refused(&with(&["--configurations", path]));
+    assert!(message.contains("no column 'q4' among q1, q2, q3"), "{message}");
+    fs::write(&file, "0,0,0,0\n0,0,0\n").unwrap();
+    let message = refused(&with(&["--configurations", path]));
+    assert!(message.contains("line 2 has 3 numbers, not 4"), "{message}");
+    fs::write(&file, "0,0,0,0\n0,nan,0,0\n").unwrap();
+    let message = refused(&with(&["--configurations", path]));
+    assert!(message.contains("q[1][1] (q2) is not finite"), "{message}");
+    let message = refused(&with(&["--configurations", path, "--metric", "inertia"]));
+    assert!(message.contains("another one in every configuration"), "{message}");
+    fs::write(&file, "").unwrap();
+    assert_eq!(json(&with(&["--configurations", path]), 0)["rows"], serde_json::json!([]));
+}

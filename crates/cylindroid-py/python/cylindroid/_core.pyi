@@ -620,6 +620,16 @@ class Mechanism:
         metric: str = "unit",
         length: float | None = None,
     ) -> Any: ...
+    def measures(
+        self,
+        q: ArrayLike,
+        actuated: Sequence[str] | None = None,
+        reference: str | None = None,
+        Wu: ArrayLike | None = None,
+        Wq: ArrayLike | None = None,
+        metric: str = "unit",
+        length: float | None = None,
+    ) -> dict[str, Any]: ...
     def manipulability_gradient(
         self,
         q: ArrayLike | None = None,

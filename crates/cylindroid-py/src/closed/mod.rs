@@ -10,6 +10,7 @@ mod follow;
 mod gradient;
 pub(crate) mod grasp;
 mod manipulability;
+mod measures;
 mod metrics;
 mod mobility;
 mod polytope;

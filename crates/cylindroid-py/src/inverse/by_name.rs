@@ -3,7 +3,7 @@
 use cylindroid::inverse::{self, Method, Weights};
 use pyo3::prelude::*;
 
-use super::{PyInverse, of_each};
+use super::{PyInverse, by_method, of_each};
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
 
@@ -107,5 +107,8 @@ pub(crate) fn inverse_by_name(
         joint: joint_weights.map(|w| w.metric("joint_weights")).transpose()?,
         task: task_weights.map(|w| w.metric("task_weights")).transpose()?,
     };
+    if weights == Weights::NONE {
+        return by_method(py, &J, method);
+    }
     of_each(py, &J, |j| inverse::weighted(j, method, &weights))
 }

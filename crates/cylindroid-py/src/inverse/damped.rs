@@ -1,9 +1,9 @@
 //! The damped and the selectively damped inverse.
 
-use cylindroid::inverse;
+use cylindroid::{Method, inverse};
 use pyo3::prelude::*;
 
-use super::{PyInverse, of_each};
+use super::{PyInverse, by_method};
 use crate::arrays::{Many, Numbers};
 use crate::error::Result;
 
@@ -39,7 +39,7 @@ use crate::error::Result;
 #[pyo3(signature = (J, damping))]
 #[expect(non_snake_case, reason = "the field's name")]
 pub(crate) fn damped(py: Python<'_>, J: Numbers<'_>, damping: f64) -> Result<PyInverse> {
-    of_each(py, &J, |j| inverse::damped(j, damping))
+    by_method(py, &J, Method::Damped { damping })
 }
 
 /// The selectively damped inverse for one motion.
@@ -75,5 +75,5 @@ pub(crate) fn selectively_damped(
 ) -> Result<PyInverse> {
     let j = J.matrix("J")?;
     let inner = inverse::selectively_damped(&j, task.vector("task")?, max_rate)?;
-    Ok(PyInverse { shape: (j.rows(), j.cols()), inner: Many::One(inner) })
+    Ok(PyInverse::new(&Many::One(j), Many::One(inner), (0, 0)))
 }

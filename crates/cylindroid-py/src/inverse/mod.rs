@@ -7,16 +7,30 @@ pub(crate) mod pinv;
 pub(crate) mod point_direction;
 mod report;
 
-use cylindroid::Matrix;
-use cylindroid::inverse::Inverse;
+use cylindroid::inverse::{Batch, Inverse};
+use cylindroid::{Matrix, Method};
 use pyo3::prelude::*;
 
 use crate::arrays::{Many, Numbers};
 use crate::error::Result;
+use crate::threads;
 
 pub(crate) use by_name::MethodNumbers;
 pub(crate) use point_direction::PyPointDirection;
 pub(crate) use report::{PyDropped, PyInverse};
+
+/// The inverse of each matrix by a method.
+fn by_method(py: Python<'_>, j: &Numbers<'_>, method: Method) -> Result<PyInverse> {
+    let &[_, m, n] = j.shape() else { return of_each(py, j, |j| method.inverse(j)) };
+    if m == 0 || n == 0 {
+        return of_each(py, j, |j| method.inverse(j));
+    }
+    let batch = Batch::new(method, m, n)?;
+    let jacobians = j.values();
+    let is_long = jacobians.len() > Batch::ALONE * m * n;
+    let inverses = threads::run(py, is_long, || batch.inverses(jacobians))??;
+    Ok(PyInverse::of_stack(method, jacobians.to_vec(), (m, n), inverses))
+}
 
 /// The inverse of each matrix by `f`.
 fn of_each(

@@ -1,9 +1,9 @@
 //! The truncated pseudoinverse.
 
-use cylindroid::inverse;
+use cylindroid::Method;
 use pyo3::prelude::*;
 
-use super::{PyInverse, of_each};
+use super::{PyInverse, by_method};
 use crate::arrays::Numbers;
 use crate::error::Result;
 
@@ -41,5 +41,5 @@ use crate::error::Result;
 #[pyo3(signature = (J, eps = 1e-3))]
 #[expect(non_snake_case, reason = "the field's name")]
 pub(crate) fn pinv(py: Python<'_>, J: Numbers<'_>, eps: f64) -> Result<PyInverse> {
-    of_each(py, &J, |j| inverse::truncated(j, eps))
+    by_method(py, &J, Method::Truncated { eps })
 }

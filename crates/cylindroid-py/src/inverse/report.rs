@@ -1,7 +1,9 @@
 //! The class `Inverse`: an inverse and what was done to get it.
 
-use cylindroid::Matrix;
-use cylindroid::inverse::{self, Inverse};
+use cylindroid::inverse::{self, Inverse, Inverses};
+use cylindroid::linalg::Rank;
+use cylindroid::{Matrix, Method};
+use numpy::{Element, IntoPyArray};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Many};
@@ -31,9 +33,20 @@ use crate::table::{self, Table};
 #[pyclass(frozen, name = "Inverse", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyInverse {
-    pub(super) inner: Many<Inverse>,
+    inner: Inner,
     /// Rows and columns of the Jacobian.
-    pub(super) shape: (usize, usize),
+    shape: (usize, usize),
+}
+
+#[derive(Debug)]
+enum Inner {
+    Reports(Many<Inverse>),
+    /// Numbers of a stack; the directions that were dropped are found when they are asked for.
+    Stack {
+        method: Method,
+        jacobians: Vec<f64>,
+        inverses: Inverses,
+    },
 }
 
 /// A task direction that an inverse gives up, wholly or by more than half.
@@ -72,6 +85,20 @@ impl PyDropped {
     }
 }
 
+/// Of the i-th of a stack.
+fn stacked_dropped(
+    method: &Method,
+    jacobians: &[f64],
+    (m, n): (usize, usize),
+    (i, rank): (usize, &Rank),
+) -> Result<Vec<PyDropped>> {
+    if rank.rank == m.min(n) {
+        return Ok(Vec::new());
+    }
+    let j = arrays::matrix_of(&jacobians[i * m * n..][..m * n], m, n);
+    Ok(dropped(&method.inverse(&j)?))
+}
+
 fn dropped(inverse: &Inverse) -> Vec<PyDropped> {
     let one = |d: &inverse::Dropped| PyDropped {
         singular_value: d.singular_value,
@@ -90,58 +117,78 @@ impl PyInverse {
     #[getter]
     fn matrix<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
         let (m, n) = self.shape;
-        arrays::written(py, self.inner.count(), &[n, m], |out| {
-            for (inverse, out) in
-                self.inner.as_slice().iter().zip(out.chunks_exact_mut((n * m).max(1)))
-            {
-                arrays::put_rows(&inverse.matrix, out);
+        arrays::written(py, self.count(), &[n, m], |out| match &self.inner {
+            Inner::Reports(all) => {
+                for (inverse, out) in
+                    all.as_slice().iter().zip(out.chunks_exact_mut((n * m).max(1)))
+                {
+                    arrays::put_rows(&inverse.matrix, out);
+                }
             }
+            Inner::Stack { inverses, .. } => out.copy_from_slice(&inverses.matrices),
         })
     }
 
     #[getter]
     fn rank<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::each(py, &self.inner, |i| i.rank as i64)
+        self.each(py, |i| i.rank as i64, |r| r.rank as i64)
     }
 
     #[getter]
     fn singular_values<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        let k = match self.inner.as_slice().first() {
-            Some(first) => first.singular_values.len(),
-            None => self.shape.0.min(self.shape.1),
-        };
-        let all = self.inner.as_slice().iter().map(|i| &i.singular_values);
-        arrays::rows(py, self.inner.count(), k, all)
-    }
-
-    #[getter]
-    fn threshold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::each(py, &self.inner, |i| i.threshold)
-    }
-
-    #[getter]
-    fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::each(py, &self.inner, |i| i.gap)
-    }
-
-    #[getter]
-    fn dropped<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let k = self.shape.0.min(self.shape.1);
         match &self.inner {
-            Many::One(inverse) => dropped(inverse).into_pyobject(py),
-            Many::All(all) => all.iter().map(dropped).collect::<Vec<_>>().into_pyobject(py),
+            Inner::Reports(all) => {
+                let k = all.as_slice().first().map_or(k, |first| first.singular_values.len());
+                let values = all.as_slice().iter().map(|i| &i.singular_values);
+                arrays::rows(py, all.count(), k, values)
+            }
+            Inner::Stack { inverses, .. } => arrays::written(py, self.count(), &[k], |out| {
+                out.copy_from_slice(&inverses.singular_values);
+            }),
         }
     }
 
     #[getter]
+    fn threshold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, |i| i.threshold, |r| r.threshold)
+    }
+
+    #[getter]
+    fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, |i| i.gap, |r| r.gap)
+    }
+
+    #[getter]
+    fn dropped<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        Ok(match &self.inner {
+            Inner::Reports(Many::One(inverse)) => dropped(inverse).into_pyobject(py)?,
+            Inner::Reports(Many::All(all)) => {
+                all.iter().map(dropped).collect::<Vec<_>>().into_pyobject(py)?
+            }
+            Inner::Stack { method, jacobians, inverses } => {
+                let each = inverses.ranks.iter().enumerate();
+                let all = each.map(|rank| stacked_dropped(method, jacobians, self.shape, rank));
+                all.collect::<Result<Vec<_>>>()?.into_pyobject(py)?
+            }
+        })
+    }
+
+    #[getter]
     fn exists<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::each(py, &self.inner, |i| i.exists)
+        self.each(py, |i| i.exists, |_| true)
     }
 
     #[getter]
     fn reason<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match &self.inner {
-            Many::One(inverse) => Ok(reason(inverse).into_pyobject(py)?),
-            Many::All(all) => all.iter().map(reason).collect::<Vec<_>>().into_pyobject(py),
+            Inner::Reports(Many::One(inverse)) => Ok(reason(inverse).into_pyobject(py)?),
+            Inner::Reports(Many::All(all)) => {
+                all.iter().map(reason).collect::<Vec<_>>().into_pyobject(py)
+            }
+            Inner::Stack { inverses, .. } => {
+                vec![None::<String>; inverses.ranks.len()].into_pyobject(py)
+            }
         }
     }
 }
@@ -151,15 +198,50 @@ table::shown!(PyInverse);
 impl PyInverse {
     pub(super) fn new(j: &Many<Matrix>, inner: Many<Inverse>, stacked: (usize, usize)) -> Self {
         let shape = j.as_slice().first().map_or(stacked, |m| (m.rows(), m.cols()));
-        Self { inner, shape }
+        Self { inner: Inner::Reports(inner), shape }
+    }
+
+    pub(super) fn of_stack(
+        method: Method,
+        jacobians: Vec<f64>,
+        shape: (usize, usize),
+        inverses: Inverses,
+    ) -> Self {
+        Self { inner: Inner::Stack { method, jacobians, inverses }, shape }
+    }
+
+    /// Of a stack.
+    fn count(&self) -> Option<usize> {
+        match &self.inner {
+            Inner::Reports(all) => all.count(),
+            Inner::Stack { inverses, .. } => Some(inverses.ranks.len()),
+        }
+    }
+
+    fn each<'py, X: Element + IntoPyObject<'py>>(
+        &self,
+        py: Python<'py>,
+        report: impl Fn(&Inverse) -> X,
+        rank: impl Fn(&Rank) -> X,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        match &self.inner {
+            Inner::Reports(all) => arrays::each(py, all, report),
+            Inner::Stack { inverses, .. } => {
+                let all = inverses.ranks.iter().map(rank).collect::<Vec<X>>();
+                Ok(all.into_pyarray(py).into_any())
+            }
+        }
     }
 
     fn table(&self) -> Table {
         let (m, n) = self.shape;
-        let Many::One(inverse) = &self.inner else {
-            let count = self.inner.count().unwrap_or(0);
+        let Inner::Reports(Many::One(inverse)) = &self.inner else {
+            let count = self.count().unwrap_or(0);
             let mut table = Table::new(&format!("Inverses of {count} Jacobians of {m} x {n}"));
-            let none = self.inner.as_slice().iter().filter(|i| !i.exists).count();
+            let none = match &self.inner {
+                Inner::Reports(all) => all.as_slice().iter().filter(|i| !i.exists).count(),
+                Inner::Stack { .. } => 0,
+            };
             table.row("without inverse", none.to_string());
             return table;
         };

@@ -14,7 +14,8 @@
 //! Checked  tests/it/closure/assembly.rs
 
 use super::coordinates::{at_limit, column_scale, columns, free_places, moved, within_limits};
-use super::graph::{Gap, Row, for_each_rate, rows};
+use super::graph::Gap;
+use super::pairs::{Row, for_each_rate, rows};
 use crate::error::Result;
 use crate::inverse::damp;
 use crate::linalg::{Matrix, Svd, norm};

@@ -17,11 +17,11 @@
 //! Checked  tests/it/closure/graph.rs
 
 use super::constraint::{Blocks, Constraint, Unit, Units};
-use crate::error::{Error, Result};
+use super::pairs::{for_each_rate, rate_unit, rows};
+use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;
-use crate::model::{Dimension, FrameId, JointKind, LoopJoint, Mechanism};
-use crate::spatial::{Pose, Vec3, Wrench};
+use crate::model::{FrameId, LoopJoint, Mechanism};
 use crate::tolerance::CLOSED;
 
 /// A mechanism at a configuration as a constraint, with the names of what the columns are.
@@ -63,27 +63,20 @@ impl Gap {
         Ok(rows(state)?.2)
     }
 
+    /// Takes in a row of this unit.
+    pub(super) fn widen(&mut self, unit: Unit, residual: f64) {
+        let widest = match unit {
+            Unit::Length => &mut self.distance,
+            Unit::Angle => &mut self.angle,
+        };
+        *widest = widest.max(residual.abs());
+    }
+
     /// True up to `tolerance::CLOSED` of a length (m), mostly the reach, and in angle.
     #[must_use]
     pub fn is_closed(self, length: f64) -> bool {
         self.distance <= CLOSED * length && self.angle <= CLOSED
     }
-}
-
-/// A relative motion that is restricted, in world axes at the world's origin.
-pub(super) struct Row {
-    /// What is measured of the motion of `b` relative to `a`.
-    pub(super) wrench: Wrench,
-    /// Place of its joint or contact: closing joints, then contacts.
-    pub(super) pair: usize,
-    a: usize,
-    b: usize,
-    pub(super) unit: Unit,
-    /// Place among the coordinates of closing joints where it is their rate.
-    pub(super) rate_of: Option<usize>,
-    /// By how much what should be held is not (m or rad); its rate is `wrench . (J_b - J_a) q`
-    /// where it is zero.
-    pub(super) residual: f64,
 }
 
 impl ClosedChain {
@@ -158,17 +151,17 @@ impl ClosedChain {
 
 /// The coordinates of the tree, then those of closing joints, as driven and passive columns.
 #[derive(Default)]
-struct Columns {
-    actuated: Vec<String>,
+pub(super) struct Columns {
+    pub(super) actuated: Vec<String>,
     passive: Vec<String>,
-    actuated_units: Vec<Unit>,
-    passive_units: Vec<Unit>,
+    pub(super) actuated_units: Vec<Unit>,
+    pub(super) passive_units: Vec<Unit>,
     /// Of every coordinate: whether it is driven, and its column among those of its sort.
-    places: Vec<(bool, usize)>,
+    pub(super) places: Vec<(bool, usize)>,
 }
 
 impl Columns {
-    fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {
+    pub(super) fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {
         let mut columns = Self::default();
         columns.places.reserve(mechanism.n() + loops.len());
         let mut add = |name: &String, unit: Unit, driven: bool| {
@@ -188,174 +181,5 @@ impl Columns {
             add(&l.name, rate_unit(l), l.actuated);
         }
         columns
-    }
-}
-
-/// What the rate of a closing joint of one coordinate measures.
-pub(super) fn rate_unit(joint: &LoopJoint) -> Unit {
-    if joint.kind == JointKind::Prismatic { Unit::Length } else { Unit::Angle }
-}
-
-/// Calls `f(row, coordinate, rate)` for every coordinate of the tree that opens a row, the place of
-/// the row among `rows` and its rate by that coordinate. A coordinate may come several times (mimic
-/// joints): its rates add up.
-pub(super) fn for_each_rate(state: &State, rows: &[Row], mut f: impl FnMut(usize, usize, f64)) {
-    let mechanism = state.mechanism();
-    // The rows of a pair stand together: its two links are walked once, and up to where they meet,
-    // since what moves both does not open the pair.
-    let mut from = 0;
-    for pair in rows.chunk_by(|x, y| (x.a, x.b) == (y.a, y.b)) {
-        let tip = |link| state.tip(mechanism.link_frame(link).into());
-        let (a, b) = (tip(pair[0].a), tip(pair[0].b));
-        let common = a.common_slot(&b);
-        for (link, sign) in [(a, -1.0), (b, 1.0)] {
-            link.for_each_column_above(common, Vec3::ZERO, |_, c, twist| {
-                for (i, row) in pair.iter().enumerate() {
-                    f(from + i, c, sign * twist.power(row.wrench));
-                }
-            });
-        }
-        from += pair.len();
-    }
-}
-
-impl Row {
-    /// The residual with lengths over `length`.
-    pub(super) fn scaled_residual(&self, length: f64) -> f64 {
-        self.residual / self.unit.size(length)
-    }
-}
-
-/// Rows of all closing joints and contacts, the closing joints that have a rate, and the gap.
-pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
-    let mechanism = state.mechanism();
-    let dimension = mechanism.dimension();
-    let pose = |link| state.pose(mechanism.link_frame(link));
-    let (mut rows, mut rated) = (Vec::new(), Vec::new());
-    for (place, joint) in mechanism.loops().iter().enumerate() {
-        let pair = Pair::new(
-            place,
-            [joint.a, joint.b],
-            pose(joint.a) * joint.link_a_from_joint,
-            pose(joint.b) * joint.link_b_from_joint,
-        );
-        let mut held = joint.kind.held(joint.axis, dimension);
-        if let (JointKind::Universal { second }, Dimension::Spatial) = (joint.kind, dimension) {
-            held.pop();
-            rows.extend(pair.crossed(joint.axis, second));
-        }
-        rows.extend(pair.rows(&held));
-        let along = joint.axis;
-        let measure = match joint.kind {
-            JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
-                Some(Wrench { force: Vec3::ZERO, moment: along })
-            }
-            JointKind::Prismatic => Some(Wrench { force: along, moment: Vec3::ZERO }),
-            _ => None,
-        };
-        match measure {
-            Some(w) => {
-                rows.push(Row { rate_of: Some(rated.len()), residual: 0.0, ..pair.row(w) });
-                rated.push(joint);
-            }
-            None if joint.actuated => {
-                return Err(Error::Model {
-                    model: mechanism.name().to_owned(),
-                    culprit: joint.name.clone(),
-                    message: format!(
-                        "joint '{}' closes a loop, is {} and driven; a motor needs a joint of one \
-                         coordinate: drive another, or write it as joints in a row",
-                        joint.name,
-                        joint.kind.name()
-                    ),
-                });
-            }
-            None => {}
-        }
-    }
-    for (place, contact) in mechanism.contacts().iter().enumerate() {
-        let pair = Pair::new(
-            mechanism.loops().len() + place,
-            [contact.a, contact.b],
-            pose(contact.a) * contact.link_a_from_contact,
-            pose(contact.b) * contact.link_b_from_contact,
-        );
-        rows.extend(pair.rows(&contact.kind.held(dimension)));
-    }
-    let mut gap = Gap::default();
-    for row in &rows {
-        let widest = match row.unit {
-            Unit::Length => &mut gap.distance,
-            Unit::Angle => &mut gap.angle,
-        };
-        *widest = widest.max(row.residual.abs());
-    }
-    Ok((rows, rated, gap))
-}
-
-/// The two frames of a closing joint or contact.
-struct Pair {
-    place: usize,
-    ends: [usize; 2],
-    world_from_a: Pose,
-    world_from_b: Pose,
-    /// Where the second frame is, and how it is turned, seen from the first.
-    offset: Vec3,
-    turn: Vec3,
-}
-
-impl Pair {
-    fn new(place: usize, ends: [usize; 2], world_from_a: Pose, world_from_b: Pose) -> Self {
-        let a_from_b = world_from_a.inverse() * world_from_b;
-        let (offset, turn) = (a_from_b.translation, a_from_b.rotation.log());
-        Self { place, ends, world_from_a, world_from_b, offset, turn }
-    }
-
-    /// The rows of all that is held. Where two moments are, they hold the direction of the axis
-    /// across them, and residuals about them are those of the shortest turn of that axis: rates of
-    /// the whole turn would be right only where the joint is at zero.
-    fn rows(&self, held: &[Wrench]) -> Vec<Row> {
-        let moments: Vec<Vec3> =
-            held.iter().filter(|w| w.force == Vec3::ZERO).map(|w| w.moment).collect();
-        let mut rows: Vec<Row> = held.iter().map(|w| self.row(*w)).collect();
-        if let [first, second] = moments[..] {
-            let axis = first.cross(second);
-            let turned = self.world_from_a.rotation.inverse() * (self.world_from_b.rotation * axis);
-            let across = axis.cross(turned);
-            if let Some(about) = across.unit(0.0) {
-                let tilt = about * across.norm().atan2(axis.dot(turned));
-                for (row, w) in rows.iter_mut().zip(held).filter(|(_, w)| w.force == Vec3::ZERO) {
-                    row.residual = w.moment.dot(tilt);
-                }
-            }
-        }
-        rows
-    }
-
-    /// What holds `held`, a wrench in the first frame: forces act where the second one is.
-    fn row(&self, held: Wrench) -> Row {
-        let at = Pose {
-            rotation: self.world_from_a.rotation,
-            translation: self.world_from_b.translation,
-        };
-        Row {
-            wrench: at.coadjoint(held),
-            pair: self.place,
-            a: self.ends[0],
-            b: self.ends[1],
-            unit: if held.force == Vec3::ZERO { Unit::Angle } else { Unit::Length },
-            rate_of: None,
-            residual: held.force.dot(self.offset) + held.moment.dot(self.turn),
-        }
-    }
-
-    /// The moment of a universal joint: normal to an axis of either body, wherever they have
-    /// turned, whose angle is held.
-    fn crossed(&self, first: Vec3, second: Vec3) -> Option<Row> {
-        let turned = self.world_from_a.rotation.inverse() * (self.world_from_b.rotation * second);
-        let across = first.cross(turned);
-        let normal = across.unit(0.0)?;
-        let residual = (first.dot(second) - first.dot(turned)) / across.norm();
-        Some(Row { residual, ..self.row(Wrench { force: Vec3::ZERO, moment: normal }) })
     }
 }

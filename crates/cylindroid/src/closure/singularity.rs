@@ -138,6 +138,51 @@ impl Counts {
     }
 }
 
+/// What a pose has that is not generic.
+struct Beyond {
+    loses: bool,
+    gains: bool,
+    folds: bool,
+    idles: bool,
+}
+
+impl Beyond {
+    fn of(now: &Counts, generic: &Counts) -> Self {
+        Self {
+            loses: now.zero_torque > generic.zero_torque || now.redundancy > generic.redundancy,
+            gains: now.indeterminacy > generic.indeterminacy,
+            folds: now.rank < generic.rank,
+            idles: now.idle > generic.idle,
+        }
+    }
+
+    fn kinds(&self) -> Vec<SingularityKind> {
+        let first = match (self.loses, self.gains) {
+            (true, true) => Some(SingularityKind::TypeIII),
+            (true, false) => Some(SingularityKind::TypeI),
+            (false, true) => Some(SingularityKind::TypeII),
+            (false, false) => None,
+        };
+        let folds = self.folds.then_some(SingularityKind::ConfigurationSpace);
+        let idles = self.idles.then_some(SingularityKind::Passive);
+        first.into_iter().chain(folds).chain(idles).collect()
+    }
+}
+
+impl Distances {
+    /// Those of a pose with these counts: 0 to each kind that it is.
+    pub(crate) fn against(self, now: &Counts, generic: &Counts) -> Self {
+        let Beyond { loses, gains, folds, idles } = Beyond::of(now, generic);
+        let or_zero = |singular: bool, x: f64| if singular { 0.0 } else { x };
+        Self {
+            type_i: or_zero(loses, self.type_i),
+            type_ii: or_zero(gains, self.type_ii),
+            configuration_space: or_zero(folds, self.configuration_space),
+            passive: or_zero(idles, self.passive),
+        }
+    }
+}
+
 const OTHERS: Rows = Rows { actuated: true, passive: false, object: true };
 
 impl Singularities {
@@ -154,41 +199,19 @@ impl Singularities {
         relation: &Relation,
         generic: &Counts,
     ) -> Self {
-        let loses = now.zero_torque > generic.zero_torque || now.redundancy > generic.redundancy;
-        let gains = now.indeterminacy > generic.indeterminacy;
-        let folds = now.rank < generic.rank;
-        let idles = now.idle > generic.idle;
-        let mut kinds = Vec::new();
-        match (loses, gains) {
-            (true, true) => kinds.push(SingularityKind::TypeIII),
-            (true, false) => kinds.push(SingularityKind::TypeI),
-            (false, true) => kinds.push(SingularityKind::TypeII),
-            (false, false) => {}
-        }
-        if folds {
-            kinds.push(SingularityKind::ConfigurationSpace);
-        }
-        if idles {
-            kinds.push(SingularityKind::Passive);
-        }
         let pairs = relation.finite_pairs();
-        let distance = |singular: bool, value: Option<f64>| {
-            if singular { 0.0 } else { value.unwrap_or(f64::INFINITY) }
+        let none = f64::INFINITY;
+        let here = Distances {
+            type_i: pairs.last().map_or(none, |p| p.0),
+            type_ii: pairs.first().map_or(none, |p| p.1),
+            configuration_space: if now.rank > 0 { motions.regularity() } else { none },
+            passive: motions.still(OTHERS).1.kept,
         };
-        let finite = |x: f64| x.is_finite().then_some(x);
         Self {
-            kinds,
+            kinds: Beyond::of(now, generic).kinds(),
             blocked: relation.forces().infinite,
             gained: relation.motions().infinite,
-            distances: Distances {
-                type_i: distance(loses, pairs.last().map(|p| p.0)),
-                type_ii: distance(gains, pairs.first().map(|p| p.1)),
-                configuration_space: distance(
-                    folds,
-                    (motions.cut().rank.rank > 0).then(|| motions.regularity()),
-                ),
-                passive: distance(idles, finite(motions.still(OTHERS).1.kept)),
-            },
+            distances: here.against(now, generic),
         }
     }
 

@@ -16,8 +16,9 @@
 //! Checked  tests/it/closure/steering.rs
 
 use super::constraint::Unit;
-use super::graph::{Gap, Row, for_each_rate, rate_unit, rows};
+use super::graph::Gap;
 use super::motions::block_tolerance;
+use super::pairs::{Row, for_each_rate, rate_unit, rows};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};

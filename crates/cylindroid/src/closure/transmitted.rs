@@ -15,7 +15,8 @@
 //! [`contact_forces`]: super::contact_forces
 
 use super::constraint::Unit;
-use super::graph::{ClosedChain, Row, rows};
+use super::graph::ClosedChain;
+use super::pairs::{Row, rows};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::Metric;

@@ -12,7 +12,7 @@ use super::analytic::{Analytic, Postures};
 use super::goal::{Goal, Task};
 use super::options::IkOptions;
 use crate::error::Result;
-use crate::kinematics::{Chain, EndEffector, Reference};
+use crate::kinematics::{Chain, Reference};
 use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
 use crate::scalar::uniform;

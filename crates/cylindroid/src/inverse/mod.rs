@@ -14,6 +14,7 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 
+mod batch;
 mod damped;
 mod filtered;
 mod hyperbolic;
@@ -26,6 +27,7 @@ pub(crate) mod truncated;
 mod variable_damping;
 mod weighted;
 
+pub use batch::{Batch, Inverses};
 pub(crate) use damped::damp;
 pub use hyperbolic::{HyperbolicDamping, HyperbolicOptions, hyperbolic, hyperbolic_with, oblique};
 pub use independent::hyperbolic_into;

@@ -2,7 +2,7 @@
 
 use super::{Method, Weights};
 use crate::error::{Error, Result};
-use crate::linalg::{Matrix, Svd};
+use crate::linalg::{Matrix, Rank, Svd};
 use crate::screws::NoInverse;
 
 /// An inverse and what was done to get it.
@@ -61,27 +61,20 @@ impl Inverse {
         let svd = Svd::of(&weights.apply(j)?);
         let mut gains = vec![0.0; svd.len()];
         let threshold = method.gains(&svd, task, &mut gains);
+        let Rank { rank, threshold, gap } = rank(&svd, &gains, threshold);
         let share = |i: usize| gains[i] * svd.value(i);
-        // Not always the first ones: selectively damped least squares drop by rates.
-        let (kept, lost): (Vec<usize>, Vec<usize>) =
-            (0..svd.len()).partition(|&i| is_kept(share(i)));
-        let dropped = lost
-            .iter()
-            .map(|&i| Dropped {
+        let dropped = (0..svd.len())
+            .filter(|&i| !is_kept(share(i)))
+            .map(|i| Dropped {
                 singular_value: svd.value(i),
                 direction: svd.u(i).to_vec(),
                 realised: share(i),
             })
             .collect();
-        let largest_lost = lost.first().map_or(0.0, |&i| svd.value(i));
-        let gap = match kept.last() {
-            Some(&i) if largest_lost > 0.0 => svd.value(i) / largest_lost,
-            _ => f64::INFINITY,
-        };
         Ok(Self {
             matrix: weights.unapply(assemble(&svd, &gains)),
             singular_values: svd.values().collect(),
-            rank: kept.len(),
+            rank,
             gap,
             threshold,
             dropped,
@@ -89,6 +82,24 @@ impl Inverse {
             reason: None,
         })
     }
+}
+
+/// How many directions are kept, and how sure that is. Not always the first ones: selectively
+/// damped least squares drop by rates.
+pub(super) fn rank(svd: &Svd, gains: &[f64], threshold: f64) -> Rank {
+    let (mut rank, mut last_kept, mut largest_lost) = (0, None, 0.0_f64);
+    for (value, gain) in svd.values().zip(gains) {
+        if is_kept(gain * value) {
+            (rank, last_kept) = (rank + 1, Some(value));
+        } else {
+            largest_lost = largest_lost.max(value);
+        }
+    }
+    let gap = match last_kept {
+        Some(value) if largest_lost > 0.0 => value / largest_lost,
+        _ => f64::INFINITY,
+    };
+    Rank { rank, threshold, gap }
 }
 
 /// A direction counts as kept when at least half of a motion along it is realised.

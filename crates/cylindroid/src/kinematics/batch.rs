@@ -69,7 +69,7 @@ impl Batch {
     /// # Errors
     /// A `q` that is not a whole number of configurations, or with an entry that is not finite.
     pub fn poses(&self, q: &[f64]) -> Result<Vec<f64>> {
-        let mut out = vec![0.0; self.count(q)? * POSE];
+        let mut out = vec![0.0; self.mechanism.count_rows("q", q)? * POSE];
         self.run(q, Some(&mut out), None)?;
         Ok(out)
     }
@@ -87,7 +87,7 @@ impl Batch {
     /// # Errors
     /// As [`Batch::poses`].
     pub fn jacobians(&self, q: &[f64], reference: Reference) -> Result<Vec<f64>> {
-        let mut out = vec![0.0; self.count(q)? * 6 * self.mechanism.n()];
+        let mut out = vec![0.0; self.mechanism.count_rows("q", q)? * 6 * self.mechanism.n()];
         self.run(q, None, Some((reference, &mut out)))?;
         Ok(out)
     }
@@ -115,29 +115,20 @@ impl Batch {
         self.run(q, Some(poses), Some((reference, jacobians)))
     }
 
-    /// How many configurations `q` holds.
-    fn count(&self, q: &[f64]) -> Result<usize> {
-        let n = self.mechanism.n();
-        if q.len().checked_rem(n).unwrap_or(q.len()) != 0 {
-            return Err(size("q", q.len().next_multiple_of(n.max(1)), q.len(), n));
-        }
-        Ok(q.len().checked_div(n).unwrap_or(0))
-    }
-
     fn run(
         &self,
         q: &[f64],
         poses: Option<&mut [f64]>,
         jacobians: Option<(Reference, &mut [f64])>,
     ) -> Result<()> {
-        let (n, count) = (self.mechanism.n(), self.count(q)?);
+        let (n, count) = (self.mechanism.n(), self.mechanism.count_rows("q", q)?);
         self.mechanism.check_rows("q", q)?;
         for (what, got, each) in [
             ("poses", poses.as_ref().map(|p| p.len()), POSE),
             ("jacobians", jacobians.as_ref().map(|j| j.1.len()), 6 * n),
         ] {
             if let Some(got) = got.filter(|got| *got != count * each) {
-                return Err(size(what, count * each, got, each));
+                return Err(Error::rows(what, count * each, got, each));
             }
         }
         let mut poses = poses.map(|p| p.chunks_mut(Self::ALONE * POSE));
@@ -191,9 +182,4 @@ impl Batch {
             }
         }
     }
-}
-
-fn size(what: &str, expected: usize, got: usize, each: usize) -> Error {
-    let hint = format!("{each} for each configuration");
-    Error::Dimension { what: what.to_owned(), expected, got, hint }
 }

@@ -8,7 +8,7 @@
 
 use super::jacobian::Reference;
 use super::serial::Serial;
-use crate::scalar::{Array, Real, sin_cos};
+use crate::scalar::{Array, MOST_LANES, Real, sines_cosines};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, Lanes8, has_avx2, has_avx512};
 use crate::spatial::Columns;
@@ -58,51 +58,62 @@ fn run_avx2(work: Work<'_>) {
 #[inline(always)]
 fn run_with<R: Real>(mut work: Work<'_>) {
     let Work { serial, coordinates, n, .. } = work;
+    let joints = serial.joints();
     let zero = R::splat(0.0);
-    let mut x = vec![zero; coordinates.len()];
-    let mut turns = vec![(zero, zero); serial.joints().len()];
-    let mut axes = vec![([zero; 3], [zero; 3]); serial.joints().len()];
+    // The place in `q` of each joint's coordinate, and what each joint has.
+    let places: Vec<usize> = joints.iter().map(|joint| coordinates[joint.coordinate]).collect();
+    let mut x = vec![zero; joints.len()];
+    let mut angles = vec![zero; joints.len()];
+    let mut turns = vec![(zero, zero); joints.len()];
+    let mut axes = vec![([zero; 3], [zero; 3]); joints.len()];
     let mut columns = vec![zero; 6 * n];
     for (block, q) in work.q.chunks(R::LANES * n).enumerate() {
         let rows = q.len() / n;
-        gather(q, rows, coordinates, &mut x);
-        let tool = along(serial, &x, &mut turns, &mut axes);
+        gather(q, rows, &places, &mut x);
+        for i in 0..joints.len() {
+            angles[i] = joints[i].angle(x[i]);
+        }
+        sines_cosines(&angles, &mut turns);
+        let tool = along(serial, &x, &turns, &mut axes);
         if let Some(poses) = &mut work.poses {
             put(&pose_rows(tool), &mut poses[block * R::LANES * 16..], rows);
         }
         if let Some((reference, jacobians)) = &mut work.jacobians {
-            fill(serial, coordinates, *reference, tool, &axes, &mut columns);
+            fill(serial, &places, *reference, tool, &axes, &mut columns);
             put(&columns, &mut jacobians[block * R::LANES * 6 * n..], rows);
         }
     }
 }
 
-/// The coordinates of the chain; lanes that are left over repeat the last configuration.
+/// The coordinates of the joints; lanes that are left over repeat the last configuration.
 #[inline(always)]
-fn gather<R: Real>(q: &[f64], rows: usize, coordinates: &[usize], x: &mut [R]) {
+fn gather<R: Real>(q: &[f64], rows: usize, places: &[usize], x: &mut [R]) {
     let n = q.len() / rows;
-    for (x, &c) in x.iter_mut().zip(coordinates) {
-        *x = R::from_fn(|l| q[l.min(rows - 1) * n + c]);
+    let mut all = [&q[(rows - 1) * n..]; MOST_LANES];
+    for (row, q) in all.iter_mut().zip(q.chunks_exact(n)) {
+        *row = q;
+    }
+    for i in 0..places.len() {
+        x[i] = R::from_fn(|l| all[l][places[i]]);
     }
 }
 
 /// Goes along the chain; axis and origin of each joint into `axes`. Gives the tool.
 #[inline(always)]
-fn along<R: Real>(
+pub(crate) fn along<R: Real>(
     serial: &Serial,
     x: &[R],
-    turns: &mut [(R, R)],
+    turns: &[(R, R)],
     axes: &mut [([R; 3], [R; 3])],
 ) -> Columns<[R; 3]> {
-    // By themselves, so that neither loop needs more registers than there are.
-    for (joint, turn) in serial.joints().iter().zip(&mut *turns) {
-        *turn = sin_cos(joint.angle(x[joint.coordinate]));
-    }
+    let joints = serial.joints();
+    let (x, turns, axes) = (&x[..joints.len()], &turns[..joints.len()], &mut axes[..joints.len()]);
     let mut frame = serial.start();
-    for ((joint, axis), &(sin, cos)) in serial.joints().iter().zip(axes).zip(&*turns) {
-        frame = joint.moved(frame, sin, cos, x[joint.coordinate]);
-        *axis = (frame.z, frame.p);
-        frame = joint.passed(frame);
+    for i in 0..joints.len() {
+        let (sin, cos) = turns[i];
+        frame = joints[i].moved(frame, sin, cos, x[i]);
+        axes[i] = (frame.z, frame.p);
+        frame = joints[i].passed(frame);
     }
     serial.end(frame)
 }
@@ -111,30 +122,40 @@ fn along<R: Real>(
 #[inline(always)]
 fn fill<R: Real>(
     serial: &Serial,
-    coordinates: &[usize],
+    places: &[usize],
     reference: Reference,
     tool: Columns<[R; 3]>,
     axes: &[([R; 3], [R; 3])],
     out: &mut [R],
 ) {
     let zero = R::splat(0.0);
+    let joints = serial.joints();
     let n = out.len() / 6;
     let p = if reference == Reference::World { [zero; 3] } else { tool.p };
     let one_each = serial.has_one_for_each(n);
     if !one_each {
         out.fill(zero);
     }
-    for (joint, &(axis, origin)) in serial.joints().iter().zip(axes) {
-        let (mut linear, mut angular) = joint.column(axis, origin, p);
+    // The rows: what is asked for one place in them is asked for all.
+    let (a, rest) = out.split_at_mut(n);
+    let (b, rest) = rest.split_at_mut(n);
+    let (c, rest) = rest.split_at_mut(n);
+    let (d, rest) = rest.split_at_mut(n);
+    let (e, f) = rest.split_at_mut(n);
+    let f = &mut f[..n];
+    let (places, axes) = (&places[..joints.len()], &axes[..joints.len()]);
+    for i in 0..joints.len() {
+        let (k, (axis, origin)) = (places[i], axes[i]);
+        let (mut linear, mut angular) = joints[i].column(axis, origin, p);
         if reference == Reference::Local {
             (linear, angular) = (tool.seen(linear), tool.seen(angular));
         }
-        let c = coordinates[joint.coordinate];
-        let column = [linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]];
-        for i in 0..6 {
-            let place = &mut out[i * n + c];
-            *place = if one_each { column[i] } else { *place + column[i] };
+        if !one_each {
+            linear = [linear[0] + a[k], linear[1] + b[k], linear[2] + c[k]];
+            angular = [angular[0] + d[k], angular[1] + e[k], angular[2] + f[k]];
         }
+        [a[k], b[k], c[k]] = linear;
+        [d[k], e[k], f[k]] = angular;
     }
 }
 

@@ -14,6 +14,7 @@ mod jacobian;
 mod joint_screws;
 mod lanes;
 mod serial;
+mod several;
 mod state;
 
 pub use analytical::{AnalyticalJacobian, OrientationRates};
@@ -21,4 +22,7 @@ pub use batch::Batch;
 pub use chain::Chain;
 pub use conversion::velocity_conversion;
 pub use jacobian::Reference;
+pub(crate) use lanes::along as along_several;
+pub(crate) use serial::Serial;
+pub(crate) use several::{Frame, forward as forward_several};
 pub use state::{EndEffector, State};

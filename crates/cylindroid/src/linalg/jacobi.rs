@@ -408,7 +408,7 @@ fn norm<R: Four>(squares: R) -> f64 {
 
 /// All pairs of k columns, ordered so that neighbours share no column: the processor works on
 /// several rotations at once, whose square roots would otherwise wait for each other.
-fn tournament(k: usize) -> Vec<(usize, usize)> {
+pub(crate) fn tournament(k: usize) -> Vec<(usize, usize)> {
     let ring = (k + k % 2).saturating_sub(1);
     let mut pairs = Vec::with_capacity(k * k / 2);
     for round in 0..ring {

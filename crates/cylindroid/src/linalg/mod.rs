@@ -1,6 +1,7 @@
 //! Small dense linear algebra: matrices, singular values, rank with its gap, the spaces of columns
 //! and of kernels, angles between spaces, metrics, hulls of convex bodies.
 
+pub(crate) mod abreast;
 mod blocks;
 mod box_program;
 mod column_space;

@@ -21,13 +21,16 @@
 //!
 //! [`Relation`]: crate::closure::Relation
 
+mod batch;
 mod efficiency;
 mod gradient;
 mod index;
 mod inertia;
+mod lanes;
 mod metrics;
 mod polytope;
 
+pub use batch::{Batch, BatchOptions};
 pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
 pub(crate) use gradient::log_volume_slope;
 pub use gradient::{Goal, Gradient, Measure, gradient};

@@ -358,6 +358,15 @@ impl Mechanism {
         }
     }
 
+    /// How many configurations `rows` holds.
+    pub(crate) fn count_rows(&self, what: &str, rows: &[f64]) -> Result<usize> {
+        let n = self.n();
+        if rows.len().checked_rem(n).unwrap_or(rows.len()) != 0 {
+            return Err(Error::rows(what, rows.len().next_multiple_of(n.max(1)), rows.len(), n));
+        }
+        Ok(rows.len().checked_div(n).unwrap_or(0))
+    }
+
     /// Refuses rows of n numbers of which one is not finite, naming row and joint.
     ///
     /// # Errors

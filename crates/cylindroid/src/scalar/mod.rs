@@ -4,6 +4,7 @@
 //! one register of four or eight, and for arrays where the processor is another one.
 
 mod array;
+mod field;
 mod sequence;
 mod trig;
 #[cfg(target_arch = "x86_64")]
@@ -12,8 +13,9 @@ mod x86;
 use std::ops::{Add, Mul, Neg, Sub};
 
 pub(crate) use array::Array;
+pub(crate) use field::Field;
 pub(crate) use sequence::uniform;
-pub(crate) use trig::sin_cos;
+pub(crate) use trig::{sin_cos, sines_cosines};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use x86::{Lanes4, Lanes8};
 

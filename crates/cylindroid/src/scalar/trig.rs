@@ -47,6 +47,29 @@ pub(crate) fn sin_cos<R: Real>(x: R) -> (R, R) {
     if x.all_within(LARGE) { small(x) } else { beyond(x) }
 }
 
+/// [`sin_cos`] of each.
+///
+/// # Panics
+/// If `out` is not as long.
+#[inline(always)]
+pub(crate) fn sines_cosines<R: Real>(x: &[R], out: &mut [(R, R)]) {
+    assert_eq!(x.len(), out.len(), "as many angles as pairs");
+    let mut all = true;
+    for x in x {
+        all &= x.all_within(LARGE);
+    }
+    // Without a branch in the loop more of them are under way at once.
+    if all {
+        for (x, out) in x.iter().zip(out) {
+            *out = small(*x);
+        }
+    } else {
+        for (x, out) in x.iter().zip(out) {
+            *out = sin_cos(*x);
+        }
+    }
+}
+
 /// For |x| <= `LARGE`; anything for other x.
 #[inline(always)]
 fn small<R: Real>(x: R) -> (R, R) {

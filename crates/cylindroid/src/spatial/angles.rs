@@ -79,6 +79,7 @@ impl Quaternion {
     /// is not zero is positive.
     pub(crate) fn of_matrix(m: Mat3) -> Self {
         let Self { w, x, y, z } = Self::multiple_of_matrix(m);
+        // The largest is between 1 and 4: squares neither overflow nor matter where they vanish.
         let scale = 1.0 / (w * w + x * x + y * y + z * z).sqrt();
         Self { w: w * scale, x: x * scale, y: y * scale, z: z * scale }
     }

@@ -266,6 +266,17 @@ impl<R: Real> Columns<[R; 3]> {
     pub(crate) fn seen(&self, v: [R; 3]) -> [R; 3] {
         [dot(self.x, v), dot(self.y, v), dot(self.z, v)]
     }
+
+    /// A vector in the axes of b, in those of a.
+    #[inline(always)]
+    pub(crate) fn seen_outside(&self, v: [R; 3]) -> [R; 3] {
+        let Self { x, y, z, .. } = self;
+        [
+            x[0].times_plus(v[0], y[0].times_plus(v[1], z[0] * v[2])),
+            x[1].times_plus(v[0], y[1].times_plus(v[1], z[1] * v[2])),
+            x[2].times_plus(v[0], y[2].times_plus(v[1], z[2] * v[2])),
+        ]
+    }
 }
 
 #[inline(always)]

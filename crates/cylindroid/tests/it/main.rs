@@ -16,6 +16,7 @@ mod hull;
 mod hyperbolic;
 mod ik;
 mod inverse;
+mod inverse_batch;
 mod kinematics;
 mod manipulability;
 mod model;

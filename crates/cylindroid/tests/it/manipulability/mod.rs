@@ -1,3 +1,4 @@
+mod batch;
 mod gradient;
 mod metrics;
 mod polytope;

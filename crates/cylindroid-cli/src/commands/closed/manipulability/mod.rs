@@ -1,5 +1,6 @@
 //! `manipulability`: efficiencies of motion and force, indices, polytopes, gradients.
 
+mod configurations;
 mod report;
 
 use std::io::Write;
@@ -50,6 +51,9 @@ pub(crate) fn run(
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
+    if let Some(path) = &args.configurations {
+        return configurations::run(path, args, style, out);
+    }
     if let Some(path) = &args.plot {
         plot::check(path)?;
     }

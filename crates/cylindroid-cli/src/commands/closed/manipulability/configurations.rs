@@ -1,0 +1,119 @@
+//! `manipulability --configurations`: the numbers of many configurations.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use cylindroid::Error;
+use cylindroid::manipulability::{Batch, BatchOptions};
+use serde::Serialize;
+
+use super::super::{Posed, measured};
+use crate::args::{ManipulabilityArgs, MetricName};
+use crate::commands::Style;
+use crate::number_file;
+use crate::output::{self, Align, number};
+
+#[derive(Debug, Serialize)]
+struct ConfigurationsJson<'a> {
+    model: &'a str,
+    /// The reference.
+    frame: &'a str,
+    actuated: &'a [String],
+    passive: &'a [String],
+    /// Characteristic length [m].
+    length: f64,
+    metric: &'static str,
+    /// Metrics given in place of a part of it.
+    own_metrics: Vec<&'static str>,
+    /// Names of the numbers of a row.
+    columns: [&'static str; Batch::WIDTH],
+    /// A row for each configuration; null is infinite, or nothing to measure.
+    rows: Vec<&'a [f64]>,
+}
+
+pub(super) fn run(
+    path: &Path,
+    args: &ManipulabilityArgs,
+    style: Style,
+    out: &mut dyn Write,
+) -> anyhow::Result<ExitCode> {
+    if args.metric == MetricName::Inertia {
+        return Err(Error::InvalidOption {
+            option: "--metric",
+            value: "inertia".to_owned(),
+            reason:
+                "it is another one in every configuration; use unit, length or limits, or give \
+                     --wu, for --configurations"
+                    .to_owned(),
+        }
+        .into());
+    }
+    let posed = Posed::new(&args.closed)?;
+    let (mechanism, chain) = (&posed.mechanism, &posed.chain);
+    let names: Vec<&str> = mechanism.coordinates().iter().map(|c| c.name.as_str()).collect();
+    let q = number_file::configurations(path, &names)?;
+    let options = BatchOptions {
+        reference: Some(chain.reference),
+        length: Some(chain.constraint.length()),
+        metrics: measured::metrics(&posed, args, None)?,
+        generic: None,
+    };
+    let numbers = Batch::new(mechanism, &options)?.analyse(&q)?;
+    let rows: Vec<&[f64]> = numbers.chunks(Batch::WIDTH).collect();
+    if style == Style::Table {
+        print(out, &posed, args.metric, &rows)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let own = [("wu", args.wu.is_some()), ("wq", args.wq.is_some())];
+    let report = ConfigurationsJson {
+        model: mechanism.name(),
+        frame: posed.frame(),
+        actuated: &chain.actuated,
+        passive: &chain.passive,
+        length: chain.constraint.length(),
+        metric: args.metric.name(),
+        own_metrics: own.into_iter().filter(|o| o.1).map(|o| o.0).collect(),
+        columns: Batch::COLUMNS,
+        rows,
+    };
+    output::json(out, &report)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Numbers that are the same everywhere once, the others in a table.
+fn print(
+    out: &mut dyn Write,
+    posed: &Posed,
+    metric: MetricName,
+    rows: &[&[f64]],
+) -> anyhow::Result<()> {
+    let changes = |i: &usize| rows.iter().any(|row| row[*i].to_bits() != rows[0][*i].to_bits());
+    let (changing, still): (Vec<usize>, Vec<usize>) = (0..Batch::WIDTH).partition(changes);
+    let same = still.iter().filter_map(|&i| {
+        let first = rows.first()?;
+        Some(format!("{} {}", Batch::COLUMNS[i], number(first[i])))
+    });
+    output::pairs(
+        out,
+        [
+            ("model", posed.mechanism.name().to_owned()),
+            ("reference frame", posed.frame().to_owned()),
+            ("driven", super::super::list(&posed.chain.actuated)),
+            ("configurations", rows.len().to_string()),
+            ("metric", metric.name().to_owned()),
+            ("the same in all", same.collect::<Vec<_>>().join(", ")),
+        ],
+    )?;
+    if changing.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    let mut columns = vec![("", Align::Right)];
+    columns.extend(changing.iter().map(|&i| (Batch::COLUMNS[i], Align::Right)));
+    let lines = rows.iter().enumerate().map(|(k, row)| {
+        let numbers = changing.iter().map(|&i| number(row[i]));
+        std::iter::once((k + 1).to_string()).chain(numbers).collect()
+    });
+    Ok(output::table(out, &columns, lines)?)
+}

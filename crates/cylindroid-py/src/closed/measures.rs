@@ -1,0 +1,131 @@
+//! Mobility and manipulability of many configurations, as numbers.
+
+use cylindroid::manipulability::{Batch, BatchOptions};
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::PyConstraint;
+use super::metrics::Question;
+use crate::arrays::{Numbers, Rows};
+use crate::error::Result;
+use crate::mechanism::PyMechanism;
+use crate::threads;
+
+/// What Python makes of a number.
+enum Kind {
+    Truth,
+    Count,
+    Number,
+}
+
+fn kind(name: &str) -> Kind {
+    match name {
+        "closed" => Kind::Truth,
+        "dof" | "redundancy" | "indeterminacy" | "coordinate" | "internal" | "zero_torque"
+        | "hyperstatic" | "idle" => Kind::Count,
+        _ => Kind::Number,
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// Mobility and manipulability of many configurations, as numbers.
+    ///
+    /// What `mobility` and `manipulability` say of each, without their bases and directions: ten
+    /// times as fast and more, and on all cores.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// actuated, reference
+    ///     As `constraint`.
+    /// Wu, Wq : array_like, square or their diagonals, optional
+    ///     Metrics of twists and joint rates, as `manipulability`.
+    /// metric : str
+    ///     'unit', 'length' or 'limits', as `manipulability`.
+    /// length : float, optional
+    ///     Characteristic length (m). Default: the reach.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to ndarray, (N,), or to a number for one configuration
+    ///     `gap_distance` [m], `gap_angle` [rad], `closed`: how far loops are open;
+    ///     `dof`, `redundancy`, `indeterminacy`, `coordinate`, `internal`, `zero_torque`,
+    ///     `hyperstatic`, `idle`: the counts of `mobility`;
+    ///     `type_i`, `type_ii`, `configuration_space`, `passive`: distances to singularities of
+    ///     these kinds, 0 at one, infinite where there is nothing to lose;
+    ///     `volume`, `largest`, `smallest`, `anisotropy` of the kinematic efficiencies, the last
+    ///     three NaN where none is finite.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError, ModelError
+    ///
+    /// Notes
+    /// -----
+    /// A posture is singular where it has more, or less, than ordinary postures of the mechanism,
+    /// which are looked for once in each call, around home: some milliseconds.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> found = cy.load("stewart").measures([[0.0] * 21] * 2)
+    /// >>> found["dof"]
+    /// array([6, 6])
+    #[pyo3(signature = (q, actuated = None, reference = None, Wu = None, Wq = None,
+        metric = "unit", length = None))]
+    #[expect(non_snake_case, reason = "the field's names")]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn measures<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        actuated: Option<Vec<String>>,
+        reference: Option<&str>,
+        Wu: Option<Numbers<'py>>,
+        Wq: Option<Numbers<'py>>,
+        metric: &str,
+        length: Option<f64>,
+    ) -> Result<Bound<'py, PyDict>> {
+        let driven = actuated.map(|names| self.inner.with_actuated(&names)).transpose()?;
+        let mechanism = driven.as_ref().unwrap_or(&self.inner);
+        let rows = Rows::of(mechanism, "q", &q)?;
+        let home = PyConstraint::of(mechanism, mechanism.home(), reference, length)?;
+        let question =
+            Question::about(&home, None, [Wu.as_ref(), Wq.as_ref(), None, None], metric)?;
+        let options = BatchOptions {
+            reference: home.origin.as_ref().map(|origin| origin.reference),
+            length: Some(home.inner.length()),
+            metrics: question.metrics(&home)?,
+            generic: None,
+        };
+        let numbers = threads::run(py, rows.count.unwrap_or(1) > Batch::ALONE, || {
+            Batch::new(mechanism, &options)?.analyse(rows.values)
+        })??;
+        let found = PyDict::new(py);
+        for (i, name) in Batch::COLUMNS.into_iter().enumerate() {
+            let column = || numbers.iter().skip(i).step_by(Batch::WIDTH).copied();
+            // Counts are whole numbers.
+            #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
+            match (kind(name), rows.count) {
+                (Kind::Truth, None) => found.set_item(name, numbers[i] > 0.0),
+                (Kind::Count, None) => found.set_item(name, numbers[i] as i64),
+                (Kind::Number, None) => found.set_item(name, numbers[i]),
+                (Kind::Truth, _) => {
+                    let all: Vec<bool> = column().map(|x| x > 0.0).collect();
+                    found.set_item(name, all.into_pyarray(py))
+                }
+                (Kind::Count, _) => {
+                    let all: Vec<i64> = column().map(|x| x as i64).collect();
+                    found.set_item(name, all.into_pyarray(py))
+                }
+                (Kind::Number, _) => {
+                    found.set_item(name, column().collect::<Vec<f64>>().into_pyarray(py))
+                }
+            }?;
+        }
+        Ok(found)
+    }
+}

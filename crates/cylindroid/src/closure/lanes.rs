@@ -1,0 +1,355 @@
+//! The constraint of a mechanism at several configurations side by side.
+//!
+//! Formula  graph.rs, scaled: a row for each held wrench, then one for each component of the
+//!          reference, as `J_ref` without its `-1`
+//! Shapes   q: n numbers of lanes; rows of q_a + q_p columns, driven joints first
+//! Units    none: lengths over the characteristic length. Gaps: m, rad
+//! Frame    u at the reference frame's origin, world axes
+//! Valid    as [`super::ClosedChain`], but for lanes in which the axes of a closing universal joint
+//!          nearly line up: their rows are not to be used
+//! Why so   what does not change with the configuration is looked up once: which joints open which
+//!          pair, and in which column they stand
+//! Checked  tests/it/manipulability/batch.rs
+
+use super::constraint::Unit;
+use super::graph::Columns;
+use super::pairs::{self, Held, Pair};
+use crate::error::Result;
+use crate::kinematics::{Frame, forward_several};
+use crate::model::{FrameId, Mechanism, Motion, Node};
+use crate::scalar::{Field, MOST_LANES};
+use crate::spatial::{Padded, Pose, Vec3, Wrench};
+use crate::tolerance::CROSSED_AXES;
+
+/// What does not change with the configuration.
+#[derive(Debug, Clone)]
+pub(crate) struct Plan {
+    nodes: Vec<Node>,
+    pairs: Vec<Tie>,
+    reference: End,
+    /// The joints that move the reference.
+    ways: Vec<Way>,
+    components: &'static [usize],
+    length: f64,
+    /// Of the driven columns, and of the components of the reference.
+    pub(crate) actuated_scale: Vec<f64>,
+    pub(crate) object_scale: Vec<f64>,
+    passive: usize,
+    held: usize,
+}
+
+/// A frame on a moving frame.
+#[derive(Debug, Clone)]
+struct End {
+    slot: usize,
+    from: Padded,
+}
+
+/// What a coordinate does to what its joint carries: it turns about, or slides along, an axis of the
+/// joint's frame.
+#[derive(Debug, Clone)]
+struct Way {
+    slot: usize,
+    axis: usize,
+    turns: bool,
+    column: usize,
+    /// For a scaled rate of 1, with the sign of the side on which the joint is.
+    rate: f64,
+}
+
+/// A closing joint or contact.
+#[derive(Debug, Clone)]
+struct Tie {
+    ends: [End; 2],
+    /// Wrenches with their residuals, then the one that measures a rate; the rows scaled.
+    rows: Vec<Wrench>,
+    residuals: usize,
+    /// What they are unscaled, where they ask for more than the offset of the frames.
+    turned: Option<Vec<Wrench>>,
+    crossed: Option<[Vec3; 2]>,
+    /// The column of the rate.
+    rate: Option<usize>,
+    ways: Vec<Way>,
+}
+
+impl Tie {
+    fn len(&self) -> usize {
+        self.rows.len() + usize::from(self.crossed.is_some())
+    }
+}
+
+/// What was written beside the rows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Written<R> {
+    /// How far loops are open along (m) and about (rad) what is held.
+    pub(crate) distance: R,
+    pub(crate) angle: R,
+    /// 0 where the rows are not to be used.
+    pub(crate) usable: R,
+}
+
+impl Plan {
+    /// Of a mechanism, its reference frame and a characteristic length.
+    pub(crate) fn of(mechanism: &Mechanism, reference: FrameId, length: f64) -> Result<Self> {
+        let (all, rated) = pairs::held(mechanism)?;
+        let columns = Columns::of(mechanism, &rated);
+        let driven = columns.actuated.len();
+        let column =
+            |(is_driven, place): (bool, usize)| if is_driven { place } else { driven + place };
+        let n = mechanism.n();
+        let size = |c: usize| Unit::of(mechanism.coordinates()[c].kind).size(length);
+        let places: Vec<(usize, f64)> =
+            (0..n).map(|c| (column(columns.places[c]), size(c))).collect();
+        let end = |frame: FrameId, place: Pose| {
+            let frame = mechanism.frame_of(frame);
+            End { slot: frame.slot, from: (frame.slot_from_frame * place).into() }
+        };
+        let mut rates = columns.places[n..].iter().map(|p| column(*p));
+        let mut ties = Vec::new();
+        for Held { ends, frames, wrenches, crossed, measure } in all {
+            let ends = [0, 1].map(|i| end(mechanism.link_frame(ends[i]), frames[i]));
+            let scaled = |w: &Wrench| {
+                let s = 1.0 / pairs::unit(*w).size(length);
+                Wrench { force: w.force * s, moment: w.moment * s }
+            };
+            let turns = wrenches.iter().any(|w| w.moment != Vec3::ZERO);
+            ties.push(Tie {
+                ways: between(mechanism.nodes(), &places, ends[0].slot, ends[1].slot),
+                ends,
+                residuals: wrenches.len(),
+                rows: wrenches.iter().chain(&measure).map(scaled).collect(),
+                turned: turns.then_some(wrenches),
+                crossed,
+                rate: measure.and_then(|_| rates.next()),
+            });
+        }
+        let target = end(reference, Pose::IDENTITY);
+        let components = mechanism.dimension().components();
+        Ok(Self {
+            nodes: mechanism.nodes().to_vec(),
+            held: ties.iter().map(Tie::len).sum(),
+            pairs: ties,
+            ways: between(mechanism.nodes(), &places, 0, target.slot),
+            reference: target,
+            components,
+            length,
+            actuated_scale: columns.actuated_units.iter().map(|u| u.size(length)).collect(),
+            object_scale: components.iter().map(|&c| if c < 3 { length } else { 1.0 }).collect(),
+            passive: columns.passive_units.len(),
+        })
+    }
+
+    /// Number of rows that loops and contacts hold.
+    pub(crate) fn held(&self) -> usize {
+        self.held
+    }
+
+    /// Number of components of the reference.
+    pub(crate) fn object(&self) -> usize {
+        self.components.len()
+    }
+
+    /// Number of driven columns.
+    pub(crate) fn actuated(&self) -> usize {
+        self.actuated_scale.len()
+    }
+
+    /// Number of all columns.
+    pub(crate) fn columns(&self) -> usize {
+        self.actuated() + self.passive
+    }
+
+    /// Number of frames that [`Plan::write`] needs.
+    pub(crate) fn frames(&self) -> usize {
+        self.nodes.len() + 1
+    }
+
+    /// Writes all rows at q, those held first, one after the other.
+    #[inline(always)]
+    pub(crate) fn write<R: Field>(
+        &self,
+        q: &[R],
+        frames: &mut [Frame<R>],
+        rows: &mut [R],
+    ) -> Written<R> {
+        forward_several(&self.nodes, q, frames);
+        rows.fill(R::splat(0.0));
+        let columns = self.columns();
+        let mut written =
+            Written { distance: R::splat(0.0), angle: R::splat(0.0), usable: R::splat(1.0) };
+        let mut from = 0;
+        for tie in &self.pairs {
+            let rows = &mut rows[from * columns..(from + tie.len()) * columns];
+            self.tie(tie, frames, rows, &mut written);
+            from += tie.len();
+        }
+        let tip = frames[self.reference.slot].then(&self.reference.from);
+        let rows = &mut rows[from * columns..];
+        let inverse = R::splat(1.0 / self.length);
+        for way in &self.ways {
+            let rate = R::splat(way.rate);
+            let (v, w) = way.twist(frames, tip.p);
+            let six = [v[0] * inverse, v[1] * inverse, v[2] * inverse, w[0], w[1], w[2]];
+            for (row, &c) in rows.chunks_exact_mut(columns).zip(self.components) {
+                row[way.column] = rate.times_plus(six[c], row[way.column]);
+            }
+        }
+        written
+    }
+
+    #[inline(always)]
+    fn tie<R: Field>(
+        &self,
+        tie: &Tie,
+        frames: &[Frame<R>],
+        rows: &mut [R],
+        written: &mut Written<R>,
+    ) {
+        /// Rows of a pair at the most: six held, and the rate.
+        const MOST: usize = 7;
+        let k = R::splat;
+        let columns = self.columns();
+        let a = frames[tie.ends[0].slot].then(&tie.ends[0].from);
+        let b = frames[tie.ends[1].slot].then(&tie.ends[1].from);
+        let offset = minus(b.p, a.p);
+        // Forces act where the second frame is.
+        let none = [k(0.0); 3];
+        let mut wrenches = [(none, none); MOST];
+        for (i, w) in tie.rows.iter().enumerate() {
+            let force = turned(&a, w.force);
+            wrenches[i] = (force, turned(&a, w.moment));
+            if i < tie.residuals && tie.turned.is_none() {
+                let open = (dot(force, offset) * k(self.length)).size();
+                written.distance = written.distance.larger(open);
+            }
+        }
+        if let Some(held) = &tie.turned {
+            let gap = gap(held, &a, &b);
+            written.distance = written.distance.larger(gap[0]);
+            written.angle = written.angle.larger(gap[1]);
+        }
+        if let Some([first, second]) = tie.crossed {
+            let (on_a, on_b) = (turned(&a, first), turned(&b, second));
+            let normal = cross(on_a, on_b);
+            let size = dot(normal, normal).root();
+            let inverse = k(1.0) / size;
+            let unit = [normal[0] * inverse, normal[1] * inverse, normal[2] * inverse];
+            wrenches[tie.rows.len()] = (none, unit);
+            let open = (k(first.dot(second)) - dot(on_a, on_b)) * inverse;
+            written.angle = written.angle.larger(open.size());
+            written.usable = R::where_less(size, k(CROSSED_AXES), k(0.0), written.usable);
+        }
+        let wrenches = &wrenches[..tie.len()];
+        for way in &tie.ways {
+            let rate = k(way.rate);
+            let (v, w) = way.twist(frames, b.p);
+            for (row, (force, moment)) in rows.chunks_exact_mut(columns).zip(wrenches) {
+                let power = dot(v, *force) + dot(w, *moment);
+                row[way.column] = rate.times_plus(power, row[way.column]);
+            }
+        }
+        if let Some(rate) = tie.rate {
+            // Rows and columns of rates have one scale.
+            let place = (tie.rows.len() - 1) * columns + rate;
+            rows[place] = rows[place] - k(1.0);
+        }
+    }
+}
+
+impl Way {
+    /// Velocity of the point p, and angular velocity.
+    #[inline(always)]
+    fn twist<R: Field>(&self, frames: &[Frame<R>], p: [R; 3]) -> ([R; 3], [R; 3]) {
+        let frame = &frames[self.slot];
+        let axis = [frame.x, frame.y, frame.z][self.axis];
+        if self.turns { (cross(axis, minus(p, frame.p)), axis) } else { (axis, [R::splat(0.0); 3]) }
+    }
+}
+
+/// What moves slot `b` against slot `a`; `places` are column and scale of each coordinate.
+fn between(nodes: &[Node], places: &[(usize, f64)], mut a: usize, mut b: usize) -> Vec<Way> {
+    let mut ways = Vec::new();
+    while a != b {
+        // A parent has a smaller slot than its children.
+        let (slot, sign) = if a > b { (a, -1.0) } else { (b, 1.0) };
+        let node = &nodes[slot - 1];
+        let mut add = |axis: usize, turns: bool, of: usize, rate: f64| {
+            let (column, scale) = places[node.coordinate + of];
+            ways.push(Way { slot, axis, turns, column, rate: sign * rate * scale });
+        };
+        match node.motion {
+            Motion::Fixed => {}
+            Motion::Revolute => add(2, true, 0, node.multiplier),
+            Motion::Prismatic => add(2, false, 0, node.multiplier),
+            Motion::Helical(pitch) => {
+                add(2, true, 0, node.multiplier);
+                add(2, false, 0, pitch * node.multiplier);
+            }
+            Motion::Spherical => (0..3).for_each(|i| add(i, true, i, 1.0)),
+            Motion::Free => (0..6).for_each(|i| add(i % 3, i >= 3, i, 1.0)),
+        }
+        let next = if a > b { &mut a } else { &mut b };
+        *next = node.parent;
+    }
+    ways
+}
+
+/// The gap along and about `held`, lane by lane as for one configuration.
+#[inline(always)]
+fn gap<R: Field>(held: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2] {
+    let (mut distance, mut angle) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
+    let (a, b) = (poses(a), poses(b));
+    for l in 0..R::LANES {
+        let gap = Pair::new(0, [0, 0], [a[l], b[l]]).gap(held);
+        (distance[l], angle[l]) = (gap.distance, gap.angle);
+    }
+    [R::load(&distance), R::load(&angle)]
+}
+
+#[inline(always)]
+fn poses<R: Field>(frame: &Frame<R>) -> [Pose; MOST_LANES] {
+    let mut numbers = [[0.0; MOST_LANES]; 12];
+    for (i, column) in [frame.x, frame.y, frame.z, frame.p].iter().enumerate() {
+        for (j, x) in column.iter().enumerate() {
+            x.store(&mut numbers[3 * i + j]);
+        }
+    }
+    let mut poses = [Pose::IDENTITY; MOST_LANES];
+    for (l, pose) in poses.iter_mut().enumerate().take(R::LANES) {
+        let mut padded = Padded::IDENTITY;
+        for j in 0..3 {
+            padded.x[j] = numbers[j][l];
+            padded.y[j] = numbers[3 + j][l];
+            padded.z[j] = numbers[6 + j][l];
+            padded.p[j] = numbers[9 + j][l];
+        }
+        *pose = padded.pose();
+    }
+    poses
+}
+
+/// A vector of the frame in the axes of the world.
+#[inline(always)]
+fn turned<R: Field>(frame: &Frame<R>, v: Vec3) -> [R; 3] {
+    let (x, y, z) = (R::splat(v.x), R::splat(v.y), R::splat(v.z));
+    frame.seen_outside([x, y, z])
+}
+
+#[inline(always)]
+fn minus<R: Field>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot<R: Field>(a: [R; 3], b: [R; 3]) -> R {
+    a[0].times_plus(b[0], a[1].times_plus(b[1], a[2] * b[2]))
+}
+
+#[inline(always)]
+fn cross<R: Field>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [
+        a[1].times_plus(b[2], -(a[2] * b[1])),
+        a[2].times_plus(b[0], -(a[0] * b[2])),
+        a[0].times_plus(b[1], -(a[1] * b[0])),
+    ]
+}

@@ -1,0 +1,247 @@
+//! The rows of closing joints and contacts: what they hold, where they are at a state.
+//!
+//! Formula  graph.rs: h . (J_b - J_a) q for every held wrench h, and its residual
+//! Shapes   a row for each held wrench, and one for the rate of a closing joint of one coordinate
+//! Units    m, rad
+//! Frame    world, wrenches at the world's origin
+//! Checked  tests/it/closure/graph.rs
+
+use super::constraint::Unit;
+use super::graph::Gap;
+use crate::error::{Error, Result};
+use crate::kinematics::State;
+use crate::model::{Dimension, JointKind, LoopJoint, Mechanism};
+use crate::spatial::{Pose, Vec3, Wrench};
+
+/// A relative motion that is restricted, in world axes at the world's origin.
+pub(super) struct Row {
+    /// What is measured of the motion of `b` relative to `a`.
+    pub(super) wrench: Wrench,
+    /// Place of its joint or contact: closing joints, then contacts.
+    pub(super) pair: usize,
+    a: usize,
+    b: usize,
+    pub(super) unit: Unit,
+    /// Place among the coordinates of closing joints where it is their rate.
+    pub(super) rate_of: Option<usize>,
+    /// By how much what should be held is not (m or rad); its rate is `wrench . (J_b - J_a) q`
+    /// where it is zero.
+    pub(super) residual: f64,
+}
+
+/// What the rate of a closing joint of one coordinate measures.
+pub(super) fn rate_unit(joint: &LoopJoint) -> Unit {
+    if joint.kind == JointKind::Prismatic { Unit::Length } else { Unit::Angle }
+}
+
+/// Calls `f(row, coordinate, rate)` for every coordinate of the tree that opens a row, the place of
+/// the row among `rows` and its rate by that coordinate. A coordinate may come several times (mimic
+/// joints): its rates add up.
+pub(super) fn for_each_rate(state: &State, rows: &[Row], mut f: impl FnMut(usize, usize, f64)) {
+    let mechanism = state.mechanism();
+    // The rows of a pair stand together: its two links are walked once, and up to where they meet,
+    // since what moves both does not open the pair.
+    let mut from = 0;
+    for pair in rows.chunk_by(|x, y| (x.a, x.b) == (y.a, y.b)) {
+        let tip = |link| state.tip(mechanism.link_frame(link).into());
+        let (a, b) = (tip(pair[0].a), tip(pair[0].b));
+        let common = a.common_slot(&b);
+        for (link, sign) in [(a, -1.0), (b, 1.0)] {
+            link.for_each_column_above(common, Vec3::ZERO, |_, c, twist| {
+                for (i, row) in pair.iter().enumerate() {
+                    f(from + i, c, sign * twist.power(row.wrench));
+                }
+            });
+        }
+        from += pair.len();
+    }
+}
+
+impl Row {
+    /// The residual with lengths over `length`.
+    pub(super) fn scaled_residual(&self, length: f64) -> f64 {
+        self.residual / self.unit.size(length)
+    }
+}
+
+/// What a closing joint or contact holds, wherever it is.
+pub(super) struct Held {
+    /// Of its two links.
+    pub(super) ends: [usize; 2],
+    /// Its frames on them.
+    pub(super) frames: [Pose; 2],
+    /// Wrenches in the first frame, but for the moment across the axes of a universal joint.
+    pub(super) wrenches: Vec<Wrench>,
+    /// The axes of a universal joint, on its first and its second link.
+    pub(super) crossed: Option<[Vec3; 2]>,
+    /// What measures the rate of a closing joint of one coordinate.
+    pub(super) measure: Option<Wrench>,
+}
+
+/// What closing joints, then contacts hold, and the closing joints that have a rate.
+pub(super) fn held(mechanism: &Mechanism) -> Result<(Vec<Held>, Vec<&LoopJoint>)> {
+    let dimension = mechanism.dimension();
+    let (mut all, mut rated) = (Vec::new(), Vec::new());
+    for joint in mechanism.loops() {
+        let mut wrenches = joint.kind.held(joint.axis, dimension);
+        let mut crossed = None;
+        if let (JointKind::Universal { second }, Dimension::Spatial) = (joint.kind, dimension) {
+            wrenches.pop();
+            crossed = Some([joint.axis, second]);
+        }
+        let along = joint.axis;
+        let measure = match joint.kind {
+            JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
+                Some(Wrench { force: Vec3::ZERO, moment: along })
+            }
+            JointKind::Prismatic => Some(Wrench { force: along, moment: Vec3::ZERO }),
+            _ => None,
+        };
+        if measure.is_some() {
+            rated.push(joint);
+        } else if joint.actuated {
+            return Err(Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: joint.name.clone(),
+                message: format!(
+                    "joint '{}' closes a loop, is {} and driven; a motor needs a joint of one \
+                     coordinate: drive another, or write it as joints in a row",
+                    joint.name,
+                    joint.kind.name()
+                ),
+            });
+        }
+        all.push(Held {
+            ends: [joint.a, joint.b],
+            frames: [joint.link_a_from_joint, joint.link_b_from_joint],
+            wrenches,
+            crossed,
+            measure,
+        });
+    }
+    for contact in mechanism.contacts() {
+        all.push(Held {
+            ends: [contact.a, contact.b],
+            frames: [contact.link_a_from_contact, contact.link_b_from_contact],
+            wrenches: contact.kind.held(dimension),
+            crossed: None,
+            measure: None,
+        });
+    }
+    Ok((all, rated))
+}
+
+/// Rows of all closing joints and contacts, the closing joints that have a rate, and the gap.
+pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
+    let mechanism = state.mechanism();
+    let (all, rated) = held(mechanism)?;
+    let pose = |link| state.pose(mechanism.link_frame(link));
+    let (mut rows, mut rates) = (Vec::new(), 0);
+    for (place, held) in all.iter().enumerate() {
+        let [a, b] = held.ends;
+        let on = [pose(a) * held.frames[0], pose(b) * held.frames[1]];
+        let pair = Pair::new(place, held.ends, on);
+        rows.extend(held.crossed.and_then(|[first, second]| pair.crossed(first, second)));
+        rows.extend(pair.rows(&held.wrenches));
+        if let Some(w) = held.measure {
+            rows.push(Row { rate_of: Some(rates), ..pair.row(w) });
+            rates += 1;
+        }
+    }
+    let mut gap = Gap::default();
+    for row in &rows {
+        gap.widen(row.unit, row.residual);
+    }
+    Ok((rows, rated, gap))
+}
+
+/// The two frames of a closing joint or contact.
+pub(super) struct Pair {
+    place: usize,
+    ends: [usize; 2],
+    world_from_a: Pose,
+    world_from_b: Pose,
+    /// Where the second frame is, and how it is turned, seen from the first.
+    offset: Vec3,
+    turn: Vec3,
+}
+
+impl Pair {
+    pub(super) fn new(
+        place: usize,
+        ends: [usize; 2],
+        [world_from_a, world_from_b]: [Pose; 2],
+    ) -> Self {
+        let a_from_b = world_from_a.inverse() * world_from_b;
+        let (offset, turn) = (a_from_b.translation, a_from_b.rotation.log());
+        Self { place, ends, world_from_a, world_from_b, offset, turn }
+    }
+
+    /// The rows of all that is held.
+    pub(super) fn rows(&self, held: &[Wrench]) -> Vec<Row> {
+        let tilt = self.tilt(held);
+        held.iter().map(|w| Row { residual: self.residual(*w, tilt), ..self.row(*w) }).collect()
+    }
+
+    /// How far it is open along and about `held`.
+    pub(super) fn gap(&self, held: &[Wrench]) -> Gap {
+        let tilt = self.tilt(held);
+        let mut gap = Gap::default();
+        held.iter().for_each(|w| gap.widen(unit(*w), self.residual(*w, tilt)));
+        gap
+    }
+
+    /// Where two moments are held, they hold the direction of the axis across them, and residuals
+    /// about them are those of the shortest turn of that axis: rates of the whole turn would be
+    /// right only where the joint is at zero.
+    fn tilt(&self, held: &[Wrench]) -> Option<Vec3> {
+        let mut moments = held.iter().filter(|w| unit(**w) == Unit::Angle).map(|w| w.moment);
+        let (Some(first), Some(second), None) = (moments.next(), moments.next(), moments.next())
+        else {
+            return None;
+        };
+        let axis = first.cross(second);
+        let turned = self.world_from_a.rotation.inverse() * (self.world_from_b.rotation * axis);
+        let across = axis.cross(turned);
+        Some(across.unit(0.0)? * across.norm().atan2(axis.dot(turned)))
+    }
+
+    fn residual(&self, held: Wrench, tilt: Option<Vec3>) -> f64 {
+        match (unit(held), tilt) {
+            (Unit::Angle, Some(tilt)) => held.moment.dot(tilt),
+            _ => held.force.dot(self.offset) + held.moment.dot(self.turn),
+        }
+    }
+
+    /// What holds `held`, a wrench in the first frame, as if it were closed: forces act where the second one is.
+    fn row(&self, held: Wrench) -> Row {
+        let at = Pose {
+            rotation: self.world_from_a.rotation,
+            translation: self.world_from_b.translation,
+        };
+        Row {
+            wrench: at.coadjoint(held),
+            pair: self.place,
+            a: self.ends[0],
+            b: self.ends[1],
+            unit: unit(held),
+            rate_of: None,
+            residual: 0.0,
+        }
+    }
+
+    /// The moment of a universal joint: normal to an axis of either body, wherever they have
+    /// turned, whose angle is held.
+    fn crossed(&self, first: Vec3, second: Vec3) -> Option<Row> {
+        let turned = self.world_from_a.rotation.inverse() * (self.world_from_b.rotation * second);
+        let across = first.cross(turned);
+        let normal = across.unit(0.0)?;
+        let residual = (first.dot(second) - first.dot(turned)) / across.norm();
+        Some(Row { residual, ..self.row(Wrench { force: Vec3::ZERO, moment: normal }) })
+    }
+}
+
+/// What a wrench measures: lengths where there is a force.
+pub(super) fn unit(wrench: Wrench) -> Unit {
+    if wrench.force == Vec3::ZERO { Unit::Angle } else { Unit::Length }
+}

@@ -1,0 +1,145 @@
+//! The inverses of many Jacobians in one call.
+//!
+//! Formula  those of the single inverses, to the bit
+//! Shapes   J: N x m x n, inverses: N x n x m, singular values: N x min(m, n); all row-major
+//! Units    those of the Jacobians
+//! Valid    as the method; selectively damped least squares for unit motions along every direction
+//! Why so   numbers in arrays, without the directions that were dropped: a report for each of many
+//!          is an allocation for each of its parts
+//! Checked  tests/it/inverse_batch.rs
+
+use rayon::prelude::*;
+
+use super::Method;
+use super::report::rank;
+use crate::error::{Error, Result};
+use crate::linalg::{Matrix, Rank, Svd};
+
+/// One way to invert Jacobians of one shape, many in one call.
+///
+/// Calls with more than [`Batch::ALONE`] of them use the threads of rayon (`RAYON_NUM_THREADS`, or
+/// `ThreadPool::install` around the call); results do not depend on how many there are.
+///
+/// ```
+/// use cylindroid::inverse::Batch;
+/// use cylindroid::{Method, Reference, kinematics};
+///
+/// let robot = cylindroid::load("panda")?;
+/// let q = [robot.home(), robot.home()].concat();
+/// let jacobians = kinematics::Batch::new(&robot, robot.tool()).jacobians(&q, Reference::Local)?;
+/// let inverses = Batch::new(Method::default(), 6, robot.n())?.inverses(&jacobians)?;
+/// assert_eq!(inverses.matrices.len(), 2 * robot.n() * 6);
+/// assert!(inverses.ranks.iter().all(|r| r.rank == 6));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Batch {
+    method: Method,
+    rows: usize,
+    cols: usize,
+}
+
+/// Inverses and what was done to get them; see [`Inverse`](super::Inverse) for one with more.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inverses {
+    /// The inverses, N x n x m row-major: rates = matrix * task.
+    pub matrices: Vec<f64>,
+    /// The singular values of the Jacobians, N x min(m, n), largest first.
+    pub singular_values: Vec<f64>,
+    /// For each the number of directions of which at least one half is realised, with threshold
+    /// and gap as in [`Inverse`](super::Inverse).
+    pub ranks: Vec<Rank>,
+}
+
+impl Batch {
+    /// Jacobians that one thread takes at once, some tenths of a millisecond of work: calls with no
+    /// more stay on the thread of the caller.
+    pub const ALONE: usize = 256;
+
+    /// For Jacobians of `rows` x `cols`.
+    ///
+    /// # Errors
+    /// Numbers outside the method's domain; Jacobians without entries.
+    pub fn new(method: Method, rows: usize, cols: usize) -> Result<Self> {
+        method.check()?;
+        if rows == 0 || cols == 0 {
+            return Err(Error::InvalidOption {
+                option: "shape",
+                value: format!("{rows} x {cols}"),
+                reason: "a Jacobian in a batch has rows and columns".to_owned(),
+            });
+        }
+        Ok(Self { method, rows, cols })
+    }
+
+    /// The inverse of each Jacobian.
+    ///
+    /// # Errors
+    /// Numbers that are not a whole number of Jacobians; an entry that is not finite.
+    pub fn inverses(&self, jacobians: &[f64]) -> Result<Inverses> {
+        let (each, values) = (self.rows * self.cols, self.rows.min(self.cols));
+        let count = jacobians.len() / each;
+        if count * each != jacobians.len() {
+            return Err(Error::Dimension {
+                what: "J".to_owned(),
+                expected: jacobians.len().next_multiple_of(each),
+                got: jacobians.len(),
+                hint: format!("{each} for each Jacobian"),
+            });
+        }
+        if let Some(i) = jacobians.iter().position(|x| !x.is_finite()) {
+            let (row, column) = (i % each / self.cols, i % self.cols);
+            return Err(Error::NotFinite {
+                what: format!("entry ({row}, {column}) of J[{}]", i / each),
+                value: jacobians[i],
+            });
+        }
+        let mut inverses = Inverses {
+            matrices: vec![0.0; jacobians.len()],
+            singular_values: vec![0.0; count * values],
+            ranks: vec![Rank { rank: 0, threshold: 0.0, gap: 0.0 }; count],
+        };
+        let Inverses { matrices, singular_values, ranks } = &mut inverses;
+        if count <= Self::ALONE {
+            self.chunk(jacobians, matrices, singular_values, ranks);
+        } else {
+            jacobians
+                .par_chunks(Self::ALONE * each)
+                .zip(matrices.par_chunks_mut(Self::ALONE * each))
+                .zip(singular_values.par_chunks_mut(Self::ALONE * values))
+                .zip(ranks.par_chunks_mut(Self::ALONE))
+                .for_each(|(((j, m), s), r)| self.chunk(j, m, s, r));
+        }
+        Ok(inverses)
+    }
+
+    /// On one thread.
+    fn chunk(
+        &self,
+        jacobians: &[f64],
+        matrices: &mut [f64],
+        values: &mut [f64],
+        ranks: &mut [Rank],
+    ) {
+        let (m, n) = (self.rows, self.cols);
+        let mut svd = Svd::workspace(m, n);
+        let mut gains = vec![0.0; svd.len()];
+        let mut j = Matrix::zeros(m, n);
+        let all = jacobians.chunks_exact(m * n).zip(matrices.chunks_exact_mut(m * n));
+        for ((from, to), (values, report)) in all.zip(values.chunks_exact_mut(svd.len()).zip(ranks))
+        {
+            for (i, row) in from.chunks_exact(n).enumerate() {
+                row.iter().enumerate().for_each(|(k, x)| j[(i, k)] = *x);
+            }
+            svd.decompose(&j);
+            let threshold = self.method.gains(&svd, &[], &mut gains);
+            *report = rank(&svd, &gains, threshold);
+            for (i, (gain, value)) in gains.iter().zip(values).enumerate() {
+                *value = svd.value(i);
+                for (row, v) in to.chunks_exact_mut(m).zip(svd.v(i)) {
+                    row.iter_mut().zip(svd.u(i)).for_each(|(x, u)| *x += gain * u * v);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! The smallest and the largest eigenvalue of symmetric matrices that are not negative.
+//!
+//! Formula  A to a tridiagonal T by reflections; Laguerre's steps on det(T - t) from outside all
+//!          eigenvalues, its pivots `p_i = d_i - t - e_{i-1}^2 / p_{i-1}`
+//! Shapes   A: n x n, the lower triangle is read; d: n, e: n - 1
+//! Valid    eigenvalues are right to a few roundings of the largest: the smallest to fewer digits
+//!          of its own
+//! Fails    not a number where the steps do not settle within [`MOST_STEPS`]
+//! Why so   singular_values.rs has the same steps for one matrix; here the matrix is squared, which
+//!          costs the small values digits and saves half the work. A value that was passed is
+//!          confirmed by the signs of the pivots on both sides of it
+//! Source   Wilkinson, The Algebraic Eigenvalue Problem, ch. 5 and 7
+//! Checked  tests::agrees_with_single
+
+use super::{add_times, dot, reflector};
+use crate::scalar::Field;
+
+/// Laguerre's steps at the most; seven are usual.
+const MOST_STEPS: usize = 40;
+
+/// Half of what an eigenvalue is found to, relative to a bound of the largest.
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+/// By so many of these at the most an eigenvalue is passed by rounding.
+const MOST_BACK: f64 = 20.0;
+
+/// Adding and subtracting it rounds to a whole number.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// How near to a whole number what seems that many eigenvalues must come.
+const NEAR_WHOLE: f64 = 0.05;
+
+/// An end of the spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    Smallest,
+    Largest,
+}
+
+/// Diagonal and squares of the off-diagonal of T; `a`, n x n, is used up, `product` holds n.
+#[inline(always)]
+pub(crate) fn tridiagonal<R: Field>(
+    a: &mut [R],
+    diagonal: &mut [R],
+    squares: &mut [R],
+    product: &mut [R],
+) {
+    let n = diagonal.len();
+    for j in 0..n {
+        let (head, rest) = a.split_at_mut((j + 1) * n);
+        diagonal[j] = head[j * n + j];
+        if j + 1 == n {
+            break;
+        }
+        let v = &mut head[j * n + j + 1..];
+        if j + 2 == n {
+            squares[j] = v[0] * v[0];
+            continue;
+        }
+        let (off, factor) = reflector(v);
+        squares[j] = off * off;
+        // p = factor A v, by the lower triangle alone.
+        let p = &mut product[j + 1..n];
+        p.fill(R::splat(0.0));
+        times_symmetric(rest, n, v, p);
+        for x in &mut *p {
+            *x = *x * factor;
+        }
+        let half = R::splat(-0.5) * factor * dot(p, v);
+        add_times(p, half, v);
+        subtract_both(rest, n, v, p);
+    }
+}
+
+/// `p <- p + A v`, A the lower triangle at the end of columns of length n; two columns at a time,
+/// so that p and v are read half as often.
+#[inline(always)]
+fn times_symmetric<R: Field>(columns: &[R], n: usize, v: &[R], p: &mut [R]) {
+    let m = v.len();
+    let mut c = 0;
+    while c + 1 < m {
+        let a = &columns[(c + 1) * n - m + c..(c + 1) * n];
+        let b = &columns[(c + 2) * n - m + c + 1..(c + 2) * n];
+        let (x, y) = (v[c], v[c + 1]);
+        let mut first = a[1].times_plus(y, a[0].times_plus(x, p[c]));
+        let mut second = a[1].times_plus(x, b[0].times_plus(y, p[c + 1]));
+        let rows = p[c + 2..].iter_mut().zip(&v[c + 2..]);
+        for (((p, v), a), b) in rows.zip(&a[2..]).zip(&b[1..]) {
+            *p = a.times_plus(x, b.times_plus(y, *p));
+            first = a.times_plus(*v, first);
+            second = b.times_plus(*v, second);
+        }
+        (p[c], p[c + 1]) = (first, second);
+        c += 2;
+    }
+    if c < m {
+        p[c] = columns[(c + 1) * n - 1].times_plus(v[c], p[c]);
+    }
+}
+
+/// `A <- A - v p^T - p v^T` of the same triangle.
+#[inline(always)]
+fn subtract_both<R: Field>(columns: &mut [R], n: usize, v: &[R], p: &[R]) {
+    let m = v.len();
+    let mut c = 0;
+    while c + 1 < m {
+        let (head, tail) = columns.split_at_mut((c + 1) * n);
+        let a = &mut head[(c + 1) * n - m + c..];
+        let b = &mut tail[n - m + c + 1..n];
+        let (va, pa, vb, pb) = (-v[c], -p[c], -v[c + 1], -p[c + 1]);
+        a[0] = va.times_plus(p[c], pa.times_plus(v[c], a[0]));
+        let rows = v[c + 1..].iter().zip(&p[c + 1..]);
+        for (((v, p), a), b) in rows.zip(&mut a[1..]).zip(b) {
+            *a = va.times_plus(*p, pa.times_plus(*v, *a));
+            *b = vb.times_plus(*p, pb.times_plus(*v, *b));
+        }
+        c += 2;
+    }
+    if c < m {
+        let last = &mut columns[(c + 1) * n - 1];
+        *last = (-v[c]).times_plus(p[c] + p[c], *last);
+    }
+}
+
+/// The eigenvalues at these ends.
+#[inline(always)]
+pub(crate) fn extreme_eigenvalues<R: Field, const E: usize>(
+    diagonal: &[R],
+    squares: &[R],
+    ends: [End; E],
+) -> [R; E] {
+    let k = R::splat;
+    let (zero, one, half) = (k(0.0), k(1.0), k(0.5));
+    let n = k(diagonal.len() as f64);
+    let bound = bound(diagonal, squares);
+    let noise = bound * k(ROUNDING);
+    // Where each end stands, and stood last on its side; how far to go back from beyond it.
+    let (mut t, mut before, mut back) = ([zero; E], [zero; E], [noise; E]);
+    for e in 0..E {
+        if ends[e] == End::Largest {
+            t[e] = bound * k(1.0 + 1e-12);
+            back[e] = -noise;
+        }
+    }
+    // How near to a whole number what seems that many values must come; 1 where rounding alone was
+    // passed, 1 where all is done.
+    let (mut near, mut passed, mut done) = ([k(NEAR_WHOLE); E], [zero; E], [zero; E]);
+    for _ in 0..MOST_STEPS {
+        let slopes = logarithmic_derivatives(diagonal, squares, &t, &ends);
+        let mut all = one;
+        for e in 0..E {
+            let Slopes { g, h, least } = slopes[e];
+            let seem = g * g / h;
+            let whole = (seem + k(ROUND)) - k(ROUND);
+            let whole = R::where_less(whole, one, one, whole);
+            let several = R::where_less((seem - whole).size(), near[e], whole, one);
+            let inner = (n - several) / several * n.times_plus(h, -(g * g));
+            let step = n / (g + inner.larger(zero).root().signed_as(g));
+            let beyond = R::where_less(zero, least, zero, one);
+            // By rounding, or by taking several values for one?
+            let rounding = R::where_less(back[e].size(), noise * k(MOST_BACK), beyond, zero);
+            let again = R::where_less(rounding, beyond, one, zero);
+            let settled = R::where_less(step.size(), noise, one, passed[e]);
+            let ends_here = R::where_less(half, beyond, zero, settled);
+            let forward = R::where_less(half, passed[e], t[e], t[e] - step);
+            let next = R::where_less(half, beyond, t[e] - back[e], forward);
+            let next = R::where_less(half, again, before[e], next);
+            before[e] = R::where_less(half, beyond, before[e], t[e]);
+            passed[e] = R::where_less(half, beyond, rounding, passed[e]);
+            near[e] = R::where_less(half, again, near[e] * k(0.01), near[e]);
+            let more = R::where_less(half, beyond, back[e] * k(4.0), back[e]);
+            back[e] = R::where_less(half, again, noise.signed_as(more), more);
+            t[e] = R::where_less(half, done[e], t[e], next);
+            done[e] = ends_here.larger(done[e]);
+            all = R::where_less(half, done[e], all, zero);
+        }
+        if (one - all).all_within(0.0) {
+            break;
+        }
+    }
+    for e in 0..E {
+        t[e] = R::where_less(half, done[e], t[e], k(f64::NAN));
+    }
+    t
+}
+
+/// Gershgorin's bound of the largest eigenvalue.
+#[inline(always)]
+fn bound<R: Field>(diagonal: &[R], squares: &[R]) -> R {
+    let mut bound = R::splat(0.0);
+    let mut before = R::splat(0.0);
+    for (i, d) in diagonal.iter().enumerate() {
+        let after = match squares.get(i) {
+            Some(s) => s.root(),
+            None => R::splat(0.0),
+        };
+        bound = bound.larger(*d + before + after);
+        before = after;
+    }
+    bound
+}
+
+/// First and second derivative by t of log |det(T - t)|, the second with the other sign; the least
+/// of the pivots in the sense of the end: below zero where t has passed an eigenvalue.
+#[derive(Debug, Clone, Copy)]
+struct Slopes<R> {
+    g: R,
+    h: R,
+    least: R,
+}
+
+#[inline(always)]
+fn logarithmic_derivatives<R: Field, const E: usize>(
+    diagonal: &[R],
+    squares: &[R],
+    t: &[R; E],
+    ends: &[End; E],
+) -> [Slopes<R>; E] {
+    let k = R::splat;
+    let (zero, one) = (k(0.0), k(1.0));
+    let mut sums = [Slopes { g: zero, h: zero, least: k(f64::MAX) }; E];
+    // Over the pivot before: the square beside it; its first and second derivative.
+    let mut last = [(zero, zero, zero); E];
+    for (i, d) in diagonal.iter().enumerate() {
+        for e in 0..E {
+            let (weight, g, c) = last[e];
+            let pivot = (*d - t[e]) - weight;
+            let inverse = one / pivot;
+            let first = weight.times_plus(g, -one) * inverse;
+            let second = weight * (c - k(2.0) * g * g) * inverse;
+            sums[e].g = sums[e].g + first;
+            sums[e].h = sums[e].h + first.times_plus(first, -second);
+            let signed = if ends[e] == End::Smallest { pivot } else { -pivot };
+            // Not a number stays.
+            sums[e].least = R::where_less(sums[e].least, signed, sums[e].least, signed);
+            let square = match squares.get(i) {
+                Some(s) => *s,
+                None => zero,
+            };
+            last[e] = (square * inverse, first, second);
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{abreast, four};
+    use super::*;
+    use crate::linalg::{Matrix, Svd};
+
+    fn ends<R: Field>(squares: &mut [R], n: usize) -> [R; 2] {
+        let zero = R::splat(0.0);
+        let (mut d, mut e, mut p) = (vec![zero; n], vec![zero; n], vec![zero; n]);
+        tridiagonal(squares, &mut d, &mut e[..n - 1], &mut p);
+        extreme_eigenvalues(&d, &e[..n - 1], [End::Smallest, End::Largest])
+    }
+
+    #[test]
+    fn agrees_with_single() {
+        for round in 0..400 {
+            let n = 1 + round % 21;
+            let mut roots = four(n, n, round as u64);
+            // All alike; two alike at either end; a small one.
+            roots[1] = Matrix::identity(n);
+            roots[2] = Matrix::diagonal(
+                &(0..n).map(|i| (i.clamp(1, n.max(4) - 2)) as f64).collect::<Vec<_>>(),
+            );
+            roots[3].column_mut(0).iter_mut().for_each(|x| *x *= 1e-3);
+            let squares = roots.clone().map(|a| &a * &a.transpose());
+            let got = ends(&mut abreast(&squares), n);
+            for (l, a) in roots.iter().enumerate() {
+                let svd = Svd::of(a);
+                let expected = [svd.value(n - 1).powi(2), svd.value(0).powi(2)];
+                let got = got.map(|x| x.0[l]);
+                let alone = ends(&mut squares[l].as_slice().to_vec(), n);
+                for e in 0..2 {
+                    assert_eq!(got[e].to_bits(), alone[e].to_bits(), "{round} {l}");
+                    let error = (got[e] - expected[e]).abs() / expected[1];
+                    assert!(error < 1e-14 * n as f64, "{round} {l}: {got:?} {expected:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Decompositions of several small matrices of one shape side by side, a lane for each: the same
+//! steps in the same order whatever the entries.
+//!
+//! Shapes   columns one after the other, each entry a number of lanes
+//! Valid    finite entries, of a size whose squares neither overflow nor vanish
+//! Fails    lane by lane: entries that are not numbers, or whose steps do not settle, give results
+//!          that are not numbers; other lanes do not see it, and come out the same to the bit
+//! Why so   no pivots: lanes would want different ones. What a pivot would find out, the caller
+//!          has to see in the results, and hand that lane to a decomposition that looks
+//! Checked  below, against the decompositions of single matrices
+
+mod extremes;
+mod reflections;
+mod values;
+
+pub(crate) use extremes::{End, extreme_eigenvalues, tridiagonal};
+pub(crate) use reflections::{Reflections, divide_by_upper};
+pub(crate) use values::singular_values;
+
+pub(crate) use super::jacobi::tournament;
+use crate::scalar::Field;
+
+/// Scalar product of vectors of one length.
+#[inline(always)]
+fn dot<R: Field>(a: &[R], b: &[R]) -> R {
+    // Two sums, since each product waits for the last one of its sum.
+    let mut sums = [R::splat(0.0); 2];
+    let (a, a_rest) = a.as_chunks::<2>();
+    let (b, b_rest) = b.as_chunks::<2>();
+    for (x, y) in a.iter().zip(b) {
+        sums[0] = x[0].times_plus(y[0], sums[0]);
+        sums[1] = x[1].times_plus(y[1], sums[1]);
+    }
+    for (x, y) in a_rest.iter().zip(b_rest) {
+        sums[0] = x.times_plus(*y, sums[0]);
+    }
+    sums[0] + sums[1]
+}
+
+/// `y <- y + s x`
+#[inline(always)]
+fn add_times<R: Field>(y: &mut [R], s: R, x: &[R]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y = s.times_plus(*x, *y);
+    }
+}
+
+/// Turns `x` into the vector v of the reflection `1 - factor v v^T` that takes it to a multiple of
+/// the first axis; gives the multiple and the factor. Nothing is done to a zero.
+#[inline(always)]
+fn reflector<R: Field>(x: &mut [R]) -> (R, R) {
+    let zero = R::splat(0.0);
+    let square = dot(x, x);
+    let target = -square.root().signed_as(x[0]);
+    x[0] = x[0] - target;
+    let factor = R::splat(-1.0) / (target * x[0]);
+    (target, R::where_less(zero, square, factor, zero))
+}
+
+/// `x <- (1 - factor v v^T) x` of entries `from..` of columns of length n, four at a time: none of
+/// their sums waits for the others, and v is read once.
+#[inline(always)]
+fn reflect<R: Field>(columns: &mut [R], n: usize, from: usize, v: &[R], factor: R) {
+    let m = v.len();
+    let mut fours = columns.chunks_exact_mut(4 * n);
+    for four in &mut fours {
+        let (one, rest) = four.split_at_mut(n);
+        let (two, rest) = rest.split_at_mut(n);
+        let (three, four) = rest.split_at_mut(n);
+        let (one, two) = (&mut one[from..][..m], &mut two[from..][..m]);
+        let (three, four) = (&mut three[from..][..m], &mut four[from..][..m]);
+        let mut along = [R::splat(0.0); 4];
+        for i in 0..m {
+            along[0] = one[i].times_plus(v[i], along[0]);
+            along[1] = two[i].times_plus(v[i], along[1]);
+            along[2] = three[i].times_plus(v[i], along[2]);
+            along[3] = four[i].times_plus(v[i], along[3]);
+        }
+        for x in &mut along {
+            *x = -(factor * *x);
+        }
+        for i in 0..m {
+            one[i] = along[0].times_plus(v[i], one[i]);
+            two[i] = along[1].times_plus(v[i], two[i]);
+            three[i] = along[2].times_plus(v[i], three[i]);
+            four[i] = along[3].times_plus(v[i], four[i]);
+        }
+    }
+    for column in fours.into_remainder().chunks_exact_mut(n) {
+        let x = &mut column[from..][..m];
+        let along = factor * dot(v, x);
+        add_times(x, -along, v);
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use crate::linalg::Matrix;
+    use crate::scalar::{Array, Real, uniform};
+
+    pub(crate) type Four = Array<4>;
+
+    /// Four matrices of numbers in [-1, 1).
+    pub(crate) fn four(rows: usize, cols: usize, seed: u64) -> [Matrix; 4] {
+        let mut state = seed;
+        std::array::from_fn(|_| Matrix::from_fn(rows, cols, |_, _| 2.0 * uniform(&mut state) - 1.0))
+    }
+
+    pub(crate) fn abreast(four: &[Matrix; 4]) -> Vec<Four> {
+        (0..four[0].as_slice().len()).map(|i| Four::from_fn(|l| four[l].as_slice()[i])).collect()
+    }
+}

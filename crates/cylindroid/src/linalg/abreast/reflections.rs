@@ -1,0 +1,113 @@
+//! Orthogonal and triangular factors, without pivots.
+//!
+//! Formula  A = Q R by reflections; K the last columns of Q; Y = X R^-1
+//! Shapes   A: n x columns, of which the first `steps` are reduced, the others turned along;
+//!          K: n x (n - steps); X, Y: any number of rows of R's size
+//! Checked  tests::agrees_with_single
+
+use super::{dot, reflect, reflector};
+use crate::scalar::Field;
+
+/// What the first columns were reduced by.
+#[derive(Debug)]
+pub(crate) struct Reflections<'a, R> {
+    /// Length of the columns.
+    pub(crate) n: usize,
+    /// `A` in, out of it columns whose entry i is in row i of `Q^T A`; those that were reduced hold
+    /// R above their diagonal, and the vectors of the reflections from there on.
+    pub(crate) columns: &'a mut [R],
+    /// The diagonal of R: one for each column that is reduced.
+    pub(crate) diagonal: &'a mut [R],
+    /// The factors of the reflections, as many.
+    pub(crate) factors: &'a mut [R],
+}
+
+impl<R: Field> Reflections<'_, R> {
+    /// Reduces as many columns as there are places for a diagonal.
+    #[inline(always)]
+    pub(crate) fn run(&mut self) {
+        let n = self.n;
+        for j in 0..self.diagonal.len() {
+            let (head, rest) = self.columns.split_at_mut((j + 1) * n);
+            let v = &mut head[j * n + j..];
+            let (diagonal, factor) = reflector(v);
+            (self.diagonal[j], self.factors[j]) = (diagonal, factor);
+            reflect(rest, n, j, v, factor);
+        }
+    }
+
+    /// What is orthogonal to the columns that were reduced: orthonormal columns.
+    #[inline(always)]
+    pub(crate) fn complement(&self, out: &mut [R]) {
+        let (n, steps) = (self.n, self.diagonal.len());
+        out.fill(R::splat(0.0));
+        for (l, column) in out.chunks_exact_mut(n).enumerate() {
+            column[steps + l] = R::splat(1.0);
+        }
+        for j in (0..steps).rev() {
+            reflect(out, n, j, &self.columns[j * n + j..(j + 1) * n], self.factors[j]);
+        }
+    }
+}
+
+/// Every row x of `rows`, as long as the diagonal of R, to `x R^-1`. `columns` hold R above its
+/// diagonal, each of length n.
+#[inline(always)]
+pub(crate) fn divide_by_upper<R: Field>(rows: &mut [R], columns: &[R], n: usize, diagonal: &[R]) {
+    let k = diagonal.len();
+    for (l, d) in diagonal.iter().enumerate() {
+        let inverse = R::splat(1.0) / *d;
+        let above = &columns[l * n..l * n + l];
+        for row in rows.chunks_exact_mut(k) {
+            row[l] = (row[l] - dot(&row[..l], above)) * inverse;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{Four, abreast, four};
+    use super::*;
+    use crate::linalg::{ColumnSpace, Matrix, Threshold};
+    use crate::scalar::Real;
+
+    #[test]
+    fn agrees_with_single() {
+        let a = four(7, 4, 5);
+        let mut columns = abreast(&a);
+        let zero = Four::splat(0.0);
+        let (mut diagonal, mut factors) = ([zero; 4], [zero; 4]);
+        let mut all = Reflections {
+            n: 7,
+            columns: &mut columns,
+            diagonal: &mut diagonal,
+            factors: &mut factors,
+        };
+        all.run();
+        let mut k = vec![zero; 7 * 3];
+        all.complement(&mut k);
+        let mut rows = abreast(&four(2, 4, 8).map(|m| m.transpose()));
+        divide_by_upper(&mut rows, &columns, 7, &diagonal);
+        for (l, a) in a.iter().enumerate() {
+            let kernel = Matrix::from_fn(7, 3, |i, j| k[j * 7 + i].0[l]);
+            assert!((&kernel.transpose() * a).max_abs() < 1e-15 * 20.0);
+            let one = &kernel.transpose() * &kernel;
+            assert!(one.max_difference(&Matrix::identity(3)) < 1e-14);
+            let own = ColumnSpace::of(a, Threshold::Relative(1e-9)).complement();
+            let cross = &own.transpose() * &kernel;
+            let one = &cross.transpose() * &cross;
+            assert!(one.max_difference(&Matrix::identity(3)) < 1e-13);
+            // X = Y R
+            let r = Matrix::from_fn(4, 4, |i, j| match i.cmp(&j) {
+                std::cmp::Ordering::Less => columns[j * 7 + i].0[l],
+                std::cmp::Ordering::Equal => diagonal[j].0[l],
+                std::cmp::Ordering::Greater => 0.0,
+            });
+            let y = Matrix::from_fn(2, 4, |i, j| rows[i * 4 + j].0[l]);
+            let x = &four(2, 4, 8)[l];
+            assert!((&y * &r).max_difference(x) < 1e-13);
+            let square = &r.transpose() * &r;
+            assert!(square.max_difference(&(&a.transpose() * a)) < 1e-13);
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Singular values by one-sided Jacobi rotations.
+//!
+//! Formula  columns turned in pairs until all are orthogonal; their lengths are the values
+//! Shapes   A: rows x columns, rows >= columns is not asked; a value for each column, in no order
+//! Valid    any rank: values are right to rounding times the largest, and where columns differ in
+//!          size alone to rounding times their own
+//! Why so   as in jacobi.rs. A lane whose columns are orthogonal is turned no further, whatever the
+//!          others still need
+//! Checked  tests::agrees_with_single
+
+use super::dot;
+use crate::scalar::Field;
+use crate::tolerance::JACOBI_ORTHOGONAL;
+
+/// Sweeps at the most: six are usual.
+const SWEEPS: usize = 30;
+
+/// Columns whose cosines are below the root of this before a sweep are orthogonal to rounding
+/// after it.
+const NEARLY: f64 = 0.25 * f64::EPSILON;
+
+/// The singular values of columns of length `rows`; the columns are turned. `pairs` are all pairs
+/// of columns, neighbours without a column in common: roots and quotients of several are then on
+/// their way at a time.
+#[inline(always)]
+pub(crate) fn singular_values<R: Field>(
+    columns: &mut [R],
+    rows: usize,
+    pairs: &[(usize, usize)],
+    values: &mut [R],
+) {
+    // Once more for twists, whose loops are then known.
+    match rows {
+        6 => of_length(columns, 6, pairs, values),
+        3 => of_length(columns, 3, pairs, values),
+        _ => of_length(columns, rows, pairs, values),
+    }
+}
+
+#[inline(always)]
+fn of_length<R: Field>(columns: &mut [R], rows: usize, pairs: &[(usize, usize)], values: &mut [R]) {
+    let k = R::splat;
+    let (zero, one) = (k(0.0), k(1.0));
+    // Cosines whose square is larger are turned away: none, in lanes that have come to an end.
+    let mut limit = k(JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL);
+    for _ in 0..SWEEPS {
+        // Squares of lengths are measured once a sweep, and kept up to date by the rotations.
+        for (value, column) in values.iter_mut().zip(columns.chunks_exact(rows)) {
+            *value = dot(column, column);
+        }
+        let mut oblique = zero;
+        for &(i, j) in pairs {
+            let (head, tail) = columns.split_at_mut(j * rows);
+            let (a, b) = (&mut head[i * rows..][..rows], &mut tail[..rows]);
+            let (aa, bb, ab) = (values[i], values[j], dot(a, b));
+            let (square, product) = (ab * ab, aa * bb);
+            let difference = bb - aa;
+            let double = ab + ab;
+            let h = difference.times_plus(difference, double * double).root();
+            let t = double.signed_as(double * difference) / (difference.size() + h);
+            let t = R::where_less(limit * product, square, t, zero);
+            let c = one / t.times_plus(t, one).root();
+            let s = c * t;
+            for (x, y) in a.iter_mut().zip(&mut *b) {
+                let (p, q) = (*x, *y);
+                *x = c.times_plus(p, -(s * q));
+                *y = s.times_plus(p, c * q);
+            }
+            values[i] = (-t).times_plus(ab, aa).larger(zero);
+            values[j] = t.times_plus(ab, bb);
+            oblique = R::where_less(k(NEARLY) * product, square, one, oblique);
+        }
+        limit = R::where_less(zero, oblique, limit, k(f64::MAX));
+        if oblique.all_within(0.0) {
+            break;
+        }
+    }
+    for (value, column) in values.iter_mut().zip(columns.chunks_exact(rows)) {
+        *value = dot(column, column).root();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{Four, abreast, four};
+    use super::*;
+    use crate::linalg::abreast::tournament;
+    use crate::linalg::{Matrix, Svd};
+    use crate::scalar::Real;
+
+    #[test]
+    fn agrees_with_single() {
+        for (rows, cols) in [(3, 2), (6, 6), (6, 3), (14, 8), (2, 1), (5, 4)] {
+            let mut a = four(rows, cols, 17);
+            a[1] = Matrix::zeros(rows, cols);
+            // Rank one, and columns of sizes far apart.
+            a[2] = Matrix::from_fn(rows, cols, |i, j| (i + 1) as f64 * (j + 1) as f64);
+            a[3] = Matrix::from_fn(rows, cols, |i, j| a[3][(i, j)] * 10.0_f64.powi(-3 * j as i32));
+            let mut columns = abreast(&a);
+            let mut values = vec![Four::splat(0.0); cols];
+            singular_values(&mut columns, rows, &tournament(cols), &mut values);
+            for (l, a) in a.iter().enumerate() {
+                let mut got: Vec<f64> = values.iter().map(|v| v.0[l]).collect();
+                got.sort_by(|x, y| y.total_cmp(x));
+                let svd = Svd::of(a);
+                for (g, e) in got.iter().zip(svd.values()) {
+                    let scale = if l == 3 { e } else { svd.value(0) };
+                    assert!((g - e).abs() <= 1e-14 * scale, "{rows} x {cols}, {l}: {g} and {e}");
+                }
+                // The same alone.
+                let mut alone: Vec<f64> = a.as_slice().to_vec();
+                let mut own = vec![0.0; cols];
+                singular_values(&mut alone, rows, &tournament(cols), &mut own);
+                let lane: Vec<f64> = values.iter().map(|v| v.0[l]).collect();
+                assert_eq!(own, lane, "{rows} x {cols}, {l}");
+            }
+        }
+    }
+}

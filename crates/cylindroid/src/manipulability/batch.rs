@@ -1,0 +1,408 @@
+//! Mobility and manipulability of a mechanism at many configurations.
+//!
+//! Formula  mobility.rs, singularity.rs, relation.rs and efficiency.rs, as far as numbers go
+//! Shapes   q: N x n, results: N rows of [`Batch::COLUMNS`]; row-major, n of the mechanism
+//! Units    gaps m and rad; counts and distances none; indices those of the metrics
+//! Frame    the reference frame's origin, world axes
+//! Valid    any mechanism. Where a distance to a singularity is below [`CLEAR_DISTANCE`], where an
+//!          axis or a loop is near to what a verdict hangs on, and where ordinary postures are
+//!          hyperstatic, idle or not held by the drives, the configuration is given to the analysis
+//!          of one: counts are always its own. Distances differ from its by at most 1e-13 over the
+//!          smallest of them, indices by 1e-12 relative over it, times the condition of the metrics
+//! Why so   what a designer plots over a workspace are numbers: without bases there is a tenth of
+//!          the work, and without pivots four configurations go the same way, one for each lane of
+//!          a register. Every configuration goes its way alone, whatever its place and the number
+//!          of threads, so results do not depend on them
+//! Checked  tests/it/manipulability/batch.rs
+
+use rayon::prelude::*;
+
+use super::efficiency::Manipulability;
+use super::lanes::{Found, Kernel};
+use super::metrics::Metrics;
+use crate::closure::{ClosedChain, Counts, Distances, Gap, Generic, Motions, Plan, Singularities};
+use crate::error::{Error, Result};
+use crate::kinematics::State;
+use crate::linalg::Matrix;
+use crate::model::{FrameId, Mechanism};
+use crate::tolerance::{CLEAR_DISTANCE, CLEARLY_NOTHING, CLOSED};
+
+/// How a batch measures.
+#[derive(Debug, Clone, Default)]
+pub struct BatchOptions {
+    /// The frame whose motion is the goal: the mechanism's reference by default.
+    pub reference: Option<FrameId>,
+    /// Characteristic length (m): the reach by default.
+    pub length: Option<f64>,
+    /// Metrics of twists and joint rates. Those of wrenches and torques are not used: the indices
+    /// are those of motion.
+    pub metrics: Metrics,
+    /// What ordinary postures have, which tells singular ones: looked for from the home
+    /// configuration by default ([`Generic::of`]).
+    pub generic: Option<Counts>,
+}
+
+/// Mobility and manipulability of a mechanism for many configurations in one call.
+///
+/// Calls with more than [`Batch::ALONE`] configurations use the threads of rayon
+/// (`RAYON_NUM_THREADS`, or `ThreadPool::install` around the call); results do not depend on how
+/// many there are.
+///
+/// ```
+/// use cylindroid::manipulability::{Batch, BatchOptions};
+///
+/// let stewart = cylindroid::load("stewart")?;
+/// let batch = Batch::new(&stewart, &BatchOptions::default())?;
+/// let q = [stewart.home(), stewart.home()].concat();
+/// let rows = batch.analyse(&q)?;
+/// let dof = Batch::column("dof").unwrap();
+/// assert_eq!(rows[Batch::WIDTH + dof], 6.0);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Batch {
+    mechanism: Mechanism,
+    reference: FrameId,
+    length: f64,
+    metrics: Metrics,
+    generic: Counts,
+    kernel: Option<Kernel>,
+}
+
+/// Results of one configuration, in the order of [`Batch::COLUMNS`].
+type Row = [f64; Batch::WIDTH];
+
+impl Batch {
+    /// Configurations that one thread takes at once, some tenths of a millisecond of work: calls
+    /// with no more stay on the thread of the caller.
+    pub const ALONE: usize = 128;
+
+    /// Numbers of a result.
+    pub const WIDTH: usize = Self::COLUMNS.len();
+
+    /// The names of the numbers of a result, those of the reports of one configuration:
+    /// - how far the loops are open (m, rad), and 1 where they are closed, else 0,
+    /// - the counts of mobility, from `redundancy` to `zero_torque` of the relation between driven
+    ///   joints and reference,
+    /// - the distances to singularities of each kind, 0 at one and infinite where there is nothing
+    ///   to lose,
+    /// - the kinematic index: product of the roots of the finite efficiencies, largest and
+    ///   smallest of them and their ratio; these three are not numbers where none is finite.
+    pub const COLUMNS: [&'static str; 19] = [
+        "gap_distance",
+        "gap_angle",
+        "closed",
+        "dof",
+        "redundancy",
+        "indeterminacy",
+        "coordinate",
+        "internal",
+        "zero_torque",
+        "hyperstatic",
+        "idle",
+        "type_i",
+        "type_ii",
+        "configuration_space",
+        "passive",
+        "volume",
+        "largest",
+        "smallest",
+        "anisotropy",
+    ];
+
+    /// The place of a number in a result.
+    #[must_use]
+    pub fn column(name: &str) -> Option<usize> {
+        Self::COLUMNS.iter().position(|c| *c == name)
+    }
+
+    /// For a mechanism.
+    ///
+    /// # Errors
+    /// As [`ClosedChain::of`]; metrics of the wrong size.
+    pub fn new(mechanism: &Mechanism, options: &BatchOptions) -> Result<Self> {
+        let BatchOptions { reference, length, ref metrics, generic } = *options;
+        let home = mechanism.state(mechanism.home())?;
+        let chain = ClosedChain::of(&home, reference, length)?;
+        let constraint = &chain.constraint;
+        let (length, reference) = (constraint.length(), chain.reference);
+        let (joints, object) = (constraint.actuated(), constraint.object());
+        metrics.check(joints, object)?;
+        let generic = match generic {
+            Some(counts) => counts,
+            None => Generic::of(&home, Some(reference), Some(length))?.counts,
+        };
+        let plan = Plan::of(mechanism, reference, length)?;
+        let clear = generic.rank == constraint.rows()
+            && generic.idle == 0
+            && generic.indeterminacy == 0
+            && joints > 0;
+        let factor = |scale: &[f64], metric: Option<&crate::linalg::Metric>| {
+            let mut factor = Matrix::diagonal(scale);
+            if let Some(metric) = metric {
+                metric.whiten_rows(&mut factor);
+            }
+            factor
+        };
+        let of_object = factor(&plan.object_scale, metrics.object.as_ref());
+        let of_joints = factor(&plan.actuated_scale, metrics.joint.as_ref());
+        let kernel = if clear { Kernel::new(plan, of_object, of_joints) } else { None };
+        let (mechanism, metrics) = (mechanism.clone(), metrics.clone());
+        Ok(Self { mechanism, reference, length, metrics, generic, kernel })
+    }
+
+    /// Numbers of a configuration: those of the mechanism.
+    #[must_use]
+    pub fn n(&self) -> usize {
+        self.mechanism.n()
+    }
+
+    /// The frame whose motion is measured.
+    #[must_use]
+    pub fn reference(&self) -> FrameId {
+        self.reference
+    }
+
+    /// The characteristic length (m).
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// What ordinary postures have.
+    #[must_use]
+    pub fn generic(&self) -> Counts {
+        self.generic
+    }
+
+    /// The numbers of each configuration, N x [`Batch::WIDTH`].
+    ///
+    /// # Errors
+    /// A `q` that is not a whole number of configurations, or with an entry that is not finite.
+    pub fn analyse(&self, q: &[f64]) -> Result<Vec<f64>> {
+        let mut out = vec![0.0; self.mechanism.count_rows("q", q)? * Self::WIDTH];
+        self.analyse_into(q, &mut out)?;
+        Ok(out)
+    }
+
+    /// [`Batch::analyse`] into `out`.
+    ///
+    /// # Errors
+    /// As there; an `out` of another size.
+    pub fn analyse_into(&self, q: &[f64], out: &mut [f64]) -> Result<()> {
+        let count = self.mechanism.count_rows("q", q)?;
+        self.mechanism.check_rows("q", q)?;
+        if out.len() != count * Self::WIDTH {
+            return Err(Error::rows("results", count * Self::WIDTH, out.len(), Self::WIDTH));
+        }
+        let n = self.mechanism.n();
+        if n == 0 {
+            return Ok(());
+        }
+        let q = q.chunks(Self::ALONE * n);
+        let out = out.chunks_mut(Self::ALONE * Self::WIDTH);
+        if count > Self::ALONE {
+            let chunks: Vec<_> = q.zip(out).collect();
+            return chunks.into_par_iter().try_for_each(|(q, out)| self.chunk(q, out));
+        }
+        q.zip(out).try_for_each(|(q, out)| self.chunk(q, out))
+    }
+
+    /// On one thread.
+    fn chunk(&self, q: &[f64], out: &mut [f64]) -> Result<()> {
+        let n = self.mechanism.n();
+        let mut numbers = Vec::new();
+        let mut width = 0;
+        if let Some(kernel) = &self.kernel {
+            width = kernel.width();
+            numbers.resize(q.len() / n * width, 0.0);
+            kernel.run(q, n, &mut numbers);
+        }
+        let mut state: Option<State> = None;
+        for (i, (q, out)) in q.chunks(n).zip(out.chunks_mut(Self::WIDTH)).enumerate() {
+            let clear = self.kernel.as_ref().and_then(|kernel| {
+                self.clear(kernel, kernel.read(&numbers[i * width..(i + 1) * width]))
+            });
+            let row = match (clear, &mut state) {
+                (Some(row), _) => row,
+                (None, Some(state)) => {
+                    state.set(q)?;
+                    self.single(state)?
+                }
+                (None, none) => self.single(none.insert(self.mechanism.state(q)?))?,
+            };
+            out.copy_from_slice(&row);
+        }
+        Ok(())
+    }
+
+    /// By the analysis of one configuration.
+    fn single(&self, state: &State) -> Result<Row> {
+        let chain = ClosedChain::of(state, Some(self.reference), Some(self.length))?;
+        let motions = Motions::of(&chain.constraint);
+        let relation = motions.relation();
+        let singularities = Singularities::of(&motions, &relation, &self.generic);
+        let dimensions = relation.dimensions();
+        let spectrum = Manipulability::of(&relation, &self.metrics)?.kinematic;
+        let none = f64::NAN;
+        Ok(row(&Numbers {
+            gap: chain.gap,
+            closed: chain.gap.is_closed(self.length),
+            dof: motions.dof(),
+            coordinate: dimensions.coordinate,
+            internal: dimensions.internal,
+            hyperstatic: motions.hyperstatic(),
+            counts: Counts::of(&motions, &relation),
+            distances: singularities.distances,
+            volume: spectrum.volume(),
+            largest: spectrum.largest().unwrap_or(none),
+            smallest: spectrum.smallest().unwrap_or(none),
+        }))
+    }
+
+    /// From what the kernel found, where no count hangs on little.
+    fn clear(&self, kernel: &Kernel, found: Found<'_>) -> Option<Row> {
+        let plan = kernel.plan();
+        let gap = Gap { distance: found.distance, angle: found.angle };
+        let near = |x: f64, limit: f64| (x - limit).abs() < 1e-3 * limit;
+        if !found.usable || near(gap.distance, CLOSED * self.length) || near(gap.angle, CLOSED) {
+            return None;
+        }
+        if !(found.regularity > CLEAR_DISTANCE && found.share > CLEAR_DISTANCE) {
+            return None;
+        }
+        // Sines of the pairs: what is left of the rank, and the farthest from its loss.
+        let whole = |sigma: f64| (1.0 + sigma * sigma).sqrt();
+        let sine = |sigma: f64| sigma / whole(sigma);
+        let (mut coordinate, mut least, mut most) = (0, f64::INFINITY, 0.0_f64);
+        for &sigma in found.scaled {
+            if sine(sigma) > CLEAR_DISTANCE {
+                (coordinate, least, most) = (coordinate + 1, least.min(sigma), most.max(sigma));
+            } else if !(sigma <= CLEARLY_NOTHING) {
+                return None;
+            }
+        }
+        let cosine = 1.0 / whole(most);
+        if coordinate == 0 || !(cosine > CLEAR_DISTANCE) {
+            return None;
+        }
+        let (volume, smallest, largest) = measured(found.measured, coordinate)?;
+        let dof = kernel.dof();
+        let counts = Counts {
+            rank: plan.held() + plan.object(),
+            idle: 0,
+            redundancy: dof - coordinate,
+            indeterminacy: 0,
+            zero_torque: plan.object() - coordinate,
+        };
+        let here = Distances {
+            type_i: sine(least),
+            type_ii: cosine,
+            configuration_space: found.regularity,
+            passive: found.share,
+        };
+        Some(row(&Numbers {
+            gap,
+            closed: gap.is_closed(self.length),
+            dof,
+            coordinate,
+            internal: plan.actuated() - dof,
+            hyperstatic: 0,
+            counts,
+            distances: here.against(&counts, &self.generic),
+            volume,
+            largest,
+            smallest,
+        }))
+    }
+}
+
+/// Volume, smallest and largest efficiency of so many singular values, the others being nothing;
+/// `None` where they cannot be told apart.
+fn measured(values: &[f64], count: usize) -> Option<(f64, f64, f64)> {
+    /// What is kept is this much larger than what is not.
+    const APART: f64 = 1e3;
+    /// Components of a twist.
+    const MOST: usize = 6;
+    let mut sorted = [0.0; MOST];
+    let sorted = sorted.get_mut(..values.len())?;
+    sorted.copy_from_slice(values);
+    sorted.sort_unstable_by(|a, b| b.total_cmp(a));
+    let (kept, others) = sorted.split_at(count);
+    let (largest, smallest) = (*kept.first()?, *kept.last()?);
+    let rest = others.first().copied().unwrap_or(0.0);
+    (largest.is_finite() && smallest > APART * rest).then_some(())?;
+    Some((kept.iter().product(), smallest * smallest, largest * largest))
+}
+
+struct Numbers {
+    gap: Gap,
+    closed: bool,
+    dof: usize,
+    coordinate: usize,
+    internal: usize,
+    hyperstatic: usize,
+    counts: Counts,
+    distances: Distances,
+    volume: f64,
+    largest: f64,
+    smallest: f64,
+}
+
+fn row(n: &Numbers) -> Row {
+    let Counts { idle, redundancy, indeterminacy, zero_torque, .. } = n.counts;
+    let count = |n: usize| n as f64;
+    [
+        n.gap.distance,
+        n.gap.angle,
+        f64::from(u8::from(n.closed)),
+        count(n.dof),
+        count(redundancy),
+        count(indeterminacy),
+        count(n.coordinate),
+        count(n.internal),
+        count(zero_torque),
+        count(n.hyperstatic),
+        count(idle),
+        n.distances.type_i,
+        n.distances.type_ii,
+        n.distances.configuration_space,
+        n.distances.passive,
+        n.volume,
+        n.largest,
+        n.smallest,
+        n.largest / n.smallest,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closure::assemble;
+    use crate::model::catalogue;
+    use crate::scalar::uniform;
+
+    /// What is regular does not ask the analysis of one.
+    #[test]
+    fn ordinary_postures_are_clear() {
+        for name in ["five-bar", "stewart", "two-arm", "four-bar", "3rrr", "delta", "watt", "panda"]
+        {
+            let mechanism = catalogue::load(name).unwrap();
+            let batch = Batch::new(&mechanism, &BatchOptions::default()).unwrap();
+            let kernel = batch.kernel.as_ref().unwrap();
+            let mut random = 4;
+            let mut q = mechanism.home().to_vec();
+            for _ in 1..100 {
+                let guess: Vec<f64> =
+                    mechanism.home().iter().map(|x| x + uniform(&mut random) - 0.5).collect();
+                q.extend(assemble(&mechanism, &guess, &[]).unwrap().q);
+            }
+            let width = kernel.width();
+            let mut numbers = vec![0.0; 100 * width];
+            kernel.run(&q, mechanism.n(), &mut numbers);
+            let clear = |n: &&[f64]| batch.clear(kernel, kernel.read(n)).is_some();
+            let count = numbers.chunks(width).filter(clear).count();
+            assert!(count > 95, "{name}: {count} of 100");
+        }
+    }
+}

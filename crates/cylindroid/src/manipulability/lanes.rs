@@ -1,0 +1,393 @@
+//! The kernel of [`super::Batch`]: what decides the counts of a closed chain, and its indices, at
+//! several configurations side by side.
+//!
+//! Formula  rows [C; J] of lanes.rs in closure, scaled; C^T = Q [L^T; 0], K the last columns of Q;
+//!          K_a, the driven rows of K, = Q_a R_a; sigma_i the singular values of J K R_a^-1, which
+//!          takes driven rates of length one to the twist: pairs (s, c) = (sigma, 1) / hypot;
+//!          those of M = [C 0; J -1] from the eigenvalues of M M^T = [L 0; J Q -1][..]^T; the least
+//!          share of drives and object in a motion from the pencil of K_a^T K_a + J_K^T J_K and
+//!          1 + J_K^T J_K
+//! Shapes   C: t x m, J: d x m, K: m x k, k = m - t
+//! Units    none
+//! Valid    rows of C independent, driven rates not dependent on K: what else there is shows as a
+//!          number near zero, or as none, and the batch then asks the single analysis
+//! Why so   a basis K orthonormal to rounding needs no pivots as long as the rows are independent,
+//!          so lanes stay together
+//! Checked  tests/it/manipulability/batch.rs
+
+use crate::closure::Plan;
+use crate::kinematics::Frame;
+use crate::linalg::Matrix;
+use crate::linalg::abreast::{
+    End, Reflections, divide_by_upper, extreme_eigenvalues, singular_values, tournament,
+    tridiagonal,
+};
+use crate::scalar::{Array, Field};
+#[cfg(target_arch = "x86_64")]
+use crate::scalar::{Lanes4, has_avx2};
+use crate::spatial::Padded;
+
+/// Numbers before the singular values.
+const BEFORE: usize = 6;
+
+/// What does not change with the configuration.
+#[derive(Debug, Clone)]
+pub(super) struct Kernel {
+    plan: Box<Plan>,
+    /// `L_u^T D_u` and `L_q^T D_q`: from scaled coordinates to those in which metrics are one.
+    object: Matrix,
+    joint: Matrix,
+    /// The second where it is a multiple of the identity.
+    alike: Option<f64>,
+    /// All pairs of singular values.
+    pairs: Vec<(usize, usize)>,
+}
+
+/// What the kernel finds of a configuration.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Found<'a> {
+    /// How far loops are open (m, rad).
+    pub(super) distance: f64,
+    pub(super) angle: f64,
+    /// False where nothing else is to be used.
+    pub(super) usable: bool,
+    /// Smallest over largest singular value of the constraint.
+    pub(super) regularity: f64,
+    /// The least share of drives and object in a motion.
+    pub(super) share: f64,
+    /// Singular values from driven rates to the twist, scaled, and in the metrics; in no order.
+    pub(super) scaled: &'a [f64],
+    pub(super) measured: &'a [f64],
+}
+
+impl Kernel {
+    /// With the metrics as factors; `None` where motions of the loops leave nothing to decide, or
+    /// are more than the drives could set.
+    pub(super) fn new(plan: Plan, object: Matrix, joint: Matrix) -> Option<Self> {
+        let k = plan.columns().checked_sub(plan.held())?;
+        if k == 0 || k > plan.actuated() {
+            return None;
+        }
+        let first = joint[(0, 0)];
+        let same = Matrix::diagonal(&vec![first; joint.rows()]);
+        let alike = (joint == same).then_some(first);
+        let pairs = tournament(k.min(plan.object()));
+        Some(Self { plan: Box::new(plan), object, joint, alike, pairs })
+    }
+
+    /// Degrees of freedom k.
+    pub(super) fn dof(&self) -> usize {
+        self.plan.columns() - self.plan.held()
+    }
+
+    /// The plan.
+    pub(super) fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Number of singular values.
+    fn values(&self) -> usize {
+        self.dof().min(self.plan.object())
+    }
+
+    /// Numbers for each configuration.
+    pub(super) fn width(&self) -> usize {
+        BEFORE + 2 * self.values()
+    }
+
+    /// The numbers of a configuration, read.
+    pub(super) fn read<'a>(&self, numbers: &'a [f64]) -> Found<'a> {
+        let (scaled, measured) = numbers[BEFORE..].split_at(self.values());
+        Found {
+            distance: numbers[0],
+            angle: numbers[1],
+            usable: numbers[2] > 0.0,
+            regularity: (numbers[3] / numbers[4]).sqrt(),
+            share: numbers[5].sqrt(),
+            scaled,
+            measured,
+        }
+    }
+
+    /// The numbers of all configurations, as many at once as the processor can; `n` numbers each in
+    /// `q`.
+    pub(super) fn run(&self, q: &[f64], n: usize, out: &mut [f64]) {
+        #[cfg(target_arch = "x86_64")]
+        if has_avx2() {
+            #[allow(unsafe_code)] // the one way to call a function compiled for more
+            // SAFETY: the processor has both features, as just asked.
+            unsafe {
+                self.run_avx2(q, n, out);
+            }
+            return;
+        }
+        self.run_with::<Array<4>>(q, n, out);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn run_avx2(&self, q: &[f64], n: usize, out: &mut [f64]) {
+        self.run_with::<Lanes4>(q, n, out);
+    }
+
+    #[inline(always)]
+    fn run_with<R: Field>(&self, q: &[f64], n: usize, out: &mut [f64]) {
+        let width = self.width();
+        let mut scratch = Scratch::of(self, n);
+        let blocks = q.chunks(R::LANES * n).zip(out.chunks_mut(R::LANES * width));
+        for (q, out) in blocks {
+            // Lanes that are left over repeat the last configuration.
+            let rows = q.len() / n;
+            for (c, x) in scratch.q.iter_mut().enumerate() {
+                *x = R::from_fn(|l| q[l.min(rows - 1) * n + c]);
+            }
+            self.analyse(&mut scratch);
+            if rows == R::LANES {
+                R::scatter(&scratch.numbers, out, width);
+            } else {
+                let mut all = vec![0.0; R::LANES * width];
+                R::scatter(&scratch.numbers, &mut all, width);
+                out.copy_from_slice(&all[..rows * width]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn analyse<R: Field>(&self, s: &mut Scratch<R>) {
+        let plan = &*self.plan;
+        let (t, d, m, a) = (plan.held(), plan.object(), plan.columns(), plan.actuated());
+        let (k, values) = (self.dof(), self.values());
+        let written = plan.write(&s.q, &mut s.frames, &mut s.rows);
+        let mut loops = Reflections {
+            n: m,
+            columns: &mut s.rows,
+            diagonal: &mut s.diagonal,
+            factors: &mut s.factors,
+        };
+        loops.run();
+        loops.complement(&mut s.kernel);
+        for (i, x) in s.diagonal.iter().enumerate() {
+            s.rows[i * m + i] = *x;
+        }
+        // J K, a row for each component.
+        for (own, row) in s.twists.chunks_exact_mut(k).zip(s.rows[t * m..].chunks_exact(m)) {
+            own.copy_from_slice(&row[t..]);
+        }
+        for (own, column) in s.driven.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
+            own.copy_from_slice(&column[..a]);
+        }
+        let share = self.least_share(s);
+        s.ratios.copy_from_slice(&s.twists);
+        let mut upper = Reflections {
+            n: a,
+            columns: &mut s.driven,
+            diagonal: &mut s.driven_diagonal,
+            factors: &mut s.driven_factors,
+        };
+        upper.run();
+        divide_by_upper(&mut s.ratios, &s.driven, a, &s.driven_diagonal);
+        let (scaled, measured) = s.numbers[BEFORE..].split_at_mut(values);
+        columns_of(&s.ratios, k, &mut s.columns, d);
+        singular_values(&mut s.columns, k.max(d), &self.pairs, scaled);
+        // In the metrics. What is orthogonal in one is so nearly in the other: where it can be, the
+        // columns that were turned are the start.
+        if let (Some(alike), true) = (self.alike, k <= d) {
+            for (own, column) in s.ratios.chunks_exact_mut(d).zip(s.columns.chunks_exact(d)) {
+                times(&self.object, 1.0 / alike, column, 1, own);
+            }
+            s.columns.copy_from_slice(&s.ratios);
+        } else if let Some(alike) = self.alike {
+            times(&self.object, 1.0 / alike, &s.ratios, k, &mut s.columns);
+        } else {
+            times(&self.object, 1.0, &s.twists, k, &mut s.ratios);
+            for (own, column) in s.driven.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
+                times(&self.joint, 1.0, &column[..a], 1, own);
+            }
+            let mut upper = Reflections {
+                n: a,
+                columns: &mut s.driven,
+                diagonal: &mut s.driven_diagonal,
+                factors: &mut s.driven_factors,
+            };
+            upper.run();
+            divide_by_upper(&mut s.ratios, &s.driven, a, &s.driven_diagonal);
+            columns_of(&s.ratios, k, &mut s.columns, d);
+        }
+        singular_values(&mut s.columns, k.max(d), &self.pairs, measured);
+        let [smallest, largest] = self.extremes(s);
+        let numbers = [written.distance, written.angle, written.usable, smallest, largest, share];
+        s.numbers[..BEFORE].copy_from_slice(&numbers);
+    }
+
+    /// The ends of the spectrum of M M^T.
+    #[inline(always)]
+    fn extremes<R: Field>(&self, s: &mut Scratch<R>) -> [R; 2] {
+        let (t, m) = (self.plan.held(), self.plan.columns());
+        let size = t + self.plan.object();
+        for j in 0..size {
+            // L has j + 1 numbers in a row, J Q all.
+            let length = if j < t { j + 1 } else { m };
+            let own = &s.rows[j * m..j * m + length];
+            for i in j..size {
+                s.gram[j * size + i] = dot(own, &s.rows[i * m..i * m + length]);
+            }
+            if j >= t {
+                s.gram[j * size + j] = s.gram[j * size + j] + R::splat(1.0);
+            }
+        }
+        let (spectrum, squares) = (&mut s.spectrum[..size], &mut s.squares[..size - 1]);
+        tridiagonal(&mut s.gram, spectrum, squares, &mut s.product[..size]);
+        extreme_eigenvalues(spectrum, squares, [End::Smallest, End::Largest])
+    }
+
+    /// The square of the least share of drives and object in a motion.
+    #[inline(always)]
+    fn least_share<R: Field>(&self, s: &mut Scratch<R>) -> R {
+        let one = R::splat(1.0);
+        let (k, a) = (self.dof(), self.plan.actuated());
+        if a == self.plan.columns() {
+            return one;
+        }
+        // The upper factor of 1 + J_K^T J_K in place, column by column.
+        columns_into(&s.twists, k, &mut s.columns);
+        let d = self.plan.object();
+        for j in 0..k {
+            let own = &s.columns[j * d..(j + 1) * d];
+            for i in 0..=j {
+                let product = dot(&s.columns[i * d..(i + 1) * d], own);
+                s.weight[j * k + i] = product;
+                let driven = dot(&s.driven[i * a..(i + 1) * a], &s.driven[j * a..(j + 1) * a]);
+                let both = product + driven;
+                (s.shares[j * k + i], s.shares[i * k + j]) = (both, both);
+            }
+            s.weight[j * k + j] = s.weight[j * k + j] + one;
+        }
+        for j in 0..k {
+            let (before, own) = s.weight.split_at_mut(j * k);
+            for i in 0..j {
+                let sum = dot(&before[i * k..i * k + i], &own[..i]);
+                own[i] = (own[i] - sum) * s.roots[i];
+            }
+            let rest = (own[j] - dot(&own[..j], &own[..j])).root();
+            s.roots[j] = one / rest;
+            s.weight_diagonal[j] = rest;
+        }
+        divide_by_upper(&mut s.shares, &s.weight, k, &s.weight_diagonal);
+        for j in 0..k {
+            for i in 0..j {
+                s.shares.swap(j * k + i, i * k + j);
+            }
+        }
+        divide_by_upper(&mut s.shares, &s.weight, k, &s.weight_diagonal);
+        let squares = &mut s.squares[..k - 1];
+        tridiagonal(&mut s.shares, &mut s.spectrum[..k], squares, &mut s.product[..k]);
+        let [least] = extreme_eigenvalues(&s.spectrum[..k], squares, [End::Smallest]);
+        least
+    }
+}
+
+/// What one thread needs.
+#[derive(Debug)]
+struct Scratch<R> {
+    q: Vec<R>,
+    frames: Vec<Frame<R>>,
+    /// [C; J], later [L; J Q].
+    rows: Vec<R>,
+    diagonal: Vec<R>,
+    factors: Vec<R>,
+    kernel: Vec<R>,
+    driven: Vec<R>,
+    driven_diagonal: Vec<R>,
+    driven_factors: Vec<R>,
+    /// J K, and J K R^-1: rows.
+    twists: Vec<R>,
+    ratios: Vec<R>,
+    columns: Vec<R>,
+    weight: Vec<R>,
+    weight_diagonal: Vec<R>,
+    roots: Vec<R>,
+    shares: Vec<R>,
+    gram: Vec<R>,
+    spectrum: Vec<R>,
+    squares: Vec<R>,
+    product: Vec<R>,
+    numbers: Vec<R>,
+}
+
+impl<R: Field> Scratch<R> {
+    fn of(kernel: &Kernel, n: usize) -> Self {
+        let plan = &*kernel.plan;
+        let (t, d, m, a) = (plan.held(), plan.object(), plan.columns(), plan.actuated());
+        let (k, size) = (kernel.dof(), t + d);
+        let zeros = |count: usize| vec![R::splat(0.0); count];
+        Self {
+            q: zeros(n),
+            frames: vec![Frame::load(&Padded::IDENTITY); plan.frames()],
+            rows: zeros(size * m),
+            diagonal: zeros(t),
+            factors: zeros(t),
+            kernel: zeros(m * k),
+            driven: zeros(a * k),
+            driven_diagonal: zeros(k),
+            driven_factors: zeros(k),
+            twists: zeros(d * k),
+            ratios: zeros(d * k),
+            columns: zeros(d * k),
+            weight: zeros(k * k),
+            weight_diagonal: zeros(k),
+            roots: zeros(k),
+            shares: zeros(k * k),
+            gram: zeros(size * size),
+            spectrum: zeros(size.max(k)),
+            squares: zeros(size.max(k) - 1),
+            product: zeros(size.max(k)),
+            numbers: zeros(kernel.width()),
+        }
+    }
+}
+
+#[inline(always)]
+fn dot<R: Field>(a: &[R], b: &[R]) -> R {
+    let mut sum = R::splat(0.0);
+    for (x, y) in a.iter().zip(b) {
+        sum = x.times_plus(*y, sum);
+    }
+    sum
+}
+
+/// Rows of k numbers as columns.
+#[inline(always)]
+fn columns_into<R: Field>(rows: &[R], k: usize, columns: &mut [R]) {
+    let d = rows.len() / k;
+    for (i, row) in rows.chunks_exact(k).enumerate() {
+        for (j, x) in row.iter().enumerate() {
+            columns[j * d + i] = *x;
+        }
+    }
+}
+
+/// The longer of rows and columns of a matrix of d rows of k numbers.
+#[inline(always)]
+fn columns_of<R: Field>(rows: &[R], k: usize, columns: &mut [R], d: usize) {
+    if k > d {
+        columns.copy_from_slice(rows);
+    } else {
+        columns_into(rows, k, columns);
+    }
+}
+
+/// `factor * m` times rows of k numbers.
+#[inline(always)]
+fn times<R: Field>(m: &Matrix, factor: f64, rows: &[R], k: usize, out: &mut [R]) {
+    for (i, out) in out.chunks_exact_mut(k).enumerate() {
+        out.fill(R::splat(0.0));
+        for (j, row) in rows.chunks_exact(k).enumerate() {
+            let entry = m[(i, j)] * factor;
+            if entry != 0.0 {
+                for (x, y) in out.iter_mut().zip(row) {
+                    *x = R::splat(entry).times_plus(*y, *x);
+                }
+            }
+        }
+    }
+}

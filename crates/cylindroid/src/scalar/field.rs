@@ -1,0 +1,142 @@
+//! Quotients, roots and choices of lanes: what eliminations need beside products.
+//!
+//! For numbers, arrays and four lanes; eight lanes are not asked for it.
+
+#![allow(unsafe_code)] // intrinsics
+
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::*;
+use std::array::from_fn;
+use std::ops::Div;
+
+#[cfg(target_arch = "x86_64")]
+use super::Lanes4;
+use super::{Array, Real};
+
+/// Numbers that are divided and compared, lane by lane.
+pub(crate) trait Field: Real + Div<Output = Self> {
+    /// The square root; not a number for negative ones.
+    fn root(self) -> Self;
+    /// Without its sign.
+    fn size(self) -> Self;
+    /// The size of `self` with the sign of `other`.
+    fn signed_as(self, other: Self) -> Self;
+    /// The larger; of no number and one, anything.
+    fn larger(self, other: Self) -> Self;
+    /// `then` where `a < b`, else `otherwise`, also where one of them is no number.
+    fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+}
+
+impl Field for f64 {
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn signed_as(self, other: Self) -> Self {
+        self.copysign(other)
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        if a < b { then } else { otherwise }
+    }
+}
+
+impl<const N: usize> Div for Array<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(from_fn(|i| self.0[i] / other.0[i]))
+    }
+}
+
+impl<const N: usize> Field for Array<N> {
+    #[inline(always)]
+    fn root(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+
+    #[inline(always)]
+    fn signed_as(self, other: Self) -> Self {
+        Self(from_fn(|i| self.0[i].copysign(other.0[i])))
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self(from_fn(|i| self.0[i].larger(other.0[i])))
+    }
+
+    #[inline(always)]
+    fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Self(from_fn(|i| f64::where_less(a.0[i], b.0[i], then.0[i], otherwise.0[i])))
+    }
+}
+
+// SAFETY, for every call below: see the head of x86.rs.
+#[cfg(target_arch = "x86_64")]
+impl Div for Lanes4 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { _mm256_div_pd(self.0, other.0) })
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Field for Lanes4 {
+    #[inline(always)]
+    fn root(self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+    }
+
+    #[inline(always)]
+    fn signed_as(self, other: Self) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            Self(_mm256_or_pd(_mm256_andnot_pd(sign, self.0), _mm256_and_pd(sign, other.0)))
+        }
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let less = _mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0);
+            Self(_mm256_blendv_pd(otherwise.0, then.0, less))
+        }
+    }
+}
