@@ -11,7 +11,7 @@
 //!          which then swings past the target and back
 //! Checked  tests/it/servo/steps.rs::weak_joints_arrive
 
-use super::limits::stopping_rate;
+use super::limits::{stopping_distance_bound, stopping_rate};
 use crate::inverse::Method;
 use crate::model::Limits;
 
@@ -30,9 +30,14 @@ pub(super) fn share(
     let mut share = 1.0_f64;
     for (((way, rate), scale), limit) in ways.iter().zip(rates).zip(columns).zip(limits) {
         let (way, rate) = ((way * scale).abs(), (rate * scale).abs());
+        let a = BRAKING * limit.acceleration;
+        // Most rates stop within their way by a bound of what they need.
+        if way > stopping_distance_bound(rate, a, dt) {
+            continue;
+        }
         // A joint that cannot be moved at all is left to the saturation.
-        if limit.acceleration > 0.0 && rate > 0.0 {
-            share = share.min(stopping_rate(way, BRAKING * limit.acceleration, dt) / rate);
+        if a > 0.0 && rate > 0.0 {
+            share = share.min(stopping_rate(way, a, dt) / rate);
         }
     }
     share

@@ -5,7 +5,8 @@
 //!          step, still stops before the position limit: room >= D(v), D the stopping distance of
 //!          the discrete motion v, v - A dt, v - 2 A dt, ...
 //! Stopping with x = v / (A dt), k = floor(x), f = x - k:
-//!          D / (A dt^2) = (k + 1) (k / 2 + f), inverted in closed form below
+//!          D / (A dt^2) = (k + 1) (k / 2 + f), inverted in closed form below; most rates are
+//!          clear of all limits by a bound of D that has no root in it (`Clearance`)
 //! Units    rad or m, s
 //! Valid    a joint that obeyed the interval in the last step has an interval that is not empty in
 //!          this one. A measured state that did not (a push, a start outside the limits) gets the
@@ -145,12 +146,69 @@ impl RateBounds {
     }
 }
 
+/// What the limits of a joint ask of a rate that meets none of them, without a root: such rates need
+/// no bounds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Clearance {
+    lower: f64,
+    upper: f64,
+    velocity: f64,
+    /// A dt
+    step: f64,
+    /// A bound of the stopping distance D(v), (square v + linear) v + constant: with x = v / (A dt)
+    /// D / (A dt^2) <= x (x + 1) / 2 + 1 / 8, and D = v dt without a limit of the acceleration.
+    square: f64,
+    linear: f64,
+    constant: f64,
+    /// 1 / A, 0 for a joint that is locked.
+    pub(super) slowness: f64,
+}
+
+impl Clearance {
+    /// For steps of `dt`; of joints that are locked any rate is clear.
+    pub(super) fn new(limits: &Limits, dt: f64, is_locked: bool) -> Self {
+        let limits = if is_locked { &Limits::NONE } else { limits };
+        let Limits { lower, upper, velocity, acceleration: a, .. } = *limits;
+        // Nearer limits for the rounding of `room`; infinite ones stay.
+        let inwards = |limit: f64| {
+            if limit.is_finite() { 2.0 * LIMIT_ROUNDING * (1.0 + limit.abs()) } else { 0.0 }
+        };
+        let (square, linear, constant) = if a == f64::INFINITY {
+            (0.0, dt, 0.0)
+        } else {
+            (0.5 / a, 0.5 * dt, 0.125 * a * dt * dt)
+        };
+        let (lower, upper) = (lower + inwards(lower), upper - inwards(upper));
+        Self { lower, upper, velocity, step: a * dt, square, linear, constant, slowness: 1.0 / a }
+    }
+
+    /// True if [`RateBounds::next`] has the rate inside and away from its ends; false also for some
+    /// rates near them, and for NaN.
+    #[inline]
+    pub(super) fn holds(&self, now: Motion1, rate: f64) -> bool {
+        const MORE: f64 = 1.0 + 1e3 * LIMIT_MET;
+        let speed = MORE * rate.abs();
+        let change = (rate - now.rate).abs() + (MORE - 1.0) * (speed + now.rate.abs());
+        let way = (self.square * speed + self.linear) * speed + self.constant;
+        let way = MORE * way + 2.0 * LIMIT_ROUNDING * now.position.abs();
+        let (up, down) = (now.position + way < self.upper, now.position - way > self.lower);
+        (speed < self.velocity) & (change < self.step) & up & down
+    }
+}
+
 /// The way to a limit, less the rounding of the position, the limit and their difference.
 fn room(way: f64, position: f64, limit: f64) -> f64 {
     if limit.is_infinite() {
         return f64::INFINITY;
     }
     (way - LIMIT_ROUNDING * (1.0 + position.abs() + limit.abs())).max(0.0)
+}
+
+/// A bound of the way in which steps of `dt` with deceleration `acceleration` stop a rate >= 0;
+/// infinite or NaN without a limit, or where it is zero.
+#[inline]
+pub(super) fn stopping_distance_bound(rate: f64, acceleration: f64, dt: f64) -> f64 {
+    (0.5 * rate / acceleration + 0.5 * dt) * rate + 0.125 * acceleration * dt * dt
 }
 
 /// The largest rate from which steps of `dt` with deceleration `acceleration` stop within `room`.
@@ -194,6 +252,38 @@ mod tests {
             assert!(now.position <= limits.upper, "{}", now.position);
         }
         assert!(limits.upper - now.position < 1e-9, "stops short: {}", now.position);
+    }
+
+    /// What is clear meets no bound, and little that meets none is not clear.
+    #[test]
+    fn clear_rates_are_inside_their_bounds() {
+        let mut state = 3;
+        let mut next = || 2.0 * crate::scalar::uniform(&mut state) - 1.0;
+        let (mut clear, mut inside) = (0, 0);
+        for round in 0..200_000 {
+            let some = limits();
+            let limits = match round % 4 {
+                0 => some,
+                1 => Limits { acceleration: f64::INFINITY, ..some },
+                2 => Limits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, ..some },
+                _ => Limits { velocity: f64::INFINITY, ..some },
+            };
+            let dt = [1e-3, 0.1][round % 2];
+            let now = Motion1 { position: next(), rate: 2.0 * next() };
+            let rate = match round % 3 {
+                0 => 2.5 * next(),
+                1 => now.rate + 12.0 * dt * next(),
+                _ => stopping_rate(1.0 - now.position, limits.acceleration, dt),
+            };
+            let bounds = RateBounds::next(&limits, now, dt);
+            let free = bounds.contains(rate) && bounds.met(rate).is_none();
+            inside += usize::from(free);
+            if Clearance::new(&limits, dt, false).holds(now, rate) {
+                clear += 1;
+                assert!(free, "{rate} in {bounds:?} at {now:?}, {limits:?}, dt = {dt}");
+            }
+        }
+        assert!(clear > inside * 9 / 10, "{clear} clear, {inside} inside");
     }
 
     #[test]

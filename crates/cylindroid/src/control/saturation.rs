@@ -31,6 +31,11 @@ pub struct Saturation {
     pub bent: bool,
 }
 
+impl Saturation {
+    /// No limit bites.
+    pub(super) const NONE: Self = Self { scale: 1.0, bent: false };
+}
+
 /// Memory for the decompositions.
 #[derive(Debug, Clone)]
 pub(super) struct Saturator {
@@ -83,7 +88,7 @@ impl Saturator {
             for ((rate, z), bound) in rates.iter_mut().zip(secondary).zip(bounds) {
                 *rate = bound.clamp(*rate + span.most * z);
             }
-            return Saturation { scale: 1.0, bent: false };
+            return Saturation::NONE;
         }
         // While joints gain speed the twist is scaled and grows from step to step; only lasting
         // limits are worth another distribution of the motion over the joints.
@@ -263,7 +268,7 @@ impl Saturator {
 /// `out = V diag(gains) U^T x`
 pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], out: &mut [f64]) {
     method.gains(svd, x, gains);
-    svd.apply_gains_into(x, |i, _| gains[i], out);
+    svd.apply_gains_into(x, gains, out);
 }
 
 /// Where `a + s b` keeps the bounds.

@@ -104,6 +104,12 @@ impl Secondary {
         let ordinary =
             |i: usize| matches!(coordinate(i).kind, CoordinateKind::Angle | CoordinateKind::Length);
         match self {
+            Self::Posture { q, gain } if task.turns_and_slides => {
+                let here = chain.coordinates().iter().zip(chain.q());
+                for (rate, (&c, here)) in out.iter_mut().zip(here) {
+                    *rate += gain * (q[c] - here);
+                }
+            }
             Self::Posture { q, gain } => {
                 let mut i = 0;
                 while i < out.len() {

@@ -21,10 +21,10 @@ mod stages;
 pub use posture::Posture;
 
 use super::coupled::Coupled;
-use super::limits::{LimitKind, RateBounds};
+use super::limits::{Clearance, LimitKind, RateBounds};
 use super::options::ServoOptions;
 use super::projection::{Projecting, TaskFrame};
-use super::saturation::Saturator;
+use super::saturation::{Saturation, Saturator};
 use super::secondary::Gradient;
 use super::stall::{Evidence, Stall, Watch, classify};
 use super::step::{Status, Step, Target};
@@ -51,6 +51,9 @@ pub struct Servo {
     chain: Chain,
     space: TaskSpace,
     limits: Vec<Limits>,
+    clearances: Vec<Clearance>,
+    /// True if a joint has a limit of its acceleration.
+    accelerates: bool,
     /// Length of the chain after its first joint (m).
     length: f64,
     /// Rank of the task Jacobian in postures that are not singular.
@@ -129,6 +132,8 @@ impl Servo {
             })
             .collect();
         let space = TaskSpace::new(&options, &chain, &limits);
+        let clearance =
+            |(i, l): (usize, &Limits)| Clearance::new(l, options.dt, space.is_locked(i));
         let m = space.rows.len();
         let coupled = if mechanism.is_closed() {
             let locked = (0..n).filter(|&i| space.is_locked(i)).collect();
@@ -151,6 +156,8 @@ impl Servo {
         let mut servo = Self {
             length: chain.length_after_first_joint(mechanism),
             generic_rank: 0,
+            clearances: limits.iter().enumerate().map(clearance).collect(),
+            accelerates: limits.iter().any(|l| l.acceleration < f64::INFINITY),
             mechanism: mechanism.clone(),
             method: options.method,
             options,
@@ -255,22 +262,31 @@ impl Servo {
         let pose = self.chain.set(q);
         let wanted = target.wanted(pose, &self.options)?;
         self.load_jacobian(q)?;
-        Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         self.svd.decompose_warm(&self.task);
+        if self.svd.values().any(f64::is_nan) {
+            Error::check_finite("Jacobian of the task", self.task.as_slice())?;
+        }
         let (axes, length) = (self.options.task.axes, self.options.length);
         self.projecting.load(&self.options, &self.svd, TaskFrame { pose, axes, length });
         self.load_task(&wanted);
-        for (i, kept) in self.kept.iter_mut().enumerate() {
-            *kept = is_kept(self.gains[i] * self.svd.value(i));
+        for ((kept, gain), s) in self.kept.iter_mut().zip(&self.gains).zip(self.svd.values()) {
+            *kept = is_kept(gain * s);
         }
         let rank = self.kept.iter().filter(|kept| **kept).count();
         self.load_wish(wanted_rates);
 
-        self.load_bounds(q);
-        let saturation = self.saturate(q)?;
-        Error::check_finite("joint rates", &self.primary)?;
-        let effort = self.store_rates();
-        self.note_limits();
+        let (saturation, effort) = match self.store_clear_rates(q) {
+            Some(effort) => (Saturation::NONE, effort),
+            None => {
+                self.load_bounds(q);
+                let saturation = self.saturate(q)?;
+                Error::check_finite("joint rates", &self.primary)?;
+                let effort = self.store_rates();
+                self.load_done();
+                self.note_limits();
+                (saturation, effort)
+            }
+        };
 
         self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         if self.last_target != Some(target.pose) {

@@ -20,6 +20,10 @@ pub(super) struct TaskSpace {
     pub(super) rows: Vec<(usize, f64)>,
     /// Scale of each of the n columns, and 1 for driven closing joints; 0 for joints that are locked.
     pub(super) columns: Vec<f64>,
+    /// Scales of the rows where all six matter.
+    all_rows: Option<[f64; 6]>,
+    /// True where all coordinates are angles and lengths.
+    pub(super) turns_and_slides: bool,
     /// The Jacobian before it is scaled, 6 x n.
     jacobian: Matrix,
 }
@@ -34,6 +38,8 @@ impl TaskSpace {
         Self {
             axes: options.task.axes,
             rows: (0..6).filter(component).map(|i| (i, scale(i))).collect(),
+            all_rows: (0..6).all(|i| component(&i)).then(|| std::array::from_fn(scale)),
+            turns_and_slides: chain.turns_and_slides(),
             columns: chain
                 .coordinates()
                 .iter()
@@ -47,6 +53,16 @@ impl TaskSpace {
 
     /// Writes J_task.
     pub(super) fn load(&mut self, chain: &Chain, task: &mut Matrix) {
+        if let Some(scales) = self.all_rows {
+            chain.jacobian_into(self.axes, task);
+            let (columns, _) = task.as_mut_slice().as_chunks_mut::<6>();
+            for (column, weight) in columns.iter_mut().zip(&self.columns) {
+                for (t, scale) in column.iter_mut().zip(&scales) {
+                    *t *= scale * weight;
+                }
+            }
+            return;
+        }
         chain.jacobian_into(self.axes, &mut self.jacobian);
         for (j, &weight) in self.columns.iter().enumerate().take(chain.n()) {
             let column = self.jacobian.column(j);
@@ -58,7 +74,15 @@ impl TaskSpace {
 
     /// The rate of joint i in scaled coordinates; 0 where it is locked.
     pub(super) fn scaled_rate(&self, i: usize, rate: f64) -> f64 {
-        if self.is_locked(i) { 0.0 } else { rate / self.columns[i] }
+        scaled(rate, self.columns[i])
+    }
+
+    /// Brings the rates of the first joints into scaled coordinates.
+    pub(super) fn scale_rates(&self, rates: &mut [f64]) {
+        rates
+            .iter_mut()
+            .zip(&self.columns)
+            .for_each(|(rate, column)| *rate = scaled(*rate, *column));
     }
 
     /// The rates of the first joints in scaled coordinates.
@@ -69,6 +93,10 @@ impl TaskSpace {
     /// Writes a twist in task coordinates.
     pub(super) fn scale(&self, twist: Twist, x: &mut [f64]) {
         let twist = twist.to_array();
+        if let (Some(scales), Ok(x)) = (self.all_rows, <&mut [f64; 6]>::try_from(&mut *x)) {
+            *x = std::array::from_fn(|i| twist[i] * scales[i]);
+            return;
+        }
         for (x, &(row, scale)) in x.iter_mut().zip(&self.rows) {
             *x = twist[row] * scale;
         }
@@ -87,6 +115,11 @@ impl TaskSpace {
     pub(super) fn is_locked(&self, i: usize) -> bool {
         self.columns[i] == 0.0
     }
+}
+
+#[inline]
+fn scaled(rate: f64, column: f64) -> f64 {
+    if column == 0.0 { 0.0 } else { rate / column }
 }
 
 fn is_locked(limits: &Limits) -> bool {

@@ -13,8 +13,8 @@ use crate::linalg::{Matrix, Svd};
 
 pub(super) fn gains(svd: &Svd, eps: f64, out: &mut [f64]) -> f64 {
     let rank = svd.rank(eps);
-    for (i, gain) in out.iter_mut().enumerate() {
-        *gain = if i < rank.rank { 1.0 / svd.value(i) } else { 0.0 };
+    for ((i, gain), s) in out.iter_mut().enumerate().zip(svd.values()) {
+        *gain = if i < rank.rank { 1.0 / s } else { 0.0 };
     }
     rank.threshold
 }

@@ -184,6 +184,11 @@ impl Chain {
         fixed + slides
     }
 
+    /// True where all coordinates are angles and lengths.
+    pub(crate) fn turns_and_slides(&self) -> bool {
+        self.nodes.iter().all(|node| node.motion.dof() <= 1)
+    }
+
     /// The chain as joints that turn and slide, where it is nothing else.
     pub(crate) fn serial(&self) -> Option<&Serial> {
         self.serial.as_deref()

@@ -2,19 +2,26 @@
 //!
 //! Formula  one by one: for each pair of columns a, b the angle with tan 2 angle = 2 a.b / (b.b - a.a),
 //!          a' = c a - s b, b' = s a + c b, the same for the columns of W
-//!          together, where all angles are small: K_ij = b_i.b_j / (b_j.b_j - b_i.b_i), skew;
-//!          B' = B exp(K), W' = W exp(K); quadratic, as the angles of a step are the squares of
-//!          those of the one before
+//!          together, where all angles are small: G = B^T B = D + F with D diagonal, and skew
+//!          K_ij = F_ij / (D_j - D_i), the same once more for [F, K] / 2, which that K leaves;
+//!          B' = B E, W' = W E with E = 1 + K + K^2 / 2 + K^3 / 8, orthogonal to K^6 / 64; the
+//!          angles of a step are the cubes of those of the one before
+//!          warm: from where W is when it turns on as it did last; of an even motion second
+//!          differences are left, and one step ends it
 //! Shapes   B: long x k, W and K: k x k, columns padded with zeros to a multiple of four numbers
 //! Why so   rotations one by one wait for each other's divisions and square roots; together they
 //!          are matrix products. Both stop by the same test, so the result is as exact. Four
-//!          numbers are one register: written once over [`Real`], compiled for the baseline and
+//!          numbers are one register: written once over [`Four`], compiled for the baseline and
 //!          for AVX2
 //! Source   Hestenes 1958; de Rijk 1989; Ogita & Aishima 2018 (all angles of a step at once)
 //! Checked  tests/it/svd.rs
 
 use super::matrix::Matrix;
-use crate::scalar::{Array, Real};
+use super::padded::{
+    LANES, PaddedColumns, Size, add, dot, gram, load_transposed, newton, pair, product, rotate,
+    scale, squares, times, transposed_block, unit,
+};
+use crate::scalar::{Array, Four};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, has_avx2};
 use crate::tolerance::JACOBI_ORTHOGONAL;
@@ -22,14 +29,19 @@ use crate::tolerance::JACOBI_ORTHOGONAL;
 /// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost finite.
 const MAX_SWEEPS: usize = 40;
 
-/// Angles up to this, as the spectral norm of K, are turned together: four terms of the exponential
-/// then leave 1e-11 of orthogonality, which one Newton step squares.
+/// Angles up to this, as the spectral norm of K, are turned together: E then lacks 1e-11 of
+/// orthogonality, which one Newton step squares.
 const TOGETHER: f64 = 1.0 / 32.0;
 
-/// Up to these four terms (K^6 / 72), two (K^4 / 4) and one (K^2) leave less than a rounding.
-const FOUR_TERMS: f64 = 1.0 / 256.0;
+/// Up to these E with three terms (K^6 / 64), two (K^4 / 4) and one (K^2) is orthogonal to less than
+/// a rounding.
+const THREE_TERMS: f64 = 1.0 / 256.0;
 const TWO_TERMS: f64 = 1e-4;
-const ONE_TERM: f64 = 4e-9;
+const ONE_TERM: f64 = 1e-8;
+
+/// From angles and cosines up to this, and second angles up to four times its square, one step leaves
+/// less than `JACOBI_ORTHOGONAL`: products of the three.
+const LAST: f64 = 4e-6;
 
 /// Steps with all angles together, before rotations one by one take over for good.
 const MOST_TOGETHER: usize = 8;
@@ -39,24 +51,30 @@ const MOST_TOGETHER: usize = 8;
 pub(super) enum Start {
     /// W is the identity.
     Cold,
-    /// From the last W.
+    /// From the last W, turned on as it was turned last.
     Warm,
-    /// From the last W, made orthogonal to rounding first.
+    /// The same, made orthogonal to rounding first.
     Repaired,
 }
 
 /// B, W and what is needed to rotate them without allocation.
 #[derive(Debug, Clone)]
 pub(super) struct Rotations {
+    /// Number of columns.
+    pub(super) k: usize,
     /// B W, columns of length `long`.
     pub(super) b: PaddedColumns,
     /// The accumulated rotations.
     pub(super) w: PaddedColumns,
+    /// How the last warm start was turned, and W turned on in the same way: where the next starts.
+    last_turn: PaddedColumns,
+    next: PaddedColumns,
     /// Lengths that the columns of B W had; [`super::Svd`] scales them to singular values.
-    pub(super) lengths: Vec<f64>,
+    pub(super) lengths: PaddedColumns,
     /// The order of a sweep.
     pairs: Vec<(usize, usize)>,
-    /// The angles K, and their exponential.
+    /// G, K, E and a matrix for products.
+    products: PaddedColumns,
     angles: PaddedColumns,
     turn: PaddedColumns,
     square: PaddedColumns,
@@ -66,10 +84,14 @@ pub(super) struct Rotations {
 impl Rotations {
     pub(super) fn zeros(long: usize, k: usize) -> Self {
         Self {
+            k,
             b: PaddedColumns::zeros(long, k),
             w: PaddedColumns::zeros(k, k),
-            lengths: vec![0.0; k],
+            last_turn: PaddedColumns::zeros(k, k),
+            next: PaddedColumns::zeros(k, k),
+            lengths: PaddedColumns::zeros(k, 1),
             pairs: tournament(k),
+            products: PaddedColumns::zeros(k, k),
             angles: PaddedColumns::zeros(k, k),
             turn: PaddedColumns::zeros(k, k),
             square: PaddedColumns::zeros(k, k),
@@ -78,9 +100,11 @@ impl Rotations {
     }
 
     pub(super) fn reset(&mut self) {
-        let size = self.size();
         self.w.fill(0.0);
-        add_identity(&mut self.w.data, size);
+        for j in 0..self.k {
+            self.w.column_mut(j)[j] = 1.0;
+        }
+        self.rest();
     }
 
     /// Loads `a` (or its transpose if it is wide) times `factor` and makes the columns of B W
@@ -108,28 +132,29 @@ impl Rotations {
     }
 
     fn size(&self) -> Size {
-        Size { k: self.lengths.len(), long: self.b.stride, short: self.w.stride }
+        Size { k: self.k, long: self.b.stride, short: self.w.stride }
     }
 
     #[inline(always)]
-    fn run_with<R: Real>(&mut self, a: &Matrix, factor: f64, start: Start, size: Size) -> usize {
-        self.load(a, factor);
+    fn run_with<R: Four>(&mut self, a: &Matrix, factor: f64, start: Start, size: Size) -> usize {
+        self.load::<R>(a, factor, size);
         if start == Start::Cold {
             self.reset();
         } else {
+            std::mem::swap(&mut self.w, &mut self.next);
             if start == Start::Repaired {
+                newton::<R>(&mut self.last_turn.data, &mut self.square.data, size, &mut self.row);
                 newton::<R>(&mut self.w.data, &mut self.square.data, size, &mut self.row);
             }
             times::<R>(&mut self.b.data, size.long, &self.w.data, size, &mut self.row);
         }
-        let (mut sweeps, mut together) = (0, 0);
+        let (mut sweeps, mut together, mut swept) = (0, 0, false);
         // Rotations one by one while angles are large.
         let mut one_by_one = start == Start::Cold;
         while sweeps < MAX_SWEEPS {
-            self.measure::<R>(size);
             sweeps += 1;
             if !one_by_one {
-                let Angles { norm, nearly } = self.find_angles::<R>(size);
+                let Angles { norm, is_last } = self.find_angles::<R>(size);
                 if norm == 0.0 {
                     break;
                 }
@@ -137,12 +162,14 @@ impl Rotations {
                 if !one_by_one {
                     together += 1;
                     self.turn::<R>(norm, size);
-                    if nearly && norm <= ONE_TERM {
-                        break; // what is left is the square of that
+                    if is_last {
+                        break;
                     }
                     continue;
                 }
             }
+            swept = true;
+            self.measure::<R>(size);
             let largest = self.sweep::<R>(size);
             if largest == 0.0 {
                 break;
@@ -150,17 +177,18 @@ impl Rotations {
             one_by_one = largest > TOGETHER || together == MOST_TOGETHER;
         }
         self.measure::<R>(size);
-        for (j, length) in self.lengths.iter_mut().enumerate() {
-            *length = length.sqrt();
-            let inverse = if *length > 0.0 { 1.0 / *length } else { 0.0 };
-            scale::<R>(&mut self.b.data[j * size.long..][..size.long], inverse);
+        self.normalise::<R>(size);
+        if swept {
+            self.rest();
+        } else {
+            let Self { w, last_turn, next, row, .. } = self;
+            product::<R>(&w.data, size.short, &last_turn.data, &mut next.data, size, row);
         }
         sweeps
     }
 
     #[inline(always)]
-    fn load(&mut self, a: &Matrix, factor: f64) {
-        let (rows, numbers) = (a.rows(), a.as_slice());
+    fn load<R: Four>(&mut self, a: &Matrix, factor: f64, size: Size) {
         if a.rows() > a.cols() {
             for j in 0..a.cols() {
                 for (b, x) in self.b.column_mut(j).iter_mut().zip(a.column(j)) {
@@ -168,34 +196,77 @@ impl Rotations {
                 }
             }
         } else {
-            for i in 0..rows {
-                let row = numbers[i..].iter().step_by(rows);
-                for (b, x) in self.b.column_mut(i).iter_mut().zip(row) {
-                    *b = x * factor;
-                }
-            }
+            load_transposed::<R>(a, &mut self.b.data, size.long, size);
+            scale::<R>(&mut self.b.data[..size.k * size.long], factor);
         }
     }
 
     /// The squares of the lengths of all columns.
     #[inline(always)]
-    fn measure<R: Real>(&mut self, size: Size) {
-        let (b, lengths) = (&self.b.data[..size.k * size.long], &mut self.lengths[..size.k]);
-        for (j, length) in lengths.iter_mut().enumerate() {
-            let b = padded(b, size.long, j);
-            *length = dot::<R>(b, b);
+    fn measure<R: Four>(&mut self, size: Size) {
+        squares::<R>(&self.b.data, size.long, &mut self.lengths.data, size);
+    }
+
+    /// Columns of length 1 or 0, and the lengths that they had.
+    #[inline(always)]
+    fn normalise<R: Four>(&mut self, size: Size) {
+        let (b, lengths) = (&mut self.b.data[..size.k * size.long], &mut self.lengths.data);
+        for four in lengths.as_chunks_mut::<LANES>().0 {
+            R::load(four).root().store(four);
+        }
+        let inverses = &mut self.row[..size.short];
+        for (four, to) in lengths.as_chunks::<LANES>().0.iter().zip(inverses.as_chunks_mut().0) {
+            let (length, zero) = (R::load(four), R::splat(0.0));
+            let inverse: &mut [f64; LANES] = to;
+            R::splat(1.0).over(length).where_larger(length, zero).store(inverse);
+        }
+        for (j, inverse) in inverses[..size.k].iter().enumerate() {
+            scale::<R>(&mut b[j * size.long..][..size.long], *inverse);
+        }
+    }
+
+    /// Puts the columns in the order of their lengths, the longest first: there already after most
+    /// warm starts.
+    pub(super) fn sort(&mut self) {
+        let lengths = self.lengths.column(0);
+        if lengths.iter().zip(lengths.iter().skip(1)).any(|(before, after)| after > before) {
+            self.sort_by_exchange();
+        }
+    }
+
+    #[cold]
+    fn sort_by_exchange(&mut self) {
+        for end in 1..self.k {
+            let mut j = end;
+            while j > 0 && self.lengths.data[j] > self.lengths.data[j - 1] {
+                self.lengths.data.swap(j, j - 1);
+                self.b.swap(j - 1, j);
+                self.w.swap(j - 1, j);
+                j -= 1;
+            }
+        }
+        self.rest();
+    }
+
+    /// The next start is from W itself.
+    fn rest(&mut self) {
+        self.next.data.copy_from_slice(&self.w.data);
+        self.last_turn.fill(0.0);
+        for j in 0..self.k {
+            self.last_turn.column_mut(j)[j] = 1.0;
         }
     }
 
     /// One sweep over all pairs; the tangent of the largest angle, 0 if nothing was turned. Squares
     /// of lengths are kept up to date by the rotations.
     #[inline(always)]
-    fn sweep<R: Real>(&mut self, size: Size) -> f64 {
+    fn sweep<R: Four>(&mut self, size: Size) -> f64 {
         let mut largest = 0.0_f64;
         for &(i, j) in &self.pairs {
             let (bi, bj) = pair(&mut self.b.data, size.long, i, j);
-            let (aa, bb, ab) = (self.lengths[i], self.lengths[j], dot::<R>(bi, bj));
-            if !is_oblique(aa, bb, ab, JACOBI_ORTHOGONAL) {
+            let lengths = &mut self.lengths.data;
+            let (aa, bb, ab) = (lengths[i], lengths[j], dot::<R>(bi, bj));
+            if !(ab * ab > JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL * (aa * bb)) {
                 continue;
             }
             let (difference, double) = (bb - aa, 2.0 * ab);
@@ -206,207 +277,133 @@ impl Rotations {
             rotate::<R>(bi, bj, c, s);
             let (wi, wj) = pair(&mut self.w.data, size.short, i, j);
             rotate::<R>(wi, wj, c, s);
-            self.lengths[i] = (aa - t * ab).max(0.0);
-            self.lengths[j] = bb + t * ab;
+            lengths[i] = (aa - t * ab).max(0.0);
+            lengths[j] = bb + t * ab;
             largest = largest.max(t.abs());
         }
         largest
     }
 
-    /// Writes the angles to first order, 0 for columns that are orthogonal.
+    /// Writes the angles, 0 for columns that are orthogonal.
     #[inline(always)]
-    fn find_angles<R: Real>(&mut self, size: Size) -> Angles {
-        let (b, lengths) = (&self.b.data[..size.k * size.long], &self.lengths[..size.k]);
-        let angles = &mut self.angles.data[..size.k * size.short];
-        let (mut squares, mut nearly) = (0.0, true);
-        for j in 0..size.k {
-            for i in 0..j {
-                let ab = dot::<R>(padded(b, size.long, i), padded(b, size.long, j));
-                let (aa, bb) = (lengths[i], lengths[j]);
-                let oblique = is_oblique(aa, bb, ab, JACOBI_ORTHOGONAL);
-                let angle = if oblique { ab / (bb - aa) } else { 0.0 };
-                angles[j * size.short + i] = angle;
-                angles[i * size.short + j] = -angle;
-                squares += angle * angle;
-                nearly &= !is_oblique(aa, bb, ab, ONE_TERM);
+    fn find_angles<R: Four>(&mut self, size: Size) -> Angles {
+        let Size { k, short, .. } = size;
+        let numbers = k * short;
+        let Self { b, products, angles, square, turn, row, lengths, .. } = self;
+        gram::<R>(&b.data, size.long, &mut products.data, size);
+        let (products, angles) = (&mut products.data[..numbers], &mut angles.data[..numbers]);
+        // Inverses of D_j - D_i.
+        let inverses = &mut square.data[..numbers];
+        let lengths = &mut lengths.data[..short];
+        for first in (0..short).step_by(LANES) {
+            let mut diagonal = R::splat(0.0);
+            for j in first..k.min(first + LANES) {
+                let four = R::load(&products[j * short + first..]);
+                diagonal = four.times_plus(unit(first, j), diagonal);
+            }
+            diagonal.store(&mut lengths[first..]);
+        }
+        let one = R::splat(1.0);
+        let least = R::splat(JACOBI_ORTHOGONAL * JACOBI_ORTHOGONAL);
+        let (little, some) = (R::splat(ONE_TERM * ONE_TERM), R::splat(LAST * LAST));
+        let (mut squares, mut oblique, mut too_oblique) =
+            (R::splat(0.0), R::splat(0.0), R::splat(0.0));
+        for j in 0..k {
+            for first in (0..short).step_by(LANES) {
+                let here = j * short + first;
+                let (aa, bb) = (R::load(&lengths[first..]), R::splat(lengths[j]));
+                let ab = R::load(&products[here..]) * (one - unit(first, j));
+                ab.store(&mut products[here..]);
+                // Cosines are compared by their squares.
+                let (ab_ab, aa_bb) = (ab * ab, aa * bb);
+                let inverse = one.over(bb - aa);
+                inverse.store(&mut inverses[here..]);
+                let angle = (ab * inverse).where_larger(ab_ab, least * aa_bb);
+                angle.store(&mut angles[here..]);
+                squares = angle.times_plus(angle, squares);
+                oblique = oblique + one.where_larger(ab_ab, little * aa_bb);
+                too_oblique = too_oblique + one.where_larger(ab_ab, some * aa_bb);
             }
         }
-        // Singular values of a skew matrix come in pairs: its norm is at most this.
-        Angles { norm: f64::sqrt(squares), nearly }
+        let norm = norm(squares);
+        let (small, last) = (norm <= ONE_TERM && oblique.sum() == 0.0, too_oblique.sum() == 0.0);
+        if small || norm > TOGETHER {
+            return Angles { norm, is_last: small };
+        }
+        // Once more for what these leave, [F, K] / 2: F K and its transpose.
+        let left = &mut turn.data[..numbers];
+        product::<R>(products, short, angles, left, size, row);
+        let (mut squares, half) = (R::splat(0.0), R::splat(0.5));
+        for i in (0..short).step_by(LANES) {
+            for j in (0..short).step_by(LANES) {
+                let transposed = transposed_block::<R>(left, i, j, size);
+                for (l, transposed) in transposed.into_iter().enumerate() {
+                    if j + l < k {
+                        let here = (j + l) * short + i;
+                        let left =
+                            (R::load(&left[here..]) + transposed) * (half - half * unit(i, j + l));
+                        let aa_bb = R::load(&lengths[i..]) * R::splat(lengths[j + l]);
+                        let angle = (left * R::load(&inverses[here..]))
+                            .where_larger(left * left, least * aa_bb);
+                        squares = angle.times_plus(angle, squares);
+                        (R::load(&angles[here..]) + angle).store(&mut products[here..]);
+                    }
+                }
+            }
+        }
+        // It is of the size of the squares of the first, but where lengths are nearly equal.
+        let second = self::norm(squares);
+        if !(second <= norm) {
+            return Angles { norm, is_last: false };
+        }
+        std::mem::swap(&mut self.angles, &mut self.products);
+        let is_last = last && norm <= LAST && second <= 4.0 * LAST * LAST;
+        Angles { norm: norm + second, is_last }
     }
 
     /// Turns all columns by the angles found.
     #[inline(always)]
-    fn turn<R: Real>(&mut self, norm: f64, size: Size) {
-        // 1 + K (1 + K / 2 (1 + K / 3 (1 + K / 4))), as far as it counts
-        let turn = &mut self.turn.data;
-        turn.copy_from_slice(&self.angles.data);
-        let terms: &[f64] = if norm > TWO_TERMS {
-            &[4.0, 3.0, 2.0]
+    fn turn<R: Four>(&mut self, norm: f64, size: Size) {
+        let Self { b, w, angles, turn, square, row, last_turn, .. } = self;
+        let (angles, e, square) = (&angles.data, &mut turn.data, &mut square.data);
+        if norm > TWO_TERMS {
+            // S = 1 + K^2 / 8, E = K S + 4 S - 3
+            product::<R>(angles, size.short, angles, e, size, row);
+            square.fill(0.0);
+            add::<R>(square, 0.125, e, 1.0, size);
+            product::<R>(angles, size.short, square, e, size, row);
+            add::<R>(e, 4.0, square, -3.0, size);
         } else if norm > ONE_TERM {
-            &[2.0]
+            product::<R>(angles, size.short, angles, e, size, row);
+            scale::<R>(e, 0.5);
+            add::<R>(e, 1.0, angles, 1.0, size);
         } else {
-            &[]
-        };
-        for term in terms {
-            scale::<R>(turn, 1.0 / term);
-            add_identity(turn, size);
-            times::<R>(turn, size.short, &self.angles.data, size, &mut self.row);
+            e.fill(0.0);
+            add::<R>(e, 1.0, angles, 1.0, size);
         }
-        add_identity(turn, size);
-        if norm > FOUR_TERMS {
-            newton::<R>(turn, &mut self.square.data, size, &mut self.row);
+        if norm > THREE_TERMS {
+            newton::<R>(e, square, size, row);
         }
-        times::<R>(&mut self.b.data, size.long, &self.turn.data, size, &mut self.row);
-        times::<R>(&mut self.w.data, size.short, &self.turn.data, size, &mut self.row);
+        times::<R>(&mut b.data, size.long, e, size, row);
+        times::<R>(&mut w.data, size.short, e, size, row);
+        times::<R>(&mut last_turn.data, size.short, e, size, row);
     }
-}
-
-/// Number of columns; lengths of the columns of B and of W in memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Size {
-    k: usize,
-    long: usize,
-    short: usize,
 }
 
 /// What [`Rotations::find_angles`] found.
 struct Angles {
     /// A bound of the spectral norm of K; 0 if all columns are orthogonal.
     norm: f64,
-    /// True if the cosines between all columns, which for lengths far apart are larger than these
-    /// angles, are at most [`ONE_TERM`].
-    nearly: bool,
+    /// True if these angles leave nothing, and neither do the cosines, which for lengths far apart
+    /// are larger.
+    is_last: bool,
 }
 
-/// True if the cosine between columns of these squared lengths is larger.
+/// A bound of the spectral norm of a skew matrix, from the squares of its entries: its singular
+/// values come in pairs.
 #[inline(always)]
-fn is_oblique(aa: f64, bb: f64, ab: f64, cosine: f64) -> bool {
-    ab * ab > cosine * cosine * aa * bb
-}
-
-/// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2.
-#[inline(always)]
-fn newton<R: Real>(w: &mut [f64], square: &mut [f64], size: Size, row: &mut [f64]) {
-    let stride = size.short;
-    let (w, square) = (&mut w[..size.k * stride], &mut square[..size.k * stride]);
-    for i in 0..size.k {
-        for j in 0..=i {
-            let half = -0.5 * dot::<R>(padded(w, stride, i), padded(w, stride, j));
-            let x = if i == j { 1.5 + half } else { half };
-            square[j * stride + i] = x;
-            square[i * stride + j] = x;
-        }
-    }
-    times::<R>(w, stride, square, size, row);
-}
-
-#[inline(always)]
-fn add_identity(m: &mut [f64], size: Size) {
-    let m = &mut m[..size.k * size.short];
-    for i in 0..size.k {
-        m[i * size.short + i] += 1.0;
-    }
-}
-
-#[inline(always)]
-fn scale<R: Real>(m: &mut [f64], factor: f64) {
-    for four in m.as_chunks_mut::<LANES>().0 {
-        (R::load(four) * R::splat(factor)).store(four);
-    }
-}
-
-#[inline(always)]
-fn padded(columns: &[f64], stride: usize, j: usize) -> &[f64] {
-    &columns[j * stride..][..stride]
-}
-
-/// Two padded columns, i < j.
-#[inline(always)]
-fn pair(columns: &mut [f64], stride: usize, i: usize, j: usize) -> (&mut [f64], &mut [f64]) {
-    let (head, tail) = columns.split_at_mut(j * stride);
-    (&mut head[i * stride..][..stride], &mut tail[..stride])
-}
-
-/// Columns padded with zeros to a multiple of four numbers, so that loops over them have no rest.
-#[derive(Debug, Clone)]
-pub(super) struct PaddedColumns {
-    rows: usize,
-    stride: usize,
-    data: Vec<f64>,
-}
-
-impl PaddedColumns {
-    fn zeros(rows: usize, cols: usize) -> Self {
-        let stride = rows.next_multiple_of(LANES);
-        Self { rows, stride, data: vec![0.0; stride * cols] }
-    }
-
-    pub(super) fn fill(&mut self, x: f64) {
-        self.data.fill(x);
-    }
-
-    #[inline]
-    pub(super) fn column(&self, j: usize) -> &[f64] {
-        &self.data[j * self.stride..j * self.stride + self.rows]
-    }
-
-    #[inline]
-    pub(super) fn column_mut(&mut self, j: usize) -> &mut [f64] {
-        &mut self.data[j * self.stride..j * self.stride + self.rows]
-    }
-}
-
-const LANES: usize = 4;
-
-/// `a = a m`, m square; `row` holds four rows of a.
-#[inline(always)]
-fn times<R: Real>(a: &mut [f64], stride: usize, m: &[f64], size: Size, row: &mut [f64]) {
-    /// Columns whose four rows stay in registers.
-    const FEW: usize = 8;
-    let k = size.k;
-    let (a, m) = (&mut a[..k * stride], &m[..k * size.short]);
-    let mut few = [R::splat(0.0); FEW];
-    for four in (0..stride).step_by(LANES) {
-        for l in 0..k {
-            let numbers = &a[l * stride + four..][..LANES];
-            if k <= FEW {
-                few[l] = R::load(numbers);
-            } else {
-                row[l * LANES..][..LANES].copy_from_slice(numbers);
-            }
-        }
-        for j in 0..k {
-            let m = padded(m, size.short, j);
-            let mut sum = R::splat(0.0);
-            for l in 0..k {
-                let of = if k <= FEW { few[l] } else { R::load(&row[l * LANES..]) };
-                sum = of.times_plus(R::splat(m[l]), sum);
-            }
-            sum.store(&mut a[j * stride + four..]);
-        }
-    }
-}
-
-/// Scalar product of padded columns.
-#[inline(always)]
-fn dot<R: Real>(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = R::splat(0.0);
-    for (x, y) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
-        sum = R::load(x).times_plus(R::load(y), sum);
-    }
-    sum.sum()
-}
-
-#[inline(always)]
-fn rotate<R: Real>(a: &mut [f64], b: &mut [f64], c: f64, s: f64) {
-    let (c, s) = (R::splat(c), R::splat(s));
-    let (a, b) = (a.as_chunks_mut::<LANES>().0, b.as_chunks_mut::<LANES>().0);
-    for (x, y) in a.iter_mut().zip(b) {
-        let (p, q) = (R::load(x), R::load(y));
-        (-s).times_plus(q, c * p).store(x);
-        s.times_plus(p, c * q).store(y);
-    }
+fn norm<R: Four>(squares: R) -> f64 {
+    (0.5 * squares.sum()).sqrt()
 }
 
 /// All pairs of k columns, ordered so that neighbours share no column: the processor works on
@@ -438,6 +435,32 @@ mod tests {
             pairs.sort_unstable();
             pairs.dedup();
             assert_eq!(pairs.len(), k * k.saturating_sub(1) / 2, "{k}");
+        }
+    }
+
+    /// Registers and plain numbers, cold and warm, in the sizes that are known to the compiler and
+    /// in others.
+    #[test]
+    fn registers_agree_with_plain_numbers() {
+        let mut state = 5;
+        for (m, n) in [(6, 7), (6, 6), (7, 6), (3, 7), (6, 12), (9, 9)] {
+            let start = Matrix::from_fn(m, n, |_, _| crate::scalar::uniform(&mut state));
+            let (k, long) = (m.min(n), m.max(n));
+            let (mut fast, mut plain) = (Rotations::zeros(long, k), Rotations::zeros(long, k));
+            let mut from = Start::Cold;
+            for step in 0..40 {
+                let t = f64::from(step) * 1e-3;
+                let a =
+                    Matrix::from_fn(m, n, |i, j| start[(i, j)] + t * ((i + 2 * j) as f64).sin());
+                fast.run(&a, 0.25, from);
+                plain.run_with::<Array<4>>(&a, 0.25, from, plain.size());
+                for (x, y) in [(&fast.b, &plain.b), (&fast.w, &plain.w)] {
+                    for (x, y) in x.data.iter().zip(&y.data) {
+                        assert!((x - y).abs() < 1e-11, "{m} x {n}, step {step}: {x} and {y}");
+                    }
+                }
+                from = if step % 9 == 8 { Start::Repaired } else { Start::Warm };
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 //! and of kernels, angles between spaces, metrics, hulls of convex bodies.
 
 pub(crate) mod abreast;
+mod blocks;
 mod box_program;
 mod column_space;
 mod cs;
@@ -11,6 +12,7 @@ mod lanes;
 mod matrix;
 mod metric;
 mod null_space;
+mod padded;
 mod qr;
 mod singular_values;
 mod svd;

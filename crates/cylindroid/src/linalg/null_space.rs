@@ -6,6 +6,7 @@
 //!          subtracting twice ("twice is enough", Kahan) makes A (1 - P) x zero to rounding
 //! Checked  tests/it/svd.rs::null_space_*
 
+use super::blocks::remove_twice;
 use super::matrix::Matrix;
 use super::svd::Svd;
 use super::vector::{dot, norm};
@@ -62,15 +63,8 @@ impl<'a> RowSpace<'a> {
 
     /// `x <- (1 - V_r V_r^T) x`, without allocation.
     pub fn project_out(&self, x: &mut [f64]) {
-        for _ in 0..2 {
-            for i in (0..self.svd.len()).filter(|&i| self.keeps(i)) {
-                let v = self.svd.v(i);
-                let along = dot(v, x);
-                for (xj, vj) in x.iter_mut().zip(v) {
-                    *xj -= along * vj;
-                }
-            }
-        }
+        let factor = |i| if self.keeps(i) { 1.0 } else { 0.0 };
+        remove_twice(self.svd.right(), factor, x);
     }
 
     /// An orthonormal basis of the null space, one column each (n x (n - r)).

@@ -7,8 +7,8 @@
 //!          m <= n it is U, so that lost task directions are known also where s is exactly zero.
 //!          A column of Q whose singular value is exactly zero is zero: A does not determine it.
 //! Valid    any finite A; a singular value that no number holds is given as the largest number
-//! Warm     `decompose_warm` starts from the W of the last call; for a slowly changing Jacobian
-//!          one or two sweeps remain. The result is exact either way.
+//! Warm     `decompose_warm` starts from the W of the last call, turned on as it turned last; for a
+//!          slowly changing Jacobian one or two sweeps remain. The result is exact either way.
 //! Why so   high relative accuracy also of small singular values, no failure on rank-deficient
 //!          input (the bidiagonal method of a well-known crate returns wrong values there), no
 //!          allocation, and 6 x n is where it is fastest. The alternative, a general library
@@ -16,21 +16,22 @@
 //! Source   Hestenes 1958; de Rijk 1989 (ordering); Maciejewski & Klein 1989 (warm start)
 //! Checked  tests/it/svd.rs
 
+use super::blocks::add_through;
 use super::jacobi::{Rotations, Start};
 use super::matrix::Matrix;
+use super::padded::{LANES, PaddedColumns};
 use crate::tolerance::MACHINE_RANK;
 
-/// Warm starts between two repairs of W, whose columns drift by a rounding each time.
-const WARM_STARTS: usize = 8;
+/// Warm starts between two repairs of W and of how it turned, which drift by a rounding each time.
+const WARM_STARTS: usize = 4;
 
 /// A singular value decomposition and the memory to compute the next one without allocation.
 #[derive(Debug, Clone)]
 pub struct Svd {
     rows: usize,
     cols: usize,
-    /// B W, later Q, and W.
+    /// B W, later Q, and W; columns in the order of the singular values.
     rotations: Rotations,
-    order: Vec<usize>,
     /// Warm starts that are left before W is repaired; `None` before the first decomposition.
     warm: Option<usize>,
     sweeps: usize,
@@ -53,14 +54,7 @@ impl Svd {
     #[must_use]
     pub fn workspace(m: usize, n: usize) -> Self {
         let (k, long) = (m.min(n), m.max(n));
-        Self {
-            rows: m,
-            cols: n,
-            rotations: Rotations::zeros(long, k),
-            order: (0..k).collect(),
-            warm: None,
-            sweeps: 0,
-        }
+        Self { rows: m, cols: n, rotations: Rotations::zeros(long, k), warm: None, sweeps: 0 }
     }
 
     /// The decomposition of `a`.
@@ -86,17 +80,16 @@ impl Svd {
     /// If `a` has not the shape of the workspace.
     pub fn decompose_warm(&mut self, a: &Matrix) {
         assert_eq!((a.rows(), a.cols()), (self.rows, self.cols), "shape of the SVD workspace");
-        let largest = a.max_abs();
-        if largest == 0.0 || !largest.is_finite() {
-            self.rotations.lengths.fill(if largest == 0.0 { 0.0 } else { f64::NAN });
+        let size = size(a);
+        if size == 0.0 || !size.is_finite() {
+            self.rotations.lengths.fill(if size == 0.0 { 0.0 } else { f64::NAN });
             self.rotations.b.fill(0.0);
             self.rotations.reset();
-            self.order.iter_mut().enumerate().for_each(|(i, o)| *o = i);
             self.warm = None;
             return;
         }
         // Scaled by a power of two, which is exact, so that squares neither overflow nor vanish.
-        let scale = power_of_two_below(largest);
+        let scale = power_of_two_below(size);
         let (start, left) = match self.warm {
             None => (Start::Cold, WARM_STARTS),
             Some(0) => (Start::Repaired, WARM_STARTS),
@@ -104,9 +97,8 @@ impl Svd {
         };
         self.warm = Some(left);
         self.sweeps = self.rotations.run(a, 1.0 / scale, start);
-        let sigma = &mut self.rotations.lengths;
-        self.order.sort_unstable_by(|&i, &j| sigma[j].total_cmp(&sigma[i]).then_with(|| i.cmp(&j)));
-        for s in sigma {
+        self.rotations.sort();
+        for s in self.rotations.lengths.column_mut(0) {
             *s = (*s * scale).min(f64::MAX);
         }
         debug_assert!(
@@ -119,42 +111,51 @@ impl Svd {
     /// Number of singular values, min(m, n).
     #[must_use]
     pub fn len(&self) -> usize {
-        self.rotations.lengths.len()
+        self.rotations.k
     }
 
     /// True for a matrix without rows or without columns.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.rotations.lengths.is_empty()
+        self.rotations.k == 0
     }
 
     /// The `i`-th largest singular value.
     #[must_use]
     #[inline]
     pub fn value(&self, i: usize) -> f64 {
-        self.rotations.lengths[self.order[i]]
+        self.rotations.lengths.column(0)[i]
     }
 
     /// The singular values, largest first.
     #[must_use]
     pub fn values(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
-        self.order.iter().map(|&i| self.rotations.lengths[i])
+        self.rotations.lengths.column(0).iter().copied()
     }
 
     /// Left singular vector of the `i`-th value (m entries).
     #[must_use]
     #[inline]
     pub fn u(&self, i: usize) -> &[f64] {
-        let j = self.order[i];
-        if self.rows > self.cols { self.rotations.b.column(j) } else { self.rotations.w.column(j) }
+        self.left().column(i)
     }
 
     /// Right singular vector of the `i`-th value (n entries).
     #[must_use]
     #[inline]
     pub fn v(&self, i: usize) -> &[f64] {
-        let j = self.order[i];
-        if self.rows > self.cols { self.rotations.w.column(j) } else { self.rotations.b.column(j) }
+        self.right().column(i)
+    }
+
+    /// U and V.
+    #[inline]
+    fn left(&self) -> &PaddedColumns {
+        if self.rows > self.cols { &self.rotations.b } else { &self.rotations.w }
+    }
+
+    #[inline]
+    pub(super) fn right(&self) -> &PaddedColumns {
+        if self.rows > self.cols { &self.rotations.w } else { &self.rotations.b }
     }
 
     /// Number of rows of the decomposed matrix.
@@ -178,22 +179,15 @@ impl Svd {
     /// `V diag(gain) U^T b`, n entries; `gain` of the place and size of each singular value.
     pub(crate) fn apply_gains(&self, b: &[f64], gain: impl Fn(usize, f64) -> f64) -> Vec<f64> {
         let mut x = vec![0.0; self.cols];
-        self.apply_gains_into(b, gain, &mut x);
+        let gains: Vec<f64> = (0..self.len()).map(|i| gain(i, self.value(i))).collect();
+        self.apply_gains_into(b, &gains, &mut x);
         x
     }
 
     /// [`Svd::apply_gains`] without allocation.
-    pub(crate) fn apply_gains_into(
-        &self,
-        b: &[f64],
-        gain: impl Fn(usize, f64) -> f64,
-        x: &mut [f64],
-    ) {
+    pub(crate) fn apply_gains_into(&self, b: &[f64], gains: &[f64], x: &mut [f64]) {
         x.fill(0.0);
-        for i in 0..self.len() {
-            let along = gain(i, self.value(i)) * super::vector::dot(self.u(i), b);
-            x.iter_mut().zip(self.v(i)).for_each(|(x, v)| *x += along * v);
-        }
+        add_through(self.left(), &gains[..self.len()], self.right(), b, x);
     }
 
     /// The least x that is nearest to solving `A x = b` in the first `rank` directions.
@@ -211,7 +205,7 @@ impl Svd {
         }
         let machine = MACHINE_RANK * self.rows.max(self.cols) as f64;
         let threshold = (eps.max(machine) * self.value(0)).max(f64::MIN_POSITIVE);
-        let rank = self.values().take_while(|&s| s > threshold).count();
+        let rank = self.values().filter(|&s| s > threshold).count();
         let gap = if rank == 0 || rank == k || self.value(rank) == 0.0 {
             f64::INFINITY
         } else {
@@ -244,6 +238,18 @@ impl Svd {
         }
         (difference / size).sqrt()
     }
+}
+
+/// The sum of the absolute numbers, or the largest one where no number holds the sum; NaN or
+/// infinite where a number is. Zero for zero alone.
+fn size(a: &Matrix) -> f64 {
+    let (fours, rest) = a.as_slice().as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for [a, b, c, d] in fours {
+        sums = [sums[0] + a.abs(), sums[1] + b.abs(), sums[2] + c.abs(), sums[3] + d.abs()];
+    }
+    let sum = sums.iter().sum::<f64>() + rest.iter().map(|x| x.abs()).sum::<f64>();
+    if sum == f64::INFINITY { a.max_abs() } else { sum }
 }
 
 fn power_of_two_below(x: f64) -> f64 {

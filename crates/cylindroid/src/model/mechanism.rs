@@ -9,7 +9,7 @@ use super::joint::{Joint, Limits};
 use super::link::Link;
 use super::node::{Motion, Node};
 use super::report::LoadReport;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, all_finite};
 use crate::spatial::{Pose, Rotation, Twist, Vec3, exp};
 
 /// A robot or mechanism. Immutable; a clone shares the data.
@@ -345,6 +345,9 @@ impl Mechanism {
                 got: q.len(),
                 hint: format!("in this order: {}", names.join(", ")),
             });
+        }
+        if all_finite(q) {
+            return Ok(());
         }
         match q.iter().position(|x| !x.is_finite()) {
             None => Ok(()),

@@ -4,7 +4,7 @@
 use std::array::from_fn;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::Real;
+use super::{Four, Real};
 
 /// Several numbers side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,5 +102,43 @@ impl<const N: usize> Real for Array<N> {
     #[inline(always)]
     fn all_within(self, limit: f64) -> bool {
         self.0.iter().all(|x| x.abs() <= limit)
+    }
+}
+
+impl Four for Array<4> {
+    #[inline(always)]
+    fn load_some(from: &[f64]) -> Self {
+        Self(from_fn(|i| from.get(i).copied().unwrap_or(0.0)))
+    }
+
+    #[inline(always)]
+    fn store_some(self, to: &mut [f64]) {
+        to.iter_mut().zip(self.0).for_each(|(to, x)| *to = x);
+    }
+
+    #[inline(always)]
+    fn over(self, by: Self) -> Self {
+        Self(from_fn(|i| self.0[i] / by.0[i]))
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn where_larger(self, a: Self, b: Self) -> Self {
+        Self(from_fn(|i| if a.0[i] > b.0[i] { self.0[i] } else { 0.0 }))
+    }
+
+    #[inline(always)]
+    fn sums(of: [Self; 4]) -> Self {
+        // Neighbours first, as registers do.
+        Self(of.map(|Self([a, b, c, d])| (a + b) + (c + d)))
+    }
+
+    #[inline(always)]
+    fn transposed(of: [Self; 4]) -> [Self; 4] {
+        from_fn(|k| Self(from_fn(|l| of[l].0[k])))
     }
 }

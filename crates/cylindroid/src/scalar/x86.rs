@@ -8,7 +8,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::Real;
+use super::{Four, Real};
 
 /// The bit of the sign.
 const SIGN: i64 = i64::MIN;
@@ -73,21 +73,71 @@ fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize) -> *mut f6
     to.as_mut_ptr()
 }
 
-/// Row l holds lane l of all four.
+/// The sign is set in the lanes for which there are numbers.
 #[inline(always)]
-fn transposed(from: &[Lanes4; 4]) -> [Lanes4; 4] {
-    let [a, b, c, d] = from.map(|x| x.0);
-    // SAFETY: see the head of this file.
-    unsafe {
-        // a0 b0 a2 b2, a1 b1 a3 b3, and the same of c and d
-        let (ab_even, ab_odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
-        let (cd_even, cd_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
-        [
-            Lanes4(_mm256_permute2f128_pd::<0x20>(ab_even, cd_even)),
-            Lanes4(_mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd)),
-            Lanes4(_mm256_permute2f128_pd::<0x31>(ab_even, cd_even)),
-            Lanes4(_mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd)),
-        ]
+fn lanes_of(numbers: &[f64]) -> __m256i {
+    const FIRST: [i64; 8] = [-1, -1, -1, -1, 0, 0, 0, 0];
+    let window = &FIRST[4 - numbers.len().min(4)..][..4];
+    // SAFETY: four integers are there; see the head of this file.
+    unsafe { _mm256_loadu_si256(window.as_ptr().cast()) }
+}
+
+impl Four for Lanes4 {
+    #[inline(always)]
+    fn load_some(from: &[f64]) -> Self {
+        // SAFETY: only numbers that are there are read; see the head of this file.
+        Self(unsafe { _mm256_maskload_pd(from.as_ptr(), lanes_of(from)) })
+    }
+
+    #[inline(always)]
+    fn store_some(self, to: &mut [f64]) {
+        // SAFETY: only places that are there are written; see the head of this file.
+        unsafe { _mm256_maskstore_pd(to.as_mut_ptr(), lanes_of(to), self.0) }
+    }
+
+    #[inline(always)]
+    fn over(self, by: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_div_pd(self.0, by.0) })
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+
+    #[inline(always)]
+    fn where_larger(self, a: Self, b: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_and_pd(self.0, _mm256_cmp_pd::<_CMP_GT_OQ>(a.0, b.0)) })
+    }
+
+    #[inline(always)]
+    fn sums([Self(a), Self(b), Self(c), Self(d)]: [Self; 4]) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe {
+            // a0 + a1, b0 + b1, a2 + a3, b2 + b3, and the same of c and d
+            let (ab, cd) = (_mm256_hadd_pd(a, b), _mm256_hadd_pd(c, d));
+            let across = _mm256_permute2f128_pd::<0x21>(ab, cd);
+            _mm256_add_pd(_mm256_blend_pd::<0b1100>(ab, cd), across)
+        })
+    }
+
+    #[inline(always)]
+    fn transposed([Self(a), Self(b), Self(c), Self(d)]: [Self; 4]) -> [Self; 4] {
+        // SAFETY: see the head of this file.
+        unsafe {
+            // a0 b0 a2 b2, a1 b1 a3 b3, and the same of c and d
+            let (ab_even, ab_odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+            let (cd_even, cd_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+            [
+                Self(_mm256_permute2f128_pd::<0x20>(ab_even, cd_even)),
+                Self(_mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd)),
+                Self(_mm256_permute2f128_pd::<0x31>(ab_even, cd_even)),
+                Self(_mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd)),
+            ]
+        }
     }
 }
 
@@ -127,7 +177,7 @@ impl Real for Lanes4 {
         let (fours, rest) = from.as_chunks::<4>();
         let to = rows_of(to, stride, from.len(), Self::LANES);
         for (k, four) in fours.iter().enumerate() {
-            let rows = transposed(four);
+            let rows = Lanes4::transposed(*four);
             for (l, row) in rows.into_iter().enumerate() {
                 // SAFETY: `rows_of` has looked that these four places are there.
                 unsafe { _mm256_storeu_pd(to.add(l * stride + 4 * k), row.0) };
@@ -264,7 +314,7 @@ impl Real for Lanes8 {
         for (k, [a, b, c, d]) in fours.iter().enumerate() {
             let (a, b, c, d) = (a.halves(), b.halves(), c.halves(), d.halves());
             for half in 0..2 {
-                let rows = transposed(&[a[half], b[half], c[half], d[half]]);
+                let rows = Lanes4::transposed([a[half], b[half], c[half], d[half]]);
                 for (l, row) in rows.into_iter().enumerate() {
                     let place = (4 * half + l) * stride + 4 * k;
                     // SAFETY: `rows_of` has looked that these four places are there.

@@ -78,6 +78,14 @@ impl Quaternion {
     /// The quaternion of a rotation matrix, `w >= 0`; with `w = 0` the first imaginary part that
     /// is not zero is positive.
     pub(crate) fn of_matrix(m: Mat3) -> Self {
+        let Self { w, x, y, z } = Self::multiple_of_matrix(m);
+        // The largest is between 1 and 4: squares neither overflow nor matter where they vanish.
+        let scale = 1.0 / (w * w + x * x + y * y + z * z).sqrt();
+        Self { w: w * scale, x: x * scale, y: y * scale, z: z * scale }
+    }
+
+    /// The same before it has length one: between 1 and 4 times as long.
+    pub(crate) fn multiple_of_matrix(m: Mat3) -> Self {
         let [a, b, c] = m.cols;
         // Four times the squared components; the largest is at least 1.
         let squares = [
@@ -97,9 +105,7 @@ impl Quaternion {
             _ => (xy, pzx, pyz, s),
         };
         let sign = [w, x, y, z].into_iter().find(|v| *v != 0.0).map_or(1.0, f64::signum);
-        // The largest is between 1 and 4: squares neither overflow nor matter where they vanish.
-        let scale = sign / (w * w + x * x + y * y + z * z).sqrt();
-        Self { w: w * scale, x: x * scale, y: y * scale, z: z * scale }
+        Self { w: w * sign, x: x * sign, y: y * sign, z: z * sign }
     }
 }
 

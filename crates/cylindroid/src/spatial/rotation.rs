@@ -6,17 +6,18 @@
 //! Valid    everywhere. At angle pi the axis is ambiguous; the one whose first component that is
 //!          not zero is positive is taken. Never NaN for finite input.
 //! Why so   the textbook log, acos of the trace, loses half the digits at 0 and all at pi; the
-//!          quaternion of largest component (Shepperd) loses none, so there is no switch
+//!          quaternion of largest component (Shepperd) loses none; its switch is for speed
 //! Source   Shepperd 1978; Sola et al. 2018 (arXiv 1812.01537), eq. 132, 146
 //! Checked  tests/it/spatial.rs
 
 use std::ops::Mul;
 
 use super::angles::Quaternion;
+use super::series::atanc;
 use super::vec3::{Mat3, Vec3};
 use crate::error::{Error, Result};
 use crate::scalar::sin_cos;
-use crate::tolerance::{ORTHONORMAL, ZERO_AXIS};
+use crate::tolerance::{ORTHONORMAL, SMALL_TANGENT, ZERO_AXIS};
 
 /// A rotation, `a_from_b`: its columns are the axes of frame b in frame a.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,11 +44,17 @@ impl Rotation {
     /// The rotation vector: axis times angle, angle in [0, pi] (rad).
     #[must_use]
     pub fn log(self) -> Vec3 {
-        let q = self.to_quaternion();
+        let q = Quaternion::multiple_of_matrix(self.matrix);
         let v = Vec3::new(q.x, q.y, q.z);
-        let s = v.norm();
-        // |v| / w is the tangent of half the angle; below the smallest normal number it is linear.
-        let factor = if s < f64::MIN_POSITIVE { 2.0 / q.w } else { 2.0 * s.atan2(q.w) / s };
+        // |v| / w is the tangent of half the angle.
+        let inverse = 1.0 / q.w;
+        let square = v.dot(v) * inverse * inverse;
+        let factor = if square < SMALL_TANGENT {
+            2.0 * inverse * atanc(square)
+        } else {
+            let s = v.norm();
+            2.0 * s.atan2(q.w) / s
+        };
         v * factor
     }
 

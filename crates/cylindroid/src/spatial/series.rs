@@ -11,6 +11,12 @@ fn polynomial(x: f64, c: &[f64]) -> f64 {
     c.iter().rev().fold(0.0, |sum, &k| sum * x + k)
 }
 
+/// atan t / t for x = t^2 up to `tolerance::SMALL_TANGENT`
+#[inline]
+pub(crate) fn atanc(x: f64) -> f64 {
+    1.0 - x * (1.0 / 3.0 - x * (1.0 / 5.0 - x * (1.0 / 7.0 - x * (1.0 / 9.0 - x / 11.0))))
+}
+
 /// sin t / t
 pub(crate) fn sinc(t: f64) -> f64 {
     if t == 0.0 { 1.0 } else { t.sin() / t }

@@ -87,7 +87,7 @@ impl Vec3 {
     /// True if no component is NaN or infinite.
     #[must_use]
     pub fn is_finite(self) -> bool {
-        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+        0.0 * self.x + 0.0 * self.y + 0.0 * self.z == 0.0
     }
 }
 

@@ -7,9 +7,10 @@ use cylindroid::spatial::{
 
 use crate::support::{Random, assert_close, entries, pose_entries};
 
-/// Angles at which anything could go wrong: zero, tiny, both sides of the series' switch, pi.
+/// Angles at which anything could go wrong: zero, tiny, both sides of the series' switches, pi.
 fn angles() -> Vec<f64> {
     let switch = cylindroid::tolerance::SMALL_ANGLE;
+    let small = 2.0 * cylindroid::tolerance::SMALL_TANGENT.sqrt().atan();
     vec![
         0.0,
         f64::MIN_POSITIVE,
@@ -17,6 +18,9 @@ fn angles() -> Vec<f64> {
         1e-16,
         1e-9,
         1e-5,
+        small * (1.0 - 1e-15),
+        small,
+        small * (1.0 + 1e-15),
         0.1,
         switch * (1.0 - 1e-15),
         switch,

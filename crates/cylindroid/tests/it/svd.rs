@@ -85,6 +85,29 @@ fn integer_rank(a: &Matrix) -> usize {
     rank
 }
 
+/// What rounding leaves of columns that are lost has any lengths, also nearly equal ones.
+#[test]
+fn held_joints() {
+    let columns = [
+        [0.209_208_314_000_872_75, 0.183_185_825_266_891_17, 0.586_398_983_401_641_2],
+        [-0.658_766_395_315_624_3, 0.752_347_550_273_714, 0.0],
+        [-0.103_709_068_293_999_35, 0.096_640_650_347_387_5, 0.074_854_032_786_297_2],
+        [-0.556_818_436_439_122, 0.044_891_370_665_425_42, -0.829_420_275_663_231_4],
+    ];
+    let mut a = Matrix::zeros(6, 7);
+    for (j, halves) in [(1, &columns[..2]), (5, &columns[2..])] {
+        a.column_mut(j).copy_from_slice(halves.as_flattened());
+    }
+    check(&a);
+    let mut random = Random(16);
+    for _ in 0..20_000 {
+        let kept = [random.within(0.0, 7.0) as usize, random.within(0.0, 7.0) as usize];
+        check(&Matrix::from_fn(6, 7, |_, j| {
+            if kept.contains(&j) { random.within(-1.0, 1.0) } else { 0.0 }
+        }));
+    }
+}
+
 #[test]
 fn extreme_scales() {
     let mut random = Random(13);

@@ -23,7 +23,7 @@ impl Servo {
         self.method = self.options.method;
         let mut twist = wanted.feedback;
         let mut solved = None;
-        if self.limits.iter().any(|l| l.acceleration < f64::INFINITY) {
+        if self.accelerates {
             self.load_twist(twist);
             self.solve();
             solved = Some(twist);
@@ -32,10 +32,10 @@ impl Servo {
                 let way = |(w, rate): (&mut f64, &f64)| *w = rate / gain.position;
                 self.wish.iter_mut().zip(&self.primary).for_each(way);
             } else if let Some(coupled) = &mut self.coupled {
-                self.svd.apply_gains_into(&self.possible, |i, _| self.gains[i], &mut coupled.wish);
+                self.svd.apply_gains_into(&self.possible, &self.gains, &mut coupled.wish);
                 coupled.lift(&coupled.wish, &mut self.wish);
             } else {
-                self.svd.apply_gains_into(&self.possible, |i, _| self.gains[i], &mut self.wish);
+                self.svd.apply_gains_into(&self.possible, &self.gains, &mut self.wish);
             }
             let dt = self.options.dt;
             let share =
@@ -98,13 +98,12 @@ impl Servo {
         Ok(found.closed.then_some(found.q))
     }
 
-    /// Moves primary rates and wishes into the bounds; what the task gets of it into `done`.
+    /// Moves primary rates and wishes into the bounds.
     pub(super) fn saturate(&mut self, q: &[f64]) -> Result<Saturation> {
         let (j, x, method, bounds) = (&self.task, &self.x, &self.method, &self.bounds);
         let Some(coupled) = &mut self.coupled else {
             let problem = Problem { j, x, method, bounds };
             let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
-            self.task.mul_vec_into(&self.primary, &mut self.done);
             return Ok(saturation);
         };
         let rates = self.space.scaled_rates(&self.rates);
@@ -116,13 +115,19 @@ impl Servo {
             coupled.brake(&problem, &mut self.primary);
             saturation = Saturation { scale: 0.0, bent: false };
         }
-        self.task.mul_vec_into(&coupled.y, &mut self.done);
         Ok(saturation)
+    }
+
+    /// What the task gets of the rates of this step.
+    pub(super) fn load_done(&mut self) {
+        let rates = self.coupled.as_ref().map_or(&self.primary, |coupled| &coupled.y);
+        self.task.mul_vec_into(rates, &mut self.done);
     }
 
     /// True if the tool, moved by the rates of this step, is so slow against the target that an
     /// error within tolerance stays within it.
-    pub(super) fn settled(&self, feed_forward: Twist) -> bool {
+    pub(super) fn settled(&mut self, feed_forward: Twist) -> bool {
+        self.load_done();
         let speed = self.space.twist(&self.done) - feed_forward;
         let (gain, most) = (self.options.gain, self.options.tolerance);
         speed.linear.norm() <= gain.position * most.position
@@ -153,9 +158,7 @@ impl Servo {
             if self.wish.iter().all(|w| *w == 0.0) {
                 return;
             }
-            for (i, w) in self.wish.iter_mut().enumerate() {
-                *w = self.space.scaled_rate(i, *w);
-            }
+            self.space.scale_rates(&mut self.wish);
         }
         let space = match self.options.projector {
             Projector::Exact => RowSpace::exact(&self.svd),
@@ -165,6 +168,37 @@ impl Servo {
             Some(coupled) => &mut coupled.wish,
             None => &mut self.wish,
         });
+    }
+
+    /// The rates of a step in which no joint meets a limit; `None`, and nothing done, if one may.
+    pub(super) fn store_clear_rates(&mut self, q: &[f64]) -> Option<Effort> {
+        if self.coupled.is_some() {
+            return None;
+        }
+        let scaled = self.primary.iter().zip(&self.wish).zip(&self.space.columns);
+        let places = self.chain.coordinates().iter().zip(&self.clearances);
+        let mut clear = true;
+        for (((primary, wish), column), (&c, clearance)) in scaled.zip(places) {
+            let now = Motion1 { position: q[c], rate: self.rates[c] };
+            clear &= clearance.holds(now, (primary + wish) * column);
+        }
+        if !clear {
+            return None;
+        }
+        let scaled = self.primary.iter_mut().zip(&self.wish).zip(&self.space.columns);
+        let places = self.chain.coordinates().iter().zip(&self.clearances);
+        let mut effort = Effort::default();
+        for (((primary, wish), column), (&c, clearance)) in scaled.zip(places) {
+            *primary += wish;
+            self.rates[c] = *primary * column;
+            if self.accelerates {
+                let time = self.rates[c].abs() * clearance.slowness;
+                effort.stopping_time = effort.stopping_time.max(time);
+            }
+        }
+        self.active.fill(None);
+        self.at_limit.clear();
+        Some(effort)
     }
 
     /// The bounds of the next rates, in weighted coordinates.
