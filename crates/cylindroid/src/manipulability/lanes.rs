@@ -391,3 +391,39 @@ fn times<R: Field>(m: &Matrix, factor: f64, rows: &[R], k: usize, out: &mut [R])
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::catalogue;
+    use crate::scalar::uniform;
+
+    /// Arrays are plain numbers to the bit, registers to rounding over the distances of these
+    /// postures.
+    #[test]
+    fn lanes_agree_with_plain_numbers() {
+        for name in ["five-bar", "stewart", "two-arm", "ur5e"] {
+            let mechanism = catalogue::load(name).unwrap();
+            let plan = Plan::of(&mechanism, mechanism.reference(), mechanism.reach()).unwrap();
+            let of = |scale: &[f64]| Matrix::diagonal(scale);
+            let (object, joint) = (of(&plan.object_scale), of(&plan.actuated_scale));
+            let kernel = Kernel::new(plan, object, joint).unwrap();
+            let (n, count) = (mechanism.n(), 11);
+            let mut random = 8;
+            let q: Vec<f64> = (0..count)
+                .flat_map(|_| mechanism.home())
+                .map(|x| x + 0.4 * uniform(&mut random) - 0.2)
+                .collect();
+            let mut plain = vec![0.0; count * kernel.width()];
+            let (mut array, mut best) = (plain.clone(), plain.clone());
+            kernel.run_with::<f64>(&q, n, &mut plain);
+            kernel.run_with::<Array<4>>(&q, n, &mut array);
+            kernel.run(&q, n, &mut best);
+            assert_eq!(plain, array, "{name}");
+            for (i, (p, b)) in plain.iter().zip(&best).enumerate() {
+                let close = (p - b).abs() <= 1e-12 * (1.0 + p.abs());
+                assert!(close, "{name} {i}: {p} and {b}");
+            }
+        }
+    }
+}
