@@ -19,7 +19,7 @@ use crate::closure::Plan;
 use crate::kinematics::Frame;
 use crate::linalg::Matrix;
 use crate::linalg::abreast::{
-    End, Reflections, divide_by_upper, extreme_eigenvalues, singular_values, tournament,
+    End, Reflections, divide_by_upper, dot, extreme_eigenvalues, singular_values, tournament,
     tridiagonal,
 };
 use crate::scalar::{Array, Field};
@@ -344,15 +344,6 @@ impl<R: Field> Scratch<R> {
             numbers: zeros(kernel.width()),
         }
     }
-}
-
-#[inline(always)]
-fn dot<R: Field>(a: &[R], b: &[R]) -> R {
-    let mut sum = R::splat(0.0);
-    for (x, y) in a.iter().zip(b) {
-        sum = x.times_plus(*y, sum);
-    }
-    sum
 }
 
 /// Rows of k numbers as columns.
