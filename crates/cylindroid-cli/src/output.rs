@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
+use cylindroid::model::Mimic;
 use cylindroid::screws::Screw;
 use cylindroid::spatial::{Quaternion, Rpy};
 use cylindroid::{Matrix, Mechanism, Pose};
@@ -188,6 +189,21 @@ pub(crate) fn without_rounding(x: f64) -> f64 {
 
 /// Entries below this are rounding [m, rad].
 const ROUNDING: f64 = 1e-12;
+
+/// What a mimic joint follows, in JSON.
+#[derive(Debug, Serialize)]
+pub(crate) struct MimicJson<'a> {
+    joint: &'a str,
+    multiplier: f64,
+    offset: f64,
+}
+
+impl<'a> From<&'a Mimic> for MimicJson<'a> {
+    fn from(mimic: &'a Mimic) -> Self {
+        let Mimic { joint, multiplier, offset } = mimic;
+        Self { joint, multiplier: *multiplier, offset: *offset }
+    }
+}
 
 /// A pose in JSON: `world_from_frame` in four notations.
 #[derive(Debug, Serialize)]

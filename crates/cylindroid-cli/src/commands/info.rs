@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::Style;
 use crate::args::InfoArgs;
-use crate::output::{self, Align};
+use crate::output::{self, Align, MimicJson};
 
 #[derive(Debug, Serialize)]
 pub(crate) struct InfoJson<'a> {
@@ -56,13 +56,6 @@ struct JointJson<'a> {
     axis: [f64; 3],
     actuated: bool,
     mimic: Option<MimicJson<'a>>,
-}
-
-#[derive(Debug, Serialize)]
-struct MimicJson<'a> {
-    joint: &'a str,
-    multiplier: f64,
-    offset: f64,
 }
 
 /// A joint that closes a loop.
@@ -154,11 +147,7 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
         child: link(j.child),
         axis: j.axis.to_array(),
         actuated: j.actuated,
-        mimic: j.mimic.as_ref().map(|m| MimicJson {
-            joint: &m.joint,
-            multiplier: m.multiplier,
-            offset: m.offset,
-        }),
+        mimic: j.mimic.as_ref().map(MimicJson::from),
     });
     let loops = robot.loops().iter().map(|l| LoopJson {
         name: &l.name,

@@ -7,6 +7,8 @@ use cylindroid::model::{Coordinate, CoordinateKind, Geometry, Link, Mechanism, V
 use cylindroid::{Method, Pose, Servo};
 use serde::Serialize;
 
+use crate::output::MimicJson;
+
 use super::inverting::Chosen;
 use super::overlays::Overlay;
 use super::session::Session;
@@ -113,13 +115,6 @@ struct JointJson<'a> {
     coordinates: Vec<usize>,
     actuated: bool,
     mimic: Option<MimicJson<'a>>,
-}
-
-#[derive(Debug, Serialize)]
-struct MimicJson<'a> {
-    joint: &'a str,
-    multiplier: f64,
-    offset: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -235,11 +230,7 @@ impl<'a> Scene<'a> {
             axis: j.axis.to_array(),
             coordinates: j.coordinates.clone().collect(),
             actuated: j.actuated,
-            mimic: j.mimic.as_ref().map(|m| MimicJson {
-                joint: &m.joint,
-                multiplier: m.multiplier,
-                offset: m.offset,
-            }),
+            mimic: j.mimic.as_ref().map(MimicJson::from),
         });
         let coordinates = mechanism.coordinates().iter().map(|c| CoordinateJson {
             name: &c.name,

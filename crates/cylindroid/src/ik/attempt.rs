@@ -15,22 +15,23 @@
 use super::damped::{Damped, Wanted};
 use super::goal::Goal;
 use super::options::IkOptions;
+use super::race::{self, Course};
 use crate::error::{Error, Result};
 use crate::kinematics::Chain;
 use crate::linalg::Matrix;
 use crate::model::{CoordinateKind, Mechanism, Motion};
 
 /// Damping over the squared error [-].
-const DAMPING: f64 = 0.03;
+pub(super) const DAMPING: f64 = 0.03;
 /// Damping at the least, relative to the size of A squared: keeps the matrix positive definite.
-const LEAST_DAMPING: f64 = 1e-14;
+pub(super) const LEAST_DAMPING: f64 = 1e-14;
 /// Steps within which the squared error must fall to a quarter, or the attempt is abandoned.
-const PATIENCE: usize = 4;
+pub(super) const PATIENCE: usize = 4;
 /// Steps towards the start at most, and their damping, relative to the size of A squared.
 const APPROACHES: usize = 60;
 const APPROACH_DAMPING: f64 = 1e-9;
 /// Largest change of a coordinate in a step [rad, or lengths].
-const LARGEST_STEP: f64 = 1.5;
+pub(super) const LARGEST_STEP: f64 = 1.5;
 
 /// The errors of a posture: the largest of all goals.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -265,6 +266,23 @@ impl Problem {
             }
         }
         (errors, most)
+    }
+
+    /// What a race of attempts needs, where the goals allow one.
+    pub(super) fn course<'a>(&'a self, options: &'a IkOptions) -> Option<Course<'a>> {
+        let ([part], n) = (&self.parts[..], self.coordinates.len()) else { return None };
+        let serial = part.chain.serial().filter(|s| s.has_one_for_each(n))?;
+        (self.simple && self.m > 0 && (self.m..=race::MOST).contains(&n)).then_some(Course {
+            serial,
+            goal: &part.goal,
+            rows: &part.rows,
+            lower: &self.lower,
+            upper: &self.upper,
+            fixed: &self.fixed,
+            options,
+            most: 0,
+            all: false,
+        })
     }
 
     /// A goal that is farther from the first joint of its chain than the chain is long: both (m).

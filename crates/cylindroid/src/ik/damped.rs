@@ -10,15 +10,16 @@
 //! Checked  tests in this file (against the SVD)
 
 use crate::linalg::dot;
+use crate::scalar::Field;
 
-/// What a step shall do.
+/// What a step shall do; of one configuration, or of several side by side.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Wanted<'a> {
-    pub(super) a: &'a [f64],
-    pub(super) e: &'a [f64],
+pub(super) struct Wanted<'a, R = f64> {
+    pub(super) a: &'a [R],
+    pub(super) e: &'a [R],
     /// Columns that count as zero.
     pub(super) held: &'a [bool],
-    pub(super) damping: f64,
+    pub(super) damping: R,
 }
 
 /// Memory for steps.
@@ -47,31 +48,8 @@ impl Damped {
 
     #[inline(always)]
     fn by_rows(&mut self, m: usize, wanted: Wanted<'_>, d: &mut [f64]) -> bool {
-        let Wanted { a, e, held, damping } = wanted;
         let (gram, rest) = (&mut self.gram[..m * m], &mut self.rest[..m]);
-        gram.fill(0.0);
-        for (column, held) in a.chunks_exact(m).zip(held) {
-            if *held {
-                continue;
-            }
-            for i in 0..m {
-                for j in 0..=i {
-                    gram[i * m + j] += column[i] * column[j];
-                }
-            }
-        }
-        for i in 0..m {
-            gram[i * m + i] += damping;
-        }
-        if !factor(m, gram) {
-            return false;
-        }
-        rest.copy_from_slice(&e[..m]);
-        solve(m, gram, rest);
-        for ((d, column), held) in d.iter_mut().zip(a.chunks_exact(m)).zip(held) {
-            *d = if *held { 0.0 } else { dot(column, rest) };
-        }
-        true
+        by_rows(m, wanted, (gram, rest), d)
     }
 
     fn by_columns(&mut self, wanted: Wanted<'_>, d: &mut [f64]) -> bool {
@@ -95,43 +73,82 @@ impl Damped {
     }
 }
 
-/// The Cholesky factor in place, lower, rows after each other, its diagonal inverted.
+/// The step where A has at least as many columns as rows, with memory of m x m and m; false where a
+/// matrix is not positive definite: what it gives there is no step.
 #[inline(always)]
-fn factor(n: usize, g: &mut [f64]) -> bool {
+pub(super) fn by_rows<R: Field>(
+    m: usize,
+    wanted: Wanted<'_, R>,
+    (gram, rest): (&mut [R], &mut [R]),
+    d: &mut [R],
+) -> bool {
+    let Wanted { a, e, held, damping } = wanted;
+    gram.fill(R::splat(0.0));
+    for (column, held) in a.chunks_exact(m).zip(held) {
+        if *held {
+            continue;
+        }
+        for i in 0..m {
+            for j in 0..=i {
+                gram[i * m + j] = column[i].times_plus(column[j], gram[i * m + j]);
+            }
+        }
+    }
+    for i in 0..m {
+        gram[i * m + i] = gram[i * m + i] + damping;
+    }
+    let is_definite = factor(m, gram);
+    rest.copy_from_slice(&e[..m]);
+    solve(m, gram, rest);
+    for ((d, column), held) in d.iter_mut().zip(a.chunks_exact(m)).zip(held) {
+        *d = R::splat(0.0);
+        if !*held {
+            for (x, y) in column.iter().zip(&*rest) {
+                *d = x.times_plus(*y, *d);
+            }
+        }
+    }
+    is_definite
+}
+
+/// The Cholesky factor in place, lower, rows after each other, its diagonal inverted; false where
+/// the matrix is not positive definite.
+#[inline(always)]
+fn factor<R: Field>(n: usize, g: &mut [R]) -> bool {
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let mut indefinite = zero;
     for j in 0..n {
         let mut pivot = g[j * n + j];
         for k in 0..j {
-            pivot -= g[j * n + k] * g[j * n + k];
+            pivot = pivot - g[j * n + k] * g[j * n + k];
         }
-        if !(pivot > 0.0) {
-            return false;
-        }
-        let inverse = 1.0 / pivot.sqrt();
+        indefinite = indefinite + R::where_less(zero, pivot, zero, one);
+        let inverse = one / pivot.root();
         g[j * n + j] = inverse;
         for i in j + 1..n {
             let mut sum = g[i * n + j];
             for k in 0..j {
-                sum -= g[i * n + k] * g[j * n + k];
+                sum = sum - g[i * n + k] * g[j * n + k];
             }
             g[i * n + j] = sum * inverse;
         }
     }
-    true
+    indefinite.all_within(0.0)
 }
 
 #[inline(always)]
-fn solve(n: usize, l: &[f64], x: &mut [f64]) {
+fn solve<R: Field>(n: usize, l: &[R], x: &mut [R]) {
     for i in 0..n {
         let mut sum = x[i];
         for k in 0..i {
-            sum -= l[i * n + k] * x[k];
+            sum = sum - l[i * n + k] * x[k];
         }
         x[i] = sum * l[i * n + i];
     }
     for i in (0..n).rev() {
         let mut sum = x[i];
         for k in i + 1..n {
-            sum -= l[k * n + i] * x[k];
+            sum = sum - l[k * n + i] * x[k];
         }
         x[i] = sum * l[i * n + i];
     }

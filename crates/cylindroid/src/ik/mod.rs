@@ -21,6 +21,7 @@ mod damped;
 mod formulas;
 mod goal;
 mod options;
+mod race;
 mod solve;
 
 pub use analytic::{Analytic, NoStructure, Posture, Postures, Structure};

@@ -1,10 +1,10 @@
 //! Inverse kinematics: attempts from the start and from drawn postures, until one reaches.
 //!
 //! Method   formulas first, where the axes have a structure that they take. Else, or where they leave
-//!          something open, attempts: the first starts at the given posture, the others at postures drawn evenly
-//!          within the limits (in [-pi, pi] where there are none, or where a whole turn changes
-//!          nothing), the same on every run. What an attempt reaches is an answer: within the
-//!          limits, and within tolerance by forward kinematics
+//!          something open, attempts: the first starts at the given posture, the others at postures
+//!          drawn evenly within the limits (in [-pi, pi] where there are none, or where a whole turn
+//!          changes nothing), the same on every run, four at once where race.rs can. What an attempt
+//!          reaches is an answer: within the limits, and within tolerance by forward kinematics
 //! Valid    any tree. To find nothing proves nothing, but where the target is farther from the
 //!          first joint than the chain is long
 //! Source   restarts: Beeson & Ames 2015 (TRAC-IK)
@@ -18,6 +18,7 @@ use super::attempt::{Errors, Problem, is_reached};
 use super::formulas::{Formulas, VALUES};
 use super::goal::Goal;
 use super::options::IkOptions;
+use super::race::{Course, LANES, MOST, Runner, race};
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::scalar::uniform;
@@ -207,26 +208,49 @@ impl Solver {
         let in_time = |begin: Instant| budget.time.is_none_or(|most| begin.elapsed() < most);
         let found_all = !answers.is_empty() && left == Left::Nothing;
         while !(found_all || enough(answers.len()) && !answers.is_empty()) {
-            let steps = budget.iterations.saturating_sub(iterations).min(STEPS);
-            let (errors, steps) = self.problem.run(&mut q, &self.options, steps);
-            iterations += steps.max(1);
-            attempts += 1;
-            if is_reached(errors, &self.options) {
-                self.unwind(&mut q);
-                self.approach(&mut q);
-                self.add(&mut answers, &q, FoundBy::Search);
-            } else if best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared) {
-                best = Some((q.clone(), errors));
-            }
-            since_first += usize::from(!answers.is_empty());
+            let most = budget.iterations.saturating_sub(iterations);
+            let begun = attempts - first;
+            let all = !enough(answers.len() + 1);
+            let mut tell = |solver: &mut Self, q: &mut [f64], errors: Errors| {
+                if is_reached(errors, &solver.options) {
+                    solver.unwind(q);
+                    solver.approach(q);
+                    solver.add(&mut answers, q, FoundBy::Search);
+                } else if best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared) {
+                    best = Some((q.to_vec(), errors));
+                }
+            };
+            let (of_each, steps) = match self.drawn(begun, most, &mut q, &mut random) {
+                Some(mut runners) => {
+                    let steps = self.race(&mut runners, (most / LANES).min(STEPS), all);
+                    for runner in runners.iter().filter(|r| r.has_ended()) {
+                        for (x, &c) in runner.q.iter().zip(&self.problem.coordinates) {
+                            q[c] = *x;
+                        }
+                        let mut errors = runner.errors;
+                        if runner.has_reached(&self.options) {
+                            // Beside the others it was looked at with other roundings.
+                            (errors, _) = self.problem.run(&mut q, &self.options, STEPS);
+                        }
+                        tell(self, &mut q, errors);
+                    }
+                    (LANES, steps)
+                }
+                None => {
+                    let (errors, steps) = self.problem.run(&mut q, &self.options, most.min(STEPS));
+                    tell(self, &mut q, errors);
+                    (1, steps)
+                }
+            };
+            attempts += of_each;
+            iterations += steps.max(of_each);
+            since_first += if answers.is_empty() { 0 } else { of_each };
             let over = iterations >= budget.iterations || !in_time(begin);
             let nowhere = out_of_reach.is_some() || left == Left::Nothing;
             let hopeless = nowhere && attempts >= first + NEARER;
             if enough(answers.len()) || since_first > after_first || over || hopeless {
                 break;
             }
-            let near = self.options.nearest && (attempts - first) % 2 == 1;
-            self.draw(&mut q, near, &mut random);
         }
         let solution = |success: bool, answer: Answer| Solution {
             success,
@@ -299,6 +323,41 @@ impl Solver {
         }
         self.formulas = Some(formulas);
         Ok((left, calls))
+    }
+
+    /// Where to begin after so many attempts: drawn postures for a race, or `q` for one attempt,
+    /// the first of all at the start.
+    fn drawn(
+        &self,
+        begun: usize,
+        most: usize,
+        q: &mut [f64],
+        random: &mut u64,
+    ) -> Option<[Runner; LANES]> {
+        let is_near = |attempt: usize| self.options.nearest && attempt % 2 == 1;
+        if begun == 0 {
+            return None;
+        }
+        if most < LANES || self.problem.course(&self.options).is_none() {
+            self.draw(q, is_near(begun), random);
+            return None;
+        }
+        let mut runners = [Runner::at([0.0; MOST]); LANES];
+        for (k, runner) in runners.iter_mut().enumerate() {
+            self.draw(q, is_near(begun + k), random);
+            for (x, &c) in runner.q.iter_mut().zip(&self.problem.coordinates) {
+                *x = q[c];
+            }
+        }
+        Some(runners)
+    }
+
+    /// Several attempts at once, to the end of one that reaches or of all; gives their steps.
+    fn race(&self, runners: &mut [Runner; LANES], most: usize, all: bool) -> usize {
+        if let Some(course) = self.problem.course(&self.options) {
+            race(&Course { most, all, ..course }, runners);
+        }
+        runners.iter().map(|r| r.steps).sum()
     }
 
     /// Adds an answer that is none of those that are there.

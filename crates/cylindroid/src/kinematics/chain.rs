@@ -185,7 +185,7 @@ impl Chain {
     }
 
     /// The chain as joints that turn and slide, where it is nothing else.
-    pub(super) fn serial(&self) -> Option<&Serial> {
+    pub(crate) fn serial(&self) -> Option<&Serial> {
         self.serial.as_deref()
     }
 

@@ -100,7 +100,7 @@ fn gather<R: Real>(q: &[f64], rows: usize, places: &[usize], x: &mut [R]) {
 
 /// Goes along the chain; axis and origin of each joint into `axes`. Gives the tool.
 #[inline(always)]
-fn along<R: Real>(
+pub(crate) fn along<R: Real>(
     serial: &Serial,
     x: &[R],
     turns: &[(R, R)],

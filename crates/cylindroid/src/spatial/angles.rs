@@ -97,7 +97,8 @@ impl Quaternion {
             _ => (xy, pzx, pyz, s),
         };
         let sign = [w, x, y, z].into_iter().find(|v| *v != 0.0).map_or(1.0, f64::signum);
-        let scale = sign / w.hypot(x).hypot(y).hypot(z);
+        // The largest is between 1 and 4: squares neither overflow nor matter where they vanish.
+        let scale = sign / (w * w + x * x + y * y + z * z).sqrt();
         Self { w: w * scale, x: x * scale, y: y * scale, z: z * scale }
     }
 }
