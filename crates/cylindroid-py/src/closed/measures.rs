@@ -66,7 +66,7 @@ impl PyMechanism {
     /// Notes
     /// -----
     /// A posture is singular where it has more, or less, than ordinary postures of the mechanism,
-    /// which are looked for once in each call, around home: some milliseconds.
+    /// which are looked for once in each call, around home: up to tens of milliseconds.
     ///
     /// Examples
     /// --------

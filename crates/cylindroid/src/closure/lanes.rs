@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::kinematics::{Frame, forward_several};
 use crate::model::{FrameId, Mechanism, Motion, Node};
 use crate::scalar::{Field, MOST_LANES};
-use crate::spatial::{Padded, Pose, Vec3, Wrench};
+use crate::spatial::{Padded, Pose, Triple, Vec3, Wrench, dot};
 use crate::tolerance::CROSSED_AXES;
 
 /// What does not change with the configuration.
@@ -189,7 +189,8 @@ impl Plan {
         for way in &self.ways {
             let rate = R::splat(way.rate);
             let (v, w) = way.twist(frames, tip.p);
-            let six = [v[0] * inverse, v[1] * inverse, v[2] * inverse, w[0], w[1], w[2]];
+            let v = v.times(inverse);
+            let six = [v[0], v[1], v[2], w[0], w[1], w[2]];
             for (row, &c) in rows.chunks_exact_mut(columns).zip(self.components) {
                 row[way.column] = rate.times_plus(six[c], row[way.column]);
             }
@@ -211,7 +212,7 @@ impl Plan {
         let columns = self.columns();
         let a = frames[tie.ends[0].slot].then(&tie.ends[0].from);
         let b = frames[tie.ends[1].slot].then(&tie.ends[1].from);
-        let offset = minus(b.p, a.p);
+        let offset = b.p.minus(a.p);
         // Forces act where the second frame is.
         let none = [k(0.0); 3];
         let mut wrenches = [(none, none); MOST];
@@ -230,11 +231,10 @@ impl Plan {
         }
         if let Some([first, second]) = tie.crossed {
             let (on_a, on_b) = (turned(&a, first), turned(&b, second));
-            let normal = cross(on_a, on_b);
+            let normal = on_a.cross(on_b);
             let size = dot(normal, normal).root();
             let inverse = k(1.0) / size;
-            let unit = [normal[0] * inverse, normal[1] * inverse, normal[2] * inverse];
-            wrenches[tie.rows.len()] = (none, unit);
+            wrenches[tie.rows.len()] = (none, normal.times(inverse));
             let open = (k(first.dot(second)) - dot(on_a, on_b)) * inverse;
             written.angle = written.angle.larger(open.size());
             written.usable = R::where_less(size, k(CROSSED_AXES), k(0.0), written.usable);
@@ -262,7 +262,7 @@ impl Way {
     fn twist<R: Field>(&self, frames: &[Frame<R>], p: [R; 3]) -> ([R; 3], [R; 3]) {
         let frame = &frames[self.slot];
         let axis = [frame.x, frame.y, frame.z][self.axis];
-        if self.turns { (cross(axis, minus(p, frame.p)), axis) } else { (axis, [R::splat(0.0); 3]) }
+        if self.turns { (axis.cross(p.minus(frame.p)), axis) } else { (axis, [R::splat(0.0); 3]) }
     }
 }
 
@@ -331,25 +331,5 @@ fn poses<R: Field>(frame: &Frame<R>) -> [Pose; MOST_LANES] {
 /// A vector of the frame in the axes of the world.
 #[inline(always)]
 fn turned<R: Field>(frame: &Frame<R>, v: Vec3) -> [R; 3] {
-    let (x, y, z) = (R::splat(v.x), R::splat(v.y), R::splat(v.z));
-    frame.seen_outside([x, y, z])
-}
-
-#[inline(always)]
-fn minus<R: Field>(a: [R; 3], b: [R; 3]) -> [R; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn dot<R: Field>(a: [R; 3], b: [R; 3]) -> R {
-    a[0].times_plus(b[0], a[1].times_plus(b[1], a[2] * b[2]))
-}
-
-#[inline(always)]
-fn cross<R: Field>(a: [R; 3], b: [R; 3]) -> [R; 3] {
-    [
-        a[1].times_plus(b[2], -(a[2] * b[1])),
-        a[2].times_plus(b[0], -(a[0] * b[2])),
-        a[0].times_plus(b[1], -(a[1] * b[0])),
-    ]
+    frame.seen_outside([R::splat(v.x), R::splat(v.y), R::splat(v.z)])
 }

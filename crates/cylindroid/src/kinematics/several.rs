@@ -7,7 +7,7 @@
 
 use crate::model::{Motion, Node};
 use crate::scalar::{Field, MOST_LANES, sin_cos};
-use crate::spatial::{Columns, Padded, Pose, Rotation, Vec3};
+use crate::spatial::{Columns, Padded, Pose, Rotation, Triple, Vec3};
 
 /// `world_from_node` in every lane.
 pub(crate) type Frame<R> = Columns<[R; 3]>;
@@ -50,13 +50,8 @@ fn moved<R: Field>(base: Frame<R>, by: &[R], turn: &[R]) -> Frame<R> {
         x: base.seen_outside(turn.x),
         y: base.seen_outside(turn.y),
         z: base.seen_outside(turn.z),
-        p: plus(base.seen_outside([by[0], by[1], by[2]]), base.p),
+        p: base.seen_outside([by[0], by[1], by[2]]).times_plus(R::splat(1.0), base.p),
     }
-}
-
-#[inline(always)]
-fn plus<R: Field>(a: [R; 3], b: [R; 3]) -> [R; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// The rotation of a rotation vector, lane by lane as for one configuration.

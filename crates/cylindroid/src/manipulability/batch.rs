@@ -178,7 +178,8 @@ impl Batch {
     /// The numbers of each configuration, N x [`Batch::WIDTH`].
     ///
     /// # Errors
-    /// A `q` that is not a whole number of configurations, or with an entry that is not finite.
+    /// A `q` that is not a whole number of configurations, or with an entry that is not finite, or
+    /// so large that the constraint is not.
     pub fn analyse(&self, q: &[f64]) -> Result<Vec<f64>> {
         let mut out = vec![0.0; self.mechanism.count_rows("q", q)? * Self::WIDTH];
         self.analyse_into(q, &mut out)?;
@@ -199,17 +200,20 @@ impl Batch {
         if n == 0 {
             return Ok(());
         }
-        let q = q.chunks(Self::ALONE * n);
-        let out = out.chunks_mut(Self::ALONE * Self::WIDTH);
-        if count > Self::ALONE {
-            let chunks: Vec<_> = q.zip(out).collect();
-            return chunks.into_par_iter().try_for_each(|(q, out)| self.chunk(q, out));
+        let q = q.chunks(Self::ALONE * n).enumerate();
+        let chunks: Vec<_> = q.zip(out.chunks_mut(Self::ALONE * Self::WIDTH)).collect();
+        let run =
+            |((i, q), out): ((usize, &[f64]), &mut [f64])| self.chunk(i * Self::ALONE, q, out);
+        if chunks.len() > 1 {
+            // The first error of all, whoever comes first.
+            let results: Vec<Result<()>> = chunks.into_par_iter().map(run).collect();
+            return results.into_iter().collect();
         }
-        q.zip(out).try_for_each(|(q, out)| self.chunk(q, out))
+        chunks.into_iter().try_for_each(run)
     }
 
-    /// On one thread.
-    fn chunk(&self, q: &[f64], out: &mut [f64]) -> Result<()> {
+    /// On one thread; `first` is the place of the first configuration.
+    fn chunk(&self, first: usize, q: &[f64], out: &mut [f64]) -> Result<()> {
         let n = self.mechanism.n();
         let mut numbers = Vec::new();
         let mut width = 0;
@@ -223,21 +227,24 @@ impl Batch {
             let clear = self.kernel.as_ref().and_then(|kernel| {
                 self.clear(kernel, kernel.read(&numbers[i * width..(i + 1) * width]))
             });
-            let row = match (clear, &mut state) {
-                (Some(row), _) => row,
-                (None, Some(state)) => {
-                    state.set(q)?;
-                    self.single(state)?
-                }
-                (None, none) => self.single(none.insert(self.mechanism.state(q)?))?,
+            let row = match clear {
+                Some(row) => row,
+                None => self.single(q, &mut state).map_err(|e| at_row(e, first + i))?,
             };
             out.copy_from_slice(&row);
         }
         Ok(())
     }
 
-    /// By the analysis of one configuration.
-    fn single(&self, state: &State) -> Result<Row> {
+    /// By the analysis of one configuration; `state` is kept for the next.
+    fn single(&self, q: &[f64], state: &mut Option<State>) -> Result<Row> {
+        let state = match state {
+            Some(state) => {
+                state.set(q)?;
+                state
+            }
+            None => state.insert(self.mechanism.state(q)?),
+        };
         let chain = ClosedChain::of(state, Some(self.reference), Some(self.length))?;
         let motions = Motions::of(&chain.constraint);
         let relation = motions.relation();
@@ -333,6 +340,16 @@ fn measured(values: &[f64], count: usize) -> Option<(f64, f64, f64)> {
     let rest = others.first().copied().unwrap_or(0.0);
     (largest.is_finite() && smallest > APART * rest).then_some(())?;
     Some((kept.iter().product(), smallest * smallest, largest * largest))
+}
+
+/// Configurations so far out that the constraint overflows.
+fn at_row(error: Error, row: usize) -> Error {
+    match error {
+        Error::NotFinite { what, value } => {
+            Error::NotFinite { what: format!("{what} at q[{row}]"), value }
+        }
+        other => other,
+    }
 }
 
 struct Numbers {

@@ -19,7 +19,7 @@ use crate::closure::Plan;
 use crate::kinematics::Frame;
 use crate::linalg::Matrix;
 use crate::linalg::abreast::{
-    End, Reflections, divide_by_upper, extreme_eigenvalues, singular_values, tournament,
+    End, Reflections, divide_by_upper, dot, extreme_eigenvalues, singular_values, tournament,
     tridiagonal,
 };
 use crate::scalar::{Array, Field};
@@ -346,15 +346,6 @@ impl<R: Field> Scratch<R> {
     }
 }
 
-#[inline(always)]
-fn dot<R: Field>(a: &[R], b: &[R]) -> R {
-    let mut sum = R::splat(0.0);
-    for (x, y) in a.iter().zip(b) {
-        sum = x.times_plus(*y, sum);
-    }
-    sum
-}
-
 /// Rows of k numbers as columns.
 #[inline(always)]
 fn columns_into<R: Field>(rows: &[R], k: usize, columns: &mut [R]) {
@@ -387,6 +378,42 @@ fn times<R: Field>(m: &Matrix, factor: f64, rows: &[R], k: usize, out: &mut [R])
                 for (x, y) in out.iter_mut().zip(row) {
                     *x = R::splat(entry).times_plus(*y, *x);
                 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::catalogue;
+    use crate::scalar::uniform;
+
+    /// Arrays are plain numbers to the bit, registers to rounding over the distances of these
+    /// postures.
+    #[test]
+    fn lanes_agree_with_plain_numbers() {
+        for name in ["five-bar", "stewart", "two-arm", "ur5e"] {
+            let mechanism = catalogue::load(name).unwrap();
+            let plan = Plan::of(&mechanism, mechanism.reference(), mechanism.reach()).unwrap();
+            let of = |scale: &[f64]| Matrix::diagonal(scale);
+            let (object, joint) = (of(&plan.object_scale), of(&plan.actuated_scale));
+            let kernel = Kernel::new(plan, object, joint).unwrap();
+            let (n, count) = (mechanism.n(), 11);
+            let mut random = 8;
+            let q: Vec<f64> = (0..count)
+                .flat_map(|_| mechanism.home())
+                .map(|x| x + 0.4 * uniform(&mut random) - 0.2)
+                .collect();
+            let mut plain = vec![0.0; count * kernel.width()];
+            let (mut array, mut best) = (plain.clone(), plain.clone());
+            kernel.run_with::<f64>(&q, n, &mut plain);
+            kernel.run_with::<Array<4>>(&q, n, &mut array);
+            kernel.run(&q, n, &mut best);
+            assert_eq!(plain, array, "{name}");
+            for (i, (p, b)) in plain.iter().zip(&best).enumerate() {
+                let close = (p - b).abs() <= 1e-12 * (1.0 + p.abs());
+                assert!(close, "{name} {i}: {p} and {b}");
             }
         }
     }

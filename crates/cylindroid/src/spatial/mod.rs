@@ -25,6 +25,6 @@ pub use pose::Pose;
 pub use rotation::Rotation;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use triple::Register;
-pub(crate) use triple::{Columns, Single, Triple};
+pub(crate) use triple::{Columns, Single, Triple, dot};
 pub use twist::{Twist, Wrench};
 pub use vec3::{Mat3, Vec3};

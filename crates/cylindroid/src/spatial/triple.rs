@@ -279,8 +279,9 @@ impl<R: Real> Columns<[R; 3]> {
     }
 }
 
+/// Scalar product.
 #[inline(always)]
-fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+pub(crate) fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
     a[0].times_plus(b[0], a[1].times_plus(b[1], a[2] * b[2]))
 }
 

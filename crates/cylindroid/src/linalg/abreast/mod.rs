@@ -22,7 +22,7 @@ use crate::scalar::Field;
 
 /// Scalar product of vectors of one length.
 #[inline(always)]
-fn dot<R: Field>(a: &[R], b: &[R]) -> R {
+pub(crate) fn dot<R: Field>(a: &[R], b: &[R]) -> R {
     // Two sums, since each product waits for the last one of its sum.
     let mut sums = [R::splat(0.0); 2];
     let (a, a_rest) = a.as_chunks::<2>();

@@ -3,7 +3,7 @@
 
 use cylindroid::closure::{ClosedChain, Counts, Mobility, Motions, Singularities, assemble};
 use cylindroid::manipulability::{Batch, BatchOptions, Manipulability, Metrics};
-use cylindroid::model::{JointKind, JointSpec, LoopSpec, Mimic};
+use cylindroid::model::{CoordinateKind, JointKind, JointSpec, LoopSpec, Mimic};
 use cylindroid::spatial::Vec3;
 use cylindroid::{Error, Matrix, Mechanism, catalogue};
 
@@ -277,6 +277,19 @@ fn empty_and_wrong_batches() {
     assert_eq!(message(batch.analyse(&q).unwrap_err()), "q[2][1] (q2) is not finite: NaN");
     let e = message(batch.analyse_into(&[0.0; 8], &mut [0.0; 20]).unwrap_err());
     assert_eq!(e, "results has 20 entries, expected 38 (19 for each configuration)");
+    // A box so far out that its constraint overflows: the first of them is named.
+    let two_arm = catalogue::load("two-arm").unwrap();
+    let far = Batch::new(&two_arm, &BatchOptions::default()).unwrap();
+    let mut q = two_arm.home().repeat(400);
+    for row in [390, 300, 140] {
+        for (i, c) in two_arm.coordinates().iter().enumerate() {
+            if c.kind == CoordinateKind::Position {
+                q[row * two_arm.n() + i] = 1.7e308;
+            }
+        }
+    }
+    let e = message(far.analyse(&q).err().unwrap());
+    assert!(e.contains("at q[140] is not finite"), "{e}");
     let wrong = Metrics::UNIT.with_object(&Matrix::identity(2)).unwrap();
     let options = BatchOptions { metrics: wrong, ..BatchOptions::default() };
     assert!(matches!(Batch::new(&mechanism, &options), Err(Error::Dimension { .. })));
