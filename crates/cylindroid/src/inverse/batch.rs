@@ -80,12 +80,12 @@ impl Batch {
         let (each, values) = (self.rows * self.cols, self.rows.min(self.cols));
         let count = jacobians.len() / each;
         if count * each != jacobians.len() {
-            return Err(Error::Dimension {
-                what: "J".to_owned(),
-                expected: jacobians.len().next_multiple_of(each),
-                got: jacobians.len(),
-                hint: format!("{each} for each Jacobian"),
-            });
+            return Err(Error::rows(
+                "J",
+                jacobians.len().next_multiple_of(each),
+                jacobians.len(),
+                each,
+            ));
         }
         if let Some(i) = jacobians.iter().position(|x| !x.is_finite()) {
             let (row, column) = (i % each / self.cols, i % self.cols);
