@@ -91,8 +91,7 @@ pub(crate) struct Written<R> {
 impl Plan {
     /// Of a mechanism, its reference frame and a characteristic length.
     pub(crate) fn of(mechanism: &Mechanism, reference: FrameId, length: f64) -> Result<Self> {
-        let (all, rated) = pairs::held(mechanism)?;
-        let columns = Columns::of(mechanism, &rated);
+        let columns = Columns::of(mechanism, &pairs::rated(mechanism));
         let driven = columns.actuated.len();
         let column =
             |(is_driven, place): (bool, usize)| if is_driven { place } else { driven + place };
@@ -106,7 +105,8 @@ impl Plan {
         };
         let mut rates = columns.places[n..].iter().map(|p| column(*p));
         let mut ties = Vec::new();
-        for Held { ends, frames, wrenches, crossed, measure } in all {
+        for held in pairs::held(mechanism) {
+            let Held { ends, frames, wrenches, crossed, measure } = held?;
             let ends = [0, 1].map(|i| end(mechanism.link_frame(ends[i]), frames[i]));
             let scaled = |w: &Wrench| {
                 let s = 1.0 / pairs::unit(*w).size(length);

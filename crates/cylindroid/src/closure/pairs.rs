@@ -78,28 +78,12 @@ pub(super) struct Held {
     pub(super) measure: Option<Wrench>,
 }
 
-/// What closing joints, then contacts hold, and the closing joints that have a rate.
-pub(super) fn held(mechanism: &Mechanism) -> Result<(Vec<Held>, Vec<&LoopJoint>)> {
+/// What closing joints, then contacts hold.
+pub(super) fn held(mechanism: &Mechanism) -> impl Iterator<Item = Result<Held>> {
     let dimension = mechanism.dimension();
-    let (mut all, mut rated) = (Vec::new(), Vec::new());
-    for joint in mechanism.loops() {
-        let mut wrenches = joint.kind.held(joint.axis, dimension);
-        let mut crossed = None;
-        if let (JointKind::Universal { second }, Dimension::Spatial) = (joint.kind, dimension) {
-            wrenches.pop();
-            crossed = Some([joint.axis, second]);
-        }
-        let along = joint.axis;
-        let measure = match joint.kind {
-            JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
-                Some(Wrench { force: Vec3::ZERO, moment: along })
-            }
-            JointKind::Prismatic => Some(Wrench { force: along, moment: Vec3::ZERO }),
-            _ => None,
-        };
-        if measure.is_some() {
-            rated.push(joint);
-        } else if joint.actuated {
+    let loops = mechanism.loops().iter().map(move |joint| {
+        let measure = measure(joint);
+        if measure.is_none() && joint.actuated {
             return Err(Error::Model {
                 model: mechanism.name().to_owned(),
                 culprit: joint.name.clone(),
@@ -111,33 +95,55 @@ pub(super) fn held(mechanism: &Mechanism) -> Result<(Vec<Held>, Vec<&LoopJoint>)
                 ),
             });
         }
-        all.push(Held {
+        let mut wrenches = joint.kind.held(joint.axis, dimension);
+        let mut crossed = None;
+        if let (JointKind::Universal { second }, Dimension::Spatial) = (joint.kind, dimension) {
+            wrenches.pop();
+            crossed = Some([joint.axis, second]);
+        }
+        Ok(Held {
             ends: [joint.a, joint.b],
             frames: [joint.link_a_from_joint, joint.link_b_from_joint],
             wrenches,
             crossed,
             measure,
-        });
-    }
-    for contact in mechanism.contacts() {
-        all.push(Held {
+        })
+    });
+    let contacts = mechanism.contacts().iter().map(move |contact| {
+        Ok(Held {
             ends: [contact.a, contact.b],
             frames: [contact.link_a_from_contact, contact.link_b_from_contact],
             wrenches: contact.kind.held(dimension),
             crossed: None,
             measure: None,
-        });
+        })
+    });
+    loops.chain(contacts)
+}
+
+/// What measures the rate of a closing joint of one coordinate.
+fn measure(joint: &LoopJoint) -> Option<Wrench> {
+    match joint.kind {
+        JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
+            Some(Wrench { force: Vec3::ZERO, moment: joint.axis })
+        }
+        JointKind::Prismatic => Some(Wrench { force: joint.axis, moment: Vec3::ZERO }),
+        _ => None,
     }
-    Ok((all, rated))
+}
+
+/// The closing joints that have a rate.
+pub(super) fn rated(mechanism: &Mechanism) -> Vec<&LoopJoint> {
+    mechanism.loops().iter().filter(|joint| measure(joint).is_some()).collect()
 }
 
 /// Rows of all closing joints and contacts, the closing joints that have a rate, and the gap.
 pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
     let mechanism = state.mechanism();
-    let (all, rated) = held(mechanism)?;
     let pose = |link| state.pose(mechanism.link_frame(link));
     let (mut rows, mut rates) = (Vec::new(), 0);
-    for (place, held) in all.iter().enumerate() {
+    for (place, held) in held(mechanism).enumerate() {
+        let held = held?;
         let [a, b] = held.ends;
         let on = [pose(a) * held.frames[0], pose(b) * held.frames[1]];
         let pair = Pair::new(place, held.ends, on);
@@ -152,7 +158,7 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
     for row in &rows {
         gap.widen(row.unit, row.residual);
     }
-    Ok((rows, rated, gap))
+    Ok((rows, rated(mechanism), gap))
 }
 
 /// The two frames of a closing joint or contact.
@@ -178,9 +184,9 @@ impl Pair {
     }
 
     /// The rows of all that is held.
-    pub(super) fn rows(&self, held: &[Wrench]) -> Vec<Row> {
+    pub(super) fn rows(&self, held: &[Wrench]) -> impl Iterator<Item = Row> {
         let tilt = self.tilt(held);
-        held.iter().map(|w| Row { residual: self.residual(*w, tilt), ..self.row(*w) }).collect()
+        held.iter().map(move |w| Row { residual: self.residual(*w, tilt), ..self.row(*w) })
     }
 
     /// How far it is open along and about `held`.
