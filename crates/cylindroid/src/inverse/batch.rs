@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::Method;
 use super::report::rank;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, all_finite};
 use crate::linalg::{Matrix, Rank, Svd};
 
 /// One way to invert Jacobians of one shape, many in one call.
@@ -87,7 +87,9 @@ impl Batch {
                 each,
             ));
         }
-        if let Some(i) = jacobians.iter().position(|x| !x.is_finite()) {
+        if !all_finite(jacobians)
+            && let Some(i) = jacobians.iter().position(|x| !x.is_finite())
+        {
             let (row, column) = (i % each / self.cols, i % self.cols);
             return Err(Error::NotFinite {
                 what: format!("entry ({row}, {column}) of J[{}]", i / each),

@@ -218,7 +218,7 @@ impl Rotations {
         for (four, to) in lengths.as_chunks::<LANES>().0.iter().zip(inverses.as_chunks_mut().0) {
             let (length, zero) = (R::load(four), R::splat(0.0));
             let inverse: &mut [f64; LANES] = to;
-            R::splat(1.0).over(length).where_larger(length, zero).store(inverse);
+            (R::splat(1.0) / length).where_larger(length, zero).store(inverse);
         }
         for (j, inverse) in inverses[..size.k].iter().enumerate() {
             scale::<R>(&mut b[j * size.long..][..size.long], *inverse);
@@ -316,7 +316,7 @@ impl Rotations {
                 ab.store(&mut products[here..]);
                 // Cosines are compared by their squares.
                 let (ab_ab, aa_bb) = (ab * ab, aa * bb);
-                let inverse = one.over(bb - aa);
+                let inverse = one / (bb - aa);
                 inverse.store(&mut inverses[here..]);
                 let angle = (ab * inverse).where_larger(ab_ab, least * aa_bb);
                 angle.store(&mut angles[here..]);

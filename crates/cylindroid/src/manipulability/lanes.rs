@@ -178,17 +178,10 @@ impl Kernel {
         }
         let share = self.least_share(s);
         s.ratios.copy_from_slice(&s.twists);
-        let mut upper = Reflections {
-            n: a,
-            columns: &mut s.driven,
-            diagonal: &mut s.driven_diagonal,
-            factors: &mut s.driven_factors,
-        };
-        upper.run();
-        divide_by_upper(&mut s.ratios, &s.driven, a, &s.driven_diagonal);
-        let (scaled, measured) = s.numbers[BEFORE..].split_at_mut(values);
+        s.divide_by_driven(a);
+        let scaled = BEFORE..BEFORE + values;
         columns_of(&s.ratios, k, &mut s.columns, d);
-        singular_values(&mut s.columns, k.max(d), &self.pairs, scaled);
+        singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[scaled]);
         // In the metrics. What is orthogonal in one is so nearly in the other: where it can be, the
         // columns that were turned are the start.
         if let (Some(alike), true) = (self.alike, k <= d) {
@@ -203,17 +196,10 @@ impl Kernel {
             for (own, column) in s.driven.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
                 times(&self.joint, 1.0, &column[..a], 1, own);
             }
-            let mut upper = Reflections {
-                n: a,
-                columns: &mut s.driven,
-                diagonal: &mut s.driven_diagonal,
-                factors: &mut s.driven_factors,
-            };
-            upper.run();
-            divide_by_upper(&mut s.ratios, &s.driven, a, &s.driven_diagonal);
+            s.divide_by_driven(a);
             columns_of(&s.ratios, k, &mut s.columns, d);
         }
-        singular_values(&mut s.columns, k.max(d), &self.pairs, measured);
+        singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[BEFORE + values..]);
         let [smallest, largest] = self.extremes(s);
         let numbers = [written.distance, written.angle, written.usable, smallest, largest, share];
         s.numbers[..BEFORE].copy_from_slice(&numbers);
@@ -315,6 +301,19 @@ struct Scratch<R> {
 }
 
 impl<R: Field> Scratch<R> {
+    /// Ratios over the triangle of the driven rates, which are `a` rows.
+    #[inline(always)]
+    fn divide_by_driven(&mut self, a: usize) {
+        let mut upper = Reflections {
+            n: a,
+            columns: &mut self.driven,
+            diagonal: &mut self.driven_diagonal,
+            factors: &mut self.driven_factors,
+        };
+        upper.run();
+        divide_by_upper(&mut self.ratios, &self.driven, a, &self.driven_diagonal);
+    }
+
     fn of(kernel: &Kernel, n: usize) -> Self {
         let plan = &*kernel.plan;
         let (t, d, m, a) = (plan.held(), plan.object(), plan.columns(), plan.actuated());

@@ -372,8 +372,7 @@ impl Mechanism {
     /// # Errors
     /// [`Error::NotFinite`]; [`Error::Dimension`] for a last row that is too short.
     pub fn check_rows(&self, what: &str, rows: &[f64]) -> Result<()> {
-        // Many at once, without a branch for each.
-        if rows.chunks(64).all(|x| x.iter().fold(true, |ok, x| ok & x.is_finite())) {
+        if all_finite(rows) {
             return Ok(());
         }
         let mut rows = rows.chunks(self.n().max(1)).enumerate();

@@ -117,21 +117,6 @@ impl Four for Array<4> {
     }
 
     #[inline(always)]
-    fn over(self, by: Self) -> Self {
-        Self(from_fn(|i| self.0[i] / by.0[i]))
-    }
-
-    #[inline(always)]
-    fn root(self) -> Self {
-        Self(self.0.map(f64::sqrt))
-    }
-
-    #[inline(always)]
-    fn where_larger(self, a: Self, b: Self) -> Self {
-        Self(from_fn(|i| if a.0[i] > b.0[i] { self.0[i] } else { 0.0 }))
-    }
-
-    #[inline(always)]
     fn sums(of: [Self; 4]) -> Self {
         // Neighbours first, as registers do.
         Self(of.map(|Self([a, b, c, d])| (a + b) + (c + d)))

@@ -25,6 +25,11 @@ pub(crate) trait Field: Real + Div<Output = Self> {
     fn larger(self, other: Self) -> Self;
     /// `then` where `a < b`, else `otherwise`, also where one of them is no number.
     fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// Zero where not `a > b`.
+    #[inline(always)]
+    fn where_larger(self, a: Self, b: Self) -> Self {
+        Self::where_less(b, a, self, Self::splat(0.0))
+    }
 }
 
 impl Field for f64 {

@@ -65,18 +65,12 @@ pub(crate) trait Real:
     fn all_within(self, limit: f64) -> bool;
 }
 
-/// Four lanes, which can change places and be chosen.
-pub(crate) trait Four: Real {
+/// Four lanes, which can change places.
+pub(crate) trait Four: Field {
     /// The first four numbers, zeros where there are fewer.
     fn load_some(from: &[f64]) -> Self;
     /// Into the first four places, or those that there are.
     fn store_some(self, to: &mut [f64]);
-    /// `self / by`
-    fn over(self, by: Self) -> Self;
-    /// The square root.
-    fn root(self) -> Self;
-    /// Zero in lanes where not a > b.
-    fn where_larger(self, a: Self, b: Self) -> Self;
     /// Lane l is the sum of all lanes of the l-th.
     fn sums(of: [Self; 4]) -> Self;
     /// Lane l of the k-th is lane k of the l-th.

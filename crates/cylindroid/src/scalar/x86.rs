@@ -96,24 +96,6 @@ impl Four for Lanes4 {
     }
 
     #[inline(always)]
-    fn over(self, by: Self) -> Self {
-        // SAFETY: see the head of this file.
-        Self(unsafe { _mm256_div_pd(self.0, by.0) })
-    }
-
-    #[inline(always)]
-    fn root(self) -> Self {
-        // SAFETY: see the head of this file.
-        Self(unsafe { _mm256_sqrt_pd(self.0) })
-    }
-
-    #[inline(always)]
-    fn where_larger(self, a: Self, b: Self) -> Self {
-        // SAFETY: see the head of this file.
-        Self(unsafe { _mm256_and_pd(self.0, _mm256_cmp_pd::<_CMP_GT_OQ>(a.0, b.0)) })
-    }
-
-    #[inline(always)]
     fn sums([Self(a), Self(b), Self(c), Self(d)]: [Self; 4]) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe {
