@@ -95,7 +95,7 @@ impl<const N: usize> Field for Array<N> {
     }
 }
 
-// SAFETY, for every call below: see the head of x86.rs.
+// SAFETY, for every call below: see the head of avx2.rs.
 #[cfg(target_arch = "x86_64")]
 impl Div for Lanes4 {
     type Output = Self;

@@ -4,20 +4,24 @@
 //! one register of four or eight, and for arrays where the processor is another one.
 
 mod array;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod field;
 mod sequence;
 mod trig;
-#[cfg(target_arch = "x86_64")]
-mod x86;
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 pub(crate) use array::Array;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx2::Lanes4;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx512::Lanes8;
 pub(crate) use field::Field;
 pub(crate) use sequence::uniform;
 pub(crate) use trig::{sin_cos, sines_cosines};
-#[cfg(target_arch = "x86_64")]
-pub(crate) use x86::{Lanes4, Lanes8};
 
 /// True if the processor has AVX2 and fused products: what four lanes need.
 #[cfg(target_arch = "x86_64")]

@@ -1,7 +1,7 @@
-//! Lanes in one register of x86-64: four with AVX2, eight with AVX-512.
+//! Four lanes in a register of x86-64, with AVX2.
 //!
-//! To be named only inside functions that are compiled for these features and run only where the
-//! processor has them: [`Lanes4`] needs AVX2 and FMA, [`Lanes8`] AVX-512F.
+//! To be named only inside functions that are compiled for AVX2 and FMA and run only where the
+//! processor has them.
 
 #![allow(unsafe_code)] // intrinsics
 
@@ -10,9 +10,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use super::{Four, Real};
 
-/// The bit of the sign.
-const SIGN: i64 = i64::MIN;
-
+/// Sums, differences and products by intrinsics.
 macro_rules! operators {
     ($name:ident, $add:ident, $sub:ident, $mul:ident) => {
         impl Add for $name {
@@ -47,6 +45,8 @@ macro_rules! operators {
     };
 }
 
+pub(super) use operators;
+
 /// Four numbers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lanes4(pub(crate) __m256d);
@@ -68,7 +68,7 @@ impl Neg for Lanes4 {
 /// # Panics
 /// If they are not all there.
 #[inline(always)]
-fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize) -> *mut f64 {
+pub(super) fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize) -> *mut f64 {
     assert!(to.len() >= (rows - 1) * stride + length, "rows are missing");
     to.as_mut_ptr()
 }
@@ -222,139 +222,6 @@ impl Real for Lanes4 {
         unsafe {
             let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0);
             _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(size, _mm256_set1_pd(limit))) == 0b1111
-        }
-    }
-}
-
-/// Eight numbers.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Lanes8(__m512d);
-
-operators!(Lanes8, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd);
-
-impl Lanes8 {
-    #[inline(always)]
-    fn halves(self) -> [Lanes4; 2] {
-        // SAFETY: see the head of this file.
-        unsafe {
-            [Lanes4(_mm512_castpd512_pd256(self.0)), Lanes4(_mm512_extractf64x4_pd::<1>(self.0))]
-        }
-    }
-}
-
-impl Neg for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        // SAFETY: see the head of this file.
-        Self(unsafe {
-            _mm512_castsi512_pd(_mm512_xor_si512(
-                _mm512_castpd_si512(self.0),
-                _mm512_set1_epi64(SIGN),
-            ))
-        })
-    }
-}
-
-impl Real for Lanes8 {
-    const LANES: usize = 8;
-    const FUSED: bool = true;
-
-    #[inline(always)]
-    fn splat(x: f64) -> Self {
-        // SAFETY: see the head of this file.
-        Self(unsafe { _mm512_set1_pd(x) })
-    }
-
-    #[inline(always)]
-    fn load(from: &[f64]) -> Self {
-        let from = &from[..8];
-        // SAFETY: eight numbers are there; see the head of this file.
-        Self(unsafe { _mm512_loadu_pd(from.as_ptr()) })
-    }
-
-    #[inline(always)]
-    fn store(self, to: &mut [f64]) {
-        let to = &mut to[..8];
-        // SAFETY: eight places are there; see the head of this file.
-        unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) }
-    }
-
-    #[inline(always)]
-    fn from_fn(f: impl Fn(usize) -> f64) -> Self {
-        let x = [f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)];
-        // SAFETY: see the head of this file.
-        Self(unsafe { _mm512_setr_pd(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]) })
-    }
-
-    #[inline(always)]
-    fn scatter(from: &[Self], to: &mut [f64], stride: usize) {
-        // As twice four lanes.
-        let (fours, rest) = from.as_chunks::<4>();
-        let to = rows_of(to, stride, from.len(), Self::LANES);
-        for (k, [a, b, c, d]) in fours.iter().enumerate() {
-            let (a, b, c, d) = (a.halves(), b.halves(), c.halves(), d.halves());
-            for half in 0..2 {
-                let rows = Lanes4::transposed([a[half], b[half], c[half], d[half]]);
-                for (l, row) in rows.into_iter().enumerate() {
-                    let place = (4 * half + l) * stride + 4 * k;
-                    // SAFETY: `rows_of` has looked that these four places are there.
-                    unsafe { _mm256_storeu_pd(to.add(place), row.0) };
-                }
-            }
-        }
-        let done = 4 * fours.len();
-        for (k, x) in rest.iter().enumerate() {
-            let mut lanes = [0.0; 8];
-            x.store(&mut lanes);
-            for (l, x) in lanes.into_iter().enumerate() {
-                // SAFETY: as above.
-                unsafe { *to.add(l * stride + done + k) = x };
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn sum(self) -> f64 {
-        let [low, high] = self.halves();
-        (low + high).sum()
-    }
-
-    #[inline(always)]
-    fn times_plus(self, b: Self, c: Self) -> Self {
-        // SAFETY: see the head of this file.
-        Self(unsafe { _mm512_fmadd_pd(self.0, b.0, c.0) })
-    }
-
-    #[inline(always)]
-    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
-        // SAFETY: see the head of this file.
-        unsafe {
-            let odd = _mm512_test_epi64_mask(_mm512_castpd_si512(bits.0), _mm512_set1_epi64(1));
-            (Self(_mm512_mask_blend_pd(odd, a.0, b.0)), Self(_mm512_mask_blend_pd(odd, b.0, a.0)))
-        }
-    }
-
-    #[inline(always)]
-    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
-        // SAFETY: see the head of this file.
-        unsafe {
-            let sum = _mm512_add_epi64(
-                _mm512_castpd_si512(bits.0),
-                _mm512_set1_epi64(more.cast_signed()),
-            );
-            let second = _mm512_and_si512(_mm512_slli_epi64::<62>(sum), _mm512_set1_epi64(SIGN));
-            Self(_mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(self.0), second)))
-        }
-    }
-
-    #[inline(always)]
-    fn all_within(self, limit: f64) -> bool {
-        // SAFETY: see the head of this file.
-        unsafe {
-            let size = _mm512_abs_pd(self.0);
-            _mm512_cmp_pd_mask::<_CMP_LE_OQ>(size, _mm512_set1_pd(limit)) == 0xff
         }
     }
 }
