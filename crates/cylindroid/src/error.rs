@@ -183,17 +183,19 @@ fn hint_text(hint: &str) -> String {
     if hint.is_empty() { String::new() } else { format!(" ({hint})") }
 }
 
-/// True if no number is NaN or infinite: zero times it is zero. Four sums, none of which waits for
+/// True if no number is NaN or infinite: zero times it is zero. Eight sums, none of which waits for
 /// another.
 #[inline]
 pub(crate) fn all_finite(values: &[f64]) -> bool {
-    let (fours, rest) = values.as_chunks::<4>();
-    let mut sums = [0.0; 4];
-    for [a, b, c, d] in fours {
-        sums = [sums[0] + 0.0 * a, sums[1] + 0.0 * b, sums[2] + 0.0 * c, sums[3] + 0.0 * d];
+    let (eights, rest) = values.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for eight in eights {
+        for (sum, x) in sums.iter_mut().zip(eight) {
+            *sum += 0.0 * x;
+        }
     }
     let rest: f64 = rest.iter().map(|x| 0.0 * x).sum();
-    (sums[0] + sums[2]) + (sums[1] + sums[3]) + rest == 0.0
+    sums.iter().sum::<f64>() + rest == 0.0
 }
 
 #[cfg(test)]

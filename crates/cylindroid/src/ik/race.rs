@@ -12,11 +12,11 @@ use super::attempt::{DAMPING, Errors, LARGEST_STEP, LEAST_DAMPING, PATIENCE, is_
 use super::damped::{Wanted, by_rows};
 use super::goal::Goal;
 use super::options::IkOptions;
-use crate::kinematics::{Reference, Serial, along_several};
-use crate::scalar::{Array, Field, sines_cosines};
+use crate::kinematics::{Apart, Serial, jacobian_of_several, whole_way};
+use crate::scalar::{Array, Field};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, has_avx2};
-use crate::spatial::{Columns, Padded};
+use crate::spatial::{Columns, Padded, Triple};
 
 /// Attempts side by side.
 pub(super) const LANES: usize = 4;
@@ -105,7 +105,7 @@ fn race_avx2(course: &Course<'_>, runners: &mut [Runner; LANES]) {
 }
 
 #[inline(always)]
-fn race_with<R: Field>(course: &Course<'_>, runners: &mut [Runner; LANES]) {
+fn race_with<R: Field + Apart>(course: &Course<'_>, runners: &mut [Runner; LANES]) {
     let zero = R::splat(0.0);
     let joints = course.serial.joints();
     let n = joints.len();
@@ -113,19 +113,21 @@ fn race_with<R: Field>(course: &Course<'_>, runners: &mut [Runner; LANES]) {
     for (c, q) in q.iter_mut().enumerate().take(n) {
         *q = R::from_fn(|l| runners[l].q[c]);
     }
-    let (mut x, mut angles) = ([zero; MOST], [zero; MOST]);
-    let mut turns = [(zero, zero); MOST];
-    let mut axes = [([zero; 3], [zero; 3]); MOST];
+    let (mut x, mut sines, mut cosines) = ([zero; MOST], [zero; MOST], [zero; MOST]);
+    let mut rows = [zero; 6 * MOST];
     let (mut a, mut e, mut d) = ([zero; 6 * MOST], [zero; 6], [zero; MOST]);
     for step in 0.. {
         for (i, joint) in joints.iter().enumerate() {
             x[i] = q[joint.coordinate];
-            angles[i] = joint.angle(x[i]);
+            cosines[i] = joint.angle(x[i]);
         }
-        sines_cosines(&angles[..n], &mut turns[..n]);
-        let tool = along_several(course.serial, &x[..n], &turns[..n], &mut axes[..n]);
+        R::sines_cosines(&mut cosines[..n], &mut sines[..n], &mut rows[..n]);
+        let turns = (&sines[..n], &cosines[..n]);
+        let rows = &mut rows[..6 * n];
+        let tool = R::along(course.serial, turns, rows);
+        let p = tool.p.plus(whole_way(course.serial, &x, rows));
         let mut squares = [0.0; LANES];
-        look(course, tool, step, runners, &mut e, &mut squares);
+        look(course, Columns { p, ..tool }, step, runners, &mut e, &mut squares);
         if runners.iter().any(|r| r.ends_at(step)) {
             for (c, q) in q.iter().enumerate().take(n) {
                 let mut lanes = [0.0; LANES];
@@ -140,7 +142,7 @@ fn race_with<R: Field>(course: &Course<'_>, runners: &mut [Runner; LANES]) {
             return;
         }
         let m = course.rows.len();
-        rates(course, tool, &axes[..n], &mut a[..m * n]);
+        rates(course, &x, tool, rows, &mut a[..m * n]);
         let damping = damping(&a[..m * n], R::load(&squares));
         step_within(course, &mut a[..m * n], &e[..m], damping, &mut d[..n], &mut q[..n]);
     }
@@ -194,24 +196,17 @@ fn look<R: Field>(
 #[inline(always)]
 fn rates<R: Field>(
     course: &Course<'_>,
-    tool: Columns<[R; 3]>,
-    axes: &[([R; 3], [R; 3])],
+    q: &[R],
+    mut tool: Columns<[R; 3]>,
+    rows: &mut [R],
     a: &mut [R],
 ) {
-    let m = course.rows.len();
-    let axes_of = course.goal.task.axes;
-    let p = if axes_of == Reference::World { [R::splat(0.0); 3] } else { tool.p };
-    for (joint, &(axis, origin)) in course.serial.joints().iter().zip(axes) {
-        let (mut linear, mut angular) = joint.column(axis, origin, p);
-        if axes_of == Reference::Local {
-            (linear, angular) = (tool.seen(linear), tool.seen(angular));
-        }
-        let [u, v, w] = linear;
-        let [r, s, t] = angular;
-        let column = [u, v, w, r, s, t];
-        let out = &mut a[joint.coordinate * m..][..m];
-        for (&(i, scale), out) in course.rows.iter().zip(out) {
-            *out = column[i] * R::splat(scale);
+    let (joints, m) = (course.serial.joints(), course.rows.len());
+    jacobian_of_several(course.serial, course.goal.task.axes, q, &mut tool, rows);
+    for (&(row, scale), i) in course.rows.iter().zip(0..) {
+        let row = &rows[row * joints.len()..][..joints.len()];
+        for (joint, x) in joints.iter().zip(row) {
+            a[joint.coordinate * m + i] = *x * R::splat(scale);
         }
     }
 }
@@ -285,6 +280,7 @@ mod tests {
     use super::super::attempt::Problem;
     use super::super::goal::Task;
     use super::*;
+    use crate::kinematics::Reference;
     use crate::model::catalogue;
     use crate::scalar::uniform;
 

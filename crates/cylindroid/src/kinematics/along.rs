@@ -81,7 +81,7 @@ fn columns_with<T: Single>(serial: &Serial, slots: &[Padded], p: &[f64; 4], out:
     let p = T::load(p);
     let (columns, _) = out.as_mut_slice().as_chunks_mut::<6>();
     for (joint, slot) in serial.joints().iter().zip(&slots[1..]) {
-        let (linear, angular) = joint.column(T::load(&slot.z), T::load(&slot.p), p);
+        let (linear, angular) = joint.column(T::load(&slot.z), p.minus(T::load(&slot.p)));
         T::store_pair(linear, angular, &mut columns[joint.coordinate]);
     }
 }

@@ -131,20 +131,22 @@ impl Batch {
                 return Err(Error::rows(what, count * each, got, each));
             }
         }
+        if count <= Self::ALONE {
+            if count > 0 {
+                self.chunk(q, poses, jacobians);
+            }
+            return Ok(());
+        }
         let mut poses = poses.map(|p| p.chunks_mut(Self::ALONE * POSE));
         let mut jacobians = jacobians.map(|(r, j)| (r, j.chunks_mut(Self::ALONE * 6 * n)));
-        let mut chunks: Vec<_> = q
-            .chunks(Self::ALONE * n.max(1))
+        let chunks: Vec<_> = q
+            .chunks(Self::ALONE * n)
             .map(|q| {
                 let poses = poses.as_mut().and_then(Iterator::next);
                 (q, poses, jacobians.as_mut().and_then(|(r, j)| Some((*r, j.next()?))))
             })
             .collect();
-        if chunks.len() > 1 {
-            chunks.into_par_iter().for_each(|(q, poses, j)| self.chunk(q, poses, j));
-        } else if let Some((q, poses, j)) = chunks.pop() {
-            self.chunk(q, poses, j);
-        }
+        chunks.into_par_iter().for_each(|(q, poses, j)| self.chunk(q, poses, j));
         Ok(())
     }
 

@@ -8,10 +8,10 @@
 
 use super::jacobian::Reference;
 use super::serial::Serial;
-use crate::scalar::{Array, MOST_LANES, Real, sines_cosines};
+use crate::scalar::{Array, MOST_LANES, Real};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, Lanes8, has_avx2, has_avx512};
-use crate::spatial::Columns;
+use crate::spatial::{Columns, Triple};
 
 /// What there is, and what is asked for.
 pub(super) struct Work<'a> {
@@ -24,6 +24,11 @@ pub(super) struct Work<'a> {
     pub(super) poses: Option<&'a mut [f64]>,
     pub(super) jacobians: Option<(Reference, &'a mut [f64])>,
 }
+
+/// Joints of chains of usual length.
+const FEW: usize = 12;
+/// Numbers of a joint in memory: coordinate, cosine, sine, rows.
+const EACH: usize = 9;
 
 /// As many configurations at once as the processor can.
 pub(super) fn run(work: Work<'_>) {
@@ -55,107 +60,208 @@ fn run_avx2(work: Work<'_>) {
     run_with::<Lanes4>(work);
 }
 
-#[inline(always)]
-fn run_with<R: Real>(mut work: Work<'_>) {
-    let Work { serial, coordinates, n, .. } = work;
-    let joints = serial.joints();
-    let zero = R::splat(0.0);
-    // The place in `q` of each joint's coordinate, and what each joint has.
-    let places: Vec<usize> = joints.iter().map(|joint| coordinates[joint.coordinate]).collect();
-    let mut x = vec![zero; joints.len()];
-    let mut angles = vec![zero; joints.len()];
-    let mut turns = vec![(zero, zero); joints.len()];
-    let mut axes = vec![([zero; 3], [zero; 3]); joints.len()];
-    let mut columns = vec![zero; 6 * n];
-    for (block, q) in work.q.chunks(R::LANES * n).enumerate() {
-        let rows = q.len() / n;
-        gather(q, rows, &places, &mut x);
-        for i in 0..joints.len() {
-            angles[i] = joints[i].angle(x[i]);
-        }
-        sines_cosines(&angles, &mut turns);
-        let tool = along(serial, &x, &turns, &mut axes);
-        if let Some(poses) = &mut work.poses {
-            put(&pose_rows(tool), &mut poses[block * R::LANES * 16..], rows);
-        }
-        if let Some((reference, jacobians)) = &mut work.jacobians {
-            fill(serial, &places, *reference, tool, &axes, &mut columns);
-            put(&columns, &mut jacobians[block * R::LANES * 6 * n..], rows);
-        }
+/// Numbers that go along a chain in a function of their own: frames fill the registers, and beside
+/// other code some would be put aside in every step, which the next one waits for.
+pub(crate) trait Apart: Real {
+    /// [`along`]
+    #[inline(always)]
+    fn along(serial: &Serial, turns: (&[Self], &[Self]), rows: &mut [Self]) -> Columns<[Self; 3]> {
+        along(serial, turns, rows)
     }
 }
 
-/// The coordinates of the joints; lanes that are left over repeat the last configuration.
+impl Apart for f64 {}
+
+impl<const N: usize> Apart for Array<N> {}
+
+#[cfg(target_arch = "x86_64")]
+macro_rules! apart {
+    ($lanes:ident, $features:literal) => {
+        impl Apart for $lanes {
+            #[inline(always)]
+            fn along(
+                serial: &Serial,
+                turns: (&[Self], &[Self]),
+                rows: &mut [Self],
+            ) -> Columns<[Self; 3]> {
+                #[target_feature(enable = $features)]
+                #[inline(never)]
+                fn apart(
+                    serial: &Serial,
+                    turns: (&[$lanes], &[$lanes]),
+                    rows: &mut [$lanes],
+                ) -> Columns<[$lanes; 3]> {
+                    along(serial, turns, rows)
+                }
+                #[allow(unsafe_code)] // as in `run`
+                // SAFETY: these numbers are named only where the processor has the features.
+                unsafe {
+                    apart(serial, turns, rows)
+                }
+            }
+        }
+    };
+}
+
+#[cfg(target_arch = "x86_64")]
+apart!(Lanes4, "avx2,fma");
+#[cfg(target_arch = "x86_64")]
+apart!(Lanes8, "avx512f,avx2,fma");
+
 #[inline(always)]
-fn gather<R: Real>(q: &[f64], rows: usize, places: &[usize], x: &mut [R]) {
-    let n = q.len() / rows;
-    let mut all = [&q[(rows - 1) * n..]; MOST_LANES];
+fn run_with<R: Apart>(mut work: Work<'_>) {
+    let Work { serial, coordinates, n, .. } = work;
+    let joints = serial.joints();
+    let m = joints.len();
+    let zero = R::splat(0.0);
+    let in_order = (0..m).all(|i| coordinates[joints[i].coordinate] == i);
+    let in_place = in_order && m == n;
+    // What chains of usual length need is on the stack.
+    let mut few = [zero; FEW * EACH];
+    let mut many = vec![zero; if m <= FEW { 0 } else { m * EACH }];
+    let memory = if m <= FEW { &mut few[..m * EACH] } else { &mut many[..] };
+    let (x, memory) = memory.split_at_mut(m);
+    let (cosines, memory) = memory.split_at_mut(m);
+    let (sines, rows) = memory.split_at_mut(m);
+    let mut columns = vec![zero; if in_place { 0 } else { 6 * n }];
+    let mut done = 0;
+    while done * n < work.q.len() {
+        let q = &work.q[done * n..];
+        let count = R::LANES.min(q.len() / n);
+        if in_order && count == R::LANES {
+            R::gather(q, n, x);
+        } else {
+            gather(&q[..count * n], n, serial, coordinates, x);
+        }
+        for i in 0..m {
+            cosines[i] = joints[i].angle(x[i]);
+        }
+        R::sines_cosines(cosines, sines, &mut rows[..m]);
+        let mut tool = R::along(serial, (sines, cosines), rows);
+        if let Some((reference, jacobians)) = &mut work.jacobians {
+            jacobian(serial, *reference, x, &mut tool, rows);
+            let jacobians = &mut jacobians[done * 6 * n..];
+            if in_place {
+                put(rows, jacobians, count);
+            } else {
+                sort(rows, serial, coordinates, &mut columns);
+                put(&columns, jacobians, count);
+            }
+        } else {
+            tool.p = tool.p.plus(whole_way(serial, x, rows));
+        }
+        if let Some(poses) = &mut work.poses {
+            put(&pose_rows(tool), &mut poses[done * 16..], count);
+        }
+        done += count;
+    }
+}
+
+/// The coordinates of the joints, at any places; lanes that are left over repeat the last
+/// configuration.
+#[inline(always)]
+fn gather<R: Real>(q: &[f64], n: usize, serial: &Serial, coordinates: &[usize], x: &mut [R]) {
+    let last = q.len() / n - 1;
+    let mut all = [&q[last * n..]; MOST_LANES];
     for (row, q) in all.iter_mut().zip(q.chunks_exact(n)) {
         *row = q;
     }
-    for i in 0..places.len() {
-        x[i] = R::from_fn(|l| all[l][places[i]]);
+    for (x, joint) in x.iter_mut().zip(serial.joints()) {
+        let place = coordinates[joint.coordinate];
+        *x = R::from_fn(|l| all[l][place]);
     }
 }
 
-/// Goes along the chain; axis and origin of each joint into `axes`. Gives the tool.
+/// Goes along the chain: the axes of the tool, the origin of the first joint, and `rows` of one
+/// number for each joint: axes x and z.
+///
+/// Origins follow from them, on the way back, in [`jacobian`] or [`whole_way`].
 #[inline(always)]
-pub(crate) fn along<R: Real>(
+fn along<R: Real>(
     serial: &Serial,
-    x: &[R],
-    turns: &[(R, R)],
-    axes: &mut [([R; 3], [R; 3])],
+    (sines, cosines): (&[R], &[R]),
+    rows: &mut [R],
 ) -> Columns<[R; 3]> {
     let joints = serial.joints();
-    let (x, turns, axes) = (&x[..joints.len()], &turns[..joints.len()], &mut axes[..joints.len()]);
-    let mut frame = serial.start();
-    for i in 0..joints.len() {
-        let (sin, cos) = turns[i];
-        frame = joints[i].moved(frame, sin, cos, x[i]);
-        axes[i] = (frame.z, frame.p);
-        frame = joints[i].passed(frame);
+    let m = joints.len();
+    let (sines, cosines) = (&sines[..m], &cosines[..m]);
+    let [a, b, c, d, e, f] = split(rows, m);
+    let mut frame = serial.start::<[R; 3]>();
+    for i in 0..m {
+        frame = frame.turned(sines[i], cosines[i]);
+        [a[i], b[i], c[i]] = frame.x;
+        [d[i], e[i], f[i]] = frame.z;
+        frame = joints[i].tilted(frame);
     }
     serial.end(frame)
 }
 
-/// The Jacobian, row-major.
+/// From the origin of the first joint to that of the tool, from the rows of [`along`].
 #[inline(always)]
-fn fill<R: Real>(
-    serial: &Serial,
-    places: &[usize],
-    reference: Reference,
-    tool: Columns<[R; 3]>,
-    axes: &[([R; 3], [R; 3])],
-    out: &mut [R],
-) {
-    let zero = R::splat(0.0);
+pub(crate) fn whole_way<R: Real>(serial: &Serial, q: &[R], rows: &mut [R]) -> [R; 3] {
     let joints = serial.joints();
-    let n = out.len() / 6;
-    let p = if reference == Reference::World { [zero; 3] } else { tool.p };
-    let one_each = serial.has_one_for_each(n);
-    if !one_each {
-        out.fill(zero);
+    let (q, [a, b, c, d, e, f]) = (&q[..joints.len()], split(rows, joints.len()));
+    let mut way = [R::splat(0.0); 3];
+    for i in (0..joints.len()).rev() {
+        way = way.plus(joints[i].way([a[i], b[i], c[i]], [d[i], e[i], f[i]], q[i]));
     }
-    // The rows: what is asked for one place in them is asked for all.
-    let (a, rest) = out.split_at_mut(n);
-    let (b, rest) = rest.split_at_mut(n);
-    let (c, rest) = rest.split_at_mut(n);
-    let (d, rest) = rest.split_at_mut(n);
-    let (e, f) = rest.split_at_mut(n);
-    let f = &mut f[..n];
-    let (places, axes) = (&places[..joints.len()], &axes[..joints.len()]);
-    for i in 0..joints.len() {
-        let (k, (axis, origin)) = (places[i], axes[i]);
-        let (mut linear, mut angular) = joints[i].column(axis, origin, p);
+    way
+}
+
+/// The Jacobian of the joints from the rows of [`along`], in their place; the origin of the tool.
+#[inline(always)]
+pub(crate) fn jacobian<R: Real>(
+    serial: &Serial,
+    reference: Reference,
+    q: &[R],
+    tool: &mut Columns<[R; 3]>,
+    rows: &mut [R],
+) {
+    let joints = serial.joints();
+    let first = tool.p;
+    // From where a joint is to the point whose velocity is asked for.
+    let mut lever = [R::splat(0.0); 3];
+    if reference == Reference::World {
+        tool.p = first.plus(whole_way(serial, q, rows));
+        lever = tool.p.negative();
+    }
+    let (q, [a, b, c, d, e, f]) = (&q[..joints.len()], split(rows, joints.len()));
+    for i in (0..joints.len()).rev() {
+        let axis = [d[i], e[i], f[i]];
+        lever = lever.plus(joints[i].way([a[i], b[i], c[i]], axis, q[i]));
+        let (mut linear, mut angular) = joints[i].column(axis, lever);
         if reference == Reference::Local {
             (linear, angular) = (tool.seen(linear), tool.seen(angular));
         }
-        if !one_each {
-            linear = [linear[0] + a[k], linear[1] + b[k], linear[2] + c[k]];
-            angular = [angular[0] + d[k], angular[1] + e[k], angular[2] + f[k]];
+        [a[i], b[i], c[i]] = linear;
+        [d[i], e[i], f[i]] = angular;
+    }
+    if reference != Reference::World {
+        tool.p = first.plus(lever);
+    }
+}
+
+/// The six rows of m numbers: what is asked for one place in them is asked for all.
+#[inline(always)]
+fn split<R>(rows: &mut [R], m: usize) -> [&mut [R]; 6] {
+    let (a, rest) = rows.split_at_mut(m);
+    let (b, rest) = rest.split_at_mut(m);
+    let (c, rest) = rest.split_at_mut(m);
+    let (d, rest) = rest.split_at_mut(m);
+    let (e, f) = rest.split_at_mut(m);
+    [a, b, c, d, e, &mut f[..m]]
+}
+
+/// The columns of joints as those of coordinates: at any places, zero, or the sum of several.
+#[inline(always)]
+fn sort<R: Real>(rows: &[R], serial: &Serial, coordinates: &[usize], columns: &mut [R]) {
+    columns.fill(R::splat(0.0));
+    let (m, n) = (serial.joints().len(), columns.len() / 6);
+    for (row, out) in rows.chunks_exact(m).zip(columns.chunks_exact_mut(n)) {
+        for (x, joint) in row.iter().zip(serial.joints()) {
+            let place = coordinates[joint.coordinate];
+            out[place] = out[place] + *x;
         }
-        [a[k], b[k], c[k]] = linear;
-        [d[k], e[k], f[k]] = angular;
     }
 }
 
@@ -167,16 +273,16 @@ fn pose_rows<R: Real>(pose: Columns<[R; 3]>) -> [R; 16] {
     [x[0], y[0], z[0], p[0], x[1], y[1], z[1], p[1], x[2], y[2], z[2], p[2], zero, zero, zero, one]
 }
 
-/// The first `rows` lanes as rows.
+/// The first `count` lanes as rows.
 #[inline(always)]
-fn put<R: Real>(numbers: &[R], out: &mut [f64], rows: usize) {
+fn put<R: Real>(numbers: &[R], out: &mut [f64], count: usize) {
     let size = numbers.len();
-    if rows == R::LANES {
+    if count == R::LANES {
         R::scatter(numbers, out, size);
     } else {
         let mut all = vec![0.0; R::LANES * size];
         R::scatter(numbers, &mut all, size);
-        out[..rows * size].copy_from_slice(&all[..rows * size]);
+        out[..count * size].copy_from_slice(&all[..count * size]);
     }
 }
 

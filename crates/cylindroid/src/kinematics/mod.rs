@@ -22,7 +22,7 @@ pub use batch::Batch;
 pub use chain::Chain;
 pub use conversion::velocity_conversion;
 pub use jacobian::Reference;
-pub(crate) use lanes::along as along_several;
+pub(crate) use lanes::{Apart, jacobian as jacobian_of_several, whole_way};
 pub(crate) use serial::Serial;
 pub(crate) use several::{Frame, forward as forward_several};
 pub use state::{EndEffector, State};

@@ -1,6 +1,6 @@
 //! A chain of joints that turn and slide, in frames of its own that make it cheap to go along.
 //!
-//! Formula  world_from_tool = first * [Rz(turn q + angle) Tz(slide q) T(by) Rx(tilt)]_j ... * last;
+//! Formula  world_from_tool = first * [Rz(turn q + angle) Tz(slide q) T(by) Rx(tilt)]_j ... Rz(last);
 //!          columns [turn z x (p - o) + slide z; turn z], z and o an axis and a point on it
 //! Shapes   `axes` and `origins`: one for each joint
 //! Units    rad, m
@@ -81,7 +81,9 @@ pub(crate) struct Serial {
     first: Padded,
     joints: Vec<SerialJoint>,
     angles: Vec<Angles>,
-    last: Padded,
+    /// Sine and cosine of what the tool is turned by; `None` where the angle of the last joint
+    /// has it all.
+    last: Option<[f64; 2]>,
     /// True if two joints have one coordinate.
     shared: bool,
 }
@@ -90,6 +92,7 @@ impl Serial {
     /// Of nodes one after the other, the tool last; `None` if a joint does something else.
     pub(crate) fn of(nodes: &[Node]) -> Option<Self> {
         let (tool, moving) = nodes.split_last()?;
+        // The tool is the last way.
         if tool.motion != Motion::Fixed {
             return None;
         }
@@ -105,10 +108,10 @@ impl Serial {
                 Motion::Fixed | Motion::Spherical | Motion::Free => return None,
             };
             let turned = if turn == 0.0 { 0.0 } else { node.offset };
-            let way = match moving.get(i + 1) {
-                Some(next) => Way::of(next.placement.pose()),
-                None => Way::NONE,
-            };
+            let mut way = Way::of(nodes[i + 1].placement.pose());
+            if i + 1 == moving.len() && way.tilt == Tilt::None {
+                way.turn_before(); // no joint comes after
+            }
             joints.push(SerialJoint {
                 coordinate: node.coordinate,
                 turn,
@@ -126,7 +129,8 @@ impl Serial {
         coordinates.sort_unstable();
         let shared = coordinates.windows(2).any(|w| w[0] == w[1]);
         let angles = joints.chunks(MANY).map(Angles::of).collect();
-        Some(Self { first, joints, angles, last: tool.placement, shared })
+        let last = (carried.abs() > f64::EPSILON).then(|| carried.sin_cos().into());
+        Some(Self { first, joints, angles, last, shared })
     }
 
     /// The joints.
@@ -155,7 +159,11 @@ impl Serial {
     /// The tool, from the frame after the last joint.
     #[inline(always)]
     pub(crate) fn end<T: Triple>(&self, frame: Columns<T>) -> Columns<T> {
-        frame.then(&self.last)
+        let k = T::Scalar::splat;
+        match self.last {
+            Some([sin, cos]) => frame.turned(k(sin), k(cos)),
+            None => frame,
+        }
     }
 }
 
@@ -182,21 +190,39 @@ impl SerialJoint {
     /// The frame of the next joint before it moves.
     #[inline(always)]
     pub(crate) fn passed<T: Triple>(&self, frame: Columns<T>) -> Columns<T> {
-        let k = T::Scalar::splat;
         let there = if self.aside { frame.moved(&self.by) } else { frame.moved_xz(&self.by) };
+        self.tilted(there)
+    }
+
+    /// The same frame with z along the axis of the next joint.
+    #[inline(always)]
+    pub(crate) fn tilted<T: Triple>(&self, frame: Columns<T>) -> Columns<T> {
+        let k = T::Scalar::splat;
         match self.tilt {
-            Tilt::None => there,
-            Tilt::Right => there.upended(),
-            Tilt::By { sin, cos } => there.tilted(k(sin), k(cos)),
+            Tilt::None => frame,
+            Tilt::Right => frame.upended(),
+            Tilt::By { sin, cos } => frame.tilted(k(sin), k(cos)),
         }
     }
 
-    /// What it does to the point p: linear and angular part, for an axis through `origin`.
+    /// From its origin, before it slides, to that of the next joint; x and z are its axes after it
+    /// has turned.
     #[inline(always)]
-    pub(crate) fn column<T: Triple>(&self, axis: T, origin: T, p: T) -> (T, T) {
+    pub(crate) fn way<T: Triple>(&self, x: T, z: T, q: T::Scalar) -> T {
+        let k = T::Scalar::splat;
+        let along = k(self.by[2]);
+        let along = if self.slides { q.times_plus(k(self.slide), along) } else { along };
+        let way = x.times_plus(k(self.by[0]), z.times(along));
+        if self.aside { z.cross(x).times_plus(k(self.by[1]), way) } else { way }
+    }
+
+    /// What it does to a point: linear and angular part, for its axis and the way from any point
+    /// on that.
+    #[inline(always)]
+    pub(crate) fn column<T: Triple>(&self, axis: T, lever: T) -> (T, T) {
         let k = T::Scalar::splat;
         let angular = if self.scaled { axis.times(k(self.turn)) } else { axis };
-        let linear = angular.cross(p.minus(origin));
+        let linear = angular.cross(lever);
         if self.slides {
             (axis.times_plus(k(self.slide), linear), angular)
         } else {
@@ -214,8 +240,6 @@ struct Way {
 }
 
 impl Way {
-    const NONE: Self = Self { before: 0.0, by: Vec3::ZERO, tilt: Tilt::None, after: 0.0 };
-
     fn of(placement: Pose) -> Self {
         let z = placement.rotation.matrix().cols[2];
         // What is less than rounding is none: parallel and perpendicular axes are meant so.
@@ -235,5 +259,13 @@ impl Way {
             },
             after: rest.y.atan2(rest.x),
         }
+    }
+
+    /// Turns before instead of after: the same where there is no tilt.
+    fn turn_before(&mut self) {
+        let turn = Rotation::exp(Vec3::new(0.0, 0.0, self.after));
+        self.by = turn.inverse() * self.by;
+        self.before += self.after;
+        self.after = 0.0;
     }
 }

@@ -61,6 +61,13 @@ impl<const N: usize> Real for Array<N> {
     }
 
     #[inline(always)]
+    fn gather(from: &[f64], stride: usize, to: &mut [Self]) {
+        for (k, to) in to.iter_mut().enumerate() {
+            *to = Self(from_fn(|l| from[l * stride + k]));
+        }
+    }
+
+    #[inline(always)]
     fn scatter(from: &[Self], to: &mut [f64], stride: usize) {
         for l in 0..N {
             for (x, to) in from.iter().zip(&mut to[l * stride..]) {
@@ -86,6 +93,11 @@ impl<const N: usize> Real for Array<N> {
     #[inline(always)]
     fn times_plus(self, b: Self, c: Self) -> Self {
         self * b + c
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        Self(self.0.map(f64::abs))
     }
 
     #[inline(always)]

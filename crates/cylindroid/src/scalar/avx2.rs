@@ -8,7 +8,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Four, Real};
+use super::{Four, Real, trig};
 
 /// Sums, differences and products by intrinsics.
 macro_rules! operators {
@@ -49,6 +49,7 @@ pub(super) use operators;
 
 /// Four numbers.
 #[derive(Debug, Clone, Copy)]
+#[repr(transparent)]
 pub(crate) struct Lanes4(pub(crate) __m256d);
 
 operators!(Lanes4, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd);
@@ -71,6 +72,16 @@ impl Neg for Lanes4 {
 pub(super) fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize) -> *mut f64 {
     assert!(to.len() >= (rows - 1) * stride + length, "rows are missing");
     to.as_mut_ptr()
+}
+
+/// The first of `rows` rows of `length` numbers, `stride` apart.
+///
+/// # Panics
+/// If they are not all there.
+#[inline(always)]
+pub(super) fn rows_in(from: &[f64], stride: usize, length: usize, rows: usize) -> *const f64 {
+    assert!(from.len() >= (rows - 1) * stride + length, "rows are missing");
+    from.as_ptr()
 }
 
 /// The sign is set in the lanes for which there are numbers.
@@ -123,6 +134,80 @@ impl Four for Lanes4 {
     }
 }
 
+/// Four numbers of each of four rows, `stride` apart: lane l of the k-th is the k-th of row l.
+///
+/// # Safety
+/// They are there; see the head of this file.
+#[inline(always)]
+pub(super) unsafe fn transposed_rows(from: *const f64, stride: usize) -> [Lanes4; 4] {
+    // SAFETY: as said above.
+    unsafe {
+        // a0 a1 c0 c1, a2 a3 c2 c3, and the same of b and d
+        let (ac, ac_rest) = (pairs(from, 2 * stride), pairs(from.add(2), 2 * stride));
+        let from = from.add(stride);
+        let (bd, bd_rest) = (pairs(from, 2 * stride), pairs(from.add(2), 2 * stride));
+        [
+            Lanes4(_mm256_unpacklo_pd(ac, bd)),
+            Lanes4(_mm256_unpackhi_pd(ac, bd)),
+            Lanes4(_mm256_unpacklo_pd(ac_rest, bd_rest)),
+            Lanes4(_mm256_unpackhi_pd(ac_rest, bd_rest)),
+        ]
+    }
+}
+
+/// Two numbers, and two more `stride` after them.
+///
+/// # Safety
+/// They are there; see the head of this file.
+#[inline(always)]
+unsafe fn pairs(from: *const f64, stride: usize) -> __m256d {
+    // SAFETY: as said above.
+    unsafe {
+        let first = _mm256_castpd128_pd256(_mm_loadu_pd(from));
+        _mm256_insertf128_pd::<1>(first, _mm_loadu_pd(from.add(stride)))
+    }
+}
+
+/// Four rows, `stride` apart.
+///
+/// # Safety
+/// The places are there; see the head of this file.
+#[inline(always)]
+pub(super) unsafe fn store_rows(rows: [Lanes4; 4], to: *mut f64, stride: usize) {
+    for (l, row) in rows.into_iter().enumerate() {
+        // SAFETY: as said above.
+        unsafe { _mm256_storeu_pd(to.add(l * stride), row.0) };
+    }
+}
+
+/// What is left over, of four rows, `stride` apart: at the most three registers.
+///
+/// # Safety
+/// The places are there; see the head of this file.
+#[inline(always)]
+pub(super) unsafe fn store_rest(rest: &[Lanes4], to: *mut f64, stride: usize) {
+    // SAFETY: as said above.
+    unsafe {
+        let (twos, one) = rest.as_chunks::<2>();
+        for (k, [a, b]) in twos.iter().enumerate() {
+            let to = to.add(2 * k);
+            let (even, odd) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpackhi_pd(a.0, b.0));
+            _mm_storeu_pd(to, _mm256_castpd256_pd128(even));
+            _mm_storeu_pd(to.add(stride), _mm256_castpd256_pd128(odd));
+            _mm_storeu_pd(to.add(2 * stride), _mm256_extractf128_pd::<1>(even));
+            _mm_storeu_pd(to.add(3 * stride), _mm256_extractf128_pd::<1>(odd));
+        }
+        if let [x] = one {
+            let to = to.add(2 * twos.len());
+            let (low, high) = (_mm256_castpd256_pd128(x.0), _mm256_extractf128_pd::<1>(x.0));
+            _mm_storel_pd(to, low);
+            _mm_storeh_pd(to.add(stride), low);
+            _mm_storel_pd(to.add(2 * stride), high);
+            _mm_storeh_pd(to.add(3 * stride), high);
+        }
+    }
+}
+
 impl Real for Lanes4 {
     const LANES: usize = 4;
     const FUSED: bool = true;
@@ -155,25 +240,37 @@ impl Real for Lanes4 {
     }
 
     #[inline(always)]
+    fn gather(from: &[f64], stride: usize, to: &mut [Self]) {
+        let from = rows_in(from, stride, to.len(), Self::LANES);
+        let n = to.len();
+        if n < 4 {
+            for (k, x) in to.iter_mut().enumerate() {
+                // SAFETY: `rows_in` has looked that these numbers are there.
+                *x = Self::from_fn(|l| unsafe { *from.add(l * stride + k) });
+            }
+            return;
+        }
+        // The last block may begin in the one before.
+        for k in (0..n.div_ceil(4)).map(|block| (4 * block).min(n - 4)) {
+            // SAFETY: as above.
+            let rows = unsafe { transposed_rows(from.add(k), stride) };
+            to[k..k + 4].copy_from_slice(&rows);
+        }
+    }
+
+    #[inline(always)]
     fn scatter(from: &[Self], to: &mut [f64], stride: usize) {
         let (fours, rest) = from.as_chunks::<4>();
         let to = rows_of(to, stride, from.len(), Self::LANES);
         for (k, four) in fours.iter().enumerate() {
-            let rows = Lanes4::transposed(*four);
-            for (l, row) in rows.into_iter().enumerate() {
-                // SAFETY: `rows_of` has looked that these four places are there.
-                unsafe { _mm256_storeu_pd(to.add(l * stride + 4 * k), row.0) };
+            // SAFETY: `rows_of` has looked that these places are there.
+            unsafe {
+                let rows = transposed_rows(four.as_ptr().cast(), Self::LANES);
+                store_rows(rows, to.add(4 * k), stride);
             }
         }
-        let done = 4 * fours.len();
-        for (k, x) in rest.iter().enumerate() {
-            let mut lanes = [0.0; 4];
-            x.store(&mut lanes);
-            for (l, x) in lanes.into_iter().enumerate() {
-                // SAFETY: as above.
-                unsafe { *to.add(l * stride + done + k) = x };
-            }
-        }
+        // SAFETY: as above.
+        unsafe { store_rest(rest, to.add(4 * fours.len()), stride) }
     }
 
     #[inline(always)]
@@ -190,6 +287,12 @@ impl Real for Lanes4 {
     fn times_plus(self, b: Self, c: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm256_fmadd_pd(self.0, b.0, c.0) })
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
     }
 
     #[inline(always)]
@@ -224,4 +327,16 @@ impl Real for Lanes4 {
             _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(size, _mm256_set1_pd(limit))) == 0b1111
         }
     }
+
+    #[inline(always)]
+    fn sines_cosines(x: &mut [Self], sines: &mut [Self], memory: &mut [Self]) {
+        // SAFETY: see the head of this file.
+        unsafe { sines_cosines(x, sines, memory) }
+    }
+}
+
+#[target_feature(enable = "avx2,fma")]
+#[inline(never)]
+fn sines_cosines(x: &mut [Lanes4], sines: &mut [Lanes4], memory: &mut [Lanes4]) {
+    trig::sines_cosines(x, sines, memory);
 }

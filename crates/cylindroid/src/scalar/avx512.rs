@@ -8,15 +8,15 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::Four;
-use super::Real;
-use super::avx2::{Lanes4, operators, rows_of};
+use super::avx2::{Lanes4, operators, rows_in, rows_of, store_rest, store_rows, transposed_rows};
+use super::{Real, trig};
 
 /// The bit of the sign.
 const SIGN: i64 = i64::MIN;
 
 /// Eight numbers.
 #[derive(Debug, Clone, Copy)]
+#[repr(transparent)]
 pub(crate) struct Lanes8(__m512d);
 
 operators!(Lanes8, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd);
@@ -28,6 +28,14 @@ impl Lanes8 {
         unsafe {
             [Lanes4(_mm512_castpd512_pd256(self.0)), Lanes4(_mm512_extractf64x4_pd::<1>(self.0))]
         }
+    }
+}
+
+impl Lanes8 {
+    #[inline(always)]
+    fn of_halves(low: Lanes4, high: Lanes4) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low.0), high.0) })
     }
 }
 
@@ -78,29 +86,53 @@ impl Real for Lanes8 {
     }
 
     #[inline(always)]
+    fn gather(from: &[f64], stride: usize, to: &mut [Self]) {
+        let from = rows_in(from, stride, to.len(), Self::LANES);
+        let n = to.len();
+        if n < 4 {
+            for (k, x) in to.iter_mut().enumerate() {
+                // SAFETY: `rows_in` has looked that these numbers are there.
+                *x = Self::from_fn(|l| unsafe { *from.add(l * stride + k) });
+            }
+            return;
+        }
+        // The last block may begin in the one before.
+        for k in (0..n.div_ceil(4)).map(|block| (4 * block).min(n - 4)) {
+            // SAFETY: as above.
+            let [low, high] = unsafe {
+                let low = from.add(k);
+                [transposed_rows(low, stride), transposed_rows(low.add(4 * stride), stride)]
+            };
+            for ((x, low), high) in to[k..k + 4].iter_mut().zip(low).zip(high) {
+                *x = Self::of_halves(low, high);
+            }
+        }
+    }
+
+    #[inline(always)]
     fn scatter(from: &[Self], to: &mut [f64], stride: usize) {
         // As twice four lanes.
         let (fours, rest) = from.as_chunks::<4>();
         let to = rows_of(to, stride, from.len(), Self::LANES);
-        for (k, [a, b, c, d]) in fours.iter().enumerate() {
-            let (a, b, c, d) = (a.halves(), b.halves(), c.halves(), d.halves());
-            for half in 0..2 {
-                let rows = Lanes4::transposed([a[half], b[half], c[half], d[half]]);
-                for (l, row) in rows.into_iter().enumerate() {
-                    let place = (4 * half + l) * stride + 4 * k;
-                    // SAFETY: `rows_of` has looked that these four places are there.
-                    unsafe { _mm256_storeu_pd(to.add(place), row.0) };
-                }
+        let half = 4 * stride;
+        for (k, four) in fours.iter().enumerate() {
+            // SAFETY: `rows_of` has looked that these places are there.
+            unsafe {
+                let (four, to) = (four.as_ptr().cast::<f64>(), to.add(4 * k));
+                store_rows(transposed_rows(four, Self::LANES), to, stride);
+                store_rows(transposed_rows(four.add(4), Self::LANES), to.add(half), stride);
             }
         }
         let done = 4 * fours.len();
-        for (k, x) in rest.iter().enumerate() {
-            let mut lanes = [0.0; 8];
-            x.store(&mut lanes);
-            for (l, x) in lanes.into_iter().enumerate() {
-                // SAFETY: as above.
-                unsafe { *to.add(l * stride + done + k) = x };
-            }
+        let zero = Lanes4::splat(0.0);
+        let (mut low, mut high) = ([zero; 3], [zero; 3]);
+        for ((x, low), high) in rest.iter().zip(&mut low).zip(&mut high) {
+            [*low, *high] = x.halves();
+        }
+        // SAFETY: as above.
+        unsafe {
+            store_rest(&low[..rest.len()], to.add(done), stride);
+            store_rest(&high[..rest.len()], to.add(done + half), stride);
         }
     }
 
@@ -114,6 +146,12 @@ impl Real for Lanes8 {
     fn times_plus(self, b: Self, c: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm512_fmadd_pd(self.0, b.0, c.0) })
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_abs_pd(self.0) })
     }
 
     #[inline(always)]
@@ -146,4 +184,16 @@ impl Real for Lanes8 {
             _mm512_cmp_pd_mask::<_CMP_LE_OQ>(size, _mm512_set1_pd(limit)) == 0xff
         }
     }
+
+    #[inline(always)]
+    fn sines_cosines(x: &mut [Self], sines: &mut [Self], memory: &mut [Self]) {
+        // SAFETY: see the head of this file.
+        unsafe { sines_cosines(x, sines, memory) }
+    }
+}
+
+#[target_feature(enable = "avx512f,avx2,fma")]
+#[inline(never)]
+fn sines_cosines(x: &mut [Lanes8], sines: &mut [Lanes8], memory: &mut [Lanes8]) {
+    trig::sines_cosines(x, sines, memory);
 }

@@ -17,8 +17,6 @@ use super::{Array, Real};
 pub(crate) trait Field: Real + Div<Output = Self> {
     /// The square root; not a number for negative ones.
     fn root(self) -> Self;
-    /// Without its sign.
-    fn size(self) -> Self;
     /// The size of `self` with the sign of `other`.
     fn signed_as(self, other: Self) -> Self;
     /// The larger; of no number and one, anything.
@@ -36,11 +34,6 @@ impl Field for f64 {
     #[inline(always)]
     fn root(self) -> Self {
         self.sqrt()
-    }
-
-    #[inline(always)]
-    fn size(self) -> Self {
-        self.abs()
     }
 
     #[inline(always)]
@@ -72,11 +65,6 @@ impl<const N: usize> Field for Array<N> {
     #[inline(always)]
     fn root(self) -> Self {
         Self(self.0.map(f64::sqrt))
-    }
-
-    #[inline(always)]
-    fn size(self) -> Self {
-        Self(self.0.map(f64::abs))
     }
 
     #[inline(always)]
@@ -113,12 +101,6 @@ impl Field for Lanes4 {
     fn root(self) -> Self {
         // SAFETY: as above.
         Self(unsafe { _mm256_sqrt_pd(self.0) })
-    }
-
-    #[inline(always)]
-    fn size(self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
     }
 
     #[inline(always)]

@@ -21,7 +21,7 @@ pub(crate) use avx2::Lanes4;
 pub(crate) use avx512::Lanes8;
 pub(crate) use field::Field;
 pub(crate) use sequence::uniform;
-pub(crate) use trig::{sin_cos, sines_cosines};
+pub(crate) use trig::sin_cos;
 
 /// True if the processor has AVX2 and fused products: what four lanes need.
 #[cfg(target_arch = "x86_64")]
@@ -55,18 +55,32 @@ pub(crate) trait Real:
     fn store(self, to: &mut [f64]);
     /// Lane l is `f(l)`.
     fn from_fn(f: impl Fn(usize) -> f64) -> Self;
+    /// Lane l of the k-th is `from[l * stride + k]`.
+    fn gather(from: &[f64], stride: usize, to: &mut [Self]);
     /// Lane l of the k-th goes to `to[l * stride + k]`.
     fn scatter(from: &[Self], to: &mut [f64], stride: usize);
     /// All lanes together.
     fn sum(self) -> f64;
     /// `self * b + c`, with one rounding where the processor can.
     fn times_plus(self, b: Self, c: Self) -> Self;
+    /// Without its sign.
+    fn size(self) -> Self;
     /// `(a, b)`, in lanes where the lowest bit of `bits` is set `(b, a)`.
     fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self);
     /// Negated in lanes where the second bit of `bits + more` (as integers) is set.
     fn negate_where_second_bit(self, bits: Self, more: u64) -> Self;
     /// True if no lane is larger than `limit` or not a number.
     fn all_within(self, limit: f64) -> bool;
+    /// [`sin_cos`] of each of `x`: cosines take the place of the angles. What is in `memory` goes.
+    ///
+    /// Registers do this in a function of its own: its constants would take them from others.
+    ///
+    /// # Panics
+    /// If not all have one length.
+    #[inline(always)]
+    fn sines_cosines(x: &mut [Self], sines: &mut [Self], memory: &mut [Self]) {
+        trig::sines_cosines(x, sines, memory);
+    }
 }
 
 /// Four lanes, which can change places.
@@ -106,6 +120,11 @@ impl Real for f64 {
     }
 
     #[inline(always)]
+    fn gather(from: &[f64], _stride: usize, to: &mut [Self]) {
+        to.copy_from_slice(&from[..to.len()]);
+    }
+
+    #[inline(always)]
     fn scatter(from: &[Self], to: &mut [f64], _stride: usize) {
         to[..from.len()].copy_from_slice(from);
     }
@@ -118,6 +137,11 @@ impl Real for f64 {
     #[inline(always)]
     fn times_plus(self, b: Self, c: Self) -> Self {
         self * b + c
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.abs()
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Sine and cosine as a pair, branch-free, the same on every platform, of one number or of lanes.
 //!
-//! Formula  reduce by multiples of pi/2 (Cody-Waite, of three parts or of two fused ones), then the
-//!          fdlibm kernels
+//! Formula  reduce by multiples of pi/2 (Cody-Waite, of three parts or of two fused ones), then
+//!          the polynomials of fdlibm
 //! Valid    |x| <= 1e5; beyond it (and for NaN and infinity) the standard library is called
 //! Error    at most 1 ulp, or 1e-27 where a sine or cosine is less than 1e-11; measured against the
 //!          standard library in the tests below
@@ -10,7 +10,7 @@
 //! Source   FreeBSD msun k_sin.c, k_cos.c, e_rem_pio2.c (the polynomial coefficients)
 //! Checked  `tests::agrees_with_std`, `tests::handles_every_quadrant_and_bad_input`
 
-use super::Real;
+use super::{MOST_LANES, Real};
 
 const LARGE: f64 = 1e5;
 const TWO_OVER_PI: f64 = std::f64::consts::FRAC_2_PI;
@@ -47,99 +47,134 @@ pub(crate) fn sin_cos<R: Real>(x: R) -> (R, R) {
     if x.all_within(LARGE) { small(x) } else { beyond(x) }
 }
 
-/// [`sin_cos`] of each.
+/// [`sin_cos`] of each: cosines take the place of the angles. What is in `memory` goes.
+///
+/// One step for all angles after the other: a processor looks some dozens of instructions ahead,
+/// which for one angle are steps that wait for each other.
 ///
 /// # Panics
-/// If `out` is not as long.
+/// If not all have one length.
 #[inline(always)]
-pub(crate) fn sines_cosines<R: Real>(x: &[R], out: &mut [(R, R)]) {
-    assert_eq!(x.len(), out.len(), "as many angles as pairs");
-    let mut all = true;
-    for x in x {
-        all &= x.all_within(LARGE);
+pub(super) fn sines_cosines<R: Real>(x: &mut [R], sines: &mut [R], memory: &mut [R]) {
+    let n = x.len();
+    assert!(sines.len() == n && memory.len() == n, "as many sines as angles");
+    // None is larger than the sum.
+    let mut sizes = R::splat(0.0);
+    for x in &*x {
+        sizes = sizes + x.size();
     }
-    // Without a branch in the loop more of them are under way at once.
-    if all {
-        for (x, out) in x.iter().zip(out) {
-            *out = small(*x);
+    if !(R::FUSED && sizes.all_within(LARGE)) {
+        for i in 0..n {
+            (sines[i], x[i]) = sin_cos(x[i]);
         }
-    } else {
-        for (x, out) in x.iter().zip(out) {
-            *out = sin_cos(*x);
-        }
+        return;
+    }
+    for i in 0..n {
+        (x[i], memory[i]) = reduced(x[i]);
+    }
+    for i in 0..n {
+        let z = x[i] * x[i];
+        sines[i] = sine(x[i], z);
+        x[i] = z;
+    }
+    for x in &mut *x {
+        *x = cosine(*x);
+    }
+    for i in 0..n {
+        (sines[i], x[i]) = in_quadrant(sines[i], x[i], memory[i]);
     }
 }
 
 /// For |x| <= `LARGE`; anything for other x.
 #[inline(always)]
 fn small<R: Real>(x: R) -> (R, R) {
+    if R::FUSED {
+        let (y, bits) = reduced(x);
+        let z = y * y;
+        return in_quadrant(sine(y, z), cosine(z), bits);
+    }
     let k = R::splat;
-    let rounded = x.times_plus(k(TWO_OVER_PI), k(ROUND));
-    let n = rounded - k(ROUND);
-    let (sin, cos) = if R::FUSED {
-        // x - n pi/2 in two parts: the first difference is exact, as x is near n pi/2.
-        let y = n.times_plus(k(-PIO2_LOW), n.times_plus(k(-PIO2_HIGH), x));
-        kernels(y)
-    } else {
-        // In three: products with the first parts are exact; the rest is carried along.
-        let r = x - n * k(PIO2_1);
-        let w = n * k(PIO2_2);
-        let y = r - w;
-        let tail = ((r - y) - w) - n * k(PIO2_2T);
-        kernels_with_tail(y, tail)
-    };
-    // The lowest bits of `rounded` are the quadrant: sines and cosines change places in the odd
-    // ones, sines are negative in 2 and 3, cosines in 1 and 2.
-    let (s, c) = R::swap_where_odd(sin, cos, rounded);
-    (s.negate_where_second_bit(rounded, 0), c.negate_where_second_bit(rounded, 1))
+    let (n, bits) = quarters(x);
+    // In three parts: products with the first ones are exact; the rest is carried along.
+    let r = x - n * k(PIO2_1);
+    let w = n * k(PIO2_2);
+    let y = r - w;
+    let tail = ((r - y) - w) - n * k(PIO2_2T);
+    let (sin, cos) = with_tail(y, tail);
+    in_quadrant(sin, cos, bits)
 }
 
-/// Sine and cosine of y in [-pi/4, pi/4].
+/// n, the whole number nearest to x / (pi/2), and a number whose lowest bits are those of n.
 #[inline(always)]
-fn kernels<R: Real>(y: R) -> (R, R) {
-    let k = R::splat;
-    let z = y * y;
-    let zz = z * z;
-    let (p, q) = polynomials(z, zz);
-    let sin = (y * z).times_plus(z.times_plus(p, k(S[0])), y);
-    let cos = zz.times_plus(q, z.times_plus(k(-0.5), k(1.0)));
-    (sin, cos)
+fn quarters<R: Real>(x: R) -> (R, R) {
+    let rounded = x.times_plus(R::splat(TWO_OVER_PI), R::splat(ROUND));
+    (rounded - R::splat(ROUND), rounded)
 }
 
-/// Of y + tail, with the roundings of y carried along.
+/// `x - n pi/2` in two parts, the first difference exact, as x is near `n pi/2`; and the bits of n.
 #[inline(always)]
-fn kernels_with_tail<R: Real>(y: R, tail: R) -> (R, R) {
+fn reduced<R: Real>(x: R) -> (R, R) {
+    let (n, bits) = quarters(x);
+    let near = n.times_plus(R::splat(-PIO2_HIGH), x);
+    (n.times_plus(R::splat(-PIO2_LOW), near), bits)
+}
+
+/// Sines and cosines change places in the odd quadrants; sines are negative in 2 and 3, cosines in
+/// 1 and 2.
+#[inline(always)]
+fn in_quadrant<R: Real>(sin: R, cos: R, bits: R) -> (R, R) {
+    let (s, c) = R::swap_where_odd(sin, cos, bits);
+    (s.negate_where_second_bit(bits, 0), c.negate_where_second_bit(bits, 1))
+}
+
+/// Of y in [-pi/4, pi/4], `z = y^2`.
+#[inline(always)]
+fn sine<R: Real>(y: R, z: R) -> R {
+    (y * z).times_plus(z.times_plus(polynomial(z, &S[1..]), R::splat(S[0])), y)
+}
+
+/// Of a number in [-pi/4, pi/4] with the square z.
+#[inline(always)]
+fn cosine<R: Real>(z: R) -> R {
+    (z * z).times_plus(polynomial(z, &C), z.times_plus(R::splat(-0.5), R::splat(1.0)))
+}
+
+/// Sine and cosine of y + tail, with the roundings of y carried along.
+#[inline(always)]
+fn with_tail<R: Real>(y: R, tail: R) -> (R, R) {
     let k = R::splat;
     let z = y * y;
-    let zz = z * z;
-    let (p, q) = polynomials(z, zz);
+    let (p, q) = (polynomial(z, &S[1..]), polynomial(z, &C));
     let v = z * y;
     let sin = y - ((z * (k(0.5) * tail - v * p) - tail) - v * k(S[0]));
     let half = k(0.5) * z;
     let w = k(1.0) - half;
-    let cos = w + (((k(1.0) - w) - half) + (zz * q - y * tail));
+    let cos = w + (((k(1.0) - w) - half) + (z * z * q - y * tail));
     (sin, cos)
 }
 
-/// `(sin y - y) / y^3 = S0 + z p` and `cos y - 1 + z / 2 = z^2 q`.
+/// `a[0] + z (a[1] + z (a[2] + ...))`
 #[inline(always)]
-fn polynomials<R: Real>(z: R, zz: R) -> (R, R) {
-    let k = R::splat;
-    let low = z.times_plus(z.times_plus(k(S[3]), k(S[2])), k(S[1]));
-    let p = (z * zz).times_plus(z.times_plus(k(S[5]), k(S[4])), low);
-    let low = z.times_plus(z.times_plus(k(C[2]), k(C[1])), k(C[0]));
-    let q = (z * zz).times_plus(z.times_plus(z.times_plus(k(C[5]), k(C[4])), k(C[3])), low);
-    (p, q)
+fn polynomial<R: Real>(z: R, a: &[f64]) -> R {
+    let mut sum = R::splat(a[a.len() - 1]);
+    for a in a[..a.len() - 1].iter().rev() {
+        sum = sum.times_plus(z, R::splat(*a));
+    }
+    sum
 }
 
-/// Lane by lane, by the standard library where it is needed.
+/// Where a lane is larger than `LARGE`: those by the standard library.
 #[cold]
 #[inline(never)]
 fn beyond<R: Real>(x: R) -> (R, R) {
-    let (mut sin, mut cos) = ([0.0; super::MOST_LANES], [0.0; super::MOST_LANES]);
-    x.store(&mut sin);
-    for (s, c) in sin.iter_mut().zip(&mut cos).take(R::LANES) {
-        (*s, *c) = if s.abs() <= LARGE { small(*s) } else { s.sin_cos() };
+    let (small_sin, small_cos) = small(x);
+    let mut lanes = [0.0; MOST_LANES];
+    let (mut sin, mut cos) = (lanes, lanes);
+    x.store(&mut lanes);
+    small_sin.store(&mut sin);
+    small_cos.store(&mut cos);
+    for (l, x) in lanes.into_iter().enumerate().filter(|(_, x)| !x.all_within(LARGE)) {
+        (sin[l], cos[l]) = x.sin_cos();
     }
     (R::load(&sin), R::load(&cos))
 }
@@ -147,7 +182,7 @@ fn beyond<R: Real>(x: R) -> (R, R) {
 #[cfg(test)]
 mod tests {
     use super::super::Array;
-    use super::sin_cos;
+    use super::{sin_cos, sines_cosines};
 
     fn ulps(a: f64, b: f64) -> f64 {
         (a - b).abs() / (b.abs().max(1e-300) * f64::EPSILON)
@@ -188,5 +223,47 @@ mod tests {
         assert_eq!((sines.0[1], cosines.0[1]), 1e9_f64.sin_cos());
         assert_eq!((sines.0[0], cosines.0[3]), (sin_cos(0.5).0, sin_cos(-2.0).1));
         assert!(sines.0[2].is_nan() && sin_cos(f64::INFINITY).1.is_nan());
+    }
+
+    /// What is computed beside an angle changes no bit of its sine, however large it is.
+    #[cfg(target_arch = "x86_64")]
+    #[test]
+    #[allow(unsafe_code)]
+    fn many_are_as_each() {
+        use super::super::{Lanes4, Real, has_avx2};
+
+        #[target_feature(enable = "avx2,fma")]
+        fn of(x: &[[f64; 4]]) -> Vec<[f64; 8]> {
+            let mut angles: Vec<Lanes4> = x.iter().map(|x| Lanes4::load(x)).collect();
+            let (mut sines, mut memory) = (angles.clone(), angles.clone());
+            sines_cosines(&mut angles, &mut sines, &mut memory);
+            let mut all = vec![[0.0; 8]; x.len()];
+            for ((all, sines), cosines) in all.iter_mut().zip(sines).zip(angles) {
+                sines.store(&mut all[..4]);
+                cosines.store(&mut all[4..]);
+            }
+            all
+        }
+
+        if !has_avx2() {
+            return;
+        }
+        let x: Vec<[f64; 4]> =
+            (0..9).map(|i| [0.3, 2.5, -4.0, 71.0].map(|x| x * f64::from(i - 4))).collect();
+        // SAFETY: the processor has both features, as just asked.
+        let all = unsafe { of(&x) };
+        for (i, x) in x.iter().enumerate() {
+            for (l, x) in x.iter().enumerate() {
+                assert!(ulps(all[i][l], x.sin()) <= 1.0 && ulps(all[i][4 + l], x.cos()) <= 1.0);
+            }
+            // SAFETY: as above.
+            let beside = unsafe { of(&[*x, [1e9, f64::NAN, 3.0, 1e300]]) };
+            assert_eq!(beside[0], all[i]);
+            // SAFETY: as above.
+            let same_lanes = unsafe { of(&[[x[0], 1e9, f64::INFINITY, x[3]]]) };
+            for l in [0, 3, 4, 7] {
+                assert_eq!(same_lanes[0][l], all[i][l]);
+            }
+        }
     }
 }

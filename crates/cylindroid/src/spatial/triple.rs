@@ -16,6 +16,8 @@ pub(crate) trait Triple: Copy {
     fn times(self, s: Self::Scalar) -> Self;
     /// `self * s + b`
     fn times_plus(self, s: Self::Scalar, b: Self) -> Self;
+    /// `self + b`
+    fn plus(self, b: Self) -> Self;
     /// `self - b`
     fn minus(self, b: Self) -> Self;
     /// `-self`
@@ -50,6 +52,11 @@ impl<R: Real> Triple for [R; 3] {
     #[inline(always)]
     fn times_plus(self, s: R, b: Self) -> Self {
         [self[0].times_plus(s, b[0]), self[1].times_plus(s, b[1]), self[2].times_plus(s, b[2])]
+    }
+
+    #[inline(always)]
+    fn plus(self, b: Self) -> Self {
+        [self[0] + b[0], self[1] + b[1], self[2] + b[2]]
     }
 
     #[inline(always)]
@@ -90,9 +97,9 @@ impl Single for [f64; 3] {
 #[allow(unsafe_code)] // the compiler does not put three numbers into one register by itself
 mod avx2 {
     use std::arch::x86_64::{
-        __m256d, _mm_storeu_pd, _mm256_blend_pd, _mm256_castpd256_pd128, _mm256_fmadd_pd,
-        _mm256_fmsub_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_permute4x64_pd, _mm256_set1_pd,
-        _mm256_setzero_pd, _mm256_storeu_pd, _mm256_sub_pd,
+        __m256d, _mm_storeu_pd, _mm256_add_pd, _mm256_blend_pd, _mm256_castpd256_pd128,
+        _mm256_fmadd_pd, _mm256_fmsub_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_permute4x64_pd,
+        _mm256_set1_pd, _mm256_setzero_pd, _mm256_storeu_pd, _mm256_sub_pd,
     };
 
     /// One register: three numbers and a 0. To be named only inside functions that are compiled for
@@ -121,6 +128,12 @@ mod avx2 {
         fn times_plus(self, s: f64, b: Self) -> Self {
             // SAFETY: as above.
             Self(unsafe { _mm256_fmadd_pd(self.0, _mm256_set1_pd(s), b.0) })
+        }
+
+        #[inline(always)]
+        fn plus(self, b: Self) -> Self {
+            // SAFETY: as above.
+            Self(unsafe { _mm256_add_pd(self.0, b.0) })
         }
 
         #[inline(always)]
