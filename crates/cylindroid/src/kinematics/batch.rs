@@ -22,6 +22,8 @@ use crate::model::Mechanism;
 
 /// Numbers of a pose.
 const POSE: usize = 16;
+/// Numbers that are more than most caches hold: 32 MiB.
+const LARGE: usize = 4 << 20;
 
 /// The kinematics of one end effector, for many configurations in one call.
 ///
@@ -131,9 +133,12 @@ impl Batch {
                 return Err(Error::rows(what, count * each, got, each));
             }
         }
+        let size =
+            poses.as_ref().map_or(0, |p| p.len()) + jacobians.as_ref().map_or(0, |(_, j)| j.len());
+        let large = size > LARGE;
         if count <= Self::ALONE {
             if count > 0 {
-                self.chunk(q, poses, jacobians);
+                self.chunk(q, poses, jacobians, large);
             }
             return Ok(());
         }
@@ -146,7 +151,7 @@ impl Batch {
                 (q, poses, jacobians.as_mut().and_then(|(r, j)| Some((*r, j.next()?))))
             })
             .collect();
-        chunks.into_par_iter().for_each(|(q, poses, j)| self.chunk(q, poses, j));
+        chunks.into_par_iter().for_each(|(q, poses, j)| self.chunk(q, poses, j, large));
         Ok(())
     }
 
@@ -156,11 +161,12 @@ impl Batch {
         q: &[f64],
         poses: Option<&mut [f64]>,
         jacobians: Option<(Reference, &mut [f64])>,
+        large: bool,
     ) {
         let n = self.mechanism.n();
         if let Some(serial) = self.chain.serial() {
             let coordinates = self.chain.coordinates();
-            return lanes::run(Work { serial, coordinates, n, q, poses, jacobians });
+            return lanes::run(Work { serial, coordinates, n, q, poses, jacobians, large });
         }
         // One after the other.
         let mut chain = self.chain.clone();
