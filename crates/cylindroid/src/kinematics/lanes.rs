@@ -1,10 +1,13 @@
 //! The kernel of [`super::Batch`]: a serial chain at several configurations side by side.
 //!
-//! Formula  serial.rs
+//! Formula  axes as in serial.rs, from the first joint to the tool; then back, l the lever from a
+//!          joint to the tool, 0 at the tool: l += way, column [turn z x l + slide z; turn z]
 //! Shapes   q: N x n, poses: N x 4 x 4, Jacobians: N x 6 x n, row-major
 //! Units    rad, m; m/s and rad/s for each unit of rate
 //! Frame    [`Reference`]
-//! Checked  tests/it/batch.rs: against [`super::Chain`]
+//! Why so   one configuration waits for itself, from joint to joint; what is done for several
+//!          joints or configurations waits for nothing, and memory is not asked for
+//! Checked  tests/it/batch.rs: against [`super::Chain`]; `tests` below: all forms alike
 
 use super::jacobian::Reference;
 use super::serial::Serial;
