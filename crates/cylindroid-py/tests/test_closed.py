@@ -139,8 +139,10 @@ def test_metrics():
 def test_measures_are_the_numbers_of_reports():
     r = cy.load("five-bar")
     Q = np.array([r.assemble(r.home + rng.uniform(-0.3, 0.3, r.n)).q for _ in range(9)])
+    asked = []
     for given in ({}, {"actuated": ["q1", "q5"], "Wu": [1, 2, 3]}, {"metric": "length", "length": 2.0}):
         found = r.measures(Q, **given)
+        asked.append((given, found))
         drives = {k: v for k, v in given.items() if k in ("actuated", "length")}
         for i, q in enumerate(Q):
             m, k = r.mobility(q, **drives), r.manipulability(q, **given)
@@ -155,6 +157,9 @@ def test_measures_are_the_numbers_of_reports():
             for name in "type_i type_ii configuration_space passive".split():
                 np.testing.assert_allclose(found[name][i], m.singularity.distances[name], atol=1e-12)
             assert found["closed"][i] and abs(found["gap_distance"][i] - m.gap.distance) < 1e-13
+    for given, found in asked:
+        again = r.measures(Q, **given)
+        assert all(np.array_equal(again[name], found[name]) for name in found), given
     assert found["dof"].dtype.kind == "i" and found["closed"].dtype == bool
     one = r.measures(Q[0])
     assert one["dof"] == 2 and isinstance(one["volume"], float)

@@ -65,8 +65,8 @@ impl PyMechanism {
     ///
     /// Notes
     /// -----
-    /// A posture is singular where it has more, or less, than ordinary postures of the mechanism,
-    /// which are looked for once in each call, around home: up to tens of milliseconds.
+    /// A posture is singular where it has more, or less, than ordinary postures of the mechanism.
+    /// They are looked for around home by the first call: up to tens of milliseconds.
     ///
     /// Examples
     /// --------
@@ -95,14 +95,15 @@ impl PyMechanism {
         let home = PyConstraint::of(mechanism, mechanism.home(), reference, length)?;
         let question =
             Question::about(&home, None, [Wu.as_ref(), Wq.as_ref(), None, None], metric)?;
-        let options = BatchOptions {
-            reference: home.origin.as_ref().map(|origin| origin.reference),
-            length: Some(home.inner.length()),
-            metrics: question.metrics(&home)?,
-            generic: None,
+        let metrics = question.metrics(&home)?;
+        let reference = match &home.origin {
+            Some(origin) => origin.reference,
+            None => mechanism.reference(),
         };
+        let about = (reference, home.inner.length());
         let numbers = threads::run(py, rows.count.unwrap_or(1) > Batch::ALONE, || {
-            Batch::new(mechanism, &options)?.analyse(rows.values)
+            let options = BatchOptions { metrics, ..BatchOptions::default() };
+            self.ordinary.batch(mechanism, about, options)?.analyse(rows.values)
         })??;
         let found = PyDict::new(py);
         for (i, name) in Batch::COLUMNS.into_iter().enumerate() {

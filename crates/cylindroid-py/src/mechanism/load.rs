@@ -52,7 +52,7 @@ pub(crate) fn load(py: Python<'_>, model: PathBuf) -> Result<PyMechanism> {
         }
         _ => name,
     };
-    Ok(PyMechanism { inner, origin: Origin::Model(model) })
+    Ok(PyMechanism::new(inner, Origin::Model(model)))
 }
 
 /// Reads a model from text.
@@ -94,7 +94,7 @@ pub(crate) fn parse(
     let read = options::named("format", format, &readers)?;
     let inner = py.detach(|| read(text, &path))?;
     let origin = Origin::Text { text: text.to_owned(), format: format.to_owned(), path };
-    Ok(PyMechanism { inner, origin })
+    Ok(PyMechanism::new(inner, origin))
 }
 
 /// The models inside the package.

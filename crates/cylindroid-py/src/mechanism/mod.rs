@@ -5,10 +5,14 @@ mod kinematics;
 mod limits;
 pub(crate) mod load;
 
+use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use cylindroid::closure::Counts;
+use cylindroid::manipulability::{Batch, BatchOptions};
 use cylindroid::model::Dimension;
-use cylindroid::{EndEffector, Error, Mechanism, Pose, Reference};
+use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose, Reference};
 use pyo3::prelude::*;
 use pyo3::{IntoPyObjectExt, intern};
 
@@ -60,6 +64,8 @@ pub(crate) struct PyMechanism {
     pub(crate) inner: Mechanism,
     /// For pickling.
     pub(crate) origin: Origin,
+    /// What `measures` has found of ordinary postures.
+    pub(crate) ordinary: Ordinary,
 }
 
 /// What a mechanism was read from.
@@ -77,7 +83,37 @@ pub(crate) fn reference_of(name: &str) -> Result<Reference> {
     options::named("reference", name, &Reference::NAMES)
 }
 
+/// Drives, reference, bits of the length.
+type About = (Vec<usize>, FrameId, u64);
+
+/// Counts of ordinary postures, which take up to tens of milliseconds to find and stay what they
+/// are.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Ordinary(Arc<Mutex<HashMap<About, Counts>>>);
+
+impl Ordinary {
+    /// The batch of a mechanism with these options, of what is known where that is enough.
+    pub(crate) fn batch(
+        &self,
+        mechanism: &Mechanism,
+        (reference, length): (FrameId, f64),
+        options: BatchOptions,
+    ) -> cylindroid::Result<Batch> {
+        let key: About = (mechanism.actuated().collect(), reference, length.to_bits());
+        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let generic = known().get(&key).copied();
+        let (reference, length) = (Some(reference), Some(length));
+        let batch = Batch::new(mechanism, &BatchOptions { reference, length, generic, ..options })?;
+        known().insert(key, batch.generic());
+        Ok(batch)
+    }
+}
+
 impl PyMechanism {
+    pub(crate) fn new(inner: Mechanism, origin: Origin) -> Self {
+        Self { inner, origin, ordinary: Ordinary::default() }
+    }
+
     pub(crate) fn end_effector(
         &self,
         frame: Option<&str>,
@@ -215,7 +251,7 @@ impl PyMechanism {
     #[pyo3(signature = (names))]
     fn with_actuated(&self, names: Vec<String>) -> Result<Self> {
         let inner = self.inner.with_actuated(&names)?;
-        Ok(Self { inner, origin: Origin::Driven { of: Box::new(self.clone()), names } })
+        Ok(Self::new(inner, Origin::Driven { of: Box::new(self.clone()), names }))
     }
 
     fn __repr__(&self) -> String {
