@@ -209,6 +209,21 @@ mod tests {
     }
 
     #[test]
+    fn one_number_that_is_not_finite_is_found_anywhere() {
+        for n in 0..=17 {
+            let mut values = vec![-1e308; n];
+            assert!(all_finite(&values));
+            for i in 0..n {
+                for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                    values[i] = bad;
+                    assert!(!all_finite(&values), "{bad} at {i} of {n}");
+                }
+                values[i] = 0.0;
+            }
+        }
+    }
+
+    #[test]
     fn check_finite_names_the_entry() {
         let error = Error::check_finite("q", &[0.0, f64::NAN]).unwrap_err();
         assert_eq!(error.to_string(), "q[1] is not finite: NaN");

@@ -10,7 +10,7 @@ use cylindroid::control::{
 };
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
-use cylindroid::kinematics::Chain;
+use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::screws::{Along, Projector, ScrewOptions};
 use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Twist, Vec3, catalogue};
 
@@ -108,6 +108,25 @@ fn hot_paths_allocate_nothing() {
         }
         if *name == "youbot" {
             projections(&robot, start);
+        }
+    }
+}
+
+/// Batches of arms that are whole mechanisms, on one thread.
+#[test]
+fn batches_allocate_nothing() {
+    for name in ["panda", "ur5e", "youbot", "3r"] {
+        let robot = catalogue::load(name).unwrap();
+        let (n, batch) = (robot.n(), Batch::new(&robot, robot.tool()));
+        for rows in [1, 4, 5, 8, 13, Batch::ALONE] {
+            let q = robot.home().repeat(rows);
+            let (mut poses, mut jacobians) = (vec![0.0; rows * 16], vec![0.0; rows * 6 * n]);
+            let counted = count(|| {
+                batch.poses_into(&q, &mut poses).unwrap();
+                let (poses, jacobians) = (&mut poses[..], &mut jacobians[..]);
+                batch.poses_and_jacobians_into(&q, Reference::Local, poses, jacobians).unwrap();
+            });
+            assert_eq!(counted, 0, "{name}: {rows} rows");
         }
     }
 }

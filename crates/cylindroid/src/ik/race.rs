@@ -5,18 +5,20 @@
 //! Valid    one goal of m components, at the end of a chain of hinges and slides that have a
 //!          coordinate each, m <= n <= [`MOST`]
 //! Why so   the first of four to reach needs fewer steps than the next one would; four on every
-//!          processor, so that answers do not depend on it
+//!          processor, so that answers depend on it by rounding alone
 //! Checked  tests in this file (against single attempts), tests/it/ik.rs
 
 use super::attempt::{DAMPING, Errors, LARGEST_STEP, LEAST_DAMPING, PATIENCE, is_reached};
 use super::damped::{Wanted, by_rows};
 use super::goal::Goal;
 use super::options::IkOptions;
-use crate::kinematics::{Apart, Serial, jacobian_of_several, whole_way};
+#[cfg(target_arch = "x86_64")]
+use crate::kinematics::along_avx2;
+use crate::kinematics::{Serial, Turned, Turns, along_several, jacobian_of_several, whole_way};
 use crate::scalar::{Array, Field};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, has_avx2};
-use crate::spatial::{Columns, Padded, Triple};
+use crate::spatial::{Columns, Padded};
 
 /// Attempts side by side.
 pub(super) const LANES: usize = 4;
@@ -95,17 +97,21 @@ pub(super) fn race(course: &Course<'_>, runners: &mut [Runner; LANES]) {
         }
         return;
     }
-    race_with::<Array<LANES>>(course, runners);
+    race_with::<Array<LANES>>(course, runners, along_several);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn race_avx2(course: &Course<'_>, runners: &mut [Runner; LANES]) {
-    race_with::<Lanes4>(course, runners);
+    race_with::<Lanes4>(course, runners, |serial, turns, rows| along_avx2(serial, turns, rows));
 }
 
 #[inline(always)]
-fn race_with<R: Field + Apart>(course: &Course<'_>, runners: &mut [Runner; LANES]) {
+fn race_with<R: Field>(
+    course: &Course<'_>,
+    runners: &mut [Runner; LANES],
+    along: impl Fn(&Serial, Turns<'_, R>, &mut [R]) -> Turned<R>,
+) {
     let zero = R::splat(0.0);
     let joints = course.serial.joints();
     let n = joints.len();
@@ -124,10 +130,10 @@ fn race_with<R: Field + Apart>(course: &Course<'_>, runners: &mut [Runner; LANES
         R::sines_cosines(&mut cosines[..n], &mut sines[..n], &mut rows[..n]);
         let turns = (&sines[..n], &cosines[..n]);
         let rows = &mut rows[..6 * n];
-        let tool = R::along(course.serial, turns, rows);
-        let p = tool.p.plus(whole_way(course.serial, &x, rows));
+        let turned = along(course.serial, turns, rows);
+        let tool = turned.tool(whole_way(course.serial, &x, rows));
         let mut squares = [0.0; LANES];
-        look(course, Columns { p, ..tool }, step, runners, &mut e, &mut squares);
+        look(course, tool, step, runners, &mut e, &mut squares);
         if runners.iter().any(|r| r.ends_at(step)) {
             for (c, q) in q.iter().enumerate().take(n) {
                 let mut lanes = [0.0; LANES];
@@ -142,7 +148,7 @@ fn race_with<R: Field + Apart>(course: &Course<'_>, runners: &mut [Runner; LANES
             return;
         }
         let m = course.rows.len();
-        rates(course, &x, tool, rows, &mut a[..m * n]);
+        rates(course, &x, &turned, rows, &mut a[..m * n]);
         let damping = damping(&a[..m * n], R::load(&squares));
         step_within(course, &mut a[..m * n], &e[..m], damping, &mut d[..n], &mut q[..n]);
     }
@@ -194,15 +200,9 @@ fn look<R: Field>(
 
 /// The scaled rates of the components that matter, by columns.
 #[inline(always)]
-fn rates<R: Field>(
-    course: &Course<'_>,
-    q: &[R],
-    mut tool: Columns<[R; 3]>,
-    rows: &mut [R],
-    a: &mut [R],
-) {
+fn rates<R: Field>(course: &Course<'_>, q: &[R], turned: &Turned<R>, rows: &mut [R], a: &mut [R]) {
     let (joints, m) = (course.serial.joints(), course.rows.len());
-    jacobian_of_several(course.serial, course.goal.task.axes, q, &mut tool, rows);
+    jacobian_of_several(course.serial, course.goal.task.axes, q, turned, rows);
     for (&(row, scale), i) in course.rows.iter().zip(0..) {
         let row = &rows[row * joints.len()..][..joints.len()];
         for (joint, x) in joints.iter().zip(row) {
@@ -321,7 +321,7 @@ mod tests {
                 if round % 4 < 2 {
                     race(&course, &mut runners);
                 } else {
-                    race_with::<Array<LANES>>(&course, &mut runners);
+                    race_with::<Array<LANES>>(&course, &mut runners, along_several);
                 }
                 assert!(!all || runners.iter().all(Runner::has_ended));
                 for (mut q, runner) in seeds.into_iter().zip(&runners) {

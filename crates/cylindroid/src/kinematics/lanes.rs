@@ -6,8 +6,9 @@
 //! Units    rad, m; m/s and rad/s for each unit of rate
 //! Frame    [`Reference`]
 //! Why so   one configuration waits for itself, from joint to joint; what is done for several
-//!          joints or configurations waits for nothing, and memory is not asked for
-//! Checked  tests/it/batch.rs: against [`super::Chain`]; `tests` below: all forms alike
+//!          joints or configurations waits for nothing
+//! Checked  tests/it/batch.rs: against [`super::Chain`] and [`super::State`]; `tests` below: all
+//!          forms alike
 
 use super::jacobian::Reference;
 use super::serial::Serial;
@@ -30,10 +31,11 @@ pub(super) struct Work<'a> {
     pub(super) large: bool,
 }
 
-/// Joints of chains of usual length.
-const FEW: usize = 12;
-/// Numbers of a joint in memory: coordinate, cosine, sine, rows.
+/// Numbers of a joint: coordinate, cosine, sine, rows.
 const EACH: usize = 9;
+/// Numbers that are kept on the stack: those of 12 joints, or of a robot of 10 of which 7 move the
+/// end effector. Calls for larger robots ask for memory once.
+const FEW: usize = 12 * EACH + 20;
 
 /// As many configurations at once as the processor can.
 pub(super) fn run(work: Work<'_>) {
@@ -50,85 +52,61 @@ pub(super) fn run(work: Work<'_>) {
             }
         }
     }
-    run_with::<Array<4>>(work);
+    run_with::<Array<4>>(work, along);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx2,fma")]
 fn run_avx512(work: Work<'_>) {
-    run_with::<Lanes8>(work);
+    run_with::<Lanes8>(work, |serial, turns, rows| along_avx512(serial, turns, rows));
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn run_avx2(work: Work<'_>) {
-    run_with::<Lanes4>(work);
-}
-
-/// Numbers that go along a chain in a function of their own: frames fill the registers, and beside
-/// other code some would be put aside in every step, which the next one waits for.
-pub(crate) trait Apart: Real {
-    /// [`along`]
-    #[inline(always)]
-    fn along(serial: &Serial, turns: (&[Self], &[Self]), rows: &mut [Self]) -> Columns<[Self; 3]> {
-        along(serial, turns, rows)
-    }
-}
-
-impl Apart for f64 {}
-
-impl<const N: usize> Apart for Array<N> {}
-
-#[cfg(target_arch = "x86_64")]
-macro_rules! apart {
-    ($lanes:ident, $features:literal) => {
-        impl Apart for $lanes {
-            #[inline(always)]
-            fn along(
-                serial: &Serial,
-                turns: (&[Self], &[Self]),
-                rows: &mut [Self],
-            ) -> Columns<[Self; 3]> {
-                #[target_feature(enable = $features)]
-                #[inline(never)]
-                fn apart(
-                    serial: &Serial,
-                    turns: (&[$lanes], &[$lanes]),
-                    rows: &mut [$lanes],
-                ) -> Columns<[$lanes; 3]> {
-                    along(serial, turns, rows)
-                }
-                #[allow(unsafe_code)] // as in `run`
-                // SAFETY: these numbers are named only where the processor has the features.
-                unsafe {
-                    apart(serial, turns, rows)
-                }
-            }
-        }
-    };
+    run_with::<Lanes4>(work, |serial, turns, rows| along_avx2(serial, turns, rows));
 }
 
 #[cfg(target_arch = "x86_64")]
-apart!(Lanes4, "avx2,fma");
-#[cfg(target_arch = "x86_64")]
-apart!(Lanes8, "avx512f,avx2,fma");
+#[target_feature(enable = "avx512f,avx2,fma")]
+#[inline(never)] // as `along_avx2`
+fn along_avx512(serial: &Serial, turns: Turns<'_, Lanes8>, rows: &mut [Lanes8]) -> Turned<Lanes8> {
+    along(serial, turns, rows)
+}
 
+/// [`along`] apart from other code: frames fill the registers, and beside other numbers some would
+/// be put aside in every step, which the next one waits for.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+#[inline(never)]
+pub(crate) fn along_avx2(
+    serial: &Serial,
+    turns: Turns<'_, Lanes4>,
+    rows: &mut [Lanes4],
+) -> Turned<Lanes4> {
+    along(serial, turns, rows)
+}
+
+/// `along` is [`along`], in whatever form.
 #[inline(always)]
-fn run_with<R: Apart>(mut work: Work<'_>) {
+fn run_with<R: Real>(
+    mut work: Work<'_>,
+    along: impl Fn(&Serial, Turns<'_, R>, &mut [R]) -> Turned<R>,
+) {
     let Work { serial, coordinates, n, .. } = work;
     let joints = serial.joints();
     let m = joints.len();
     let zero = R::splat(0.0);
     let in_order = (0..m).all(|i| coordinates[joints[i].coordinate] == i);
-    let in_place = in_order && m == n;
-    // What chains of usual length need is on the stack.
-    let mut few = [zero; FEW * EACH];
-    let mut many = vec![zero; if m <= FEW { 0 } else { m * EACH }];
-    let memory = if m <= FEW { &mut few[..m * EACH] } else { &mut many[..] };
+    let in_place = work.jacobians.is_none() || (in_order && m == n);
+    let size = m * EACH + if in_place { 0 } else { 6 * n };
+    let mut few = [zero; FEW];
+    let mut many = vec![zero; if size <= FEW { 0 } else { size }];
+    let memory = if size <= FEW { &mut few[..size] } else { &mut many[..] };
     let (x, memory) = memory.split_at_mut(m);
     let (cosines, memory) = memory.split_at_mut(m);
-    let (sines, rows) = memory.split_at_mut(m);
-    let mut columns = vec![zero; if in_place { 0 } else { 6 * n }];
+    let (sines, memory) = memory.split_at_mut(m);
+    let (rows, columns) = memory.split_at_mut(6 * m);
     let mut done = 0;
     while done * n < work.q.len() {
         let q = &work.q[done * n..];
@@ -142,21 +120,22 @@ fn run_with<R: Apart>(mut work: Work<'_>) {
             cosines[i] = joints[i].angle(x[i]);
         }
         R::sines_cosines(cosines, sines, &mut rows[..m]);
-        let mut tool = R::along(serial, (sines, cosines), rows);
-        if let Some((reference, jacobians)) = &mut work.jacobians {
-            jacobian(serial, *reference, x, &mut tool, rows);
+        let turned = along(serial, (sines, cosines), rows);
+        let way = if let Some((reference, jacobians)) = &mut work.jacobians {
+            let way = jacobian(serial, *reference, x, &turned, rows);
             let jacobians = &mut jacobians[done * 6 * n..];
             if in_place {
                 put(rows, jacobians, count);
             } else {
-                sort(rows, serial, coordinates, &mut columns);
-                put(&columns, jacobians, count);
+                by_coordinates(rows, serial, coordinates, columns);
+                put(columns, jacobians, count);
             }
+            way
         } else {
-            tool.p = tool.p.plus(whole_way(serial, x, rows));
-        }
+            whole_way(serial, x, rows)
+        };
         if let Some(poses) = &mut work.poses {
-            put(&pose_rows(tool), &mut poses[done * 16..], count);
+            put(&pose_rows(turned.tool(way)), &mut poses[done * 16..], count);
         }
         done += count;
         if work.large {
@@ -170,7 +149,8 @@ fn run_with<R: Apart>(mut work: Work<'_>) {
     }
 }
 
-/// Has memory brought near that is written soon: stores wait for it, one for the other.
+/// Has memory brought near that is written soon: stores to memory that is in no cache wait one
+/// after the other.
 #[inline(always)]
 fn fetch(places: &[f64]) {
     #[cfg(target_arch = "x86_64")]
@@ -201,16 +181,29 @@ fn gather<R: Real>(q: &[f64], n: usize, serial: &Serial, coordinates: &[usize], 
     }
 }
 
-/// Goes along the chain: the axes of the tool, the origin of the first joint, and `rows` of one
-/// number for each joint: axes x and z.
+/// Sines and cosines of the angles of the joints.
+pub(crate) type Turns<'a, R> = (&'a [R], &'a [R]);
+
+/// What is known after going along a chain: the axes of the tool, and where the first joint is.
+pub(crate) struct Turned<R>(Columns<[R; 3]>);
+
+impl<R: Real> Turned<R> {
+    /// The tool, for the way to it from the origin of the first joint.
+    #[inline(always)]
+    pub(crate) fn tool(&self, way: [R; 3]) -> Columns<[R; 3]> {
+        Columns { p: self.0.p.plus(way), ..self.0 }
+    }
+}
+
+/// Goes along the chain: `rows` get one number for each joint, axes x and z.
 ///
 /// Origins follow from them, on the way back, in [`jacobian`] or [`whole_way`].
 #[inline(always)]
-fn along<R: Real>(
+pub(crate) fn along<R: Real>(
     serial: &Serial,
-    (sines, cosines): (&[R], &[R]),
+    (sines, cosines): Turns<'_, R>,
     rows: &mut [R],
-) -> Columns<[R; 3]> {
+) -> Turned<R> {
     let joints = serial.joints();
     let m = joints.len();
     let (sines, cosines) = (&sines[..m], &cosines[..m]);
@@ -222,7 +215,7 @@ fn along<R: Real>(
         [d[i], e[i], f[i]] = frame.z;
         frame = joints[i].tilted(frame);
     }
-    serial.end(frame)
+    Turned(serial.end(frame))
 }
 
 /// From the origin of the first joint to that of the tool, from the rows of [`along`].
@@ -237,22 +230,22 @@ pub(crate) fn whole_way<R: Real>(serial: &Serial, q: &[R], rows: &mut [R]) -> [R
     way
 }
 
-/// The Jacobian of the joints from the rows of [`along`], in their place; the origin of the tool.
+/// The Jacobian of the joints from the rows of [`along`], in their place. Gives [`whole_way`].
 #[inline(always)]
 pub(crate) fn jacobian<R: Real>(
     serial: &Serial,
     reference: Reference,
     q: &[R],
-    tool: &mut Columns<[R; 3]>,
+    turned: &Turned<R>,
     rows: &mut [R],
-) {
+) -> [R; 3] {
     let joints = serial.joints();
-    let first = tool.p;
-    // From where a joint is to the point whose velocity is asked for.
+    // From where a joint is, at first the tool, to the point whose velocity is asked for.
     let mut lever = [R::splat(0.0); 3];
+    let mut way = lever;
     if reference == Reference::World {
-        tool.p = first.plus(whole_way(serial, q, rows));
-        lever = tool.p.negative();
+        way = whole_way(serial, q, rows);
+        lever = turned.tool(way).p.negative();
     }
     let (q, [a, b, c, d, e, f]) = (&q[..joints.len()], split(rows, joints.len()));
     for i in (0..joints.len()).rev() {
@@ -260,14 +253,12 @@ pub(crate) fn jacobian<R: Real>(
         lever = lever.plus(joints[i].way([a[i], b[i], c[i]], axis, q[i]));
         let (mut linear, mut angular) = joints[i].column(axis, lever);
         if reference == Reference::Local {
-            (linear, angular) = (tool.seen(linear), tool.seen(angular));
+            (linear, angular) = (turned.0.seen(linear), turned.0.seen(angular));
         }
         [a[i], b[i], c[i]] = linear;
         [d[i], e[i], f[i]] = angular;
     }
-    if reference != Reference::World {
-        tool.p = first.plus(lever);
-    }
+    if reference == Reference::World { way } else { lever }
 }
 
 /// The six rows of m numbers: what is asked for one place in them is asked for all.
@@ -283,7 +274,7 @@ fn split<R>(rows: &mut [R], m: usize) -> [&mut [R]; 6] {
 
 /// The columns of joints as those of coordinates: at any places, zero, or the sum of several.
 #[inline(always)]
-fn sort<R: Real>(rows: &[R], serial: &Serial, coordinates: &[usize], columns: &mut [R]) {
+fn by_coordinates<R: Real>(rows: &[R], serial: &Serial, coordinates: &[usize], columns: &mut [R]) {
     columns.fill(R::splat(0.0));
     let (m, n) = (serial.joints().len(), columns.len() / 6);
     for (row, out) in rows.chunks_exact(m).zip(columns.chunks_exact_mut(n)) {
@@ -307,23 +298,52 @@ fn pose_rows<R: Real>(pose: Columns<[R; 3]>) -> [R; 16] {
 fn put<R: Real>(numbers: &[R], out: &mut [f64], count: usize) {
     let size = numbers.len();
     if count == R::LANES {
-        R::scatter(numbers, out, size);
-    } else {
-        let mut all = vec![0.0; R::LANES * size];
-        R::scatter(numbers, &mut all, size);
-        out[..count * size].copy_from_slice(&all[..count * size]);
+        return R::scatter(numbers, out, size);
+    }
+    let mut lanes = [0.0; MOST_LANES];
+    for (k, x) in numbers.iter().enumerate() {
+        x.store(&mut lanes);
+        for (l, x) in lanes.iter().enumerate().take(count) {
+            out[l * size + k] = *x;
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Mechanism;
     use crate::kinematics::Chain;
-    use crate::model::catalogue;
+    use crate::model::{JointKind, JointSpec, Mimic, catalogue};
+    use crate::spatial::{Pose, Vec3};
+
+    /// Three joints of two coordinates, one of which slides; and one that no chain reads.
+    fn coupled() -> Mechanism {
+        let mut b = Mechanism::builder("coupled");
+        let there = Pose { translation: Vec3::new(0.2, -0.3, 0.4), ..Pose::IDENTITY };
+        b.joint(JointSpec::new("aside", JointKind::Revolute, "base", "other"));
+        b.joint(JointSpec::new("leader", JointKind::Revolute, "base", "a"));
+        b.joint(JointSpec {
+            parent_from_joint: there,
+            ..JointSpec::new("slide", JointKind::Prismatic, "a", "b")
+        });
+        b.joint(JointSpec {
+            parent_from_joint: there,
+            axis: Vec3::new(0.1, 0.7, 0.2),
+            mimic: Some(Mimic { joint: "leader".into(), multiplier: -1.7, offset: 0.2 }),
+            ..JointSpec::new("follower", JointKind::Revolute, "b", "tip")
+        });
+        b.build().unwrap()
+    }
 
     /// Poses and Jacobians in one list.
-    fn of(chain: &Chain, q: &[f64], run: impl FnOnce(Work<'_>)) -> Vec<f64> {
-        let (n, count) = (chain.n(), q.len() / chain.n());
+    fn of(
+        chain: &Chain,
+        (n, q): (usize, &[f64]),
+        reference: Reference,
+        run: impl FnOnce(Work<'_>),
+    ) -> Vec<f64> {
+        let count = q.len() / n;
         let (mut poses, mut jacobians) = (vec![0.0; count * 16], vec![0.0; count * 6 * n]);
         run(Work {
             serial: chain.serial().unwrap(),
@@ -331,7 +351,7 @@ mod tests {
             n,
             q,
             poses: Some(&mut poses),
-            jacobians: Some((Reference::LocalWorldAligned, &mut jacobians)),
+            jacobians: Some((reference, &mut jacobians)),
             large: true,
         });
         poses.extend(jacobians);
@@ -343,27 +363,34 @@ mod tests {
     #[test]
     #[allow(unsafe_code)]
     fn lanes_agree_with_plain_numbers() {
-        for name in ["panda", "ur5e", "puma560", "youbot"] {
-            let robot = catalogue::load(name).unwrap();
-            let chain = Chain::new(&robot, robot.tool());
-            let q: Vec<f64> = (0..chain.n() * 21)
-                .map(|i| f64::from(i as u32 * 7919 % 6283) / 1e3 - 3.1)
-                .collect();
-            let plain = of(&chain, &q, run_with::<f64>);
+        let mut robots = vec![coupled()];
+        let names = ["panda", "ur5e", "puma560", "youbot", "3r"];
+        robots.extend(names.map(|name| catalogue::load(name).unwrap()));
+        let references = [Reference::LocalWorldAligned, Reference::Local, Reference::World];
+        for (robot, reference) in robots.iter().flat_map(|robot| references.map(|r| (robot, r))) {
+            let (name, n, tip) = (robot.name(), robot.n(), robot.tool());
+            let chain = match name {
+                "coupled" => Chain::new(robot, robot.frame("tip").unwrap()),
+                _ => Chain::new(robot, tip),
+            };
+            let q: Vec<f64> =
+                (0..n * 21).map(|i| f64::from(i as u32 * 7919 % 6283) / 1e3 - 3.1).collect();
+            let of = |run: &dyn Fn(Work<'_>)| of(&chain, (n, &q), reference, run);
+            let plain = of(&|work| run_with::<f64>(work, along));
             let near = |what: &str, other: &[f64]| {
                 for (a, b) in plain.iter().zip(other) {
                     assert!((a - b).abs() <= 16.0 * f64::EPSILON, "{name} {what}: {a} and {b}");
                 }
             };
-            near("array", &of(&chain, &q, run_with::<Array<4>>));
+            near("array", &of(&|work| run_with::<Array<4>>(work, along)));
             #[cfg(target_arch = "x86_64")]
             if has_avx2() {
                 // SAFETY: the processor has these features.
-                let four = of(&chain, &q, |work| unsafe { run_avx2(work) });
+                let four = of(&|work| unsafe { run_avx2(work) });
                 near("four", &four);
                 if has_avx512() {
                     // SAFETY: as above.
-                    let eight = of(&chain, &q, |work| unsafe { run_avx512(work) });
+                    let eight = of(&|work| unsafe { run_avx512(work) });
                     assert_eq!(four, eight);
                 }
             }

@@ -22,7 +22,11 @@ pub use batch::Batch;
 pub use chain::Chain;
 pub use conversion::velocity_conversion;
 pub use jacobian::Reference;
-pub(crate) use lanes::{Apart, jacobian as jacobian_of_several, whole_way};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use lanes::along_avx2;
+pub(crate) use lanes::{
+    Turned, Turns, along as along_several, jacobian as jacobian_of_several, whole_way,
+};
 pub(crate) use serial::Serial;
 pub(crate) use several::{Frame, forward as forward_several};
 pub use state::{EndEffector, State};

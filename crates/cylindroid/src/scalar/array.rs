@@ -139,3 +139,82 @@ impl Four for Array<4> {
         from_fn(|k| Self(from_fn(|l| of[l].0[k])))
     }
 }
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::super::{Lanes4, Lanes8, MOST_LANES, has_avx2, has_avx512};
+    use super::*;
+
+    fn bits<R: Real>(of: &[R]) -> Vec<u64> {
+        let mut lanes = [0.0; MOST_LANES];
+        of.iter().flat_map(|x| (x.store(&mut lanes), lanes.map(f64::to_bits)).1).collect()
+    }
+
+    /// Registers do what arrays do, to the bit: rows of any length, and whatever numbers there are.
+    #[inline(always)]
+    fn as_arrays<R: Real, const N: usize>() {
+        for n in 0..=9 {
+            for stride in [n, n + 1, n + 5] {
+                let from: Vec<f64> = (0..(N - 1) * stride + n).map(|i| i as f64 * 0.37).collect();
+                let (mut a, mut b) = (vec![R::splat(0.0); n], vec![Array::<N>::splat(0.0); n]);
+                R::gather(&from, stride, &mut a);
+                Array::gather(&from, stride, &mut b);
+                assert_eq!(bits(&a), bits(&b), "{n} numbers, {stride} apart");
+                let (mut to, mut expected) = (vec![-1.0; from.len()], vec![-1.0; from.len()]);
+                R::scatter(&a, &mut to, stride);
+                Array::scatter(&b, &mut expected, stride);
+                assert_eq!(to, expected, "{n} numbers, {stride} apart");
+            }
+        }
+        let some = [0.0, -0.0, 1.5, -2.0, 1e5, -1e300, f64::NAN, f64::INFINITY];
+        let whole = 6_755_399_441_055_744.0;
+        for turn in 0..some.len() {
+            let x: [f64; MOST_LANES] = from_fn(|l| some[(turn + l) % some.len()]);
+            let y: [f64; MOST_LANES] = from_fn(|l| whole + ((turn * 3 + l) % 7) as f64 - 3.0);
+            let ((a, c), (b, d)) =
+                ((R::load(&x), R::load(&y)), (Array::<N>::load(&x), Array::<N>::load(&y)));
+            let swapped = (R::swap_where_odd(a, c, c), Array::swap_where_odd(b, d, d));
+            for (a, b) in [
+                (a.size(), b.size()),
+                (-a, -b),
+                (swapped.0.0, swapped.1.0),
+                (swapped.0.1, swapped.1.1),
+                (a.negate_where_second_bit(c, 0), b.negate_where_second_bit(d, 0)),
+                (a.negate_where_second_bit(c, 1), b.negate_where_second_bit(d, 1)),
+            ] {
+                assert_eq!(bits(&[a]), bits(&[b]), "{x:?} {y:?}");
+            }
+            for limit in [0.0, 1e5, f64::MAX, f64::INFINITY] {
+                assert_eq!(a.all_within(limit), b.all_within(limit), "{x:?} {limit}");
+                let (a, b) = (a.times_plus(R::splat(0.0), c), b.times_plus(Array::splat(0.0), d));
+                assert_eq!(a.all_within(limit), b.all_within(limit));
+            }
+            let (a, b) = (c - R::splat(whole), d - Array::splat(whole));
+            assert_eq!(a.sum(), b.sum());
+        }
+    }
+
+    #[target_feature(enable = "avx2,fma")]
+    fn four() {
+        as_arrays::<Lanes4, 4>();
+    }
+
+    #[target_feature(enable = "avx512f,avx2,fma")]
+    fn eight() {
+        as_arrays::<Lanes8, 8>();
+    }
+
+    #[test]
+    #[allow(unsafe_code)]
+    fn registers_agree_with_arrays() {
+        // SAFETY: the processor has the features, as asked before each.
+        unsafe {
+            if has_avx2() {
+                four();
+            }
+            if has_avx512() {
+                eight();
+            }
+        }
+    }
+}

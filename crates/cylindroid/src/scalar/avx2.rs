@@ -70,7 +70,8 @@ impl Neg for Lanes4 {
 /// If they are not all there.
 #[inline(always)]
 pub(super) fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize) -> *mut f64 {
-    assert!(to.len() >= (rows - 1) * stride + length, "rows are missing");
+    // The first condition keeps the second from overflowing.
+    assert!(stride <= to.len() && to.len() >= (rows - 1) * stride + length, "rows are missing");
     to.as_mut_ptr()
 }
 
@@ -80,7 +81,8 @@ pub(super) fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize)
 /// If they are not all there.
 #[inline(always)]
 pub(super) fn rows_in(from: &[f64], stride: usize, length: usize, rows: usize) -> *const f64 {
-    assert!(from.len() >= (rows - 1) * stride + length, "rows are missing");
+    // The first condition keeps the second from overflowing.
+    assert!(stride <= from.len() && from.len() >= (rows - 1) * stride + length, "rows are missing");
     from.as_ptr()
 }
 
@@ -241,18 +243,17 @@ impl Real for Lanes4 {
 
     #[inline(always)]
     fn gather(from: &[f64], stride: usize, to: &mut [Self]) {
-        let from = rows_in(from, stride, to.len(), Self::LANES);
         let n = to.len();
         if n < 4 {
             for (k, x) in to.iter_mut().enumerate() {
-                // SAFETY: `rows_in` has looked that these numbers are there.
-                *x = Self::from_fn(|l| unsafe { *from.add(l * stride + k) });
+                *x = Self::from_fn(|l| from[l * stride + k]);
             }
             return;
         }
+        let from = rows_in(from, stride, n, Self::LANES);
         // The last block may begin in the one before.
         for k in (0..n.div_ceil(4)).map(|block| (4 * block).min(n - 4)) {
-            // SAFETY: as above.
+            // SAFETY: `rows_in` has looked that these numbers are there.
             let rows = unsafe { transposed_rows(from.add(k), stride) };
             to[k..k + 4].copy_from_slice(&rows);
         }

@@ -29,9 +29,7 @@ impl Lanes8 {
             [Lanes4(_mm512_castpd512_pd256(self.0)), Lanes4(_mm512_extractf64x4_pd::<1>(self.0))]
         }
     }
-}
 
-impl Lanes8 {
     #[inline(always)]
     fn of_halves(low: Lanes4, high: Lanes4) -> Self {
         // SAFETY: see the head of this file.
@@ -87,18 +85,17 @@ impl Real for Lanes8 {
 
     #[inline(always)]
     fn gather(from: &[f64], stride: usize, to: &mut [Self]) {
-        let from = rows_in(from, stride, to.len(), Self::LANES);
         let n = to.len();
         if n < 4 {
             for (k, x) in to.iter_mut().enumerate() {
-                // SAFETY: `rows_in` has looked that these numbers are there.
-                *x = Self::from_fn(|l| unsafe { *from.add(l * stride + k) });
+                *x = Self::from_fn(|l| from[l * stride + k]);
             }
             return;
         }
+        let from = rows_in(from, stride, n, Self::LANES);
         // The last block may begin in the one before.
         for k in (0..n.div_ceil(4)).map(|block| (4 * block).min(n - 4)) {
-            // SAFETY: as above.
+            // SAFETY: `rows_in` has looked that these numbers are there.
             let [low, high] = unsafe {
                 let low = from.add(k);
                 [transposed_rows(low, stride), transposed_rows(low.add(4 * stride), stride)]

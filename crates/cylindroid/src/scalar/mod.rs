@@ -71,9 +71,10 @@ pub(crate) trait Real:
     fn negate_where_second_bit(self, bits: Self, more: u64) -> Self;
     /// True if no lane is larger than `limit` or not a number.
     fn all_within(self, limit: f64) -> bool;
-    /// [`sin_cos`] of each of `x`: cosines take the place of the angles. What is in `memory` goes.
+    /// [`sin_cos`] of each of `x`: cosines take the place of the angles; `memory` is overwritten.
     ///
-    /// Registers do this in a function of its own: its constants would take them from others.
+    /// Registers do this in a function of its own: its constants need many of them, which numbers of
+    /// the caller would lose.
     ///
     /// # Panics
     /// If not all have one length.

@@ -64,11 +64,21 @@ fn robots() -> Vec<(Mechanism, EndEffector)> {
     let mut robots: Vec<Mechanism> =
         catalogue::names().iter().map(|n| catalogue::load(n).unwrap()).collect();
     robots.extend([planar(1), planar(2), planar(9), planar(30), zoo()]);
-    let with_tool = |robot: Mechanism| {
-        let of = EndEffector { frame: robot.tool(), frame_from_tool: random.pose() };
-        (robot, of)
+    // Tools anyhow, along the last axis, turned about it, and the other way up.
+    let about_z = Rotation::exp(Vec3::Z * 0.7);
+    let upside_down = about_z * Rotation::exp(Vec3::X * std::f64::consts::PI);
+    let aside = Vec3::new(0.3, -0.2, 0.1);
+    let mut with_tools = |robot: Mechanism| {
+        let frame = robot.tool();
+        let tools = [
+            random.pose(),
+            Pose::IDENTITY,
+            Pose { rotation: about_z, translation: aside },
+            Pose { rotation: upside_down, translation: aside },
+        ];
+        tools.map(|frame_from_tool| (robot.clone(), EndEffector { frame, frame_from_tool }))
     };
-    let mut robots: Vec<_> = robots.into_iter().map(with_tool).collect();
+    let mut robots: Vec<_> = robots.into_iter().flat_map(&mut with_tools).collect();
     robots.extend(chains().into_iter().map(|robot| {
         let tip = robot.frame("tip").unwrap();
         (robot, tip.into())
@@ -128,6 +138,44 @@ fn chains_agree_with_trees() {
                 for (k, &c) in chain.coordinates().iter().enumerate() {
                     assert_close(robot.name(), local.column(k), whole.column(c), scale);
                 }
+            }
+        }
+    }
+}
+
+/// As near to single calls as is promised, also after many turns and where one joint turns by a
+/// multiple of another.
+#[test]
+fn rounds_as_single_calls() {
+    let mut b = Mechanism::builder("follower");
+    let link = Pose { translation: Vec3::X, ..Pose::IDENTITY };
+    b.joint(JointSpec::new("leader", JointKind::Continuous, "base", "a"));
+    b.joint(JointSpec {
+        parent_from_joint: link,
+        mimic: Some(Mimic { joint: "leader".into(), multiplier: -1.7, offset: 0.2 }),
+        ..JointSpec::new("follower", JointKind::Continuous, "a", "b")
+    });
+    b.frame("tip", "b", link);
+    let mut robots = vec![b.build().unwrap()];
+    robots.extend(catalogue::names().iter().map(|n| catalogue::load(n).unwrap()));
+    let mut random = Random(13);
+    for robot in robots {
+        let (n, of) = (robot.n(), robot.tool());
+        let (batch, mut chain) = (Batch::new(&robot, of), Chain::new(&robot, of));
+        if chain.n() != n {
+            continue;
+        }
+        let q: Vec<f64> = random.vector(200 * n).iter().map(|x| 100.0 * x).collect();
+        let scale = 16.0 * f64::EPSILON * (1.0 + robot.reach());
+        let (poses, mut local) = (batch.poses(&q).unwrap(), Matrix::zeros(6, n));
+        for reference in REFERENCES {
+            let jacobians = batch.jacobians(&q, reference).unwrap();
+            for (i, q) in q.chunks(n).enumerate() {
+                let pose = chain.set(q).to_matrix();
+                assert_close(robot.name(), &poses[i * 16..][..16], pose.as_flattened(), scale);
+                chain.jacobian_into(reference, &mut local);
+                let rows: Vec<f64> = (0..6 * n).map(|k| local[(k / n, k % n)]).collect();
+                assert_close(robot.name(), &jacobians[i * 6 * n..][..6 * n], &rows, scale);
             }
         }
     }
