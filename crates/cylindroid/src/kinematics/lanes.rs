@@ -135,7 +135,7 @@ fn run_with<R: Real>(
             whole_way(serial, x, rows)
         };
         if let Some(poses) = &mut work.poses {
-            put(&pose_rows(turned.tool(way)), &mut poses[done * 16..], count);
+            put(&turned.pose_rows(way), &mut poses[done * 16..], count);
         }
         done += count;
         if work.large {
@@ -192,6 +192,14 @@ impl<R: Real> Turned<R> {
     #[inline(always)]
     pub(crate) fn tool(&self, way: [R; 3]) -> Columns<[R; 3]> {
         Columns { p: self.0.p.plus(way), ..self.0 }
+    }
+
+    /// The matrix of 4 x 4 of it.
+    #[inline(always)]
+    fn pose_rows(&self, way: [R; 3]) -> [R; 16] {
+        let (Columns { x, y, z, .. }, p) = (&self.0, self.0.p.plus(way));
+        let (o, one) = (R::splat(0.0), R::splat(1.0));
+        [x[0], y[0], z[0], p[0], x[1], y[1], z[1], p[1], x[2], y[2], z[2], p[2], o, o, o, one]
     }
 }
 
@@ -251,12 +259,15 @@ pub(crate) fn jacobian<R: Real>(
     for i in (0..joints.len()).rev() {
         let axis = [d[i], e[i], f[i]];
         lever = lever.plus(joints[i].way([a[i], b[i], c[i]], axis, q[i]));
-        let (mut linear, mut angular) = joints[i].column(axis, lever);
-        if reference == Reference::Local {
-            (linear, angular) = (turned.0.seen(linear), turned.0.seen(angular));
-        }
+        let (linear, angular) = joints[i].column(axis, lever);
         [a[i], b[i], c[i]] = linear;
         [d[i], e[i], f[i]] = angular;
+    }
+    if reference == Reference::Local {
+        for i in 0..joints.len() {
+            [a[i], b[i], c[i]] = turned.0.seen([a[i], b[i], c[i]]);
+            [d[i], e[i], f[i]] = turned.0.seen([d[i], e[i], f[i]]);
+        }
     }
     if reference == Reference::World { way } else { lever }
 }
@@ -285,27 +296,18 @@ fn by_coordinates<R: Real>(rows: &[R], serial: &Serial, coordinates: &[usize], c
     }
 }
 
-/// The matrix of 4 x 4.
-#[inline(always)]
-fn pose_rows<R: Real>(pose: Columns<[R; 3]>) -> [R; 16] {
-    let Columns { x, y, z, p } = pose;
-    let (zero, one) = (R::splat(0.0), R::splat(1.0));
-    [x[0], y[0], z[0], p[0], x[1], y[1], z[1], p[1], x[2], y[2], z[2], p[2], zero, zero, zero, one]
-}
-
 /// The first `count` lanes as rows.
+// The memory for groups that are not whole, once a call, costs less than what would be in the way
+// of whole ones.
 #[inline(always)]
 fn put<R: Real>(numbers: &[R], out: &mut [f64], count: usize) {
     let size = numbers.len();
     if count == R::LANES {
-        return R::scatter(numbers, out, size);
-    }
-    let mut lanes = [0.0; MOST_LANES];
-    for (k, x) in numbers.iter().enumerate() {
-        x.store(&mut lanes);
-        for (l, x) in lanes.iter().enumerate().take(count) {
-            out[l * size + k] = *x;
-        }
+        R::scatter(numbers, out, size);
+    } else {
+        let mut all = vec![0.0; R::LANES * size];
+        R::scatter(numbers, &mut all, size);
+        out[..count * size].copy_from_slice(&all[..count * size]);
     }
 }
 
