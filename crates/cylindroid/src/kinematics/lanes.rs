@@ -314,9 +314,8 @@ fn put<R: Real>(numbers: &[R], out: &mut [f64], count: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Mechanism;
     use crate::kinematics::Chain;
-    use crate::model::{JointKind, JointSpec, Mimic, catalogue};
+    use crate::model::{JointKind, JointSpec, Mechanism, Mimic, catalogue};
     use crate::spatial::{Pose, Vec3};
 
     /// Three joints of two coordinates, one of which slides; and one that no chain reads.
