@@ -8,14 +8,14 @@ mod motion;
 mod refused;
 mod served;
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest;
-use tungstenite::{Message, WebSocket, client};
+use tungstenite::{Error, Message, WebSocket, client};
 
 /// Longest wait for anything.
 const WAIT: Duration = Duration::from_secs(60);
@@ -93,8 +93,11 @@ impl Client {
     /// The next message.
     pub(crate) fn hear(&mut self) -> Value {
         loop {
-            if let Message::Text(text) = self.socket.read().unwrap() {
-                return serde_json::from_str(&text).unwrap();
+            match self.socket.read() {
+                Ok(Message::Text(text)) => return serde_json::from_str(&text).unwrap(),
+                // A signal came, as it may in any system call: what was read is kept.
+                Err(Error::Io(e)) if e.kind() == ErrorKind::Interrupted => {}
+                other => drop(other.unwrap()),
             }
         }
     }
