@@ -21,51 +21,34 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 
-mod assembly;
-mod branches;
 mod constraint;
-mod continuation;
-mod coordinates;
-mod diagnosis;
-mod fingers;
-mod finite;
-mod generic;
-mod graph;
-mod grasp;
-mod guesses;
-mod lanes;
-mod marks;
 mod mobility;
-mod modes;
-mod motions;
-mod pairs;
-mod reference_motions;
-mod relation;
+mod position;
 mod singularity;
 mod statics;
-mod steering;
-mod transmitted;
-mod vicinity;
-mod way;
 
-pub use assembly::{Assembly, assemble, recover_passive};
-pub use constraint::{Blocks, Constraint, Unit, Units};
-pub use continuation::{FollowOptions, Followed, PathEnd, PathPoint, PathSingularity, follow};
-pub use diagnosis::Diagnosis;
-pub use fingers::{Touch, fingers_on};
-pub use finite::{Branch, Evidence, FiniteMobility};
-pub use generic::Generic;
-pub use graph::{ClosedChain, Gap};
-pub use grasp::{Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality};
-pub(crate) use lanes::Plan;
-pub use mobility::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
-pub use modes::{AssemblyModes, Mode, ModeOptions, assembly_modes};
-pub use motions::{Motions, Rows};
-pub use relation::{Parts, Relation, RelationDimensions};
-pub use singularity::{Counts, Distances, Singularities, SingularityKind};
-pub(crate) use statics::Supports;
-pub use statics::{
+pub use constraint::closed_chain::{ClosedChain, Gap};
+pub(crate) use constraint::closed_chain_batched::Plan;
+pub use constraint::velocity_constraint::{Blocks, Constraint, Unit, Units};
+pub use mobility::actuation_map::Steering;
+pub use mobility::finite_mobility::{Branch, Evidence, FiniteMobility};
+pub use mobility::motion_space::{Motions, Rows};
+pub use mobility::relation::{Parts, Relation, RelationDimensions};
+pub use mobility::report::{CoordinateKinds, Doubt, JointMobility, Mobility, Subspace};
+pub use position::assembly::{Assembly, assemble, recover_passive};
+pub use position::assembly_modes::{AssemblyModes, Mode, ModeOptions, assembly_modes};
+pub use position::continuation::{
+    FollowOptions, Followed, PathEnd, PathPoint, PathSingularity, follow,
+};
+pub use singularity::diagnosis::Diagnosis;
+pub use singularity::generic_mobility::Generic;
+pub use singularity::singularity_types::{Counts, Distances, Singularities, SingularityKind};
+pub(crate) use statics::contact_forces::Supports;
+pub use statics::contact_forces::{
     ContactForces, Load, Torques, contact_forces, internal_forces, joint_torques, structural_forces,
 };
-pub use steering::Steering;
-pub use transmitted::{Transmitted, row_compliance, transmitted};
+pub use statics::force_closure::{
+    Effort, FingerContact, Friction, GraspQuality, WrenchSpace, grasp_quality,
+};
+pub use statics::grasp_contacts::{Touch, fingers_on};
+pub use statics::transmitted_wrenches::{Transmitted, row_compliance, transmitted};

@@ -1,7 +1,7 @@
 //! Joints that loops couple: the servo's view of a closed chain, a hand with its object, two arms
 //! with one.
 //!
-//! Formula  rates = M y + s_0 (`closure/steering.rs`), s_0 the way to closed loops within one step;
+//! Formula  rates = M y + s_0 (`closure/mobility/actuation_map.rs`), s_0 the way to closed loops within one step;
 //!          the task is J M y = x, its least y the least weighted effort of the drives; limits
 //!          hold for all joints (`coupled/bounds.rs`)
 //! Shapes   M: (n + e) x a, columns beyond p zero; J: m x n; y: a

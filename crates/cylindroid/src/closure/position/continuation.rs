@@ -1,22 +1,22 @@
 //! Continuation: the held coordinates go straight to their goal, the loops stay closed on the branch
 //! where they are, and the way ends before a singularity or at a limit.
 //!
-//! Formula  predictor and corrector of `way.rs`; distance = smallest singular value that counts
+//! Formula  predictor and corrector of `predictor_corrector.rs`; distance = smallest singular value that counts
 //!          over the largest, of the rates by which the free coordinates open the loops
 //! Units    shares of the way from 0 to 1; distances have none: lengths are over the reach
 //! Valid    any mechanism. The distance depends, within a factor, on where the loops are cut; that
 //!          it is zero does not. The largest share is found by halving steps to [`SHARE_FOUND`].
 //!          Limits of closing joints do not count: these joints have no coordinate
-//! Source   Allgower & Georg 1990; kinds of singularity as in `singularity.rs`
+//! Source   Allgower & Georg 1990; kinds of singularity as in `singularity_types.rs`
 //! Checked  tests/it/closure/continuation.rs
 
 use std::fmt;
 
 use super::assembly::assemble;
 use super::coordinates::{free_places, unit_of};
-use super::graph::Gap;
-use super::singularity::SingularityKind;
-use super::way::{Point, Refusal, Stride, Way};
+use super::predictor_corrector::{Point, Refusal, Stride, Way};
+use crate::closure::constraint::closed_chain::Gap;
+use crate::closure::singularity::singularity_types::SingularityKind;
 use crate::error::{Error, Result};
 use crate::kinematics::Reference;
 use crate::linalg::Matrix;

@@ -10,7 +10,7 @@
 //! Source   Bicchi & Prattichizzo 1998, table 1, for the kinds
 //! Checked  tests/it/closure/grasp.rs::fingers_*
 
-use super::grasp::{FingerContact, Friction, WrenchSpace};
+use super::force_closure::{FingerContact, Friction, WrenchSpace};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::model::{Contact, ContactKind, Dimension, FrameId};

@@ -7,10 +7,10 @@
 //! Units    m, rad
 //! Frame    world, at the world's origin
 //! Valid    any mechanism; for a tree they span the columns of its Jacobian
-//! Checked  tests/it/closure/graph.rs::motions_of_the_reference
+//! Checked  tests/it/closure/closed_chain.rs::motions_of_the_reference
 
-use super::graph::ClosedChain;
-use super::motions::Motions;
+use super::motion_space::Motions;
+use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::kinematics::State;
 use crate::model::Dimension;
 use crate::spatial::Twist;

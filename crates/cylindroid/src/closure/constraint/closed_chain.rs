@@ -16,8 +16,8 @@
 //! Source   Bicchi & Prattichizzo 1998, eq. 2, with several objects as passive columns
 //! Checked  tests/it/closure/graph.rs
 
-use super::constraint::{Blocks, Constraint, Unit, Units};
-use super::pairs::{for_each_rate, rate_unit, rows};
+use super::constraint_rows::{for_each_rate, rate_unit, rows};
+use super::velocity_constraint::{Blocks, Constraint, Unit, Units};
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;
@@ -64,7 +64,7 @@ impl Gap {
     }
 
     /// Takes in a row of this unit.
-    pub(super) fn widen(&mut self, unit: Unit, residual: f64) {
+    pub(crate) fn widen(&mut self, unit: Unit, residual: f64) {
         let widest = match unit {
             Unit::Length => &mut self.distance,
             Unit::Angle => &mut self.angle,
@@ -151,17 +151,17 @@ impl ClosedChain {
 
 /// The coordinates of the tree, then those of closing joints, as driven and passive columns.
 #[derive(Default)]
-pub(super) struct Columns {
-    pub(super) actuated: Vec<String>,
+pub(crate) struct Columns {
+    pub(crate) actuated: Vec<String>,
     passive: Vec<String>,
-    pub(super) actuated_units: Vec<Unit>,
-    pub(super) passive_units: Vec<Unit>,
+    pub(crate) actuated_units: Vec<Unit>,
+    pub(crate) passive_units: Vec<Unit>,
     /// Of every coordinate: whether it is driven, and its column among those of its sort.
-    pub(super) places: Vec<(bool, usize)>,
+    pub(crate) places: Vec<(bool, usize)>,
 }
 
 impl Columns {
-    pub(super) fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {
+    pub(crate) fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {
         let mut columns = Self::default();
         columns.places.reserve(mechanism.n() + loops.len());
         let mut add = |name: &String, unit: Unit, driven: bool| {

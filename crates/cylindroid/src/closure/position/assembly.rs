@@ -10,12 +10,12 @@
 //!          the guess is near an assembly the steps are Newton's, and the error falls to rounding.
 //!          It finds one assembly, mostly the nearest; there may be others, and not to find one
 //!          proves nothing
-//! Source   Levenberg 1944, Marquardt 1963; the rows: `graph.rs`
+//! Source   Levenberg 1944, Marquardt 1963; the rows: `closed_chain.rs`
 //! Checked  tests/it/closure/assembly.rs
 
 use super::coordinates::{at_limit, column_scale, columns, free_places, moved, within_limits};
-use super::graph::Gap;
-use super::pairs::{Row, for_each_rate, rows};
+use crate::closure::constraint::closed_chain::Gap;
+use crate::closure::constraint::constraint_rows::{Row, for_each_rate, rows};
 use crate::error::Result;
 use crate::inverse::damp;
 use crate::linalg::{Matrix, Svd, norm};
@@ -115,16 +115,16 @@ pub fn recover_passive(mechanism: &Mechanism, guess: &[f64]) -> Result<Assembly>
 
 /// A configuration with its residuals and their rates, scaled.
 #[derive(Debug)]
-pub(super) struct Closing {
-    pub(super) q: Vec<f64>,
-    pub(super) residuals: Vec<f64>,
-    pub(super) rates: Matrix,
-    pub(super) error: f64,
-    pub(super) gap: Gap,
+pub(crate) struct Closing {
+    pub(crate) q: Vec<f64>,
+    pub(crate) residuals: Vec<f64>,
+    pub(crate) rates: Matrix,
+    pub(crate) error: f64,
+    pub(crate) gap: Gap,
 }
 
 impl Closing {
-    pub(super) fn at(
+    pub(crate) fn at(
         mechanism: &Mechanism,
         q: &[f64],
         free: &[usize],
@@ -148,7 +148,7 @@ impl Closing {
         Ok(Self { q: q.to_vec(), residuals, rates, error, gap })
     }
 
-    pub(super) fn is_closed(&self, length: f64) -> bool {
+    pub(crate) fn is_closed(&self, length: f64) -> bool {
         self.gap.is_closed(length)
     }
 

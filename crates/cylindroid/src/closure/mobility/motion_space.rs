@@ -12,8 +12,8 @@
 //! Source   Bicchi & Prattichizzo 1998, eqs. 3 and 4, whose bases these are
 //! Checked  tests/it/closure/reference.rs (31 mechanisms), tests/it/closure/mobility.rs
 
-use super::constraint::Constraint;
 use super::relation::{ObjectScale, Relation};
+use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::linalg::{ColumnSpace, Cut, Matrix, Rank, Threshold};
 use crate::tolerance::{CLEAR_SHARE, CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING};
 
@@ -29,7 +29,7 @@ pub struct Rows {
 }
 
 /// The absolute threshold for blocks of a kernel: of the complement of these columns.
-pub(super) fn block_tolerance(space: &ColumnSpace) -> f64 {
+pub(crate) fn block_tolerance(space: &ColumnSpace) -> f64 {
     let conditioning = if space.rank() == 0 { 1.0 } else { space.largest() / space.cut().kept };
     CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)
 }
@@ -95,7 +95,7 @@ impl Motions {
     }
 
     /// The relative threshold of the constraint matrix [-].
-    pub(super) fn threshold(&self) -> f64 {
+    pub(crate) fn threshold(&self) -> f64 {
         self.threshold
     }
 
@@ -145,7 +145,7 @@ impl Motions {
 
     /// The combinations of kernel columns (k entries each) whose entries in `rows` vanish, and the
     /// rank of the kernel in these rows.
-    pub(super) fn still(&self, rows: Rows) -> (Matrix, Cut) {
+    pub(crate) fn still(&self, rows: Rows) -> (Matrix, Cut) {
         let space = self.space_of(rows);
         (space.complement(), space.cut())
     }
@@ -153,7 +153,7 @@ impl Motions {
     /// The same for `rows` and for all others. The columns of the kernel have length one, so that
     /// what a motion has in `rows` at most leaves it `sqrt(1 - s^2)` at least in the others: where
     /// that is far from nothing, none of them is still in the others.
-    pub(super) fn still_and_others(&self, rows: Rows) -> [(Matrix, Cut); 2] {
+    pub(crate) fn still_and_others(&self, rows: Rows) -> [(Matrix, Cut); 2] {
         let space = self.space_of(rows);
         let k = self.dof();
         let s = space.largest().min(1.0);
@@ -194,12 +194,12 @@ impl Motions {
     }
 
     /// The kernel in scaled coordinates.
-    pub(super) fn kernel(&self) -> &Matrix {
+    pub(crate) fn kernel(&self) -> &Matrix {
         &self.kernel
     }
 
     /// From scaled coordinates.
-    pub(super) fn unscaled(&self, motions: &Matrix) -> Matrix {
+    pub(crate) fn unscaled(&self, motions: &Matrix) -> Matrix {
         motions.clone().scale_rows(&self.scale)
     }
 

@@ -11,12 +11,12 @@
 //!          Grubler's count is wrong for whatever is overconstrained
 //! Checked  tests/it/closure/diagnosis.rs
 
-use super::assembly::assemble;
-use super::graph::ClosedChain;
-use super::guesses::{anywhere, near};
-use super::marks::{farthest, link_poses};
-use super::motions::Motions;
-use super::singularity::Counts;
+use super::singularity_types::Counts;
+use crate::closure::constraint::closed_chain::ClosedChain;
+use crate::closure::mobility::motion_space::Motions;
+use crate::closure::position::assembly::assemble;
+use crate::closure::position::configuration_signature::{farthest, link_poses};
+use crate::closure::position::initial_guesses::{anywhere, near};
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::model::FrameId;
@@ -50,7 +50,7 @@ impl Generic {
     }
 
     /// The same for a posture whose counts are known.
-    pub(super) fn around(
+    pub(crate) fn around(
         state: &State,
         reference: Option<FrameId>,
         length: f64,

@@ -1,7 +1,7 @@
 //! The ways out of a posture where not every motion to first order can be followed.
 //!
 //! Method   on the sphere |x| = h of motions to first order, zeros of the reduced loops g (see
-//!          `vicinity.rs`) are looked for by damped Gauss-Newton from starts at random. A zero
+//!          `lyapunov_schmidt.rs`) are looked for by damped Gauss-Newton from starts at random. A zero
 //!          whose own motions can be followed lies on a branch; it is carried inwards, to both
 //!          sides of the posture, and the motions there give the branch's tangent
 //! Shapes   x: k, a tangent: k x dimension
@@ -12,7 +12,7 @@
 //! Why so   zeros of the quadratic part alone would name branches that third order destroys
 //! Checked  tests/it/closure/finite.rs
 
-use super::vicinity::{Near, Vicinity};
+use super::lyapunov_schmidt::{Near, Vicinity};
 use crate::error::Result;
 use crate::inverse::damp;
 use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold, dot, norm};
@@ -28,23 +28,23 @@ const INWARDS: f64 = 1.0 / 64.0;
 const MOST_TANGENTS: usize = 3;
 
 /// A branch in coordinates of the motions to first order.
-pub(super) struct Tangent {
-    pub(super) dimension: usize,
+pub(crate) struct Tangent {
+    pub(crate) dimension: usize,
     /// Orthonormal columns; more than the dimension where the branch is a cone.
-    pub(super) directions: Matrix,
+    pub(crate) directions: Matrix,
     /// Closed postures on it, on either side.
-    pub(super) postures: Vec<Vec<f64>>,
+    pub(crate) postures: Vec<Vec<f64>>,
 }
 
 /// What a search found.
-pub(super) struct Found {
-    pub(super) tangents: Vec<Tangent>,
+pub(crate) struct Found {
+    pub(crate) tangents: Vec<Tangent>,
     /// True if nothing else can be there.
-    pub(super) complete: bool,
+    pub(crate) complete: bool,
 }
 
 /// A direction at random, of length one.
-pub(super) fn direction(k: usize, random: &mut u64) -> Vec<f64> {
+pub(crate) fn direction(k: usize, random: &mut u64) -> Vec<f64> {
     let x: Vec<f64> = (0..k).map(|_| uniform(random) - 0.5).collect();
     let size = norm(&x);
     x.iter().map(|x| if size > 0.0 { x / size } else { 1.0 / (k as f64).sqrt() }).collect()
@@ -55,7 +55,7 @@ fn times(x: &[f64], factor: f64) -> Vec<f64> {
 }
 
 /// The branches through the posture of `vicinity`, looked for at the distance `h`.
-pub(super) fn branches(
+pub(crate) fn branches(
     mechanism: &Mechanism,
     length: f64,
     vicinity: &Vicinity<'_>,

@@ -18,7 +18,7 @@
 
 use super::assembly::{Closing, assemble};
 use super::coordinates::{closing, columns, moved, unit_of, within_limits};
-use super::guesses::near;
+use super::initial_guesses::near;
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, Motion};
@@ -35,8 +35,8 @@ const NEAR: f64 = 0.05;
 
 /// A configuration with closed loops.
 #[derive(Debug)]
-pub(super) struct Point {
-    pub(super) closing: Closing,
+pub(crate) struct Point {
+    pub(crate) closing: Closing,
     /// J_f and its decomposition.
     by_free: Matrix,
     svd: Svd,
@@ -44,7 +44,7 @@ pub(super) struct Point {
 
 /// The coordinates, and where the held ones go.
 #[derive(Debug, Clone)]
-pub(super) struct Way<'a> {
+pub(crate) struct Way<'a> {
     mechanism: &'a Mechanism,
     held: &'a [usize],
     free: Vec<usize>,
@@ -58,18 +58,18 @@ pub(super) struct Way<'a> {
 
 /// A step along the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stride {
+pub(crate) struct Stride {
     /// Its length, as a share of the way.
-    pub(super) step: f64,
+    pub(crate) step: f64,
     /// Where it ends, 0 to 1.
-    pub(super) to: f64,
+    pub(crate) to: f64,
     /// Distance to singularities that it keeps.
-    pub(super) least: f64,
+    pub(crate) least: f64,
 }
 
 /// Why a step was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Refusal {
+pub(crate) enum Refusal {
     /// The point is nearer to a singularity than allowed.
     Singular,
     /// A coordinate would leave its limits.
@@ -80,7 +80,7 @@ pub(super) enum Refusal {
 
 impl<'a> Way<'a> {
     /// From an assembly, whose held coordinates go to `goal`.
-    pub(super) fn from(
+    pub(crate) fn from(
         mechanism: &'a Mechanism,
         q: &[f64],
         (held, free): (&'a [usize], Vec<usize>),
@@ -92,7 +92,7 @@ impl<'a> Way<'a> {
         Ok(way)
     }
 
-    pub(super) fn mechanism(&self) -> &'a Mechanism {
+    pub(crate) fn mechanism(&self) -> &'a Mechanism {
         self.mechanism
     }
 
@@ -111,7 +111,7 @@ impl<'a> Way<'a> {
         Ok(most)
     }
 
-    pub(super) fn at(&self, q: &[f64]) -> Result<Point> {
+    pub(crate) fn at(&self, q: &[f64]) -> Result<Point> {
         let closing = closing(self.mechanism, q)?;
         let by_free = columns(&closing.rates, &self.free);
         let svd = Svd::of(&by_free);
@@ -120,7 +120,7 @@ impl<'a> Way<'a> {
 
     /// Smallest singular value that counts over the largest: zero at a singularity, infinite where
     /// nothing can be lost.
-    pub(super) fn distance(&self, point: &Point) -> f64 {
+    pub(crate) fn distance(&self, point: &Point) -> f64 {
         match self.rank {
             0 => f64::INFINITY,
             // All zero: as singular as can be.
@@ -135,7 +135,7 @@ impl<'a> Way<'a> {
     /// The motion, of all coordinates and without unit, that is nearest to leaving the loops closed
     /// with the held ones at rest, and how much of what it would break the held ones could take up,
     /// relative to the largest singular value. `None` where nothing can be lost.
-    pub(super) fn nearly_free(&self, point: &Point) -> Option<(Vec<f64>, f64)> {
+    pub(crate) fn nearly_free(&self, point: &Point) -> Option<(Vec<f64>, f64)> {
         let last = self.rank.checked_sub(1)?;
         let mut motion = vec![0.0; self.mechanism.n()];
         for (&i, v) in self.free.iter().zip(point.svd.v(last)) {
@@ -147,7 +147,7 @@ impl<'a> Way<'a> {
     }
 
     /// f', and true if the free coordinates can follow the held ones at all.
-    pub(super) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
+    pub(crate) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
         let opened = columns(&point.closing.rates, self.held).mul_vec(&self.along);
         let follow = self.back(point, &opened);
         let left: Vec<f64> =
@@ -157,12 +157,12 @@ impl<'a> Way<'a> {
     }
 
     /// The largest change of any coordinate, for the whole way at this rate.
-    pub(super) fn speed(&self, tangent: &[f64]) -> f64 {
+    pub(crate) fn speed(&self, tangent: &[f64]) -> f64 {
         self.along.iter().chain(tangent).fold(0.0, |m: f64, x| m.max(x.abs()))
     }
 
     /// The point at the end of a stride.
-    pub(super) fn step(
+    pub(crate) fn step(
         &self,
         here: &Point,
         tangent: &[f64],
@@ -200,7 +200,7 @@ impl<'a> Way<'a> {
     }
 
     /// The first coordinate outside its limits by more than rounding.
-    pub(super) fn outside(&self, q: &[f64]) -> Option<usize> {
+    pub(crate) fn outside(&self, q: &[f64]) -> Option<usize> {
         self.mechanism.outside_limits(q).find(|&i| {
             let l = &self.mechanism.coordinates()[i].limits;
             (l.lower - q[i]).max(q[i] - l.upper) > LIMIT_MET * (1.0 + q[i].abs())

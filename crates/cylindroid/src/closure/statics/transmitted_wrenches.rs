@@ -12,11 +12,11 @@
 //!          among them: the constraint is written without their forces
 //! Checked  tests/it/closure/statics.rs::transmitted_*
 //!
-//! [`contact_forces`]: super::contact_forces
+//! [`contact_forces`]: crate::closure::contact_forces
 
-use super::constraint::Unit;
-use super::graph::ClosedChain;
-use super::pairs::{Row, rows};
+use crate::closure::constraint::closed_chain::ClosedChain;
+use crate::closure::constraint::constraint_rows::{Row, rows};
+use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::Metric;

@@ -1,19 +1,19 @@
 //! The constraint of a mechanism at several configurations side by side.
 //!
-//! Formula  graph.rs, scaled: a row for each held wrench, then one for each component of the
+//! Formula  closed_chain.rs, scaled: a row for each held wrench, then one for each component of the
 //!          reference, as `J_ref` without its `-1`
 //! Shapes   q: n numbers of lanes; rows of q_a + q_p columns, driven joints first
 //! Units    none: lengths over the characteristic length. Gaps: m, rad
 //! Frame    u at the reference frame's origin, world axes
-//! Valid    as [`super::ClosedChain`], but for lanes in which the axes of a closing universal joint
+//! Valid    as [`crate::closure::ClosedChain`], but for lanes in which the axes of a closing universal joint
 //!          nearly line up: their rows are not to be used
 //! Why so   what does not change with the configuration is looked up once: which joints open which
 //!          pair, and in which column they stand
 //! Checked  tests/it/manipulability/batch.rs
 
-use super::constraint::Unit;
-use super::graph::Columns;
-use super::pairs::{self, Held, Pair};
+use super::closed_chain::Columns;
+use super::constraint_rows::{self, Held, Pair};
+use super::velocity_constraint::Unit;
 use crate::error::Result;
 use crate::kinematics::{Frame, forward_several};
 use crate::model::{FrameId, Mechanism, Motion, Node};
@@ -91,7 +91,7 @@ pub(crate) struct Written<R> {
 impl Plan {
     /// Of a mechanism, its reference frame and a characteristic length.
     pub(crate) fn of(mechanism: &Mechanism, reference: FrameId, length: f64) -> Result<Self> {
-        let columns = Columns::of(mechanism, &pairs::rated(mechanism));
+        let columns = Columns::of(mechanism, &constraint_rows::rated(mechanism));
         let driven = columns.actuated.len();
         let column =
             |(is_driven, place): (bool, usize)| if is_driven { place } else { driven + place };
@@ -105,11 +105,11 @@ impl Plan {
         };
         let mut rates = columns.places[n..].iter().map(|p| column(*p));
         let mut ties = Vec::new();
-        for held in pairs::held(mechanism) {
+        for held in constraint_rows::held(mechanism) {
             let Held { ends, frames, wrenches, crossed, measure } = held?;
             let ends = [0, 1].map(|i| end(mechanism.link_frame(ends[i]), frames[i]));
             let scaled = |w: &Wrench| {
-                let s = 1.0 / pairs::unit(*w).size(length);
+                let s = 1.0 / constraint_rows::unit(*w).size(length);
                 Wrench { force: w.force * s, moment: w.moment * s }
             };
             let turns = wrenches.iter().any(|w| w.moment != Vec3::ZERO);

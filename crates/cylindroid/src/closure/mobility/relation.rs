@@ -14,7 +14,7 @@
 //! Source   Bicchi & Prattichizzo 1998, sections 2 to 4; virtual work for F
 //! Checked  tests/it/closure/reference.rs, tests/it/closure/laws.rs
 
-use super::constraint::check_finite;
+use crate::closure::constraint::velocity_constraint::check_finite;
 use crate::error::{Error, Result};
 use crate::linalg::{
     ColumnSpace, CosineSine, Cut, Matrix, PairKind, Qr, Threshold, dot, solve_upper,
@@ -54,7 +54,7 @@ pub struct Parts {
 
 /// Between scaled and given coordinates of the object.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct ObjectScale {
+pub(crate) struct ObjectScale {
     /// u = twist * u'.
     twist: Matrix,
     /// w = wrench * w', its inverse transpose.
@@ -62,7 +62,7 @@ pub(super) struct ObjectScale {
 }
 
 impl ObjectScale {
-    pub(super) fn diagonal(scale: &[f64]) -> Self {
+    pub(crate) fn diagonal(scale: &[f64]) -> Self {
         let (twist, mut wrench) = (Matrix::diagonal(scale), Matrix::diagonal(scale));
         (0..scale.len()).for_each(|i| wrench[(i, i)] = 1.0 / scale[i]);
         Self { twist, wrench }
@@ -86,7 +86,7 @@ pub struct Relation {
 
 impl Relation {
     /// Of the span of the columns of `span` (scaled), driven joints first.
-    pub(super) fn from_scaled(
+    pub(crate) fn from_scaled(
         span: Matrix,
         joint_scale: Vec<f64>,
         scale: ObjectScale,
@@ -255,7 +255,7 @@ impl Relation {
     /// Joint torques that balance the wrench with the least scaled norm, and the parts of the
     /// wrench that the structure holds and that nothing balances (all in the units of the
     /// constraint).
-    pub(super) fn balance(&self, wrench: &[f64]) -> Balance {
+    pub(crate) fn balance(&self, wrench: &[f64]) -> Balance {
         // w' = A^T w, since w^T u = w'^T u'.
         let scaled = self.scale.twist.transpose().mul_vec(wrench);
         let along = |j: usize| dot(self.cs.y.column(j), &scaled);
@@ -302,10 +302,10 @@ impl Relation {
 }
 
 /// What balances a wrench.
-pub(super) struct Balance {
-    pub(super) torques: Vec<f64>,
-    pub(super) structural: Vec<f64>,
-    pub(super) unbalanced: Vec<f64>,
+pub(crate) struct Balance {
+    pub(crate) torques: Vec<f64>,
+    pub(crate) structural: Vec<f64>,
+    pub(crate) unbalanced: Vec<f64>,
 }
 
 /// What is orthogonal to independent columns.

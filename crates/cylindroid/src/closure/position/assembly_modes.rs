@@ -1,7 +1,7 @@
 //! Assembly modes: the ways in which the loops close, the held coordinates being what they are.
 //!
 //! Formula  assemblies from the guess and from random configurations within limits; two are one
-//!          where all joints and the reference frame stand alike (`marks.rs`)
+//!          where all joints and the reference frame stand alike (`configuration_signature.rs`)
 //! Units    none: lengths over the reach
 //! Valid    any mechanism. It may miss modes: each is found by chance, the more rarely the fewer
 //!          starts lead there. The share of finds that were made once only estimates the chance that
@@ -17,10 +17,10 @@
 use std::f64::consts::TAU;
 
 use super::assembly::{Assembly, assemble};
+use super::configuration_signature::{Marks, apart, farthest, link_poses};
 use super::coordinates::{at_limit, closing, columns, free_places, moved, within_limits};
-use super::guesses::anywhere;
-use super::marks::{Marks, apart, farthest, link_poses};
-use super::motions::block_tolerance;
+use super::initial_guesses::anywhere;
+use crate::closure::mobility::motion_space::block_tolerance;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
 use crate::model::{CoordinateKind, JointKind, Mechanism};
@@ -107,7 +107,7 @@ impl AssemblyModes {
 /// ```
 ///
 /// # Errors
-/// As [`super::assemble`]; no starts.
+/// As [`crate::closure::assemble`]; no starts.
 pub fn assembly_modes(
     mechanism: &Mechanism,
     guess: &[f64],

@@ -1,43 +1,43 @@
 //! The rows of closing joints and contacts: what they hold, where they are at a state.
 //!
-//! Formula  graph.rs: h . (J_b - J_a) q for every held wrench h, and its residual
+//! Formula  closed_chain.rs: h . (J_b - J_a) q for every held wrench h, and its residual
 //! Shapes   a row for each held wrench, and one for the rate of a closing joint of one coordinate
 //! Units    m, rad
 //! Frame    world, wrenches at the world's origin
 //! Checked  tests/it/closure/graph.rs
 
-use super::constraint::Unit;
-use super::graph::Gap;
+use super::closed_chain::Gap;
+use super::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::model::{Dimension, JointKind, LoopJoint, Mechanism};
 use crate::spatial::{Pose, Vec3, Wrench};
 
 /// A relative motion that is restricted, in world axes at the world's origin.
-pub(super) struct Row {
+pub(crate) struct Row {
     /// What is measured of the motion of `b` relative to `a`.
-    pub(super) wrench: Wrench,
+    pub(crate) wrench: Wrench,
     /// Place of its joint or contact: closing joints, then contacts.
-    pub(super) pair: usize,
+    pub(crate) pair: usize,
     a: usize,
     b: usize,
-    pub(super) unit: Unit,
+    pub(crate) unit: Unit,
     /// Place among the coordinates of closing joints where it is their rate.
-    pub(super) rate_of: Option<usize>,
+    pub(crate) rate_of: Option<usize>,
     /// By how much what should be held is not (m or rad); its rate is `wrench . (J_b - J_a) q`
     /// where it is zero.
-    pub(super) residual: f64,
+    pub(crate) residual: f64,
 }
 
 /// What the rate of a closing joint of one coordinate measures.
-pub(super) fn rate_unit(joint: &LoopJoint) -> Unit {
+pub(crate) fn rate_unit(joint: &LoopJoint) -> Unit {
     if joint.kind == JointKind::Prismatic { Unit::Length } else { Unit::Angle }
 }
 
 /// Calls `f(row, coordinate, rate)` for every coordinate of the tree that opens a row, the place of
 /// the row among `rows` and its rate by that coordinate. A coordinate may come several times (mimic
 /// joints): its rates add up.
-pub(super) fn for_each_rate(state: &State, rows: &[Row], mut f: impl FnMut(usize, usize, f64)) {
+pub(crate) fn for_each_rate(state: &State, rows: &[Row], mut f: impl FnMut(usize, usize, f64)) {
     let mechanism = state.mechanism();
     // The rows of a pair stand together: its two links are walked once, and up to where they meet,
     // since what moves both does not open the pair.
@@ -59,27 +59,27 @@ pub(super) fn for_each_rate(state: &State, rows: &[Row], mut f: impl FnMut(usize
 
 impl Row {
     /// The residual with lengths over `length`.
-    pub(super) fn scaled_residual(&self, length: f64) -> f64 {
+    pub(crate) fn scaled_residual(&self, length: f64) -> f64 {
         self.residual / self.unit.size(length)
     }
 }
 
 /// What a closing joint or contact holds, wherever it is.
-pub(super) struct Held {
+pub(crate) struct Held {
     /// Of its two links.
-    pub(super) ends: [usize; 2],
+    pub(crate) ends: [usize; 2],
     /// Its frames on them.
-    pub(super) frames: [Pose; 2],
+    pub(crate) frames: [Pose; 2],
     /// Wrenches in the first frame, but for the moment across the axes of a universal joint.
-    pub(super) wrenches: Vec<Wrench>,
+    pub(crate) wrenches: Vec<Wrench>,
     /// The axes of a universal joint, on its first and its second link.
-    pub(super) crossed: Option<[Vec3; 2]>,
+    pub(crate) crossed: Option<[Vec3; 2]>,
     /// What measures the rate of a closing joint of one coordinate.
-    pub(super) measure: Option<Wrench>,
+    pub(crate) measure: Option<Wrench>,
 }
 
 /// What closing joints, then contacts hold.
-pub(super) fn held(mechanism: &Mechanism) -> impl Iterator<Item = Result<Held>> {
+pub(crate) fn held(mechanism: &Mechanism) -> impl Iterator<Item = Result<Held>> {
     let dimension = mechanism.dimension();
     let loops = mechanism.loops().iter().map(move |joint| {
         let measure = measure(joint);
@@ -133,12 +133,12 @@ fn measure(joint: &LoopJoint) -> Option<Wrench> {
 }
 
 /// The closing joints that have a rate.
-pub(super) fn rated(mechanism: &Mechanism) -> Vec<&LoopJoint> {
+pub(crate) fn rated(mechanism: &Mechanism) -> Vec<&LoopJoint> {
     mechanism.loops().iter().filter(|joint| measure(joint).is_some()).collect()
 }
 
 /// Rows of all closing joints and contacts, the closing joints that have a rate, and the gap.
-pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
+pub(crate) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
     let mechanism = state.mechanism();
     let pose = |link| state.pose(mechanism.link_frame(link));
     let (mut rows, mut rates) = (Vec::new(), 0);
@@ -162,7 +162,7 @@ pub(super) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
 }
 
 /// The two frames of a closing joint or contact.
-pub(super) struct Pair {
+pub(crate) struct Pair {
     place: usize,
     ends: [usize; 2],
     world_from_a: Pose,
@@ -173,7 +173,7 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    pub(super) fn new(
+    pub(crate) fn new(
         place: usize,
         ends: [usize; 2],
         [world_from_a, world_from_b]: [Pose; 2],
@@ -184,13 +184,13 @@ impl Pair {
     }
 
     /// The rows of all that is held.
-    pub(super) fn rows(&self, held: &[Wrench]) -> impl Iterator<Item = Row> {
+    pub(crate) fn rows(&self, held: &[Wrench]) -> impl Iterator<Item = Row> {
         let tilt = self.tilt(held);
         held.iter().map(move |w| Row { residual: self.residual(*w, tilt), ..self.row(*w) })
     }
 
     /// How far it is open along and about `held`.
-    pub(super) fn gap(&self, held: &[Wrench]) -> Gap {
+    pub(crate) fn gap(&self, held: &[Wrench]) -> Gap {
         let tilt = self.tilt(held);
         let mut gap = Gap::default();
         held.iter().for_each(|w| gap.widen(unit(*w), self.residual(*w, tilt)));
@@ -248,6 +248,6 @@ impl Pair {
 }
 
 /// What a wrench measures: lengths where there is a force.
-pub(super) fn unit(wrench: Wrench) -> Unit {
+pub(crate) fn unit(wrench: Wrench) -> Unit {
     if wrench.force == Vec3::ZERO { Unit::Angle } else { Unit::Length }
 }

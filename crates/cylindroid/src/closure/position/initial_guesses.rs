@@ -13,14 +13,14 @@ use crate::scalar::uniform;
 use crate::spatial::Quaternion;
 
 /// Every coordinate of `q` changed by up to `far`.
-pub(super) fn near(mechanism: &Mechanism, q: &[f64], far: f64, random: &mut u64) -> Vec<f64> {
+pub(crate) fn near(mechanism: &Mechanism, q: &[f64], far: f64, random: &mut u64) -> Vec<f64> {
     let all: Vec<usize> = (0..mechanism.n()).collect();
     let change: Vec<f64> = all.iter().map(|_| far * (2.0 * uniform(random) - 1.0)).collect();
     within_limits(mechanism, moved(mechanism, q, &all, &change), &all)
 }
 
 /// Angles in (-pi, pi], slides in the reach, rotations evenly among all, within the limits.
-pub(super) fn anywhere(
+pub(crate) fn anywhere(
     mechanism: &Mechanism,
     guess: &[f64],
     free: &[usize],

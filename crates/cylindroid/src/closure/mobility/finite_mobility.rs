@@ -1,7 +1,7 @@
 //! Finite mobility: which of the motions to first order a mechanism can really make.
 //!
 //! Formula  the closed postures near q are the zeros of g(x), x in the motions to first order (see
-//!          `vicinity.rs`). No g: the equations are independent, and every motion exists (implicit
+//!          `lyapunov_schmidt.rs`). No g: the equations are independent, and every motion exists (implicit
 //!          function theorem). g zero at every step: every motion exists, the other equations are
 //!          superfluous there too. Otherwise the zeros of g are looked for (`branches.rs`)
 //! Shapes   motions: n x dimension, rates of the coordinates of q
@@ -17,7 +17,7 @@
 use std::fmt;
 
 use super::branches::{branches, direction};
-use super::vicinity::Vicinity;
+use super::lyapunov_schmidt::Vicinity;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
@@ -159,7 +159,7 @@ impl FiniteMobility {
 
     /// Closed postures a little to both sides along a motion in which all degrees of freedom of the
     /// largest branch take part; fewer where they could not be found.
-    pub(super) fn beside(&self) -> &[Vec<f64>] {
+    pub(crate) fn beside(&self) -> &[Vec<f64>] {
         &self.beside
     }
 

@@ -14,8 +14,8 @@
 //! Source   Lyapunov-Schmidt reduction; Golubitsky & Schaeffer 1985, chapter VII
 //! Checked  tests/it/closure/finite.rs
 
-use super::assembly::Closing;
-use super::coordinates::column_scale;
+use crate::closure::position::assembly::Closing;
+use crate::closure::position::coordinates::column_scale;
 use crate::error::Result;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm};
 use crate::model::Mechanism;
@@ -25,7 +25,7 @@ use crate::tolerance::LOOP_ROUNDING;
 const MOST_STEPS: usize = 30;
 
 /// A posture with what its loops allow and hold to first order.
-pub(super) struct Vicinity<'a> {
+pub(crate) struct Vicinity<'a> {
     mechanism: &'a Mechanism,
     length: f64,
     /// Of each coordinate: rate = scale * scaled rate.
@@ -42,16 +42,16 @@ pub(super) struct Vicinity<'a> {
 }
 
 /// A posture near it in which all loops are closed but for `left`.
-pub(super) struct Near {
-    pub(super) q: Vec<f64>,
+pub(crate) struct Near {
+    pub(crate) q: Vec<f64>,
     /// g.
-    pub(super) left: Vec<f64>,
+    pub(crate) left: Vec<f64>,
     /// dg/dx, (t - r) x k.
-    pub(super) rates: Matrix,
+    pub(crate) rates: Matrix,
 }
 
 impl Near {
-    pub(super) fn error(&self) -> f64 {
+    pub(crate) fn error(&self) -> f64 {
         norm(&self.left)
     }
 }
@@ -59,7 +59,7 @@ impl Near {
 impl<'a> Vicinity<'a> {
     /// Of the posture `q`, singular values of C at or below `threshold` times the largest being
     /// zero.
-    pub(super) fn of(
+    pub(crate) fn of(
         mechanism: &'a Mechanism,
         q: &[f64],
         length: f64,
@@ -93,32 +93,32 @@ impl<'a> Vicinity<'a> {
     }
 
     /// True where the loops of the posture are closed.
-    pub(super) fn is_closed(&self) -> bool {
+    pub(crate) fn is_closed(&self) -> bool {
         self.closed
     }
 
     /// Number k of motions to first order.
-    pub(super) fn motions(&self) -> usize {
+    pub(crate) fn motions(&self) -> usize {
         self.kernel.cols()
     }
 
     /// Number t - r of equations that the others make superfluous, to first order.
-    pub(super) fn superfluous(&self) -> usize {
+    pub(crate) fn superfluous(&self) -> usize {
         self.rest.cols()
     }
 
     /// K, scaled.
-    pub(super) fn kernel(&self) -> &Matrix {
+    pub(crate) fn kernel(&self) -> &Matrix {
         &self.kernel
     }
 
     /// What rounding, and loops that are open a little from the start, make of a zero of g.
-    pub(super) fn noise(&self) -> f64 {
+    pub(crate) fn noise(&self) -> f64 {
         self.noise
     }
 
     /// Scaled rates in the units of the coordinates.
-    pub(super) fn unscaled(&self, rates: &Matrix) -> Matrix {
+    pub(crate) fn unscaled(&self, rates: &Matrix) -> Matrix {
         rates.clone().scale_rows(&self.scale)
     }
 
@@ -130,7 +130,7 @@ impl<'a> Vicinity<'a> {
     }
 
     /// The posture at `x`; none where Newton's method does not find it.
-    pub(super) fn step(&self, x: &[f64]) -> Result<Option<Near>> {
+    pub(crate) fn step(&self, x: &[f64]) -> Result<Option<Near>> {
         let mut q = self.moved(&self.q, &self.kernel.mul_vec(x));
         let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {

@@ -20,8 +20,8 @@
 
 use std::fmt;
 
-use super::motions::{Motions, Rows};
-use super::relation::{Relation, RelationDimensions};
+use crate::closure::mobility::motion_space::{Motions, Rows};
+use crate::closure::mobility::relation::{Relation, RelationDimensions};
 use crate::linalg::Matrix;
 
 /// The counts that singularities change.
@@ -193,7 +193,7 @@ impl Singularities {
     }
 
     /// The same for a pose whose own counts are known.
-    pub(super) fn with_counts(
+    pub(crate) fn with_counts(
         now: &Counts,
         motions: &Motions,
         relation: &Relation,

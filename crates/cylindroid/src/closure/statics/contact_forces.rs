@@ -13,10 +13,10 @@
 //! Source   Bicchi & Prattichizzo 1998, eq. 12; elastic forces by least complementary energy
 //! Checked  tests/it/closure/statics.rs
 
-use super::constraint::Constraint;
-use super::mobility::Subspace;
-use super::motions::Motions;
-use super::relation::{Balance, Relation};
+use crate::closure::constraint::velocity_constraint::Constraint;
+use crate::closure::mobility::motion_space::Motions;
+use crate::closure::mobility::relation::{Balance, Relation};
+use crate::closure::mobility::report::Subspace;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold, dot, norm};
 use crate::tolerance::CLOSURE_RANK;
@@ -156,7 +156,7 @@ impl<'a> Supports<'a> {
 }
 
 /// ker G and ker J^T: contact forces that nothing determines.
-pub(super) fn undetermined(constraint: &Constraint, motions: &Motions) -> Subspace {
+pub(crate) fn undetermined(constraint: &Constraint, motions: &Motions) -> Subspace {
     let basis = if motions.hyperstatic() == 0 {
         Matrix::zeros(constraint.rows(), 0)
     } else {

@@ -5,30 +5,30 @@
 //! Checked  tests/it/closure/assembly.rs, tests/it/closure/modes.rs
 
 use super::assembly::Closing;
-use super::constraint::Unit;
+use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Motion};
 use crate::tolerance::AT_LIMIT;
 
 /// The loops at `q` with their rates by all coordinates.
-pub(super) fn closing(mechanism: &Mechanism, q: &[f64]) -> Result<Closing> {
+pub(crate) fn closing(mechanism: &Mechanism, q: &[f64]) -> Result<Closing> {
     let all: Vec<usize> = (0..mechanism.n()).collect();
     Closing::at(mechanism, q, &all, mechanism.reach())
 }
 
 /// The columns of some coordinates.
-pub(super) fn columns(rates: &Matrix, places: &[usize]) -> Matrix {
+pub(crate) fn columns(rates: &Matrix, places: &[usize]) -> Matrix {
     Matrix::from_fn(rates.rows(), places.len(), |i, j| rates[(i, places[j])])
 }
 
 /// What a change of 1 means at coordinate `i` where lengths are over `length` (m or rad).
-pub(super) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
+pub(crate) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
     Unit::of(mechanism.coordinates()[i].kind).size(length)
 }
 
 /// The same with lengths over the reach.
-pub(super) fn unit_of(mechanism: &Mechanism, i: usize) -> f64 {
+pub(crate) fn unit_of(mechanism: &Mechanism, i: usize) -> f64 {
     column_scale(mechanism, i, mechanism.reach())
 }
 
@@ -37,7 +37,7 @@ pub(super) fn unit_of(mechanism: &Mechanism, i: usize) -> f64 {
 /// # Errors
 /// A held place that is no coordinate; some coordinates of a spherical or free joint held and
 /// others not: they have no meaning one by one.
-pub(super) fn free_places(mechanism: &Mechanism, held: &[usize]) -> Result<Vec<usize>> {
+pub(crate) fn free_places(mechanism: &Mechanism, held: &[usize]) -> Result<Vec<usize>> {
     let coordinates = mechanism.coordinates();
     let refuse =
         |value: String, reason: String| Err(Error::InvalidOption { option: "held", value, reason });
@@ -65,7 +65,7 @@ pub(super) fn free_places(mechanism: &Mechanism, held: &[usize]) -> Result<Vec<u
 }
 
 /// `q` moved by a change without unit of the coordinates `places`; the others keep their numbers.
-pub(super) fn moved(
+pub(crate) fn moved(
     mechanism: &Mechanism,
     q: &[f64],
     places: &[usize],
@@ -87,7 +87,7 @@ pub(super) fn moved(
 }
 
 /// Some coordinates cut to their position limits.
-pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
+pub(crate) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
     for &i in places {
         let l = &mechanism.coordinates()[i].limits;
         q[i] = q[i].clamp(l.lower, l.upper);
@@ -96,7 +96,7 @@ pub(super) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[us
 }
 
 /// Coordinates that stand at a position limit.
-pub(super) fn at_limit(mechanism: &Mechanism, q: &[f64]) -> Vec<usize> {
+pub(crate) fn at_limit(mechanism: &Mechanism, q: &[f64]) -> Vec<usize> {
     let stands = |i: &usize| {
         let l = &mechanism.coordinates()[*i].limits;
         q[*i] - l.lower < AT_LIMIT || l.upper - q[*i] < AT_LIMIT

@@ -13,7 +13,7 @@
 //! Units    of the constraint; bases are orthonormal in units scaled by the characteristic length
 //! Valid    any constraint. Counts come from ranks, never from Grubler's formula, which is given
 //!          beside them. Infinitesimal: a motion counted here may have no finite one behind it, see
-//!          `finite.rs`.
+//!          `finite_mobility.rs`.
 //! Why so   every count has its own rank decision; three of the eight follow from the others, see
 //!          [`Motions`]
 //! Source   Bicchi & Prattichizzo 1998, eqs. 3 to 5; the counts of its eq. 5 modulo redundancy and
@@ -22,10 +22,10 @@
 
 use std::fmt;
 
-use super::constraint::Constraint;
-use super::motions::{Motions, Rows};
+use super::motion_space::{Motions, Rows};
 use super::relation::{Relation, RelationDimensions};
-use super::statics;
+use crate::closure::constraint::velocity_constraint::Constraint;
+use crate::closure::statics::contact_forces as statics;
 use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
 
 /// A space of motions or forces with the rank decision behind its dimension.

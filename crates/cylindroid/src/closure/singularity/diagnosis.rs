@@ -21,13 +21,13 @@
 //! Source   Gosselin & Angeles 1990; Zlatanov et al. 1995; Ball 1900 for the principal screws
 //! Checked  tests/it/closure/diagnosis.rs
 
-use super::constraint::Unit;
-use super::finite::FiniteMobility;
-use super::generic::Generic;
-use super::graph::ClosedChain;
-use super::motions::{Motions, Rows};
-use super::relation::Relation;
-use super::singularity::{Counts, Singularities, SingularityKind};
+use super::generic_mobility::Generic;
+use super::singularity_types::{Counts, Singularities, SingularityKind};
+use crate::closure::constraint::closed_chain::ClosedChain;
+use crate::closure::constraint::velocity_constraint::Unit;
+use crate::closure::mobility::finite_mobility::FiniteMobility;
+use crate::closure::mobility::motion_space::{Motions, Rows};
+use crate::closure::mobility::relation::Relation;
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};

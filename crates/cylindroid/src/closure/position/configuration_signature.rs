@@ -20,7 +20,7 @@ use crate::spatial::{Pose, Twist, Vec3};
 
 /// The marks of a mechanism.
 #[derive(Debug, Clone)]
-pub(super) struct Marks {
+pub(crate) struct Marks {
     marks: Vec<Mark>,
     length: f64,
 }
@@ -40,7 +40,7 @@ enum Kind {
 }
 
 impl Marks {
-    pub(super) fn of(mechanism: &Mechanism) -> Self {
+    pub(crate) fn of(mechanism: &Mechanism) -> Self {
         let mut marks = Vec::new();
         let mut add = |link: usize, pose: Pose, directions: &[Vec3]| {
             marks.push(Mark { link, vector: pose.translation, kind: Kind::Point });
@@ -79,12 +79,12 @@ impl Marks {
     }
 
     /// Number of marks.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.marks.len()
     }
 
     /// Where they are with the links at `links`.
-    pub(super) fn at(&self, links: &[Pose]) -> Vec<Vec3> {
+    pub(crate) fn at(&self, links: &[Pose]) -> Vec<Vec3> {
         self.marks.iter().map(|m| self.place(m, links[m.link])).collect()
     }
 
@@ -97,7 +97,7 @@ impl Marks {
 
     /// True for each mark that none of `motions` moves by more than `tolerance`: a column each,
     /// changes of the coordinates `places` without unit.
-    pub(super) fn resting(
+    pub(crate) fn resting(
         &self,
         state: &State,
         places: &[usize],
@@ -134,13 +134,13 @@ impl Marks {
 }
 
 /// The poses of all links.
-pub(super) fn link_poses(state: &State) -> Vec<Pose> {
+pub(crate) fn link_poses(state: &State) -> Vec<Pose> {
     let mechanism = state.mechanism();
     (0..mechanism.links().len()).map(|link| state.pose(mechanism.link_frame(link))).collect()
 }
 
 /// The farthest that a link is from its other place: distance over the reach, or angle.
-pub(super) fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
+pub(crate) fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
     a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
         let distance = (a.translation - b.translation).norm() / mechanism.reach();
         most.max(distance).max(a.rotation.angle_to(b.rotation))
@@ -161,7 +161,7 @@ fn axis_of(kind: JointKind, axis: &Vec3) -> &[Vec3] {
 }
 
 /// The farthest that any of the chosen marks is from its other place [-]; zero without any.
-pub(super) fn apart(a: &[Vec3], b: &[Vec3], chosen: impl Fn(usize) -> bool) -> f64 {
+pub(crate) fn apart(a: &[Vec3], b: &[Vec3], chosen: impl Fn(usize) -> bool) -> f64 {
     let pairs = a.iter().zip(b).enumerate().filter(|(i, _)| chosen(*i));
     pairs.fold(0.0, |most: f64, (_, (a, b))| most.max((*a - *b).norm()))
 }

@@ -201,7 +201,7 @@ impl Constraint {
     }
 
     /// Its transpose in scaled coordinates, `D_c M^T D_r`.
-    pub(super) fn scaled_transpose(&self) -> Matrix {
+    pub(crate) fn scaled_transpose(&self) -> Matrix {
         let (t, a, p) = (self.rows(), self.actuated(), self.passive());
         let mut scaled = Matrix::zeros(self.column_scale.len(), t);
         for (i, r) in self.row_scale.iter().enumerate() {
@@ -225,18 +225,18 @@ impl Constraint {
     }
 
     /// D_r: a force at a contact is this times its scaled value.
-    pub(super) fn row_scale(&self) -> &[f64] {
+    pub(crate) fn row_scale(&self) -> &[f64] {
         &self.row_scale
     }
 
     /// D_c: a rate is this times its scaled value, a torque its scaled value over this.
-    pub(super) fn column_scale(&self) -> &[f64] {
+    pub(crate) fn column_scale(&self) -> &[f64] {
         &self.column_scale
     }
 }
 
 /// Refuses the first entry that is NaN or infinite.
-pub(super) fn check_finite(name: &str, m: &Matrix) -> Result<()> {
+pub(crate) fn check_finite(name: &str, m: &Matrix) -> Result<()> {
     match m.as_slice().iter().position(|x| !x.is_finite()) {
         None => Ok(()),
         Some(i) => Err(Error::NotFinite {

@@ -15,10 +15,10 @@
 //! Source   Bicchi & Prattichizzo 1998, eqs. 2 to 4, in coordinates of the spanning tree
 //! Checked  tests/it/closure/steering.rs
 
-use super::constraint::Unit;
-use super::graph::Gap;
-use super::motions::block_tolerance;
-use super::pairs::{Row, for_each_rate, rate_unit, rows};
+use super::motion_space::block_tolerance;
+use crate::closure::constraint::closed_chain::Gap;
+use crate::closure::constraint::constraint_rows::{Row, for_each_rate, rate_unit, rows};
+use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};

@@ -1,0 +1,14 @@
+//! Loop closure at position level: configurations in which all loops and contacts are closed.
+//!
+//! Start with `assembly` (damped Gauss-Newton from an initial guess), on `coordinates`.
+//! `predictor_corrector` tracks one branch of closed configurations, and `continuation` moves
+//! coordinates along it up to a singularity or limit. `assembly_modes` searches for all assemblies
+//! from the random restarts of `initial_guesses`; `configuration_signature` distinguishes them.
+
+pub(crate) mod assembly;
+pub(crate) mod assembly_modes;
+pub(crate) mod configuration_signature;
+pub(crate) mod continuation;
+pub(crate) mod coordinates;
+pub(crate) mod initial_guesses;
+pub(crate) mod predictor_corrector;

@@ -1,0 +1,10 @@
+//! Singularities: one verdict on a configuration, from which every sentence about it follows.
+//!
+//! `generic_mobility` finds the counts that the mechanism has at regular configurations;
+//! `singularity_types` compares the counts at hand with them (type I, II, III, configuration
+//! space, passive) and measures the distance to each type; `diagnosis` adds the motions lost and
+//! gained, as screws. Read them in this order.
+
+pub(crate) mod diagnosis;
+pub(crate) mod generic_mobility;
+pub(crate) mod singularity_types;
