@@ -11,16 +11,16 @@
 //!          Parker 1995 (bounded-variable least squares)
 //! Checked  tests/it/servo/limits.rs::saturation_*, tests in this file (bent against the conditions)
 
-use super::limits::{LimitKind, RateBounds};
+use super::bounds::{LimitKind, RateBounds};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, Svd, dot, norm};
 
 /// Below this scale a direction counts as lost and the motion is bent [-].
-pub(super) const LEAST_SCALE: f64 = 0.05;
+pub(in crate::control) const LEAST_SCALE: f64 = 0.05;
 
 /// A held joint is released when its pull is above this share of the largest possible one [-]:
 /// what is left of directions that the inverse cut must not release anything.
-pub(super) const RELEASE: f64 = 1e-3;
+pub(in crate::control) const RELEASE: f64 = 1e-3;
 
 /// What became of the task.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,12 +33,12 @@ pub struct Saturation {
 
 impl Saturation {
     /// No limit bites.
-    pub(super) const NONE: Self = Self { scale: 1.0, bent: false };
+    pub(in crate::control) const NONE: Self = Self { scale: 1.0, bent: false };
 }
 
 /// Memory for the decompositions.
 #[derive(Debug, Clone)]
-pub(super) struct Saturator {
+pub(in crate::control) struct Saturator {
     svd: Svd,
     reduced: Matrix,
     gains: Vec<f64>,
@@ -52,15 +52,15 @@ pub(super) struct Saturator {
 
 /// The task and how it is inverted.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Problem<'a> {
-    pub(super) j: &'a Matrix,
-    pub(super) x: &'a [f64],
-    pub(super) method: &'a Method,
-    pub(super) bounds: &'a [RateBounds],
+pub(in crate::control) struct Problem<'a> {
+    pub(in crate::control) j: &'a Matrix,
+    pub(in crate::control) x: &'a [f64],
+    pub(in crate::control) method: &'a Method,
+    pub(in crate::control) bounds: &'a [RateBounds],
 }
 
 impl Saturator {
-    pub(super) fn new(m: usize, n: usize) -> Self {
+    pub(in crate::control) fn new(m: usize, n: usize) -> Self {
         Self {
             svd: Svd::workspace(m, n),
             reduced: Matrix::zeros(m, n),
@@ -76,7 +76,7 @@ impl Saturator {
 
     /// Moves `rates` (primary plus `secondary`) into the bounds. `rates` comes in as the primary
     /// motion that solves the task, without limits.
-    pub(super) fn apply(
+    pub(in crate::control) fn apply(
         &mut self,
         problem: Problem<'_>,
         secondary: &[f64],
@@ -266,22 +266,28 @@ impl Saturator {
 }
 
 /// `out = V diag(gains) U^T x`
-pub(super) fn solve(svd: &Svd, method: &Method, gains: &mut [f64], x: &[f64], out: &mut [f64]) {
+pub(in crate::control) fn solve(
+    svd: &Svd,
+    method: &Method,
+    gains: &mut [f64],
+    x: &[f64],
+    out: &mut [f64],
+) {
     method.gains(svd, x, gains);
     svd.apply_gains_into(x, gains, out);
 }
 
 /// Where `a + s b` keeps the bounds.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Span {
+pub(in crate::control) struct Span {
     /// The largest s in [0, 1].
-    pub(super) most: f64,
+    pub(in crate::control) most: f64,
     /// The limit that sets it; velocity if none does.
-    pub(super) cause: LimitKind,
+    pub(in crate::control) cause: LimitKind,
 }
 
 /// The s in [0, 1] for which `a + s b` keeps the bounds; `None` if there are none.
-pub(super) fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<Span> {
+pub(in crate::control) fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<Span> {
     let mut least = 0.0_f64;
     let mut span = Span { most: 1.0, cause: LimitKind::Velocity };
     for ((a, b), bound) in a.iter().zip(b).zip(bounds) {

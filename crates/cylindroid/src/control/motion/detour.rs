@@ -10,7 +10,7 @@
 //! Why so   what stops a servo is nearly always the posture it started from
 //! Checked  tests/it/servo/ways.rs::a_detour_reaches_what_the_servo_does_not
 
-use super::servo::Servo;
+use crate::control::servo::Servo;
 use crate::error::Result;
 use crate::ik::{ATTEMPT_STEPS, Budget, Goal, IkOptions, solve};
 use crate::model::CoordinateKind;

@@ -3,7 +3,7 @@
 //!
 //! Formula  rates = M y + s_0 (`closure/mobility/actuation_map.rs`), s_0 the way to closed loops within one step;
 //!          the task is J M y = x, its least y the least weighted effort of the drives; limits
-//!          hold for all joints (`coupled/bounds.rs`)
+//!          hold for all joints (`solver/reduced.rs`)
 //! Shapes   M: (n + e) x a, columns beyond p zero; J: m x n; y: a
 //! Units    rates over the roots of the joint weights inside, as in `task_space.rs`
 //! Valid    any mechanism whose drives steer its object. Allocates: loops are looked at anew in
@@ -11,12 +11,9 @@
 //! Stops    where a motion of the object is about to escape the drives (type II singularity)
 //! Checked  tests/it/servo/object.rs
 
-mod bounds;
-
-pub(super) use bounds::CoupledProblem;
-
 use super::task_space::TaskSpace;
 use crate::closure::{Gap, Steering, assemble};
+use crate::control::solver::reduced::Reduced;
 use crate::error::{Error, Result};
 use crate::ik::Task;
 use crate::linalg::{Matrix, norm};
@@ -30,17 +27,10 @@ pub(super) struct Coupled {
     weights: Vec<f64>,
     locked: Vec<usize>,
     drives: usize,
-    /// M in weighted rates, a columns.
-    motions: Matrix,
-    /// s_0 in weighted rates.
-    correction: Vec<f64>,
     steering: Steering,
     /// J in weighted rates, m x n.
     pub(super) task: Matrix,
-    /// The y of the task, of the wishes, and of the rates.
-    pub(super) primary: Vec<f64>,
-    pub(super) wish: Vec<f64>,
-    pub(super) y: Vec<f64>,
+    pub(super) reduced: Reduced,
     /// The motion that is about to escape the drives, and how much of it they still have.
     escape: Option<Escape>,
 }
@@ -69,13 +59,9 @@ impl Coupled {
             weights: weights.to_vec(),
             locked,
             drives,
-            motions: Matrix::zeros(steering.correction.len(), drives),
-            correction: vec![0.0; steering.correction.len()],
+            reduced: Reduced::new(steering.correction.len(), drives),
             steering,
             task: Matrix::zeros(m, mechanism.n()),
-            primary: vec![0.0; drives],
-            wish: vec![0.0; drives],
-            y: vec![0.0; drives],
             escape: None,
         })
     }
@@ -116,19 +102,19 @@ impl Coupled {
                 ),
             });
         }
-        self.motions.as_mut_slice().fill(0.0);
+        self.reduced.motions.as_mut_slice().fill(0.0);
         for j in 0..self.steering.motions.cols() {
             let from = self.steering.motions.column(j);
-            for (i, x) in self.motions.column_mut(j).iter_mut().enumerate() {
+            for (i, x) in self.reduced.motions.column_mut(j).iter_mut().enumerate() {
                 *x = space.scaled_rate(i, from[i]);
             }
         }
-        for (i, x) in self.correction.iter_mut().enumerate() {
+        for (i, x) in self.reduced.correction.iter_mut().enumerate() {
             *x = space.scaled_rate(i, self.steering.correction[i] / dt);
         }
         let n = self.mechanism.n();
         for j in 0..self.drives {
-            let rates = &self.motions.column(j)[..n];
+            let rates = &self.reduced.motions.column(j)[..n];
             self.task.mul_vec_into(rates, reduced.column_mut(j));
         }
         self.escape = self.find_escape(&self.steering, space);
@@ -178,19 +164,9 @@ impl Coupled {
         Ok(self.find_escape(&ahead, space).is_some_and(|then| then.share <= now.share))
     }
 
-    /// `rates = M y`, without the way to closed loops.
-    pub(super) fn lift(&self, y: &[f64], rates: &mut [f64]) {
-        self.motions.mul_vec_into(y, rates);
-    }
-
-    /// `M^T pull`, one joint of it.
-    pub(super) fn along(&self, joint: usize, pull: &[f64]) -> f64 {
-        (0..self.drives).map(|j| self.motions[(joint, j)] * pull[j]).sum()
-    }
-
     /// Turns wished rates of all joints (not weighted) into `wish`.
     pub(super) fn load_wish(&mut self, wanted: &[f64]) {
-        self.wish = self.effort_of(wanted);
+        self.reduced.wish = self.effort_of(wanted);
     }
 
     /// The y of rates of all joints (not weighted).
@@ -240,5 +216,97 @@ pub(super) fn not_steered(mechanism: &Mechanism, escape: &Escape, task: Task) ->
             mechanism.name(),
             parts.join(", ")
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::ServoOptions;
+    use crate::control::solver::bounds::{LimitKind, RateBounds};
+    use crate::control::solver::direct::{Problem, RELEASE, Saturator, solve};
+    use crate::control::solver::reduced::CoupledProblem;
+    use crate::inverse::Method;
+    use crate::kinematics::{Chain, Reference};
+    use crate::linalg::Svd;
+    use crate::scalar::uniform;
+
+    /// Without loops it is the saturation of a tree: the same scale and rates where the direction
+    /// is kept; where it is bent, rates within the bounds that are no better than the best.
+    #[test]
+    fn without_loops_it_is_the_saturation_of_a_tree() {
+        let mut state = 5_u64;
+        let mut next = move || 2.0 * uniform(&mut state) - 1.0;
+        let panda = crate::model::catalogue::load("panda").unwrap();
+        let drives = (0..panda.n()).filter(|&i| panda.coordinates()[i].actuated).count();
+        let limits: Vec<_> = panda.coordinates().iter().map(|c| c.limits).collect();
+        let chain = Chain::new(&panda, panda.tool());
+        let space = TaskSpace::new(&ServoOptions::new(&panda), &chain, &limits);
+        let method = Method::Truncated { eps: 1e-9 };
+        let (mut kept, mut bent) = (0, 0);
+        for _ in 0..300 {
+            let q: Vec<f64> = panda.home().iter().map(|x| x + next()).collect();
+            let mut coupled = Coupled::new(&panda, &[], Vec::new(), 6).unwrap();
+            coupled.task =
+                panda.state(&q).unwrap().jacobian(panda.tool(), Reference::LocalWorldAligned);
+            let mut reduced = Matrix::zeros(6, drives);
+            coupled.load(&q, &space, 1e-3, &mut reduced).unwrap();
+            let x: Vec<f64> = (0..6).map(|_| next()).collect();
+            let bounds: Vec<RateBounds> = (0..panda.n())
+                .map(|_| RateBounds {
+                    lower: -0.7 * next().abs(),
+                    upper: 0.7 * next().abs(),
+                    lower_cause: LimitKind::Position,
+                    upper_cause: LimitKind::Position,
+                })
+                .collect();
+            let solved = |j: &Matrix, n: usize| {
+                let svd = Svd::of(j);
+                let mut y = vec![0.0; n];
+                solve(&svd, &method, &mut vec![0.0; svd.len()], &x, &mut y);
+                y
+            };
+            let task = coupled.task.clone();
+            let mut rates = solved(&task, panda.n());
+            let problem = Problem { j: &task, x: &x, method: &method, bounds: &bounds };
+            let mut saturator = Saturator::new(6, panda.n());
+            let expected = saturator.apply(problem, &vec![0.0; panda.n()], &mut rates);
+
+            coupled.reduced.primary = solved(&reduced, drives);
+            let last = vec![0.0; panda.n()];
+            let (j, rates_before, rest) = (&reduced, &last[..], vec![0.0; drives]);
+            let problem = CoupledProblem {
+                j,
+                x: &x,
+                method: &method,
+                bounds: &bounds,
+                rates: rates_before,
+                last: &rest,
+            };
+            let mut found = vec![0.0; panda.n()];
+            let saturation = coupled.reduced.saturate(problem, &mut found);
+            assert_eq!(saturation.bent, expected.bent);
+            assert!(found.iter().zip(&bounds).all(|(r, b)| b.contains(*r)));
+            let left = |rates: &[f64]| -> f64 {
+                let done = task.mul_vec(rates);
+                done.iter().zip(&x).map(|(d, x)| (d - x) * (d - x)).sum()
+            };
+            if saturation.bent {
+                bent += 1;
+                // The best, but for joints that a pull below `RELEASE` would have released: by
+                // convexity that is worth this much at the most.
+                let apart: f64 = found.iter().zip(&rates).map(|(a, b)| (a - b).abs()).sum();
+                let pull = RELEASE * Svd::of(&task).value(0) * left(&rates).sqrt();
+                assert!(left(&found) >= left(&rates) - 2.0 * pull * apart - 1e-9);
+                assert!(left(&found) <= left(&last) + 1e-9);
+            } else {
+                kept += 1;
+                assert!((saturation.scale - expected.scale).abs() < 1e-9);
+                for (a, b) in found.iter().zip(&rates) {
+                    assert!((a - b).abs() < 1e-8, "{found:?} {rates:?}");
+                }
+            }
+        }
+        assert!(kept > 50 && bent > 5, "{kept} kept, {bent} bent");
     }
 }

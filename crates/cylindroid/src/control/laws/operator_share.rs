@@ -12,7 +12,7 @@
 //!          joints that must brake within their accelerations bend the motion as well
 //! Checked  tests/it/servo/shared.rs::an_arm_keeps_the_surface, ::the_share_of_the_operator
 
-use super::saturation::Saturation;
+use crate::control::solver::direct::Saturation;
 use crate::error::{Error, Result};
 
 /// The share of the operator's twist to pass on to [`SharedLaw`](super::SharedLaw).

@@ -23,8 +23,8 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::path::CartesianPath;
-use super::step::Target;
 use super::time_law::{Bounds, LawSample, TimeLaw};
+use crate::control::servo::Target;
 use crate::error::Result;
 use crate::spatial::{Pose, Twist};
 

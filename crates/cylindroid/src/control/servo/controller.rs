@@ -4,7 +4,7 @@
 //!          (world axes), saturated to the largest speeds, then projected (`projection.rs`);
 //!          rates = J+ x + P z: J+ the chosen inverse of the task Jacobian with linear rows divided
 //!          by L, z the secondary wishes, P the null-space projector; then position, velocity and
-//!          acceleration limits (`limits.rs`, `saturation.rs`)
+//!          acceleration limits (`limits.rs`, `solver/direct.rs`)
 //! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
 //! Units    m, rad, s
 //! Loops    of closed chains are kept by `coupled.rs`: there the unknowns are what the drives can do
@@ -15,20 +15,19 @@
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
-mod posture;
+pub(super) mod condition;
 mod stages;
 
-pub use posture::Posture;
-
 use super::coupled::Coupled;
-use super::limits::{Clearance, LimitKind, RateBounds};
+use super::limits::Clearance;
 use super::options::ServoOptions;
 use super::projection::{Projecting, TaskFrame};
-use super::saturation::{Saturation, Saturator};
 use super::secondary::Gradient;
 use super::stall::{Evidence, Stall, Watch, classify};
 use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
+use crate::control::solver::bounds::{LimitKind, RateBounds};
+use crate::control::solver::direct::{Saturation, Saturator};
 use crate::error::{Error, Result};
 use crate::inverse::{Method, is_kept};
 use crate::kinematics::Chain;
@@ -147,7 +146,7 @@ impl Servo {
         let hessian = if options
             .secondary
             .iter()
-            .any(|s| matches!(s, super::Secondary::Manipulability { .. }))
+            .any(|s| matches!(s, super::secondary::Secondary::Manipulability { .. }))
         {
             vec![Matrix::zeros(6, n); n]
         } else {
@@ -415,7 +414,7 @@ impl Servo {
     }
 
     /// Those of them that are not locked by their limits.
-    pub(super) fn free_coordinates(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(in crate::control) fn free_coordinates(&self) -> impl Iterator<Item = usize> + '_ {
         let free = |(i, _): &(usize, &usize)| !self.space.is_locked(*i);
         self.coordinates().iter().enumerate().filter(free).map(|(_, &c)| c)
     }

@@ -1,7 +1,7 @@
 //! What goes into a step of the servo and what comes out.
 
 use super::options::ServoOptions;
-use super::saturation::Saturation;
+use crate::control::solver::direct::Saturation;
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Twist};
 
@@ -67,7 +67,7 @@ pub enum Status {
     /// Both errors are within tolerance, and so slow is the tool against the target, by the rates
     /// of this step, that they stay so: speed <= gain * tolerance.
     Reached,
-    /// The error no longer falls; [`Servo::stall`](super::Servo::stall) says why.
+    /// The error no longer falls; [`Servo::stall`](super::controller::Servo::stall) says why.
     Stalled,
 }
 

@@ -2,10 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::limits::LimitKind;
-use super::servo::Servo;
-use super::stall::Stall;
-use super::step::{Status, Step, Target};
+use crate::control::servo::{Servo, Stall, Status, Step, Target};
+use crate::control::solver::LimitKind;
 use crate::error::Result;
 use crate::screws::NoInverse;
 

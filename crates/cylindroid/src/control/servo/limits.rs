@@ -16,44 +16,9 @@
 //!          A dt^2 / 8
 //! Checked  tests/it/servo/limits.rs::limits_*, tests in this file
 
+use crate::control::solver::bounds::{LimitKind, RateBounds};
 use crate::model::Limits;
 use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
-
-/// The rates allowed in the next step, and which limit sets each end.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RateBounds {
-    /// Smallest rate [rad/s or m/s].
-    pub lower: f64,
-    /// Largest rate [rad/s or m/s].
-    pub upper: f64,
-    /// What sets the smallest rate.
-    pub lower_cause: LimitKind,
-    /// What sets the largest rate.
-    pub upper_cause: LimitKind,
-}
-
-/// The kind of a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LimitKind {
-    /// Position: the joint is at its limit or brakes before it.
-    Position,
-    /// Velocity.
-    Velocity,
-    /// Acceleration.
-    Acceleration,
-}
-
-impl LimitKind {
-    /// Its name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Position => "position",
-            Self::Velocity => "velocity",
-            Self::Acceleration => "acceleration",
-        }
-    }
-}
 
 /// A coordinate and the rate it was last given.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,14 +30,6 @@ pub struct Motion1 {
 }
 
 impl RateBounds {
-    /// Any rate.
-    pub(super) const NONE: Self = Self {
-        lower: f64::NEG_INFINITY,
-        upper: f64::INFINITY,
-        lower_cause: LimitKind::Velocity,
-        upper_cause: LimitKind::Velocity,
-    };
-
     /// The interval for the next step of `dt` seconds.
     #[must_use]
     pub fn next(limits: &Limits, now: Motion1, dt: f64) -> Self {
@@ -113,36 +70,6 @@ impl RateBounds {
             (bounds.lower, bounds.upper) = (rate, rate);
         }
         bounds
-    }
-
-    /// The nearest allowed rate; NaN stays NaN, it is near to none.
-    #[must_use]
-    pub fn clamp(&self, rate: f64) -> f64 {
-        if rate < self.lower {
-            self.lower
-        } else if rate > self.upper {
-            self.upper
-        } else {
-            rate
-        }
-    }
-
-    /// The limit that a rate has run into, if any.
-    #[must_use]
-    pub fn met(&self, rate: f64) -> Option<LimitKind> {
-        if rate >= self.upper - LIMIT_MET * self.upper.abs() {
-            Some(self.upper_cause)
-        } else if rate <= self.lower + LIMIT_MET * self.lower.abs() {
-            Some(self.lower_cause)
-        } else {
-            None
-        }
-    }
-
-    /// True if the rate is allowed.
-    #[must_use]
-    pub fn contains(&self, rate: f64) -> bool {
-        rate >= self.lower && rate <= self.upper
     }
 }
 

@@ -5,35 +5,68 @@
 //!          bent: from rest (or the last rates, slowed as far as the bounds allow) towards the
 //!          task, along bounds where they are met
 //! Shapes   M: rates x a, y: a, J M: m x a, bounds: one for each rate
-//! Valid    any M. Without loops M is the identity, and what is scaled is what `saturation.rs`
+//! Valid    any M. Without loops M is the identity, and what is scaled is what `direct.rs`
 //!          gives; what is bent is a way of descent, not its least squares
 //! Source   Flacco, De Luca & Khatib 2015, algorithm 1, for bounds on combinations of rates
-//! Checked  tests in this file (against `saturation.rs`), tests/it/servo/object.rs
+//! Checked  tests in `servo/coupled.rs` (against `direct.rs`), tests/it/servo/object.rs
 
-use super::super::limits::{LimitKind, RateBounds};
-use super::super::saturation::{LEAST_SCALE, Saturation, Span, interval, solve};
-use super::Coupled;
+use super::bounds::{LimitKind, RateBounds};
+use super::direct::{LEAST_SCALE, Saturation, Span, interval, solve};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, RowSpace, Svd, norm};
 use crate::tolerance::HELD_ROWS;
 
 /// The task in y, and what holds for the rates.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct CoupledProblem<'a> {
+pub(in crate::control) struct CoupledProblem<'a> {
     /// J M
-    pub(in super::super) j: &'a Matrix,
-    pub(in super::super) x: &'a [f64],
-    pub(in super::super) method: &'a Method,
-    pub(in super::super) bounds: &'a [RateBounds],
+    pub(in crate::control) j: &'a Matrix,
+    pub(in crate::control) x: &'a [f64],
+    pub(in crate::control) method: &'a Method,
+    pub(in crate::control) bounds: &'a [RateBounds],
     /// Of the last step.
-    pub(in super::super) rates: &'a [f64],
+    pub(in crate::control) rates: &'a [f64],
     /// Their y.
-    pub(in super::super) last: &'a [f64],
+    pub(in crate::control) last: &'a [f64],
 }
 
-impl Coupled {
+/// Coupled joints as the solver sees them: rates = M y + s_0.
+#[derive(Debug, Clone)]
+pub(in crate::control) struct Reduced {
+    /// M in weighted rates, a columns.
+    pub(in crate::control) motions: Matrix,
+    /// s_0 in weighted rates.
+    pub(in crate::control) correction: Vec<f64>,
+    /// The y of the task, of the wishes, and of the rates.
+    pub(in crate::control) primary: Vec<f64>,
+    pub(in crate::control) wish: Vec<f64>,
+    pub(in crate::control) y: Vec<f64>,
+}
+
+impl Reduced {
+    /// For so many rates and drives, at rest.
+    pub(in crate::control) fn new(rates: usize, drives: usize) -> Self {
+        Self {
+            motions: Matrix::zeros(rates, drives),
+            correction: vec![0.0; rates],
+            primary: vec![0.0; drives],
+            wish: vec![0.0; drives],
+            y: vec![0.0; drives],
+        }
+    }
+
+    /// `rates = M y`, without the way to closed loops.
+    pub(in crate::control) fn lift(&self, y: &[f64], rates: &mut [f64]) {
+        self.motions.mul_vec_into(y, rates);
+    }
+
+    /// `M^T pull`, one joint of it.
+    pub(in crate::control) fn along(&self, joint: usize, pull: &[f64]) -> f64 {
+        (0..self.motions.cols()).map(|j| self.motions[(joint, j)] * pull[j]).sum()
+    }
+
     /// Moves primary and wish into the bounds: weighted rates into `out`.
-    pub(in super::super) fn saturate(
+    pub(in crate::control) fn saturate(
         &mut self,
         p: CoupledProblem<'_>,
         out: &mut [f64],
@@ -138,7 +171,7 @@ impl Coupled {
     fn bend(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) -> bool {
         let n = out.len();
         let mut held = Held::default();
-        let mut y = vec![0.0; self.drives];
+        let mut y = vec![0.0; self.motions.cols()];
         let mut rates = self.correction.clone();
         if !rates.iter().zip(p.bounds).all(|(r, b)| b.contains(*r)) {
             let mut moved = vec![0.0; n];
@@ -182,7 +215,7 @@ impl Coupled {
     }
 
     /// The last rates, slowed together as far as the bounds allow.
-    pub(in super::super) fn brake(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) {
+    pub(in crate::control) fn brake(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) {
         // rates (1 - s): from the last ones towards rest.
         let slower: Vec<f64> = p.rates.iter().map(|r| -r).collect();
         let share = interval(p.rates, &slower, p.bounds).map_or(1.0, |span| span.most);
@@ -196,7 +229,7 @@ impl Coupled {
     /// free; nothing where they contradict each other.
     fn hold(&self, held: &Held, p: &CoupledProblem<'_>) -> Option<Free> {
         let row = |k: usize, j: usize| self.motions[(held.rows[k].0, j)];
-        let rows = Matrix::from_fn(held.rows.len(), self.drives, row);
+        let rows = Matrix::from_fn(held.rows.len(), self.motions.cols(), row);
         let svd = Svd::of(&rows);
         let rank = svd.rank(HELD_ROWS).rank;
         let asked: Vec<f64> =
@@ -247,93 +280,5 @@ impl Free {
         let mut out = vec![0.0; self.y.len()];
         solve(&self.svd, p.method, &mut vec![0.0; self.svd.len()], x, &mut out);
         out
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::super::saturation::{Problem, RELEASE, Saturator};
-    use super::*;
-    use crate::control::{ServoOptions, task_space::TaskSpace};
-    use crate::kinematics::{Chain, Reference};
-    use crate::scalar::uniform;
-
-    /// Without loops it is the saturation of a tree: the same scale and rates where the direction
-    /// is kept; where it is bent, rates within the bounds that are no better than the best.
-    #[test]
-    fn without_loops_it_is_the_saturation_of_a_tree() {
-        let mut state = 5_u64;
-        let mut next = move || 2.0 * uniform(&mut state) - 1.0;
-        let panda = crate::model::catalogue::load("panda").unwrap();
-        let drives = (0..panda.n()).filter(|&i| panda.coordinates()[i].actuated).count();
-        let limits: Vec<_> = panda.coordinates().iter().map(|c| c.limits).collect();
-        let chain = Chain::new(&panda, panda.tool());
-        let space = TaskSpace::new(&ServoOptions::new(&panda), &chain, &limits);
-        let method = Method::Truncated { eps: 1e-9 };
-        let (mut kept, mut bent) = (0, 0);
-        for _ in 0..300 {
-            let q: Vec<f64> = panda.home().iter().map(|x| x + next()).collect();
-            let mut coupled = Coupled::new(&panda, &[], Vec::new(), 6).unwrap();
-            coupled.task =
-                panda.state(&q).unwrap().jacobian(panda.tool(), Reference::LocalWorldAligned);
-            let mut reduced = Matrix::zeros(6, drives);
-            coupled.load(&q, &space, 1e-3, &mut reduced).unwrap();
-            let x: Vec<f64> = (0..6).map(|_| next()).collect();
-            let bounds: Vec<RateBounds> = (0..panda.n())
-                .map(|_| RateBounds {
-                    lower: -0.7 * next().abs(),
-                    upper: 0.7 * next().abs(),
-                    lower_cause: LimitKind::Position,
-                    upper_cause: LimitKind::Position,
-                })
-                .collect();
-            let solved = |j: &Matrix, n: usize| {
-                let svd = Svd::of(j);
-                let mut y = vec![0.0; n];
-                solve(&svd, &method, &mut vec![0.0; svd.len()], &x, &mut y);
-                y
-            };
-            let task = coupled.task.clone();
-            let mut rates = solved(&task, panda.n());
-            let problem = Problem { j: &task, x: &x, method: &method, bounds: &bounds };
-            let mut saturator = Saturator::new(6, panda.n());
-            let expected = saturator.apply(problem, &vec![0.0; panda.n()], &mut rates);
-
-            coupled.primary = solved(&reduced, drives);
-            let last = vec![0.0; panda.n()];
-            let (j, rates_before, rest) = (&reduced, &last[..], vec![0.0; drives]);
-            let problem = CoupledProblem {
-                j,
-                x: &x,
-                method: &method,
-                bounds: &bounds,
-                rates: rates_before,
-                last: &rest,
-            };
-            let mut found = vec![0.0; panda.n()];
-            let saturation = coupled.saturate(problem, &mut found);
-            assert_eq!(saturation.bent, expected.bent);
-            assert!(found.iter().zip(&bounds).all(|(r, b)| b.contains(*r)));
-            let left = |rates: &[f64]| -> f64 {
-                let done = task.mul_vec(rates);
-                done.iter().zip(&x).map(|(d, x)| (d - x) * (d - x)).sum()
-            };
-            if saturation.bent {
-                bent += 1;
-                // The best, but for joints that a pull below `RELEASE` would have released: by
-                // convexity that is worth this much at the most.
-                let apart: f64 = found.iter().zip(&rates).map(|(a, b)| (a - b).abs()).sum();
-                let pull = RELEASE * Svd::of(&task).value(0) * left(&rates).sqrt();
-                assert!(left(&found) >= left(&rates) - 2.0 * pull * apart - 1e-9);
-                assert!(left(&found) <= left(&last) + 1e-9);
-            } else {
-                kept += 1;
-                assert!((saturation.scale - expected.scale).abs() < 1e-9);
-                for (a, b) in found.iter().zip(&rates) {
-                    assert!((a - b).abs() < 1e-8, "{found:?} {rates:?}");
-                }
-            }
-        }
-        assert!(kept > 50 && bent > 5, "{kept} kept, {bent} bent");
     }
 }

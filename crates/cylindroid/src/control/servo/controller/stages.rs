@@ -1,14 +1,15 @@
 //! The stages of a servo step, in their order: task, wishes, bounds, rates.
 
 use super::super::approach;
-use super::super::coupled::CoupledProblem;
-use super::super::limits::{LimitKind, Motion1, RateBounds};
+use super::super::limits::Motion1;
 use super::super::options::Projector;
-use super::super::saturation::{Problem, RELEASE, Saturation, solve};
 use super::super::stall::Effort;
 use super::super::step::Wanted;
 use super::Servo;
 use crate::closure::assemble;
+use crate::control::solver::bounds::{LimitKind, RateBounds};
+use crate::control::solver::direct::{Problem, RELEASE, Saturation, solve};
+use crate::control::solver::reduced::CoupledProblem;
 use crate::error::Result;
 use crate::linalg::{RowSpace, dot};
 use crate::spatial::Twist;
@@ -32,8 +33,8 @@ impl Servo {
                 let way = |(w, rate): (&mut f64, &f64)| *w = rate / gain.position;
                 self.wish.iter_mut().zip(&self.primary).for_each(way);
             } else if let Some(coupled) = &mut self.coupled {
-                self.svd.apply_gains_into(&self.possible, &self.gains, &mut coupled.wish);
-                coupled.lift(&coupled.wish, &mut self.wish);
+                self.svd.apply_gains_into(&self.possible, &self.gains, &mut coupled.reduced.wish);
+                coupled.reduced.lift(&coupled.reduced.wish, &mut self.wish);
             } else {
                 self.svd.apply_gains_into(&self.possible, &self.gains, &mut self.wish);
             }
@@ -66,8 +67,8 @@ impl Servo {
     /// `primary = J+ x`
     pub(super) fn solve(&mut self) {
         if let Some(coupled) = &mut self.coupled {
-            solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut coupled.primary);
-            coupled.lift(&coupled.primary, &mut self.primary);
+            solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut coupled.reduced.primary);
+            coupled.reduced.lift(&coupled.reduced.primary, &mut self.primary);
         } else {
             solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
         }
@@ -109,10 +110,10 @@ impl Servo {
         let rates = self.space.scaled_rates(&self.rates);
         let last = coupled.effort_of(&self.rates);
         let problem = CoupledProblem { j, x, method, bounds, rates: &rates, last: &last };
-        let mut saturation = coupled.saturate(problem, &mut self.primary);
+        let mut saturation = coupled.reduced.saturate(problem, &mut self.primary);
         self.is_escaping = coupled.is_escaping(q, &self.primary, &self.space, self.options.dt)?;
         if self.is_escaping {
-            coupled.brake(&problem, &mut self.primary);
+            coupled.reduced.brake(&problem, &mut self.primary);
             saturation = Saturation { scale: 0.0, bent: false };
         }
         Ok(saturation)
@@ -120,7 +121,7 @@ impl Servo {
 
     /// What the task gets of the rates of this step.
     pub(super) fn load_done(&mut self) {
-        let rates = self.coupled.as_ref().map_or(&self.primary, |coupled| &coupled.y);
+        let rates = self.coupled.as_ref().map_or(&self.primary, |coupled| &coupled.reduced.y);
         self.task.mul_vec_into(rates, &mut self.done);
     }
 
@@ -165,7 +166,7 @@ impl Servo {
             Projector::Retained => RowSpace::retained(&self.svd, &self.kept),
         };
         space.project_out(match &mut self.coupled {
-            Some(coupled) => &mut coupled.wish,
+            Some(coupled) => &mut coupled.reduced.wish,
             None => &mut self.wish,
         });
     }
@@ -259,7 +260,7 @@ impl Servo {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             let (q, l) = (self.chain.q()[i], self.limits[i]);
             let pull: f64 = match &self.coupled {
-                Some(coupled) => coupled.along(i, &descent),
+                Some(coupled) => coupled.reduced.along(i, &descent),
                 None => {
                     let rest = self.x.iter().zip(&self.done).map(left);
                     self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum()

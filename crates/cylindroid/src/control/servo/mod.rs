@@ -1,0 +1,28 @@
+//! The servo: one step from joint positions and a target to joint velocities.
+//!
+//! Read `options`, `step` (the input and output of a step) and `controller`, which runs the stages
+//! in `controller/stages.rs`. A stage calls `task_space` (scaling), `projection` and `secondary`
+//! (primary and secondary task), `coupled` (closed chains), `approach` and `limits` (braking), then
+//! the solver; `stall` reports why there is no progress. `reference_point` compares inverses.
+
+mod approach;
+mod controller;
+mod coupled;
+mod limits;
+mod options;
+mod projection;
+mod reference_point;
+mod secondary;
+mod stall;
+mod step;
+mod task_space;
+
+pub use controller::Servo;
+pub use controller::condition::Posture;
+pub use limits::Motion1;
+pub use options::{Gain, Projector, ServoOptions, Speed, Tolerance};
+pub use projection::Projection;
+pub use reference_point::{InverseChoice, RatesAtPoint, ReferencePoints};
+pub use secondary::Secondary;
+pub use stall::Stall;
+pub use step::{Status, Step, Target};
