@@ -2,7 +2,7 @@
 
 use cylindroid::control::{Gain, Projection, Projector, Secondary, Speed, Task};
 use cylindroid::inverse::HyperbolicDamping;
-use cylindroid::{Error, Mechanism, Method, Reference, ServoOptions, Twist};
+use cylindroid::{Error, Mechanism, Method, ReferenceFrame, ServoOptions, Twist};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -106,7 +106,7 @@ impl InverseChoice<'_> {
             },
             _ => Projection::Oblique {
                 complement: self.give_up.clone().unwrap_or_default(),
-                reference: Reference::Local,
+                reference: ReferenceFrame::Local,
             },
         })
     }
@@ -145,7 +145,7 @@ pub(crate) fn task(
     task.axes = match axes {
         None => task.axes,
         // The error is taken at the tool, so the world's axes are meant.
-        Some("world") => Reference::LocalWorldAligned,
+        Some("world") => ReferenceFrame::LocalWorldAligned,
         Some(name) => reference_of(name)?,
     };
     Ok(task)

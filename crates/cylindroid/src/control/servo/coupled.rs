@@ -227,7 +227,7 @@ mod tests {
     use crate::control::solver::direct::{Problem, RELEASE, Saturator, solve};
     use crate::control::solver::reduced::CoupledProblem;
     use crate::inverse::Method;
-    use crate::kinematics::{Chain, Reference};
+    use crate::kinematics::{Chain, ReferenceFrame};
     use crate::linalg::Svd;
     use crate::scalar::uniform;
 
@@ -248,7 +248,7 @@ mod tests {
             let q: Vec<f64> = panda.home().iter().map(|x| x + next()).collect();
             let mut coupled = Coupled::new(&panda, &[], Vec::new(), 6).unwrap();
             coupled.task =
-                panda.state(&q).unwrap().jacobian(panda.tool(), Reference::LocalWorldAligned);
+                panda.state(&q).unwrap().jacobian(panda.tool(), ReferenceFrame::LocalWorldAligned);
             let mut reduced = Matrix::zeros(6, drives);
             coupled.load(&q, &space, 1e-3, &mut reduced).unwrap();
             let x: Vec<f64> = (0..6).map(|_| next()).collect();

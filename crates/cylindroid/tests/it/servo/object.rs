@@ -4,7 +4,7 @@ use cylindroid::catalogue;
 use cylindroid::closure::{ClosedChain, Motions, Rows, assemble};
 use cylindroid::control::{Outcome, Secondary, Stall, Task, drive};
 use cylindroid::model::Mechanism;
-use cylindroid::{Pose, Reference, Servo, ServoOptions, Vec3};
+use cylindroid::{Pose, ReferenceFrame, Servo, ServoOptions, Vec3};
 
 use crate::support::Random;
 
@@ -150,8 +150,10 @@ fn drives_move_with_the_least_weighted_effort() {
             assert!(along.abs() < 1e-9 * size, "{along:e} of {size:e}");
         }
         // And the object moves as it was asked to.
-        let jacobian =
-            two_arm.state(&q).unwrap().jacobian(two_arm.reference(), Reference::LocalWorldAligned);
+        let jacobian = two_arm
+            .state(&q)
+            .unwrap()
+            .jacobian(two_arm.reference(), ReferenceFrame::LocalWorldAligned);
         let twist = jacobian.mul_vec(rates);
         assert!((twist[2] - 5e-3).abs() < 1e-9, "{twist:?}");
     }
@@ -174,7 +176,7 @@ fn redundancy_is_the_null_space() {
     let twist = two_arm
         .state(&q)
         .unwrap()
-        .jacobian(two_arm.reference(), Reference::LocalWorldAligned)
+        .jacobian(two_arm.reference(), ReferenceFrame::LocalWorldAligned)
         .mul_vec(rates);
     assert!(twist.iter().all(|x| x.abs() < 1e-7), "{twist:?}");
     // The gradient of a manipulability of the cut tree is refused by name.

@@ -15,7 +15,7 @@ fn secondary_motion_stays_in_the_null_space() {
     };
     for q in [robot.home().to_vec(), aligned_wrist] {
         let state = robot.state(&q).unwrap();
-        let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
         for _ in 0..20 {
             let wanted = random.vector(7);
             let mut servo = servo(&robot, |o| o.method = Method::Truncated { eps: 0.05 });
@@ -37,7 +37,7 @@ fn retained_projector_disturbs_the_task_where_directions_were_cut() {
     // Stretched but for a little: the radial direction is cut.
     let q = [0.2, 1e-3, -2e-3];
     let state = robot.state(&q).unwrap();
-    let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
     let disturbance = |projector| {
         let mut servo = servo(&robot, |o| {
             o.task = Task::POSITION;
@@ -81,7 +81,7 @@ fn secondary_tasks_do_what_they_say() {
     let q = after(Secondary::Centring { gain: 1.0 });
     assert!(distance(&q, &[0.0; 7]) < distance(&start, &[0.0; 7]) - 0.1);
     let w = |q: &[f64]| {
-        let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
+        let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
         Svd::of(&j).values().product::<f64>()
     };
     let q = after(Secondary::Manipulability { gain: 100.0 });
@@ -95,10 +95,10 @@ fn secondary_manipulability_gradient_by_finite_differences() {
     let q = [0.3, 0.7, -0.4, 1.1];
     let task = Task {
         components: [true, false, false, false, false, false],
-        axes: Reference::LocalWorldAligned,
+        axes: ReferenceFrame::LocalWorldAligned,
     };
     let w = |q: &[f64]| {
-        let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
+        let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
         (0..4).map(|k| (j[(0, k)] / robot.reach()).powi(2)).sum::<f64>().sqrt()
     };
     let h = 1e-6;
@@ -116,7 +116,7 @@ fn secondary_manipulability_gradient_by_finite_differences() {
     let state = robot.state(&q).unwrap();
     servo.step(&q, state.pose(robot.tool())).unwrap();
     // The gradient, projected on the null space of the one row.
-    let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
     let row: Vec<f64> = (0..4).map(|k| j[(0, k)]).collect();
     let norm2: f64 = row.iter().map(|x| x * x).sum();
     let along: f64 = row.iter().zip(gradient).map(|(r, g)| r * g).sum::<f64>() / norm2;
