@@ -5,8 +5,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use cylindroid::control::{
-    Admittance, AdmittanceGain, Gain, HybridInput, HybridLaw, Projection, Secondary, SharedInput,
-    SharedLaw, Task,
+    Admittance, AdmittanceGain, Gain, HybridInput, HybridLaw, Projection, SecondaryTask,
+    SharedInput, SharedLaw, Task,
 };
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
@@ -82,10 +82,10 @@ fn hot_paths_allocate_nothing() {
                     // So fast that velocity, acceleration and position limits all bite.
                     gain: Gain { position: 100.0, orientation: 100.0 },
                     secondary: vec![
-                        Secondary::Centring { gain: 1.0 },
-                        Secondary::Posture { q: home.clone(), gain: 1.0 },
-                        Secondary::LimitAvoidance { gain: 1.0, margin: 0.1 },
-                        Secondary::Manipulability { gain: 1.0 },
+                        SecondaryTask::Centring { gain: 1.0 },
+                        SecondaryTask::Posture { q: home.clone(), gain: 1.0 },
+                        SecondaryTask::LimitAvoidance { gain: 1.0, margin: 0.1 },
+                        SecondaryTask::Manipulability { gain: 1.0 },
                     ],
                     ..ServoOptions::new(&robot)
                 };

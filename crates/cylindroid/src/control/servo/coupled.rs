@@ -164,9 +164,9 @@ impl Coupled {
         Ok(self.find_escape(&ahead, space).is_some_and(|then| then.share <= now.share))
     }
 
-    /// Turns wished rates of all joints (not weighted) into `wish`.
-    pub(super) fn load_wish(&mut self, wanted: &[f64]) {
-        self.reduced.wish = self.effort_of(wanted);
+    /// Projects joint velocities of the secondary tasks (all joints, not weighted) on the actuated motions.
+    pub(super) fn load_secondary(&mut self, velocities: &[f64]) {
+        self.reduced.secondary = self.effort_of(velocities);
     }
 
     /// The y of rates of all joints (not weighted).

@@ -171,7 +171,7 @@ impl Projecting {
         }
     }
 
-    /// Why the wanted projector was not used.
+    /// Why the requested projector was not used.
     pub(super) fn reason(&self) -> Option<NoInverse> {
         self.reason
     }
@@ -221,7 +221,7 @@ fn projector(
     if norm > largest { Err(NoInverse::TooLarge { norm }) } else { Ok(Some(found)) }
 }
 
-/// Why there is no hyperbolic inverse of pitch `h` that is as small as wanted.
+/// Why there is no hyperbolic inverse of pitch `h` within the bound of its norm.
 fn why_not(svd: &Svd, k: usize, h: f64, length: f64, norm: f64) -> NoInverse {
     let twist = |i: usize| {
         let [a, b, c, d, e, f] = std::array::from_fn(|r| svd.u(i)[r]);

@@ -75,8 +75,8 @@ fn speed_is_saturated_as_a_whole() {
         twist.linear.norm() <= 0.05 * (1.0 + 1e-9) && twist.angular.norm() <= 0.1 * (1.0 + 1e-9)
     );
     let ratio = twist.linear.norm() / twist.angular.norm();
-    let wanted = Vec3::new(-0.1, 0.2, 0.1).norm() / Vec3::new(0.2, 0.1, 0.0).norm();
-    assert!((ratio - wanted).abs() < 1e-6 * wanted);
+    let expected = Vec3::new(-0.1, 0.2, 0.1).norm() / Vec3::new(0.2, 0.1, 0.0).norm();
+    assert!((ratio - expected).abs() < 1e-6 * expected);
 }
 
 /// Whatever the options and the limits (equal ends, velocity or acceleration 0, a screw, a follower):
@@ -106,8 +106,8 @@ fn limits_hold_for_any_options() {
             }
             if round % 3 == 0 {
                 o.secondary = vec![
-                    Secondary::Centring { gain: 5.0 },
-                    Secondary::Manipulability { gain: 5.0 },
+                    SecondaryTask::Centring { gain: 5.0 },
+                    SecondaryTask::Manipulability { gain: 5.0 },
                 ];
             }
             if round % 5 == 0 {

@@ -15,7 +15,7 @@ mod ways;
 
 pub(crate) use cylindroid::control::{
     Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Motion1, Outcome, Projector,
-    RateBounds, Secondary, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
+    RateBounds, SecondaryTask, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
 };
 pub(crate) use cylindroid::inverse::Method;
 pub(crate) use cylindroid::linalg::{RowSpace, Svd};

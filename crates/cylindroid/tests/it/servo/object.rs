@@ -2,7 +2,7 @@
 
 use cylindroid::catalogue;
 use cylindroid::closure::{ClosedChain, Motions, Rows, assemble};
-use cylindroid::control::{Outcome, Secondary, Stall, Task, drive};
+use cylindroid::control::{Outcome, SecondaryTask, Stall, Task, drive};
 use cylindroid::model::Mechanism;
 use cylindroid::{Pose, ReferenceFrame, Servo, ServoOptions, Vec3};
 
@@ -159,7 +159,7 @@ fn drives_move_with_the_least_weighted_effort() {
     }
 }
 
-/// What the two arms can do beside holding the box is the null space: a wish there moves joints
+/// What the two arms can do beside holding the box is the null space: a secondary task moves joints
 /// and not the box.
 #[test]
 fn redundancy_is_the_null_space() {
@@ -167,7 +167,7 @@ fn redundancy_is_the_null_space() {
     let mut options = ServoOptions::new(&two_arm);
     let q = assembled(&two_arm, 0.0, &mut Random(15));
     let posture: Vec<f64> = q.iter().map(|x| x + 0.3).collect();
-    options.secondary = vec![Secondary::Posture { q: posture, gain: 1.0 }];
+    options.secondary = vec![SecondaryTask::Posture { q: posture, gain: 1.0 }];
     let mut servo = Servo::new(&two_arm, options).unwrap();
     let target = two_arm.state(&q).unwrap().pose(two_arm.reference());
     servo.step(&q, target).unwrap();
@@ -181,7 +181,7 @@ fn redundancy_is_the_null_space() {
     assert!(twist.iter().all(|x| x.abs() < 1e-7), "{twist:?}");
     // The gradient of a manipulability of the cut tree is refused by name.
     let mut options = ServoOptions::new(&two_arm);
-    options.secondary = vec![Secondary::Manipulability { gain: 1.0 }];
+    options.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
     let error = Servo::new(&two_arm, options).unwrap_err().to_string();
     assert!(error.contains("manipulability"), "{error}");
 }
