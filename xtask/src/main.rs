@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person
 
 mod bench_peers;
+mod book;
 mod instructions;
 mod layers;
 mod models;
@@ -23,6 +24,8 @@ cargo xtask <task>
   python    builds the Python package, installs and tests it (needs Python 3 and PyPI)
   viewer    builds the viewer's page (needs Node.js with npm); --test drives it in Chromium against
             the server, --picture draws the picture of the README
+  book      builds the book into target/book and checks its links (needs Python, Node.js with npm,
+            PyPI and the npm registry); --serve shows it while you write
   layers    checks that the library's modules import only those before them, and that files are
             short
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
@@ -56,6 +59,7 @@ fn run() -> Result<()> {
         Some("setup") => models::fetch().map(|path| println!("robot files in {}", path.display())),
         Some("python") => python::test(),
         Some("viewer") => viewer::task(std::env::args().nth(2).as_deref()),
+        Some("book") => book::task(std::env::args().nth(2).as_deref()),
         Some("layers") => layers::check(),
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{layers, models, python, viewer};
+use crate::{book, layers, models, python, viewer};
 
 /// The workspace.
 pub(crate) fn root() -> PathBuf {
@@ -74,17 +74,20 @@ pub(crate) fn quick() -> Result<()> {
     })
 }
 
+/// The library's: the command line documents itself with --help.
+pub(crate) fn documentation() -> Result<()> {
+    let arguments = ["doc", "--quiet", "--package", "cylindroid", "--no-deps"];
+    run(cargo(&arguments).env("RUSTDOCFLAGS", "-D warnings"))
+}
+
 /// Everything: this is the whole CI.
 pub(crate) fn test() -> Result<()> {
     let robots = models::fetch()?;
     // Before anything is compiled: the command line embeds the page.
     step("viewer page", viewer::build)?;
     quick()?;
-    step("documentation", || {
-        // The library's alone: the command line documents itself with --help.
-        let arguments = ["doc", "--quiet", "--package", "cylindroid", "--no-deps"];
-        run(cargo(&arguments).env("RUSTDOCFLAGS", "-D warnings"))
-    })?;
+    step("documentation", documentation)?;
+    step("book", book::build)?;
     step("tests", || {
         run(cargo(&["test", "--quiet", "--workspace"]).env("CYLINDROID_TEST_ROBOTS", &robots))
     })?;

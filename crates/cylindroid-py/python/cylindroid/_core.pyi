@@ -349,7 +349,7 @@ class HybridLaw:
         self,
         projector: Projector,
         error: ArrayLike,
-        desired: ArrayLike,
+        wanted: ArrayLike,
         measured: ArrayLike,
         feed_forward: ArrayLike | None = None,
     ) -> HybridCommand: ...
@@ -368,7 +368,7 @@ class InternalForceCommand:
 class InternalForceLaw:
     def __new__(cls, gain: float, stiffness: ArrayLike) -> InternalForceLaw: ...
     def command(
-        self, constraint: Constraint, desired: ArrayLike, measured: ArrayLike
+        self, constraint: Constraint, wanted: ArrayLike, measured: ArrayLike
     ) -> InternalForceCommand: ...
 
 @final

@@ -4,7 +4,7 @@ use cylindroid::closure::{ClosedChain, Mobility, Motions};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec, LoopSpec};
-use cylindroid::{Error, Mechanism, ReferenceFrame, catalogue};
+use cylindroid::{Error, Mechanism, Reference, catalogue};
 
 use crate::support::{Random, robots};
 
@@ -79,7 +79,7 @@ fn trees_are_serial() {
         let state = robot.state(&random.q(&robot)).unwrap();
         let chain = ClosedChain::of(&state, Some(robot.tool()), Some(1.0)).unwrap();
         let got = kinematic(&chain);
-        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+        let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
         let svd = Svd::of(&j);
         let expected: Vec<f64> = svd.values().filter(|s| *s > 1e-9).map(|s| s * s).collect();
         assert_eq!(got.len(), expected.len(), "{}", robot.name());
@@ -173,7 +173,7 @@ fn motions_of_the_reference() {
         let state = robot.state(&q).unwrap();
         let chain = ClosedChain::of(&state, None, None).unwrap();
         let system = ScrewSystem::of(&chain.reference_twists(&state), &options).unwrap();
-        let j = state.jacobian(robot.reference(), ReferenceFrame::World);
+        let j = state.jacobian(robot.reference(), Reference::World);
         let columns = ScrewSystem::of_columns(&j, &options).unwrap();
         assert_eq!(system.order(), columns.order(), "{name}");
         assert!(system.sine_to_system(&columns) < 1e-9, "{name}");
