@@ -68,7 +68,7 @@ export type State = {
   outside_limits: number[];
   loops: { a: Vec3; b: Vec3 }[];
   contacts: { point: Vec3; normal: Vec3; other: Vec3 }[];
-  gap: { distance: number; angle: number; closed: boolean } | null;
+  closure_error: { distance: number; angle: number; closed: boolean } | null;
   overlays: Partial<OverlayData>;
 };
 

@@ -27,10 +27,10 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use crate::closed::{
-        PyAssembly, PyAssemblyModes, PyBranch, PyConstraint, PyContactForces, PyDirection,
-        PyFingerContact, PyFiniteMobility, PyFollowed, PyGap, PyGradient, PyGraspQuality,
-        PyJointMobility, PyManipulability, PyMobility, PyPolytope, PySingularity, PySpectrum,
-        PyTorques, grasp::grasp_quality,
+        PyAssembly, PyAssemblyModes, PyBranch, PyConstraint, PyContactForces, PyContinuationResult,
+        PyDirection, PyFingerContact, PyFiniteMobility, PyGradient, PyGraspQuality,
+        PyJointMobility, PyJointTorques, PyLoopClosureError, PyManipulability, PyMobility,
+        PyPolytope, PySingularity, PySpectrum, grasp::grasp_quality,
     };
     #[pymodule_export]
     use crate::control::{

@@ -22,7 +22,7 @@ def test_counts_are_dimensions(name):
     np.testing.assert_allclose(c.matrix, np.hstack([c.Ja, c.Jp, -c.G.T]))
     assert m.dof == a + p + d - np.linalg.matrix_rank(c.matrix, 1e-9)
     assert m.hyperstatic == t - np.linalg.matrix_rank(c.matrix, 1e-9)
-    assert m.dof - m.hyperstatic == m.grubler
+    assert m.dof - m.hyperstatic == m.gruebler_kutzbach
     np.testing.assert_allclose(c.matrix @ m.dof_basis, 0, atol=1e-9)
     for space, count in [
         (m.dof_basis, m.dof),
@@ -36,7 +36,7 @@ def test_counts_are_dimensions(name):
     np.testing.assert_allclose(m.internal_basis.T @ relation[0], 0, atol=1e-9)
     np.testing.assert_allclose(m.zero_torque_basis.T @ relation[1], 0, atol=1e-9)
     assert [j.name for j in m.joints] == m.actuated + m.passive
-    assert m.gap.distance < 1e-9 and m.length > 0 and m.doubts == []
+    assert m.closure_error.distance < 1e-9 and m.length > 0 and m.ambiguous_ranks == []
     assert "dof" in repr(m) and "<table>" in m._repr_html_() and repr(c)
 
 
@@ -64,7 +64,7 @@ def test_bare_matrices():
     Ja, Jp, G = rng.normal(size=(4, 2)), rng.normal(size=(4, 3)), rng.normal(size=(2, 4))
     c = cy.Constraint(Ja, Jp, G)
     m = c.mobility()
-    assert m.dof == 3 and m.singularity is None and m.finite is None and m.gap is None
+    assert m.dof == 3 and m.singularity is None and m.finite is None and m.closure_error is None
     assert c.actuated == ["qa1", "qa2"] and c.components == ["u1", "u2"]
     scaled = cy.Constraint(Ja, Jp, G, length=0.5, units=("mmrr", "rr", "rmr", "mr"))
     assert scaled.length == 0.5 and scaled.mobility().dof == 3
@@ -156,7 +156,7 @@ def test_measures_are_the_numbers_of_reports():
             np.testing.assert_allclose(ends, np.array(k.kinematic.finite)[[0, -1]], rtol=1e-10)
             for name in "type_i type_ii configuration_space passive".split():
                 np.testing.assert_allclose(found[name][i], m.singularity.distances[name], atol=1e-12)
-            assert found["closed"][i] and abs(found["gap_distance"][i] - m.gap.distance) < 1e-13
+            assert found["closed"][i] and abs(found["closure_distance"][i] - m.closure_error.distance) < 1e-13
     for given, found in asked:
         again = r.measures(Q, **given)
         assert all(np.array_equal(again[name], found[name]) for name in found), given
@@ -248,12 +248,12 @@ def test_grasps():
     smooth = [finger(a, mu=0.0) for a in (0.3, 0.3 + 2 * np.pi / 3, 0.3 + 4 * np.pi / 3)]
     assert not cy.grasp_quality(smooth, planar=True).closed
     assert not cy.grasp_quality(three[:1], planar=True).closed
-    space = cy.grasp_quality(three, effort="each")
+    space = cy.grasp_quality(three, metric="linf")
     assert space.closed and "force closure" in repr(space)
     with pytest.raises(cy.InvalidOptionError, match="normal"):
         cy.grasp_quality([cy.FingerContact([0, 0, 0], [2, 0, 0])])
     with pytest.raises(cy.UnknownNameError):
-        cy.grasp_quality(three, effort="all")
+        cy.grasp_quality(three, metric="all")
 
 
 @pytest.mark.parametrize("name", CLOSED)
@@ -261,8 +261,8 @@ def test_assembly(name):
     r = cy.load(name)
     guess = r.home + rng.uniform(-0.05, 0.05, r.n)
     found = r.assemble(guess)
-    assert found and found.closed and found.gap.distance < 1e-9 and found.steps > 0
-    assert r.constraint(found.q).gap.distance < 1e-9 and repr(found)
+    assert found and found.closed and found.closure_error.distance < 1e-9 and found.steps > 0
+    assert r.constraint(found.q).closure_error.distance < 1e-9 and repr(found)
     assert found.at_limit == []
 
 
@@ -283,18 +283,18 @@ def test_modes_and_ways():
     r = cy.load("four-bar")
     crank = r.joint_names[0]
     found = r.assembly_modes([0.3, 0.0, 0.0], hold=[crank])
-    assert len(found) == 2 == len(found.modes) and found.continuum == [0, 0]
-    assert sum(found.found) == found.closed <= found.starts and found.chance_of_more < 0.5
+    assert len(found) == 2 == len(found.modes) and found.self_motion_dof == [0, 0]
+    assert sum(found.found) == found.closed <= found.starts and found.unseen_probability < 0.5
     for mode in found.modes:
         assert mode.closed and mode.q[0] == 0.3
-        assert r.constraint(mode.q).gap.distance < 1e-9
-    way = r.follow(r.home, {crank: 0.2})
-    assert way.reached and way.end == "reached" and way.share == 1.0 and way.screw is None
-    assert way.path.shape == (len(way.shares), 3) and (np.diff(way.shares) > 0).all()
+        assert r.constraint(mode.q).closure_error.distance < 1e-9
+    way = r.track_path(r.home, {crank: 0.2})
+    assert way.reached and way.end == "reached" and way.fraction == 1.0 and way.screw is None
+    assert way.path.shape == (len(way.fractions), 3) and (np.diff(way.fractions) > 0).all()
     np.testing.assert_array_equal(way.path[-1], way.q)
     assert abs(way.q[0] - 0.2) < 1e-12 and (way.distances > 0).all()
     with pytest.raises(cy.UnknownNameError):
-        r.follow(r.home, {"x": 0.2})
+        r.track_path(r.home, {"x": 0.2})
 
 
 def test_limits_that_are_not_symmetric():
@@ -333,7 +333,7 @@ def test_the_grasp_of_a_mechanism():
     assert rough.closed and rough.epsilon[0] > 0
     assert r.grasp_quality().epsilon == pytest.approx(r.grasp_quality(mu=0.5).epsilon)
     assert not r.grasp_quality(mu=0.0).closed
-    assert r.grasp_quality(effort="each", strength=2.0).closed
+    assert r.grasp_quality(metric="linf", strength=2.0).closed
 
 
 HAND = """

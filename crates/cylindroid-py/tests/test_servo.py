@@ -162,7 +162,7 @@ def test_closed_chains_are_driven():
     c = cy.Servo(r, task="position")
     outcome = c.drive(start, target)
     assert outcome.reached, outcome
-    assert r.constraint(outcome.q).gap.distance < 1e-9
+    assert r.constraint(outcome.q).closure_error.distance < 1e-9
     np.testing.assert_allclose(r.fk(outcome.q, r.reference)[:2, 3], target[:2, 3], atol=1e-6)
 
 

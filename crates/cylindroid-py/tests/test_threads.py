@@ -61,7 +61,7 @@ def beside(call):
         lambda: panda.manipulability(Q[:500]),
         lambda: stewart.mobility().singularity,
         lambda: linkage.assembly_modes(hold=linkage.joint_names[:1]),
-        lambda: linkage.follow(linkage.home, {linkage.joint_names[0]: 0.5}, step=1e-3),
+        lambda: linkage.track_path(linkage.home, {linkage.joint_names[0]: 0.5}, step=1e-3),
         lambda: stewart.constraint().velocity_polytope(np.ones(6)),
     ],
 )

@@ -44,8 +44,8 @@ target = linkage.fk(q, linkage.reference)
 target[:2, 3] += [0.1, 0.1]
 outcome = servo.drive(q, target, record=True)
 print(outcome)
-assert outcome.reached and linkage.constraint(outcome.q).gap.distance < 1e-9
+assert outcome.reached and linkage.constraint(outcome.q).closure_error.distance < 1e-9
 
 # The way of the first crank, until a singularity is near or the goal is reached.
-way = linkage.follow(q, {linkage.joint_names[0]: q[0] + 1.5})
+way = linkage.track_path(q, {linkage.joint_names[0]: q[0] + 1.5})
 print(way, "nearest to a singularity by", f"{way.distances.min():.2f}")

@@ -3,7 +3,9 @@
 
 use std::f64::consts::PI;
 
-use cylindroid::closure::{Blocks, ClosedChain, Constraint, Mobility, Motions, assemble};
+use cylindroid::closure::{
+    ClosedChain, Constraint, ConstraintBlocks, Mobility, MotionSpace, assemble,
+};
 use cylindroid::ik::{Analytic, Goal, IkOptions, Solver};
 use cylindroid::inverse::{self, Method};
 use cylindroid::kinematics::{Batch, Chain};
@@ -234,7 +236,7 @@ fn chain(name: &str) -> Constraint {
             },
         )
     };
-    Constraint::new(Blocks {
+    Constraint::new(ConstraintBlocks {
         actuated: joints(a, 0),
         passive: joints(p, 40),
         grasp: Matrix::from_fn(d, t, |i, j| entry(j, i + 80)),
@@ -245,7 +247,7 @@ fn chain(name: &str) -> Constraint {
 #[divan::bench(args = CHAINS.map(|c| c.0))]
 fn closed_chain_relation(bencher: Bencher<'_, '_>, name: &str) {
     let constraint = chain(name);
-    bencher.bench_local(|| black_box(Motions::of(black_box(&constraint)).relation()));
+    bencher.bench_local(|| black_box(MotionSpace::of(black_box(&constraint)).relation()));
 }
 
 #[divan::bench(args = CHAINS.map(|c| c.0))]
@@ -256,7 +258,7 @@ fn closed_chain_mobility(bencher: Bencher<'_, '_>, name: &str) {
 
 #[divan::bench(args = CHAINS.map(|c| c.0))]
 fn closed_chain_manipulability(bencher: Bencher<'_, '_>, name: &str) {
-    let relation = Motions::of(&chain(name)).relation();
+    let relation = MotionSpace::of(&chain(name)).relation();
     bencher.bench_local(|| {
         black_box(Manipulability::of(black_box(&relation), &Metrics::UNIT).unwrap())
     });
@@ -298,7 +300,7 @@ fn mechanism_mobility_and_manipulability(bencher: Bencher<'_, '_>, name: &str) {
 }
 
 fn report(constraint: &Constraint) -> (Mobility, Manipulability) {
-    let motions = Motions::of(constraint);
+    let motions = MotionSpace::of(constraint);
     let relation = motions.relation();
     let mobility = Mobility::from_parts(constraint, &motions, &relation);
     (mobility, Manipulability::of(&relation, &Metrics::UNIT).unwrap())

@@ -45,7 +45,7 @@ export function mobilityPanel(): Watch {
         known.length > 0 && h("h3", {}, "Distance to singularities (0 is there)"),
         known.length > 0 && pairs(...known.map(([key, words]): [string, string] => [words, short(numberIn(distances, key))])),
         motions(report),
-        ...listIn(report, "doubts").map((doubt) => h("p", { class: "doubt" }, String(doubt))),
+        ...listIn(report, "ambiguous_ranks").map((doubt) => h("p", { class: "doubt" }, String(doubt))),
         h("p", { class: "note" }, `Ranks in metres over ${short(numberIn(report, "length"))} m`),
       );
     },

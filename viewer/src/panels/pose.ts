@@ -21,8 +21,8 @@ export function posePanel(): Panel & { show: (scene: Scene, state: State) => voi
         servo,
         h("p", { "data-status": status }, h("span", { class: `verdict ${status === "reached" ? "good" : status === "stalled" || status === "unavailable" ? "bad" : ""}` }, WORDS[status]), " ", h("span", { class: "note" }, sentence)),
         names.length > 0 && h("p", { class: "note" }, `At limits: ${names.join(", ")}`),
-        state.gap && !state.gap.closed &&
-          h("p", { class: "doubt" }, `Loops are open by ${short(state.gap.distance)} m, ${short(state.gap.angle)} rad`),
+        state.closure_error && !state.closure_error.closed &&
+          h("p", { class: "doubt" }, `Loops are open by ${short(state.closure_error.distance)} m, ${short(state.closure_error.angle)} rad`),
       );
       fill(
         table,

@@ -5,7 +5,7 @@ mod panel;
 
 use std::path::Path;
 
-use cylindroid::closure::{ClosedChain, Motions};
+use cylindroid::closure::{ClosedChain, MotionSpace};
 use cylindroid::linalg::Interval;
 use cylindroid::manipulability::{
     Manipulability, Metrics, Polytope, Spectrum, force_polytope, velocity_polytope,
@@ -92,7 +92,7 @@ struct Block<'a> {
 pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
     let planar = drawing.chain.constraint.object() == 3;
     let planes: &[[usize; 2]] = if planar { &[[0, 1]] } else { &[[0, 1], [0, 2], [1, 2]] };
-    let relation = Motions::of(&drawing.chain.constraint).relation();
+    let relation = MotionSpace::of(&drawing.chain.constraint).relation();
     let (mut motion, mut force) = (Vec::new(), Vec::new());
     for &plane in planes {
         let map = Matrix::from_fn(2, relation.object(), |i, j| f64::from(u8::from(plane[i] == j)));

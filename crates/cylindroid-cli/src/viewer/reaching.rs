@@ -1,6 +1,6 @@
 //! Configurations that a client asks for: one coordinate, or all of them, with loops kept closed.
 
-use cylindroid::closure::{FollowOptions, PathEnd, assemble, follow};
+use cylindroid::closure::{ContinuationOptions, PathEnd, assemble, track_path};
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, Result, State};
 
@@ -79,10 +79,10 @@ fn along(state: &State, i: usize, goal: f64) -> Result<(Vec<f64>, PathEnd)> {
             continue;
         }
         let goals: Vec<f64> = held.iter().map(|&c| if c == i { goal } else { q[c] }).collect();
-        let way = follow(mechanism, q, &held, &goals, FollowOptions::default())?;
+        let way = track_path(mechanism, q, &held, &goals, ContinuationOptions::default())?;
         let contradicted = matches!(way.end, PathEnd::Contradiction | PathEnd::Open);
         if !contradicted || held.len() == 1 {
-            let closed = way.gap.is_closed(mechanism.reach());
+            let closed = way.closure_error.is_closed(mechanism.reach());
             return Ok((if closed { way.q } else { q.to_vec() }, way.end));
         }
     }
@@ -120,7 +120,7 @@ fn sentence(mechanism: &Mechanism, name: &str, end: &PathEnd) -> Option<(String,
         PathEnd::Contradiction => {
             (format!("the loops do not let {name} move"), "drive fewer joints, or move the target")
         }
-        PathEnd::Lost => (
+        PathEnd::StepTooSmall => (
             format!("{name} got stuck on its way"),
             "move it in smaller steps, or another joint first",
         ),
@@ -147,8 +147,8 @@ pub(super) fn closed(mechanism: &Mechanism, q: &[f64]) -> Result<Vec<f64>> {
         option: "q",
         value: format!(
             "loops open by {} m, {} rad",
-            number(found.gap.distance),
-            number(found.gap.angle)
+            number(found.closure_error.distance),
+            number(found.closure_error.angle)
         ),
         reason: "no closed configuration was found near it; begin nearer to one that closes"
             .to_owned(),

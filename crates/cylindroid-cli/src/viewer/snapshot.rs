@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cylindroid::closure::Gap;
+use cylindroid::closure::LoopClosureError;
 use cylindroid::control::{Posture, Status};
 use cylindroid::{Pose, Result};
 use serde::Serialize;
@@ -30,7 +30,7 @@ struct StateJson<'a> {
     outside_limits: Vec<usize>,
     loops: Vec<LoopJson>,
     contacts: Vec<ContactJson>,
-    gap: Option<GapJson>,
+    closure_error: Option<ClosureErrorJson>,
     overlays: BTreeMap<&'static str, Shown>,
 }
 
@@ -79,7 +79,7 @@ struct ContactJson {
 }
 
 #[derive(Debug, Serialize)]
-struct GapJson {
+struct ClosureErrorJson {
     distance: f64,
     angle: f64,
     closed: bool,
@@ -117,7 +117,8 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
             other: (poses[c.b] * c.link_b_from_contact).translation.to_array(),
         }
     });
-    let gap = if mechanism.is_closed() { Some(Gap::of(state)?) } else { None };
+    let closure_error =
+        if mechanism.is_closed() { Some(LoopClosureError::of(state)?) } else { None };
     let overlays = session.overlays().iter();
     Ok(super::text(&StateJson {
         seq,
@@ -141,7 +142,7 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
         outside_limits: mechanism.outside_limits(state.q()).collect(),
         loops: loops.collect(),
         contacts: contacts.collect(),
-        gap: gap.map(|g| GapJson {
+        closure_error: closure_error.map(|g| ClosureErrorJson {
             distance: g.distance,
             angle: g.angle,
             closed: g.is_closed(mechanism.reach()),

@@ -7,7 +7,7 @@ use crate::{cylindroid, difference, json, numbers, refused, text};
 #[test]
 fn mobility_counts() {
     let stewart = json(&["mobility", "stewart"], 0);
-    assert_eq!((&stewart["dof"], &stewart["grubler"]), (&6.into(), &6.into()));
+    assert_eq!((&stewart["dof"], &stewart["gruebler_kutzbach"]), (&6.into(), &6.into()));
     assert_eq!(stewart["actuated"].as_array().unwrap().len(), 6);
     assert_eq!(stewart["joints"].as_array().unwrap().len(), 21);
     let five_bar = json(&["mobility", "five-bar", "--actuated", "q1,q2,q3,q4,q5"], 0);
@@ -16,7 +16,7 @@ fn mobility_counts() {
     {
         assert_eq!(five_bar[key], count, "{key}");
     }
-    assert!(five_bar["gap"]["distance"].as_f64().unwrap() < 1e-12);
+    assert!(five_bar["closure_error"]["distance"].as_f64().unwrap() < 1e-12);
     // Two arms of seven joints: one elbow each, and all they can do to each other.
     let table = text(&["mobility", "two-arm"]);
     let count = |kind: &str| {
@@ -60,13 +60,13 @@ fn loops_are_closed_from_a_guess() {
     let command = ["assemble", "five-bar", "--q", "0.2,-0.1,0,0", "--hold", "q1"];
     let report = json(&command, 0);
     assert_eq!((&report["closed"], &report["q"][0]), (&true.into(), &0.2.into()));
-    assert!(report["gap"]["distance"].as_f64().unwrap() < 1e-9);
+    assert!(report["closure_error"]["distance"].as_f64().unwrap() < 1e-9);
     // The line q is an argument of other commands.
     let text = text(&command);
     let q = text.lines().find_map(|l| l.strip_prefix("q ")).unwrap().trim().to_owned();
     assert!(text.contains("closed: 1 loop and 0 contacts"), "{text}");
     let mobility = json(&["mobility", "five-bar", "--q", &q], 0);
-    assert!(mobility["gap"]["distance"].as_f64().unwrap() < 1e-9);
+    assert!(mobility["closure_error"]["distance"].as_f64().unwrap() < 1e-9);
     // Too far apart: a negative answer.
     let far = json(&["assemble", "five-bar", "--q", "1.5708,0,0,0", "--hold", "q1"], 1);
     assert_eq!(far["closed"], false);
@@ -81,8 +81,8 @@ fn objects_are_moved() {
     let report = json(&command, 0);
     assert_eq!(report["reached"], true);
     assert_eq!(report["actuated"].as_array().unwrap().len(), 6);
-    assert!(report["gap"]["distance"].as_f64().unwrap() < 1e-9);
-    assert!(report["gap"]["angle"].as_f64().unwrap() < 1e-9);
+    assert!(report["closure_error"]["distance"].as_f64().unwrap() < 1e-9);
+    assert!(report["closure_error"]["angle"].as_f64().unwrap() < 1e-9);
     let q: Vec<String> = numbers(&report["q"]).iter().map(ToString::to_string).collect();
     let fk = json(&["fk", "stewart", "--q", &q.join(",")], 0);
     let at = numbers(&fk["pose"]["position"]);
@@ -104,7 +104,10 @@ fn modes_are_listed() {
     assert_eq!((modes.len(), &report["closed_starts"]), (2, &20.into()));
     assert!(difference(&numbers(&modes[0]["q"]), &[0.0; 4]) < 1e-12);
     assert_eq!(modes[0]["found"].as_u64().unwrap() + modes[1]["found"].as_u64().unwrap(), 20);
-    assert_eq!((&report["continuum"], &report["chance_of_more"]), (&0.into(), &0.0.into()));
+    assert_eq!(
+        (&report["self_motion_dof"], &report["unseen_probability"]),
+        (&0.into(), &0.0.into())
+    );
     let command = ["assemble", "stewart", "--hold", "driven", "--modes", "40"];
     let legs = json(&command, 0);
     assert!(legs["modes"].as_array().unwrap().len().is_multiple_of(2) && legs["held"][5] == "leg6");
@@ -116,7 +119,9 @@ fn modes_are_listed() {
     assert!(free.contains("1 degree of freedom"), "{free}");
     let none = ["assemble", "five-bar", "--q", "1.5708,0,0,0", "--hold", "q1", "--modes", "4"];
     let none = json(&none, 1);
-    assert!(none["closed"] == false && none["guess_gap"]["distance"].as_f64().unwrap() > 0.1);
+    assert!(
+        none["closed"] == false && none["guess_closure_error"]["distance"].as_f64().unwrap() > 0.1
+    );
     let table = text(&["assemble", "five-bar", "--hold", "q1,q2", "--modes", "20"]);
     assert!(table.contains("2 modes from 20") && table.contains("q of mode 2"), "{table}");
     // Rounding is not spelt out.
@@ -226,7 +231,7 @@ fn finite_motion_is_told_from_first_order() {
     assert_eq!((&pair["dof"], &pair["finite_dof"]), (&1.into(), &0.into()));
     assert!(text(&["mobility", &file("stretched-pair")]).contains("shaky"));
     let spatial = json(&["mobility", &file("spatial-four-bar")], 0);
-    assert_eq!((&spatial["grubler"], &spatial["finite_dof"]), (&(-2).into(), &1.into()));
+    assert_eq!((&spatial["gruebler_kutzbach"], &spatial["finite_dof"]), (&(-2).into(), &1.into()));
     assert_eq!(
         (&spatial["hyperstatic"], &spatial["singularity"]["regular"]),
         (&3.into(), &true.into())

@@ -232,7 +232,7 @@ fn many_configurations() {
         for name in ["dof", "coordinate", "redundancy", "internal", "zero_torque", "idle"] {
             close(name, &mobility[name]);
         }
-        close("gap_distance", &mobility["gap"]["distance"]);
+        close("closure_distance", &mobility["closure_error"]["distance"]);
         for name in ["type_i", "type_ii", "configuration_space", "passive"] {
             close(name, &mobility["singularity"]["distances"][name]);
         }
@@ -242,7 +242,7 @@ fn many_configurations() {
         }
     }
     let table = text(&with(&["--configurations", FILE]));
-    assert!(table.contains("dof 2") && table.contains("gap_distance"), "{table}");
+    assert!(table.contains("dof 2") && table.contains("closure_distance"), "{table}");
 
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("q.csv");

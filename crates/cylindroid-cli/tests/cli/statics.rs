@@ -102,7 +102,7 @@ fn force_closure() {
     let bounds = [&report["epsilon"]["lower"], &report["epsilon"]["upper"]];
     let [lower, upper] = bounds.map(|b| b.as_f64().unwrap());
     assert!(report["closed"] == true && 0.3 < lower && lower <= upper && upper < 0.35);
-    assert_eq!((&report["effort"], &report["length"]), (&"shared".into(), &0.05.into()));
+    assert_eq!((&report["metric"], &report["length"]), (&"l1".into(), &0.05.into()));
     assert_eq!(report["contacts"][0]["mu"], 0.5);
     let size: f64 = numbers(&report["weakest"]).iter().map(|x| x * x).sum();
     assert!((size - 1.0).abs() < 1e-12);

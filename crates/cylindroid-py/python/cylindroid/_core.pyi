@@ -18,13 +18,12 @@ __all__ = [
     "CartesianPath",
     "Constraint",
     "ContactForces",
+    "ContinuationResult",
     "Direction",
     "Dropped",
     "Existence",
     "FingerContact",
     "FiniteMobility",
-    "Followed",
-    "Gap",
     "Gradient",
     "GraspQuality",
     "HybridCommand",
@@ -36,7 +35,9 @@ __all__ = [
     "Joint",
     "JointMobility",
     "JointMove",
+    "JointTorques",
     "LoadReport",
+    "LoopClosureError",
     "Manipulability",
     "Margin",
     "Mechanism",
@@ -56,7 +57,6 @@ __all__ = [
     "Spectrum",
     "Stall",
     "TimeLaw",
-    "Torques",
     "Trajectory",
     "Transversals",
     "__version__",
@@ -100,7 +100,7 @@ class Assembly:
     @property
     def at_limit(self) -> list[str]: ...
     @property
-    def gap(self) -> Gap: ...
+    def closure_error(self) -> LoopClosureError: ...
     @property
     def q(self) -> _Array: ...
     def __bool__(self) -> bool: ...
@@ -110,13 +110,13 @@ class AssemblyModes:
     @property
     def closed(self) -> int: ...
     @property
-    def chance_of_more(self) -> float: ...
+    def unseen_probability(self) -> float: ...
     @property
     def found(self) -> list[int]: ...
     @property
     def starts(self) -> int: ...
     @property
-    def continuum(self) -> list[int]: ...
+    def self_motion_dof(self) -> list[int]: ...
     @property
     def modes(self) -> list[Assembly]: ...
     def __len__(self) -> int: ...
@@ -185,7 +185,7 @@ class Constraint:
     @property
     def G(self) -> _Array: ...
     @property
-    def gap(self) -> Gap | None: ...
+    def closure_error(self) -> LoopClosureError | None: ...
     @property
     def passive(self) -> list[str]: ...
     @property
@@ -208,7 +208,7 @@ class Constraint:
     def force_polytope(
         self, limits: ArrayLike | None = None, task: str | Sequence[str] | ArrayLike | None = None
     ) -> Polytope: ...
-    def joint_torques(self, wrench: ArrayLike, metric: ArrayLike | None = None) -> Torques: ...
+    def joint_torques(self, wrench: ArrayLike, metric: ArrayLike | None = None) -> JointTorques: ...
     def contact_forces(
         self, torques: ArrayLike, wrench: ArrayLike, compliance: ArrayLike | None = None
     ) -> ContactForces: ...
@@ -284,15 +284,15 @@ class FiniteMobility:
     def left_open(self) -> float: ...
 
 @final
-class Followed:
+class ContinuationResult:
     @property
-    def shares(self) -> _Array: ...
+    def fractions(self) -> _Array: ...
     @property
     def distances(self) -> _Array: ...
     @property
     def q(self) -> _Array: ...
     @property
-    def share(self) -> float: ...
+    def fraction(self) -> float: ...
     @property
     def path(self) -> _Array: ...
     @property
@@ -303,7 +303,7 @@ class Followed:
     def end(self) -> str: ...
 
 @final
-class Gap:
+class LoopClosureError:
     @property
     def distance(self) -> float: ...
     @property
@@ -586,13 +586,13 @@ class Mechanism:
         starts: int = 64,
         seed: int = 0,
     ) -> AssemblyModes: ...
-    def follow(
+    def track_path(
         self,
         start: ArrayLike,
         goal: dict[str, float],
         step: float = 0.1,
         least_distance: float | None = None,
-    ) -> Followed: ...
+    ) -> ContinuationResult: ...
     def constraint(
         self,
         q: ArrayLike | None = None,
@@ -648,7 +648,7 @@ class Mechanism:
         mu: float | None = None,
         torsion: float | None = None,
         strength: float = 1.0,
-        effort: str = "shared",
+        metric: str = "l1",
     ) -> GraspQuality: ...
     def assemble(
         self, guess: ArrayLike | None = None, hold: Sequence[str] | None = None
@@ -692,7 +692,7 @@ class Mechanism:
 @final
 class Mobility:
     @property
-    def gap(self) -> Gap | None: ...
+    def closure_error(self) -> LoopClosureError | None: ...
     @property
     def components(self) -> list[str]: ...
     @property
@@ -724,13 +724,13 @@ class Mobility:
     @property
     def rank_gap(self) -> float: ...
     @property
-    def grubler(self) -> int: ...
+    def gruebler_kutzbach(self) -> int: ...
     @property
     def dof(self) -> int: ...
     @property
     def idle_basis(self) -> _Array: ...
     @property
-    def doubts(self) -> list[str]: ...
+    def ambiguous_ranks(self) -> list[str]: ...
     @property
     def finite(self) -> FiniteMobility | None: ...
     @property
@@ -1099,7 +1099,7 @@ class TimeLaw:
     def at(self, t: ArrayLike) -> _Array: ...
 
 @final
-class Torques:
+class JointTorques:
     @property
     def unbalanced(self) -> _Array: ...
     @property
@@ -1142,7 +1142,7 @@ def grasp_quality(
     point: ArrayLike | None = None,
     length: float = 1.0,
     planar: bool = False,
-    effort: str = "shared",
+    metric: str = "l1",
 ) -> GraspQuality: ...
 def hyperbolic(
     J: ArrayLike,

@@ -1,6 +1,6 @@
 //! Closing loops and contacts from a guess.
 
-use cylindroid::closure::{Assembly, Gap, assemble};
+use cylindroid::closure::{Assembly, LoopClosureError, assemble};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
@@ -16,23 +16,23 @@ use crate::table;
 ///     Along held directions (m).
 /// angle : float
 ///     About held directions (rad).
-#[pyclass(frozen, get_all, name = "Gap", module = "cylindroid")]
+#[pyclass(frozen, get_all, name = "LoopClosureError", module = "cylindroid")]
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PyGap {
+pub(crate) struct PyLoopClosureError {
     distance: f64,
     angle: f64,
 }
 
-impl From<Gap> for PyGap {
-    fn from(gap: Gap) -> Self {
-        Self { distance: gap.distance, angle: gap.angle }
+impl From<LoopClosureError> for PyLoopClosureError {
+    fn from(closure_error: LoopClosureError) -> Self {
+        Self { distance: closure_error.distance, angle: closure_error.angle }
     }
 }
 
 #[pymethods]
-impl PyGap {
+impl PyLoopClosureError {
     fn __repr__(&self) -> String {
-        format!("Gap(distance={:.3e}, angle={:.3e})", self.distance, self.angle)
+        format!("LoopClosureError(distance={:.3e}, angle={:.3e})", self.distance, self.angle)
     }
 }
 
@@ -44,7 +44,7 @@ impl PyGap {
 ///     The configuration.
 /// closed : bool
 ///     True if every loop and contact is closed.
-/// gap : Gap
+/// closure_error : LoopClosureError
 ///     How far they are open.
 /// steps : int
 /// at_limit : list of str
@@ -56,7 +56,7 @@ pub(crate) struct PyAssembly {
     #[pyo3(get)]
     closed: bool,
     #[pyo3(get)]
-    gap: PyGap,
+    closure_error: PyLoopClosureError,
     #[pyo3(get)]
     steps: usize,
     #[pyo3(get)]
@@ -68,7 +68,7 @@ impl PyAssembly {
         Self {
             q: found.q.clone(),
             closed: found.closed,
-            gap: found.gap.into(),
+            closure_error: found.closure_error.into(),
             steps: found.steps,
             at_limit: found.at_limit.iter().map(|&i| names[i].clone()).collect(),
         }
@@ -90,8 +90,8 @@ impl PyAssembly {
         format!(
             "<Assembly: {}, open by {:.1e} m, {:.1e} rad, q = {}>",
             if self.closed { "closed" } else { "not closed" },
-            self.gap.distance,
-            self.gap.angle,
+            self.closure_error.distance,
+            self.closure_error.angle,
             table::list(&self.q)
         )
     }

@@ -17,11 +17,11 @@ use crate::table;
 ///     Nearest to the guess first.
 /// found : list of int
 ///     How many starts led to each.
-/// continuum : list of int
+/// self_motion_dof : list of int
 ///     Degrees of freedom that the held coordinates leave at each: 0 for an isolated assembly.
 /// starts, closed : int
 ///     Starts, and those from which the loops closed.
-/// chance_of_more : float
+/// unseen_probability : float
 ///     Estimate of the chance that another start which closes finds a new mode.
 #[pyclass(frozen, name = "AssemblyModes", module = "cylindroid")]
 #[derive(Debug)]
@@ -43,8 +43,8 @@ impl PyAssemblyModes {
     }
 
     #[getter]
-    fn continuum(&self) -> Vec<usize> {
-        self.inner.modes.iter().map(|m| m.continuum).collect()
+    fn self_motion_dof(&self) -> Vec<usize> {
+        self.inner.modes.iter().map(|m| m.self_motion_dof).collect()
     }
 
     #[getter]
@@ -58,8 +58,8 @@ impl PyAssemblyModes {
     }
 
     #[getter]
-    fn chance_of_more(&self) -> f64 {
-        self.inner.chance_of_more()
+    fn unseen_probability(&self) -> f64 {
+        self.inner.unseen_probability()
     }
 
     fn __len__(&self) -> usize {
@@ -71,7 +71,7 @@ impl PyAssemblyModes {
             "<AssemblyModes: {} found from {} starts, chance of more {}>",
             self.inner.modes.len(),
             self.inner.starts,
-            table::number(self.inner.chance_of_more())
+            table::number(self.inner.unseen_probability())
         )
     }
 }

@@ -1,11 +1,13 @@
 //! The class `Constraint`: the velocity constraint of a closed chain.
 
-use cylindroid::closure::{Blocks, ClosedChain, Constraint, Gap, Motions, Relation, Unit, Units};
+use cylindroid::closure::{
+    ClosedChain, Constraint, ConstraintBlocks, LoopClosureError, MotionSpace, Relation, Unit, Units,
+};
 use cylindroid::kinematics::State;
 use cylindroid::{Error, FrameId, Matrix, Mechanism};
 use pyo3::prelude::*;
 
-use super::{PyGap, object};
+use super::{PyLoopClosureError, object};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;
@@ -38,7 +40,7 @@ use crate::table::{self, Table};
 /// matrix : ndarray, (t, a + p + d)
 ///     `[Ja Jp -G^T]`.
 /// length : float
-/// gap : Gap or None
+/// closure_error : LoopClosureError or None
 ///     How far the loops of the mechanism are open.
 ///
 /// Raises
@@ -70,7 +72,7 @@ pub(crate) struct PyConstraint {
 pub(super) struct Origin {
     pub(super) state: State,
     pub(super) reference: FrameId,
-    pub(super) gap: Gap,
+    pub(super) closure_error: LoopClosureError,
 }
 
 fn units_of(of: Option<&(String, String, String, String)>, c: &Constraint) -> Result<Units> {
@@ -114,7 +116,11 @@ impl PyConstraint {
             actuated: chain.actuated,
             passive: chain.passive,
             units: chain.units,
-            origin: Some(Origin { state, reference: chain.reference, gap: chain.gap }),
+            origin: Some(Origin {
+                state,
+                reference: chain.reference,
+                closure_error: chain.closure_error,
+            }),
         })
     }
 
@@ -166,7 +172,7 @@ impl PyConstraint {
 
     /// Of the driven joints and the object, or the task that the map makes of its twist.
     pub(crate) fn relation(&self, map: Option<&Matrix>) -> cylindroid::Result<Relation> {
-        let relation = Motions::of(&self.inner).relation();
+        let relation = MotionSpace::of(&self.inner).relation();
         match map {
             None => Ok(relation),
             Some(map) => relation.task(map),
@@ -179,8 +185,8 @@ impl PyConstraint {
         if let Some(origin) = &self.origin {
             let frame = origin.state.mechanism().frame_of(origin.reference);
             table.row("reference", &frame.name);
-            let Gap { distance, angle } = origin.gap;
-            if !origin.gap.is_closed(origin.state.mechanism().reach()) {
+            let LoopClosureError { distance, angle } = origin.closure_error;
+            if !origin.closure_error.is_closed(origin.state.mechanism().reach()) {
                 table.row("loops open by", format!("{distance:.1e} m, {angle:.1e} rad"));
             }
         }
@@ -208,7 +214,7 @@ impl PyConstraint {
             None => Matrix::identity(actuated.rows()),
             Some(G) => G.matrix("G")?,
         };
-        let mut inner = Constraint::new(Blocks { actuated, passive, grasp })?;
+        let mut inner = Constraint::new(ConstraintBlocks { actuated, passive, grasp })?;
         if length.is_some() && units.is_none() {
             let reason = "a length needs units, to know which rows and columns are lengths";
             return Err(Failure::option("length", "without units", reason));
@@ -271,8 +277,8 @@ impl PyConstraint {
     }
 
     #[getter]
-    fn gap(&self) -> Option<PyGap> {
-        self.origin.as_ref().map(|o| o.gap.into())
+    fn closure_error(&self) -> Option<PyLoopClosureError> {
+        self.origin.as_ref().map(|o| o.closure_error.into())
     }
 }
 
@@ -306,7 +312,7 @@ impl PyMechanism {
     /// Returns
     /// -------
     /// Constraint, or list of Constraint
-    ///     Loops are taken as closed; `gap` says how far they are open.
+    ///     Loops are taken as closed; `closure_error` says how far they are open.
     ///
     /// Raises
     /// ------

@@ -2,7 +2,8 @@
 
 use cylindroid::Vec3;
 use cylindroid::closure::{
-    self, Effort, FingerContact, Friction, GraspQuality, Touch, WrenchSpace, fingers_on,
+    self, ContactProperties, EpsilonQuality, FingerContact, Friction, GraspMetric, GraspQuality,
+    WrenchSpace, grasp_contacts,
 };
 use pyo3::prelude::*;
 
@@ -25,7 +26,7 @@ use crate::table;
 /// torsion : float
 ///     Largest moment about the normal over the normal force (m); 0 for a hard finger.
 /// strength : float
-///     Largest normal force (N), for the effort 'each'.
+///     Largest normal force (N), for the metric 'linf'.
 #[pyclass(frozen, name = "FingerContact", module = "cylindroid")]
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PyFingerContact {
@@ -92,7 +93,7 @@ impl PyGraspQuality {
 
     #[getter]
     fn epsilon(&self) -> (f64, f64) {
-        self.inner.epsilon
+        (self.inner.epsilon.lower, self.inner.epsilon.upper)
     }
 
     #[getter]
@@ -101,7 +102,7 @@ impl PyGraspQuality {
     }
 
     fn __repr__(&self) -> String {
-        let (lower, upper) = self.inner.epsilon;
+        let EpsilonQuality { lower, upper } = self.inner.epsilon;
         format!(
             "<GraspQuality: {}, epsilon {} to {}>",
             if self.inner.closed { "force closure" } else { "no force closure" },
@@ -122,9 +123,9 @@ impl PyGraspQuality {
 ///     Characteristic length that moments are divided by (m).
 /// planar : bool
 ///     True for objects in the plane x-y.
-/// effort : str
-///     'shared' (the normal forces of all fingers sum to 1) or 'each' (that of each finger is at
-///     most its strength).
+/// metric : str
+///     'l1' (Q1: the normal forces of all fingers sum to 1) or 'linf' (Q-infinity: each normal force
+///     is at most the finger's strength).
 ///
 /// Returns
 /// -------
@@ -148,28 +149,28 @@ impl PyGraspQuality {
 /// >>> cy.grasp_quality([left, right], planar=True).closed
 /// True
 #[pyfunction]
-#[pyo3(signature = (contacts, point = None, length = 1.0, planar = false, effort = "shared"))]
+#[pyo3(signature = (contacts, point = None, length = 1.0, planar = false, metric = "l1"))]
 pub(crate) fn grasp_quality(
     py: Python<'_>,
     contacts: Vec<PyRef<'_, PyFingerContact>>,
     point: Option<Numbers<'_>>,
     length: f64,
     planar: bool,
-    effort: &str,
+    metric: &str,
 ) -> Result<PyGraspQuality> {
-    let effort = effort_of(effort)?;
+    let metric = metric_of(metric)?;
     let point = match &point {
         None => Vec3::ZERO,
         Some(point) => Vec3::from_array(point.entries("point")?),
     };
     let contacts: Vec<FingerContact> = contacts.iter().map(|c| c.inner).collect();
     let space = WrenchSpace { point, length, planar };
-    let inner = py.detach(|| closure::grasp_quality(&contacts, space, effort))?;
+    let inner = py.detach(|| closure::grasp_quality(&contacts, space, metric))?;
     Ok(PyGraspQuality { inner })
 }
 
-fn effort_of(name: &str) -> Result<Effort> {
-    options::named("effort", name, &[("shared", Effort::Shared), ("each", Effort::Each)])
+fn metric_of(name: &str) -> Result<GraspMetric> {
+    options::named("metric", name, &[("l1", GraspMetric::L1), ("linf", GraspMetric::LInf)])
 }
 
 #[pymethods]
@@ -186,9 +187,9 @@ impl PyMechanism {
     ///     Coefficient of friction, and largest moment about the normal over the normal force (m),
     ///     in place of those of the file.
     /// strength : float
-    ///     Largest normal force of each finger (N), for the effort 'each'.
-    /// effort : str
-    ///     'shared' or 'each', as of the function `grasp_quality`.
+    ///     Largest normal force of each finger (N), for the metric 'linf'.
+    /// metric : str
+    ///     'l1' or 'linf', as in the function `grasp_quality`.
     ///
     /// Returns
     /// -------
@@ -200,7 +201,7 @@ impl PyMechanism {
     /// InvalidOptionError
     ///     Also for contacts that are no points, or whose coefficients nobody gives.
     #[pyo3(signature = (q = None, reference = None, mu = None, torsion = None, strength = 1.0,
-        effort = "shared"))]
+        metric = "l1"))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn grasp_quality(
         &self,
@@ -210,16 +211,17 @@ impl PyMechanism {
         mu: Option<f64>,
         torsion: Option<f64>,
         strength: f64,
-        effort: &str,
+        metric: &str,
     ) -> Result<PyGraspQuality> {
         let m = &self.inner;
         let state = m.state(self.or_home("q", q.as_ref())?)?;
         let object = reference.map_or(Ok(m.reference()), |name| m.frame(name))?;
-        let effort = effort_of(effort)?;
-        let fingers = fingers_on(&state, object, |_| Touch { mu, torsion, strength })?;
+        let metric = metric_of(metric)?;
+        let fingers =
+            grasp_contacts(&state, object, |_| ContactProperties { mu, torsion, strength })?;
         let fingers: Vec<FingerContact> = fingers.into_iter().map(|(_, finger)| finger).collect();
         let space = WrenchSpace::about(&state, object, &fingers)?;
-        let inner = py.detach(|| closure::grasp_quality(&fingers, space, effort))?;
+        let inner = py.detach(|| closure::grasp_quality(&fingers, space, metric))?;
         Ok(PyGraspQuality { inner })
     }
 }

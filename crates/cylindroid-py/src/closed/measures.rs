@@ -51,7 +51,7 @@ impl PyMechanism {
     /// Returns
     /// -------
     /// dict of str to ndarray, (N,), or to a number for one configuration
-    ///     `gap_distance` [m], `gap_angle` [rad], `closed`: how far loops are open;
+    ///     `closure_distance` [m], `closure_angle` [rad], `closed`: how far loops are open;
     ///     `dof`, `redundancy`, `indeterminacy`, `coordinate`, `internal`, `zero_torque`,
     ///     `hyperstatic`, `idle`: the counts of `mobility`;
     ///     `type_i`, `type_ii`, `configuration_space`, `passive`: distances to singularities of

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use cylindroid::closure::{Diagnosis, Mobility, Subspace};
 use pyo3::prelude::*;
 
-use super::{PyConstraint, PyFiniteMobility, PyGap, PySingularity, object};
+use super::{PyConstraint, PyFiniteMobility, PyLoopClosureError, PySingularity, object};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;
@@ -31,7 +31,7 @@ use crate::table::{self, Table};
 ///     Forces in loops and contacts that nothing determines.
 /// idle : int
 ///     Motions of passive joints alone.
-/// grubler : int
+/// gruebler_kutzbach : int
 ///     Grubler's count, for comparison.
 /// rank_gap : float
 ///     Smallest singular value kept over the largest dropped: near 1 the counts are a matter of
@@ -45,7 +45,7 @@ use crate::table::{self, Table};
 ///     Wrenches, force first.
 /// hyperstatic_basis : ndarray, (t, hyperstatic)
 /// joints : list of JointMobility
-/// doubts : list of str
+/// ambiguous_ranks : list of str
 ///     Counts that hang on little, in words.
 /// singularity : Singularity or None
 ///     What is singular about the posture; None for bare matrices. Computed when it is asked for.
@@ -54,7 +54,7 @@ use crate::table::{self, Table};
 /// finite_dof : int or None
 ///     Degrees of freedom of finite motion; None where it is not known.
 /// actuated, passive, components : list of str
-/// gap : Gap or None
+/// gap : LoopClosureError or None
 ///     How far loops are open: the report holds where they are closed.
 /// length : float
 ///     Characteristic length of the rank decisions (m).
@@ -155,11 +155,11 @@ impl PyMobility {
         ] {
             table.row(name, count.to_string());
         }
-        table.row("grubler", m.grubler.to_string());
+        table.row("gruebler_kutzbach", m.gruebler_kutzbach.to_string());
         for joint in self.joints() {
             table.row(&joint.name, joint.words());
         }
-        for doubt in &m.doubts {
+        for doubt in &m.ambiguous_ranks {
             table.row("doubtful", doubt.to_string());
         }
         table
@@ -209,8 +209,8 @@ impl PyMobility {
     }
 
     #[getter]
-    fn grubler(&self) -> i64 {
-        self.inner.grubler
+    fn gruebler_kutzbach(&self) -> i64 {
+        self.inner.gruebler_kutzbach
     }
 
     #[getter]
@@ -257,8 +257,8 @@ impl PyMobility {
     }
 
     #[getter]
-    fn doubts(&self) -> Vec<String> {
-        self.inner.doubts.iter().map(ToString::to_string).collect()
+    fn ambiguous_ranks(&self) -> Vec<String> {
+        self.inner.ambiguous_ranks.iter().map(ToString::to_string).collect()
     }
 
     #[getter]
@@ -292,8 +292,8 @@ impl PyMobility {
     }
 
     #[getter]
-    fn gap(&self) -> Option<PyGap> {
-        self.constraint.origin.as_ref().map(|o| o.gap.into())
+    fn gap(&self) -> Option<PyLoopClosureError> {
+        self.constraint.origin.as_ref().map(|o| o.closure_error.into())
     }
 
     #[getter]

@@ -5,8 +5,8 @@
 mod assembly;
 mod assembly_modes;
 mod constraint;
+mod continuation;
 mod finite_mobility;
-mod follow;
 mod gradient;
 pub(crate) mod grasp;
 mod manipulability;
@@ -26,11 +26,11 @@ use crate::arrays::{Many, Numbers, Rows};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;
 
-pub(crate) use assembly::{PyAssembly, PyGap};
+pub(crate) use assembly::{PyAssembly, PyLoopClosureError};
 pub(crate) use assembly_modes::PyAssemblyModes;
 pub(crate) use constraint::PyConstraint;
+pub(crate) use continuation::PyContinuationResult;
 pub(crate) use finite_mobility::{PyBranch, PyFiniteMobility};
-pub(crate) use follow::PyFollowed;
 pub(crate) use gradient::PyGradient;
 pub(crate) use grasp::{PyFingerContact, PyGraspQuality};
 pub(crate) use manipulability::PyManipulability;
@@ -38,7 +38,7 @@ pub(crate) use mobility::{PyJointMobility, PyMobility};
 pub(crate) use polytope::PyPolytope;
 pub(crate) use singularity::PySingularity;
 pub(crate) use spectrum::{PyDirection, PySpectrum};
-pub(crate) use statics::{PyContactForces, PyTorques};
+pub(crate) use statics::{PyContactForces, PyJointTorques};
 
 impl PyMechanism {
     /// The constraints at one or many configurations.

@@ -1,6 +1,6 @@
 //! Joint torques and contact forces.
 
-use cylindroid::closure::{self, Load, Motions};
+use cylindroid::closure::{self, MotionSpace, StaticLoad};
 use pyo3::prelude::*;
 
 use super::PyConstraint;
@@ -16,14 +16,14 @@ use crate::table;
 ///     Those of least norm [N m or N]; internal torques may be added.
 /// unbalanced : ndarray, (d,)
 ///     The part of the wrench that nothing balances.
-#[pyclass(frozen, name = "Torques", module = "cylindroid")]
+#[pyclass(frozen, name = "JointTorques", module = "cylindroid")]
 #[derive(Debug)]
-pub(crate) struct PyTorques {
-    inner: closure::Torques,
+pub(crate) struct PyJointTorques {
+    inner: closure::JointTorques,
 }
 
 #[pymethods]
-impl PyTorques {
+impl PyJointTorques {
     #[getter]
     fn torques<'py>(&self, py: Python<'py>) -> Array<'py> {
         arrays::vector(py, &self.inner.torques)
@@ -36,7 +36,7 @@ impl PyTorques {
 
     fn __repr__(&self) -> String {
         format!(
-            "Torques(torques={}, unbalanced={})",
+            "JointTorques(torques={}, unbalanced={})",
             table::list(&self.inner.torques),
             table::list(&self.inner.unbalanced)
         )
@@ -92,21 +92,21 @@ impl PyConstraint {
     ///
     /// Returns
     /// -------
-    /// Torques
+    /// JointTorques
     #[pyo3(signature = (wrench, metric = None))]
     fn joint_torques(
         &self,
         py: Python<'_>,
         wrench: Numbers<'_>,
         metric: Option<Numbers<'_>>,
-    ) -> Result<PyTorques> {
+    ) -> Result<PyJointTorques> {
         let metric = metric.map(|m| m.metric("metric")).transpose()?;
         let wrench = wrench.vector("wrench")?;
         let inner = py.detach(|| {
             let relation = self.relation(None)?;
             closure::joint_torques(&relation, wrench, metric.as_ref())
         })?;
-        Ok(PyTorques { inner })
+        Ok(PyJointTorques { inner })
     }
 
     /// The forces at the contacts under torques and a wrench: least, or elastic.
@@ -130,9 +130,10 @@ impl PyConstraint {
         compliance: Option<Numbers<'_>>,
     ) -> Result<PyContactForces> {
         let compliance = compliance.map(|c| c.metric("compliance")).transpose()?;
-        let load = Load { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
+        let load =
+            StaticLoad { torques: torques.vector("torques")?, wrench: wrench.vector("wrench")? };
         let inner = py.detach(|| {
-            let motions = Motions::of(&self.inner);
+            let motions = MotionSpace::of(&self.inner);
             closure::contact_forces(&self.inner, &motions, load, compliance.as_ref())
         })?;
         Ok(PyContactForces { inner })

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use cylindroid::closure::Counts;
+use cylindroid::closure::MobilityCounts;
 use cylindroid::manipulability::{Batch, BatchOptions};
 use cylindroid::model::Dimension;
 use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose, Reference};
@@ -89,7 +89,7 @@ type About = (Vec<usize>, FrameId, u64);
 /// Counts of ordinary postures, which take up to tens of milliseconds to find and stay what they
 /// are.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Ordinary(Arc<Mutex<HashMap<About, Counts>>>);
+pub(crate) struct Ordinary(Arc<Mutex<HashMap<About, MobilityCounts>>>);
 
 impl Ordinary {
     /// The batch of a mechanism with these options, of what is known where that is enough.

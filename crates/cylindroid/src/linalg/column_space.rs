@@ -52,7 +52,7 @@ impl Cut {
     /// True where the rank is a matter of taste: a small gap, a kept value near the threshold, or
     /// nothing kept and a dropped value near it.
     #[must_use]
-    pub fn is_doubtful(&self) -> bool {
+    pub fn is_ambiguous(&self) -> bool {
         let nothing_kept = self.rank.rank == 0;
         self.rank.gap < AMBIGUOUS
             || self.kept < AMBIGUOUS * self.rank.threshold

@@ -20,7 +20,10 @@ use rayon::prelude::*;
 use super::efficiency::Manipulability;
 use super::lanes::{Found, Kernel};
 use super::metrics::Metrics;
-use crate::closure::{ClosedChain, Counts, Distances, Gap, Generic, Motions, Plan, Singularities};
+use crate::closure::{
+    BatchedConstraintPlan, ClosedChain, GenericMobility, LoopClosureError, MobilityCounts,
+    MotionSpace, Singularities, SingularityDistances,
+};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::Matrix;
@@ -38,8 +41,8 @@ pub struct BatchOptions {
     /// are those of motion.
     pub metrics: Metrics,
     /// What ordinary postures have, which tells singular ones: looked for from the home
-    /// configuration by default ([`Generic::of`]).
-    pub generic: Option<Counts>,
+    /// configuration by default ([`GenericMobility::of`]).
+    pub generic: Option<MobilityCounts>,
 }
 
 /// Mobility and manipulability of a mechanism for many configurations in one call.
@@ -65,7 +68,7 @@ pub struct Batch {
     reference: FrameId,
     length: f64,
     metrics: Metrics,
-    generic: Counts,
+    generic: MobilityCounts,
     kernel: Option<Kernel>,
 }
 
@@ -89,8 +92,8 @@ impl Batch {
     /// - the kinematic index: product of the roots of the finite efficiencies, largest and
     ///   smallest of them and their ratio; these three are not numbers where none is finite.
     pub const COLUMNS: [&'static str; 19] = [
-        "gap_distance",
-        "gap_angle",
+        "closure_distance",
+        "closure_angle",
         "closed",
         "dof",
         "redundancy",
@@ -130,9 +133,9 @@ impl Batch {
         metrics.check(joints, object)?;
         let generic = match generic {
             Some(counts) => counts,
-            None => Generic::of(&home, Some(reference), Some(length))?.counts,
+            None => GenericMobility::of(&home, Some(reference), Some(length))?.counts,
         };
-        let plan = Plan::of(mechanism, reference, length)?;
+        let plan = BatchedConstraintPlan::of(mechanism, reference, length)?;
         let clear = generic.rank == constraint.rows()
             && generic.idle == 0
             && generic.indeterminacy == 0
@@ -171,7 +174,7 @@ impl Batch {
 
     /// What ordinary postures have.
     #[must_use]
-    pub fn generic(&self) -> Counts {
+    pub fn generic(&self) -> MobilityCounts {
         self.generic
     }
 
@@ -246,20 +249,20 @@ impl Batch {
             None => state.insert(self.mechanism.state(q)?),
         };
         let chain = ClosedChain::of(state, Some(self.reference), Some(self.length))?;
-        let motions = Motions::of(&chain.constraint);
+        let motions = MotionSpace::of(&chain.constraint);
         let relation = motions.relation();
         let singularities = Singularities::of(&motions, &relation, &self.generic);
         let dimensions = relation.dimensions();
         let spectrum = Manipulability::of(&relation, &self.metrics)?.kinematic;
         let none = f64::NAN;
         Ok(row(&Numbers {
-            gap: chain.gap,
-            closed: chain.gap.is_closed(self.length),
+            closure_error: chain.closure_error,
+            closed: chain.closure_error.is_closed(self.length),
             dof: motions.dof(),
             coordinate: dimensions.coordinate,
             internal: dimensions.internal,
             hyperstatic: motions.hyperstatic(),
-            counts: Counts::of(&motions, &relation),
+            counts: MobilityCounts::of(&motions, &relation),
             distances: singularities.distances,
             volume: spectrum.volume(),
             largest: spectrum.largest().unwrap_or(none),
@@ -270,9 +273,12 @@ impl Batch {
     /// From what the kernel found, where no count hangs on little.
     fn clear(&self, kernel: &Kernel, found: Found<'_>) -> Option<Row> {
         let plan = kernel.plan();
-        let gap = Gap { distance: found.distance, angle: found.angle };
+        let closure_error = LoopClosureError { distance: found.distance, angle: found.angle };
         let near = |x: f64, limit: f64| (x - limit).abs() < 1e-3 * limit;
-        if !found.usable || near(gap.distance, CLOSED * self.length) || near(gap.angle, CLOSED) {
+        if !found.usable
+            || near(closure_error.distance, CLOSED * self.length)
+            || near(closure_error.angle, CLOSED)
+        {
             return None;
         }
         if !(found.regularity > CLEAR_DISTANCE && found.share > CLEAR_DISTANCE) {
@@ -295,22 +301,22 @@ impl Batch {
         }
         let (volume, smallest, largest) = measured(found.measured, coordinate)?;
         let dof = kernel.dof();
-        let counts = Counts {
+        let counts = MobilityCounts {
             rank: plan.held() + plan.object(),
             idle: 0,
             redundancy: dof - coordinate,
             indeterminacy: 0,
             zero_torque: plan.object() - coordinate,
         };
-        let here = Distances {
+        let here = SingularityDistances {
             type_i: sine(least),
             type_ii: cosine,
             configuration_space: found.regularity,
             passive: found.share,
         };
         Some(row(&Numbers {
-            gap,
-            closed: gap.is_closed(self.length),
+            closure_error,
+            closed: closure_error.is_closed(self.length),
             dof,
             coordinate,
             internal: plan.actuated() - dof,
@@ -353,25 +359,25 @@ fn at_row(error: Error, row: usize) -> Error {
 }
 
 struct Numbers {
-    gap: Gap,
+    closure_error: LoopClosureError,
     closed: bool,
     dof: usize,
     coordinate: usize,
     internal: usize,
     hyperstatic: usize,
-    counts: Counts,
-    distances: Distances,
+    counts: MobilityCounts,
+    distances: SingularityDistances,
     volume: f64,
     largest: f64,
     smallest: f64,
 }
 
 fn row(n: &Numbers) -> Row {
-    let Counts { idle, redundancy, indeterminacy, zero_torque, .. } = n.counts;
+    let MobilityCounts { idle, redundancy, indeterminacy, zero_torque, .. } = n.counts;
     let count = |n: usize| n as f64;
     [
-        n.gap.distance,
-        n.gap.angle,
+        n.closure_error.distance,
+        n.closure_error.angle,
         f64::from(u8::from(n.closed)),
         count(n.dof),
         count(redundancy),

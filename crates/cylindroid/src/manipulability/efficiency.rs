@@ -20,7 +20,7 @@
 //!          tests/it/manipulability/serial.rs
 
 use super::metrics::Metrics;
-use crate::closure::{Parts, Relation};
+use crate::closure::{Relation, RelationBases};
 use crate::error::Result;
 use crate::linalg::{CosineSine, Matrix, Metric, Qr, dot};
 use crate::tolerance::{DUALITY, LOPSIDED};
@@ -89,7 +89,7 @@ impl Spectrum {
         })
     }
 
-    fn of(parts: Parts, joint: Option<&Metric>, object: Option<&Metric>) -> Self {
+    fn of(parts: RelationBases, joint: Option<&Metric>, object: Option<&Metric>) -> Self {
         let principal = Principal::of(parts, joint, object);
         Self {
             finite: principal.directions(joint, object),
@@ -109,7 +109,7 @@ struct Principal {
 }
 
 impl Principal {
-    fn of(parts: Parts, joint: Option<&Metric>, object: Option<&Metric>) -> Self {
+    fn of(parts: RelationBases, joint: Option<&Metric>, object: Option<&Metric>) -> Self {
         let zeros = orthonormal(whitened(joint, parts.zero));
         let infinite = orthonormal(whitened(object, parts.infinite));
         let q = without(whitened(joint, parts.joint), &zeros);

@@ -22,7 +22,7 @@
 
 use super::efficiency::{Direction, Manipulability};
 use super::metrics::Metrics;
-use crate::closure::{ClosedChain, Constraint, Load, Motions, Supports, Unit};
+use crate::closure::{ClosedChain, Constraint, ContactForceSolver, MotionSpace, StaticLoad, Unit};
 use crate::error::Result;
 use crate::inverse::truncated;
 use crate::kinematics::{Reference, State};
@@ -115,7 +115,7 @@ pub fn gradient(
     measure: Measure,
 ) -> Result<Gradient> {
     let chain = ClosedChain::of(state, goal.reference, None)?;
-    let motions = Motions::of(&chain.constraint);
+    let motions = MotionSpace::of(&chain.constraint);
     let relation = match goal.task {
         Some(map) => motions.relation().task(map)?,
         None => motions.relation(),
@@ -188,21 +188,30 @@ pub fn gradient(
 /// What stands behind the directions: motions of all joints, and the forces at the contacts.
 struct Behind<'a> {
     task: Option<&'a Matrix>,
-    supports: Supports<'a>,
+    supports: ContactForceSolver<'a>,
     /// All motions, and their least combination that has given parts of driven joints and object.
     basis: Matrix,
     least: Matrix,
 }
 
 impl<'a> Behind<'a> {
-    fn of(constraint: &'a Constraint, motions: &Motions, task: Option<&'a Matrix>) -> Result<Self> {
+    fn of(
+        constraint: &'a Constraint,
+        motions: &MotionSpace,
+        task: Option<&'a Matrix>,
+    ) -> Result<Self> {
         let basis = motions.basis();
         let (a, n) = (motions.actuated(), basis.rows());
         let twists = basis.rows_between(a + motions.passive(), n);
         let seen = task.map_or_else(|| twists.clone(), |map| map * &twists);
         let both = Matrix::above(basis.cols(), &[&basis.rows_between(0, a), &seen]);
         let least = truncated(&both, CLOSURE_BLOCK)?.matrix;
-        Ok(Self { task, supports: Supports::of(constraint, motions, None)?, basis, least })
+        Ok(Self {
+            task,
+            supports: ContactForceSolver::of(constraint, motions, None)?,
+            basis,
+            least,
+        })
     }
 }
 
@@ -233,7 +242,7 @@ impl Stationary {
             wrench = map.transpose().mul_vec(&wrench);
         }
         wrench.iter_mut().for_each(|x| *x = -*x);
-        let load = Load { torques: &torques, wrench: &wrench };
+        let load = StaticLoad { torques: &torques, wrench: &wrench };
         let shares = behind.least.mul_vec(&[q.as_slice(), u].concat());
         Ok(Self {
             motion: behind.basis.mul_vec(&shares),
@@ -278,7 +287,7 @@ fn coordinate_scale(state: &State, length: f64) -> Vec<f64> {
 }
 
 /// The motions of the tree's coordinates that keep the loops closed, orthonormal when scaled.
-fn tangent(state: &State, chain: &ClosedChain, motions: &Motions) -> Matrix {
+fn tangent(state: &State, chain: &ClosedChain, motions: &MotionSpace) -> Matrix {
     let scale = coordinate_scale(state, chain.constraint.length());
     let basis = motions.basis();
     let rates =

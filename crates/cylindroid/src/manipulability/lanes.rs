@@ -15,7 +15,7 @@
 //!          so lanes stay together
 //! Checked  tests/it/manipulability/batch.rs
 
-use crate::closure::Plan;
+use crate::closure::BatchedConstraintPlan;
 use crate::kinematics::Frame;
 use crate::linalg::Matrix;
 use crate::linalg::abreast::{
@@ -33,7 +33,7 @@ const BEFORE: usize = 6;
 /// What does not change with the configuration.
 #[derive(Debug, Clone)]
 pub(super) struct Kernel {
-    plan: Box<Plan>,
+    plan: Box<BatchedConstraintPlan>,
     /// `L_u^T D_u` and `L_q^T D_q`: from scaled coordinates to those in which metrics are one.
     object: Matrix,
     joint: Matrix,
@@ -63,7 +63,7 @@ pub(super) struct Found<'a> {
 impl Kernel {
     /// With the metrics as factors; `None` where motions of the loops leave nothing to decide, or
     /// are more than the drives could set.
-    pub(super) fn new(plan: Plan, object: Matrix, joint: Matrix) -> Option<Self> {
+    pub(super) fn new(plan: BatchedConstraintPlan, object: Matrix, joint: Matrix) -> Option<Self> {
         let k = plan.columns().checked_sub(plan.held())?;
         if k == 0 || k > plan.actuated() {
             return None;
@@ -81,7 +81,7 @@ impl Kernel {
     }
 
     /// The plan.
-    pub(super) fn plan(&self) -> &Plan {
+    pub(super) fn plan(&self) -> &BatchedConstraintPlan {
         &self.plan
     }
 
@@ -394,7 +394,9 @@ mod tests {
     fn lanes_agree_with_plain_numbers() {
         for name in ["five-bar", "stewart", "two-arm", "ur5e"] {
             let mechanism = catalogue::load(name).unwrap();
-            let plan = Plan::of(&mechanism, mechanism.reference(), mechanism.reach()).unwrap();
+            let plan =
+                BatchedConstraintPlan::of(&mechanism, mechanism.reference(), mechanism.reach())
+                    .unwrap();
             let of = |scale: &[f64]| Matrix::diagonal(scale);
             let (object, joint) = (of(&plan.object_scale), of(&plan.actuated_scale));
             let kernel = Kernel::new(plan, object, joint).unwrap();

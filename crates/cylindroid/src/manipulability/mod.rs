@@ -6,12 +6,12 @@
 //! singular values of its Jacobian, and the directions the axes of the textbook ellipsoid.
 //!
 //! ```
-//! use cylindroid::closure::{Constraint, Motions};
+//! use cylindroid::closure::{Constraint, MotionSpace};
 //! use cylindroid::manipulability::{Manipulability, Metrics};
 //! use cylindroid::Matrix;
 //!
 //! let jacobian = Matrix::from_rows(&[[2.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
-//! let relation = Motions::of(&Constraint::serial(&jacobian)?).relation();
+//! let relation = MotionSpace::of(&Constraint::serial(&jacobian)?).relation();
 //! let m = Manipulability::of(&relation, &Metrics::UNIT)?;
 //! assert_eq!(m.kinematic.zeros.cols(), 1); // the third joint moves nothing
 //! assert!((m.kinematic.values()[0] - 4.0).abs() < 1e-12);

@@ -17,7 +17,7 @@
 //! Source   Chiacchio, Bouffard-Vercelli & Pierrot 1997; Bicchi & Prattichizzo 2000
 //! Checked  tests/it/manipulability/polytope.rs
 
-use crate::closure::{Parts, Relation};
+use crate::closure::{Relation, RelationBases};
 use crate::error::{Error, Result};
 use crate::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Interval, Matrix, Pull};
 use crate::tolerance::{CLOSURE_BLOCK, HULL, MOST_FACETS};
@@ -69,12 +69,12 @@ pub fn force_range(relation: &Relation, torque_limits: &[Interval]) -> Result<Ve
 
 /// q = joint y + zero z, u = object y + infinite x; the limits bind q alone.
 struct Body {
-    parts: Parts,
+    parts: RelationBases,
     program: BoxProgram,
 }
 
 impl Body {
-    fn new(parts: Parts, option: &'static str, limits: &[Interval]) -> Result<Self> {
+    fn new(parts: RelationBases, option: &'static str, limits: &[Interval]) -> Result<Self> {
         let joints = parts.joint.rows();
         Error::check_len(option, joints, limits.len())?;
         if let Some(limit) = limits.iter().find(|l| !l.is_around_zero()) {

@@ -19,7 +19,7 @@ mod urdf;
 
 use std::path::{Path, PathBuf};
 
-use cylindroid::closure::{ClosedChain, Motions};
+use cylindroid::closure::{ClosedChain, MotionSpace};
 use cylindroid::model::formats;
 use cylindroid::{Error, FileError, Matrix, Mechanism, Result};
 
@@ -65,7 +65,7 @@ fn pointed_at<'t>(text: &'t str, error: &FileError) -> &'t str {
 
 /// The rates of these coordinates in all motions that a constraint leaves, a column each.
 fn motions_of(chain: &ClosedChain, names: &[&str]) -> Matrix {
-    let basis = Motions::of(&chain.constraint).basis();
+    let basis = MotionSpace::of(&chain.constraint).basis();
     let all: Vec<&String> = chain.actuated.iter().chain(&chain.passive).collect();
     let row = |name: &&str| all.iter().position(|n| n == name).unwrap();
     let rows: Vec<usize> = names.iter().map(row).collect();

@@ -68,7 +68,11 @@ fn against_mujoco(name: &str, m: &Mechanism, expected_dof: usize) {
     for case in cases {
         let state = m.state(&coordinates(m, &case["q"])).unwrap();
         let chain = ClosedChain::of(&state, None, None).unwrap();
-        assert!(chain.gap.distance < 1e-12 && chain.gap.angle < 1e-12, "{name}: {:?}", chain.gap);
+        assert!(
+            chain.closure_error.distance < 1e-12 && chain.closure_error.angle < 1e-12,
+            "{name}: {:?}",
+            chain.closure_error
+        );
         let names: Vec<&str> = m.coordinates().iter().map(|c| c.name.as_str()).collect();
         let ours = &qvel_from_rates(&state) * &motions_of(&chain, &names);
         let ours = ColumnSpace::of(&ours, Threshold::Relative(1e-9)).basis();

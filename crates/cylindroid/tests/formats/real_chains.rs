@@ -4,7 +4,7 @@
 
 use std::fs;
 
-use cylindroid::closure::{ClosedChain, Mobility, Motions};
+use cylindroid::closure::{ClosedChain, Mobility, MotionSpace};
 use cylindroid::linalg::{ColumnSpace, Matrix, Threshold};
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::formats;
@@ -62,7 +62,7 @@ fn cassie_moves_as_its_links_do() {
         assert_eq!(mobility.dof.dimension(), dof, "{file}");
         assert_eq!(mobility.hyperstatic.dimension(), count(&case["redundant"]), "{file}");
         assert_eq!(
-            mobility.grubler + mobility.hyperstatic.dimension() as i64,
+            mobility.gruebler_kutzbach + mobility.hyperstatic.dimension() as i64,
             dof as i64,
             "{file}"
         );
@@ -75,8 +75,12 @@ fn cassie_moves_as_its_links_do() {
         assert_eq!(ours.rank(), theirs.cols(), "{file}");
         let sines = &ours.complement().transpose() * &theirs;
         let digits = 1e-14 / case["smallest"].as_f64().unwrap();
-        let doubts: Vec<&str> = mobility.doubts.iter().map(|d| d.count).collect();
-        assert_eq!(doubts, if file == "cassie.sdf" { &["dof"][..] } else { &[] }, "{file}");
+        let ambiguous_ranks: Vec<&str> = mobility.ambiguous_ranks.iter().map(|d| d.count).collect();
+        assert_eq!(
+            ambiguous_ranks,
+            if file == "cassie.sdf" { &["dof"][..] } else { &[] },
+            "{file}"
+        );
         assert!(sines.frobenius_norm() < digits, "{file}: {:e}", sines.frobenius_norm());
     }
 }
@@ -98,8 +102,12 @@ fn two_arms_hold_an_object() {
     for case in vectors("two_arms") {
         let m = cell(case["file"].as_str().unwrap());
         let chain = at_home(&m);
-        assert!(chain.gap.distance < 1e-12 && chain.gap.angle < 1e-12, "{:?}", chain.gap);
-        let motions = Motions::of(&chain.constraint);
+        assert!(
+            chain.closure_error.distance < 1e-12 && chain.closure_error.angle < 1e-12,
+            "{:?}",
+            chain.closure_error
+        );
+        let motions = MotionSpace::of(&chain.constraint);
         let relation = motions.relation();
         let mobility = Mobility::from_parts(&chain.constraint, &motions, &relation);
         for (name, got) in [
@@ -112,7 +120,7 @@ fn two_arms_hold_an_object() {
         ] {
             assert_eq!(got, count(&case["counts"][name]), "{name} of {}", m.name());
         }
-        assert!(mobility.doubts.is_empty(), "{:?}", mobility.doubts);
+        assert!(mobility.ambiguous_ranks.is_empty(), "{:?}", mobility.ambiguous_ranks);
         let m = Manipulability::of(&relation, &Metrics::UNIT).unwrap();
         let expected = numbers(&case["kinematic"]);
         assert_eq!(m.kinematic.finite.len(), 6);

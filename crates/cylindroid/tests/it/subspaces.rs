@@ -131,12 +131,12 @@ fn column_space_thresholds() {
     let cut = ColumnSpace::of(&Matrix::diagonal(&[1.0, 1e-7, 1e-10]), Threshold::Absolute(1e-9));
     assert_eq!((cut.rank(), cut.cut().kept, cut.cut().dropped), (2, 1e-7, 1e-10));
     // A gap of 1000, but the kept value stands within 1000 of the threshold.
-    assert!(cut.cut().is_doubtful());
+    assert!(cut.cut().is_ambiguous());
     let sure = ColumnSpace::of(&Matrix::diagonal(&[1.0, 1e-16]), Threshold::Absolute(1e-9));
-    assert!(!sure.cut().is_doubtful());
+    assert!(!sure.cut().is_ambiguous());
     let near = ColumnSpace::of(&Matrix::diagonal(&[5e-10]), Threshold::Absolute(1e-9));
-    assert!(near.rank() == 0 && near.cut().is_doubtful());
-    assert!(!ColumnSpace::of(&noise, Threshold::Absolute(1e-9)).cut().is_doubtful());
+    assert!(near.rank() == 0 && near.cut().is_ambiguous());
+    assert!(!ColumnSpace::of(&noise, Threshold::Absolute(1e-9)).cut().is_ambiguous());
     for scale in [1e-300, 1e300] {
         let a = Matrix::diagonal(&[scale, 0.5 * scale, 0.0]);
         assert_eq!(ColumnSpace::of(&a, Threshold::Relative(1e-9)).rank(), 2);

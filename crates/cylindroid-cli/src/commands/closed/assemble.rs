@@ -1,18 +1,18 @@
 //! `assemble`: closes the loops of a mechanism from a guess, looks for all ways to close them, and
 //! moves coordinates while they stay closed.
 
-mod follow;
+mod continuation;
 mod modes;
 
 use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Error;
-use cylindroid::closure::{Assembly, Gap, ModeOptions, assemble};
+use cylindroid::closure::{Assembly, LoopClosureError, ModeOptions, assemble};
 use cylindroid::model::Mechanism;
 use serde::Serialize;
 
-use super::GapJson;
+use super::ClosureErrorJson;
 use crate::args::AssembleArgs;
 use crate::commands::{Style, answer, configuration};
 use crate::output::{self, Align, number};
@@ -25,7 +25,7 @@ struct AssembleJson<'a> {
     /// True if all loops and contacts are closed.
     closed: bool,
     q: &'a [f64],
-    gap: GapJson,
+    closure_error: ClosureErrorJson,
     steps: usize,
     guess: &'a [f64],
     held: Vec<&'a str>,
@@ -64,7 +64,7 @@ pub(crate) fn run(
     }
     if let Some(to) = &args.to {
         let goal = goal(&job, to, args.posture.degrees)?;
-        return follow::run(&job, &goal, args.least_distance, style, out);
+        return continuation::run(&job, &goal, args.least_distance, style, out);
     }
     let found = assemble(&mechanism, &job.guess, &job.held)?;
     let report = AssembleJson {
@@ -72,7 +72,7 @@ pub(crate) fn run(
         joint_names: job.names.clone(),
         closed: found.closed,
         q: &found.q,
-        gap: found.gap.into(),
+        closure_error: found.closure_error.into(),
         steps: found.steps,
         guess: &job.guess,
         held: job.names_of(&job.held),
@@ -112,7 +112,7 @@ fn held(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>, Error> {
 const DRIVEN: &str = "driven";
 
 /// The way of `--to`: the named coordinates to their values, those of `--hold` at rest.
-fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<follow::Goal, Error> {
+fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<continuation::Goal, Error> {
     let Joints::Some(pairs) = to else {
         return Err(Error::InvalidOption {
             option: "--to",
@@ -123,7 +123,7 @@ fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<follow::Goal, Error
     // What is not named stays as guessed.
     let target = to.configuration(job.mechanism, degrees)?;
     job.mechanism.check_q("--to", &target)?;
-    let mut goal = follow::Goal { places: Vec::new(), values: Vec::new() };
+    let mut goal = continuation::Goal { places: Vec::new(), values: Vec::new() };
     for (name, _) in pairs {
         let place = job.names.iter().position(|n| n == name);
         let place = place.ok_or_else(|| Error::unknown("joint", name, &job.names))?;
@@ -137,8 +137,8 @@ fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<follow::Goal, Error
     Ok(goal)
 }
 
-fn open_by(gap: Gap) -> String {
-    format!("{} m, {} rad", number(gap.distance), number(gap.angle))
+fn open_by(closure_error: LoopClosureError) -> String {
+    format!("{} m, {} rad", number(closure_error.distance), number(closure_error.angle))
 }
 
 /// An argument for `--q`, in full.
@@ -153,13 +153,17 @@ fn print(
     report: &AssembleJson<'_>,
 ) -> anyhow::Result<()> {
     let (loops, contacts) = (mechanism.loops().len(), mechanism.contacts().len());
-    let gap = open_by(found.gap);
+    let closure_error = open_by(found.closure_error);
     let result = if found.closed {
         let s = |n: usize| if n == 1 { "" } else { "s" };
-        format!("closed: {loops} loop{} and {contacts} contact{} to {gap}", s(loops), s(contacts))
+        format!(
+            "closed: {loops} loop{} and {contacts} contact{} to {closure_error}",
+            s(loops),
+            s(contacts)
+        )
     } else {
         format!(
-            "not closed: open by {gap} where the search ended; try another guess (--q), or hold \
+            "not closed: open by {closure_error} where the search ended; try another guess (--q), or hold \
              fewer coordinates (--hold); that none was found proves nothing"
         )
     };

@@ -4,7 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::closure::{
-    Effort, FingerContact, Friction, GraspQuality, Touch, WrenchSpace, fingers_on, grasp_quality,
+    ContactProperties, FingerContact, Friction, GraspMetric, GraspQuality, WrenchSpace,
+    grasp_contacts, grasp_quality,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, FrameId, Result};
@@ -24,8 +25,8 @@ struct GraspJson<'a> {
     /// True if every wrench can be held.
     closed: bool,
     epsilon: BoundsJson,
-    /// "shared": the normal forces sum to 1 N; "each": every finger up to its strength.
-    effort: &'static str,
+    /// "l1": the normal forces sum to 1 N; "linf": each is at most the finger's strength.
+    metric: &'static str,
     components: &'static [&'static str],
     /// Unit vector, moments over the length: the direction in which least is held.
     weakest: &'a [f64],
@@ -70,11 +71,11 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         Error::check_positive("--length", length)?;
         space.length = length;
     }
-    let (effort, word) = match args.strength {
-        Some(_) => (Effort::Each, "each"),
-        None => (Effort::Shared, "shared"),
+    let metric = match args.strength {
+        Some(_) => GraspMetric::LInf,
+        None => GraspMetric::L1,
     };
-    let quality = grasp_quality(&fingers, space, effort)?;
+    let quality = grasp_quality(&fingers, space, metric)?;
     let contacts = places.iter().zip(&fingers).map(|(&i, finger)| {
         let contact = &mechanism.contacts()[i];
         let (mu, torsion) = match finger.friction {
@@ -97,8 +98,8 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         frame: &mechanism.frame_of(object).name,
         q: &q,
         closed: quality.closed,
-        epsilon: BoundsJson { lower: quality.epsilon.0, upper: quality.epsilon.1 },
-        effort: word,
+        epsilon: BoundsJson { lower: quality.epsilon.lower, upper: quality.epsilon.upper },
+        metric: metric.name(),
         components: components(if space.planar { 3 } else { 6 }),
         weakest: &quality.weakest,
         length: space.length,
@@ -123,9 +124,9 @@ fn fingers(
     for given in options.into_iter().flatten() {
         given.check("contact", &names)?;
     }
-    let found = fingers_on(state, object, |contact| {
+    let found = grasp_contacts(state, object, |contact| {
         let of = |i: usize| options[i].as_ref().and_then(|given| given.of(&contact.name));
-        Touch { mu: of(0), torsion: of(1), strength: of(2).unwrap_or(1.0) }
+        ContactProperties { mu: of(0), torsion: of(1), strength: of(2).unwrap_or(1.0) }
     })?;
     let weak = |i: usize| {
         let name = &mechanism.contacts()[i].name;
@@ -163,9 +164,9 @@ fn print(
     } else {
         "open: wrenches along the weakest direction are not held at any effort".to_owned()
     };
-    let effort = match report.effort {
-        "each" => "every finger up to its strength",
-        _ => "normal forces that sum to 1 N",
+    let metric = match report.metric {
+        "linf" => "Q-infinity: each normal force at most the finger's strength",
+        _ => "Q1: the normal forces sum to 1 N",
     };
     output::pairs(
         out,
@@ -176,9 +177,9 @@ fn print(
             ("result", result),
             (
                 "epsilon [N]",
-                format!("{} to {}", number(quality.epsilon.0), number(quality.epsilon.1)),
+                format!("{} to {}", number(quality.epsilon.lower), number(quality.epsilon.upper)),
             ),
-            ("effort", effort.to_owned()),
+            ("metric", metric.to_owned()),
             ("length [m]", number(report.length)),
         ],
     )?;

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::closure::{Counts, Diagnosis, JointMobility, Mobility};
+use cylindroid::closure::{Diagnosis, JointMobility, Mobility, MobilityCounts};
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
@@ -30,7 +30,7 @@ struct MobilityJson<'a> {
     zero_torque: usize,
     hyperstatic: usize,
     idle: usize,
-    grubler: i64,
+    gruebler_kutzbach: i64,
     /// Smallest singular value kept over the largest dropped; null where nothing was dropped.
     rank_gap: f64,
     /// A row of each basis is a motion: driven, passive, then components of the reference frame.
@@ -42,7 +42,7 @@ struct MobilityJson<'a> {
     zero_torque_basis: Vec<Vec<f64>>,
     joints: Vec<JointJson<'a>>,
     /// Counts that hang on little, in words.
-    doubts: Vec<String>,
+    ambiguous_ranks: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -101,7 +101,7 @@ fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJs
         zero_torque: m.zero_torque.dimension(),
         hyperstatic: m.hyperstatic.dimension(),
         idle: m.idle.dimension(),
-        grubler: m.grubler,
+        gruebler_kutzbach: m.gruebler_kutzbach,
         rank_gap: m.dof.cut.rank.gap,
         dof_basis: output::columns(&m.dof.basis),
         idle_basis: output::columns(&m.idle.basis),
@@ -117,7 +117,7 @@ fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJs
                 idle: j.idle,
             })
             .collect(),
-        doubts: m.doubts.iter().map(ToString::to_string).collect(),
+        ambiguous_ranks: m.ambiguous_ranks.iter().map(ToString::to_string).collect(),
     }
 }
 
@@ -138,7 +138,7 @@ fn print(
     let mut lines = vec![
         ("degrees of freedom", format!("{} to first order ({gap})", m.dof.dimension())),
         ("finite motion", singularity::finite(posed, &found.finite)),
-        ("Grubler's formula", grubler(m)),
+        ("Grubler's formula", gruebler_kutzbach(m)),
     ];
     lines.extend(singularity::lines(posed, found));
     lines.extend(joints(posed, &m.joints));
@@ -146,17 +146,17 @@ fn print(
     writeln!(out)?;
     counts(out, m, &found.generic.counts)?;
     singularity::ways(out, posed, &found.finite)?;
-    if !m.doubts.is_empty() {
+    if !m.ambiguous_ranks.is_empty() {
         writeln!(out)?;
     }
-    for doubt in &m.doubts {
+    for doubt in &m.ambiguous_ranks {
         writeln!(out, "doubtful: {doubt}")?;
     }
     Ok(())
 }
 
 /// What is counted, here and in ordinary postures.
-fn counts(out: &mut dyn Write, m: &Mobility, generic: &Counts) -> anyhow::Result<()> {
+fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow::Result<()> {
     let r = &m.relation;
     let rows: [(&str, usize, Option<usize>, &str); 7] = [
         (
@@ -240,10 +240,12 @@ fn joints(posed: &Posed, mobility: &[JointMobility]) -> [(&'static str, String);
 }
 
 /// The formula, and what the geometry adds to it.
-fn grubler(m: &Mobility) -> String {
+fn gruebler_kutzbach(m: &Mobility) -> String {
     let dof = i64::try_from(m.dof.dimension()).unwrap_or(i64::MAX);
-    match dof - m.grubler {
-        0 => format!("{} (the geometry is ordinary)", m.grubler),
-        more => format!("{} (it misses {more}: constraints that say the same)", m.grubler),
+    match dof - m.gruebler_kutzbach {
+        0 => format!("{} (the geometry is ordinary)", m.gruebler_kutzbach),
+        more => {
+            format!("{} (it misses {more}: constraints that say the same)", m.gruebler_kutzbach)
+        }
     }
 }

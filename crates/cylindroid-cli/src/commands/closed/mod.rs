@@ -8,7 +8,7 @@ pub(crate) mod mobility;
 pub(crate) mod singularity;
 pub(super) mod statics;
 
-use cylindroid::closure::{ClosedChain, Gap};
+use cylindroid::closure::{ClosedChain, LoopClosureError};
 use cylindroid::model::{FrameId, Mechanism};
 use cylindroid::{Error, Result, State};
 use serde::Serialize;
@@ -67,8 +67,8 @@ impl Posed {
 
     /// The lines that say what is looked at.
     fn heading(&self) -> Vec<(&'static str, String)> {
-        let gap = self.chain.gap;
-        let open = !gap.is_closed(self.chain.constraint.length());
+        let closure_error = self.chain.closure_error;
+        let open = !closure_error.is_closed(self.chain.constraint.length());
         vec![
             ("model", self.mechanism.name().to_owned()),
             ("reference frame", self.frame().to_owned()),
@@ -81,8 +81,8 @@ impl Posed {
                 if open {
                     format!(
                         "{} m, {} rad: what follows holds where they are closed (`assemble`)",
-                        number(gap.distance),
-                        number(gap.angle)
+                        number(closure_error.distance),
+                        number(closure_error.angle)
                     )
                 } else {
                     String::new()
@@ -115,23 +115,23 @@ struct HeadJson<'a> {
     actuated: &'a [String],
     passive: &'a [String],
     /// How far loops are from closed.
-    gap: GapJson,
+    closure_error: ClosureErrorJson,
     /// Characteristic length [m].
     length: f64,
 }
 
 /// By how much loops are open.
 #[derive(Debug, Serialize)]
-pub(crate) struct GapJson {
+pub(crate) struct ClosureErrorJson {
     /// [m]
     distance: f64,
     /// [rad]
     angle: f64,
 }
 
-impl From<Gap> for GapJson {
-    fn from(gap: Gap) -> Self {
-        Self { distance: gap.distance, angle: gap.angle }
+impl From<LoopClosureError> for ClosureErrorJson {
+    fn from(closure_error: LoopClosureError) -> Self {
+        Self { distance: closure_error.distance, angle: closure_error.angle }
     }
 }
 
@@ -145,7 +145,7 @@ impl<'a> From<&'a Posed> for HeadJson<'a> {
             outside_limits: output::outside_limits(&posed.mechanism, &posed.q),
             actuated: &chain.actuated,
             passive: &chain.passive,
-            gap: chain.gap.into(),
+            closure_error: chain.closure_error.into(),
             length: chain.constraint.length(),
         }
     }

@@ -2,7 +2,9 @@
 
 use std::io::Write;
 
-use cylindroid::closure::{Counts, Diagnosis, Evidence, FiniteMobility, SingularityKind};
+use cylindroid::closure::{
+    Diagnosis, FiniteMobility, MobilityCounts, MobilityEvidence, SingularityKind,
+};
 use cylindroid::model::Dimension;
 use cylindroid::screws::Screw;
 use serde::Serialize;
@@ -71,7 +73,8 @@ struct BranchJson {
 impl From<&Diagnosis> for SingularityJson {
     fn from(d: &Diagnosis) -> Self {
         let at = &d.singularities.distances;
-        let Counts { rank, idle, redundancy, indeterminacy, zero_torque } = d.generic.counts;
+        let MobilityCounts { rank, idle, redundancy, indeterminacy, zero_torque } =
+            d.generic.counts;
         let screws = |of: &[Screw]| of.iter().map(Into::into).collect();
         Self {
             regular: d.singularities.is_regular(),
@@ -116,7 +119,7 @@ pub(super) fn finite(posed: &Posed, f: &FiniteMobility) -> String {
     let step = number(f.step);
     let Some(dof) = f.finite else {
         return match f.evidence {
-            Evidence::Nothing if f.step == 0.0 => {
+            MobilityEvidence::Unknown if f.step == 0.0 => {
                 "not known: the loops are open here; close them first (`assemble`)".to_owned()
             }
             _ => "not known: no step away from here could be followed".to_owned(),
@@ -125,11 +128,11 @@ pub(super) fn finite(posed: &Posed, f: &FiniteMobility) -> String {
     let unsure = if f.certain { "" } else { "; from a search, which may have missed a branch" };
     match f.evidence {
         _ if f.infinitesimal == 0 => "none: it is a structure".to_owned(),
-        Evidence::Independent if !posed.mechanism.is_closed() => {
+        MobilityEvidence::Independent if !posed.mechanism.is_closed() => {
             format!("{dof}: all of it, for there are no loops")
         }
-        Evidence::Independent => format!("{dof}: all of it, for the loops are independent"),
-        Evidence::Steps => format!(
+        MobilityEvidence::Independent => format!("{dof}: all of it, for the loops are independent"),
+        MobilityEvidence::Steps => format!(
             "{dof}: all of it; loops ask for the same thing twice here, and still close after \
              steps of {step} in every direction"
         ),
@@ -263,7 +266,7 @@ fn wrench_in_words(s: &Screw, planar: bool) -> String {
 
 /// The branches and what is shaky, joint by joint, where first order does not tell all.
 pub(super) fn ways(out: &mut dyn Write, posed: &Posed, f: &FiniteMobility) -> anyhow::Result<()> {
-    if f.evidence != Evidence::Search {
+    if f.evidence != MobilityEvidence::Search {
         return Ok(());
     }
     // The largest rate is one, the first not negative.

@@ -4,8 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::closure::{
-    Load, Mobility, Motions, Transmitted, contact_forces, joint_torques, row_compliance,
-    transmitted,
+    Mobility, MotionSpace, StaticLoad, TransmittedWrench, contact_forces, joint_torques,
+    row_compliance, transmitted_wrenches,
 };
 use cylindroid::{Error, Result};
 use serde::Serialize;
@@ -31,11 +31,11 @@ struct StaticsJson<'a> {
     /// True if forces of loops and contacts are elastic, else they are the least in size.
     elastic: bool,
     /// Under the wrench (less what is unbalanced) and the torques.
-    forces: Vec<TransmittedJson>,
+    forces: Vec<TransmittedWrenchJson>,
     /// Torques in balance without a wrench, with the forces that go with each.
     internal: Vec<InternalJson>,
     /// Forces that neither torques nor the wrench determine, one entry for each.
-    hyperstatic: Vec<Vec<TransmittedJson>>,
+    hyperstatic: Vec<Vec<TransmittedWrenchJson>>,
     /// Wrenches held without torques.
     zero_torque_basis: Vec<Vec<f64>>,
 }
@@ -43,11 +43,11 @@ struct StaticsJson<'a> {
 #[derive(Debug, Serialize)]
 struct InternalJson {
     torques: Vec<f64>,
-    forces: Vec<TransmittedJson>,
+    forces: Vec<TransmittedWrenchJson>,
 }
 
 #[derive(Debug, Serialize)]
-struct TransmittedJson {
+struct TransmittedWrenchJson {
     /// Closing joint or contact.
     name: String,
     /// Where it is [m].
@@ -61,8 +61,8 @@ struct TransmittedJson {
     tangential: Option<f64>,
 }
 
-impl From<Transmitted> for TransmittedJson {
-    fn from(t: Transmitted) -> Self {
+impl From<TransmittedWrench> for TransmittedWrenchJson {
+    fn from(t: TransmittedWrench) -> Self {
         Self {
             point: t.point.to_array(),
             force: t.wrench.force.to_array(),
@@ -104,7 +104,7 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
     }
     let chain = &posed.chain;
     let constraint = &chain.constraint;
-    let motions = Motions::of(constraint);
+    let motions = MotionSpace::of(constraint);
     let relation = motions.relation();
     let mobility = Mobility::from_parts(constraint, &motions, &relation);
     let weights = args.wtau.as_ref();
@@ -130,10 +130,10 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
         }
     };
     let held: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, u)| w - u).collect();
-    let through = |torques: &[f64], wrench: &[f64]| -> Result<Vec<TransmittedJson>> {
-        let load = Load { torques, wrench };
+    let through = |torques: &[f64], wrench: &[f64]| -> Result<Vec<TransmittedWrenchJson>> {
+        let load = StaticLoad { torques, wrench };
         let forces = contact_forces(constraint, &motions, load, compliance.as_ref())?.forces;
-        Ok(transmitted(&state, chain, &forces)?.into_iter().map(Into::into).collect())
+        Ok(transmitted_wrenches(&state, chain, &forces)?.into_iter().map(Into::into).collect())
     };
     let nothing = vec![0.0; components.len()];
     let internal = output::columns(&mobility.internal.basis)
@@ -142,7 +142,7 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
         .collect::<Result<_>>()?;
     let hyperstatic = output::columns(&mobility.hyperstatic.basis)
         .iter()
-        .map(|t| Ok(transmitted(&state, chain, t)?.into_iter().map(Into::into).collect()))
+        .map(|t| Ok(transmitted_wrenches(&state, chain, t)?.into_iter().map(Into::into).collect()))
         .collect::<Result<_>>()?;
     Ok(StaticsJson {
         head: posed.into(),
@@ -205,7 +205,7 @@ fn print(out: &mut dyn Write, posed: &Posed, report: &StaticsJson<'_>) -> anyhow
     Ok(())
 }
 
-fn forces(out: &mut dyn Write, title: &str, all: &[TransmittedJson]) -> anyhow::Result<()> {
+fn forces(out: &mut dyn Write, title: &str, all: &[TransmittedWrenchJson]) -> anyhow::Result<()> {
     writeln!(out)?;
     let right = ["fx", "fy", "fz", "mx", "my", "mz", "normal", "tangential"];
     let mut columns = vec![(title, Align::Left)];

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Servo;
-use cylindroid::closure::Gap;
+use cylindroid::closure::LoopClosureError;
 use cylindroid::control::{JointMove, Outcome, Sample, Stall, Status, Target, drive, find_posture};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -55,14 +55,15 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
     let mut servo = Servo::new(&job.robot, job.options.clone())?;
     let turns = job.options.task.components[3..].contains(&true);
     let mut deviation: Option<Deviation> = None;
-    let mut gap: Option<Gap> = None;
+    let mut closure_error: Option<LoopClosureError> = None;
     let progress = Progress::new(job.time_limit);
     let mut observe = |sample: Sample<'_>| {
         progress.show(&sample);
         if job.robot.is_closed()
-            && let Ok(now) = job.robot.state(sample.q).and_then(|state| Gap::of(&state))
+            && let Ok(now) =
+                job.robot.state(sample.q).and_then(|state| LoopClosureError::of(&state))
         {
-            let most = gap.get_or_insert_default();
+            let most = closure_error.get_or_insert_default();
             most.distance = most.distance.max(now.distance);
             most.angle = most.angle.max(now.angle);
         }
@@ -92,7 +93,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
         Goal::Joints(motion) => joints::drive(&mut servo, job, motion, &mut observe)?,
     };
     drop(progress);
-    let direct = |way| Ok(Result { outcome: outcome.clone(), deviation, gap, way });
+    let direct = |way| Ok(Result { outcome: outcome.clone(), deviation, closure_error, way });
     let Some(posture) = other_posture(job, &servo, &outcome)? else { return direct(Way::Direct) };
     if !job.detour {
         return direct(Way::Offered { posture });
@@ -111,7 +112,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
     Ok(Result {
         outcome: round,
         deviation: None,
-        gap: None,
+        closure_error: None,
         way: Way::Round { stalled: outcome.into() },
     })
 }

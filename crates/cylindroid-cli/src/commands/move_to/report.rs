@@ -2,14 +2,14 @@
 
 use std::io::Write;
 
-use cylindroid::closure::Gap;
+use cylindroid::closure::LoopClosureError;
 use cylindroid::control::{Outcome, Task};
 use serde::Serialize;
 
 use super::job::{Goal, Job};
 use super::{inverse, sentences};
 use crate::commands::Style;
-use crate::commands::closed::GapJson;
+use crate::commands::closed::ClosureErrorJson;
 use crate::commands::target::errors;
 use crate::output::{self, PoseJson};
 
@@ -18,8 +18,8 @@ use crate::output::{self, PoseJson};
 pub(super) struct Result {
     pub(super) outcome: Outcome,
     pub(super) deviation: Option<Deviation>,
-    /// The widest gap of the loops on the way.
-    pub(super) gap: Option<Gap>,
+    /// The widest closure_error of the loops on the way.
+    pub(super) closure_error: Option<LoopClosureError>,
     pub(super) way: Way,
 }
 
@@ -82,7 +82,7 @@ struct MoveJson<'a> {
     actuated: Option<Vec<&'a str>>,
     /// By how much its loops were open at most.
     #[serde(skip_serializing_if = "Option::is_none")]
-    gap: Option<GapJson>,
+    closure_error: Option<ClosureErrorJson>,
     /// The last `world_from_tool`.
     pose: PoseJson,
     /// Where the tool should be; what is not driven is as at the start.
@@ -143,7 +143,7 @@ pub(super) fn write(
 }
 
 fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
-    let Result { outcome, deviation, gap, way } = result;
+    let Result { outcome, deviation, closure_error, way } = result;
     let (robot, options) = (&job.robot, &job.options);
     let names = Task::COMPONENTS.iter().zip(options.task.components).filter(|(_, on)| *on);
     MoveJson {
@@ -170,7 +170,7 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
             .map(|(i, kind)| LimitJson { joint: &robot.coordinates()[*i].name, kind: kind.name() })
             .collect(),
         actuated: robot.is_closed().then(|| drives(job)),
-        gap: gap.map(Into::into),
+        closure_error: closure_error.map(Into::into),
         pose: outcome.last.pose.into(),
         target: job.target_pose.into(),
         task: names.map(|(name, _)| *name).collect(),
@@ -221,7 +221,7 @@ fn law_duration(job: &Job) -> Option<f64> {
 }
 
 fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> {
-    let Result { outcome, deviation, gap, way } = result;
+    let Result { outcome, deviation, closure_error, way } = result;
     let last = &outcome.last;
     let [position_error, orientation_error] =
         errors(job.options.task, last.position_error, last.orientation_error);
@@ -256,7 +256,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ("largest path deviation", deviation),
             (
                 "loops open by at most",
-                gap.map_or_else(String::new, |g| {
+                closure_error.map_or_else(String::new, |g| {
                     format!("{} m, {} rad", output::number(g.distance), output::number(g.angle))
                 }),
             ),

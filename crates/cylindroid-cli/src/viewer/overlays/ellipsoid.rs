@@ -1,6 +1,6 @@
 //! Ellipsoids of velocity and force at the tool point.
 
-use cylindroid::closure::{ClosedChain, Motions, Unit};
+use cylindroid::closure::{ClosedChain, MotionSpace, Unit};
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::{Matrix, Result, Twist, Vec3};
 use serde::Serialize;
@@ -50,7 +50,7 @@ pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Shown> {
         unit[components[j]] = 1.0;
         Twist::from_array(unit).at_point(offset).to_array()[chosen[i]]
     });
-    let relation = Motions::of(&chain.constraint).relation().task(&map)?;
+    let relation = MotionSpace::of(&chain.constraint).relation().task(&map)?;
     let all = Manipulability::of(&relation, &Metrics::UNIT)?;
     let (spectrum, unit) = match kind {
         Ellipsoid::Velocity => (all.kinematic, "m/s"),

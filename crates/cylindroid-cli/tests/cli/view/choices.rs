@@ -81,7 +81,7 @@ fn drives_that_leave_the_object_free_leave_no_servo() {
     assert!(state["servo"]["sentence"].as_str().unwrap().contains("still moves"), "{state}");
     // Joints can be moved all the same, and other drives take over again.
     assert_eq!(
-        client.done(json!({"type": "joint", "name": "q1", "value": 0.1}))["gap"]["closed"],
+        client.done(json!({"type": "joint", "name": "q1", "value": 0.1}))["closure_error"]["closed"],
         true
     );
     client.say(&json!({"type": "actuated", "names": ["q1", "q2"]}));

@@ -128,7 +128,7 @@ fn loops_stay_closed_whatever_is_moved() {
     assert_eq!((&scene["closed"], &scene["objects"][0]["name"]), (&true.into(), &"coupler".into()));
     for (name, value) in [("q1", 0.05), ("q2", -0.1), ("q3", 0.02)] {
         let state = client.done(json!({"type": "joint", "name": name, "value": value}));
-        assert_eq!(state["gap"]["closed"], true, "{name}: {state}");
+        assert_eq!(state["closure_error"]["closed"], true, "{name}: {state}");
         let i = ["q1", "q2", "q3"].iter().position(|n| *n == name).unwrap();
         assert!((state["q"][i].as_f64().unwrap() - value).abs() < 1e-9, "{name}: {state}");
         let [a, b] = ["a", "b"].map(|side| numbers(&state["loops"][0][side]));
@@ -143,7 +143,7 @@ fn loops_stay_closed_whatever_is_moved() {
         m["servo"]["status"] == "reached" && m["error"]["position"].as_f64() < Some(1e-6)
     });
     assert!(difference(&numbers(&state["tool"]["position"])[..2], &[1.2, 1.8]) < 1e-5);
-    assert_eq!(state["gap"]["closed"], true);
+    assert_eq!(state["closure_error"]["closed"], true);
     // Beyond what the rods allow it stops, with the nearest.
     let complaint = client.complaint(&json!({"type": "joint", "name": "q1", "value": 3}));
     let (nearest, message) = (complaint["nearest"].as_f64().unwrap(), &complaint["message"]);
@@ -159,7 +159,7 @@ fn configurations_are_assembled() {
     let mut q = vec![0.0; n];
     q[0] = 0.02;
     let state = client.done(json!({"type": "configuration", "q": q}));
-    assert_eq!(state["gap"]["closed"], true);
+    assert_eq!(state["closure_error"]["closed"], true);
     let short = client.complaint(&json!({"type": "configuration", "q": [0, 1]}));
     assert!(short["message"].as_str().unwrap().contains("expected"), "{short}");
 }

@@ -9,15 +9,15 @@
 //! Units    lengths over the characteristic length for every rank decision
 //! Frame    u and its wrench: at the reference frame's origin, world axes
 //! Valid    any mechanism; for a tree it is u = J q. The pose is taken as it is: rows are those of
-//!          the two frames of a joint where they should coincide, see [`ClosedChain::gap`]
+//!          the two frames of a joint where they should coincide, see [`ClosedChain::closure_error`]
 //! Why so   a spanning tree and rows for what closes it needs no contact forces of tree joints; the
 //!          relation between driven joints and object is the same wherever the loops are cut, and
 //!          so is the hyperstatic degree
 //! Source   Bicchi & Prattichizzo 1998, eq. 2, with several objects as passive columns
 //! Checked  tests/it/closure/graph.rs
 
-use super::constraint_rows::{for_each_rate, rate_unit, rows};
-use super::velocity_constraint::{Blocks, Constraint, Unit, Units};
+use super::constraint_rows::{constraint_rows, for_each_rate, rate_unit};
+use super::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;
@@ -39,7 +39,7 @@ pub struct ClosedChain {
     pub reference: FrameId,
     /// How far the loops are open: the largest distance (m) and angle (rad) by which what should
     /// be held is not.
-    pub gap: Gap,
+    pub closure_error: LoopClosureError,
     /// Of every coordinate of the tree, then of closing joints: whether it is driven, and its
     /// column among those of its sort.
     places: Vec<(bool, usize)>,
@@ -47,20 +47,20 @@ pub struct ClosedChain {
 
 /// How far loops and contacts are from being closed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Gap {
+pub struct LoopClosureError {
     /// Along held directions (m).
     pub distance: f64,
     /// About held directions (rad).
     pub angle: f64,
 }
 
-impl Gap {
+impl LoopClosureError {
     /// Of the loops and contacts of `state`.
     ///
     /// # Errors
     /// A driven closing joint of several coordinates.
     pub fn of(state: &State) -> Result<Self> {
-        Ok(rows(state)?.2)
+        Ok(constraint_rows(state)?.2)
     }
 
     /// Takes in a row of this unit.
@@ -90,11 +90,11 @@ impl ClosedChain {
         let mechanism = state.mechanism();
         let reference = reference.unwrap_or_else(|| mechanism.reference());
         mechanism.check_frame(reference)?;
-        let (rows, loops, gap) = rows(state)?;
+        let (rows, loops, closure_error) = constraint_rows(state)?;
         let columns = Columns::of(mechanism, &loops);
         let components = mechanism.dimension().components();
         let (held, d) = (rows.len(), components.len());
-        let mut blocks = Blocks {
+        let mut blocks = ConstraintBlocks {
             actuated: Matrix::zeros(held + d, columns.actuated.len()),
             passive: Matrix::zeros(held + d, columns.passive.len()),
             grasp: Matrix::zeros(d, held + d),
@@ -136,7 +136,7 @@ impl ClosedChain {
             passive: columns.passive,
             units,
             reference,
-            gap,
+            closure_error,
             places: columns.places,
         })
     }

@@ -12,7 +12,7 @@
 //! Checked  tests/it/manipulability/batch.rs
 
 use super::closed_chain::Columns;
-use super::constraint_rows::{self, Held, Pair};
+use super::constraint_rows::{self, KinematicPair, PairConstraints};
 use super::velocity_constraint::Unit;
 use crate::error::Result;
 use crate::kinematics::{Frame, forward_several};
@@ -23,12 +23,12 @@ use crate::tolerance::CROSSED_AXES;
 
 /// What does not change with the configuration.
 #[derive(Debug, Clone)]
-pub(crate) struct Plan {
+pub(crate) struct BatchedConstraintPlan {
     nodes: Vec<Node>,
-    pairs: Vec<Tie>,
-    reference: End,
+    pairs: Vec<BatchedPair>,
+    reference: AttachedFrame,
     /// The joints that move the reference.
-    ways: Vec<Way>,
+    columns_of: Vec<JacobianColumn>,
     components: &'static [usize],
     length: f64,
     /// Of the driven columns, and of the components of the reference.
@@ -40,7 +40,7 @@ pub(crate) struct Plan {
 
 /// A frame on a moving frame.
 #[derive(Debug, Clone)]
-struct End {
+struct AttachedFrame {
     slot: usize,
     from: Padded,
 }
@@ -48,7 +48,7 @@ struct End {
 /// What a coordinate does to what its joint carries: it turns about, or slides along, an axis of the
 /// joint's frame.
 #[derive(Debug, Clone)]
-struct Way {
+struct JacobianColumn {
     slot: usize,
     axis: usize,
     turns: bool,
@@ -59,8 +59,8 @@ struct Way {
 
 /// A closing joint or contact.
 #[derive(Debug, Clone)]
-struct Tie {
-    ends: [End; 2],
+struct BatchedPair {
+    ends: [AttachedFrame; 2],
     /// Wrenches with their residuals, then the one that measures a rate; the rows scaled.
     rows: Vec<Wrench>,
     residuals: usize,
@@ -69,10 +69,10 @@ struct Tie {
     crossed: Option<[Vec3; 2]>,
     /// The column of the rate.
     rate: Option<usize>,
-    ways: Vec<Way>,
+    columns_of: Vec<JacobianColumn>,
 }
 
-impl Tie {
+impl BatchedPair {
     fn len(&self) -> usize {
         self.rows.len() + usize::from(self.crossed.is_some())
     }
@@ -80,7 +80,7 @@ impl Tie {
 
 /// What was written beside the rows.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Written<R> {
+pub(crate) struct BatchedClosureError<R> {
     /// How far loops are open along (m) and about (rad) what is held.
     pub(crate) distance: R,
     pub(crate) angle: R,
@@ -88,10 +88,10 @@ pub(crate) struct Written<R> {
     pub(crate) usable: R,
 }
 
-impl Plan {
+impl BatchedConstraintPlan {
     /// Of a mechanism, its reference frame and a characteristic length.
     pub(crate) fn of(mechanism: &Mechanism, reference: FrameId, length: f64) -> Result<Self> {
-        let columns = Columns::of(mechanism, &constraint_rows::rated(mechanism));
+        let columns = Columns::of(mechanism, &constraint_rows::joints_with_rate(mechanism));
         let driven = columns.actuated.len();
         let column =
             |(is_driven, place): (bool, usize)| if is_driven { place } else { driven + place };
@@ -101,20 +101,20 @@ impl Plan {
             (0..n).map(|c| (column(columns.places[c]), size(c))).collect();
         let end = |frame: FrameId, place: Pose| {
             let frame = mechanism.frame_of(frame);
-            End { slot: frame.slot, from: (frame.slot_from_frame * place).into() }
+            AttachedFrame { slot: frame.slot, from: (frame.slot_from_frame * place).into() }
         };
         let mut rates = columns.places[n..].iter().map(|p| column(*p));
-        let mut ties = Vec::new();
-        for held in constraint_rows::held(mechanism) {
-            let Held { ends, frames, wrenches, crossed, measure } = held?;
+        let mut pairs = Vec::new();
+        for held in constraint_rows::pair_constraints(mechanism) {
+            let PairConstraints { ends, frames, wrenches, crossed, measure } = held?;
             let ends = [0, 1].map(|i| end(mechanism.link_frame(ends[i]), frames[i]));
             let scaled = |w: &Wrench| {
                 let s = 1.0 / constraint_rows::unit(*w).size(length);
                 Wrench { force: w.force * s, moment: w.moment * s }
             };
             let turns = wrenches.iter().any(|w| w.moment != Vec3::ZERO);
-            ties.push(Tie {
-                ways: between(mechanism.nodes(), &places, ends[0].slot, ends[1].slot),
+            pairs.push(BatchedPair {
+                columns_of: between(mechanism.nodes(), &places, ends[0].slot, ends[1].slot),
                 ends,
                 residuals: wrenches.len(),
                 rows: wrenches.iter().chain(&measure).map(scaled).collect(),
@@ -127,9 +127,9 @@ impl Plan {
         let components = mechanism.dimension().components();
         Ok(Self {
             nodes: mechanism.nodes().to_vec(),
-            held: ties.iter().map(Tie::len).sum(),
-            pairs: ties,
-            ways: between(mechanism.nodes(), &places, 0, target.slot),
+            held: pairs.iter().map(BatchedPair::len).sum(),
+            pairs: pairs,
+            columns_of: between(mechanism.nodes(), &places, 0, target.slot),
             reference: target,
             components,
             length,
@@ -159,7 +159,7 @@ impl Plan {
         self.actuated() + self.passive
     }
 
-    /// Number of frames that [`Plan::write`] needs.
+    /// Number of frames that [`BatchedConstraintPlan::write`] needs.
     pub(crate) fn frames(&self) -> usize {
         self.nodes.len() + 1
     }
@@ -171,12 +171,15 @@ impl Plan {
         q: &[R],
         frames: &mut [Frame<R>],
         rows: &mut [R],
-    ) -> Written<R> {
+    ) -> BatchedClosureError<R> {
         forward_several(&self.nodes, q, frames);
         rows.fill(R::splat(0.0));
         let columns = self.columns();
-        let mut written =
-            Written { distance: R::splat(0.0), angle: R::splat(0.0), usable: R::splat(1.0) };
+        let mut written = BatchedClosureError {
+            distance: R::splat(0.0),
+            angle: R::splat(0.0),
+            usable: R::splat(1.0),
+        };
         let mut from = 0;
         for tie in &self.pairs {
             let rows = &mut rows[from * columns..(from + tie.len()) * columns];
@@ -186,7 +189,7 @@ impl Plan {
         let tip = frames[self.reference.slot].then(&self.reference.from);
         let rows = &mut rows[from * columns..];
         let inverse = R::splat(1.0 / self.length);
-        for way in &self.ways {
+        for way in &self.columns_of {
             let rate = R::splat(way.rate);
             let (v, w) = way.twist(frames, tip.p);
             let v = v.times(inverse);
@@ -201,12 +204,12 @@ impl Plan {
     #[inline(always)]
     fn tie<R: Field>(
         &self,
-        tie: &Tie,
+        tie: &BatchedPair,
         frames: &[Frame<R>],
         rows: &mut [R],
-        written: &mut Written<R>,
+        written: &mut BatchedClosureError<R>,
     ) {
-        /// Rows of a pair at the most: six held, and the rate.
+        /// RowSelection of a pair at the most: six held, and the rate.
         const MOST: usize = 7;
         let k = R::splat;
         let columns = self.columns();
@@ -225,9 +228,9 @@ impl Plan {
             }
         }
         if let Some(held) = &tie.turned {
-            let gap = gap(held, &a, &b);
-            written.distance = written.distance.larger(gap[0]);
-            written.angle = written.angle.larger(gap[1]);
+            let closure_error = closure_error(held, &a, &b);
+            written.distance = written.distance.larger(closure_error[0]);
+            written.angle = written.angle.larger(closure_error[1]);
         }
         if let Some([first, second]) = tie.crossed {
             let (on_a, on_b) = (turned(&a, first), turned(&b, second));
@@ -240,7 +243,7 @@ impl Plan {
             written.usable = R::where_less(size, k(CROSSED_AXES), k(0.0), written.usable);
         }
         let wrenches = &wrenches[..tie.len()];
-        for way in &tie.ways {
+        for way in &tie.columns_of {
             let rate = k(way.rate);
             let (v, w) = way.twist(frames, b.p);
             for (row, (force, moment)) in rows.chunks_exact_mut(columns).zip(wrenches) {
@@ -249,14 +252,14 @@ impl Plan {
             }
         }
         if let Some(rate) = tie.rate {
-            // Rows and columns of rates have one scale.
+            // RowSelection and columns of rates have one scale.
             let place = (tie.rows.len() - 1) * columns + rate;
             rows[place] = rows[place] - k(1.0);
         }
     }
 }
 
-impl Way {
+impl JacobianColumn {
     /// Velocity of the point p, and angular velocity.
     #[inline(always)]
     fn twist<R: Field>(&self, frames: &[Frame<R>], p: [R; 3]) -> ([R; 3], [R; 3]) {
@@ -267,15 +270,26 @@ impl Way {
 }
 
 /// What moves slot `b` against slot `a`; `places` are column and scale of each coordinate.
-fn between(nodes: &[Node], places: &[(usize, f64)], mut a: usize, mut b: usize) -> Vec<Way> {
-    let mut ways = Vec::new();
+fn between(
+    nodes: &[Node],
+    places: &[(usize, f64)],
+    mut a: usize,
+    mut b: usize,
+) -> Vec<JacobianColumn> {
+    let mut columns_of = Vec::new();
     while a != b {
         // A parent has a smaller slot than its children.
         let (slot, sign) = if a > b { (a, -1.0) } else { (b, 1.0) };
         let node = &nodes[slot - 1];
         let mut add = |axis: usize, turns: bool, of: usize, rate: f64| {
             let (column, scale) = places[node.coordinate + of];
-            ways.push(Way { slot, axis, turns, column, rate: sign * rate * scale });
+            columns_of.push(JacobianColumn {
+                slot,
+                axis,
+                turns,
+                column,
+                rate: sign * rate * scale,
+            });
         };
         match node.motion {
             Motion::Fixed => {}
@@ -291,17 +305,17 @@ fn between(nodes: &[Node], places: &[(usize, f64)], mut a: usize, mut b: usize) 
         let next = if a > b { &mut a } else { &mut b };
         *next = node.parent;
     }
-    ways
+    columns_of
 }
 
-/// The gap along and about `held`, lane by lane as for one configuration.
+/// The closure_error along and about `held`, lane by lane as for one configuration.
 #[inline(always)]
-fn gap<R: Field>(held: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2] {
+fn closure_error<R: Field>(held: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2] {
     let (mut distance, mut angle) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
     let (a, b) = (poses(a), poses(b));
     for l in 0..R::LANES {
-        let gap = Pair::new(0, [0, 0], [a[l], b[l]]).gap(held);
-        (distance[l], angle[l]) = (gap.distance, gap.angle);
+        let closure_error = KinematicPair::new(0, [0, 0], [a[l], b[l]]).closure_error(held);
+        (distance[l], angle[l]) = (closure_error.distance, closure_error.angle);
     }
     [R::load(&distance), R::load(&angle)]
 }

@@ -6,7 +6,7 @@
 //! Frame    world, wrenches at the world's origin
 //! Checked  tests/it/closure/graph.rs
 
-use super::closed_chain::Gap;
+use super::closed_chain::LoopClosureError;
 use super::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
@@ -14,7 +14,7 @@ use crate::model::{Dimension, JointKind, LoopJoint, Mechanism};
 use crate::spatial::{Pose, Vec3, Wrench};
 
 /// A relative motion that is restricted, in world axes at the world's origin.
-pub(crate) struct Row {
+pub(crate) struct ConstraintRow {
     /// What is measured of the motion of `b` relative to `a`.
     pub(crate) wrench: Wrench,
     /// Place of its joint or contact: closing joints, then contacts.
@@ -37,7 +37,11 @@ pub(crate) fn rate_unit(joint: &LoopJoint) -> Unit {
 /// Calls `f(row, coordinate, rate)` for every coordinate of the tree that opens a row, the place of
 /// the row among `rows` and its rate by that coordinate. A coordinate may come several times (mimic
 /// joints): its rates add up.
-pub(crate) fn for_each_rate(state: &State, rows: &[Row], mut f: impl FnMut(usize, usize, f64)) {
+pub(crate) fn for_each_rate(
+    state: &State,
+    rows: &[ConstraintRow],
+    mut f: impl FnMut(usize, usize, f64),
+) {
     let mechanism = state.mechanism();
     // The rows of a pair stand together: its two links are walked once, and up to where they meet,
     // since what moves both does not open the pair.
@@ -57,7 +61,7 @@ pub(crate) fn for_each_rate(state: &State, rows: &[Row], mut f: impl FnMut(usize
     }
 }
 
-impl Row {
+impl ConstraintRow {
     /// The residual with lengths over `length`.
     pub(crate) fn scaled_residual(&self, length: f64) -> f64 {
         self.residual / self.unit.size(length)
@@ -65,7 +69,7 @@ impl Row {
 }
 
 /// What a closing joint or contact holds, wherever it is.
-pub(crate) struct Held {
+pub(crate) struct PairConstraints {
     /// Of its two links.
     pub(crate) ends: [usize; 2],
     /// Its frames on them.
@@ -79,7 +83,9 @@ pub(crate) struct Held {
 }
 
 /// What closing joints, then contacts hold.
-pub(crate) fn held(mechanism: &Mechanism) -> impl Iterator<Item = Result<Held>> {
+pub(crate) fn pair_constraints(
+    mechanism: &Mechanism,
+) -> impl Iterator<Item = Result<PairConstraints>> {
     let dimension = mechanism.dimension();
     let loops = mechanism.loops().iter().map(move |joint| {
         let measure = measure(joint);
@@ -101,7 +107,7 @@ pub(crate) fn held(mechanism: &Mechanism) -> impl Iterator<Item = Result<Held>> 
             wrenches.pop();
             crossed = Some([joint.axis, second]);
         }
-        Ok(Held {
+        Ok(PairConstraints {
             ends: [joint.a, joint.b],
             frames: [joint.link_a_from_joint, joint.link_b_from_joint],
             wrenches,
@@ -110,7 +116,7 @@ pub(crate) fn held(mechanism: &Mechanism) -> impl Iterator<Item = Result<Held>> 
         })
     });
     let contacts = mechanism.contacts().iter().map(move |contact| {
-        Ok(Held {
+        Ok(PairConstraints {
             ends: [contact.a, contact.b],
             frames: [contact.link_a_from_contact, contact.link_b_from_contact],
             wrenches: contact.kind.held(dimension),
@@ -133,36 +139,38 @@ fn measure(joint: &LoopJoint) -> Option<Wrench> {
 }
 
 /// The closing joints that have a rate.
-pub(crate) fn rated(mechanism: &Mechanism) -> Vec<&LoopJoint> {
+pub(crate) fn joints_with_rate(mechanism: &Mechanism) -> Vec<&LoopJoint> {
     mechanism.loops().iter().filter(|joint| measure(joint).is_some()).collect()
 }
 
-/// Rows of all closing joints and contacts, the closing joints that have a rate, and the gap.
-pub(crate) fn rows(state: &State) -> Result<(Vec<Row>, Vec<&LoopJoint>, Gap)> {
+/// RowSelection of all closing joints and contacts, the closing joints that have a rate, and the closure_error.
+pub(crate) fn constraint_rows(
+    state: &State,
+) -> Result<(Vec<ConstraintRow>, Vec<&LoopJoint>, LoopClosureError)> {
     let mechanism = state.mechanism();
     let pose = |link| state.pose(mechanism.link_frame(link));
     let (mut rows, mut rates) = (Vec::new(), 0);
-    for (place, held) in held(mechanism).enumerate() {
+    for (place, held) in pair_constraints(mechanism).enumerate() {
         let held = held?;
         let [a, b] = held.ends;
         let on = [pose(a) * held.frames[0], pose(b) * held.frames[1]];
-        let pair = Pair::new(place, held.ends, on);
+        let pair = KinematicPair::new(place, held.ends, on);
         rows.extend(held.crossed.and_then(|[first, second]| pair.crossed(first, second)));
         rows.extend(pair.rows(&held.wrenches));
         if let Some(w) = held.measure {
-            rows.push(Row { rate_of: Some(rates), ..pair.row(w) });
+            rows.push(ConstraintRow { rate_of: Some(rates), ..pair.row(w) });
             rates += 1;
         }
     }
-    let mut gap = Gap::default();
+    let mut closure_error = LoopClosureError::default();
     for row in &rows {
-        gap.widen(row.unit, row.residual);
+        closure_error.widen(row.unit, row.residual);
     }
-    Ok((rows, rated(mechanism), gap))
+    Ok((rows, joints_with_rate(mechanism), closure_error))
 }
 
 /// The two frames of a closing joint or contact.
-pub(crate) struct Pair {
+pub(crate) struct KinematicPair {
     place: usize,
     ends: [usize; 2],
     world_from_a: Pose,
@@ -172,7 +180,7 @@ pub(crate) struct Pair {
     turn: Vec3,
 }
 
-impl Pair {
+impl KinematicPair {
     pub(crate) fn new(
         place: usize,
         ends: [usize; 2],
@@ -184,17 +192,18 @@ impl Pair {
     }
 
     /// The rows of all that is held.
-    pub(crate) fn rows(&self, held: &[Wrench]) -> impl Iterator<Item = Row> {
+    pub(crate) fn rows(&self, held: &[Wrench]) -> impl Iterator<Item = ConstraintRow> {
         let tilt = self.tilt(held);
-        held.iter().map(move |w| Row { residual: self.residual(*w, tilt), ..self.row(*w) })
+        held.iter()
+            .map(move |w| ConstraintRow { residual: self.residual(*w, tilt), ..self.row(*w) })
     }
 
     /// How far it is open along and about `held`.
-    pub(crate) fn gap(&self, held: &[Wrench]) -> Gap {
+    pub(crate) fn closure_error(&self, held: &[Wrench]) -> LoopClosureError {
         let tilt = self.tilt(held);
-        let mut gap = Gap::default();
-        held.iter().for_each(|w| gap.widen(unit(*w), self.residual(*w, tilt)));
-        gap
+        let mut closure_error = LoopClosureError::default();
+        held.iter().for_each(|w| closure_error.widen(unit(*w), self.residual(*w, tilt)));
+        closure_error
     }
 
     /// Where two moments are held, they hold the direction of the axis across them, and residuals
@@ -220,12 +229,12 @@ impl Pair {
     }
 
     /// What holds `held`, a wrench in the first frame, as if it were closed: forces act where the second one is.
-    fn row(&self, held: Wrench) -> Row {
+    fn row(&self, held: Wrench) -> ConstraintRow {
         let at = Pose {
             rotation: self.world_from_a.rotation,
             translation: self.world_from_b.translation,
         };
-        Row {
+        ConstraintRow {
             wrench: at.coadjoint(held),
             pair: self.place,
             a: self.ends[0],
@@ -238,12 +247,12 @@ impl Pair {
 
     /// The moment of a universal joint: normal to an axis of either body, wherever they have
     /// turned, whose angle is held.
-    fn crossed(&self, first: Vec3, second: Vec3) -> Option<Row> {
+    fn crossed(&self, first: Vec3, second: Vec3) -> Option<ConstraintRow> {
         let turned = self.world_from_a.rotation.inverse() * (self.world_from_b.rotation * second);
         let across = first.cross(turned);
         let normal = across.unit(0.0)?;
         let residual = (first.dot(second) - first.dot(turned)) / across.norm();
-        Some(Row { residual, ..self.row(Wrench { force: Vec3::ZERO, moment: normal }) })
+        Some(ConstraintRow { residual, ..self.row(Wrench { force: Vec3::ZERO, moment: normal }) })
     }
 }
 

@@ -44,7 +44,7 @@ impl Unit {
 
 /// The three matrices of a constraint.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Blocks {
+pub struct ConstraintBlocks {
     /// `J_a`, t x q_a: velocities at the contacts by the driven joints.
     pub actuated: Matrix,
     /// `J_p`, t x q_p: by the passive joints and by objects other than the reference.
@@ -69,7 +69,7 @@ pub struct Units {
 /// A velocity constraint: finite, of fitting shapes, with its scales.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constraint {
-    blocks: Blocks,
+    blocks: ConstraintBlocks,
     length: f64,
     /// D_r.
     row_scale: Vec<f64>,
@@ -82,8 +82,8 @@ impl Constraint {
     /// with the characteristic length 1 m.
     ///
     /// # Errors
-    /// Blocks of different numbers of rows, NaN or infinity.
-    pub fn new(blocks: Blocks) -> Result<Self> {
+    /// ConstraintBlocks of different numbers of rows, NaN or infinity.
+    pub fn new(blocks: ConstraintBlocks) -> Result<Self> {
         let t = blocks.grasp.cols();
         for (name, block) in
             [("actuated Jacobian", &blocks.actuated), ("passive Jacobian", &blocks.passive)]
@@ -132,7 +132,7 @@ impl Constraint {
     /// # Errors
     /// NaN or infinity.
     pub fn serial(jacobian: &Matrix) -> Result<Self> {
-        Self::new(Blocks {
+        Self::new(ConstraintBlocks {
             actuated: jacobian.clone(),
             passive: Matrix::zeros(jacobian.rows(), 0),
             grasp: Matrix::identity(jacobian.rows()),
@@ -141,7 +141,7 @@ impl Constraint {
 
     /// The matrices it was made of.
     #[must_use]
-    pub fn blocks(&self) -> &Blocks {
+    pub fn blocks(&self) -> &ConstraintBlocks {
         &self.blocks
     }
 
@@ -193,7 +193,7 @@ impl Constraint {
     /// True where lengths in the characteristic length do not overflow: no entry does that has the
     /// largest size and both largest scales.
     fn is_finite_scaled(&self) -> bool {
-        let Blocks { actuated, passive, grasp } = &self.blocks;
+        let ConstraintBlocks { actuated, passive, grasp } = &self.blocks;
         let size = actuated.max_abs().max(passive.max_abs()).max(grasp.max_abs());
         let largest = |scale: &[f64]| scale.iter().fold(0.0, |m: f64, s| m.max(*s));
         let (row, column) = (largest(&self.row_scale), largest(&self.column_scale));

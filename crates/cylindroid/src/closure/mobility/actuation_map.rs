@@ -1,4 +1,4 @@
-//! Steering: what the driven joints of a closed chain can do, and what all other joints do with them.
+//! ActuationMap: what the driven joints of a closed chain can do, and what all other joints do with them.
 //!
 //! Formula  C s = 0 for the rates s of all joints: held rows of loops and contacts, and for driven
 //!          closing joints the rows that measure their rate; ker C = [X c; Y s] Z^T, driven rows
@@ -13,11 +13,13 @@
 //! Why so   in y the loops are kept whatever y is, and the least y is the least weighted effort of
 //!          the drives, passive joints not counted
 //! Source   Bicchi & Prattichizzo 1998, eqs. 2 to 4, in coordinates of the spanning tree
-//! Checked  tests/it/closure/steering.rs
+//! Checked  tests/it/closure/actuation_map.rs
 
 use super::motion_space::block_tolerance;
-use crate::closure::constraint::closed_chain::Gap;
-use crate::closure::constraint::constraint_rows::{Row, for_each_rate, rate_unit, rows};
+use crate::closure::constraint::closed_chain::LoopClosureError;
+use crate::closure::constraint::constraint_rows::{
+    ConstraintRow, constraint_rows, for_each_rate, rate_unit,
+};
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
@@ -27,7 +29,7 @@ use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 
 /// The motions of a closed chain by what its drives do with them.
 #[derive(Debug, Clone)]
-pub struct Steering {
+pub struct ActuationMap {
     /// M: what all joints do for each y, the n coordinates and then the driven closing joints.
     pub motions: Matrix,
     /// Motions with the driven joints at rest, a column each, of length one (scaled).
@@ -40,12 +42,12 @@ pub struct Steering {
     /// A change of all joints that closes the loops, to first order (rad or m).
     pub correction: Vec<f64>,
     /// How far the loops are open.
-    pub gap: Gap,
+    pub closure_error: LoopClosureError,
     /// Places of the driven joints among the rows of `motions`, and their weights' roots.
     drives: Vec<(usize, f64)>,
 }
 
-impl Steering {
+impl ActuationMap {
     /// At the configuration of `state`. `weights`: one for each coordinate of the tree, of which
     /// those of driven joints count, or none; the coordinates `locked` stand still.
     ///
@@ -66,14 +68,14 @@ impl Steering {
                 reason: format!("the mechanism has {n} coordinates"),
             });
         }
-        let (all, rated, gap) = rows(state)?;
-        let rates = RateRows::of(state, all, &rated, locked);
+        let (all, joints_with_rate, closure_error) = constraint_rows(state)?;
+        let rates = RateRows::of(state, all, &joints_with_rate, locked);
         let size = &rates.scale;
 
         let space =
             ColumnSpace::cut_of(rates.matrix.transpose(), Threshold::Relative(CLOSURE_RANK));
         let kernel = space.complement();
-        let driven = driven(mechanism, &rated, weights);
+        let driven = driven(mechanism, &joints_with_rate, weights);
         let others = (0..size.len()).filter(|i| driven.iter().all(|(d, _)| d != i));
         let order: Vec<usize> = driven.iter().map(|(d, _)| *d).chain(others).collect();
         let sorted = Matrix::from_fn(size.len(), kernel.cols(), |i, j| kernel[(order[i], j)]);
@@ -97,7 +99,7 @@ impl Steering {
             shares: cs.cosines[free..].to_vec(),
             directions: unscaled.columns_between(free, kernel.cols()),
             correction: rates.correction(),
-            gap,
+            closure_error,
             drives: driven,
         })
     }
@@ -121,11 +123,15 @@ impl Steering {
 }
 
 /// Places among coordinates and driven closing joints, and the roots of the weights.
-fn driven(mechanism: &Mechanism, rated: &[&LoopJoint], weights: &[f64]) -> Vec<(usize, f64)> {
+fn driven(
+    mechanism: &Mechanism,
+    joints_with_rate: &[&LoopJoint],
+    weights: &[f64],
+) -> Vec<(usize, f64)> {
     let n = mechanism.n();
     let root = |i: usize| weights.get(i).map_or(1.0, |w: &f64| w.sqrt());
     let tree = mechanism.coordinates().iter().enumerate().filter(|(_, c)| c.actuated);
-    let closing = rated.iter().filter(|l| l.actuated).count();
+    let closing = joints_with_rate.iter().filter(|l| l.actuated).count();
     tree.map(|(i, _)| (i, root(i))).chain((n..n + closing).map(|i| (i, 1.0))).collect()
 }
 
@@ -138,16 +144,22 @@ struct RateRows {
 }
 
 impl RateRows {
-    fn of(state: &State, all: Vec<Row>, rated: &[&LoopJoint], locked: &[usize]) -> Self {
+    fn of(
+        state: &State,
+        all: Vec<ConstraintRow>,
+        joints_with_rate: &[&LoopJoint],
+        locked: &[usize],
+    ) -> Self {
         let mechanism = state.mechanism();
         let (n, length) = (mechanism.n(), mechanism.reach());
-        let measured: Vec<usize> = (0..rated.len()).filter(|&k| rated[k].actuated).collect();
+        let measured: Vec<usize> =
+            (0..joints_with_rate.len()).filter(|&k| joints_with_rate[k].actuated).collect();
         let coordinates = mechanism.coordinates().iter().map(|c| Unit::of(c.kind));
-        let units = coordinates.chain(measured.iter().map(|&k| rate_unit(rated[k])));
+        let units = coordinates.chain(measured.iter().map(|&k| rate_unit(joints_with_rate[k])));
         let scale: Vec<f64> = units.map(|unit| unit.size(length)).collect();
         // Rates of passive closing joints say nothing.
         let column = |k: usize| measured.iter().position(|&m| m == k).map(|e| n + e);
-        let kept: Vec<Row> =
+        let kept: Vec<ConstraintRow> =
             all.into_iter().filter(|row| row.rate_of.is_none_or(|k| column(k).is_some())).collect();
         let mut matrix = Matrix::zeros(kept.len() + locked.len(), scale.len());
         let mut add = |i: usize, j: usize, rate| {

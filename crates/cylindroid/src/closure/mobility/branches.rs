@@ -12,7 +12,7 @@
 //! Why so   zeros of the quadratic part alone would name branches that third order destroys
 //! Checked  tests/it/closure/finite.rs
 
-use super::lyapunov_schmidt::{Near, Vicinity};
+use super::lyapunov_schmidt::{LyapunovSchmidt, ReducedPoint};
 use crate::error::Result;
 use crate::inverse::damp;
 use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold, dot, norm};
@@ -54,14 +54,14 @@ fn times(x: &[f64], factor: f64) -> Vec<f64> {
     x.iter().map(|x| factor * x).collect()
 }
 
-/// The branches through the posture of `vicinity`, looked for at the distance `h`.
+/// The branches through the posture of `reduction`, looked for at the distance `h`.
 pub(crate) fn branches(
     mechanism: &Mechanism,
     length: f64,
-    vicinity: &Vicinity<'_>,
+    reduction: &LyapunovSchmidt<'_>,
     h: f64,
 ) -> Result<Found> {
-    let k = vicinity.motions();
+    let k = reduction.motions();
     let mut random = 1;
     let starts: Vec<Vec<f64>> = match k {
         1 => vec![vec![1.0], vec![-1.0]],
@@ -70,7 +70,7 @@ pub(crate) fn branches(
     let mut tangents: Vec<Tangent> = Vec::new();
     let mut sound = true;
     for start in starts {
-        let Some((x, near)) = zero(vicinity, &times(&start, h), h)? else { continue };
+        let Some((x, near)) = zero(reduction, &times(&start, h), h)? else { continue };
         let Some(here) = Here::of(mechanism, &near.q, length, h)? else {
             sound = false;
             continue;
@@ -79,7 +79,7 @@ pub(crate) fn branches(
         if here.motions.cols() == 0 {
             continue;
         }
-        let Some(tangent) = tangent(mechanism, length, vicinity, (&x, h), &here)? else {
+        let Some(tangent) = tangent(mechanism, length, reduction, (&x, h), &here)? else {
             sound = false;
             continue;
         };
@@ -89,7 +89,7 @@ pub(crate) fn branches(
     }
     let tangents = merged(tangents, k);
     let largest = tangents.first().map_or(0, |t| t.dimension);
-    let proved = k == 1 || morse(vicinity, h)? == Some(largest);
+    let proved = k == 1 || morse(reduction, h)? == Some(largest);
     Ok(Found { tangents, complete: sound && proved })
 }
 
@@ -103,7 +103,7 @@ struct Here {
 impl Here {
     /// At `q`, which is `h` away from where branches meet; none where no step can be followed.
     fn of(mechanism: &Mechanism, q: &[f64], length: f64, h: f64) -> Result<Option<Self>> {
-        let at = Vicinity::of(mechanism, q, length, BRANCH_RANK * h)?;
+        let at = LyapunovSchmidt::of(mechanism, q, length, BRANCH_RANK * h)?;
         match followed(&at, h * BRANCH_RANK.sqrt())? {
             None => Ok(None),
             Some(true) => Ok(Some(Self { motions: at.kernel().clone(), clear: true })),
@@ -129,17 +129,17 @@ fn column(x: &[f64]) -> Matrix {
 }
 
 /// Whether steps along all motions can be followed; none where Newton's method fails.
-fn followed(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<bool>> {
-    if vicinity.superfluous() == 0 {
+fn followed(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<bool>> {
+    if reduction.superfluous() == 0 {
         return Ok(Some(true));
     }
     let mut random = 2;
-    let k = vicinity.motions();
+    let k = reduction.motions();
     for _ in 0..2 * k {
-        let Some(near) = vicinity.step(&times(&direction(k, &mut random), h))? else {
+        let Some(near) = reduction.step(&times(&direction(k, &mut random), h))? else {
             return Ok(None);
         };
-        if near.error() > vicinity.noise() {
+        if near.error() > reduction.tolerance() {
             return Ok(Some(false));
         }
     }
@@ -147,9 +147,13 @@ fn followed(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<bool>> {
 }
 
 /// A zero of g at the distance `h`, from `start`.
-fn zero(vicinity: &Vicinity<'_>, start: &[f64], h: f64) -> Result<Option<(Vec<f64>, Near)>> {
+fn zero(
+    reduction: &LyapunovSchmidt<'_>,
+    start: &[f64],
+    h: f64,
+) -> Result<Option<(Vec<f64>, ReducedPoint)>> {
     let mut x = start.to_vec();
-    let Some(mut now) = vicinity.step(&x)? else { return Ok(None) };
+    let Some(mut now) = reduction.step(&x)? else { return Ok(None) };
     let mut damping = 1e-3;
     for _ in 0..MOST_STEPS {
         // On the sphere: without the part along x.
@@ -163,30 +167,30 @@ fn zero(vicinity: &Vicinity<'_>, start: &[f64], h: f64) -> Result<Option<(Vec<f6
             break;
         }
         let l = damping * svd.value(0);
-        let step = svd.apply_gains(&now.left, |_, s| damp(s, l));
+        let step = svd.apply_gains(&now.residual, |_, s| damp(s, l));
         let next: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x - d).collect();
         let next = times(&next, h / norm(&next));
-        match vicinity.step(&next)? {
+        match reduction.step(&next)? {
             Some(near) if near.error() < now.error() => {
                 let little = near.error() > 0.5 * now.error();
                 (x, now) = (next, near);
                 damping *= 0.1;
-                if little && now.error() <= vicinity.noise() {
+                if little && now.error() <= reduction.tolerance() {
                     break; // rounding
                 }
             }
-            _ if now.error() <= vicinity.noise() => break,
+            _ if now.error() <= reduction.tolerance() => break,
             _ => damping = 10.0 * damping.max(1e-6),
         }
     }
-    Ok((now.error() <= vicinity.noise()).then_some((x, now)))
+    Ok((now.error() <= reduction.tolerance()).then_some((x, now)))
 }
 
 /// The motions of a branch as it comes to the posture: those of postures on both sides of it.
 fn tangent(
     mechanism: &Mechanism,
     length: f64,
-    vicinity: &Vicinity<'_>,
+    reduction: &LyapunovSchmidt<'_>,
     (x, h): (&[f64], f64),
     there: &Here,
 ) -> Result<Option<Tangent>> {
@@ -195,14 +199,14 @@ fn tangent(
     let mut sides = Vec::new();
     let mut postures = Vec::new();
     for side in [inwards, -inwards] {
-        let Some((near_x, near)) = zero(vicinity, &times(x, side), small)? else { continue };
+        let Some((near_x, near)) = zero(reduction, &times(x, side), small)? else { continue };
         let along = dot(&near_x, x);
         if along * side.signum() < BRANCH_TURN * small * h {
             continue;
         }
         let Some(here) = Here::of(mechanism, &near.q, length, small)? else { continue };
         if here.motions.cols() == there.motions.cols() {
-            sides.push(&vicinity.kernel().transpose() * &here.motions);
+            sides.push(&reduction.kernel().transpose() * &here.motions);
             postures.push(near.q);
         }
     }
@@ -241,17 +245,17 @@ fn merged(mut tangents: Vec<Tangent>, k: usize) -> Vec<Tangent> {
 }
 
 /// The dimension of the zeros of g where it is one function whose Hessian has full rank.
-fn morse(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<usize>> {
-    let k = vicinity.motions();
+fn morse(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<usize>> {
+    let k = reduction.motions();
     let mut random = 3;
-    let mut samples = Matrix::zeros(vicinity.superfluous(), 2 * k + 2);
+    let mut samples = Matrix::zeros(reduction.superfluous(), 2 * k + 2);
     for j in 0..samples.cols() {
-        let Some(near) = vicinity.step(&times(&direction(k, &mut random), h))? else {
+        let Some(near) = reduction.step(&times(&direction(k, &mut random), h))? else {
             return Ok(None);
         };
-        samples.column_mut(j).copy_from_slice(&near.left);
+        samples.column_mut(j).copy_from_slice(&near.residual);
     }
-    let space = ColumnSpace::of(&samples, Threshold::Absolute(vicinity.noise()));
+    let space = ColumnSpace::of(&samples, Threshold::Absolute(reduction.tolerance()));
     if space.rank() != 1 {
         return Ok(None);
     }
@@ -260,8 +264,8 @@ fn morse(vicinity: &Vicinity<'_>, h: f64) -> Result<Option<usize>> {
     let even = |x: &[f64]| -> Result<Option<f64>> {
         let mut sum = 0.0;
         for side in [h, -h] {
-            let Some(near) = vicinity.step(&times(x, side))? else { return Ok(None) };
-            sum += dot(&near.left, along.column(0));
+            let Some(near) = reduction.step(&times(x, side))? else { return Ok(None) };
+            sum += dot(&near.residual, along.column(0));
         }
         Ok(Some(sum / (h * h)))
     };

@@ -6,7 +6,7 @@
 //!          superfluous there too. Otherwise the zeros of g are looked for (`branches.rs`)
 //! Shapes   motions: n x dimension, rates of the coordinates of q
 //! Units    rad, m; steps and residuals scaled by the characteristic length
-//! Valid    closed postures; position limits are left out. Geometry given to less than ten digits
+//! Valid    closed postures; position limits are residual out. Geometry given to less than ten digits
 //!          makes a superfluous equation an independent one: the rank gap of `Mobility` says so
 //! Why so   a structure may be loose to first order and rigid (shaky), a mechanism may have a
 //!          negative Grubler count and move: neither first order nor counting can tell
@@ -17,7 +17,7 @@
 use std::fmt;
 
 use super::branches::{branches, direction};
-use super::lyapunov_schmidt::Vicinity;
+use super::lyapunov_schmidt::LyapunovSchmidt;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
@@ -31,7 +31,7 @@ const BESIDE: f64 = 1e-3;
 
 /// What a count of finite motions rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Evidence {
+pub enum MobilityEvidence {
     /// The loops are independent equations, or nothing moves even to first order: proved.
     Independent,
     /// Some equations are superfluous here, and after steps in all directions as well.
@@ -39,16 +39,16 @@ pub enum Evidence {
     /// Not every step can be followed; the closed postures around were looked for.
     Search,
     /// The loops are open in this posture, or no step could be followed: nothing is known.
-    Nothing,
+    Unknown,
 }
 
-impl fmt::Display for Evidence {
+impl fmt::Display for MobilityEvidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Independent => "the loops are independent",
             Self::Steps => "loops close after steps in every direction",
             Self::Search => "from a search around the pose",
-            Self::Nothing => "not known",
+            Self::Unknown => "not known",
         })
     }
 }
@@ -77,12 +77,12 @@ pub struct FiniteMobility {
     /// does not move (shaky).
     pub shaky: Matrix,
     /// What it rests on.
-    pub evidence: Evidence,
+    pub evidence: MobilityEvidence,
     /// False where another method should confirm it: branches may have been missed.
     pub certain: bool,
     /// Size of the steps [rad, or characteristic lengths]; 0 where none was needed.
     pub step: f64,
-    /// By how much the worst step is left open (scaled) [-]: rounding where all can be followed.
+    /// By how much the worst step is residual open (scaled) [-]: rounding where all can be followed.
     pub left_open: f64,
     beside: Vec<Vec<f64>>,
 }
@@ -105,34 +105,34 @@ impl FiniteMobility {
         let mechanism = state.mechanism();
         let length = length.unwrap_or_else(|| mechanism.reach());
         Error::check_positive("length", length)?;
-        let vicinity = Vicinity::of(mechanism, state.q(), length, CLOSURE_RANK)?;
-        let k = vicinity.motions();
+        let reduction = LyapunovSchmidt::of(mechanism, state.q(), length, CLOSURE_RANK)?;
+        let k = reduction.motions();
         let mut report = Self {
             infinitesimal: k,
             finite: None,
             branches: Vec::new(),
             shaky: Matrix::zeros(mechanism.n(), 0),
-            evidence: Evidence::Nothing,
+            evidence: MobilityEvidence::Unknown,
             certain: false,
             step: 0.0,
             left_open: 0.0,
             beside: Vec::new(),
         };
-        if !vicinity.is_closed() {
+        if !reduction.is_closed() {
             return Ok(report);
         }
-        if k == 0 || vicinity.superfluous() == 0 {
-            report.whole(&vicinity, Evidence::Independent)?;
+        if k == 0 || reduction.superfluous() == 0 {
+            report.whole(&reduction, MobilityEvidence::Independent)?;
             return Ok(report);
         }
-        let Some((step, left_open)) = open_after_steps(&vicinity)? else { return Ok(report) };
+        let Some((step, left_open)) = open_after_steps(&reduction)? else { return Ok(report) };
         (report.step, report.left_open) = (step, left_open);
-        if left_open <= vicinity.noise() {
-            report.whole(&vicinity, Evidence::Steps)?;
+        if left_open <= reduction.tolerance() {
+            report.whole(&reduction, MobilityEvidence::Steps)?;
             return Ok(report);
         }
-        let found = branches(mechanism, length, &vicinity, step)?;
-        report.evidence = Evidence::Search;
+        let found = branches(mechanism, length, &reduction, step)?;
+        report.evidence = MobilityEvidence::Search;
         report.certain = found.complete;
         report.finite = Some(found.tangents.first().map_or(0, |t| t.dimension));
         let mut tangents = Matrix::zeros(k, 0);
@@ -140,14 +140,14 @@ impl FiniteMobility {
             tangents = Matrix::beside(k, &[&tangents, &tangent.directions]);
             report.branches.push(Branch {
                 dimension: tangent.dimension,
-                motions: vicinity.unscaled(&(vicinity.kernel() * &tangent.directions)),
+                motions: reduction.unscaled(&(reduction.kernel() * &tangent.directions)),
             });
             if report.beside.is_empty() {
                 report.beside = tangent.postures;
             }
         }
         let outside = ColumnSpace::of(&tangents, Threshold::Absolute(WITHIN_BRANCHES)).complement();
-        report.shaky = vicinity.unscaled(&(vicinity.kernel() * &outside));
+        report.shaky = reduction.unscaled(&(reduction.kernel() * &outside));
         Ok(report)
     }
 
@@ -163,33 +163,33 @@ impl FiniteMobility {
         &self.beside
     }
 
-    fn whole(&mut self, vicinity: &Vicinity<'_>, evidence: Evidence) -> Result<()> {
-        let k = vicinity.motions();
+    fn whole(&mut self, reduction: &LyapunovSchmidt<'_>, evidence: MobilityEvidence) -> Result<()> {
+        let k = reduction.motions();
         (self.finite, self.evidence, self.certain) = (Some(k), evidence, true);
         if k == 0 {
             return Ok(());
         }
-        let motions = vicinity.unscaled(vicinity.kernel());
+        let motions = reduction.unscaled(reduction.kernel());
         self.branches.push(Branch { dimension: k, motions });
         let x = direction(k, &mut 4);
         for side in [FINITE_STEP * BESIDE, -FINITE_STEP * BESIDE] {
             let x: Vec<f64> = x.iter().map(|x| side * x).collect();
-            self.beside.extend(vicinity.step(&x)?.map(|near| near.q));
+            self.beside.extend(reduction.step(&x)?.map(|near| near.q));
         }
         Ok(())
     }
 }
 
-/// The step that Newton's method follows in every direction tried, and the worst error left.
-fn open_after_steps(vicinity: &Vicinity<'_>) -> Result<Option<(f64, f64)>> {
-    let k = vicinity.motions();
+/// The step that Newton's method follows in every direction tried, and the worst error residual.
+fn open_after_steps(reduction: &LyapunovSchmidt<'_>) -> Result<Option<(f64, f64)>> {
+    let k = reduction.motions();
     let mut step = FINITE_STEP;
     'shorter: for _ in 0..=HALVINGS {
         let mut random = 5;
         let mut worst: f64 = 0.0;
         for _ in 0..(2 * k + 6).min(24) {
             let x: Vec<f64> = direction(k, &mut random).iter().map(|x| step * x).collect();
-            let Some(near) = vicinity.step(&x)? else {
+            let Some(near) = reduction.step(&x)? else {
                 step *= 0.5;
                 continue 'shorter;
             };

@@ -2,12 +2,12 @@
 //!
 //! Formula  loops f(q) = 0 with rates C = df/dq of rank r; K = ker C, N = (ker C)^perp,
 //!          P = ran C, R = (ran C)^perp. For every small x the equation P^T f(q0 + K x + N y) = 0
-//!          has one y(x); what is left of the loops is g(x) = R^T f, with g(0) = 0, dg(0) = 0.
+//!          has one y(x); what is residual of the loops is g(x) = R^T f, with g(0) = 0, dg(0) = 0.
 //!          Near q0 the closed postures are the zeros of g
 //! Shapes   K: n x k, N: n x r, P: t x r, R: t x (t - r); x: k, g: t - r
 //! Units    scaled as in `assembly.rs`: none
 //! Valid    steps x that Newton's method follows; the caller shortens those that fail. Position
-//!          limits are left out: this is geometry
+//!          limits are residual out: this is geometry
 //! Why so   the directions N are the only ones in which the loops resist to first order, so a
 //!          step along K is never undone by closing them; least squares over all coordinates would
 //!          slide back to where the loops close and report that as success
@@ -25,7 +25,7 @@ use crate::tolerance::LOOP_ROUNDING;
 const MOST_STEPS: usize = 30;
 
 /// A posture with what its loops allow and hold to first order.
-pub(crate) struct Vicinity<'a> {
+pub(crate) struct LyapunovSchmidt<'a> {
     mechanism: &'a Mechanism,
     length: f64,
     /// Of each coordinate: rate = scale * scaled rate.
@@ -33,30 +33,30 @@ pub(crate) struct Vicinity<'a> {
     q: Vec<f64>,
     free: Vec<usize>,
     kernel: Matrix,
-    across: Matrix,
-    held: Matrix,
-    rest: Matrix,
+    complement: Matrix,
+    range: Matrix,
+    cokernel: Matrix,
     at_start: Vec<f64>,
-    noise: f64,
+    tolerance: f64,
     closed: bool,
 }
 
-/// A posture near it in which all loops are closed but for `left`.
-pub(crate) struct Near {
+/// A posture near it in which all loops are closed but for `residual`.
+pub(crate) struct ReducedPoint {
     pub(crate) q: Vec<f64>,
     /// g.
-    pub(crate) left: Vec<f64>,
+    pub(crate) residual: Vec<f64>,
     /// dg/dx, (t - r) x k.
     pub(crate) rates: Matrix,
 }
 
-impl Near {
+impl ReducedPoint {
     pub(crate) fn error(&self) -> f64 {
-        norm(&self.left)
+        norm(&self.residual)
     }
 }
 
-impl<'a> Vicinity<'a> {
+impl<'a> LyapunovSchmidt<'a> {
     /// Of the posture `q`, singular values of C at or below `threshold` times the largest being
     /// zero.
     pub(crate) fn of(
@@ -68,12 +68,12 @@ impl<'a> Vicinity<'a> {
         let free: Vec<usize> = (0..mechanism.n()).collect();
         let start = Closing::at(mechanism, q, &free, length)?;
         let rows = ColumnSpace::cut_of(start.rates.transpose(), Threshold::Relative(threshold));
-        let (kernel, across) = (rows.complement(), rows.basis());
+        let (kernel, complement) = (rows.complement(), rows.basis());
         // The range as the image of N: of the same rank, whatever the threshold cut off.
-        let image = Qr::plain(&start.rates * &across);
-        let (held, rest) = (image.basis(), image.complement());
-        let at_start = rest.transpose().mul_vec(&start.residuals);
-        let noise = LOOP_ROUNDING.max(10.0 * start.error);
+        let image = Qr::plain(&start.rates * &complement);
+        let (range, cokernel) = (image.basis(), image.complement());
+        let at_start = cokernel.transpose().mul_vec(&start.residuals);
+        let tolerance = LOOP_ROUNDING.max(10.0 * start.error);
         let (q, closed) = (q.to_vec(), start.is_closed(length));
         let scale = free.iter().map(|&i| column_scale(mechanism, i, length)).collect();
         Ok(Self {
@@ -83,11 +83,11 @@ impl<'a> Vicinity<'a> {
             q,
             free,
             kernel,
-            across,
-            held,
-            rest,
+            complement,
+            range,
+            cokernel,
             at_start,
-            noise,
+            tolerance,
             closed,
         })
     }
@@ -104,7 +104,7 @@ impl<'a> Vicinity<'a> {
 
     /// Number t - r of equations that the others make superfluous, to first order.
     pub(crate) fn superfluous(&self) -> usize {
-        self.rest.cols()
+        self.cokernel.cols()
     }
 
     /// K, scaled.
@@ -113,8 +113,8 @@ impl<'a> Vicinity<'a> {
     }
 
     /// What rounding, and loops that are open a little from the start, make of a zero of g.
-    pub(crate) fn noise(&self) -> f64 {
-        self.noise
+    pub(crate) fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 
     /// Scaled rates in the units of the coordinates.
@@ -130,36 +130,36 @@ impl<'a> Vicinity<'a> {
     }
 
     /// The posture at `x`; none where Newton's method does not find it.
-    pub(crate) fn step(&self, x: &[f64]) -> Result<Option<Near>> {
+    pub(crate) fn step(&self, x: &[f64]) -> Result<Option<ReducedPoint>> {
         let mut q = self.moved(&self.q, &self.kernel.mul_vec(x));
         let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {
             let now = Closing::at(self.mechanism, &q, &self.free, self.length)?;
-            let open = self.held.transpose().mul_vec(&now.residuals);
+            let open = self.range.transpose().mul_vec(&now.residuals);
             let error = norm(&open);
-            let across = Qr::plain(&self.held.transpose() * &(&now.rates * &self.across));
-            if error <= self.noise && !(error < 0.5 * last) || error == 0.0 {
+            let complement = Qr::plain(&self.range.transpose() * &(&now.rates * &self.complement));
+            if error <= self.tolerance && !(error < 0.5 * last) || error == 0.0 {
                 let along = &now.rates * &self.kernel;
-                let follow = across.solve(&self.held.transpose() * &along);
-                let swept = &now.rates * &(&self.across * &follow);
-                let rates = &self.rest.transpose()
+                let follow = complement.solve(&self.range.transpose() * &along);
+                let swept = &now.rates * &(&self.complement * &follow);
+                let rates = &self.cokernel.transpose()
                     * &Matrix::from_fn(along.rows(), along.cols(), |i, j| {
                         along[(i, j)] - swept[(i, j)]
                     });
-                let mut left = self.rest.transpose().mul_vec(&now.residuals);
-                left.iter_mut().zip(&self.at_start).for_each(|(l, s)| *l -= s);
-                return Ok(rates.is_finite().then_some(Near { q, left, rates }));
+                let mut residual = self.cokernel.transpose().mul_vec(&now.residuals);
+                residual.iter_mut().zip(&self.at_start).for_each(|(l, s)| *l -= s);
+                return Ok(rates.is_finite().then_some(ReducedPoint { q, residual, rates }));
             }
             // NaN is no progress.
             if !(error < 2.0 * last) {
                 return Ok(None);
             }
             last = error;
-            let mut back = across.solve(Matrix::from_fn(open.len(), 1, |i, _| -open[i]));
+            let mut back = complement.solve(Matrix::from_fn(open.len(), 1, |i, _| -open[i]));
             if !back.is_finite() || back.max_abs() > 1.0 {
                 return Ok(None);
             }
-            q = self.moved(&q, &self.across.mul_vec(back.column_mut(0)));
+            q = self.moved(&q, &self.complement.mul_vec(back.column_mut(0)));
         }
         Ok(None)
     }

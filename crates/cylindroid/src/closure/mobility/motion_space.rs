@@ -19,7 +19,7 @@ use crate::tolerance::{CLEAR_SHARE, CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING
 
 /// Groups of rows of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Rows {
+pub struct RowSelection {
     /// The driven joints.
     pub actuated: bool,
     /// The passive joints and the other objects.
@@ -36,7 +36,7 @@ pub(crate) fn block_tolerance(space: &ColumnSpace) -> f64 {
 
 /// All motions of a constraint.
 #[derive(Debug, Clone)]
-pub struct Motions {
+pub struct MotionSpace {
     actuated: usize,
     passive: usize,
     object: usize,
@@ -49,7 +49,7 @@ pub struct Motions {
     tolerance: f64,
 }
 
-impl Motions {
+impl MotionSpace {
     /// With the default threshold [`CLOSURE_RANK`].
     #[must_use]
     pub fn of(constraint: &Constraint) -> Self {
@@ -108,7 +108,7 @@ impl Motions {
     /// Grubler's count: columns less rows, negative for many mechanisms that move. The degrees of
     /// freedom exceed it by the hyperstatic degree.
     #[must_use]
-    pub fn grubler(&self) -> i64 {
+    pub fn gruebler_kutzbach(&self) -> i64 {
         self.scale.len() as i64 - self.constraint_rows as i64
     }
 
@@ -145,7 +145,7 @@ impl Motions {
 
     /// The combinations of kernel columns (k entries each) whose entries in `rows` vanish, and the
     /// rank of the kernel in these rows.
-    pub(crate) fn still(&self, rows: Rows) -> (Matrix, Cut) {
+    pub(crate) fn still(&self, rows: RowSelection) -> (Matrix, Cut) {
         let space = self.space_of(rows);
         (space.complement(), space.cut())
     }
@@ -153,7 +153,7 @@ impl Motions {
     /// The same for `rows` and for all others. The columns of the kernel have length one, so that
     /// what a motion has in `rows` at most leaves it `sqrt(1 - s^2)` at least in the others: where
     /// that is far from nothing, none of them is still in the others.
-    pub(crate) fn still_and_others(&self, rows: Rows) -> [(Matrix, Cut); 2] {
+    pub(crate) fn still_and_others(&self, rows: RowSelection) -> [(Matrix, Cut); 2] {
         let space = self.space_of(rows);
         let k = self.dof();
         let s = space.largest().min(1.0);
@@ -163,14 +163,14 @@ impl Motions {
             let rank = Rank { rank: k, threshold, gap: f64::INFINITY };
             (Matrix::zeros(k, 0), Cut { rank, kept: least, dropped: 0.0 })
         } else {
-            let Rows { actuated, passive, object } = rows;
-            self.still(Rows { actuated: !actuated, passive: !passive, object: !object })
+            let RowSelection { actuated, passive, object } = rows;
+            self.still(RowSelection { actuated: !actuated, passive: !passive, object: !object })
         };
         [(space.complement(), space.cut()), others]
     }
 
     /// What the chosen rows of the kernel span, in k dimensions.
-    fn space_of(&self, rows: Rows) -> ColumnSpace {
+    fn space_of(&self, rows: RowSelection) -> ColumnSpace {
         let (a, n) = (self.actuated, self.kernel.rows());
         let ranges = [
             (rows.actuated, 0..a),
@@ -189,7 +189,7 @@ impl Motions {
 
     /// The motions in which `rows` stand still: a basis, a column `(q_a, q_p, u)` each.
     #[must_use]
-    pub fn standing(&self, rows: Rows) -> Matrix {
+    pub fn standing(&self, rows: RowSelection) -> Matrix {
         self.unscaled(&(&self.kernel * &self.still(rows).0))
     }
 

@@ -9,7 +9,7 @@
 //! Valid    any mechanism; for a tree they span the columns of its Jacobian
 //! Checked  tests/it/closure/closed_chain.rs::motions_of_the_reference
 
-use super::motion_space::Motions;
+use super::motion_space::MotionSpace;
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::kinematics::State;
 use crate::model::Dimension;
@@ -20,7 +20,7 @@ impl ClosedChain {
     /// twists at the world's origin, world axes.
     #[must_use]
     pub fn reference_twists(&self, state: &State) -> Vec<Twist> {
-        let parts = Motions::of(&self.constraint).relation().motions();
+        let parts = MotionSpace::of(&self.constraint).relation().motions();
         let planar = self.constraint.object() == Dimension::Planar.freedoms();
         let components = if planar { Dimension::Planar } else { Dimension::Spatial }.components();
         let origin = state.pose(self.reference).translation;

@@ -41,7 +41,7 @@ pub struct RelationDimensions {
 /// A relation split by what its directions do, in the units of the constraint. For forces read
 /// torque for rate and wrench for twist.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parts {
+pub struct RelationBases {
     /// Joint motions without object motion, a column each.
     pub zero: Matrix,
     /// Object motions without joint motion.
@@ -150,7 +150,7 @@ impl Relation {
 
     /// The motions by kind, in the units of the constraint.
     #[must_use]
-    pub fn motions(&self) -> Parts {
+    pub fn motions(&self) -> RelationBases {
         self.parts(&Kinds {
             zero: self.zero_columns(&self.cs.x),
             infinite: self.cs.y.columns_between(0, self.infinite),
@@ -163,7 +163,7 @@ impl Relation {
     /// The forces by kind: internal torques, zero-torque wrenches, and torques with the wrenches
     /// that they balance.
     #[must_use]
-    pub fn forces(&self) -> Parts {
+    pub fn forces(&self) -> RelationBases {
         self.parts(&Kinds {
             zero: self.internal_scaled(),
             infinite: self.zero_torque_scaled(),
@@ -255,7 +255,7 @@ impl Relation {
     /// Joint torques that balance the wrench with the least scaled norm, and the parts of the
     /// wrench that the structure holds and that nothing balances (all in the units of the
     /// constraint).
-    pub(crate) fn balance(&self, wrench: &[f64]) -> Balance {
+    pub(crate) fn balance(&self, wrench: &[f64]) -> DualRelation {
         // w' = A^T w, since w^T u = w'^T u'.
         let scaled = self.scale.twist.transpose().mul_vec(wrench);
         let along = |j: usize| dot(self.cs.y.column(j), &scaled);
@@ -277,14 +277,14 @@ impl Relation {
         if self.dimensions().zero_torque == 0 {
             structural.fill(0.0); // only rounding is left
         }
-        Balance {
+        DualRelation {
             torques: torque,
             structural: self.scale.wrench.mul_vec(&structural),
             unbalanced: self.scale.wrench.mul_vec(&unbalanced),
         }
     }
 
-    fn parts(&self, kinds: &Kinds) -> Parts {
+    fn parts(&self, kinds: &Kinds) -> RelationBases {
         let joint = |a: &Matrix| {
             Matrix::from_fn(a.rows(), a.cols(), |i, j| {
                 let s = self.joint_scale[i];
@@ -292,7 +292,7 @@ impl Relation {
             })
         };
         let object = if kinds.dual { &self.scale.wrench } else { &self.scale.twist };
-        Parts {
+        RelationBases {
             zero: joint(&kinds.zero),
             infinite: object * &kinds.infinite,
             joint: joint(&kinds.joint),
@@ -302,7 +302,7 @@ impl Relation {
 }
 
 /// What balances a wrench.
-pub(crate) struct Balance {
+pub(crate) struct DualRelation {
     pub(crate) torques: Vec<f64>,
     pub(crate) structural: Vec<f64>,
     pub(crate) unbalanced: Vec<f64>,
@@ -316,7 +316,7 @@ fn complement(columns: Matrix) -> Matrix {
     Qr::plain(columns).complement()
 }
 
-/// Parts in scaled coordinates.
+/// RelationBases in scaled coordinates.
 struct Kinds {
     zero: Matrix,
     infinite: Matrix,
@@ -325,7 +325,7 @@ struct Kinds {
     dual: bool,
 }
 
-impl Parts {
+impl RelationBases {
     /// All columns of the relation, joints above the object: infinite, finite, zero.
     #[must_use]
     pub fn basis(&self) -> Matrix {

@@ -5,7 +5,7 @@
 //!          indeterminacy  ker [J_p -G^T]: driven joints rest
 //!          coordinate     the rest, orthogonal to both: k - r - i
 //!          idle           ker J_p: passive joints move alone
-//!          ungrasped      ker G^T: the object moves alone
+//!          uncontrollable_object_motions      ker G^T: the object moves alone
 //!          internal       (dom R)^perp, torques in balance without a wrench
 //!          zero_torque    (ran R)^perp, wrenches held without torques
 //!          hyperstatic    ker G and ker J^T: forces that nothing determines
@@ -15,14 +15,14 @@
 //!          beside them. Infinitesimal: a motion counted here may have no finite one behind it, see
 //!          `finite_mobility.rs`.
 //! Why so   every count has its own rank decision; three of the eight follow from the others, see
-//!          [`Motions`]
+//!          [`MotionSpace`]
 //! Source   Bicchi & Prattichizzo 1998, eqs. 3 to 5; the counts of its eq. 5 modulo redundancy and
 //!          indeterminacy, where alone they are unique
 //! Checked  tests/it/closure/reference.rs, tests/it/closure/mobility.rs
 
 use std::fmt;
 
-use super::motion_space::{Motions, Rows};
+use super::motion_space::{MotionSpace, RowSelection};
 use super::relation::{Relation, RelationDimensions};
 use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::closure::statics::contact_forces as statics;
@@ -74,14 +74,14 @@ pub struct JointMobility {
 
 /// A rank that hangs on little.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Doubt {
+pub struct RankWarning {
     /// The count that depends on it.
     pub count: &'static str,
     /// The decision.
     pub cut: Cut,
 }
 
-impl fmt::Display for Doubt {
+impl fmt::Display for RankWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Cut { rank, kept, dropped } = self.cut;
         write!(
@@ -110,7 +110,7 @@ pub struct Mobility {
     /// Motions of passive joints alone.
     pub idle: Subspace,
     /// Motions of the object alone.
-    pub ungrasped: Subspace,
+    pub uncontrollable_object_motions: Subspace,
     /// Indeterminate motions that need passive joints and object.
     pub mixed: usize,
     /// Joint torques in balance without a wrench on the object (active internal forces).
@@ -123,28 +123,28 @@ pub struct Mobility {
     /// indeterminacy take in what passive joints make possible.
     pub relation: RelationDimensions,
     /// Columns less rows, for comparison.
-    pub grubler: i64,
+    pub gruebler_kutzbach: i64,
     /// Driven joints, then passive columns.
     pub joints: Vec<JointMobility>,
     /// Ranks that are a matter of taste.
-    pub doubts: Vec<Doubt>,
+    pub ambiguous_ranks: Vec<RankWarning>,
 }
 
 impl Mobility {
     /// With the default threshold.
     #[must_use]
     pub fn of(constraint: &Constraint) -> Self {
-        let motions = Motions::of(constraint);
+        let motions = MotionSpace::of(constraint);
         let relation = motions.relation();
         Self::from_parts(constraint, &motions, &relation)
     }
 
     /// From motions and relation of this constraint.
     #[must_use]
-    pub fn from_parts(constraint: &Constraint, motions: &Motions, relation: &Relation) -> Self {
-        const A: Rows = Rows { actuated: true, passive: false, object: false };
-        const P: Rows = Rows { actuated: false, passive: true, object: false };
-        const U: Rows = Rows { actuated: false, passive: false, object: true };
+    pub fn from_parts(constraint: &Constraint, motions: &MotionSpace, relation: &Relation) -> Self {
+        const A: RowSelection = RowSelection { actuated: true, passive: false, object: false };
+        const P: RowSelection = RowSelection { actuated: false, passive: true, object: false };
+        const U: RowSelection = RowSelection { actuated: false, passive: false, object: true };
         let k = motions.dof();
         let tolerance = Threshold::Absolute(motions.tolerance());
         let space = |(part, cut): &(Matrix, Cut)| Subspace {
@@ -153,9 +153,9 @@ impl Mobility {
         };
         let [indeterminacy, redundancy] = motions.still_and_others(A);
         let [object_only, idle] = motions.still_and_others(P);
-        let [joints_only, ungrasped] = motions.still_and_others(U);
+        let [joints_only, uncontrollable_object_motions] = motions.still_and_others(U);
         let (r, i) = (redundancy.0.cols(), indeterminacy.0.cols());
-        let (i_p, i_u) = (idle.0.cols(), ungrasped.0.cols());
+        let (i_p, i_u) = (idle.0.cols(), uncontrollable_object_motions.0.cols());
         let c = k.saturating_sub(r + i);
         let passive = joints_only.0.cols().saturating_sub(r + i_p);
         let object = object_only.0.cols().saturating_sub(r + i_u);
@@ -190,33 +190,37 @@ impl Mobility {
             redundancy: space(&redundancy),
             indeterminacy: space(&indeterminacy),
             idle: space(&idle),
-            ungrasped: space(&ungrasped),
+            uncontrollable_object_motions: space(&uncontrollable_object_motions),
             internal: Subspace { basis: internal, cut: joint_rank },
             zero_torque: Subspace { basis: structural, cut: object_rank },
             hyperstatic: statics::undetermined(constraint, motions),
             relation: relation.dimensions(),
-            grubler: motions.grubler(),
-            doubts: Vec::new(),
+            gruebler_kutzbach: motions.gruebler_kutzbach(),
+            ambiguous_ranks: Vec::new(),
         };
-        report.doubts = [
+        report.ambiguous_ranks = [
             ("dof", report.dof.cut),
             ("redundancy", report.redundancy.cut),
             ("indeterminacy", report.indeterminacy.cut),
             ("idle", report.idle.cut),
-            ("ungrasped", report.ungrasped.cut),
+            ("uncontrollable_object_motions", report.uncontrollable_object_motions.cut),
             ("relation", span),
             ("internal", joint_rank),
             ("zero_torque", object_rank),
         ]
         .into_iter()
-        .filter(|(_, cut)| cut.is_doubtful())
-        .map(|(count, cut)| Doubt { count, cut })
+        .filter(|(_, cut)| cut.is_ambiguous())
+        .map(|(count, cut)| RankWarning { count, cut })
         .collect();
         report
     }
 }
 
-fn joint_mobility(motions: &Motions, indeterminate: &Matrix, idle: &Matrix) -> Vec<JointMobility> {
+fn joint_mobility(
+    motions: &MotionSpace,
+    indeterminate: &Matrix,
+    idle: &Matrix,
+) -> Vec<JointMobility> {
     let kernel = motions.kernel();
     let (free, idle) = (kernel * indeterminate, kernel * idle);
     let tolerance = motions.tolerance();

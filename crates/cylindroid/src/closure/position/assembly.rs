@@ -14,8 +14,8 @@
 //! Checked  tests/it/closure/assembly.rs
 
 use super::coordinates::{at_limit, column_scale, columns, free_places, moved, within_limits};
-use crate::closure::constraint::closed_chain::Gap;
-use crate::closure::constraint::constraint_rows::{Row, for_each_rate, rows};
+use crate::closure::constraint::closed_chain::LoopClosureError;
+use crate::closure::constraint::constraint_rows::{ConstraintRow, constraint_rows, for_each_rate};
 use crate::error::Result;
 use crate::inverse::damp;
 use crate::linalg::{Matrix, Svd, norm};
@@ -36,7 +36,7 @@ pub struct Assembly {
     /// True if every loop and contact is closed to `tolerance::CLOSED` of the reach and in angle.
     pub closed: bool,
     /// How far they are open.
-    pub gap: Gap,
+    pub closure_error: LoopClosureError,
     /// Steps taken.
     pub steps: usize,
     /// Coordinates that stand at a position limit or beyond: places in `q`.
@@ -91,7 +91,7 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<
     }
     Ok(Assembly {
         closed: now.is_closed(length),
-        gap: now.gap,
+        closure_error: now.closure_error,
         at_limit: at_limit(mechanism, &now.q),
         q: now.q,
         steps,
@@ -103,7 +103,7 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<
 /// A driven joint that closes a loop has no coordinate whose value could be given, so that it does
 /// not hold: a mechanism with such joints keeps their motions, and the nearest of its assemblies is
 /// returned. Where there are more drives than degrees of freedom, their values may contradict each
-/// other: then the result is not closed, its gap is what remains, shared out by least squares, and
+/// other: then the result is not closed, its closure_error is what remains, shared out by least squares, and
 /// the driven values stand as given.
 ///
 /// # Errors
@@ -120,7 +120,7 @@ pub(crate) struct Closing {
     pub(crate) residuals: Vec<f64>,
     pub(crate) rates: Matrix,
     pub(crate) error: f64,
-    pub(crate) gap: Gap,
+    pub(crate) closure_error: LoopClosureError,
 }
 
 impl Closing {
@@ -131,8 +131,9 @@ impl Closing {
         length: f64,
     ) -> Result<Self> {
         let state = mechanism.state(q)?;
-        let (all, _, gap) = rows(&state)?;
-        let held: Vec<Row> = all.into_iter().filter(|row| row.rate_of.is_none()).collect();
+        let (all, _, closure_error) = constraint_rows(&state)?;
+        let held: Vec<ConstraintRow> =
+            all.into_iter().filter(|row| row.rate_of.is_none()).collect();
         let residuals: Vec<f64> = held.iter().map(|row| row.scaled_residual(length)).collect();
         let mut columns = vec![None; mechanism.n()];
         for (j, &i) in free.iter().enumerate() {
@@ -145,11 +146,11 @@ impl Closing {
             }
         });
         let error = norm(&residuals);
-        Ok(Self { q: q.to_vec(), residuals, rates, error, gap })
+        Ok(Self { q: q.to_vec(), residuals, rates, error, closure_error })
     }
 
     pub(crate) fn is_closed(&self, length: f64) -> bool {
-        self.gap.is_closed(length)
+        self.closure_error.is_closed(length)
     }
 
     /// The configuration after a damped step, within the position limits: coordinates at a limit

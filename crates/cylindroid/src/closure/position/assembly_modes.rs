@@ -5,9 +5,9 @@
 //! Units    none: lengths over the reach
 //! Valid    any mechanism. It may miss modes: each is found by chance, the more rarely the fewer
 //!          starts lead there. The share of finds that were made once only estimates the chance that
-//!          the next start which closes finds a new one ([`AssemblyModes::chance_of_more`]).
+//!          the next start which closes finds a new one ([`AssemblyModes::unseen_probability`]).
 //!          Where the held coordinates leave a motion the assemblies are no points: they are told
-//!          apart by what no such motion moves, and one is listed for all that agree there: of two
+//!          signature_distance by what no such motion moves, and one is listed for all that agree there: of two
 //!          branches of a motion that takes everything along, one
 //! Why so   solving the closure for all its roots by elimination needs a derivation for every kind
 //!          of mechanism and does not know limits; homotopies follow complex roots by the thousand
@@ -17,7 +17,7 @@
 use std::f64::consts::TAU;
 
 use super::assembly::{Assembly, assemble};
-use super::configuration_signature::{Marks, apart, farthest, link_poses};
+use super::configuration_signature::{Landmarks, link_poses, max_displacement, signature_distance};
 use super::coordinates::{at_limit, closing, columns, free_places, moved, within_limits};
 use super::initial_guesses::anywhere;
 use crate::closure::mobility::motion_space::block_tolerance;
@@ -58,7 +58,7 @@ pub struct Mode {
     /// or the largest chord between unit axes [-].
     pub distance: f64,
     /// Degrees of freedom that the held coordinates leave: zero for an isolated assembly.
-    pub continuum: usize,
+    pub self_motion_dof: usize,
 }
 
 /// What came of a search for assembly modes.
@@ -77,14 +77,14 @@ pub struct AssemblyModes {
 impl AssemblyModes {
     /// The most degrees of freedom that the held coordinates leave at any mode.
     #[must_use]
-    pub fn continuum(&self) -> usize {
-        self.modes.iter().map(|m| m.continuum).max().unwrap_or(0)
+    pub fn self_motion_dof(&self) -> usize {
+        self.modes.iter().map(|m| m.self_motion_dof).max().unwrap_or(0)
     }
 
     /// Estimate of the chance that another start which closes finds a new mode: the share of such
     /// starts whose mode no other start found. 1 where nothing closed.
     #[must_use]
-    pub fn chance_of_more(&self) -> f64 {
+    pub fn unseen_probability(&self) -> f64 {
         if self.closed == 0 {
             return 1.0;
         }
@@ -124,8 +124,8 @@ pub fn assembly_modes(
     let first = assemble(mechanism, guess, held)?;
     let free = free_places(mechanism, held)?;
     let mut random = options.seed;
-    let marks = Marks::of(mechanism);
-    let mut search = Search { mechanism, held, free: &free, marks, modes: Vec::new() };
+    let landmarks = Landmarks::of(mechanism);
+    let mut search = Search { mechanism, held, free: &free, landmarks, modes: Vec::new() };
     let guessed = search.places(guess)?;
     let mut closed = 0;
     for start in 0..options.starts {
@@ -148,11 +148,11 @@ struct Search<'a> {
     mechanism: &'a Mechanism,
     held: &'a [usize],
     free: &'a [usize],
-    marks: Marks,
+    landmarks: Landmarks,
     modes: Vec<Seen>,
 }
 
-/// A mode, where its marks are, and which of them no motion that is left moves.
+/// A mode, where its landmarks are, and which of them no motion that is left moves.
 struct Seen {
     mode: Mode,
     places: Vec<Vec3>,
@@ -161,23 +161,25 @@ struct Seen {
 
 impl Search<'_> {
     fn places(&self, q: &[f64]) -> Result<Vec<Vec3>> {
-        Ok(self.marks.at(&link_poses(&self.mechanism.state(q)?)))
+        Ok(self.landmarks.at(&link_poses(&self.mechanism.state(q)?)))
     }
 
     fn add(&mut self, assembly: Assembly, guessed: &[Vec3]) -> Result<()> {
         let places = self.places(&assembly.q)?;
-        let distance = apart(&places, guessed, |_| true);
+        let distance = signature_distance(&places, guessed, |_| true);
         let isolated = |seen: &&mut Seen| {
-            seen.mode.continuum == 0 && apart(&places, &seen.places, |_| true) <= SAME_ASSEMBLY
+            seen.mode.self_motion_dof == 0
+                && signature_distance(&places, &seen.places, |_| true) <= SAME_ASSEMBLY
         };
         if let Some(known) = self.modes.iter_mut().find(isolated) {
             known.mode.found += 1;
             return Ok(());
         }
-        let (continuum, resting) = self.continuum(&assembly.q)?;
+        let (self_motion_dof, resting) = self.self_motion_dof(&assembly.q)?;
         let same = |seen: &&mut Seen| {
             let both = |i: usize| seen.resting[i] && resting[i];
-            seen.mode.continuum == continuum && apart(&places, &seen.places, both) <= SAME_ASSEMBLY
+            seen.mode.self_motion_dof == self_motion_dof
+                && signature_distance(&places, &seen.places, both) <= SAME_ASSEMBLY
         };
         if let Some(known) = self.modes.iter_mut().find(same) {
             known.mode.found += 1;
@@ -186,16 +188,16 @@ impl Search<'_> {
                 known.places = places;
             }
         } else {
-            let mode = Mode { assembly, found: 1, distance, continuum };
+            let mode = Mode { assembly, found: 1, distance, self_motion_dof };
             self.modes.push(Seen { mode, places, resting });
         }
         Ok(())
     }
 
-    /// Degrees of freedom left at an assembly, and the marks that they do not move.
-    fn continuum(&self, q: &[f64]) -> Result<(usize, Vec<bool>)> {
+    /// Degrees of freedom left at an assembly, and the landmarks that they do not move.
+    fn self_motion_dof(&self, q: &[f64]) -> Result<(usize, Vec<bool>)> {
         let mechanism = self.mechanism;
-        let isolated = (0, vec![true; self.marks.len()]);
+        let isolated = (0, vec![true; self.landmarks.len()]);
         let (kernel, _) = self.motions(q)?;
         if kernel.cols() == 0 {
             return Ok(isolated);
@@ -211,9 +213,11 @@ impl Search<'_> {
                 within_limits(mechanism, moved(mechanism, q, self.free, &change), self.free);
             let near = assemble(mechanism, &guess, self.held)?;
             let state = mechanism.state(&near.q)?;
-            if near.closed && farthest(&link_poses(&state), &before, mechanism) > TRIAL_MOVED {
+            if near.closed
+                && max_displacement(&link_poses(&state), &before, mechanism) > TRIAL_MOVED
+            {
                 let (kernel, tolerance) = self.motions(&near.q)?;
-                let resting = self.marks.resting(&state, self.free, &kernel, tolerance);
+                let resting = self.landmarks.resting(&state, self.free, &kernel, tolerance);
                 return Ok((kernel.cols(), resting));
             }
         }

@@ -1,9 +1,9 @@
-//! Marks on the links by which two configurations are told apart: where the joints stand.
+//! Landmarks on the links by which two configurations are told signature_distance: where the joints stand.
 //!
-//! Formula  a mark is p / L or d in world axes, its rate (v + w x p) / L or w x d: p the point of a
+//! Formula  a landmark is p / L or d in world axes, its rate (v + w x p) / L or w x d: p the point of a
 //!          joint or contact, d its axis or normal; x and y of the reference frame, of links at the
 //!          end of a branch and of free bodies, which stand as a whole
-//! Shapes   marks: 3 numbers each; rates: 3 rows each, a column for each coordinate
+//! Shapes   landmarks: 3 numbers each; rates: 3 rows each, a column for each coordinate
 //! Units    none: L is the reach, rates by coordinates without unit
 //! Valid    any mechanism
 //! Why so   whole poses of all links would tell a rod between a universal and a ball joint from the
@@ -18,15 +18,15 @@ use crate::linalg::Matrix;
 use crate::model::{JointKind, Mechanism};
 use crate::spatial::{Pose, Twist, Vec3};
 
-/// The marks of a mechanism.
+/// The landmarks of a mechanism.
 #[derive(Debug, Clone)]
-pub(crate) struct Marks {
-    marks: Vec<Mark>,
+pub(crate) struct Landmarks {
+    landmarks: Vec<Landmark>,
     length: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Mark {
+struct Landmark {
     link: usize,
     /// In the axes of the link.
     vector: Vec3,
@@ -39,12 +39,12 @@ enum Kind {
     Direction,
 }
 
-impl Marks {
+impl Landmarks {
     pub(crate) fn of(mechanism: &Mechanism) -> Self {
-        let mut marks = Vec::new();
+        let mut landmarks = Vec::new();
         let mut add = |link: usize, pose: Pose, directions: &[Vec3]| {
-            marks.push(Mark { link, vector: pose.translation, kind: Kind::Point });
-            marks.extend(directions.iter().map(|d| Mark {
+            landmarks.push(Landmark { link, vector: pose.translation, kind: Kind::Point });
+            landmarks.extend(directions.iter().map(|d| Landmark {
                 link,
                 vector: pose.rotation * *d,
                 kind: Kind::Direction,
@@ -75,27 +75,27 @@ impl Marks {
         for (link, _) in touched.iter().enumerate().filter(|(_, touched)| **touched == 1) {
             add(link, Pose::IDENTITY, &WHOLE);
         }
-        Self { marks, length: mechanism.reach() }
+        Self { landmarks, length: mechanism.reach() }
     }
 
-    /// Number of marks.
+    /// Number of landmarks.
     pub(crate) fn len(&self) -> usize {
-        self.marks.len()
+        self.landmarks.len()
     }
 
     /// Where they are with the links at `links`.
     pub(crate) fn at(&self, links: &[Pose]) -> Vec<Vec3> {
-        self.marks.iter().map(|m| self.place(m, links[m.link])).collect()
+        self.landmarks.iter().map(|m| self.place(m, links[m.link])).collect()
     }
 
-    fn place(&self, mark: &Mark, world_from_link: Pose) -> Vec3 {
-        match mark.kind {
-            Kind::Point => (world_from_link * mark.vector) * (1.0 / self.length),
-            Kind::Direction => world_from_link.rotation * mark.vector,
+    fn place(&self, landmark: &Landmark, world_from_link: Pose) -> Vec3 {
+        match landmark.kind {
+            Kind::Point => (world_from_link * landmark.vector) * (1.0 / self.length),
+            Kind::Direction => world_from_link.rotation * landmark.vector,
         }
     }
 
-    /// True for each mark that none of `motions` moves by more than `tolerance`: a column each,
+    /// True for each landmark that none of `motions` moves by more than `tolerance`: a column each,
     /// changes of the coordinates `places` without unit.
     pub(crate) fn resting(
         &self,
@@ -116,20 +116,20 @@ impl Marks {
                 rates
             })
             .collect();
-        let rests = |mark: &Mark, at: &Vec3| {
-            let tip = state.tip(mechanism.link_frame(mark.link).into());
+        let rests = |landmark: &Landmark, at: &Vec3| {
+            let tip = state.tip(mechanism.link_frame(landmark.link).into());
             rates.iter().all(|rates| {
                 let mut twist = Twist::ZERO;
                 tip.for_each_column(Vec3::ZERO, |_, c, unit| twist = twist + unit * rates[c]);
                 let turned = twist.angular.cross(*at);
-                let rate = match mark.kind {
+                let rate = match landmark.kind {
                     Kind::Point => twist.linear * (1.0 / self.length) + turned,
                     Kind::Direction => turned,
                 };
                 rate.norm() <= tolerance
             })
         };
-        self.marks.iter().zip(&now).map(|(mark, at)| rests(mark, at)).collect()
+        self.landmarks.iter().zip(&now).map(|(landmark, at)| rests(landmark, at)).collect()
     }
 }
 
@@ -139,8 +139,8 @@ pub(crate) fn link_poses(state: &State) -> Vec<Pose> {
     (0..mechanism.links().len()).map(|link| state.pose(mechanism.link_frame(link))).collect()
 }
 
-/// The farthest that a link is from its other place: distance over the reach, or angle.
-pub(crate) fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
+/// The max_displacement that a link is from its other place: distance over the reach, or angle.
+pub(crate) fn max_displacement(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
     a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
         let distance = (a.translation - b.translation).norm() / mechanism.reach();
         most.max(distance).max(a.rotation.angle_to(b.rotation))
@@ -149,7 +149,7 @@ pub(crate) fn farthest(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
 
 const WHOLE: [Vec3; 2] = [Vec3::X, Vec3::Y];
 
-/// The axis by which a joint is told apart: none where it leaves the second link more than one
+/// The axis by which a joint is told signature_distance: none where it leaves the second link more than one
 /// way to turn.
 fn axis_of(kind: JointKind, axis: &Vec3) -> &[Vec3] {
     match kind {
@@ -160,8 +160,8 @@ fn axis_of(kind: JointKind, axis: &Vec3) -> &[Vec3] {
     }
 }
 
-/// The farthest that any of the chosen marks is from its other place [-]; zero without any.
-pub(crate) fn apart(a: &[Vec3], b: &[Vec3], chosen: impl Fn(usize) -> bool) -> f64 {
+/// The max_displacement that any of the chosen landmarks is from its other place [-]; zero without any.
+pub(crate) fn signature_distance(a: &[Vec3], b: &[Vec3], chosen: impl Fn(usize) -> bool) -> f64 {
     let pairs = a.iter().zip(b).enumerate().filter(|(i, _)| chosen(*i));
     pairs.fold(0.0, |most: f64, (_, (a, b))| most.max((*a - *b).norm()))
 }

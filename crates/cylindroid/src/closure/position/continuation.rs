@@ -3,9 +3,9 @@
 //!
 //! Formula  predictor and corrector of `predictor_corrector.rs`; distance = smallest singular value that counts
 //!          over the largest, of the rates by which the free coordinates open the loops
-//! Units    shares of the way from 0 to 1; distances have none: lengths are over the reach
+//! Units    fractions of the way from 0 to 1; distances have none: lengths are over the reach
 //! Valid    any mechanism. The distance depends, within a factor, on where the loops are cut; that
-//!          it is zero does not. The largest share is found by halving steps to [`SHARE_FOUND`].
+//!          it is zero does not. The largest fraction is found by halving steps to [`SHARE_FOUND`].
 //!          Limits of closing joints do not count: these joints have no coordinate
 //! Source   Allgower & Georg 1990; kinds of singularity as in `singularity_types.rs`
 //! Checked  tests/it/closure/continuation.rs
@@ -14,8 +14,8 @@ use std::fmt;
 
 use super::assembly::assemble;
 use super::coordinates::{free_places, unit_of};
-use super::predictor_corrector::{Point, Refusal, Stride, Way};
-use crate::closure::constraint::closed_chain::Gap;
+use super::predictor_corrector::{PathTracker, Point, StepRejected, TrackerStep};
+use crate::closure::constraint::closed_chain::LoopClosureError;
 use crate::closure::singularity::singularity_types::SingularityKind;
 use crate::error::{Error, Result};
 use crate::kinematics::Reference;
@@ -30,39 +30,39 @@ const MOST_STEPS: usize = 20_000;
 
 /// How a way is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FollowOptions {
+pub struct ContinuationOptions {
     /// Largest change of any coordinate in a step [rad, or reaches].
     pub step: f64,
     /// Least distance to a singularity [-], from 1e-5 to below 1.
     pub least_distance: f64,
 }
 
-impl Default for FollowOptions {
+impl Default for ContinuationOptions {
     fn default() -> Self {
         Self { step: 0.1, least_distance: PATH_SINGULAR }
     }
 }
 
-/// A configuration on the way.
+/// A configuration on the tracker.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathPoint {
     /// Of the way, 0 to 1.
-    pub share: f64,
+    pub fraction: f64,
     /// The configuration, its loops closed.
     pub q: Vec<f64>,
     /// Distance to the next singularity: 0 there, at most 1; infinite where nothing can be lost.
     pub distance: f64,
 }
 
-/// What came of following a way.
+/// What came of following a tracker.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Followed {
+pub struct ContinuationResult {
     /// The last configuration, its loops closed unless the start could not be assembled.
     pub q: Vec<f64>,
     /// How far its loops are open.
-    pub gap: Gap,
+    pub closure_error: LoopClosureError,
     /// How far it got, 0 to 1.
-    pub share: f64,
+    pub fraction: f64,
     /// All configurations on the way, start and end included.
     pub path: Vec<PathPoint>,
     /// Why it ended.
@@ -88,7 +88,7 @@ pub enum PathEnd {
     /// and no motion of the others keeps the loops closed.
     Contradiction,
     /// The steps shrank to nothing without a singularity in sight, or were too many.
-    Lost,
+    StepTooSmall,
 }
 
 /// A singularity in sight.
@@ -117,7 +117,7 @@ impl fmt::Display for PathEnd {
             Self::Limit { .. } => "limit",
             Self::Open => "open",
             Self::Contradiction => "contradiction",
-            Self::Lost => "lost",
+            Self::StepTooSmall => "step-too-small",
         })
     }
 }
@@ -134,28 +134,28 @@ impl fmt::Display for PathEnd {
 /// is passed over.
 ///
 /// ```
-/// use cylindroid::closure::{FollowOptions, PathEnd, follow};
+/// use cylindroid::closure::{ContinuationOptions, PathEnd, track_path};
 ///
 /// // The crank of this four-bar (1, 1.8, 1.3 on a base of 2) goes all the way round, and back to
 /// // the same mode.
 /// let four_bar = cylindroid::load("four-bar")?;
 /// let turn = std::f64::consts::TAU;
-/// let way = follow(&four_bar, &[0.0; 3], &[0], &[turn], FollowOptions::default())?;
-/// assert_eq!(way.end, PathEnd::Reached);
-/// assert!((way.q[2]).abs() < 1e-9);
+/// let way = track_path(&four_bar, &[0.0; 3], &[0], &[turn], ContinuationOptions::default())?;
+/// assert_eq!(tracker.end, PathEnd::Reached);
+/// assert!((tracker.q[2]).abs() < 1e-9);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 ///
 /// # Errors
 /// A start or goal of the wrong size or not finite; a held place that is no coordinate, is named
 /// twice, or is one of a spherical or free joint that is not held as a whole; options out of range.
-pub fn follow(
+pub fn track_path(
     mechanism: &Mechanism,
     start: &[f64],
     held: &[usize],
     goal: &[f64],
-    options: FollowOptions,
-) -> Result<Followed> {
+    options: ContinuationOptions,
+) -> Result<ContinuationResult> {
     mechanism.check_q("start", start)?;
     Error::check_len("goal", held.len(), goal.len())?;
     Error::check_finite("goal", goal)?;
@@ -177,81 +177,90 @@ pub fn follow(
     }
     let assembly = assemble(mechanism, start, held)?;
     if !assembly.closed {
-        return Ok(Followed {
+        return Ok(ContinuationResult {
             q: assembly.q,
-            gap: assembly.gap,
-            share: 0.0,
+            closure_error: assembly.closure_error,
+            fraction: 0.0,
             path: Vec::new(),
             end: PathEnd::Open,
         });
     }
-    let way = Way::from(mechanism, &assembly.q, (held, free), goal)?;
-    let mut here = way.at(&assembly.q)?;
-    let mut path = vec![path_point(&way, &here, 0.0)];
-    let (share, end) = walk(&way, &mut here, &mut path, options)?;
-    Ok(Followed { gap: here.closing.gap, q: here.closing.q, share, path, end })
+    let tracker = PathTracker::from(mechanism, &assembly.q, (held, free), goal)?;
+    let mut here = tracker.at(&assembly.q)?;
+    let mut path = vec![path_point(&tracker, &here, 0.0)];
+    let (fraction, end) = walk(&tracker, &mut here, &mut path, options)?;
+    Ok(ContinuationResult {
+        closure_error: here.closing.closure_error,
+        q: here.closing.q,
+        fraction,
+        path,
+        end,
+    })
 }
 
-fn path_point(way: &Way<'_>, point: &Point, share: f64) -> PathPoint {
-    PathPoint { share, q: point.closing.q.clone(), distance: way.distance(point) }
+fn path_point(tracker: &PathTracker<'_>, point: &Point, fraction: f64) -> PathPoint {
+    PathPoint { fraction, q: point.closing.q.clone(), distance: tracker.distance(point) }
 }
 
-/// Steps along the branch until it ends: the share of the way and why.
+/// Steps along the branch until it ends: the fraction of the way and why.
 fn walk(
-    way: &Way<'_>,
+    tracker: &PathTracker<'_>,
     here: &mut Point,
     path: &mut Vec<PathPoint>,
-    options: FollowOptions,
+    options: ContinuationOptions,
 ) -> Result<(f64, PathEnd)> {
-    if way.distance(here) < LEAST_PATH_SINGULAR {
-        return Ok((0.0, PathEnd::Singular(Box::new(in_sight(way, here)?))));
+    if tracker.distance(here) < LEAST_PATH_SINGULAR {
+        return Ok((0.0, PathEnd::Singular(Box::new(in_sight(tracker, here)?))));
     }
-    if let Some(coordinate) = way.outside(&here.closing.q) {
+    if let Some(coordinate) = tracker.outside(&here.closing.q) {
         return Ok((0.0, PathEnd::Limit { coordinate }));
     }
-    let (mut share, mut step) = (0.0, 1.0_f64);
-    let (mut tangent, mut possible) = way.tangent(here);
+    let (mut fraction, mut step) = (0.0, 1.0_f64);
+    let (mut tangent, mut possible) = tracker.tangent(here);
     for _ in 0..MOST_STEPS {
         if !possible {
-            return Ok((share, PathEnd::Contradiction));
+            return Ok((fraction, PathEnd::Contradiction));
         }
-        step = step.min(options.step / way.speed(&tangent)).min(1.0 - share);
+        step = step.min(options.step / tracker.speed(&tangent)).min(1.0 - fraction);
         // To the goal itself, without the rounding of a sum.
-        let to = if step >= 1.0 - share { 1.0 } else { share + step };
+        let to = if step >= 1.0 - fraction { 1.0 } else { fraction + step };
         // From where it is already nearer, only away.
-        let least = options.least_distance.min(way.distance(here));
-        match way.step(here, &tangent, Stride { step, to, least })? {
+        let least = options.least_distance.min(tracker.distance(here));
+        match tracker.step(here, &tangent, TrackerStep { step, to, least })? {
             Ok(next) => {
-                share = to;
+                fraction = to;
                 *here = next;
-                path.push(path_point(way, here, share));
-                if share >= 1.0 {
-                    return Ok((share, PathEnd::Reached));
+                path.push(path_point(tracker, here, fraction));
+                if fraction >= 1.0 {
+                    return Ok((fraction, PathEnd::Reached));
                 }
-                (tangent, possible) = way.tangent(here);
+                (tangent, possible) = tracker.tangent(here);
                 step *= 2.0;
             }
             Err(why) => {
                 step *= 0.5;
                 if step < SHARE_FOUND {
                     let end = match why {
-                        Refusal::Singular => PathEnd::Singular(Box::new(in_sight(way, here)?)),
-                        Refusal::Limit(coordinate) => PathEnd::Limit { coordinate },
-                        Refusal::Far => PathEnd::Lost,
+                        StepRejected::Singular => {
+                            PathEnd::Singular(Box::new(in_sight(tracker, here)?))
+                        }
+                        StepRejected::Limit(coordinate) => PathEnd::Limit { coordinate },
+                        StepRejected::Far => PathEnd::StepTooSmall,
                     };
-                    return Ok((share, end));
+                    return Ok((fraction, end));
                 }
             }
         }
     }
-    Ok((share, PathEnd::Lost))
+    Ok((fraction, PathEnd::StepTooSmall))
 }
 
 /// The motion that is gained where the distance falls to zero.
-fn in_sight(way: &Way<'_>, point: &Point) -> Result<PathSingularity> {
-    let mechanism = way.mechanism();
-    let distance = way.distance(point);
-    let (motion, taken) = way.nearly_free(point).unwrap_or_else(|| (vec![0.0; mechanism.n()], 0.0));
+fn in_sight(tracker: &PathTracker<'_>, point: &Point) -> Result<PathSingularity> {
+    let mechanism = tracker.mechanism();
+    let distance = tracker.distance(point);
+    let (motion, taken) =
+        tracker.nearly_free(point).unwrap_or_else(|| (vec![0.0; mechanism.n()], 0.0));
     let rates: Vec<f64> =
         motion.iter().enumerate().map(|(i, x)| x * unit_of(mechanism, i)).collect();
     let state = mechanism.state(&point.closing.q)?;

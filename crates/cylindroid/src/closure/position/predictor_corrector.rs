@@ -44,22 +44,22 @@ pub(crate) struct Point {
 
 /// The coordinates, and where the held ones go.
 #[derive(Debug, Clone)]
-pub(crate) struct Way<'a> {
+pub(crate) struct PathTracker<'a> {
     mechanism: &'a Mechanism,
     held: &'a [usize],
     free: Vec<usize>,
     from: Vec<f64>,
     goal: &'a [f64],
     /// d, of the held coordinates.
-    along: Vec<f64>,
+    direction: Vec<f64>,
     /// Rank of J_f where nothing is singular.
     rank: usize,
 }
 
-/// A step along the way.
+/// A step direction the tracker.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stride {
-    /// Its length, as a share of the way.
+pub(crate) struct TrackerStep {
+    /// Its length, as a fraction of the tracker.
     pub(crate) step: f64,
     /// Where it ends, 0 to 1.
     pub(crate) to: f64,
@@ -69,7 +69,7 @@ pub(crate) struct Stride {
 
 /// Why a step was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Refusal {
+pub(crate) enum StepRejected {
     /// The point is nearer to a singularity than allowed.
     Singular,
     /// A coordinate would leave its limits.
@@ -78,7 +78,7 @@ pub(crate) enum Refusal {
     Far,
 }
 
-impl<'a> Way<'a> {
+impl<'a> PathTracker<'a> {
     /// From an assembly, whose held coordinates go to `goal`.
     pub(crate) fn from(
         mechanism: &'a Mechanism,
@@ -86,10 +86,11 @@ impl<'a> Way<'a> {
         (held, free): (&'a [usize], Vec<usize>),
         goal: &'a [f64],
     ) -> Result<Self> {
-        let along = displacement(mechanism, q, held, goal);
-        let mut way = Self { mechanism, held, free, from: q.to_vec(), goal, along, rank: 0 };
-        way.rank = way.generic_rank()?;
-        Ok(way)
+        let direction = displacement(mechanism, q, held, goal);
+        let mut tracker =
+            Self { mechanism, held, free, from: q.to_vec(), goal, direction, rank: 0 };
+        tracker.rank = tracker.generic_rank()?;
+        Ok(tracker)
     }
 
     pub(crate) fn mechanism(&self) -> &'a Mechanism {
@@ -148,7 +149,7 @@ impl<'a> Way<'a> {
 
     /// f', and true if the free coordinates can follow the held ones at all.
     pub(crate) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
-        let opened = columns(&point.closing.rates, self.held).mul_vec(&self.along);
+        let opened = columns(&point.closing.rates, self.held).mul_vec(&self.direction);
         let follow = self.back(point, &opened);
         let left: Vec<f64> =
             point.by_free.mul_vec(&follow).iter().zip(&opened).map(|(a, b)| a + b).collect();
@@ -158,7 +159,7 @@ impl<'a> Way<'a> {
 
     /// The largest change of any coordinate, for the whole way at this rate.
     pub(crate) fn speed(&self, tangent: &[f64]) -> f64 {
-        self.along.iter().chain(tangent).fold(0.0, |m: f64, x| m.max(x.abs()))
+        self.direction.iter().chain(tangent).fold(0.0, |m: f64, x| m.max(x.abs()))
     }
 
     /// The point at the end of a stride.
@@ -166,15 +167,15 @@ impl<'a> Way<'a> {
         &self,
         here: &Point,
         tangent: &[f64],
-        Stride { step, to, least }: Stride,
-    ) -> Result<std::result::Result<Point, Refusal>> {
+        TrackerStep { step, to, least }: TrackerStep,
+    ) -> Result<std::result::Result<Point, StepRejected>> {
         let change: Vec<f64> = tangent.iter().map(|x| step * x).collect();
         let mut guess = moved(self.mechanism, &here.closing.q, &self.free, &change);
         self.put_held(&mut guess, to);
         let Some((there, corrected)) = self.corrected(guess)? else {
-            return Ok(Err(Refusal::Far));
+            return Ok(Err(StepRejected::Far));
         };
-        let predicted = norm(&change) + step * norm(&self.along);
+        let predicted = norm(&change) + step * norm(&self.direction);
         let (rows, columns) = (here.by_free.rows(), here.by_free.cols());
         let turned = Svd::of(&Matrix::from_fn(rows, columns, |i, j| {
             there.by_free[(i, j)] - here.by_free[(i, j)]
@@ -183,13 +184,13 @@ impl<'a> Way<'a> {
         if corrected > 0.5 * predicted + CORRECTION_ROUNDING
             || turned > 0.5 * (self.smallest(here) + self.smallest(&there))
         {
-            return Ok(Err(Refusal::Far));
+            return Ok(Err(StepRejected::Far));
         }
         if self.distance(&there) < least {
-            return Ok(Err(Refusal::Singular));
+            return Ok(Err(StepRejected::Singular));
         }
         if let Some(i) = self.outside(&there.closing.q) {
-            return Ok(Err(Refusal::Limit(i)));
+            return Ok(Err(StepRejected::Limit(i)));
         }
         // Beyond a limit by rounding is at it.
         let beyond: Vec<usize> = self.mechanism.outside_limits(&there.closing.q).collect();
@@ -207,12 +208,12 @@ impl<'a> Way<'a> {
         })
     }
 
-    /// The held coordinates as they are at a share of the way, the goal itself at the end.
-    fn put_held(&self, q: &mut [f64], share: f64) {
-        let change: Vec<f64> = self.along.iter().map(|x| share * x).collect();
+    /// The held coordinates as they are at a fraction of the way, the goal itself at the end.
+    fn put_held(&self, q: &mut [f64], fraction: f64) {
+        let change: Vec<f64> = self.direction.iter().map(|x| fraction * x).collect();
         let there = moved(self.mechanism, &self.from, self.held, &change);
         for (&i, goal) in self.held.iter().zip(self.goal) {
-            q[i] = if share >= 1.0 { *goal } else { there[i] };
+            q[i] = if fraction >= 1.0 { *goal } else { there[i] };
         }
     }
 

@@ -21,12 +21,12 @@
 //! Source   Gosselin & Angeles 1990; Zlatanov et al. 1995; Ball 1900 for the principal screws
 //! Checked  tests/it/closure/diagnosis.rs
 
-use super::generic_mobility::Generic;
-use super::singularity_types::{Counts, Singularities, SingularityKind};
+use super::generic_mobility::GenericMobility;
+use super::singularity_types::{MobilityCounts, Singularities, SingularityKind};
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::closure::mobility::finite_mobility::FiniteMobility;
-use crate::closure::mobility::motion_space::{Motions, Rows};
+use crate::closure::mobility::motion_space::{MotionSpace, RowSelection};
 use crate::closure::mobility::relation::Relation;
 use crate::error::Result;
 use crate::kinematics::State;
@@ -42,9 +42,9 @@ pub struct Diagnosis {
     /// The kinds, and the distances to them.
     pub singularities: Singularities,
     /// The counts of this posture ...
-    pub counts: Counts,
+    pub counts: MobilityCounts,
     /// ... and those that it is measured by.
-    pub generic: Generic,
+    pub generic: GenericMobility,
     /// What can be done of the motions to first order.
     pub finite: FiniteMobility,
     /// Wrenches that are held without torque here and not elsewhere, each as the screw of its
@@ -83,8 +83,8 @@ impl Diagnosis {
         let mechanism = state.mechanism();
         let here = Posture::of(state, reference, length)?;
         let length = here.chain.constraint.length();
-        let counts = Counts::of(&here.motions, &here.relation);
-        let generic = Generic::around(state, reference, length, counts)?;
+        let counts = MobilityCounts::of(&here.motions, &here.relation);
+        let generic = GenericMobility::around(state, reference, length, counts)?;
         let finite = FiniteMobility::of(state, Some(length))?;
         let beside: Vec<Posture> = finite
             .beside()
@@ -136,14 +136,14 @@ impl Diagnosis {
 /// A posture with its spaces, orthonormal in scaled units.
 struct Posture {
     chain: ClosedChain,
-    motions: Motions,
+    motions: MotionSpace,
     relation: Relation,
 }
 
 impl Posture {
     fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let chain = ClosedChain::of(state, reference, length)?;
-        let motions = Motions::of(&chain.constraint);
+        let motions = MotionSpace::of(&chain.constraint);
         let relation = motions.relation();
         Ok(Self { chain, motions, relation })
     }
@@ -174,7 +174,7 @@ impl Posture {
     }
 
     fn idle(&self) -> Matrix {
-        let still = Rows { actuated: true, passive: false, object: true };
+        let still = RowSelection { actuated: true, passive: false, object: true };
         let all = self.motions.standing(still);
         let a = self.motions.actuated();
         let passive = all.rows_between(a, a + self.motions.passive());

@@ -6,16 +6,16 @@
 //!          all, the largest rank and the smallest of every other count
 //! Valid    postures of other assembly components count too. A mechanism whose components differ
 //!          in mobility (kinematotropic) is measured by the one of least mobility. Where no other
-//!          posture closes, the counts are those of the posture itself: see [`Generic::others`]
+//!          posture closes, the counts are those of the posture itself: see [`GenericMobility::others`]
 //! Why so   counts below those of a single regular posture would need that posture to be known;
 //!          Grubler's count is wrong for whatever is overconstrained
 //! Checked  tests/it/closure/diagnosis.rs
 
-use super::singularity_types::Counts;
+use super::singularity_types::MobilityCounts;
 use crate::closure::constraint::closed_chain::ClosedChain;
-use crate::closure::mobility::motion_space::Motions;
+use crate::closure::mobility::motion_space::MotionSpace;
 use crate::closure::position::assembly::assemble;
-use crate::closure::position::configuration_signature::{farthest, link_poses};
+use crate::closure::position::configuration_signature::{link_poses, max_displacement};
 use crate::closure::position::initial_guesses::{anywhere, near};
 use crate::error::Result;
 use crate::kinematics::State;
@@ -29,16 +29,16 @@ const NEAR: f64 = 0.3;
 
 /// Generic counts and how many postures stand behind them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Generic {
+pub struct GenericMobility {
     /// The counts.
-    pub counts: Counts,
+    pub counts: MobilityCounts,
     /// Closed postures other than the one in question that were counted.
     pub others: usize,
     /// Guesses that were tried for them.
     pub guesses: usize,
 }
 
-impl Generic {
+impl GenericMobility {
     /// Of the mechanism of `state`, for its reference frame or another, at its reach as
     /// characteristic length or another (m).
     ///
@@ -54,7 +54,7 @@ impl Generic {
         state: &State,
         reference: Option<FrameId>,
         length: f64,
-        counts: Counts,
+        counts: MobilityCounts,
     ) -> Result<Self> {
         let mechanism = state.mechanism();
         let all: Vec<usize> = (0..mechanism.n()).collect();
@@ -69,7 +69,7 @@ impl Generic {
             };
             let closed = assemble(mechanism, &guess, &[])?;
             let there = mechanism.state(&closed.q)?;
-            let away = farthest(&link_poses(&there), &here, mechanism) > FINITE_STEP;
+            let away = max_displacement(&link_poses(&there), &here, mechanism) > FINITE_STEP;
             if closed.closed && away {
                 let chain = ClosedChain::of(&there, reference, Some(length))?;
                 generic.counts = generic.counts.generic(counted(&chain));
@@ -80,7 +80,7 @@ impl Generic {
     }
 }
 
-fn counted(chain: &ClosedChain) -> Counts {
-    let motions = Motions::of(&chain.constraint);
-    Counts::of(&motions, &motions.relation())
+fn counted(chain: &ClosedChain) -> MobilityCounts {
+    let motions = MotionSpace::of(&chain.constraint);
+    MobilityCounts::of(&motions, &motions.relation())
 }

@@ -11,8 +11,8 @@
 //!          reference point), the smallest value of the kernel without passive joints, and the
 //!          smallest singular value kept of the scaled constraint over the largest. The last
 //!          depends on where contacts are drawn; that each is zero does not depend on anything.
-//! Valid    relative to generic counts, which [`Counts::generic`] takes from several poses
-//!          (`Generic` finds them for a mechanism, `Diagnosis` names what is lost and gained): a
+//! Valid    relative to generic counts, which [`MobilityCounts::generic`] takes from several poses
+//!          (`GenericMobility` finds them for a mechanism, `Diagnosis` names what is lost and gained): a
 //!          mechanism may hold wrenches by its structure, or spin idly, in every pose
 //! Source   Gosselin & Angeles 1990 (I, II, III); Park & Kim 1999 and Zlatanov et al. 1995
 //!          (configuration space, passive)
@@ -20,13 +20,13 @@
 
 use std::fmt;
 
-use crate::closure::mobility::motion_space::{Motions, Rows};
+use crate::closure::mobility::motion_space::{MotionSpace, RowSelection};
 use crate::closure::mobility::relation::{Relation, RelationDimensions};
 use crate::linalg::Matrix;
 
 /// The counts that singularities change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Counts {
+pub struct MobilityCounts {
     /// Rank of the constraint matrix.
     pub rank: usize,
     /// Motions of passive joints alone.
@@ -83,7 +83,7 @@ impl fmt::Display for SingularityKind {
 /// How far a pose is from losing what it has: 0 at a singularity, at most 1 elsewhere [-].
 /// Infinite where there is nothing to lose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Distances {
+pub struct SingularityDistances {
     /// To the loss of a motion of the object.
     pub type_i: f64,
     /// To a motion of the object that the driven joints do not hold.
@@ -106,13 +106,13 @@ pub struct Singularities {
     /// gained.
     pub gained: Matrix,
     /// How far the pose is from each kind.
-    pub distances: Distances,
+    pub distances: SingularityDistances,
 }
 
-impl Counts {
+impl MobilityCounts {
     /// Of one pose.
     #[must_use]
-    pub fn of(motions: &Motions, relation: &Relation) -> Self {
+    pub fn of(motions: &MotionSpace, relation: &Relation) -> Self {
         let RelationDimensions { redundancy, indeterminacy, zero_torque, .. } =
             relation.dimensions();
         Self {
@@ -147,7 +147,7 @@ struct Beyond {
 }
 
 impl Beyond {
-    fn of(now: &Counts, generic: &Counts) -> Self {
+    fn of(now: &MobilityCounts, generic: &MobilityCounts) -> Self {
         Self {
             loses: now.zero_torque > generic.zero_torque || now.redundancy > generic.redundancy,
             gains: now.indeterminacy > generic.indeterminacy,
@@ -169,9 +169,9 @@ impl Beyond {
     }
 }
 
-impl Distances {
+impl SingularityDistances {
     /// Those of a pose with these counts: 0 to each kind that it is.
-    pub(crate) fn against(self, now: &Counts, generic: &Counts) -> Self {
+    pub(crate) fn against(self, now: &MobilityCounts, generic: &MobilityCounts) -> Self {
         let Beyond { loses, gains, folds, idles } = Beyond::of(now, generic);
         let or_zero = |singular: bool, x: f64| if singular { 0.0 } else { x };
         Self {
@@ -183,25 +183,25 @@ impl Distances {
     }
 }
 
-const OTHERS: Rows = Rows { actuated: true, passive: false, object: true };
+const OTHERS: RowSelection = RowSelection { actuated: true, passive: false, object: true };
 
 impl Singularities {
     /// Of a pose, against the generic counts of its mechanism.
     #[must_use]
-    pub fn of(motions: &Motions, relation: &Relation, generic: &Counts) -> Self {
-        Self::with_counts(&Counts::of(motions, relation), motions, relation, generic)
+    pub fn of(motions: &MotionSpace, relation: &Relation, generic: &MobilityCounts) -> Self {
+        Self::with_counts(&MobilityCounts::of(motions, relation), motions, relation, generic)
     }
 
     /// The same for a pose whose own counts are known.
     pub(crate) fn with_counts(
-        now: &Counts,
-        motions: &Motions,
+        now: &MobilityCounts,
+        motions: &MotionSpace,
         relation: &Relation,
-        generic: &Counts,
+        generic: &MobilityCounts,
     ) -> Self {
         let pairs = relation.finite_pairs();
         let none = f64::INFINITY;
-        let here = Distances {
+        let here = SingularityDistances {
             type_i: pairs.last().map_or(none, |p| p.0),
             type_ii: pairs.first().map_or(none, |p| p.1),
             configuration_space: if now.rank > 0 { motions.regularity() } else { none },

@@ -14,8 +14,8 @@
 //! Checked  tests/it/closure/statics.rs
 
 use crate::closure::constraint::velocity_constraint::Constraint;
-use crate::closure::mobility::motion_space::Motions;
-use crate::closure::mobility::relation::{Balance, Relation};
+use crate::closure::mobility::motion_space::MotionSpace;
+use crate::closure::mobility::relation::{DualRelation, Relation};
 use crate::closure::mobility::report::Subspace;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold, dot, norm};
@@ -23,7 +23,7 @@ use crate::tolerance::CLOSURE_RANK;
 
 /// Joint torques that balance a wrench.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Torques {
+pub struct JointTorques {
     /// The torques of least norm, an entry for each driven joint. Any combination of the internal
     /// torques of the mobility report may be added.
     pub torques: Vec<f64>,
@@ -37,7 +37,7 @@ pub struct Torques {
 
 /// Joint torques and the wrench on the object at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Load<'a> {
+pub struct StaticLoad<'a> {
     /// An entry for each driven joint.
     pub torques: &'a [f64],
     /// The wrench on the object.
@@ -63,10 +63,10 @@ pub fn joint_torques(
     relation: &Relation,
     wrench: &[f64],
     metric: Option<&Metric>,
-) -> Result<Torques> {
+) -> Result<JointTorques> {
     Error::check_len("wrench", relation.object(), wrench.len())?;
     Error::check_finite("wrench", wrench)?;
-    let Balance { mut torques, structural, unbalanced } = relation.balance(wrench);
+    let DualRelation { mut torques, structural, unbalanced } = relation.balance(wrench);
     if let Some(metric) = metric {
         Error::check_len("torque metric", relation.joints(), metric.len())?;
         let mut internal = relation.forces().zero;
@@ -79,7 +79,7 @@ pub fn joint_torques(
         }
         metric.colour(&mut torques);
     }
-    Ok(Torques { torques, structural, unbalanced })
+    Ok(JointTorques { torques, structural, unbalanced })
 }
 
 /// The contact forces under a load: the ones of least norm, or with a compliance the elastic ones.
@@ -89,25 +89,25 @@ pub fn joint_torques(
 /// Torques, wrench or compliance of the wrong size, NaN or infinity.
 pub fn contact_forces(
     constraint: &Constraint,
-    motions: &Motions,
-    load: Load<'_>,
+    motions: &MotionSpace,
+    load: StaticLoad<'_>,
     compliance: Option<&Metric>,
 ) -> Result<ContactForces> {
-    Supports::of(constraint, motions, compliance)?.forces(load)
+    ContactForceSolver::of(constraint, motions, compliance)?.forces(load)
 }
 
 /// The equations of [`contact_forces`], decomposed once for any load.
-pub(crate) struct Supports<'a> {
+pub(crate) struct ContactForceSolver<'a> {
     constraint: &'a Constraint,
     compliance: Option<&'a Metric>,
     svd: Svd,
     rank: usize,
 }
 
-impl<'a> Supports<'a> {
+impl<'a> ContactForceSolver<'a> {
     pub(crate) fn of(
         constraint: &'a Constraint,
-        motions: &Motions,
+        motions: &MotionSpace,
         compliance: Option<&'a Metric>,
     ) -> Result<Self> {
         // Unknown: the scaled forces t = D_r t', or z = L^T t with C = L L^T.
@@ -124,7 +124,7 @@ impl<'a> Supports<'a> {
         Ok(Self { constraint, compliance, svd, rank })
     }
 
-    pub(crate) fn forces(&self, load: Load<'_>) -> Result<ContactForces> {
+    pub(crate) fn forces(&self, load: StaticLoad<'_>) -> Result<ContactForces> {
         let (constraint, svd) = (self.constraint, &self.svd);
         Error::check_len("torques", constraint.actuated(), load.torques.len())?;
         Error::check_len("wrench", constraint.object(), load.wrench.len())?;
@@ -156,7 +156,7 @@ impl<'a> Supports<'a> {
 }
 
 /// ker G and ker J^T: contact forces that nothing determines.
-pub(crate) fn undetermined(constraint: &Constraint, motions: &Motions) -> Subspace {
+pub(crate) fn undetermined(constraint: &Constraint, motions: &MotionSpace) -> Subspace {
     let basis = if motions.hyperstatic() == 0 {
         Matrix::zeros(constraint.rows(), 0)
     } else {

@@ -49,17 +49,28 @@ pub struct FingerContact {
     pub normal: Vec3,
     /// What it transmits.
     pub friction: Friction,
-    /// Largest normal force (N), used by [`Effort::Each`].
+    /// Largest normal force (N), used by [`GraspMetric::LInf`].
     pub strength: f64,
 }
 
-/// How the effort of the fingers is limited.
+/// The norm of the normal forces that is bounded in Ferrari and Canny's quality measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// The normal forces of all fingers sum to 1 (Ferrari and Canny's first measure).
-    Shared,
-    /// The normal force of each finger is at most its strength (their second).
-    Each,
+pub enum GraspMetric {
+    /// Q1: the normal forces of all fingers sum to at most 1 N.
+    L1,
+    /// Q-infinity: the normal force of each finger is at most its strength.
+    LInf,
+}
+
+impl GraspMetric {
+    /// The name in reports: "l1" or "linf".
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::L1 => "l1",
+            Self::LInf => "linf",
+        }
+    }
 }
 
 /// Where wrenches are taken, and how they are measured.
@@ -79,14 +90,24 @@ impl WrenchSpace {
     }
 }
 
+/// Bounds of the quality epsilon of Ferrari and Canny: the norm of the smallest wrench that the
+/// bounded contact forces cannot resist, in its worst direction (N, moments divided by the
+/// characteristic length). Not positive without force closure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EpsilonQuality {
+    /// Lower bound.
+    pub lower: f64,
+    /// Upper bound.
+    pub upper: f64,
+}
+
 /// How well a grasp holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraspQuality {
     /// True if every wrench can be held with enough effort.
     pub closed: bool,
-    /// Lower and upper bound of the least wrench, in its worst direction, that is more than the
-    /// effort holds. Not positive without force closure.
-    pub epsilon: (f64, f64),
+    /// The quality epsilon, with certified bounds.
+    pub epsilon: EpsilonQuality,
     /// The direction in which least is held, moments over the length: for an open grasp a
     /// direction in which nothing is.
     pub weakest: Vec<f64>,
@@ -100,23 +121,23 @@ pub struct GraspQuality {
 pub fn grasp_quality(
     contacts: &[FingerContact],
     space: WrenchSpace,
-    effort: Effort,
+    metric: GraspMetric,
 ) -> Result<GraspQuality> {
     Error::check_positive("length", space.length)?;
     let fingers: Vec<Finger> =
-        contacts.iter().map(|c| Finger::new(c, space, effort)).collect::<Result<_>>()?;
+        contacts.iter().map(|c| Finger::new(c, space, metric)).collect::<Result<_>>()?;
     let d = space.components().len();
     let farthest = |n: &[f64]| -> Vec<f64> {
         let mut wrench = vec![0.0; d];
         let reach = fingers.iter().map(|f| f.reach(n));
-        match effort {
-            Effort::Shared => {
+        match metric {
+            GraspMetric::L1 => {
                 let best = reach.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
                 if let Some((i, _)) = best {
                     fingers[i].add_farthest(n, &mut wrench);
                 }
             }
-            Effort::Each => {
+            GraspMetric::LInf => {
                 for (finger, reach) in fingers.iter().zip(reach) {
                     if reach > 0.0 {
                         finger.add_farthest(n, &mut wrench);
@@ -140,12 +161,16 @@ pub fn grasp_quality(
         return Ok(flat(&hull, size));
     }
     let Some(nearest) = hull.nearest_facet() else {
-        return Ok(GraspQuality { closed: false, epsilon: (0.0, 0.0), weakest: Vec::new() });
+        return Ok(GraspQuality {
+            closed: false,
+            epsilon: EpsilonQuality { lower: 0.0, upper: 0.0 },
+            weakest: Vec::new(),
+        });
     };
     let upper = nearest.offset + nearest.gap;
     Ok(GraspQuality {
         closed: nearest.offset > HULL * size,
-        epsilon: (nearest.offset, upper),
+        epsilon: EpsilonQuality { lower: nearest.offset, upper },
         weakest: nearest.normal.clone(),
     })
 }
@@ -162,7 +187,11 @@ fn flat(hull: &Hull, size: f64) -> GraspQuality {
     } else {
         (across.column(0).to_vec(), 0.0)
     };
-    GraspQuality { closed: false, epsilon: (epsilon, epsilon), weakest }
+    GraspQuality {
+        closed: false,
+        epsilon: EpsilonQuality { lower: epsilon, upper: epsilon },
+        weakest,
+    }
 }
 
 /// A contact with its columns scaled: strength and friction are taken into them, so that the cone
@@ -172,7 +201,7 @@ struct Finger {
 }
 
 impl Finger {
-    fn new(contact: &FingerContact, space: WrenchSpace, effort: Effort) -> Result<Self> {
+    fn new(contact: &FingerContact, space: WrenchSpace, metric: GraspMetric) -> Result<Self> {
         let FingerContact { point, normal, friction, strength } = *contact;
         for (name, value) in [("contact point", point), ("contact normal", normal)] {
             Error::check_finite(name, &[value.x, value.y, value.z])?;
@@ -183,7 +212,7 @@ impl Finger {
         if space.planar && (normal.z.abs() > ORTHONORMAL || point.z.abs() > ORTHONORMAL) {
             return Err(refuse("normal", normal.z, "a planar contact lies in the plane z = 0"));
         }
-        if effort == Effort::Each {
+        if metric == GraspMetric::LInf {
             Error::check_positive("strength", strength)?;
         }
         let (mu, torsion) = match friction {
@@ -197,7 +226,7 @@ impl Finger {
             }
         }
         let arm = point - space.point;
-        let size = if effort == Effort::Each { strength } else { 1.0 };
+        let size = if metric == GraspMetric::LInf { strength } else { 1.0 };
         let column = |force: Vec3, moment: Vec3, scale: f64| -> Vec<f64> {
             let moment = (arm.cross(force) + moment) * (1.0 / space.length);
             let w = [force.x, force.y, force.z, moment.x, moment.y, moment.z];

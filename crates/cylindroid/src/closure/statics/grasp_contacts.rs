@@ -19,7 +19,7 @@ use crate::tolerance::CLOSED;
 
 /// What is known of a contact beside its kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
+pub struct ContactProperties {
     /// Coefficient of friction in place of the file's [-].
     pub mu: Option<f64>,
     /// Largest moment about the normal over the normal force (m), of soft fingers.
@@ -34,10 +34,10 @@ pub struct Touch {
 /// # Errors
 /// A frame of another mechanism; a contact on it that is no point, or whose coefficients nobody
 /// gives.
-pub fn fingers_on(
+pub fn grasp_contacts(
     state: &State,
     object: FrameId,
-    touch: impl Fn(&Contact) -> Touch,
+    touch: impl Fn(&Contact) -> ContactProperties,
 ) -> Result<Vec<(usize, FingerContact)>> {
     let mechanism = state.mechanism();
     mechanism.check_frame(object)?;
@@ -70,7 +70,7 @@ pub fn fingers_on(
 
 fn friction(
     contact: &Contact,
-    known: Touch,
+    known: ContactProperties,
     dimension: Dimension,
 ) -> std::result::Result<Friction, String> {
     let name = &contact.name;

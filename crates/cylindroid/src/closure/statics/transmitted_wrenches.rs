@@ -15,7 +15,7 @@
 //! [`contact_forces`]: crate::closure::contact_forces
 
 use crate::closure::constraint::closed_chain::ClosedChain;
-use crate::closure::constraint::constraint_rows::{Row, rows};
+use crate::closure::constraint::constraint_rows::{ConstraintRow, constraint_rows};
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
@@ -24,7 +24,7 @@ use crate::spatial::{Vec3, Wrench};
 
 /// The wrench that a closing joint or a contact transmits.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Transmitted {
+pub struct TransmittedWrench {
     /// Name of the joint or contact.
     pub name: String,
     /// Where it is (m).
@@ -35,7 +35,7 @@ pub struct Transmitted {
     pub normal: Option<f64>,
 }
 
-impl Transmitted {
+impl TransmittedWrench {
     /// Size of the force across the normal (N), of contacts.
     #[must_use]
     pub fn tangential(&self) -> Option<f64> {
@@ -49,7 +49,11 @@ impl Transmitted {
 ///
 /// # Errors
 /// Forces of the wrong number or not finite.
-pub fn transmitted(state: &State, chain: &ClosedChain, forces: &[f64]) -> Result<Vec<Transmitted>> {
+pub fn transmitted_wrenches(
+    state: &State,
+    chain: &ClosedChain,
+    forces: &[f64],
+) -> Result<Vec<TransmittedWrench>> {
     Error::check_len("contact forces", chain.constraint.rows(), forces.len())?;
     Error::check_finite("contact forces", forces)?;
     let mechanism = state.mechanism();
@@ -63,14 +67,19 @@ pub fn transmitted(state: &State, chain: &ClosedChain, forces: &[f64]) -> Result
     for joint in mechanism.loops() {
         let point = (pose(joint.b) * joint.link_b_from_joint).translation;
         let wrench = sum(all.len(), point);
-        all.push(Transmitted { name: joint.name.clone(), point, wrench, normal: None });
+        all.push(TransmittedWrench { name: joint.name.clone(), point, wrench, normal: None });
     }
     for contact in mechanism.contacts() {
         let point = (pose(contact.b) * contact.link_b_from_contact).translation;
         let axes = (pose(contact.a) * contact.link_a_from_contact).rotation;
         let wrench = sum(all.len(), point);
         let normal = axes.z_axis().dot(wrench.force);
-        all.push(Transmitted { name: contact.name.clone(), point, wrench, normal: Some(normal) });
+        all.push(TransmittedWrench {
+            name: contact.name.clone(),
+            point,
+            wrench,
+            normal: Some(normal),
+        });
     }
     Ok(all)
 }
@@ -100,8 +109,8 @@ pub fn row_compliance(state: &State, chain: &ClosedChain, compliances: &[f64]) -
 }
 
 /// The rows of joints and contacts.
-fn pairs(state: &State, chain: &ClosedChain) -> Result<Vec<Row>> {
-    let (rows, ..) = rows(state)?;
+fn pairs(state: &State, chain: &ClosedChain) -> Result<Vec<ConstraintRow>> {
+    let (rows, ..) = constraint_rows(state)?;
     let expected = chain.constraint.rows() - chain.constraint.object();
     Error::check_len("closed chain (its rows; of another state?)", rows.len(), expected)?;
     Ok(rows)

@@ -12,7 +12,7 @@
 //! Checked  tests/it/servo/object.rs
 
 use super::task_space::TaskSpace;
-use crate::closure::{Gap, Steering, assemble};
+use crate::closure::{ActuationMap, LoopClosureError, assemble};
 use crate::control::solver::reduced::Reduced;
 use crate::error::{Error, Result};
 use crate::ik::Task;
@@ -27,7 +27,7 @@ pub(super) struct Coupled {
     weights: Vec<f64>,
     locked: Vec<usize>,
     drives: usize,
-    steering: Steering,
+    steering: ActuationMap,
     /// J in weighted rates, m x n.
     pub(super) task: Matrix,
     pub(super) reduced: Reduced,
@@ -51,7 +51,7 @@ impl Coupled {
         locked: Vec<usize>,
         m: usize,
     ) -> Result<Self> {
-        let steering = Steering::of(&mechanism.state(mechanism.home())?, weights, &locked)?;
+        let steering = ActuationMap::of(&mechanism.state(mechanism.home())?, weights, &locked)?;
         let tree = mechanism.coordinates().iter().filter(|c| c.actuated).count();
         let drives = tree + steering.correction.len() - mechanism.n();
         Ok(Self {
@@ -89,8 +89,8 @@ impl Coupled {
         reduced: &mut Matrix,
     ) -> Result<()> {
         let state = self.mechanism.state(q)?;
-        self.steering = Steering::of(&state, &self.weights, &self.locked)?;
-        let Gap { distance, angle } = self.steering.gap;
+        self.steering = ActuationMap::of(&state, &self.weights, &self.locked)?;
+        let LoopClosureError { distance, angle } = self.steering.closure_error;
         if !(distance <= NEARLY_CLOSED * self.mechanism.reach() && angle <= NEARLY_CLOSED) {
             return Err(Error::InvalidOption {
                 option: "q",
@@ -123,7 +123,7 @@ impl Coupled {
 
     /// The motion of the task that the drives have least of where they steer so, and where that is
     /// little.
-    fn find_escape(&self, steering: &Steering, space: &TaskSpace) -> Option<Escape> {
+    fn find_escape(&self, steering: &ActuationMap, space: &TaskSpace) -> Option<Escape> {
         let n = self.mechanism.n();
         let in_task = |motion: &[f64]| self.task.mul_vec(&space.scaled_rates(&motion[..n]));
         let left = (0..steering.left.cols()).map(|j| (0.0, steering.left.column(j)));
@@ -160,7 +160,7 @@ impl Coupled {
         let mut next = q.to_vec();
         let rates: Vec<f64> = rates.iter().zip(&space.columns).map(|(r, c)| r * c).collect();
         self.mechanism.integrate_in_place(&mut next, &rates[..q.len()], dt);
-        let ahead = Steering::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)?;
+        let ahead = ActuationMap::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)?;
         Ok(self.find_escape(&ahead, space).is_some_and(|then| then.share <= now.share))
     }
 

@@ -2,8 +2,8 @@
 
 use cylindroid::Matrix;
 use cylindroid::closure::{
-    Blocks, Constraint, Counts, Load, Mobility, Motions, Singularities, contact_forces,
-    joint_torques,
+    Constraint, ConstraintBlocks, Mobility, MobilityCounts, MotionSpace, Singularities, StaticLoad,
+    contact_forces, joint_torques,
 };
 use cylindroid::manipulability::{Manipulability, Metrics};
 
@@ -39,19 +39,22 @@ fn any_matrices_have_an_answer() {
         let size = |random: &mut Random, n: u64| (random.next_u64() % n) as usize;
         let (t, a) = (size(&mut random, 8), size(&mut random, 6));
         let (p, d) = (size(&mut random, 6), size(&mut random, 7));
-        let blocks = Blocks {
+        let blocks = ConstraintBlocks {
             actuated: any(&mut random, t, a),
             passive: any(&mut random, t, p),
             grasp: any(&mut random, d, t),
         };
         let constraint = Constraint::new(blocks).unwrap();
-        let motions = Motions::of(&constraint);
+        let motions = MotionSpace::of(&constraint);
         let relation = motions.relation();
         let m = Mobility::from_parts(&constraint, &motions, &relation);
         let r = m.relation;
         assert_eq!(r.coordinate + r.redundancy + r.internal, a, "{round}");
         assert_eq!(r.coordinate + r.indeterminacy + r.zero_torque, d, "{round}");
-        assert_eq!(m.dof.dimension() as i64, m.grubler + m.hyperstatic.dimension() as i64);
+        assert_eq!(
+            m.dof.dimension() as i64,
+            m.gruebler_kutzbach + m.hyperstatic.dimension() as i64
+        );
         let work = &relation.forces().basis().transpose() * &relation.motions().basis();
         assert!(work.max_abs() < 1e-12, "{round}: {work:?}");
         let all = Manipulability::of(&relation, &Metrics::UNIT).unwrap();
@@ -60,9 +63,9 @@ fn any_matrices_have_an_answer() {
         let wrench = random.vector(d);
         let torques = joint_torques(&relation, &wrench, None).unwrap();
         assert!(torques.torques.iter().all(|t| t.is_finite()), "{round}");
-        let load = Load { torques: &torques.torques, wrench: &wrench };
+        let load = StaticLoad { torques: &torques.torques, wrench: &wrench };
         contact_forces(&constraint, &motions, load, None).unwrap();
-        let counts = Counts::of(&motions, &relation);
+        let counts = MobilityCounts::of(&motions, &relation);
         assert_eq!((counts.rank, counts.zero_torque), (t - motions.hyperstatic(), r.zero_torque));
         let found = Singularities::of(&motions, &relation, &counts);
         assert!(found.is_regular(), "{round}");

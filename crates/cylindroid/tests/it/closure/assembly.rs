@@ -23,7 +23,10 @@ fn the_catalogue_closes_near_home() {
             let found = assemble(&mechanism, &guess, &[]).unwrap();
             assert!(found.closed && found.steps < 30, "{name}: {found:?}");
             let chain = ClosedChain::of(&mechanism.state(&found.q).unwrap(), None, None).unwrap();
-            assert!(chain.gap.distance < 1e-10 * mechanism.reach() && chain.gap.angle < 1e-10);
+            assert!(
+                chain.closure_error.distance < 1e-10 * mechanism.reach()
+                    && chain.closure_error.angle < 1e-10
+            );
         }
     }
 }
@@ -52,7 +55,7 @@ fn what_cannot_be_assembled_is_not() {
     let five_bar = catalogue::load("five-bar").unwrap();
     // The first crank points away from the other ground joint: 4 m apart, 1 + sqrt 2 + 1 m long.
     let found = assemble(&five_bar, &[std::f64::consts::FRAC_PI_2, 0.0, 0.0, 0.0], &[0]).unwrap();
-    assert!(!found.closed && found.gap.distance > 0.1, "{found:?}");
+    assert!(!found.closed && found.closure_error.distance > 0.1, "{found:?}");
     assert_eq!(found.q[0], std::f64::consts::FRAC_PI_2);
     // All held: nothing to do but to say how far it is open.
     let stuck = assemble(&five_bar, &[0.3, 0.0, 0.0, 0.0], &[0, 1, 2, 3]).unwrap();
@@ -125,7 +128,7 @@ fn passive_joints_follow_the_drives() {
     // Three drives on two degrees of freedom: what they leave open is said.
     let over = catalogue::load("five-bar").unwrap().with_actuated(&["q1", "q2", "q3"]).unwrap();
     let torn = recover_passive(&over, &[0.1, 0.0, 0.1, 0.0]).unwrap();
-    assert!(!torn.closed && torn.gap.distance > 1e-3, "{torn:?}");
+    assert!(!torn.closed && torn.closure_error.distance > 1e-3, "{torn:?}");
     assert_eq!(torn.q[..3], [0.1, 0.0, 0.1]);
     let home = recover_passive(&over, &[0.0; 4]).unwrap();
     assert!(home.closed && home.q == [0.0; 4]);

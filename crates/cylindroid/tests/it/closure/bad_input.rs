@@ -1,15 +1,16 @@
 //! Wrong shapes, NaN, empty sets: an error that names the culprit, or a defined answer.
 
 use cylindroid::closure::{
-    Blocks, Constraint, Load, Mobility, Motions, Unit, Units, contact_forces, joint_torques,
+    Constraint, ConstraintBlocks, Mobility, MotionSpace, StaticLoad, Unit, Units, contact_forces,
+    joint_torques,
 };
 use cylindroid::linalg::Metric;
 use cylindroid::{Error, Matrix};
 
 use super::case::case;
 
-fn blocks() -> Blocks {
-    Blocks {
+fn blocks() -> ConstraintBlocks {
+    ConstraintBlocks {
         actuated: Matrix::from_fn(4, 2, |i, j| (i + j) as f64),
         passive: Matrix::from_fn(4, 1, |i, _| i as f64),
         grasp: Matrix::from_fn(3, 4, |i, j| (i * j) as f64),
@@ -18,10 +19,10 @@ fn blocks() -> Blocks {
 
 #[test]
 fn shapes_that_do_not_fit() {
-    let wrong = Blocks { passive: Matrix::zeros(3, 1), ..blocks() };
+    let wrong = ConstraintBlocks { passive: Matrix::zeros(3, 1), ..blocks() };
     let error = Constraint::new(wrong).unwrap_err();
     assert!(error.to_string().starts_with("passive Jacobian"), "{error}");
-    let wrong = Blocks { actuated: Matrix::zeros(0, 0), ..blocks() };
+    let wrong = ConstraintBlocks { actuated: Matrix::zeros(0, 0), ..blocks() };
     assert!(matches!(Constraint::new(wrong), Err(Error::Dimension { expected: 4, got: 0, .. })));
     let units = Units {
         rows: vec![Unit::Length; 4],
@@ -51,7 +52,7 @@ fn numbers_that_are_none() {
 
 #[test]
 fn tasks_that_are_none() {
-    let relation = Motions::of(&case("fivebar_sec5_case_a").constraint()).relation();
+    let relation = MotionSpace::of(&case("fivebar_sec5_case_a").constraint()).relation();
     let task = |rows: &[&[f64]]| relation.task(&Matrix::from_rows(rows).unwrap());
     let error = task(&[&[1.0, 0.0, 0.0], &[2.0, 0.0, 0.0]]).unwrap_err().to_string();
     assert!(error.contains("rank 1"), "{error}");
@@ -60,7 +61,7 @@ fn tasks_that_are_none() {
     assert!(task(&[&[f64::NAN, 0.0, 0.0]]).is_err());
     let four = [1.0, 0.0, 0.0];
     assert!(task(&[&four, &[0.0, 1.0, 0.0], &[0.0, 0.0, 1.0], &[1.0, 1.0, 1.0]]).is_err());
-    // Rows of very different length are independent all the same.
+    // RowSelection of very different length are independent all the same.
     assert_eq!(task(&[&[1e-12, 0.0, 0.0], &[0.0, 1e9, 0.0]]).unwrap().object(), 2);
     assert_eq!(relation.task(&Matrix::zeros(0, 3)).unwrap().object(), 0);
 }
@@ -68,7 +69,7 @@ fn tasks_that_are_none() {
 #[test]
 fn loads_that_do_not_fit() {
     let constraint = case("fivebar_sec5_case_a").constraint();
-    let motions = Motions::of(&constraint);
+    let motions = MotionSpace::of(&constraint);
     let relation = motions.relation();
     assert!(joint_torques(&relation, &[1.0], None).is_err());
     assert!(joint_torques(&relation, &[f64::NAN, 0.0, 0.0], None).is_err());
@@ -77,7 +78,7 @@ fn loads_that_do_not_fit() {
     let error = joint_torques(&relation, &wrench, Some(&short)).unwrap_err().to_string();
     assert!(error.starts_with("torque metric has 1 entries, expected 2"), "{error}");
     let forces = |torques: &[f64], metric| {
-        contact_forces(&constraint, &motions, Load { torques, wrench: &wrench }, metric)
+        contact_forces(&constraint, &motions, StaticLoad { torques, wrench: &wrench }, metric)
     };
     assert!(forces(&[1.0], None).is_err());
     assert!(forces(&[1.0, f64::INFINITY], None).is_err());
@@ -88,7 +89,7 @@ fn loads_that_do_not_fit() {
 #[test]
 fn empty_constraints() {
     for (t, a, p, d) in [(0, 0, 0, 0), (0, 2, 1, 3), (3, 0, 0, 3), (3, 2, 0, 0), (4, 0, 3, 0)] {
-        let constraint = Constraint::new(Blocks {
+        let constraint = Constraint::new(ConstraintBlocks {
             actuated: Matrix::from_fn(t, a, |i, j| 1.0 + (i * j) as f64),
             passive: Matrix::from_fn(t, p, |i, j| f64::from(u8::from(i == j))),
             grasp: Matrix::from_fn(d, t, |i, j| f64::from(u8::from(i == j))),
@@ -107,7 +108,7 @@ fn empty_constraints() {
 /// All zero: nothing is constrained.
 #[test]
 fn zero_matrices() {
-    let constraint = Constraint::new(Blocks {
+    let constraint = Constraint::new(ConstraintBlocks {
         actuated: Matrix::zeros(3, 2),
         passive: Matrix::zeros(3, 1),
         grasp: Matrix::zeros(6, 3),

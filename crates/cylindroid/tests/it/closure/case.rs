@@ -1,7 +1,7 @@
 //! The reference mechanisms, and their constraint matrices from joints and contacts.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Blocks, Constraint, Unit, Units};
+use cylindroid::closure::{Constraint, ConstraintBlocks, Unit, Units};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
 use serde_json::Value;
 
@@ -371,7 +371,7 @@ impl Case {
         }
         let grasp = object(self.reference).transpose();
         let grasp = Matrix::from_fn(d, t, |i, j| -grasp[(i, j)]);
-        Constraint::new(Blocks { actuated, passive, grasp })
+        Constraint::new(ConstraintBlocks { actuated, passive, grasp })
             .unwrap()
             .with_length(
                 &Units {
@@ -406,7 +406,7 @@ impl Problem {
         let (rows, passive) = (regular(c.rows()), regular(c.passive()));
         let (driven, object) = (regular(c.actuated()), regular(c.object()));
         let within = |w: &Matrix, basis: &Matrix| &(&basis.transpose() * w) * basis;
-        let constraint = Constraint::new(Blocks {
+        let constraint = Constraint::new(ConstraintBlocks {
             actuated: &(&rows * &blocks.actuated) * &driven,
             passive: &(&rows * &blocks.passive) * &passive,
             grasp: &(&object.transpose() * &blocks.grasp) * &rows.transpose(),

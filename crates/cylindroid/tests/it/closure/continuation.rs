@@ -3,7 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use cylindroid::closure::{
-    FollowOptions, Followed, PathEnd, PathSingularity, SingularityKind, assemble, follow,
+    ContinuationOptions, ContinuationResult, PathEnd, PathSingularity, SingularityKind, assemble,
+    track_path,
 };
 use cylindroid::model::{JointKind, JointSpec};
 use cylindroid::spatial::{Rotation, Vec3};
@@ -12,30 +13,32 @@ use cylindroid::{Mechanism, catalogue};
 use super::linkage::{dead_four_bar, five_bar, linkage, place};
 use crate::support::{Random, assert_close, planar};
 
-fn go(mechanism: &Mechanism, start: &[f64], held: &[usize], goal: &[f64]) -> Followed {
-    let way = follow(mechanism, start, held, goal, FollowOptions::default()).unwrap();
+fn go(mechanism: &Mechanism, start: &[f64], held: &[usize], goal: &[f64]) -> ContinuationResult {
+    let way = track_path(mechanism, start, held, goal, ContinuationOptions::default()).unwrap();
     check(mechanism, &way);
     way
 }
 
 /// What holds for every way.
-fn check(mechanism: &Mechanism, way: &Followed) {
+fn check(mechanism: &Mechanism, way: &ContinuationResult) {
     let last = way.path.last().unwrap();
-    assert_eq!((last.share, &last.q), (way.share, &way.q));
-    assert!(way.path[0].share == 0.0 && way.path.is_sorted_by(|a, b| a.share < b.share));
-    assert!(way.gap.distance <= 1e-10 * mechanism.reach() && way.gap.angle <= 1e-10);
+    assert_eq!((last.fraction, &last.q), (way.fraction, &way.q));
+    assert!(way.path[0].fraction == 0.0 && way.path.is_sorted_by(|a, b| a.fraction < b.fraction));
+    assert!(
+        way.closure_error.distance <= 1e-10 * mechanism.reach() && way.closure_error.angle <= 1e-10
+    );
     for point in &way.path {
         // Nothing to do: its loops are closed as it stands.
         let all: Vec<usize> = (0..mechanism.n()).collect();
         assert!(assemble(mechanism, &point.q, &all).unwrap().closed, "{point:?}");
     }
-    assert_eq!(way.end == PathEnd::Reached, way.share == 1.0);
+    assert_eq!(way.end == PathEnd::Reached, way.fraction == 1.0);
 }
 
-fn singular(way: &Followed) -> &PathSingularity {
+fn singular(way: &ContinuationResult) -> &PathSingularity {
     match &way.end {
         PathEnd::Singular(found) => found,
-        other => panic!("{other} at {}", way.share),
+        other => panic!("{other} at {}", way.fraction),
     }
 }
 
@@ -65,8 +68,9 @@ fn a_crank_stops_before_its_dead_points() {
             assert!((screw.axis.point - knee).norm() < 1e-4, "{screw:?}");
             assert!(found.rates[crank] == 0.0 && found.twist.angular.z.abs() > 0.1);
             // A fold: its angle goes with the square of the distance.
-            let wide = FollowOptions { least_distance: 1e-2, ..FollowOptions::default() };
-            let wider = follow(&four_bar, &start.q, &[crank], &[goal], wide).unwrap();
+            let wide =
+                ContinuationOptions { least_distance: 1e-2, ..ContinuationOptions::default() };
+            let wider = track_path(&four_bar, &start.q, &[crank], &[goal], wide).unwrap();
             let ratio = (dead - wider.q[crank]) * f64::signum(goal + 1.0) / left;
             assert!((ratio - 100.0).abs() < 2.0, "{ratio}");
         }
@@ -85,13 +89,13 @@ fn cranks_stop_before_the_links_between_them_stretch() {
         let held = [place(&five_bar, "q1"), place(&five_bar, "q5")];
         let way = go(&five_bar, &[0.0; 4], &held, &[1.0, 0.0]);
         assert!(way.q[held[0]] < t && way.q[held[0]] > t - 1e-4, "{} {t}", way.q[held[0]]);
-        assert!((way.share - way.q[held[0]]).abs() < 1e-12);
+        assert!((way.fraction - way.q[held[0]]).abs() < 1e-12);
         let found = singular(&way);
         assert_eq!(found.kind, kind);
         assert_eq!(found.screw.is_some(), kind == SingularityKind::TypeII);
         // No further from there, but back.
         let on = go(&five_bar, &way.q, &held, &[1.0, 0.0]);
-        assert!(on.share < 1e-6 && singular(&on).kind == kind, "{on:?}");
+        assert!(on.fraction < 1e-6 && singular(&on).kind == kind, "{on:?}");
         let back = go(&five_bar, &way.q, &held, &[0.0, 0.0]);
         assert_eq!(back.end, PathEnd::Reached);
         assert_close("back", &back.q, &[0.0; 4], 1e-9);
@@ -114,8 +118,8 @@ fn a_parallelogram_stops_before_it_lies_flat() {
     let crank = place(&parallelogram, "crank");
     for step in [0.01, 0.1, 1.0] {
         for (goal, flat) in [(-3.0, -FRAC_PI_2), (3.0, FRAC_PI_2)] {
-            let options = FollowOptions { step, ..FollowOptions::default() };
-            let way = follow(&parallelogram, &[0.0; 3], &[crank], &[goal], options).unwrap();
+            let options = ContinuationOptions { step, ..ContinuationOptions::default() };
+            let way = track_path(&parallelogram, &[0.0; 3], &[crank], &[goal], options).unwrap();
             check(&parallelogram, &way);
             let left = (flat - way.q[crank]) / f64::signum(flat);
             assert!(left > 1e-4 && left < 1e-2, "{left}");
@@ -129,7 +133,7 @@ fn a_parallelogram_stops_before_it_lies_flat() {
     let flat = assemble(&parallelogram, &[-FRAC_PI_2, FRAC_PI_2, -FRAC_PI_2], &[0, 1, 2]).unwrap();
     assert!(flat.closed, "{flat:?}");
     let way = go(&parallelogram, &flat.q, &[crank], &[0.0]);
-    assert!(way.share == 0.0 && singular(&way).distance < 1e-9, "{way:?}");
+    assert!(way.fraction == 0.0 && singular(&way).distance < 1e-9, "{way:?}");
     assert_eq!(singular(&way).kind, SingularityKind::ConfigurationSpace);
 }
 
@@ -157,10 +161,10 @@ fn ways_do_not_hang_on_the_steps_and_lead_back() {
             let goal: Vec<f64> =
                 held.iter().map(|&i| mechanism.home()[i] + random.within(-0.25, 0.25)).collect();
             let way = go(&mechanism, mechanism.home(), &held, &goal);
-            let fine = FollowOptions { step: 0.02, ..FollowOptions::default() };
-            let finer = follow(&mechanism, mechanism.home(), &held, &goal, fine).unwrap();
+            let fine = ContinuationOptions { step: 0.02, ..ContinuationOptions::default() };
+            let finer = track_path(&mechanism, mechanism.home(), &held, &goal, fine).unwrap();
             assert_eq!(way.end.to_string(), finer.end.to_string(), "{name}");
-            assert!((way.share - finer.share).abs() < 1e-9, "{name}");
+            assert!((way.fraction - finer.fraction).abs() < 1e-9, "{name}");
             assert_close(name, &way.q, &finer.q, 1e-6);
             assert!(finer.path.iter().all(|p| p.distance >= 1e-3));
             let at_home: Vec<f64> = held.iter().map(|&i| mechanism.home()[i]).collect();
@@ -190,7 +194,7 @@ fn stewart_legs_lift_to_their_limits() {
     assert!(pose.rotation.log().norm() < 1e-9);
     let way = go(&stewart, stewart.home(), &legs, &[0.5; 6]);
     assert!(matches!(way.end, PathEnd::Limit { coordinate } if legs.contains(&coordinate)));
-    assert!((way.share - 0.8).abs() < 1e-9);
+    assert!((way.fraction - 0.8).abs() < 1e-9);
     assert!(stewart.outside_limits(&way.q).all(|i| (way.q[i] - 0.4).abs() < 1e-11));
     let top = height(&way.q).translation.z;
     assert!((top - lifted(0.4)).abs() < 1e-8, "{top}");
@@ -248,28 +252,28 @@ fn what_cannot_be_followed_is_said() {
         let mut goal = vec![0.0; held.len()];
         goal[0] = 0.1;
         let way = go(&five_bar, &[0.0; 4], held, &goal);
-        assert_eq!((way.share, &way.end), (0.0, &PathEnd::Contradiction));
+        assert_eq!((way.fraction, &way.end), (0.0, &PathEnd::Contradiction));
         assert_eq!(go(&five_bar, &[0.0; 4], held, &vec![0.0; held.len()]).end, PathEnd::Reached);
     }
     // A start that does not close.
-    let options = FollowOptions::default();
-    let open = follow(&five_bar, &[FRAC_PI_2, 0.0, 0.0, 0.0], &[0], &[0.0], options).unwrap();
-    assert!(open.end == PathEnd::Open && open.path.is_empty() && open.gap.distance > 0.1);
+    let options = ContinuationOptions::default();
+    let open = track_path(&five_bar, &[FRAC_PI_2, 0.0, 0.0, 0.0], &[0], &[0.0], options).unwrap();
+    assert!(open.end == PathEnd::Open && open.path.is_empty() && open.closure_error.distance > 0.1);
     // One coordinate of two: the others move by the least. None: it is there.
     let way = go(&five_bar, &[0.0; 4], &[0], &[-0.5]);
     assert_eq!((&way.end, way.q[0]), (&PathEnd::Reached, -0.5));
     assert_eq!(go(&five_bar, &[0.0; 4], &[], &[]).end, PathEnd::Reached);
     // Nonsense.
-    let refused = |held: &[usize], goal: &[f64], options: FollowOptions| {
-        follow(&five_bar, &[0.0; 4], held, goal, options).unwrap_err().to_string()
+    let refused = |held: &[usize], goal: &[f64], options: ContinuationOptions| {
+        track_path(&five_bar, &[0.0; 4], held, goal, options).unwrap_err().to_string()
     };
     assert!(refused(&[0], &[], options).contains("goal"));
     assert!(refused(&[0], &[f64::NAN], options).contains("goal"));
     assert!(refused(&[7], &[0.0], options).contains("4 coordinates"));
     assert!(refused(&[0, 0], &[0.0, 1.0], options).contains("twice"));
-    assert!(refused(&[0], &[0.0], FollowOptions { step: 0.0, ..options }).contains("step"));
+    assert!(refused(&[0], &[0.0], ContinuationOptions { step: 0.0, ..options }).contains("step"));
     for least_distance in [0.0, 1.0, f64::NAN] {
-        let text = refused(&[0], &[0.0], FollowOptions { least_distance, ..options });
+        let text = refused(&[0], &[0.0], ContinuationOptions { least_distance, ..options });
         assert!(text.contains("least_distance"), "{text}");
     }
 }
@@ -283,7 +287,7 @@ fn a_tree_follows() {
     assert!(way.path.iter().all(|p| p.distance == f64::INFINITY));
     let way = go(&arm, &[0.0; 3], &[1], &[4.0]);
     assert_eq!(way.end, PathEnd::Limit { coordinate: 1 });
-    assert!((way.share - 0.75).abs() < 1e-9);
+    assert!((way.fraction - 0.75).abs() < 1e-9);
 }
 
 /// A ball joint goes to its goal about one axis, also where the numbers are of another half turn.
@@ -306,7 +310,7 @@ fn a_ball_turns_about_one_axis() {
     let turn = Rotation::exp(from).inverse() * Rotation::exp(to);
     for point in &way.path {
         let now = mechanism.state(&point.q).unwrap().pose(body).rotation;
-        let expected = Rotation::exp(from) * Rotation::exp(turn.log() * point.share);
+        let expected = Rotation::exp(from) * Rotation::exp(turn.log() * point.fraction);
         assert!(now.angle_to(expected) < 1e-9);
     }
     assert!(way.path.len() > 5);

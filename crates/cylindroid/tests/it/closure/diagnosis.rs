@@ -1,7 +1,7 @@
 //! Singular postures told from the mechanism alone, with the motions lost and gained.
 
 use cylindroid::closure::{
-    ClosedChain, Diagnosis, FiniteMobility, Generic, Mobility, SingularityKind, assemble,
+    ClosedChain, Diagnosis, FiniteMobility, GenericMobility, Mobility, SingularityKind, assemble,
 };
 use cylindroid::model::formats;
 use cylindroid::screws::Screw;
@@ -138,7 +138,8 @@ fn generic_counts_are_those_of_random_postures() {
     let mut random = Random(17);
     for name in ["four-bar", "five-bar", "3rrr", "stewart", "delta", "watt", "two-arm"] {
         let m = catalogue::load(name).unwrap();
-        let generic = |q: &[f64]| Generic::of(&m.state(q).unwrap(), None, None).unwrap().counts;
+        let generic =
+            |q: &[f64]| GenericMobility::of(&m.state(q).unwrap(), None, None).unwrap().counts;
         let home = generic(m.home());
         for _ in 0..2 {
             let guess: Vec<f64> = m.home().iter().map(|x| x + random.within(-0.2, 0.2)).collect();

@@ -1,6 +1,6 @@
 //! Motions to first order and motions that exist.
 
-use cylindroid::closure::{ClosedChain, Evidence, FiniteMobility, Mobility, assemble};
+use cylindroid::closure::{ClosedChain, FiniteMobility, Mobility, MobilityEvidence, assemble};
 use cylindroid::model::{Dimension, JointKind, JointSpec, LoopSpec};
 use cylindroid::screws::Line;
 use cylindroid::spatial::{Pose, Vec3};
@@ -13,9 +13,9 @@ fn at_home(m: &Mechanism) -> FiniteMobility {
     FiniteMobility::of(&m.state(m.home()).unwrap(), None).unwrap()
 }
 
-fn grubler(m: &Mechanism) -> i64 {
+fn gruebler_kutzbach(m: &Mechanism) -> i64 {
     let chain = ClosedChain::of(&m.state(m.home()).unwrap(), None, None).unwrap();
-    Mobility::of(&chain.constraint).grubler
+    Mobility::of(&chain.constraint).gruebler_kutzbach
 }
 
 /// A motion scaled to 1 in its first entry.
@@ -39,7 +39,7 @@ fn ordinary_mechanisms_move_as_they_say() {
         let found = at_home(&catalogue::load(name).unwrap());
         assert_eq!((found.infinitesimal, found.finite), (dof, Some(dof)), "{name}");
         assert!(found.is_ordinary() && found.certain, "{name}: {found:?}");
-        assert_eq!(found.evidence, Evidence::Independent, "{name}");
+        assert_eq!(found.evidence, MobilityEvidence::Independent, "{name}");
         assert_eq!((found.branches.len(), found.shaky.cols()), (1, 0), "{name}");
     }
 }
@@ -49,14 +49,16 @@ fn ordinary_mechanisms_move_as_they_say() {
 fn a_stretched_pair_of_links_is_shaky() {
     let found = at_home(&ring("pair", &flat(&[0.0, 1.0, 2.0]), Dimension::Planar));
     assert_eq!((found.infinitesimal, found.finite), (1, Some(0)));
-    assert!(found.certain && found.evidence == Evidence::Search && found.branches.is_empty());
+    assert!(
+        found.certain && found.evidence == MobilityEvidence::Search && found.branches.is_empty()
+    );
     // The middle joint moves across: the second link turns back twice as fast.
     assert_close("shaky", &by_the_first(&found.shaky), &[1.0, -2.0], 1e-12);
     assert!(found.left_open > 1e-6, "{found:?}");
     // Folded back, it turns about the pins as one.
     let folded = at_home(&ring("folded", &flat(&[0.0, 1.0, 0.0]), Dimension::Planar));
     assert_eq!((folded.infinitesimal, folded.finite), (1, Some(1)));
-    assert!(folded.certain && folded.evidence == Evidence::Steps, "{folded:?}");
+    assert!(folded.certain && folded.evidence == MobilityEvidence::Steps, "{folded:?}");
     // Bent, it is a triangle.
     let mut axes = flat(&[0.0, 1.0, 2.0]);
     axes[1].point.y = 0.2;
@@ -128,9 +130,9 @@ fn overconstrained_loops_move() {
     axes[2].point.y = 1.5;
     let four_bar = ring("four-bar", &axes, Dimension::Spatial);
     let spatial = at_home(&four_bar);
-    assert_eq!(grubler(&four_bar), -2);
+    assert_eq!(gruebler_kutzbach(&four_bar), -2);
     assert_eq!((spatial.infinitesimal, spatial.finite), (1, Some(1)));
-    assert_eq!(spatial.evidence, Evidence::Steps);
+    assert_eq!(spatial.evidence, MobilityEvidence::Steps);
     assert!(spatial.certain && spatial.left_open < 1e-13, "{spatial:?}");
     // With one axis out of line it is a structure.
     axes[2].direction = Vec3::new(0.0, 0.01, 1.0).unit(0.0).unwrap();
@@ -139,9 +141,9 @@ fn overconstrained_loops_move() {
 
     let linkage = ring("bennett", &bennett(1.0), Dimension::Spatial);
     let found = at_home(&linkage);
-    assert_eq!(grubler(&linkage), -2);
+    assert_eq!(gruebler_kutzbach(&linkage), -2);
     assert_eq!((found.infinitesimal, found.finite), (1, Some(1)));
-    assert!(found.certain && found.evidence == Evidence::Steps, "{found:?}");
+    assert!(found.certain && found.evidence == MobilityEvidence::Steps, "{found:?}");
     // A link a little longer, and it stands.
     let mut axes = bennett(1.0);
     axes[3].point = axes[3].point * 1.01;
@@ -176,7 +178,10 @@ fn a_spherical_triangle_in_a_plane_is_shaky() {
 fn open_loops_say_nothing() {
     let five_bar = catalogue::load("five-bar").unwrap();
     let found = FiniteMobility::of(&five_bar.state(&[0.3, 0.0, 0.0, 0.0]).unwrap(), None).unwrap();
-    assert_eq!((found.finite, found.evidence, found.certain), (None, Evidence::Nothing, false));
+    assert_eq!(
+        (found.finite, found.evidence, found.certain),
+        (None, MobilityEvidence::Unknown, false)
+    );
     let state = five_bar.state(five_bar.home()).unwrap();
     assert!(FiniteMobility::of(&state, Some(0.0)).is_err());
     assert!(FiniteMobility::of(&state, Some(f64::NAN)).is_err());

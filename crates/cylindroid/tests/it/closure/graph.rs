@@ -1,6 +1,6 @@
 //! From mechanisms to constraints: exact values, counts, wherever the loops are cut.
 
-use cylindroid::closure::{ClosedChain, Mobility, Motions};
+use cylindroid::closure::{ClosedChain, Mobility, MotionSpace};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec, LoopSpec};
@@ -14,7 +14,7 @@ fn chain(mechanism: &Mechanism) -> ClosedChain {
 }
 
 fn kinematic(chain: &ClosedChain) -> Vec<f64> {
-    let relation = Motions::of(&chain.constraint).relation();
+    let relation = MotionSpace::of(&chain.constraint).relation();
     Manipulability::of(&relation, &Metrics::UNIT).unwrap().kinematic.values()
 }
 
@@ -43,7 +43,7 @@ fn five_bar_exact() {
         (&["q1", "q2", "q3", "q4", "q5"], [0.4 + 2.0 * c / 15.0, 0.4 - 2.0 * c / 15.0], 3),
     ] {
         let chain = chain(&five_bar.with_actuated(driven).unwrap());
-        assert!(chain.gap.distance < 1e-15 && chain.gap.angle < 1e-15);
+        assert!(chain.closure_error.distance < 1e-15 && chain.closure_error.angle < 1e-15);
         assert_eq!(chain.actuated.len(), driven.len());
         let got = kinematic(&chain);
         assert_eq!(got.len(), 2);
@@ -64,7 +64,11 @@ fn counts_of_the_catalogue() {
         ("two-arm", [8, 2, 0, 6, 0, 0, 0]),
     ] {
         let chain = chain(&catalogue::load(name).unwrap());
-        assert!(chain.gap.distance < 1e-12 && chain.gap.angle < 1e-12, "{name}: {:?}", chain.gap);
+        assert!(
+            chain.closure_error.distance < 1e-12 && chain.closure_error.angle < 1e-12,
+            "{name}: {:?}",
+            chain.closure_error
+        );
         assert_eq!(counts(&chain), expected, "{name}");
     }
     let delta = counts(&chain(&catalogue::load("delta").unwrap()));
@@ -130,7 +134,7 @@ fn loops_that_are_open_say_by_how_much() {
     q[0] += 0.1;
     let state = five_bar.state(&q).unwrap();
     let open = ClosedChain::of(&state, None, None).unwrap();
-    assert!(open.gap.distance > 0.05, "{:?}", open.gap);
+    assert!(open.closure_error.distance > 0.05, "{:?}", open.closure_error);
 }
 
 #[test]
@@ -162,7 +166,7 @@ fn bad_requests_are_refused() {
 /// Of a tree what its Jacobian spans; of a linkage the way that its reference really goes.
 #[test]
 fn motions_of_the_reference() {
-    use cylindroid::closure::{FollowOptions, follow};
+    use cylindroid::closure::{ContinuationOptions, track_path};
     use cylindroid::screws::{Screw, ScrewOptions, ScrewSystem};
     use cylindroid::spatial::log;
 
@@ -180,13 +184,15 @@ fn motions_of_the_reference() {
     }
 
     let linkage = catalogue::load("four-bar").unwrap();
-    let start = follow(&linkage, &[0.0; 3], &[0], &[0.4], FollowOptions::default()).unwrap().q;
+    let start =
+        track_path(&linkage, &[0.0; 3], &[0], &[0.4], ContinuationOptions::default()).unwrap().q;
     let state = linkage.state(&start).unwrap();
     let chain = ClosedChain::of(&state, None, None).unwrap();
     let [twist] = chain.reference_twists(&state)[..] else { panic!("one motion") };
     let h = 1e-5;
     let pose = |to: f64| {
-        let way = follow(&linkage, &start, &[0], &[to], FollowOptions::default()).unwrap();
+        let way =
+            track_path(&linkage, &start, &[0], &[to], ContinuationOptions::default()).unwrap();
         linkage.state(&way.q).unwrap().pose(linkage.reference())
     };
     let moved = log(pose(0.4 + h) * pose(0.4 - h).inverse());

@@ -1,7 +1,8 @@
 //! Force closure and the quality of grasps.
 
 use cylindroid::closure::{
-    Effort, FingerContact, Friction, GraspQuality, Touch, WrenchSpace, fingers_on, grasp_quality,
+    ContactProperties, EpsilonQuality, FingerContact, Friction, GraspMetric, GraspQuality,
+    WrenchSpace, grasp_contacts, grasp_quality,
 };
 use cylindroid::model::{ContactKind, ContactSpec, Dimension, JointKind, JointSpec};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
@@ -18,12 +19,12 @@ fn finger(point: [f64; 3], normal: [f64; 3], friction: Friction) -> FingerContac
 }
 
 fn quality(contacts: &[FingerContact], space: WrenchSpace) -> GraspQuality {
-    grasp_quality(contacts, space, Effort::Shared).unwrap()
+    grasp_quality(contacts, space, GraspMetric::L1).unwrap()
 }
 
 #[track_caller]
 fn assert_exact(found: &GraspQuality, epsilon: f64) {
-    let (lower, upper) = found.epsilon;
+    let EpsilonQuality { lower, upper } = found.epsilon;
     assert!((lower - epsilon).abs() < 1e-12 && (upper - epsilon).abs() < 1e-12, "{found:?}");
     assert!(found.closed);
 }
@@ -47,7 +48,7 @@ fn four_frictionless_fingers() {
         // Through the middle nothing holds a moment.
         let middle = contacts.map(|c| FingerContact { point: c.normal * -1.0, ..c });
         let open = quality(&middle, PLANE);
-        assert!(!open.closed && open.epsilon == (0.0, 0.0));
+        assert!(!open.closed && (open.epsilon.lower, open.epsilon.upper) == (0.0, 0.0));
         assert!((open.weakest[2].abs() - 1.0).abs() < 1e-12, "{open:?}");
     }
 }
@@ -78,9 +79,9 @@ fn soft_fingers_hold_a_moment_about_their_line() {
     assert!(!hard.closed);
     assert!((hard.weakest[3].abs() - 1.0).abs() < 1e-12, "{hard:?}");
     let soft = quality(&pair(Friction::Soft { mu: 0.5, torsion: 0.1 }), SPACE);
-    assert!(soft.closed && soft.epsilon.0 > 0.01, "{soft:?}");
+    assert!(soft.closed && soft.epsilon.lower > 0.01, "{soft:?}");
     // The moment about the line is the weakest: 0.1, a little less with what else moves along.
-    assert!(soft.epsilon.1 < 0.1 + 1e-3);
+    assert!(soft.epsilon.upper < 0.1 + 1e-3);
 }
 
 /// What is held along any direction at all is at least the lower bound, and along the weakest at
@@ -102,15 +103,15 @@ fn bounds_hold_in_space() {
                 finger(point, normal, friction)
             })
             .collect();
-        for effort in [Effort::Shared, Effort::Each] {
-            let found = grasp_quality(&contacts, SPACE, effort).unwrap();
-            let (lower, upper) = found.epsilon;
+        for metric in [GraspMetric::L1, GraspMetric::LInf] {
+            let found = grasp_quality(&contacts, SPACE, metric).unwrap();
+            let EpsilonQuality { lower, upper } = found.epsilon;
             assert!(found.closed && lower <= upper && upper < lower + 0.02, "{found:?}");
             let held = |n: &[f64]| -> f64 {
                 let each = contacts.iter().map(|c| held_by(c, n));
-                match effort {
-                    Effort::Shared => each.fold(f64::NEG_INFINITY, f64::max),
-                    Effort::Each => each.map(|h| h.max(0.0)).sum(),
+                match metric {
+                    GraspMetric::L1 => each.fold(f64::NEG_INFINITY, f64::max),
+                    GraspMetric::LInf => each.map(|h| h.max(0.0)).sum(),
                 }
             };
             assert!((held(&found.weakest) - upper).abs() < 1e-9, "{found:?}");
@@ -148,11 +149,11 @@ fn open_grasps() {
         finger([-0.3, 1.0, 0.0], [0.0, -1.0, 0.0], friction),
     ];
     let open = quality(&side, PLANE);
-    assert!(!open.closed && open.epsilon.1 <= 0.0, "{open:?}");
+    assert!(!open.closed && open.epsilon.upper <= 0.0, "{open:?}");
     // Nothing pushes along the weakest direction.
     assert!(open.weakest[1] > 0.5, "{open:?}");
-    let each = grasp_quality(&side, PLANE, Effort::Each).unwrap();
-    assert!(!each.closed && each.epsilon.0.abs() < 1e-12, "{each:?}");
+    let each = grasp_quality(&side, PLANE, GraspMetric::LInf).unwrap();
+    assert!(!each.closed && each.epsilon.lower.abs() < 1e-12, "{each:?}");
     assert!(!quality(&[], SPACE).closed);
     let one = quality(&side[..1], SPACE);
     assert!(!one.closed);
@@ -166,7 +167,8 @@ fn strength_scales() {
         finger([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], friction),
         finger([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], friction),
     ];
-    let of = |c: &[FingerContact]| grasp_quality(c, PLANE, Effort::Each).unwrap().epsilon.0;
+    let of =
+        |c: &[FingerContact]| grasp_quality(c, PLANE, GraspMetric::LInf).unwrap().epsilon.lower;
     let one = of(&contacts);
     contacts.iter_mut().for_each(|c| c.strength = 2.0);
     assert!((of(&contacts) / one - 2.0).abs() < 1e-12);
@@ -175,8 +177,9 @@ fn strength_scales() {
 #[test]
 fn contacts_that_are_none() {
     let good = finger([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], Friction::Hard { mu: 0.5 });
-    let error =
-        |c: FingerContact, space| grasp_quality(&[c], space, Effort::Each).unwrap_err().to_string();
+    let error = |c: FingerContact, space| {
+        grasp_quality(&[c], space, GraspMetric::LInf).unwrap_err().to_string()
+    };
     let long = FingerContact { normal: good.normal * 2.0, ..good };
     assert!(error(long, SPACE).starts_with("normal = 2"));
     let slippery = FingerContact { friction: Friction::Hard { mu: -0.1 }, ..good };
@@ -228,13 +231,15 @@ fn fingers_of_a_mechanism() {
     let q: Vec<f64> =
         m.coordinates().iter().map(|c| f64::from(u8::from(c.name == "ball.y"))).collect();
     let state = m.state(&q).unwrap();
-    let touch = Touch { mu: None, torsion: Some(0.02), strength: 5.0 };
+    let touch = ContactProperties { mu: None, torsion: Some(0.02), strength: 5.0 };
     // The second one has no coefficient in the file.
-    let error = fingers_on(&state, m.reference(), |_| touch).unwrap_err();
+    let error = grasp_contacts(&state, m.reference(), |_| touch).unwrap_err();
     assert!(matches!(&error, Error::Model { culprit, .. } if culprit == "far"), "{error}");
-    let own =
-        |c: &cylindroid::model::Contact| Touch { mu: (c.name == "far").then_some(0.7), ..touch };
-    let fingers = fingers_on(&state, m.reference(), own).unwrap();
+    let own = |c: &cylindroid::model::Contact| ContactProperties {
+        mu: (c.name == "far").then_some(0.7),
+        ..touch
+    };
+    let fingers = grasp_contacts(&state, m.reference(), own).unwrap();
     let y = fingers[0].1.point.y;
     assert_eq!(fingers.iter().map(|f| f.0).collect::<Vec<_>>(), [0, 1]);
     assert_eq!(fingers[0].1.friction, Friction::Soft { mu: 0.4, torsion: 0.02 });
@@ -246,19 +251,22 @@ fn fingers_of_a_mechanism() {
     let space = WrenchSpace::about(&state, m.reference(), &grasp).unwrap();
     assert_eq!((space.point, space.planar), (Vec3::new(0.0, y, 0.0), false));
     assert!((space.length - 1.0).abs() < 1e-15);
-    assert!(grasp_quality(&grasp, space, Effort::Each).unwrap().closed);
+    assert!(grasp_quality(&grasp, space, GraspMetric::LInf).unwrap().closed);
     // No torsion: said. In the plane none is needed.
-    let none =
-        |_: &cylindroid::model::Contact| Touch { mu: Some(0.3), torsion: None, strength: 1.0 };
-    let error = fingers_on(&state, m.reference(), none).unwrap_err().to_string();
+    let none = |_: &cylindroid::model::Contact| ContactProperties {
+        mu: Some(0.3),
+        torsion: None,
+        strength: 1.0,
+    };
+    let error = grasp_contacts(&state, m.reference(), none).unwrap_err().to_string();
     assert!(error.contains("soft finger"), "{error}");
     let plane = held_ball([soft, soft], Dimension::Planar);
     let state = plane.state(&vec![0.0; plane.n()]).unwrap();
-    let fingers = fingers_on(&state, plane.reference(), none).unwrap();
+    let fingers = grasp_contacts(&state, plane.reference(), none).unwrap();
     assert_eq!(fingers[0].1.friction, Friction::Hard { mu: 0.3 });
     // Firm contacts are no points.
     let firm = held_ball([ContactKind::Complete, soft], Dimension::Spatial);
     let state = firm.state(&vec![0.0; firm.n()]).unwrap();
-    let error = fingers_on(&state, firm.reference(), none).unwrap_err().to_string();
+    let error = grasp_contacts(&state, firm.reference(), none).unwrap_err().to_string();
     assert!(error.contains("'near' is complete"), "{error}");
 }

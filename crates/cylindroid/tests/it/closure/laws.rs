@@ -1,7 +1,7 @@
 //! What holds for every mechanism: no work on the relation, statics from free bodies, bases.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Constraint, Mobility, Motions};
+use cylindroid::closure::{Constraint, Mobility, MotionSpace};
 use cylindroid::linalg::{ColumnSpace, Threshold};
 
 use super::case::{case, cases};
@@ -11,7 +11,7 @@ use crate::support::Random;
 #[test]
 fn forces_do_no_work_and_are_all() {
     for case in cases() {
-        let relation = Motions::of(&case.constraint()).relation();
+        let relation = MotionSpace::of(&case.constraint()).relation();
         let (r, f) = (relation.motions().basis(), relation.forces().basis());
         assert_eq!(r.cols() + f.cols(), relation.joints() + relation.object(), "{}", case.name);
         let work = &f.transpose() * &r;
@@ -32,7 +32,7 @@ fn forces_are_those_of_free_bodies() {
         let (a, d, t) = (constraint.actuated(), constraint.object(), constraint.rows());
         let p = constraint.passive();
         let m = constraint.matrix();
-        // Rows: object, driven joints, passive joints; unknowns (tau, w, t).
+        // RowSelection: object, driven joints, passive joints; unknowns (tau, w, t).
         let statics = Matrix::from_fn(d + a + p, a + d + t, |i, j| {
             let unit = |k: usize, l: usize| f64::from(u8::from(k == l));
             if i < d {
@@ -52,7 +52,7 @@ fn forces_are_those_of_free_bodies() {
         let kernel = ColumnSpace::of(&statics.transpose(), Threshold::Relative(1e-10)).complement();
         let projected = kernel.rows_between(0, a + d);
         let bodies = ColumnSpace::of(&projected, Threshold::Absolute(1e-9)).basis();
-        let f = Motions::of(&constraint).relation().forces().basis();
+        let f = MotionSpace::of(&constraint).relation().forces().basis();
         assert_eq!(bodies.cols(), f.cols(), "{}", case.name);
         let both = Matrix::beside(a + d, &[&bodies, &f]);
         let space = ColumnSpace::of(&both, Threshold::Relative(1e-9));
@@ -65,7 +65,7 @@ fn forces_are_those_of_free_bodies() {
 fn motions_keep_the_constraint() {
     for case in cases() {
         let constraint = case.constraint();
-        let kept = &constraint.matrix() * &Motions::of(&constraint).basis();
+        let kept = &constraint.matrix() * &MotionSpace::of(&constraint).basis();
         assert!(kept.max_abs() < 1e-13, "{}: {kept:?}", case.name);
     }
 }
@@ -88,7 +88,11 @@ fn bases_are_what_they_say() {
             ("redundancy", &found.redundancy, vec![&passive, &object]),
             ("indeterminacy", &found.indeterminacy, vec![&driven]),
             ("idle", &found.idle, vec![&driven, &object]),
-            ("ungrasped", &found.ungrasped, vec![&driven, &passive]),
+            (
+                "uncontrollable_object_motions",
+                &found.uncontrollable_object_motions,
+                vec![&driven, &passive],
+            ),
             ("coordinate", &found.coordinate, vec![]),
         ] {
             zero(what, &(&m * &space.basis));
@@ -109,7 +113,7 @@ fn bases_are_what_they_say() {
             &found.redundancy,
             &found.indeterminacy,
             &found.idle,
-            &found.ungrasped,
+            &found.uncontrollable_object_motions,
             &found.coordinate,
             &found.internal,
             &found.zero_torque,
@@ -134,13 +138,14 @@ fn relation_does_not_depend_on_bases() {
         };
         let rows = regular(&mut random, constraint.rows());
         let columns = regular(&mut random, constraint.passive());
-        let mixed = Constraint::new(cylindroid::closure::Blocks {
+        let mixed = Constraint::new(cylindroid::closure::ConstraintBlocks {
             actuated: &rows * &blocks.actuated,
             passive: &(&rows * &blocks.passive) * &columns,
             grasp: &blocks.grasp * &rows.transpose(),
         })
         .unwrap();
-        let (one, two) = (Motions::of(&constraint).relation(), Motions::of(&mixed).relation());
+        let (one, two) =
+            (MotionSpace::of(&constraint).relation(), MotionSpace::of(&mixed).relation());
         assert_eq!(one.dimensions(), two.dimensions(), "{}", case.name);
         for (p, q) in one.finite_pairs().iter().zip(two.finite_pairs()) {
             assert!((p.0 - q.0).abs() + (p.1 - q.1).abs() < 1e-11, "{}", case.name);
@@ -156,7 +161,7 @@ fn drawings_of_one_mechanism_have_one_relation() {
         ("delta_6xUS_rods", "delta_3xRRPaR_hyperstatic"),
         ("stewart_6UPS_home", "stewart_6SPS_home"),
     ] {
-        let basis = |name| Motions::of(&case(name).constraint()).relation().motions().basis();
+        let basis = |name| MotionSpace::of(&case(name).constraint()).relation().motions().basis();
         let (one, other) = (basis(one), basis(other));
         let both = Matrix::beside(one.rows(), &[&one, &other]);
         let space = ColumnSpace::of(&both, Threshold::Relative(1e-12));

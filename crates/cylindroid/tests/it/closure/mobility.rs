@@ -1,7 +1,7 @@
 //! Mobility where it is known by hand.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Blocks, Constraint, Mobility, Motions, Rows};
+use cylindroid::closure::{Constraint, ConstraintBlocks, Mobility, MotionSpace, RowSelection};
 use cylindroid::spatial::Vec3;
 
 use super::case::{case, cases};
@@ -15,7 +15,7 @@ fn rows(rows: &[&[f64]]) -> Matrix {
 /// G^T = (1 0)).
 #[test]
 fn a_motion_counted_twice_is_no_coordinate_motion() {
-    let constraint = Constraint::new(Blocks {
+    let constraint = Constraint::new(ConstraintBlocks {
         actuated: rows(&[&[1.0], &[0.0]]),
         passive: rows(&[&[1.0], &[0.0]]),
         grasp: rows(&[&[1.0, 0.0], &[0.0, 1.0], &[0.0, 0.0]]),
@@ -23,7 +23,10 @@ fn a_motion_counted_twice_is_no_coordinate_motion() {
     .unwrap();
     let m = Mobility::of(&constraint);
     assert_eq!((m.dof.dimension(), m.redundancy.dimension()), (3, 0));
-    assert_eq!((m.indeterminacy.dimension(), m.ungrasped.dimension(), m.mixed), (2, 1, 1));
+    assert_eq!(
+        (m.indeterminacy.dimension(), m.uncontrollable_object_motions.dimension(), m.mixed),
+        (2, 1, 1)
+    );
     assert_eq!(m.coordinate.dimension(), 1);
     let kinds = m.coordinate_kinds;
     assert_eq!((kinds.passive, kinds.object, kinds.both, kinds.overlap), (1, 1, 0, 1));
@@ -36,7 +39,7 @@ fn a_motion_counted_twice_is_no_coordinate_motion() {
 #[test]
 fn spatial_four_bar_moves_against_grubler() {
     let m = Mobility::of(&case("fourbar_3D_hyperstatic").constraint());
-    assert_eq!((m.grubler, m.dof.dimension(), m.hyperstatic.dimension()), (-2, 1, 3));
+    assert_eq!((m.gruebler_kutzbach, m.dof.dimension(), m.hyperstatic.dimension()), (-2, 1, 3));
     assert!(m.joints.iter().all(|j| j.moves && !j.free_of_actuators && !j.idle));
 }
 
@@ -94,23 +97,23 @@ fn folded_four_bar_has_a_second_motion() {
     let nearly = folded.with_joint_at(1, Vec3::new(1.0, 1e-8, 0.0));
     let m = Mobility::of(&nearly.constraint());
     assert_eq!(m.dof.dimension(), 1);
-    let doubt = m.doubts.iter().find(|d| d.count == "dof").unwrap().to_string();
+    let doubt = m.ambiguous_ranks.iter().find(|d| d.count == "dof").unwrap().to_string();
     assert!(doubt.contains("singular pose"), "{doubt}");
 }
 
 #[test]
 fn motions_that_let_rows_stand() {
-    let motions = Motions::of(&case("two3R_hardfinger_passive").constraint());
-    let held = motions.standing(Rows { actuated: true, ..Rows::default() });
+    let motions = MotionSpace::of(&case("two3R_hardfinger_passive").constraint());
+    let held = motions.standing(RowSelection { actuated: true, ..RowSelection::default() });
     assert_eq!(held.cols(), 2);
     assert!(held.rows_between(0, 3).max_abs() < 1e-14);
-    assert_eq!(motions.standing(Rows::default()).cols(), motions.dof());
+    assert_eq!(motions.standing(RowSelection::default()).cols(), motions.dof());
 }
 
 #[test]
 fn a_joint_without_way_is_locked() {
     // Two sliders against one wall: the second row locks the second joint.
-    let constraint = Constraint::new(Blocks {
+    let constraint = Constraint::new(ConstraintBlocks {
         actuated: rows(&[&[1.0], &[0.0]]),
         passive: rows(&[&[0.0], &[1.0]]),
         grasp: rows(&[&[1.0, 0.0]]),

@@ -1,3 +1,4 @@
+mod actuation_map;
 mod any_matrices;
 mod assembly;
 mod bad_input;
@@ -16,4 +17,3 @@ mod rings;
 mod scaling;
 mod singularity;
 mod statics;
-mod steering;

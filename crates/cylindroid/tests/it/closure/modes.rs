@@ -61,7 +61,7 @@ fn four_bar_has_two() {
             .map(|m| four_bar.state(&m.assembly.q).unwrap().pose(rocker).translation)
             .collect();
         assert_same_points(&got, &expected.map(|[x, y]| Vec3::new(x, y, 0.0)), 1e-9);
-        assert_eq!((found.continuum(), found.chance_of_more()), (0, 0.0));
+        assert_eq!((found.self_motion_dof(), found.unseen_probability()), (0, 0.0));
         for mode in &found.modes {
             assert!(mode.assembly.q.iter().all(|x| x.abs() <= PI), "{mode:?}");
         }
@@ -160,7 +160,7 @@ fn stewart_platform_comes_in_mirror_pairs() {
     let found = search(&stewart, stewart.home(), &legs, 120);
     let poses = references(&stewart, &found);
     assert!(found.modes[0].distance < 1e-12);
-    assert!(found.continuum() == 0 && found.closed > 100);
+    assert!(found.self_motion_dof() == 0 && found.closed > 100);
     let mirror = Mat3::from_rows([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]);
     assert!(poses.len() >= 2 && poses.len().is_multiple_of(2) && poses.len() <= 40);
     for (i, a) in poses.iter().enumerate() {
@@ -224,12 +224,12 @@ fn a_double_root_is_one_isolated_mode() {
     let four_bar = dead_four_bar("");
     let held = [place(&four_bar, "crank")];
     let found = search(&four_bar, &[0.0; 3], &held, 40);
-    assert_eq!((found.modes.len(), found.continuum()), (1, 0), "{found:?}");
+    assert_eq!((found.modes.len(), found.self_motion_dof()), (1, 0), "{found:?}");
     // A little before, two; a little beyond, none.
     assert_eq!(search(&four_bar, &[-1e-3, 0.0, 0.0], &held, 40).modes.len(), 2);
     let beyond = search(&four_bar, &[1e-3, 0.0, 0.0], &held, 40);
-    assert!(beyond.modes.is_empty() && beyond.closed == 0 && beyond.chance_of_more() == 1.0);
-    assert!(!beyond.first.closed && beyond.first.gap.distance > 0.0);
+    assert!(beyond.modes.is_empty() && beyond.closed == 0 && beyond.unseen_probability() == 1.0);
+    assert!(!beyond.first.closed && beyond.first.closure_error.distance > 0.0);
 }
 
 /// Where motions are left they are counted, not sampled.
@@ -239,16 +239,16 @@ fn a_continuum_is_said() {
         let mechanism = catalogue::load(name).unwrap();
         let found = search(&mechanism, mechanism.home(), &[], 10);
         let modes: Vec<(usize, usize)> =
-            found.modes.iter().map(|m| (m.continuum, m.found)).collect();
+            found.modes.iter().map(|m| (m.self_motion_dof, m.found)).collect();
         assert_eq!(modes, [(free, found.closed)], "{name}");
         assert!(found.modes[0].distance < 1e-12);
     }
     // A tree is closed wherever it stands; held as a whole it is where it was put.
     let panda = catalogue::load("panda").unwrap();
     let all: Vec<usize> = (0..7).collect();
-    assert_eq!(search(&panda, panda.home(), &[], 5).continuum(), 7);
+    assert_eq!(search(&panda, panda.home(), &[], 5).self_motion_dof(), 7);
     let held = search(&panda, panda.home(), &all, 5);
-    assert_eq!((held.modes.len(), held.continuum()), (1, 0));
+    assert_eq!((held.modes.len(), held.self_motion_dof()), (1, 0));
     assert_eq!(held.modes[0].assembly.q, panda.home());
 }
 
@@ -275,7 +275,11 @@ fn spins_do_not_hide_modes() {
     let mechanism = b.build().unwrap();
     let drive = place(&mechanism, "drive");
     let found = search(&mechanism, &[0.0; 5], &[drive], 30);
-    assert_eq!(found.modes.iter().map(|m| m.continuum).collect::<Vec<_>>(), [1, 1], "{found:?}");
+    assert_eq!(
+        found.modes.iter().map(|m| m.self_motion_dof).collect::<Vec<_>>(),
+        [1, 1],
+        "{found:?}"
+    );
     let rod = mechanism.frame("rod").unwrap();
     let got: Vec<Vec3> = found
         .modes

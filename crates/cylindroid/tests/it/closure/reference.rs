@@ -1,6 +1,6 @@
 //! The counts of the reference mechanisms, in any frame, unit and basis, wherever contacts are drawn.
 
-use cylindroid::closure::{Mobility, Motions, internal_forces, structural_forces};
+use cylindroid::closure::{Mobility, MotionSpace, internal_forces, structural_forces};
 
 use super::case::{Anew, Case, Problem, cases, described_anew};
 
@@ -19,7 +19,7 @@ fn check(case: &Case, problem: &Problem) {
         ("coordinate", m.coordinate.dimension()),
         ("indeterminacy", m.indeterminacy.dimension()),
         ("ind_passive", m.idle.dimension()),
-        ("ind_object", m.ungrasped.dimension()),
+        ("ind_object", m.uncontrollable_object_motions.dimension()),
         ("ind_mixed", m.mixed),
         ("coord_ap", kinds.passive),
         ("coord_au", kinds.object),
@@ -41,14 +41,14 @@ fn check(case: &Case, problem: &Problem) {
     assert_eq!(m.internal.dimension(), m.relation.internal, "{}", case.name);
     assert_eq!(m.zero_torque.dimension(), m.relation.zero_torque, "{}", case.name);
     assert_eq!(
-        m.grubler + m.hyperstatic.dimension() as i64,
+        m.gruebler_kutzbach + m.hyperstatic.dimension() as i64,
         m.dof.dimension() as i64,
         "{}",
         case.name
     );
-    assert!(m.doubts.is_empty(), "{}: {}", case.name, m.doubts[0]);
+    assert!(m.ambiguous_ranks.is_empty(), "{}: {}", case.name, m.ambiguous_ranks[0]);
 
-    let relation = Motions::of(constraint).relation();
+    let relation = MotionSpace::of(constraint).relation();
     let task = problem.task.as_ref().map_or(relation.clone(), |t| relation.task(t).unwrap());
     let counts = task.dimensions();
     for (name, count) in [

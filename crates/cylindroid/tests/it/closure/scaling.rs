@@ -1,7 +1,7 @@
 //! Badly scaled mechanisms: drawn in millimetres, with links of very different lengths, with very
 //! many joints. Every answer is defined, and the counts are those of the mechanism.
 
-use cylindroid::closure::{ClosedChain, Mobility, Motions, Singularities, assemble};
+use cylindroid::closure::{ClosedChain, Mobility, MotionSpace, Singularities, assemble};
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::Dimension;
 use cylindroid::screws::Line;
@@ -22,13 +22,13 @@ fn hinges(points: &[(f64, f64)], dimension: Dimension) -> Mechanism {
 fn counts(m: &Mechanism) -> [usize; 6] {
     let state = m.state(m.home()).unwrap();
     let chain = ClosedChain::of(&state, None, None).unwrap();
-    let motions = Motions::of(&chain.constraint);
+    let motions = MotionSpace::of(&chain.constraint);
     let relation = motions.relation();
     let mobility = Mobility::from_parts(&chain.constraint, &motions, &relation);
     let all = Manipulability::of(&relation, &Metrics::UNIT).unwrap();
     assert!(all.kinematic.values().iter().all(|e| e.is_finite() && *e > 0.0));
     assert_eq!(all.kinematic.finite.len(), mobility.relation.coordinate);
-    let generic = cylindroid::closure::Counts::of(&motions, &relation);
+    let generic = cylindroid::closure::MobilityCounts::of(&motions, &relation);
     assert!(Singularities::of(&motions, &relation, &generic).is_regular());
     assert!(mobility.joints.iter().all(|j| (0.0..=1.0).contains(&j.share)));
     [

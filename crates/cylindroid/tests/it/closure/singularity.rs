@@ -2,16 +2,17 @@
 
 use cylindroid::Matrix;
 use cylindroid::closure::{
-    Blocks, Constraint, Counts, Motions, Relation, Singularities, SingularityKind,
+    Constraint, ConstraintBlocks, MobilityCounts, MotionSpace, Relation, Singularities,
+    SingularityKind,
 };
 use cylindroid::spatial::Vec3;
 
 use super::case::{case, cases};
 
-fn pose(constraint: &Constraint) -> (Motions, Relation, Counts) {
-    let motions = Motions::of(constraint);
+fn pose(constraint: &Constraint) -> (MotionSpace, Relation, MobilityCounts) {
+    let motions = MotionSpace::of(constraint);
     let relation = motions.relation();
-    let counts = Counts::of(&motions, &relation);
+    let counts = MobilityCounts::of(&motions, &relation);
     (motions, relation, counts)
 }
 
@@ -90,7 +91,7 @@ fn folded_four_bar_is_a_configuration_space_singularity() {
 fn joints_in_line_spin_idly() {
     let leg = |angle: f64| {
         let (s, c) = angle.sin_cos();
-        Constraint::new(Blocks {
+        Constraint::new(ConstraintBlocks {
             actuated: Matrix::from_rows(&[[1.0], [0.0], [0.0]]).unwrap(),
             passive: Matrix::from_rows(&[[0.0, 0.0], [1.0, c], [0.0, s]]).unwrap(),
             grasp: Matrix::from_rows(&[[1.0, 0.0, 0.0]]).unwrap(),
@@ -139,7 +140,7 @@ fn platform(yaw: f64) -> Constraint {
         })
         .collect();
     let lines = Matrix::from_rows(&rows).unwrap();
-    Constraint::new(Blocks {
+    Constraint::new(ConstraintBlocks {
         actuated: Matrix::identity(6),
         passive: Matrix::zeros(6, 0),
         grasp: lines.transpose(),

@@ -2,8 +2,8 @@
 
 use cylindroid::catalogue;
 use cylindroid::closure::{
-    ClosedChain, Load, Mobility, Motions, Relation, Transmitted, contact_forces, joint_torques,
-    row_compliance, transmitted,
+    ClosedChain, Mobility, MotionSpace, Relation, StaticLoad, TransmittedWrench, contact_forces,
+    joint_torques, row_compliance, transmitted_wrenches,
 };
 use cylindroid::linalg::Metric;
 use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec};
@@ -17,9 +17,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-fn setup(case: &Case) -> (cylindroid::closure::Constraint, Motions, Relation) {
+fn setup(case: &Case) -> (cylindroid::closure::Constraint, MotionSpace, Relation) {
     let constraint = case.constraint();
-    let motions = Motions::of(&constraint);
+    let motions = MotionSpace::of(&constraint);
     let relation = motions.relation();
     (constraint, motions, relation)
 }
@@ -87,7 +87,7 @@ fn contact_forces_are_in_equilibrium() {
             let h = mobility.internal.basis.column(j);
             found.torques.iter_mut().zip(h).for_each(|(t, h)| *t += share * h);
         }
-        let load = Load { torques: &found.torques, wrench: &held };
+        let load = StaticLoad { torques: &found.torques, wrench: &held };
         let t = constraint.rows();
         let weights: Vec<f64> = (0..t).map(|_| random.within(0.1, 4.0)).collect();
         let compliance = Metric::diagonal("compliance", &weights).unwrap();
@@ -120,15 +120,15 @@ fn contact_forces_are_in_equilibrium() {
 #[test]
 fn stiffer_contact_takes_more() {
     // An object on two supports, both below it: f_1 + f_2 = w.
-    let constraint = cylindroid::closure::Constraint::new(cylindroid::closure::Blocks {
+    let constraint = cylindroid::closure::Constraint::new(cylindroid::closure::ConstraintBlocks {
         actuated: Matrix::zeros(2, 0),
         passive: Matrix::zeros(2, 0),
         grasp: Matrix::from_rows(&[[1.0, 1.0]]).unwrap(),
     })
     .unwrap();
-    let motions = Motions::of(&constraint);
+    let motions = MotionSpace::of(&constraint);
     assert_eq!((motions.dof(), motions.hyperstatic()), (0, 1));
-    let load = Load { torques: &[], wrench: &[3.0] };
+    let load = StaticLoad { torques: &[], wrench: &[3.0] };
     let compliance = Metric::diagonal("compliance", &[1.0, 2.0]).unwrap();
     let elastic = contact_forces(&constraint, &motions, load, Some(&compliance)).unwrap();
     assert_close("elastic", &elastic.forces, &[2.0, 1.0], 1e-14);
@@ -140,7 +140,7 @@ fn stiffer_contact_takes_more() {
 #[test]
 fn contradiction_is_reported() {
     let (constraint, motions, _) = setup(&case("fivebar_sec5_case_a"));
-    let load = Load { torques: &[1.0, 0.0], wrench: &[0.0, 0.0, 0.0] };
+    let load = StaticLoad { torques: &[1.0, 0.0], wrench: &[0.0, 0.0, 0.0] };
     let found = contact_forces(&constraint, &motions, load, None).unwrap();
     assert!(found.unbalanced > 0.1);
     let (_, _, relation) = setup(&case("fivebar_typeII"));
@@ -151,17 +151,17 @@ fn contradiction_is_reported() {
 }
 
 /// The wrenches through joints and contacts of a mechanism under a load; a compliance for each.
-fn through(m: &Mechanism, wrench: &[f64], compliance: Option<&[f64]>) -> Vec<Transmitted> {
+fn through(m: &Mechanism, wrench: &[f64], compliance: Option<&[f64]>) -> Vec<TransmittedWrench> {
     let state = m.state(m.home()).unwrap();
     let chain = ClosedChain::of(&state, None, None).unwrap();
-    let motions = Motions::of(&chain.constraint);
+    let motions = MotionSpace::of(&chain.constraint);
     let relation = motions.relation();
     let torques = joint_torques(&relation, wrench, None).unwrap().torques;
     let metric = compliance.map(|c| row_compliance(&state, &chain, c).unwrap());
-    let load = Load { torques: &torques, wrench };
+    let load = StaticLoad { torques: &torques, wrench };
     let found = contact_forces(&chain.constraint, &motions, load, metric.as_ref()).unwrap();
     assert!(found.unbalanced < 1e-10);
-    transmitted(&state, &chain, &found.forces).unwrap()
+    transmitted_wrenches(&state, &chain, &found.forces).unwrap()
 }
 
 /// Two arms hold a box: what they exert and the load are in balance, about any point.
@@ -206,12 +206,12 @@ fn stiffer_clamp_takes_more() {
     let m = b.build().unwrap().with_actuated::<&str>(&[]).unwrap();
     let state = m.state(&[0.0; 6]).unwrap();
     let chain = ClosedChain::of(&state, None, None).unwrap();
-    let motions = Motions::of(&chain.constraint);
+    let motions = MotionSpace::of(&chain.constraint);
     assert_eq!(motions.hyperstatic(), 6);
-    let load = Load { torques: &[], wrench: &[3.0, 0.0, 0.0, 6.0, 0.0, 0.0] };
+    let load = StaticLoad { torques: &[], wrench: &[3.0, 0.0, 0.0, 6.0, 0.0, 0.0] };
     let metric = row_compliance(&state, &chain, &[1e-6, 2e-6]).unwrap();
     let found = contact_forces(&chain.constraint, &motions, load, Some(&metric)).unwrap();
-    let all = transmitted(&state, &chain, &found.forces).unwrap();
+    let all = transmitted_wrenches(&state, &chain, &found.forces).unwrap();
     assert_close("left", &all[0].wrench.to_array(), &[-2.0, 0.0, 0.0, -4.0, 0.0, 0.0], 1e-12);
     assert_close("right", &all[1].wrench.to_array(), &[-1.0, 0.0, 0.0, -2.0, 0.0, 0.0], 1e-12);
 }
@@ -228,12 +228,12 @@ fn transmitted_by_closing_joints() {
     let rod = Vec3::new(1.0, -1.0, 0.0);
     assert!(force.norm() > 0.5 && force.cross(rod).norm() < 1e-12, "{force:?}");
     let chain = ClosedChain::of(&m.state(m.home()).unwrap(), None, None).unwrap();
-    let relation = Motions::of(&chain.constraint).relation();
+    let relation = MotionSpace::of(&chain.constraint).relation();
     let torques = joint_torques(&relation, &load, None).unwrap().torques;
     assert!((moment.z - torques[1]).abs() < 1e-12, "{moment:?} {torques:?}");
     let state = m.state(m.home()).unwrap();
     let chain = ClosedChain::of(&state, None, None).unwrap();
-    assert!(transmitted(&state, &chain, &[0.0]).is_err());
+    assert!(transmitted_wrenches(&state, &chain, &[0.0]).is_err());
     assert!(row_compliance(&state, &chain, &[]).is_err());
     assert!(row_compliance(&state, &chain, &[0.0]).is_err());
 }

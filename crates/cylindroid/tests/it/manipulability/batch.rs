@@ -1,7 +1,9 @@
 //! Many configurations in one call are what the reports of one say, whatever their number and
 //! place.
 
-use cylindroid::closure::{ClosedChain, Counts, Mobility, Motions, Singularities, assemble};
+use cylindroid::closure::{
+    ClosedChain, Mobility, MobilityCounts, MotionSpace, Singularities, assemble,
+};
 use cylindroid::manipulability::{Batch, BatchOptions, Manipulability, Metrics};
 use cylindroid::model::{CoordinateKind, JointKind, JointSpec, LoopSpec, Mimic};
 use cylindroid::spatial::Vec3;
@@ -20,16 +22,16 @@ fn single(batch: &Batch, mechanism: &Mechanism, q: &[f64], metrics: &Metrics) ->
     let state = mechanism.state(q).unwrap();
     let length = batch.length();
     let chain = ClosedChain::of(&state, Some(batch.reference()), Some(length)).unwrap();
-    let motions = Motions::of(&chain.constraint);
+    let motions = MotionSpace::of(&chain.constraint);
     let relation = motions.relation();
     let m = Mobility::of(&chain.constraint);
     let found = Singularities::of(&motions, &relation, &batch.generic()).distances;
     let kinematic = Manipulability::of(&relation, metrics).unwrap().kinematic;
     let none = f64::NAN;
     [
-        chain.gap.distance,
-        chain.gap.angle,
-        f64::from(u8::from(chain.gap.is_closed(length))),
+        chain.closure_error.distance,
+        chain.closure_error.angle,
+        f64::from(u8::from(chain.closure_error.is_closed(length))),
         m.dof.dimension() as f64,
         m.relation.redundancy as f64,
         m.relation.indeterminacy as f64,
@@ -148,7 +150,7 @@ fn agrees_in_other_metrics_frames_and_lengths() {
     // Generic counts of one's own: every posture is then singular.
     let five_bar = catalogue::load("five-bar").unwrap();
     let batch = Batch::new(&five_bar, &BatchOptions::default()).unwrap();
-    let generic = Some(Counts { zero_torque: 0, ..batch.generic() });
+    let generic = Some(MobilityCounts { zero_torque: 0, ..batch.generic() });
     let options = BatchOptions { generic, ..BatchOptions::default() };
     compare("generic", &five_bar, &options, &postures(&five_bar, 9, 0.2));
 }

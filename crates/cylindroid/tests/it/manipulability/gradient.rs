@@ -1,6 +1,6 @@
 //! Gradients of measures against differences of the measures themselves.
 
-use cylindroid::closure::{ClosedChain, Motions, assemble};
+use cylindroid::closure::{ClosedChain, MotionSpace, assemble};
 use cylindroid::manipulability::{Goal, Gradient, Manipulability, Measure, Metrics, gradient};
 use cylindroid::model::{JointKind, JointSpec};
 use cylindroid::spatial::{Pose, Vec3};
@@ -10,7 +10,7 @@ use crate::support::{Random, assert_close, planar, robots, zoo};
 
 fn value(m: &Mechanism, q: &[f64], goal: Goal<'_>, metrics: &Metrics, measure: Measure) -> f64 {
     let chain = ClosedChain::of(&m.state(q).unwrap(), goal.reference, None).unwrap();
-    let mut relation = Motions::of(&chain.constraint).relation();
+    let mut relation = MotionSpace::of(&chain.constraint).relation();
     if let Some(map) = goal.task {
         relation = relation.task(map).unwrap();
     }
@@ -104,7 +104,7 @@ fn closed_chains() {
         let length = m.reach();
         let chain = ClosedChain::of(&m.state(&q).unwrap(), None, None).unwrap();
         let metrics = Metrics::characteristic_length(&chain.units, length).unwrap();
-        let basis = Motions::of(&chain.constraint).basis();
+        let basis = MotionSpace::of(&chain.constraint).basis();
         let columns: Vec<&String> = chain.actuated.iter().chain(&chain.passive).collect();
         for measure in Measure::ALL {
             let (here, gradient, error) = found(&m, &q, goal, &metrics, measure);

@@ -1,7 +1,7 @@
 //! Metrics: duals, presets, lopsided ones, refusals.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Constraint, Motions, Relation, Unit, Units};
+use cylindroid::closure::{Constraint, MotionSpace, Relation, Unit, Units};
 use cylindroid::linalg::Metric;
 use cylindroid::manipulability::{Manipulability, Metrics, body_inertia};
 use cylindroid::model::{Dimension, Inertial, JointKind, JointSpec, Link};
@@ -12,7 +12,7 @@ use crate::closure::case::{case, cases};
 use crate::support::{Random, assert_close};
 
 fn relation(name: &str) -> Relation {
-    Motions::of(&case(name).constraint()).relation()
+    MotionSpace::of(&case(name).constraint()).relation()
 }
 
 fn spd(random: &mut Random, n: usize) -> Matrix {
@@ -26,7 +26,7 @@ fn spd(random: &mut Random, n: usize) -> Matrix {
 fn dual_metrics_given_are_the_default() {
     let mut random = Random(85);
     for case in cases().iter().filter(|c| c.task.is_none()) {
-        let relation = Motions::of(&case.constraint()).relation();
+        let relation = MotionSpace::of(&case.constraint()).relation();
         let wu = Metric::new("Wu", &spd(&mut random, relation.object())).unwrap();
         let wq = Metric::new("Wq", &spd(&mut random, relation.joints())).unwrap();
         let explicit = Metrics {
@@ -62,7 +62,7 @@ fn force_metrics_of_their_own() {
 /// Rate limits: the ellipsoid touches what the limits allow along a single joint.
 #[test]
 fn limits_measure() {
-    let relation = Motions::of(&Constraint::serial(&Matrix::identity(2)).unwrap()).relation();
+    let relation = MotionSpace::of(&Constraint::serial(&Matrix::identity(2)).unwrap()).relation();
     let metrics = Metrics::UNIT
         .with_rate_limits(&[2.0, 0.5])
         .unwrap()
@@ -90,7 +90,7 @@ fn characteristic_length_takes_the_unit_out() {
     let case = case("fivebar_sec5_case_a");
     let values = |factor: f64| {
         let case = case.moved(cylindroid::Pose::IDENTITY, factor);
-        let relation = Motions::of(&case.constraint()).relation();
+        let relation = MotionSpace::of(&case.constraint()).relation();
         let metrics = Metrics::characteristic_length(&units, 1.7 * factor).unwrap();
         Manipulability::of(&relation, &metrics).unwrap().kinematic.values()
     };
@@ -104,7 +104,7 @@ fn characteristic_length_takes_the_unit_out() {
 #[test]
 fn lopsided_metrics() {
     for case in cases().iter().filter(|c| c.task.is_none()) {
-        let relation = Motions::of(&case.constraint()).relation();
+        let relation = MotionSpace::of(&case.constraint()).relation();
         for factor in [1e-24, 1e24] {
             let object = Metric::diagonal("Wu", &vec![factor; relation.object()]).unwrap();
             let metrics = Metrics { object: Some(object), ..Metrics::UNIT };
@@ -244,7 +244,7 @@ fn inertia_is_kinetic_energy() {
     }
     // As a metric: the efficiency of the turning joint is its moment of inertia about the axis.
     let j = state.jacobian(frame, Reference::LocalWorldAligned);
-    let relation = Motions::of(&Constraint::serial(&j).unwrap()).relation();
+    let relation = MotionSpace::of(&Constraint::serial(&j).unwrap()).relation();
     let metrics = Metrics::UNIT.with_inertia(&state, frame).unwrap();
     let value = Manipulability::of(&relation, &metrics).unwrap().kinematic.values()[0];
     let about = 0.5 + 0.5 + 2.0 * (0.01 + 0.04) + (0.25 + 0.09);

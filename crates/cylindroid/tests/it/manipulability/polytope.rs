@@ -1,7 +1,7 @@
 //! Polytopes of velocity and force from the limits of the drives.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Constraint, Motions, Relation};
+use cylindroid::closure::{Constraint, MotionSpace, Relation};
 use cylindroid::linalg::Interval;
 use cylindroid::manipulability::{force_polytope, force_range, velocity_polytope, velocity_range};
 
@@ -9,7 +9,7 @@ use crate::closure::case::{case, cases};
 use crate::support::{Random, assert_close};
 
 fn serial(jacobian: &Matrix) -> Relation {
-    Motions::of(&Constraint::serial(jacobian).unwrap()).relation()
+    MotionSpace::of(&Constraint::serial(jacobian).unwrap()).relation()
 }
 
 fn symmetric(limits: &[f64]) -> Vec<Interval> {
@@ -72,7 +72,7 @@ fn four_joints_in_space() {
 fn corners_of_closed_chains() {
     let mut random = Random(94);
     for case in cases() {
-        let relation = Motions::of(&case.constraint()).relation();
+        let relation = MotionSpace::of(&case.constraint()).relation();
         // In space only a task of two: there are many corners in six dimensions.
         let relation = if relation.object() > 3 {
             let task = Matrix::from_fn(2, 6, |i, j| f64::from(u8::from(i == j)));
@@ -113,7 +113,7 @@ fn corners_of_closed_chains() {
 /// torques of all together hold more.
 #[test]
 fn more_drives_bind_motion_and_help_force() {
-    let relation = |name| Motions::of(&case(name).constraint()).relation();
+    let relation = |name| MotionSpace::of(&case(name).constraint()).relation();
     let (two, five) = (relation("fivebar_sec5_case_a"), relation("fivebar_sec5_case_c"));
     let reach = |hull: &cylindroid::linalg::Hull, n: &[f64]| {
         hull.vertices.iter().map(|v| dot(n, v)).fold(0.0, f64::max)
@@ -204,7 +204,7 @@ fn cables_hold_a_cone() {
 #[test]
 fn ranges_of_closed_chains() {
     for case in cases().iter().filter(|c| c.task.is_none()) {
-        let relation = Motions::of(&case.constraint()).relation();
+        let relation = MotionSpace::of(&case.constraint()).relation();
         let limits = symmetric(&vec![1.0; relation.joints()]);
         for (range, parts) in [
             (velocity_range(&relation, &limits).unwrap(), relation.motions()),

@@ -1,7 +1,7 @@
 //! The spectra of the reference mechanisms to 1e-9, in any frame, basis and unit.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Motions, Relation};
+use cylindroid::closure::{MotionSpace, Relation};
 use cylindroid::manipulability::{Index, Manipulability, Metrics};
 
 use crate::closure::case::{Anew, Case, Problem, case, cases, described_anew, numbers};
@@ -11,7 +11,7 @@ use crate::support::assert_close;
 const TOLERANCE: f64 = 1e-9;
 
 fn relation(problem: &Problem) -> Relation {
-    let relation = Motions::of(&problem.constraint).relation();
+    let relation = MotionSpace::of(&problem.constraint).relation();
     problem.task.as_ref().map_or(relation.clone(), |t| relation.task(t).unwrap())
 }
 

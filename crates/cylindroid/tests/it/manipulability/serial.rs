@@ -1,6 +1,6 @@
 //! Serial arms through the same code: the textbook ellipsoid.
 
-use cylindroid::closure::{Constraint, Motions};
+use cylindroid::closure::{Constraint, MotionSpace};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics, Spectrum};
 use cylindroid::{Matrix, Reference, catalogue};
@@ -8,7 +8,7 @@ use cylindroid::{Matrix, Reference, catalogue};
 use crate::support::{Random, assert_close, assert_matrix};
 
 fn of(jacobian: &Matrix) -> Manipulability {
-    let relation = Motions::of(&Constraint::serial(jacobian).unwrap()).relation();
+    let relation = MotionSpace::of(&Constraint::serial(jacobian).unwrap()).relation();
     Manipulability::of(&relation, &Metrics::UNIT).unwrap()
 }
 

@@ -1,7 +1,7 @@
 //! Squeezing an object between arms.
 
 use cylindroid::catalogue;
-use cylindroid::closure::{ClosedChain, Motions, Steering, assemble};
+use cylindroid::closure::{ActuationMap, ClosedChain, MotionSpace, assemble};
 use cylindroid::control::InternalForceLaw;
 
 /// Two arms with springs in their joints hold a box: commanded positions theta, true ones where the
@@ -24,7 +24,7 @@ fn two_arms_squeeze_a_box_that_rests() {
     let (dt, mut first) = (0.01_f64, None);
     for step in 0..150 {
         let chain = ClosedChain::of(&two_arm.state(&q).unwrap(), None, None).unwrap();
-        let relation = Motions::of(&chain.constraint).relation();
+        let relation = MotionSpace::of(&chain.constraint).relation();
         assert_eq!(relation.dimensions().internal, 6);
         let torques: Vec<f64> = drives.iter().map(|&i| stiffness[i] * (theta[i] - q[i])).collect();
         let command = law.command(&relation, &wanted, &torques).unwrap();
@@ -39,7 +39,7 @@ fn two_arms_squeeze_a_box_that_rests() {
         // Equilibrium: least energy on the loops.
         for _ in 0..10 {
             let state = two_arm.state(&q).unwrap();
-            let steering = Steering::of(&state, &stiffness, &[]).unwrap();
+            let steering = ActuationMap::of(&state, &stiffness, &[]).unwrap();
             let way: Vec<f64> = theta.iter().zip(&q).map(|(t, q)| t - q).collect();
             let moved = steering.rates(&steering.project(&way));
             let change: Vec<f64> =
@@ -69,7 +69,8 @@ fn two_arms_squeeze_a_box_that_rests() {
 fn no_internal_torques_no_rates() {
     let five_bar = catalogue::load("five-bar").unwrap();
     let state = five_bar.state(five_bar.home()).unwrap();
-    let relation = Motions::of(&ClosedChain::of(&state, None, None).unwrap().constraint).relation();
+    let relation =
+        MotionSpace::of(&ClosedChain::of(&state, None, None).unwrap().constraint).relation();
     let law = InternalForceLaw::new(1.0, &[100.0, 200.0]).unwrap();
     let command = law.command(&relation, &[1.0, 2.0], &[0.0, 0.0]).unwrap();
     assert_eq!(command.rates, [0.0, 0.0]);

@@ -1,7 +1,7 @@
 //! The object of a closed chain, driven through its drives.
 
 use cylindroid::catalogue;
-use cylindroid::closure::{ClosedChain, Motions, Rows, assemble};
+use cylindroid::closure::{ClosedChain, MotionSpace, RowSelection, assemble};
 use cylindroid::control::{Outcome, Secondary, Stall, Task, drive};
 use cylindroid::model::Mechanism;
 use cylindroid::{Pose, Reference, Servo, ServoOptions, Vec3};
@@ -18,7 +18,7 @@ fn closed_chains() -> impl Iterator<Item = Mechanism> {
 
 fn gap(mechanism: &Mechanism, q: &[f64]) -> f64 {
     let chain = ClosedChain::of(&mechanism.state(q).unwrap(), None, None).unwrap();
-    chain.gap.distance / mechanism.reach() + chain.gap.angle
+    chain.closure_error.distance / mechanism.reach() + chain.closure_error.angle
 }
 
 /// A posture in which the loops are closed, near home.
@@ -138,8 +138,8 @@ fn drives_move_with_the_least_weighted_effort() {
         assert_eq!(step.saturation.scale, 1.0);
 
         let chain = ClosedChain::of(&two_arm.state(&q).unwrap(), None, None).unwrap();
-        let object = Rows { actuated: false, passive: false, object: true };
-        let at_rest = Motions::of(&chain.constraint).standing(object);
+        let object = RowSelection { actuated: false, passive: false, object: true };
+        let at_rest = MotionSpace::of(&chain.constraint).standing(object);
         assert_eq!(at_rest.cols(), 2);
         let rates = servo.rates();
         let size = rates.iter().map(|r| r * r).sum::<f64>().sqrt();

@@ -127,7 +127,7 @@ fn self_motions_of_closed_chains_keep_their_loops() {
     assert_eq!((servo.redundancy(), motions.len()), (1, 1));
     let h = 1e-5;
     let q = five_bar.integrate(five_bar.home(), &motions[0], h).unwrap();
-    let gap = cylindroid::closure::Gap::of(&five_bar.state(&q).unwrap()).unwrap();
+    let gap = cylindroid::closure::LoopClosureError::of(&five_bar.state(&q).unwrap()).unwrap();
     assert!(gap.distance < 100.0 * h * h, "{gap:?}");
     let x = |q: &[f64]| five_bar.state(q).unwrap().pose(five_bar.reference()).translation.x;
     assert!((x(&q) - x(five_bar.home())).abs() < 100.0 * h * h);

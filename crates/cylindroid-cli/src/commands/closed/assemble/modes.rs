@@ -7,7 +7,7 @@ use cylindroid::closure::{AssemblyModes, Mode, ModeOptions, assembly_modes};
 use serde::Serialize;
 
 use super::{Job, open_by, q_line};
-use crate::commands::closed::GapJson;
+use crate::commands::closed::ClosureErrorJson;
 use crate::commands::{Style, answer};
 use crate::output::{self, Align, number};
 
@@ -23,11 +23,11 @@ struct ModesJson<'a> {
     closed_starts: usize,
     seed: u64,
     /// Degrees of freedom that the held coordinates leave.
-    continuum: usize,
+    self_motion_dof: usize,
     /// Estimated chance that another start which closes finds another mode.
-    chance_of_more: f64,
+    unseen_probability: f64,
     /// Of the guess itself.
-    guess_gap: GapJson,
+    guess_closure_error: ClosureErrorJson,
     guess: &'a [f64],
     held: Vec<&'a str>,
 }
@@ -39,8 +39,8 @@ struct ModeJson<'a> {
     found: usize,
     /// From the guess [-].
     distance: f64,
-    continuum: usize,
-    gap: GapJson,
+    self_motion_dof: usize,
+    closure_error: ClosureErrorJson,
     at_limit: Vec<&'a str>,
 }
 
@@ -63,8 +63,8 @@ fn describe<'a>(job: &'a Job<'_>, options: ModeOptions, found: &'a AssemblyModes
         q: &m.assembly.q,
         found: m.found,
         distance: m.distance,
-        continuum: m.continuum,
-        gap: m.assembly.gap.into(),
+        self_motion_dof: m.self_motion_dof,
+        closure_error: m.assembly.closure_error.into(),
         at_limit: job.names_of(&m.assembly.at_limit),
     };
     ModesJson {
@@ -75,9 +75,9 @@ fn describe<'a>(job: &'a Job<'_>, options: ModeOptions, found: &'a AssemblyModes
         starts: found.starts,
         closed_starts: found.closed,
         seed: options.seed,
-        continuum: found.continuum(),
-        chance_of_more: found.chance_of_more(),
-        guess_gap: found.first.gap.into(),
+        self_motion_dof: found.self_motion_dof(),
+        unseen_probability: found.unseen_probability(),
+        guess_closure_error: found.first.closure_error.into(),
         guess: &job.guess,
         held: job.names_of(&job.held),
     }
@@ -90,7 +90,7 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
         format!(
             "none found: no start closed, the guess stays open by {}; that none was found proves \
              nothing",
-            open_by(found.first.gap)
+            open_by(found.first.closure_error)
         )
     } else {
         format!("{modes} mode{plural} from {closed} of {starts} starts that closed")
@@ -102,10 +102,10 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
         _ => format!(
             "likely: {once} found only once; about {} of further starts that close would find a \
              new one",
-            number(found.chance_of_more())
+            number(found.unseen_probability())
         ),
     };
-    let continuum = match found.continuum() {
+    let self_motion_dof = match found.self_motion_dof() {
         0 => String::new(),
         n => format!(
             "{n} degree{} of freedom: such modes are no points but motions, and each stands for all \
@@ -119,7 +119,7 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
             ("model", job.mechanism.name().to_owned()),
             ("result", result),
             ("others", more),
-            ("left to move", continuum),
+            ("left to move", self_motion_dof),
             ("held", job.names_of(&job.held).join(", ")),
         ],
     )?;
@@ -135,7 +135,7 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
     ];
     let rows = found.modes.iter().enumerate().map(|(i, m)| {
         let count = |n: usize| n.to_string();
-        vec![count(i + 1), count(m.found), output::entries(&[m.distance]), count(m.continuum)]
+        vec![count(i + 1), count(m.found), output::entries(&[m.distance]), count(m.self_motion_dof)]
     });
     output::table(out, &columns, rows)?;
     writeln!(out)?;

@@ -6,7 +6,7 @@ mod report;
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::closure::{Motions, Relation};
+use cylindroid::closure::{MotionSpace, Relation};
 use cylindroid::linalg::Interval;
 use cylindroid::manipulability::{
     Goal, Gradient, Manipulability, Measure, Polytope, force_polytope, force_range, gradient,
@@ -82,7 +82,7 @@ pub(crate) fn report(posed: Posed, args: &ManipulabilityArgs) -> anyhow::Result<
 fn find(posed: Posed, args: &ManipulabilityArgs) -> Result<Found> {
     let task = Task::new(&posed, args)?;
     let metrics = measured::metrics(&posed, args, task.as_ref())?;
-    let relation = Motions::of(&posed.chain.constraint).relation();
+    let relation = MotionSpace::of(&posed.chain.constraint).relation();
     let relation = measured::of_task(relation, task.as_ref())?;
     let efficiencies = Manipulability::of(&relation, &metrics)?;
     let asked = args.polytope || args.rate_limits.is_some() || args.torque_limits.is_some();

@@ -1,6 +1,6 @@
 //! The way from one configuration of closed loops to another.
 
-use cylindroid::closure::{FollowOptions, Followed, PathEnd, follow};
+use cylindroid::closure::{ContinuationOptions, ContinuationResult, PathEnd, track_path};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
@@ -18,22 +18,22 @@ use crate::table;
 ///     'reached', 'singular', 'limit', 'open', 'contradiction' or 'lost'.
 /// q : ndarray, (n,)
 ///     The last configuration.
-/// share : float
+/// fraction : float
 ///     How far it got, 0 to 1.
 /// path : ndarray, (S, n)
 ///     All configurations on the way.
-/// shares, distances : ndarray, (S,)
+/// fractions, distances : ndarray, (S,)
 ///     Of the way, and to the next singularity.
 /// screw : Screw or None
 ///     The motion of the reference frame that a singularity would gain.
-#[pyclass(frozen, name = "Followed", module = "cylindroid")]
+#[pyclass(frozen, name = "ContinuationResult", module = "cylindroid")]
 #[derive(Debug)]
-pub(crate) struct PyFollowed {
-    inner: Followed,
+pub(crate) struct PyContinuationResult {
+    inner: ContinuationResult,
 }
 
 #[pymethods]
-impl PyFollowed {
+impl PyContinuationResult {
     #[getter]
     fn reached(&self) -> bool {
         self.inner.end == PathEnd::Reached
@@ -50,8 +50,8 @@ impl PyFollowed {
     }
 
     #[getter]
-    fn share(&self) -> f64 {
-        self.inner.share
+    fn fraction(&self) -> f64 {
+        self.inner.fraction
     }
 
     #[getter]
@@ -61,8 +61,8 @@ impl PyFollowed {
     }
 
     #[getter]
-    fn shares<'py>(&self, py: Python<'py>) -> Array<'py> {
-        let all: Vec<f64> = self.inner.path.iter().map(|p| p.share).collect();
+    fn fractions<'py>(&self, py: Python<'py>) -> Array<'py> {
+        let all: Vec<f64> = self.inner.path.iter().map(|p| p.fraction).collect();
         arrays::vector(py, &all)
     }
 
@@ -81,8 +81,8 @@ impl PyFollowed {
     }
 
     fn __repr__(&self) -> String {
-        let share = table::number(100.0 * self.inner.share);
-        format!("<Followed: {}, {share} % of the way>", self.inner.end)
+        let fraction = table::number(100.0 * self.inner.fraction);
+        format!("<ContinuationResult: {}, {fraction} % of the way>", self.inner.end)
     }
 }
 
@@ -103,7 +103,7 @@ impl PyMechanism {
     ///
     /// Returns
     /// -------
-    /// Followed
+    /// ContinuationResult
     ///
     /// Raises
     /// ------
@@ -113,24 +113,24 @@ impl PyMechanism {
     /// --------
     /// >>> import cylindroid as cy
     /// >>> linkage = cy.load("four-bar")
-    /// >>> linkage.follow(linkage.home, {linkage.joint_names[0]: 0.2}).reached
+    /// >>> linkage.track_path(linkage.home, {linkage.joint_names[0]: 0.2}).reached
     /// True
     #[pyo3(signature = (start, goal, step = 0.1, least_distance = None))]
-    fn follow(
+    fn track_path(
         &self,
         py: Python<'_>,
         start: Numbers<'_>,
         goal: std::collections::BTreeMap<String, f64>,
         step: f64,
         least_distance: Option<f64>,
-    ) -> Result<PyFollowed> {
+    ) -> Result<PyContinuationResult> {
         let names: Vec<String> = goal.keys().cloned().collect();
         let held = self.places(&names)?;
         let goals: Vec<f64> = goal.values().copied().collect();
-        let mut options = FollowOptions { step, ..FollowOptions::default() };
+        let mut options = ContinuationOptions { step, ..ContinuationOptions::default() };
         options.least_distance = least_distance.unwrap_or(options.least_distance);
         let start = start.vector("start")?;
-        let inner = py.detach(|| follow(&self.inner, start, &held, &goals, options))?;
-        Ok(PyFollowed { inner })
+        let inner = py.detach(|| track_path(&self.inner, start, &held, &goals, options))?;
+        Ok(PyContinuationResult { inner })
     }
 }

@@ -1,7 +1,7 @@
 //! What drives of closed chains can do, against the constraint matrices and positions.
 
 use cylindroid::catalogue;
-use cylindroid::closure::{ClosedChain, Motions, Steering, assemble};
+use cylindroid::closure::{ActuationMap, ClosedChain, MotionSpace, assemble};
 use cylindroid::model::Mechanism;
 
 use crate::support::Random;
@@ -28,8 +28,8 @@ fn steering_agrees_with_the_constraint() {
         };
         let state = mechanism.state(&q).unwrap();
         let weights: Vec<f64> = (0..mechanism.n()).map(|_| random.within(0.2, 3.0)).collect();
-        let steering = Steering::of(&state, &weights, &[]).unwrap();
-        let motions = Motions::of(&ClosedChain::of(&state, None, None).unwrap().constraint);
+        let steering = ActuationMap::of(&state, &weights, &[]).unwrap();
+        let motions = MotionSpace::of(&ClosedChain::of(&state, None, None).unwrap().constraint);
         let (steered, left) = (steering.motions.cols(), steering.left.cols());
         assert_eq!(steered + left, motions.dof(), "{name}");
         assert_eq!(steering.shares.len(), steered);
@@ -55,10 +55,11 @@ fn motions_keep_loops_and_corrections_close_them() {
         let n = mechanism.n();
         let q = assembled(&mechanism, &mut random);
         let gap = |q: &[f64]| {
-            let gap = Steering::of(&mechanism.state(q).unwrap(), &[], &[]).unwrap().gap;
+            let gap =
+                ActuationMap::of(&mechanism.state(q).unwrap(), &[], &[]).unwrap().closure_error;
             gap.distance / mechanism.reach() + gap.angle
         };
-        let steering = Steering::of(&mechanism.state(&q).unwrap(), &[], &[]).unwrap();
+        let steering = ActuationMap::of(&mechanism.state(&q).unwrap(), &[], &[]).unwrap();
         for m in [&steering.motions, &steering.left] {
             for j in 0..m.cols() {
                 let size = m.column(j).iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -68,7 +69,7 @@ fn motions_keep_loops_and_corrections_close_them() {
             }
         }
         let open: Vec<f64> = q.iter().map(|x| x + random.within(-1e-4, 1e-4)).collect();
-        let steering = Steering::of(&mechanism.state(&open).unwrap(), &[], &[]).unwrap();
+        let steering = ActuationMap::of(&mechanism.state(&open).unwrap(), &[], &[]).unwrap();
         let closer = mechanism.integrate(&open, &steering.correction[..n], 1.0).unwrap();
         assert!(gap(&closer) < 1e-3 * gap(&open), "{name}: {:e}", gap(&closer));
     }
@@ -79,10 +80,10 @@ fn motions_keep_loops_and_corrections_close_them() {
 fn locks_and_bad_input() {
     let five_bar = catalogue::load("five-bar").unwrap();
     let state = five_bar.state(five_bar.home()).unwrap();
-    let locked = Steering::of(&state, &[], &[0]).unwrap();
+    let locked = ActuationMap::of(&state, &[], &[0]).unwrap();
     assert_eq!((locked.motions.cols(), locked.left.cols()), (1, 0));
     assert!(locked.motions.column(0)[0].abs() < 1e-12);
-    assert!(Steering::of(&state, &[], &[4]).is_err());
-    assert!(Steering::of(&state, &[1.0], &[]).is_err());
-    assert!(Steering::of(&state, &[1.0, -1.0, 1.0, 1.0], &[]).is_err());
+    assert!(ActuationMap::of(&state, &[], &[4]).is_err());
+    assert!(ActuationMap::of(&state, &[1.0], &[]).is_err());
+    assert!(ActuationMap::of(&state, &[1.0, -1.0, 1.0, 1.0], &[]).is_err());
 }

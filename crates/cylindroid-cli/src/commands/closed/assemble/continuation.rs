@@ -3,18 +3,20 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::closure::{FollowOptions, Followed, PathEnd, PathSingularity, follow};
+use cylindroid::closure::{
+    ContinuationOptions, ContinuationResult, PathEnd, PathSingularity, track_path,
+};
 use cylindroid::model::Dimension;
 use serde::Serialize;
 
 use super::{Job, open_by, q_line};
-use crate::commands::closed::GapJson;
+use crate::commands::closed::ClosureErrorJson;
 use crate::commands::closed::singularity::motion_in_words;
 use crate::commands::{Style, answer};
 use crate::output::{self, Align, ScrewJson, number};
 
 #[derive(Debug, Serialize)]
-struct FollowJson<'a> {
+struct ContinuationJson<'a> {
     model: &'a str,
     joint_names: &'a [&'a str],
     reached: bool,
@@ -22,9 +24,9 @@ struct FollowJson<'a> {
     end: String,
     explanation: String,
     /// Of the way, 0 to 1.
-    share: f64,
+    fraction: f64,
     q: &'a [f64],
-    gap: GapJson,
+    closure_error: ClosureErrorJson,
     start: &'a [f64],
     /// Names and values that were asked for; held ones at rest too.
     goal: Vec<GoalJson<'a>>,
@@ -58,7 +60,7 @@ struct SightJson<'a> {
 
 #[derive(Debug, Serialize)]
 struct PointJson<'a> {
-    share: f64,
+    fraction: f64,
     q: &'a [f64],
     /// To the next singularity; null where nothing can be lost.
     distance: f64,
@@ -77,11 +79,11 @@ pub(super) fn run(
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
-    let mut options = FollowOptions::default();
+    let mut options = ContinuationOptions::default();
     if let Some(least) = least_distance {
         options.least_distance = least;
     }
-    let way = follow(job.mechanism, &job.guess, &goal.places, &goal.values, options)?;
+    let way = track_path(job.mechanism, &job.guess, &goal.places, &goal.values, options)?;
     match style {
         Style::Json => output::json(out, &describe(job, goal, options, &way))?,
         Style::Table => print(out, job, goal, &way)?,
@@ -89,16 +91,16 @@ pub(super) fn run(
     Ok(answer(way.end == PathEnd::Reached))
 }
 
-fn start<'a>(job: &'a Job<'_>, way: &'a Followed) -> &'a [f64] {
+fn start<'a>(job: &'a Job<'_>, way: &'a ContinuationResult) -> &'a [f64] {
     way.path.first().map_or(&job.guess, |p| &p.q)
 }
 
 fn describe<'a>(
     job: &'a Job<'_>,
     goal: &Goal,
-    options: FollowOptions,
-    way: &'a Followed,
-) -> FollowJson<'a> {
+    options: ContinuationOptions,
+    way: &'a ContinuationResult,
+) -> ContinuationJson<'a> {
     let asked = goal.places.iter().zip(&goal.values);
     let sight = match &way.end {
         PathEnd::Singular(s) => Some(SightJson {
@@ -115,15 +117,15 @@ fn describe<'a>(
         PathEnd::Limit { coordinate } => Some(job.names[coordinate]),
         _ => None,
     };
-    FollowJson {
+    ContinuationJson {
         model: job.mechanism.name(),
         joint_names: &job.names,
         reached: way.end == PathEnd::Reached,
         end: way.end.to_string(),
         explanation: explain(job, goal, way),
-        share: way.share,
+        fraction: way.fraction,
         q: &way.q,
-        gap: way.gap.into(),
+        closure_error: way.closure_error.into(),
         start: start(job, way),
         goal: asked.map(|(&i, &value)| GoalJson { joint: job.names[i], value }).collect(),
         least_distance: options.least_distance,
@@ -132,7 +134,7 @@ fn describe<'a>(
         path: way
             .path
             .iter()
-            .map(|p| PointJson { share: p.share, q: &p.q, distance: p.distance })
+            .map(|p| PointJson { fraction: p.fraction, q: &p.q, distance: p.distance })
             .collect(),
     }
 }
@@ -142,7 +144,7 @@ fn reference<'a>(job: &'a Job<'_>) -> &'a str {
 }
 
 /// Why it ended and what to try.
-fn explain(job: &Job<'_>, goal: &Goal, way: &Followed) -> String {
+fn explain(job: &Job<'_>, goal: &Goal, way: &ContinuationResult) -> String {
     let names = job.names_of(&goal.places).join(", ");
     match &way.end {
         PathEnd::Reached => format!("reached: {names} where they should be, in the same mode"),
@@ -165,13 +167,13 @@ fn explain(job: &Job<'_>, goal: &Goal, way: &Followed) -> String {
         PathEnd::Open => format!(
             "the loops do not close from the start with {names} where they are: open by {}; give \
              another --q",
-            open_by(way.gap)
+            open_by(way.closure_error)
         ),
         PathEnd::Contradiction => format!(
             "{names} contradict each other: no motion of the others keeps the loops closed; move \
              or hold fewer of them"
         ),
-        PathEnd::Lost => {
+        PathEnd::StepTooSmall => {
             "the branch could not be followed further: no singularity and no limit was met"
                 .to_owned()
         }
@@ -188,18 +190,23 @@ fn gained(job: &Job<'_>, s: &PathSingularity) -> String {
     }
 }
 
-fn print(out: &mut dyn Write, job: &Job<'_>, goal: &Goal, way: &Followed) -> anyhow::Result<()> {
-    let walked = way.path.iter().filter(|p| p.distance.is_finite() && way.share > 0.0);
+fn print(
+    out: &mut dyn Write,
+    job: &Job<'_>,
+    goal: &Goal,
+    way: &ContinuationResult,
+) -> anyhow::Result<()> {
+    let walked = way.path.iter().filter(|p| p.distance.is_finite() && way.fraction > 0.0);
     let nearest = walked.min_by(|a, b| a.distance.total_cmp(&b.distance));
     let nearest = nearest.map_or_else(String::new, |p| {
-        format!("{} at {} of the way (0: singular)", number(p.distance), number(p.share))
+        format!("{} at {} of the way (0: singular)", number(p.distance), number(p.fraction))
     });
     output::pairs(
         out,
         [
             ("model", job.mechanism.name().to_owned()),
             ("result", explain(job, goal, way)),
-            ("share of the way", number(way.share)),
+            ("fraction of the way", number(way.fraction)),
             ("least distance", nearest),
             ("q", q_line(&way.q)),
         ],
