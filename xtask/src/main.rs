@@ -27,7 +27,8 @@ cargo xtask <task>
   book      builds the book into target/book and checks its links (needs Python, Node.js with npm,
             PyPI and the npm registry); --serve shows it while you write
   layers    checks that the library's modules import only those before them, and that files are
-            short
+            short; --circles lists files that import one another, --checked headers that name no
+            test
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   viewer-load [seconds]
@@ -60,7 +61,7 @@ fn run() -> Result<()> {
         Some("python") => python::test(),
         Some("viewer") => viewer::task(std::env::args().nth(2).as_deref()),
         Some("book") => book::task(std::env::args().nth(2).as_deref()),
-        Some("layers") => layers::check(),
+        Some("layers") => layers::task(std::env::args().nth(2).as_deref()),
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),
         Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),
