@@ -43,9 +43,9 @@ pinocchio::SE3 target_of(const double* x) {
 
 // The loop that one writes first: damped steps, clamped to the limits, from the middle of the
 // limits and then from postures drawn within them.
-bool damped_loop(Arm& arm, const Robot& robot, Draw& draw, const double* wanted, double tolerance, double* out) {
+bool damped_loop(Arm& arm, const Robot& robot, Draw& draw, const double* desired, double tolerance, double* out) {
   const int n = arm.model.nv;
-  const pinocchio::SE3 target = target_of(wanted);
+  const pinocchio::SE3 target = target_of(desired);
   Eigen::VectorXd q = Eigen::Map<Eigen::VectorXd>(out, n), lower(n), upper(n);
   for (int i = 0; i < n; ++i) lower[i] = robot.joints[i].lower, upper[i] = robot.joints[i].upper;
   for (int attempt = 0; attempt < 200; ++attempt) {
@@ -91,8 +91,8 @@ struct Servo {
     const auto v = svd.matrixV().leftCols<6>();
     Vector6 gains;
     for (int i = 0; i < 6; ++i) gains[i] = s[i] > CUT * s[0] ? 1.0 / s[i] : 0.0;
-    const Vector7 wish = POSTURE * (home - q);
-    rates = v * (gains.asDiagonal() * (svd.matrixU().transpose() * x)) + wish - v * (v.transpose() * wish);
+    const Vector7 secondary = POSTURE * (home - q);
+    rates = v * (gains.asDiagonal() * (svd.matrixU().transpose() * x)) + secondary - v * (v.transpose() * secondary);
     double scale = 1.0;
     for (int i = 0; i < 7; ++i) {
       const double most = std::min(speed[i], (upper[i] - q[i]) / DT), least = std::max(-speed[i], (lower[i] - q[i]) / DT);

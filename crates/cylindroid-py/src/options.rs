@@ -1,8 +1,8 @@
 //! From Python's keywords to the options of the servo, with the names of the command line.
 
-use cylindroid::control::{Gain, Projection, Projector, Secondary, Speed, Task};
+use cylindroid::control::{Gain, Projection, Projector, SecondaryTask, Speed, Task};
 use cylindroid::inverse::HyperbolicDamping;
-use cylindroid::{Error, Mechanism, Method, Reference, ServoOptions, Twist};
+use cylindroid::{Error, Mechanism, Method, ReferenceFrame, ServoOptions, Twist};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -106,7 +106,7 @@ impl InverseChoice<'_> {
             },
             _ => Projection::Oblique {
                 complement: self.give_up.clone().unwrap_or_default(),
-                reference: Reference::Local,
+                reference: ReferenceFrame::Local,
             },
         })
     }
@@ -145,25 +145,25 @@ pub(crate) fn task(
     task.axes = match axes {
         None => task.axes,
         // The error is taken at the tool, so the world's axes are meant.
-        Some("world") => Reference::LocalWorldAligned,
+        Some("world") => ReferenceFrame::LocalWorldAligned,
         Some(name) => reference_of(name)?,
     };
     Ok(task)
 }
 
-/// The wishes for the joints: names, with gains or without.
+/// The secondary tasks: names, with gains or without.
 pub(crate) fn secondary(
     wanted: Option<&Bound<'_, PyAny>>,
     posture: &[f64],
     robot: &Mechanism,
     options: &ServoOptions,
-) -> Result<Vec<Secondary>> {
-    let named = |name: &str, gain: Option<f64>| -> Result<Secondary> {
-        let task = Secondary::named(name, posture)?;
+) -> Result<Vec<SecondaryTask>> {
+    let named = |name: &str, gain: Option<f64>| -> Result<SecondaryTask> {
+        let task = SecondaryTask::named(name, posture)?;
         Ok(gain.map_or(task.clone(), |gain| task.with_gain(gain)))
     };
     let Some(wanted) = wanted else {
-        return Ok(options.usual_secondary(robot)?);
+        return Ok(options.default_secondary(robot)?);
     };
     if let Ok(name) = wanted.cast::<PyString>() {
         let name = name.to_cow()?;

@@ -74,10 +74,10 @@ def test_hybrid_control_is_its_formula_in_every_frame():
     P = cy.Projector(motions, along)
     C = cy.Admittance(0.02, 0.3)
     law = cy.HybridLaw(3.0, C)
-    error, forward, wanted, measured = rng.normal(size=(4, 6))
-    found = law.command(P, error, wanted, measured, forward)
+    error, forward, desired, measured = rng.normal(size=(4, 6))
+    found = law.command(P, error, desired, measured, forward)
     M, one = P.matrix, np.eye(6)
-    expected = M @ (3 * error + forward) + (one - M) @ C.matrix @ (one - M.T) @ (wanted - measured)
+    expected = M @ (3 * error + forward) + (one - M) @ C.matrix @ (one - M.T) @ (desired - measured)
     np.testing.assert_allclose(found.twist, expected, atol=1e-10)
     np.testing.assert_allclose(found.position_part + found.force_part, found.twist, atol=1e-12)
     np.testing.assert_allclose(found.wrench_error @ motions, 0, atol=1e-10)
@@ -85,13 +85,13 @@ def test_hybrid_control_is_its_formula_in_every_frame():
     A = cy.adjoint(T)
     B = np.linalg.inv(A).T
     there = law.seen_from(T).command(
-        cy.Projector(A @ motions, along), A @ error, B @ wanted, B @ measured, A @ forward
+        cy.Projector(A @ motions, along), A @ error, B @ desired, B @ measured, A @ forward
     )
     np.testing.assert_allclose(there.twist, A @ found.twist, atol=1e-9)
     assert "twist" in repr(found)
     with pytest.raises(cy.NotFiniteError):
-        law.command(P, error * np.nan, wanted, measured)
-    with pytest.raises(cy.DimensionError, match="wanted"):
+        law.command(P, error * np.nan, desired, measured)
+    with pytest.raises(cy.DimensionError, match="desired"):
         law.command(P, error, [1, 2], measured)
     with pytest.raises(cy.InvalidOptionError, match="gain"):
         cy.HybridLaw(0.0, C)
@@ -157,8 +157,8 @@ def test_a_squeeze_moves_nothing_in_the_stiffness():
     c = r.constraint(r.assemble().q)
     a = len(c.actuated)
     stiffness = rng.uniform(1e3, 5e3, a)
-    wanted, measured = rng.normal(size=(2, a))
-    found = cy.InternalForceLaw(10.0, stiffness).command(c, wanted, measured)
+    desired, measured = rng.normal(size=(2, a))
+    found = cy.InternalForceLaw(10.0, stiffness).command(c, desired, measured)
     m = c.mobility()
     motions = m.dof_basis[:a]
     # Internal torques do no work; the rates lie across all motions in the metric of the springs.
@@ -173,4 +173,4 @@ def test_a_squeeze_moves_nothing_in_the_stiffness():
     again = cy.InternalForceLaw(1.0, stiffness).command(c, squeeze, squeeze)
     np.testing.assert_allclose(again.error, 0, atol=1e-9)
     with pytest.raises(cy.DimensionError, match="stiffness"):
-        cy.InternalForceLaw(1.0, [1.0]).command(c, wanted, measured)
+        cy.InternalForceLaw(1.0, [1.0]).command(c, desired, measured)

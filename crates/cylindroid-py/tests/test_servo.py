@@ -116,7 +116,7 @@ def test_options_are_the_command_lines():
     assert tool.status == "reached"
 
 
-def test_secondary_wishes_do_not_disturb_the_task():
+def test_secondary_tasks_do_not_disturb_the_task():
     r = cy.load("panda")
     q = r.home + 0.2
     target, J = r.fk(q), r.jacobian(q)
@@ -128,8 +128,8 @@ def test_secondary_wishes_do_not_disturb_the_task():
         rates = cy.Servo(r, **options).step(q, target)
         assert np.linalg.norm(rates) > 1e-6
         np.testing.assert_allclose(J @ rates, 0, atol=1e-12)
-    wish = np.ones(7)
-    rates = cy.Servo(r, secondary="none").step(q, target, wish)
+    velocities = np.ones(7)
+    rates = cy.Servo(r, secondary="none").step(q, target, velocities)
     assert np.linalg.norm(rates) > 0.01
     np.testing.assert_allclose(J @ rates, 0, atol=1e-12)
     # Trees and chains have kernels of their own: a rounding of the pose, times the gain, over the

@@ -17,25 +17,25 @@ try:
 except np.linalg.LinAlgError as error:
     print("numpy:", error)
 
-# A wish that five joints cannot fulfil: a motion sideways and a turn.
-wish = np.array([0.05, 0.02, 0.0, 0.2, 0.1, 0.1])
+# A desired twist that five joints cannot realise: sideways translation and rotation.
+twist = np.array([0.05, 0.02, 0.0, 0.2, 0.1, 0.1])
 millimetres = np.diag([1000.0, 1000.0, 1000.0, 1.0, 1.0, 1.0])
 
 # The pseudoinverse answers with other joint rates when metres become millimetres ...
-in_m = cy.pinv(J, 1e-9).matrix @ wish
-in_mm = cy.pinv(millimetres @ J, 1e-9).matrix @ (millimetres @ wish)
+in_m = cy.pinv(J, 1e-9).matrix @ twist
+in_mm = cy.pinv(millimetres @ J, 1e-9).matrix @ (millimetres @ twist)
 print("pseudoinverse, m: ", in_m.round(4))
 print("pseudoinverse, mm:", in_mm.round(4))
 assert np.abs(in_m - in_mm).max() > 1e-2
 
 # ... the hyperbolic one does not: nor when the frame changes. Its pitch h is a length.
 h = 0.1
-same = cy.hyperbolic(J, h).matrix @ wish
-also = cy.hyperbolic(millimetres @ J, 1000 * h).matrix @ (millimetres @ wish)
+same = cy.hyperbolic(J, h).matrix @ twist
+also = cy.hyperbolic(millimetres @ J, 1000 * h).matrix @ (millimetres @ twist)
 print("hyperbolic:       ", same.round(4))
 assert np.abs(same - also).max() < 1e-9
 A = cy.adjoint(np.linalg.inv(robot.fk(q)))  # the same twists seen from another frame
-assert np.abs(cy.hyperbolic(A @ J, h).matrix @ (A @ wish) - same).max() < 1e-9
+assert np.abs(cy.hyperbolic(A @ J, h).matrix @ (A @ twist) - same).max() < 1e-9
 
 # It does not exist for every pitch, and says why.
 system = cy.ScrewSystem(J, length=robot.reach)

@@ -10,7 +10,7 @@ use cylindroid::ik::{Goal, IkOptions, Solver};
 use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Batch as Numbers, BatchOptions};
-use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Vec3, catalogue};
+use cylindroid::{Matrix, Mechanism, Pose, ReferenceFrame, Servo, ServoOptions, Vec3, catalogue};
 use std::hint::black_box;
 
 /// Calls a kernel so many times.
@@ -64,7 +64,7 @@ fn jacobian(calls: usize) {
     let q = [posture(&robot, 0), posture(&robot, 1)];
     for i in 0..calls {
         black_box(chain.set(black_box(&q[i % 2])));
-        chain.jacobian_into(Reference::LocalWorldAligned, &mut j);
+        chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut j);
         black_box(&j);
     }
 }
@@ -76,7 +76,7 @@ fn batch(calls: usize) {
     let (mut poses, mut jacobians) = (vec![0.0; 1000 * 16], vec![0.0; 1000 * 6 * robot.n()]);
     let q: Vec<f64> = (0..1000).flat_map(|i| posture(&robot, i)).collect();
     for _ in 0..calls {
-        let reference = Reference::LocalWorldAligned;
+        let reference = ReferenceFrame::LocalWorldAligned;
         batch.poses_and_jacobians_into(&q, reference, &mut poses, &mut jacobians).unwrap();
         black_box((&poses, &jacobians));
     }
@@ -99,7 +99,7 @@ fn near_jacobians() -> [Matrix; 2] {
     let robot = panda();
     [0, 1].map(|i| {
         let state = robot.state(&posture(&robot, i)).unwrap();
-        state.jacobian(robot.tool(), Reference::LocalWorldAligned)
+        state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
     })
 }
 

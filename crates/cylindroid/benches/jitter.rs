@@ -20,7 +20,7 @@ fn main() {
         let robot = catalogue::load(name).unwrap();
         let mut options = ServoOptions::new(&robot);
         if besides {
-            options.secondary = options.usual_secondary(&robot).unwrap();
+            options.secondary = options.default_secondary(&robot).unwrap();
         }
         let mut servo = Servo::new(&robot, options).unwrap();
         let start = robot.state(robot.home()).unwrap().pose(robot.tool());

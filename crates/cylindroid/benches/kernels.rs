@@ -13,7 +13,7 @@ use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Batch as Numbers, BatchOptions, Manipulability, Metrics};
 use cylindroid::model::Coordinate;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
-use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, catalogue};
+use cylindroid::{Matrix, Mechanism, Pose, ReferenceFrame, Servo, ServoOptions, catalogue};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
@@ -56,7 +56,7 @@ fn forward_kinematics_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(|| {
         i ^= 1;
         chain.set(black_box(&q[i]));
-        chain.jacobian_into(Reference::LocalWorldAligned, &mut j);
+        chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut j);
         black_box(&j);
     });
 }
@@ -75,7 +75,7 @@ fn batch_of_jacobians(bencher: Bencher<'_, '_>, name: &str) {
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
         alone.install(|| {
-            let reference = Reference::LocalWorldAligned;
+            let reference = ReferenceFrame::LocalWorldAligned;
             batch.poses_and_jacobians_into(&q, reference, &mut poses, &mut jacobians).unwrap();
         });
     });
@@ -92,7 +92,7 @@ fn state_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(|| {
         i ^= 1;
         state.set(black_box(&q[i])).unwrap();
-        state.jacobian_into(robot.tool(), Reference::LocalWorldAligned, &mut j);
+        state.jacobian_into(robot.tool(), ReferenceFrame::LocalWorldAligned, &mut j);
         black_box(&j);
     });
 }
@@ -104,14 +104,14 @@ fn hessian_panda(bencher: Bencher<'_, '_>) {
     chain.set(robot.home());
     let mut h = vec![Matrix::zeros(6, 7); 7];
     bencher.bench_local(|| {
-        chain.hessian_into(Reference::LocalWorldAligned, &mut h);
+        chain.hessian_into(ReferenceFrame::LocalWorldAligned, &mut h);
         black_box(&h);
     });
 }
 
 fn panda_jacobian() -> Matrix {
     let robot = robot("panda");
-    robot.state(robot.home()).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned)
+    robot.state(robot.home()).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
 }
 
 #[divan::bench]
@@ -182,7 +182,7 @@ fn servo_step(bencher: Bencher<'_, '_>, robot_name: &str, method: &str) {
 fn jacobians() -> [(Matrix, &'static str); 2] {
     let of = |name: &str, q: &[f64]| {
         let robot = robot(name);
-        robot.state(q).unwrap().jacobian(robot.tool(), Reference::World)
+        robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::World)
     };
     [(of("3r", &[0.3, 0.5, -1.1]), "3r"), (of("youbot", &[0.4, 0.6, 0.9, 0.5, 0.2]), "youbot")]
 }

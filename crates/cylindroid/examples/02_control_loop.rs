@@ -1,7 +1,7 @@
 //! A control loop as a robot's driver writes it: one call a cycle, nothing allocated.
 #![allow(clippy::print_stdout)]
 
-use cylindroid::control::{Secondary, Status, Target};
+use cylindroid::control::{SecondaryTask, Status, Target};
 use cylindroid::inverse::Method;
 use cylindroid::{Servo, ServoOptions, Twist, Vec3};
 
@@ -10,7 +10,7 @@ fn main() -> cylindroid::Result<()> {
     let options = ServoOptions {
         dt: 1e-3,
         method: Method::VariableDamping { onset: 0.05, damping: 0.02 },
-        secondary: vec![Secondary::LimitAvoidance { gain: 0.5, margin: 0.2 }],
+        secondary: vec![SecondaryTask::LimitAvoidance { gain: 0.5, margin: 0.2 }],
         ..ServoOptions::new(&robot)
     };
     let mut servo = Servo::new(&robot, options)?;

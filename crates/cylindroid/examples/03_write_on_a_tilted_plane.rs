@@ -74,7 +74,7 @@ fn main() -> cylindroid::Result<()> {
         let input = HybridInput {
             error: pose.screw_to(target),
             feed_forward: slide(speed),
-            wanted: force(normal * -FORCE),
+            desired: force(normal * -FORCE),
             measured: force(measured),
         };
         let twist = law.command(&projector, &input)?.twist;
@@ -86,7 +86,7 @@ fn main() -> cylindroid::Result<()> {
         let far_input = HybridInput {
             error: g.adjoint(input.error),
             feed_forward: g.adjoint(input.feed_forward),
-            wanted: g.coadjoint(input.wanted),
+            desired: g.coadjoint(input.desired),
             measured: g.coadjoint(input.measured),
         };
         let far = g.inverse().adjoint(far_law.command(&far_projector, &far_input)?.twist);

@@ -2,12 +2,12 @@
 //! tells what it can do, in numbers that do not change when the frame does.
 //!
 //! ```
-//! use cylindroid::{catalogue, Reference};
+//! use cylindroid::{catalogue, ReferenceFrame};
 //!
 //! let robot = catalogue::load("panda")?;
 //! let state = robot.state(robot.home())?;
 //! let world_from_tool = state.pose(robot.tool());
-//! let jacobian = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+//! let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
 //! assert_eq!((jacobian.rows(), jacobian.cols()), (6, 7));
 //! # assert!(world_from_tool.translation.x > 0.3);
 //! # Ok::<(), cylindroid::Error>(())
@@ -15,7 +15,7 @@
 //!
 //! Conventions, once for all: SI units and radians; twists and wrenches as vectors are linear
 //! first (`[v; w]`, `[f; m]`); `world_from_tool` names a pose; a Jacobian always names its
-//! [`Reference`]. The modules form one line, each imports only those before it:
+//! [`ReferenceFrame`]. The modules form one line, each imports only those before it:
 //! `error, tolerance, scalar, linalg, spatial, screws, inverse, model, kinematics, closure,
 //! manipulability, ik, control`.
 
@@ -38,7 +38,7 @@ pub mod tolerance;
 pub use control::{Servo, ServoOptions};
 pub use error::{Error, FileError, Result};
 pub use inverse::{Inverse, Method};
-pub use kinematics::{EndEffector, Reference, State};
+pub use kinematics::{EndEffector, ReferenceFrame, State};
 pub use linalg::Matrix;
 pub use model::{FrameId, Mechanism, catalogue, load};
 pub use screws::{Screw, ScrewSystem};

@@ -5,14 +5,16 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use cylindroid::control::{
-    Admittance, AdmittanceGain, Gain, HybridInput, HybridLaw, Projection, Secondary, SharedInput,
-    SharedLaw, Task,
+    Admittance, AdmittanceGain, Gain, HybridInput, HybridLaw, Projection, SecondaryTask,
+    SharedInput, SharedLaw, Task,
 };
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
 use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::screws::{Along, Projector, ScrewOptions};
-use cylindroid::{Matrix, Mechanism, Pose, Reference, Servo, ServoOptions, Twist, Vec3, catalogue};
+use cylindroid::{
+    Matrix, Mechanism, Pose, ReferenceFrame, Servo, ServoOptions, Twist, Vec3, catalogue,
+};
 
 struct Counting;
 
@@ -62,9 +64,9 @@ fn hot_paths_allocate_nothing() {
         let counted = count(|| {
             for _ in 0..100 {
                 state.set(&home).unwrap();
-                state.jacobian_into(robot.tool(), Reference::World, &mut j);
+                state.jacobian_into(robot.tool(), ReferenceFrame::World, &mut j);
                 chain.set(&home);
-                chain.jacobian_into(Reference::Local, &mut narrow);
+                chain.jacobian_into(ReferenceFrame::Local, &mut narrow);
             }
         });
         assert_eq!(counted, 0, "{name}: kinematics");
@@ -80,10 +82,10 @@ fn hot_paths_allocate_nothing() {
                     // So fast that velocity, acceleration and position limits all bite.
                     gain: Gain { position: 100.0, orientation: 100.0 },
                     secondary: vec![
-                        Secondary::Centring { gain: 1.0 },
-                        Secondary::Posture { q: home.clone(), gain: 1.0 },
-                        Secondary::LimitAvoidance { gain: 1.0, margin: 0.1 },
-                        Secondary::Manipulability { gain: 1.0 },
+                        SecondaryTask::Centring { gain: 1.0 },
+                        SecondaryTask::Posture { q: home.clone(), gain: 1.0 },
+                        SecondaryTask::LimitAvoidance { gain: 1.0, margin: 0.1 },
+                        SecondaryTask::Manipulability { gain: 1.0 },
                     ],
                     ..ServoOptions::new(&robot)
                 };
@@ -124,7 +126,9 @@ fn batches_allocate_nothing() {
             let counted = count(|| {
                 batch.poses_into(&q, &mut poses).unwrap();
                 let (poses, jacobians) = (&mut poses[..], &mut jacobians[..]);
-                batch.poses_and_jacobians_into(&q, Reference::Local, poses, jacobians).unwrap();
+                batch
+                    .poses_and_jacobians_into(&q, ReferenceFrame::Local, poses, jacobians)
+                    .unwrap();
             });
             assert_eq!(counted, 0, "{name}: {rows} rows");
         }
@@ -159,7 +163,7 @@ fn projections(robot: &Mechanism, start: Pose) {
         Projection::Hyperbolic { h: f64::INFINITY },
         damped(HyperbolicDamping::Invariant { mu: 0.01 }),
         damped(HyperbolicDamping::Gram { lambda: 0.01 }),
-        Projection::Oblique { complement: vec![give_up], reference: Reference::Local },
+        Projection::Oblique { complement: vec![give_up], reference: ReferenceFrame::Local },
     ] {
         let name = format!("{projection:?}");
         let options = ServoOptions { projection, ..ServoOptions::new(robot) };

@@ -55,8 +55,8 @@ export class Compare {
     const old = [this.first.value, this.second.value];
     [this.first, this.second].forEach((choice, i) => {
       fill(choice, ...names.map((name) => h("option", { value: name }, name.replaceAll("-", " "))));
-      const wish = [old[i], i === 0 ? "truncated" : "hyperbolic", names[i]].find((name) => name && names.includes(name));
-      choice.value = wish ?? names[0] ?? "";
+      const preferred = [old[i], i === 0 ? "truncated" : "hyperbolic", names[i]].find((name) => name && names.includes(name));
+      choice.value = preferred ?? names[0] ?? "";
     });
     this.later();
   }

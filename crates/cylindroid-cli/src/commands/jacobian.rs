@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use cylindroid::kinematics::OrientationRates;
 use cylindroid::linalg::{Metric, Rank, Svd};
-use cylindroid::{Matrix, Reference};
+use cylindroid::{Matrix, ReferenceFrame};
 use serde::Serialize;
 
 use super::{Style, configuration, end_effector};
@@ -61,9 +61,9 @@ pub(crate) fn run(
     let state = robot.state(&configuration(&robot, &args.posture)?)?;
     let end_effector = end_effector(&robot, &args.frame)?;
     let reference = match args.reference {
-        ReferenceName::Local => Reference::Local,
-        ReferenceName::World => Reference::World,
-        ReferenceName::LocalWorldAligned => Reference::LocalWorldAligned,
+        ReferenceName::Local => ReferenceFrame::Local,
+        ReferenceName::World => ReferenceFrame::World,
+        ReferenceName::LocalWorldAligned => ReferenceFrame::LocalWorldAligned,
     };
 
     let (matrix, analytical) = match args.analytical {

@@ -3,7 +3,7 @@
 use cylindroid::control::Task;
 use cylindroid::model::Mechanism;
 use cylindroid::spatial::{Quaternion, Rpy};
-use cylindroid::{Error, Pose, Reference, Result, Rotation, Vec3};
+use cylindroid::{Error, Pose, ReferenceFrame, Result, Rotation, Vec3};
 
 use crate::args::{TargetArgs, TaskAxes};
 use crate::output::number;
@@ -22,8 +22,8 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
     let mut task = Task::named(named, robot)?;
     match args.task_axes {
         None => {}
-        Some(TaskAxes::Local) => task.axes = Reference::Local,
-        Some(TaskAxes::World) => task.axes = Reference::LocalWorldAligned,
+        Some(TaskAxes::Local) => task.axes = ReferenceFrame::Local,
+        Some(TaskAxes::World) => task.axes = ReferenceFrame::LocalWorldAligned,
     }
     let driven = match (&args.task, named) {
         (None, "position") => {
@@ -41,7 +41,7 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
         _ => {
             let names = Task::COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
             let names: Vec<&str> = names.map(|(name, _)| *name).collect();
-            let axes = if task.axes == Reference::Local { "tool" } else { "world" };
+            let axes = if task.axes == ReferenceFrame::Local { "tool" } else { "world" };
             format!("{} along and about the axes of the {axes}", names.join(", "))
         }
     };

@@ -8,7 +8,7 @@ mod lost;
 use cylindroid::closure::ClosedChain;
 use cylindroid::kinematics::Chain;
 use cylindroid::screws::{Line, Screw, ScrewOptions, ScrewSystem};
-use cylindroid::{Error, Reference, Result, Twist, Vec3};
+use cylindroid::{Error, ReferenceFrame, Result, Twist, Vec3};
 use serde::Serialize;
 
 use self::ellipsoid::{Ellipsoid, EllipsoidJson, ellipsoid};
@@ -215,7 +215,7 @@ pub(super) fn system(session: &Session) -> Result<ScrewSystem> {
     let twists = if mechanism.is_closed() {
         ClosedChain::of(state, Some(of.frame), None)?.reference_twists(state)
     } else {
-        let jacobian = state.jacobian(of, Reference::World);
+        let jacobian = state.jacobian(of, ReferenceFrame::World);
         let column = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
         Chain::new(mechanism, of).coordinates().iter().map(column).collect()
     };

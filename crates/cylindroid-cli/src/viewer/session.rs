@@ -87,7 +87,7 @@ impl Session {
         let mut options = ServoOptions::new(&mechanism);
         options.end_effector = start.end_effector;
         options.dt = 1.0 / f64::from(STEPS);
-        options.secondary = options.usual_secondary(&mechanism)?;
+        options.secondary = options.default_secondary(&mechanism)?;
         let state = mechanism.state(&start.q)?;
         let method = Chosen::plain(options.method);
         Ok(Self {
@@ -367,7 +367,7 @@ impl Session {
 
     /// Another servo, if the options make one; drives that do not steer the tool leave none.
     fn take(&mut self, mut options: ServoOptions) -> Result<()> {
-        options.secondary = options.usual_secondary(&self.mechanism)?;
+        options.secondary = options.default_secondary(&self.mechanism)?;
         options.check(&self.mechanism)?;
         self.servo = Servo::new(&self.mechanism, options.clone());
         self.options = options;

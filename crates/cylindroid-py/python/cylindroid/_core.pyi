@@ -349,7 +349,7 @@ class HybridLaw:
         self,
         projector: Projector,
         error: ArrayLike,
-        wanted: ArrayLike,
+        desired: ArrayLike,
         measured: ArrayLike,
         feed_forward: ArrayLike | None = None,
     ) -> HybridCommand: ...
@@ -368,7 +368,7 @@ class InternalForceCommand:
 class InternalForceLaw:
     def __new__(cls, gain: float, stiffness: ArrayLike) -> InternalForceLaw: ...
     def command(
-        self, constraint: Constraint, wanted: ArrayLike, measured: ArrayLike
+        self, constraint: Constraint, desired: ArrayLike, measured: ArrayLike
     ) -> InternalForceCommand: ...
 
 @final

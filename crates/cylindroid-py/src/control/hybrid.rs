@@ -44,7 +44,7 @@ use crate::table;
 /// >>> projector = cy.Projector(slide_and_turn, np.inf)
 /// >>> law = cy.HybridLaw(10.0, cy.Admittance(0.01))
 /// >>> command = law.command(projector, error=[0.02, 0, 0.3, 0, 0, 0],
-/// ...                       wanted=[0, 0, -10, 0, 0, 0], measured=[1, 0, -8, 0, 0, 0])
+/// ...                       desired=[0, 0, -10, 0, 0, 0], measured=[1, 0, -8, 0, 0, 0])
 /// >>> command.twist.round(9) + 0.0
 /// array([ 0.2 ,  0.  , -0.02,  0.  ,  0.  ,  0.  ])
 #[pyclass(frozen, name = "HybridLaw", module = "cylindroid")]
@@ -64,7 +64,7 @@ pub(crate) struct PyHybridLaw {
 /// force_part : ndarray, (6,)
 ///     Of the wrench error, along what the projector drops.
 /// wrench_error : ndarray, (6,)
-///     What counts of wanted less measured: the part that does no work on those motions.
+///     What counts of desired less measured: the part that does no work on those motions.
 #[pyclass(frozen, name = "HybridCommand", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyHybridCommand {
@@ -87,7 +87,7 @@ impl PyHybridLaw {
     ///     On the motions controlled in position.
     /// error : array_like, (6,)
     ///     From the tool to its target, see `screw_to` [m, rad].
-    /// wanted, measured : array_like, (6,)
+    /// desired, measured : array_like, (6,)
     ///     Wrenches that the tool shall exert and exerts on its surroundings, force first: the
     ///     negative of what a sensor in the wrist reads.
     /// feed_forward : array_like, (6,), optional
@@ -101,19 +101,19 @@ impl PyHybridLaw {
     /// Raises
     /// ------
     /// DimensionError, NotFiniteError
-    #[pyo3(signature = (projector, error, wanted, measured, feed_forward = None))]
+    #[pyo3(signature = (projector, error, desired, measured, feed_forward = None))]
     fn command(
         &self,
         projector: PyRef<'_, PyProjector>,
         error: Numbers<'_>,
-        wanted: Numbers<'_>,
+        desired: Numbers<'_>,
         measured: Numbers<'_>,
         feed_forward: Option<Numbers<'_>>,
     ) -> Result<PyHybridCommand> {
         let input = HybridInput {
             error: error.twist("error")?,
             feed_forward: feed_forward.map_or(Ok(Twist::ZERO), |f| f.twist("feed_forward"))?,
-            wanted: wanted.wrench("wanted")?,
+            desired: desired.wrench("desired")?,
             measured: measured.wrench("measured")?,
         };
         Ok(PyHybridCommand { inner: self.inner.command(&projector.inner, &input)? })

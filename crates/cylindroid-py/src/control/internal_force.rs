@@ -34,7 +34,7 @@ use crate::table;
 /// >>> import cylindroid as cy
 /// >>> pair = cy.Constraint([[1.0, 0.0], [0.0, 1.0]], G=[[1.0, 1.0]])
 /// >>> law = cy.InternalForceLaw(10.0, [1000.0, 1000.0])
-/// >>> command = law.command(pair, wanted=[5.0, -5.0], measured=[4.0, -4.0])
+/// >>> command = law.command(pair, desired=[5.0, -5.0], measured=[4.0, -4.0])
 /// >>> command.rates.round(9)
 /// array([ 0.01, -0.01])
 #[pyclass(frozen, name = "InternalForceLaw", module = "cylindroid")]
@@ -50,7 +50,7 @@ pub(crate) struct PyInternalForceLaw {
 /// rates : ndarray, (a,)
 ///     [rad/s or m/s]
 /// internal, error : ndarray, (a,)
-///     The internal part of the measured torques, and of wanted less measured ones [N m or N].
+///     The internal part of the measured torques, and of desired less measured ones [N m or N].
 #[pyclass(frozen, name = "InternalForceCommand", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyInternalForceCommand {
@@ -71,10 +71,10 @@ impl PyInternalForceLaw {
     /// ----------
     /// constraint : Constraint
     ///     Of the mechanism where it is now.
-    /// wanted, measured : array_like, (a,)
+    /// desired, measured : array_like, (a,)
     ///     Torques as the joints exert them, in the order of `constraint.actuated`; only their
     ///     internal part counts. For a squeeze t at the contacts (a column of
-    ///     `Constraint.internal_forces`) the wanted ones are `-Ja.T @ t`.
+    ///     `Constraint.internal_forces`) the desired ones are `-Ja.T @ t`.
     ///
     /// Returns
     /// -------
@@ -83,16 +83,16 @@ impl PyInternalForceLaw {
     /// Raises
     /// ------
     /// DimensionError, NotFiniteError
-    #[pyo3(signature = (constraint, wanted, measured))]
+    #[pyo3(signature = (constraint, desired, measured))]
     fn command(
         &self,
         constraint: PyRef<'_, PyConstraint>,
-        wanted: Numbers<'_>,
+        desired: Numbers<'_>,
         measured: Numbers<'_>,
     ) -> Result<PyInternalForceCommand> {
         let relation = constraint.relation(None)?;
-        let (wanted, measured) = (wanted.vector("wanted")?, measured.vector("measured")?);
-        Ok(PyInternalForceCommand { inner: self.inner.command(&relation, wanted, measured)? })
+        let (desired, measured) = (desired.vector("desired")?, measured.vector("measured")?);
+        Ok(PyInternalForceCommand { inner: self.inner.command(&relation, desired, measured)? })
     }
 }
 

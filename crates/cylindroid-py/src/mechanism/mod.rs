@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use cylindroid::closure::MobilityCounts;
 use cylindroid::manipulability::{Batch, BatchOptions};
 use cylindroid::model::Dimension;
-use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose, Reference};
+use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose, ReferenceFrame};
 use pyo3::prelude::*;
 use pyo3::{IntoPyObjectExt, intern};
 
@@ -79,8 +79,8 @@ pub(crate) enum Origin {
     Driven { of: Box<PyMechanism>, names: Vec<String> },
 }
 
-pub(crate) fn reference_of(name: &str) -> Result<Reference> {
-    options::named("reference", name, &Reference::NAMES)
+pub(crate) fn reference_of(name: &str) -> Result<ReferenceFrame> {
+    options::named("reference", name, &ReferenceFrame::NAMES)
 }
 
 /// Drives, reference, bits of the length.

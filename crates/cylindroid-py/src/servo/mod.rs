@@ -94,7 +94,7 @@ pub(crate) use trajectory::PyTrajectory;
 /// active_limits : list of (str, str)
 ///     Joints whose limit set a rate in the last step, and its kind.
 /// scale : float
-///     The share of the wanted motion that the limits left.
+///     The share of the desired motion that the limits left.
 /// bent : bool
 ///     True if they did not leave its direction either.
 /// no_inverse : str or None
@@ -253,15 +253,15 @@ impl PyServo {
                 Some(twist) => twist.twist("feed_forward")?,
             },
         };
-        let wanted = match &secondary {
+        let desired = match &secondary {
             None => &[],
-            Some(wanted) => {
-                let wanted = wanted.vector("secondary")?;
-                self.inner.mechanism().check_q("secondary", wanted)?;
-                wanted
+            Some(desired) => {
+                let desired = desired.vector("secondary")?;
+                self.inner.mechanism().check_q("secondary", desired)?;
+                desired
             }
         };
-        self.last = Some(self.inner.step_with(q.vector("q")?, target, wanted)?);
+        self.last = Some(self.inner.step_with(q.vector("q")?, target, desired)?);
         Ok(arrays::vector(py, self.inner.rates()))
     }
 

@@ -25,6 +25,6 @@ pub use motion::{
 };
 pub use servo::{
     Gain, InverseChoice, Motion1, Posture, Projection, Projector, RatesAtPoint, ReferencePoints,
-    Secondary, Servo, ServoOptions, Speed, Stall, Status, Step, Target, Tolerance,
+    SecondaryTask, Servo, ServoOptions, Speed, Stall, Status, Step, Target, Tolerance,
 };
 pub use solver::{LimitKind, RateBounds, Saturation};

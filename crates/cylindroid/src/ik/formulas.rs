@@ -12,7 +12,7 @@ use super::analytic::{Analytic, Postures};
 use super::goal::{Goal, Task};
 use super::options::IkOptions;
 use crate::error::Result;
-use crate::kinematics::{Chain, Reference};
+use crate::kinematics::{Chain, ReferenceFrame};
 use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
 use crate::scalar::uniform;
@@ -95,7 +95,7 @@ fn self_motion(mechanism: &Mechanism, mut chain: Chain, free: &[usize]) -> [f64;
             q[c] = lower + (upper - lower) * uniform(&mut random);
         }
         chain.set(&q);
-        chain.jacobian_into(Reference::LocalWorldAligned, &mut all);
+        chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut all);
         svd.decompose(&Matrix::from_fn(6, 7, |i, j| all[(i, free[j])]));
         for (j, sum) in sum.iter_mut().enumerate() {
             let elsewhere: f64 = (0..6).map(|i| svd.v(i)[j].powi(2)).sum();

@@ -1,7 +1,7 @@
 //! What an end effector shall do: a pose, or the components of it that matter.
 
 use crate::error::{Error, Result};
-use crate::kinematics::{EndEffector, Reference};
+use crate::kinematics::{EndEffector, ReferenceFrame};
 use crate::model::{Dimension, Mechanism};
 use crate::spatial::{Pose, Twist};
 
@@ -11,7 +11,7 @@ pub struct Task {
     /// Translation along x, y, z and rotation about x, y, z.
     pub components: [bool; 6],
     /// The axes of the components: `Local` (the tool's) or `LocalWorldAligned` (the world's).
-    pub axes: Reference,
+    pub axes: ReferenceFrame,
 }
 
 impl Task {
@@ -19,25 +19,25 @@ impl Task {
     pub const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
     /// Position and orientation.
-    pub const POSE: Self = Self { components: [true; 6], axes: Reference::LocalWorldAligned };
+    pub const POSE: Self = Self { components: [true; 6], axes: ReferenceFrame::LocalWorldAligned };
     /// Position and orientation in the plane x-y.
     pub const PLANAR: Self = Self {
         components: [true, true, false, false, false, true],
-        axes: Reference::LocalWorldAligned,
+        axes: ReferenceFrame::LocalWorldAligned,
     };
     /// Position alone.
     pub const POSITION: Self = Self {
         components: [true, true, true, false, false, false],
-        axes: Reference::LocalWorldAligned,
+        axes: ReferenceFrame::LocalWorldAligned,
     };
     /// Orientation alone.
     pub const ORIENTATION: Self = Self {
         components: [false, false, false, true, true, true],
-        axes: Reference::LocalWorldAligned,
+        axes: ReferenceFrame::LocalWorldAligned,
     };
     /// Position and the direction of the tool's z axis: a task for five joints.
     pub const POINTING: Self =
-        Self { components: [true, true, true, true, true, false], axes: Reference::Local };
+        Self { components: [true, true, true, true, true, false], axes: ReferenceFrame::Local };
 
     /// The task of this name: `pose`, `position`, `orientation`, `pointing`, or components like
     /// `x,y,rz`. Of planar mechanisms with loops the first three are those of the plane, as in
@@ -94,7 +94,7 @@ impl Task {
                 reason: "name at least one of x, y, z, rx, ry, rz".to_owned(),
             });
         }
-        if self.axes == Reference::World {
+        if self.axes == ReferenceFrame::World {
             return Err(Error::InvalidOption {
                 option: "task axes",
                 value: "world".to_owned(),
@@ -116,10 +116,10 @@ impl Task {
     pub(crate) fn seen(self, pose: Pose, twist: Twist) -> Twist {
         let r = pose.rotation.matrix();
         let twist = match self.axes {
-            Reference::Local => {
+            ReferenceFrame::Local => {
                 Twist { linear: r.tr_mul(twist.linear), angular: r.tr_mul(twist.angular) }
             }
-            Reference::World | Reference::LocalWorldAligned => twist,
+            ReferenceFrame::World | ReferenceFrame::LocalWorldAligned => twist,
         };
         let mut v = twist.to_array();
         for (x, keep) in v.iter_mut().zip(self.components) {

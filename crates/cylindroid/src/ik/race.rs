@@ -280,7 +280,7 @@ mod tests {
     use super::super::attempt::Problem;
     use super::super::goal::Task;
     use super::*;
-    use crate::kinematics::Reference;
+    use crate::kinematics::ReferenceFrame;
     use crate::model::catalogue;
     use crate::scalar::uniform;
 
@@ -292,7 +292,7 @@ mod tests {
         for (name, task) in [
             ("panda", Task::POSE),
             ("panda", Task::POSITION),
-            ("iiwa14", Task { axes: Reference::Local, ..Task::POSE }),
+            ("iiwa14", Task { axes: ReferenceFrame::Local, ..Task::POSE }),
             ("ur5e", Task::POSE),
             ("3r", Task::PLANAR),
         ] {

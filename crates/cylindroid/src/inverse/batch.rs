@@ -22,11 +22,12 @@ use crate::linalg::{Matrix, Rank, Svd};
 ///
 /// ```
 /// use cylindroid::inverse::Batch;
-/// use cylindroid::{Method, Reference, kinematics};
+/// use cylindroid::{Method, ReferenceFrame, kinematics};
 ///
 /// let robot = cylindroid::load("panda")?;
 /// let q = [robot.home(), robot.home()].concat();
-/// let jacobians = kinematics::Batch::new(&robot, robot.tool()).jacobians(&q, Reference::Local)?;
+/// let jacobians = kinematics::Batch::new(&robot, robot.tool())
+///     .jacobians(&q, ReferenceFrame::Local)?;
 /// let inverses = Batch::new(Method::default(), 6, robot.n())?.inverses(&jacobians)?;
 /// assert_eq!(inverses.matrices.len(), 2 * robot.n() * 6);
 /// assert!(inverses.ranks.iter().all(|r| r.rank == 6));

@@ -3,7 +3,7 @@
 //! Formula  serial.rs, with several configurations side by side
 //! Shapes   q: N x n, poses: N x 4 x 4, Jacobians: N x 6 x n; row-major, n of the mechanism
 //! Units    rad, m; m/s and rad/s for each unit of rate
-//! Frame    [`Reference`]
+//! Frame    [`ReferenceFrame`]
 //! Why so   the chain is gone along once for four or eight configurations, a register for each
 //!          number (structure of arrays); configurations are taken in at the start and put out as
 //!          rows at the end. Every configuration goes the same way whatever its place and the
@@ -13,7 +13,7 @@
 use rayon::prelude::*;
 
 use super::chain::Chain;
-use super::jacobian::Reference;
+use super::jacobian::ReferenceFrame;
 use super::lanes::{self, Work};
 use super::state::EndEffector;
 use crate::error::{Error, Result};
@@ -33,13 +33,13 @@ const LARGE: usize = 4 << 20;
 /// place of 1 m and 1 rad for arms of that size.
 ///
 /// ```
-/// use cylindroid::Reference;
+/// use cylindroid::ReferenceFrame;
 /// use cylindroid::kinematics::Batch;
 ///
 /// let robot = cylindroid::load("panda")?;
 /// let batch = Batch::new(&robot, robot.tool());
 /// let q = [robot.home(), robot.home()].concat();
-/// let jacobians = batch.jacobians(&q, Reference::LocalWorldAligned)?;
+/// let jacobians = batch.jacobians(&q, ReferenceFrame::LocalWorldAligned)?;
 /// assert_eq!(jacobians.len(), 2 * 6 * robot.n());
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
@@ -88,7 +88,7 @@ impl Batch {
     ///
     /// # Errors
     /// As [`Batch::poses`].
-    pub fn jacobians(&self, q: &[f64], reference: Reference) -> Result<Vec<f64>> {
+    pub fn jacobians(&self, q: &[f64], reference: ReferenceFrame) -> Result<Vec<f64>> {
         let mut out = vec![0.0; self.mechanism.count_rows("q", q)? * 6 * self.mechanism.n()];
         self.run(q, None, Some((reference, &mut out)))?;
         Ok(out)
@@ -98,7 +98,12 @@ impl Batch {
     ///
     /// # Errors
     /// As there; an `out` of another size.
-    pub fn jacobians_into(&self, q: &[f64], reference: Reference, out: &mut [f64]) -> Result<()> {
+    pub fn jacobians_into(
+        &self,
+        q: &[f64],
+        reference: ReferenceFrame,
+        out: &mut [f64],
+    ) -> Result<()> {
         self.run(q, None, Some((reference, out)))
     }
 
@@ -110,7 +115,7 @@ impl Batch {
     pub fn poses_and_jacobians_into(
         &self,
         q: &[f64],
-        reference: Reference,
+        reference: ReferenceFrame,
         poses: &mut [f64],
         jacobians: &mut [f64],
     ) -> Result<()> {
@@ -121,7 +126,7 @@ impl Batch {
         &self,
         q: &[f64],
         poses: Option<&mut [f64]>,
-        jacobians: Option<(Reference, &mut [f64])>,
+        jacobians: Option<(ReferenceFrame, &mut [f64])>,
     ) -> Result<()> {
         let (n, count) = (self.mechanism.n(), self.mechanism.count_rows("q", q)?);
         self.mechanism.check_rows("q", q)?;
@@ -160,7 +165,7 @@ impl Batch {
         &self,
         q: &[f64],
         poses: Option<&mut [f64]>,
-        jacobians: Option<(Reference, &mut [f64])>,
+        jacobians: Option<(ReferenceFrame, &mut [f64])>,
         large: bool,
     ) {
         let n = self.mechanism.n();

@@ -5,7 +5,7 @@
 
 use super::along::{along, columns};
 use super::forward::forward;
-use super::jacobian::{Reference, Tip};
+use super::jacobian::{ReferenceFrame, Tip};
 use super::serial::Serial;
 use super::state::EndEffector;
 use crate::linalg::Matrix;
@@ -127,12 +127,12 @@ impl Chain {
     /// # Panics
     /// If `out` is not 6 x n.
     #[inline]
-    pub fn jacobian_into(&self, reference: Reference, out: &mut Matrix) {
+    pub fn jacobian_into(&self, reference: ReferenceFrame, out: &mut Matrix) {
         assert_eq!((out.rows(), out.cols()), (6, self.n()), "shape of the Jacobian");
         let point = match reference {
-            Reference::World => Some(&[0.0; 4]),
-            Reference::LocalWorldAligned => Some(&self.tool().p),
-            Reference::Local => None,
+            ReferenceFrame::World => Some(&[0.0; 4]),
+            ReferenceFrame::LocalWorldAligned => Some(&self.tool().p),
+            ReferenceFrame::Local => None,
         };
         match (&self.serial, point) {
             (Some(serial), Some(p)) if serial.has_one_for_each(self.n()) => {
@@ -146,7 +146,7 @@ impl Chain {
     ///
     /// # Panics
     /// If `out` has not these sizes.
-    pub fn hessian_into(&self, reference: Reference, out: &mut [Matrix]) {
+    pub fn hessian_into(&self, reference: ReferenceFrame, out: &mut [Matrix]) {
         assert!(
             out.len() == self.n() && out.iter().all(|m| (m.rows(), m.cols()) == (6, self.n())),
             "shape of the Hessian"

@@ -8,13 +8,13 @@
 //! Source   Haviland & Corke 2020 (arXiv 2010.08686), in screw form
 //! Checked  tests/it/kinematics.rs::hessian_*; the sum of `hessian[k] * rates[k]` is dJ/dt
 
-use super::jacobian::{Moving, Reference, Tip, add};
+use super::jacobian::{Moving, ReferenceFrame, Tip, add};
 use crate::linalg::Matrix;
 use crate::spatial::{Twist, Vec3};
 
 impl Tip<'_> {
     /// Writes dJ/dq_k into `out[k]` (n matrices of 6 x n).
-    pub(crate) fn hessian_into(&self, reference: Reference, out: &mut [Matrix]) {
+    pub(crate) fn hessian_into(&self, reference: ReferenceFrame, out: &mut [Matrix]) {
         out.iter_mut().for_each(|m| m.as_mut_slice().fill(0.0));
         self.for_each_column(Vec3::ZERO, |depth_k, k, moving| {
             let frame = Moving { tip: self.world_from_tip, twist: moving };

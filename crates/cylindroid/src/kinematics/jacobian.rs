@@ -8,7 +8,7 @@
 //!          that body; moving the point p adds w_i x dp/dt; the local frame adds -ad(V_tool) J_i
 //! Shapes   6 x n, linear rows first
 //! Units    m/s and rad/s for each unit of rate
-//! Frame    [`Reference`] names point and axes
+//! Frame    [`ReferenceFrame`] names point and axes
 //! Why so   one pass from the tip to the root, only over the joints that move the frame; a mimic
 //!          joint adds its multiplier times its column to the joint it follows
 //! Source   velocity conversion matrices of Cartesian control (columns 6 and 3 of V_j)
@@ -21,7 +21,7 @@ use crate::spatial::{Padded, Pose, Twist, Vec3};
 
 /// The point and the axes of a twist or a Jacobian, in the field's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Reference {
+pub enum ReferenceFrame {
     /// Point: the frame's origin. Axes: the frame's.
     Local,
     /// Point: the world's origin (of the moving body, extended). Axes: the world's.
@@ -30,7 +30,7 @@ pub enum Reference {
     LocalWorldAligned,
 }
 
-impl Reference {
+impl ReferenceFrame {
     /// All of them, with the names used in files and on the command line.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("local", Self::Local),
@@ -119,14 +119,16 @@ impl Tip<'_> {
 
     /// The Jacobian, into `out` (6 x n).
     #[inline]
-    pub(crate) fn jacobian_into(&self, reference: Reference, out: &mut Matrix) {
+    pub(crate) fn jacobian_into(&self, reference: ReferenceFrame, out: &mut Matrix) {
         out.as_mut_slice().fill(0.0);
         let p = match reference {
-            Reference::World => Vec3::ZERO,
-            Reference::Local | Reference::LocalWorldAligned => self.world_from_tip.translation,
+            ReferenceFrame::World => Vec3::ZERO,
+            ReferenceFrame::Local | ReferenceFrame::LocalWorldAligned => {
+                self.world_from_tip.translation
+            }
         };
         let rotation = self.world_from_tip.rotation.matrix();
-        if reference == Reference::Local {
+        if reference == ReferenceFrame::Local {
             self.for_each_column(p, |_, c, t| {
                 let local = Twist {
                     linear: rotation.tr_mul(t.linear),
@@ -147,7 +149,12 @@ impl Tip<'_> {
     }
 
     /// The derivative of the Jacobian in time while the coordinates move with `rates`.
-    pub(crate) fn jacobian_dot_into(&self, rates: &[f64], reference: Reference, out: &mut Matrix) {
+    pub(crate) fn jacobian_dot_into(
+        &self,
+        rates: &[f64],
+        reference: ReferenceFrame,
+        out: &mut Matrix,
+    ) {
         out.as_mut_slice().fill(0.0);
         let tip_twist = self.world_twist(rates);
         let frame = Moving { tip: self.world_from_tip, twist: tip_twist };
@@ -178,16 +185,16 @@ impl Moving {
     /// The rate of `column` seen in `reference`; `column` and its rate in world axes at the
     /// world's origin.
     #[inline]
-    pub(crate) fn seen(&self, reference: Reference, column: Twist, rate: Twist) -> Twist {
+    pub(crate) fn seen(&self, reference: ReferenceFrame, column: Twist, rate: Twist) -> Twist {
         let p = self.tip.translation;
         match reference {
-            Reference::World => rate,
-            Reference::LocalWorldAligned => {
+            ReferenceFrame::World => rate,
+            ReferenceFrame::LocalWorldAligned => {
                 let dp = self.twist.at_point(p).linear;
                 let moved = rate.at_point(p);
                 Twist { linear: moved.linear + column.angular.cross(dp), ..moved }
             }
-            Reference::Local => {
+            ReferenceFrame::Local => {
                 let relative = (rate - self.twist.bracket(column)).at_point(p);
                 let rotation = self.tip.rotation.matrix();
                 Twist {

@@ -4,13 +4,13 @@
 //!          joint to the tool, 0 at the tool: l += way, column [turn z x l + slide z; turn z]
 //! Shapes   q: N x n, poses: N x 4 x 4, Jacobians: N x 6 x n, row-major
 //! Units    rad, m; m/s and rad/s for each unit of rate
-//! Frame    [`Reference`]
+//! Frame    [`ReferenceFrame`]
 //! Why so   one configuration waits for itself, from joint to joint; what is done for several
 //!          joints or configurations waits for nothing
 //! Checked  tests/it/batch.rs: against [`super::Chain`] and [`super::State`]; `tests` below: all
 //!          forms alike
 
-use super::jacobian::Reference;
+use super::jacobian::ReferenceFrame;
 use super::serial::Serial;
 use crate::scalar::{Array, MOST_LANES, Real};
 #[cfg(target_arch = "x86_64")]
@@ -26,7 +26,7 @@ pub(super) struct Work<'a> {
     pub(super) n: usize,
     pub(super) q: &'a [f64],
     pub(super) poses: Option<&'a mut [f64]>,
-    pub(super) jacobians: Option<(Reference, &'a mut [f64])>,
+    pub(super) jacobians: Option<(ReferenceFrame, &'a mut [f64])>,
     /// True if the results of the whole call are more than caches hold.
     pub(super) large: bool,
 }
@@ -242,7 +242,7 @@ pub(crate) fn whole_way<R: Real>(serial: &Serial, q: &[R], rows: &mut [R]) -> [R
 #[inline(always)]
 pub(crate) fn jacobian<R: Real>(
     serial: &Serial,
-    reference: Reference,
+    reference: ReferenceFrame,
     q: &[R],
     turned: &Turned<R>,
     rows: &mut [R],
@@ -251,7 +251,7 @@ pub(crate) fn jacobian<R: Real>(
     // From where a joint is, at first the tool, to the point whose velocity is asked for.
     let mut lever = [R::splat(0.0); 3];
     let mut way = lever;
-    if reference == Reference::World {
+    if reference == ReferenceFrame::World {
         way = whole_way(serial, q, rows);
         lever = turned.tool(way).p.negative();
     }
@@ -263,13 +263,13 @@ pub(crate) fn jacobian<R: Real>(
         [a[i], b[i], c[i]] = linear;
         [d[i], e[i], f[i]] = angular;
     }
-    if reference == Reference::Local {
+    if reference == ReferenceFrame::Local {
         for i in 0..joints.len() {
             [a[i], b[i], c[i]] = turned.0.seen([a[i], b[i], c[i]]);
             [d[i], e[i], f[i]] = turned.0.seen([d[i], e[i], f[i]]);
         }
     }
-    if reference == Reference::World { way } else { lever }
+    if reference == ReferenceFrame::World { way } else { lever }
 }
 
 /// The six rows of m numbers: what is asked for one place in them is asked for all.
@@ -341,7 +341,7 @@ mod tests {
     fn of(
         chain: &Chain,
         (n, q): (usize, &[f64]),
-        reference: Reference,
+        reference: ReferenceFrame,
         run: impl FnOnce(Work<'_>),
     ) -> Vec<f64> {
         let count = q.len() / n;
@@ -367,7 +367,8 @@ mod tests {
         let mut robots = vec![coupled()];
         let names = ["panda", "ur5e", "puma560", "youbot", "3r"];
         robots.extend(names.map(|name| catalogue::load(name).unwrap()));
-        let references = [Reference::LocalWorldAligned, Reference::Local, Reference::World];
+        let references =
+            [ReferenceFrame::LocalWorldAligned, ReferenceFrame::Local, ReferenceFrame::World];
         for (robot, reference) in robots.iter().flat_map(|robot| references.map(|r| (robot, r))) {
             let (name, n, tip) = (robot.name(), robot.n(), robot.tool());
             let chain = match name {

@@ -21,7 +21,7 @@ pub use analytical::{AnalyticalJacobian, OrientationRates};
 pub use batch::Batch;
 pub use chain::Chain;
 pub use conversion::velocity_conversion;
-pub use jacobian::Reference;
+pub use jacobian::ReferenceFrame;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::along_avx2;
 pub(crate) use lanes::{

@@ -2,7 +2,7 @@
 
 use super::analytical::{AnalyticalJacobian, OrientationRates, analytical};
 use super::forward::forward;
-use super::jacobian::{Reference, Tip};
+use super::jacobian::{ReferenceFrame, Tip};
 use crate::error::Result;
 use crate::linalg::Matrix;
 use crate::model::{FrameId, Joint, Mechanism};
@@ -83,7 +83,7 @@ impl State {
 
     /// The Jacobian, 6 x n: twist of the tool = J * rates.
     #[must_use]
-    pub fn jacobian(&self, of: impl Into<EndEffector>, reference: Reference) -> Matrix {
+    pub fn jacobian(&self, of: impl Into<EndEffector>, reference: ReferenceFrame) -> Matrix {
         let mut out = Matrix::zeros(6, self.mechanism.n());
         self.tip(of.into()).jacobian_into(reference, &mut out);
         out
@@ -96,7 +96,7 @@ impl State {
     pub fn jacobian_into(
         &self,
         of: impl Into<EndEffector>,
-        reference: Reference,
+        reference: ReferenceFrame,
         out: &mut Matrix,
     ) {
         assert_eq!((out.rows(), out.cols()), (6, self.mechanism.n()), "shape of the Jacobian");
@@ -105,8 +105,8 @@ impl State {
 
     /// All joints at once, into `out` (6 x n): the twist that a unit rate of each coordinate gives
     /// the links behind its joint, in world axes at the world's origin. The Jacobian of any frame
-    /// with [`Reference::World`] has these columns where the coordinate moves the frame and zeros
-    /// elsewhere; joints that mimic another come on top, each with its own twist, and are not in
+    /// with [`ReferenceFrame::World`] has these columns where the coordinate moves the frame and
+    /// zeros elsewhere; joints that mimic another come on top, each with its own twist, and are not in
     /// here.
     ///
     /// # Panics
@@ -141,7 +141,7 @@ impl State {
         &self,
         rates: &[f64],
         of: impl Into<EndEffector>,
-        reference: Reference,
+        reference: ReferenceFrame,
     ) -> Result<Matrix> {
         self.mechanism.check_q("rates", rates)?;
         let mut out = Matrix::zeros(6, self.mechanism.n());
@@ -151,7 +151,7 @@ impl State {
 
     /// The Hessian: entry k is the derivative of the Jacobian by coordinate k (6 x n each).
     #[must_use]
-    pub fn hessian(&self, of: impl Into<EndEffector>, reference: Reference) -> Vec<Matrix> {
+    pub fn hessian(&self, of: impl Into<EndEffector>, reference: ReferenceFrame) -> Vec<Matrix> {
         let n = self.mechanism.n();
         let mut out = vec![Matrix::zeros(6, n); n];
         self.tip(of.into()).hessian_into(reference, &mut out);
@@ -166,7 +166,7 @@ impl State {
         rates: OrientationRates,
     ) -> AnalyticalJacobian {
         let of = of.into();
-        analytical(self.pose(of), &self.jacobian(of, Reference::LocalWorldAligned), rates)
+        analytical(self.pose(of), &self.jacobian(of, ReferenceFrame::LocalWorldAligned), rates)
     }
 
     /// The twist of the tool while the coordinates move with `rates`.
@@ -177,16 +177,16 @@ impl State {
         &self,
         rates: &[f64],
         of: impl Into<EndEffector>,
-        reference: Reference,
+        reference: ReferenceFrame,
     ) -> Result<Twist> {
         self.mechanism.check_q("rates", rates)?;
         let tip = self.tip(of.into());
         let world = tip.world_twist(rates);
         let pose = tip.world_from_tip;
         Ok(match reference {
-            Reference::World => world,
-            Reference::LocalWorldAligned => world.at_point(pose.translation),
-            Reference::Local => pose.inverse().adjoint(world),
+            ReferenceFrame::World => world,
+            ReferenceFrame::LocalWorldAligned => world.at_point(pose.translation),
+            ReferenceFrame::Local => pose.inverse().adjoint(world),
         })
     }
 

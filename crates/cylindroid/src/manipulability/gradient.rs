@@ -25,7 +25,7 @@ use super::metrics::Metrics;
 use crate::closure::{ClosedChain, Constraint, ContactForceSolver, MotionSpace, StaticLoad, Unit};
 use crate::error::Result;
 use crate::inverse::truncated;
-use crate::kinematics::{Reference, State};
+use crate::kinematics::{ReferenceFrame, State};
 use crate::linalg::{ColumnSpace, Matrix, Metric, Svd, Threshold};
 use crate::model::FrameId;
 use crate::tolerance::{CLOSURE_BLOCK, MATRIX_STEP, REPEATED};
@@ -330,5 +330,5 @@ fn constraint_hessian(state: &State, chain: &ClosedChain) -> Vec<Matrix> {
         }
         dm
     };
-    state.hessian(chain.reference, Reference::LocalWorldAligned).iter().map(of).collect()
+    state.hessian(chain.reference, ReferenceFrame::LocalWorldAligned).iter().map(of).collect()
 }

@@ -3,12 +3,12 @@
 use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
-use cylindroid::{EndEffector, Error, Matrix, Mechanism, Reference, catalogue};
+use cylindroid::{EndEffector, Error, Matrix, Mechanism, ReferenceFrame, catalogue};
 
 use crate::support::{Random, assert_close, planar, zoo};
 
-const REFERENCES: [Reference; 3] =
-    [Reference::Local, Reference::World, Reference::LocalWorldAligned];
+const REFERENCES: [ReferenceFrame; 3] =
+    [ReferenceFrame::Local, ReferenceFrame::World, ReferenceFrame::LocalWorldAligned];
 
 /// Serial chains of all joints that turn and slide: axes anyhow, nearly parallel, perpendicular and
 /// parallel, a coordinate that two joints read and one that none of the chain reads.
@@ -190,12 +190,12 @@ fn does_not_depend_on_threads_or_places() {
     let q = draw(&robot, count, 7);
     let of = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| batch.jacobians(&q, Reference::Local).unwrap())
+        pool.install(|| batch.jacobians(&q, ReferenceFrame::Local).unwrap())
     };
     let (one, three) = (of(1), of(3));
     assert!(one == three);
     for i in [0, 4095, 4096, 5001, count - 1] {
-        let alone = batch.jacobians(&q[i * n..(i + 1) * n], Reference::Local).unwrap();
+        let alone = batch.jacobians(&q[i * n..(i + 1) * n], ReferenceFrame::Local).unwrap();
         assert!(alone == one[i * 6 * n..(i + 1) * 6 * n], "{i}");
     }
 }
@@ -214,7 +214,7 @@ fn refuses_what_does_not_fit() {
     q[9] = 0.0;
     let error = batch.poses_into(&q, &mut [0.0; 16]).unwrap_err();
     assert!(matches!(&error, Error::Dimension { expected: 32, got: 16, .. }), "{error}");
-    let error = batch.jacobians_into(&q, Reference::Local, &mut [0.0; 85]).unwrap_err();
+    let error = batch.jacobians_into(&q, ReferenceFrame::Local, &mut [0.0; 85]).unwrap_err();
     assert!(matches!(&error, Error::Dimension { expected: 84, got: 85, .. }), "{error}");
 }
 
@@ -235,7 +235,7 @@ fn the_ground_does_not_move() {
     let robot = catalogue::load("panda").unwrap();
     let batch = Batch::new(&robot, robot.frame(&robot.links()[0].name).unwrap());
     let q = draw(&robot, 3, 8);
-    assert!(batch.jacobians(&q, Reference::World).unwrap().iter().all(|x| *x == 0.0));
+    assert!(batch.jacobians(&q, ReferenceFrame::World).unwrap().iter().all(|x| *x == 0.0));
     let identity = Pose::IDENTITY.to_matrix();
     assert!(batch.poses(&q).unwrap().chunks(16).all(|p| p == identity.as_flattened()));
 }

@@ -4,7 +4,7 @@ use cylindroid::ik::{
     Budget, FoundBy, Goal, IkOptions, Solution, Solver, Task, solve, solve_several,
 };
 use cylindroid::model::Mechanism;
-use cylindroid::{Pose, Reference, Vec3, catalogue};
+use cylindroid::{Pose, ReferenceFrame, Vec3, catalogue};
 
 use crate::support::{Random, robots};
 
@@ -21,7 +21,7 @@ fn checked(robot: &Mechanism, goals: &[Goal], options: &IkOptions, found: &Solut
         let pose = state.pose(goal.end_effector);
         let error = pose.error_to(goal.target);
         let seen = |v: Vec3| match goal.task.axes {
-            Reference::Local => pose.rotation.inverse() * v,
+            ReferenceFrame::Local => pose.rotation.inverse() * v,
             _ => v,
         };
         let kept = |v: Vec3, keep: &[bool]| -> f64 {

@@ -1,12 +1,12 @@
 use cylindroid::kinematics::{Chain, OrientationRates, velocity_conversion};
 use cylindroid::model::{JointKind, JointSpec};
 use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3, Zyz, log};
-use cylindroid::{EndEffector, Matrix, Mechanism, Reference, catalogue};
+use cylindroid::{EndEffector, Matrix, Mechanism, ReferenceFrame, catalogue};
 
 use crate::support::{Random, assert_close, assert_matrix, planar, pose_entries, zoo};
 
-const REFERENCES: [Reference; 3] =
-    [Reference::Local, Reference::World, Reference::LocalWorldAligned];
+const REFERENCES: [ReferenceFrame; 3] =
+    [ReferenceFrame::Local, ReferenceFrame::World, ReferenceFrame::LocalWorldAligned];
 
 fn robots() -> Vec<Mechanism> {
     let mut robots: Vec<Mechanism> =
@@ -43,7 +43,7 @@ fn joint_twists_are_the_columns_of_all_jacobians() {
         state.joint_twists_into(&mut twists);
         for joint in robot.joints().iter().filter(|j| j.mimic.is_none()) {
             let link = robot.frame(&robot.links()[joint.child].name).unwrap();
-            let jacobian = state.jacobian(link, Reference::World);
+            let jacobian = state.jacobian(link, ReferenceFrame::World);
             for c in 0..robot.n() {
                 let follows = |c| {
                     robot.joints().iter().any(|j| j.mimic.is_some() && j.coordinates.contains(&c))
@@ -80,9 +80,9 @@ fn jacobian_by_finite_differences() {
                 let scale = 1e-9 * (1.0 + robot.reach());
                 for reference in REFERENCES {
                     let expected = match reference {
-                        Reference::World => spatial,
-                        Reference::LocalWorldAligned => spatial.at_point(pose.translation),
-                        Reference::Local => pose.inverse().adjoint(spatial),
+                        ReferenceFrame::World => spatial,
+                        ReferenceFrame::LocalWorldAligned => spatial.at_point(pose.translation),
+                        ReferenceFrame::Local => pose.inverse().adjoint(spatial),
                     };
                     let j = state.jacobian(tool, reference);
                     let what = format!("{} {} column {k}", robot.name(), reference.name());
@@ -137,7 +137,7 @@ fn jacobian_is_assembled_by_conversion() {
         }
         assert_matrix(
             robot.name(),
-            &state.jacobian(robot.tool(), Reference::Local),
+            &state.jacobian(robot.tool(), ReferenceFrame::Local),
             &assembled,
             1e-14,
         );
@@ -330,7 +330,7 @@ fn mimic_joints_count_in_the_jacobian() {
     let (c, f) = (coupled.state(&[q]).unwrap(), free.state(&[q, 0.7 * q + 0.1]).unwrap());
     let tip = coupled.frame("tip").unwrap();
     assert_close("pose", &pose_entries(c.pose(tip)), &pose_entries(f.pose(tip)), 1e-15);
-    let (jc, jf) = (c.jacobian(tip, Reference::World), f.jacobian(tip, Reference::World));
+    let (jc, jf) = (c.jacobian(tip, ReferenceFrame::World), f.jacobian(tip, ReferenceFrame::World));
     let combined: Vec<f64> = (0..6).map(|i| jf[(i, 0)] + 0.7 * jf[(i, 1)]).collect();
     assert_close("column", jc.column(0), &combined, 1e-15);
 }
@@ -355,7 +355,7 @@ fn integrate_moves_free_and_spherical_joints_on_their_group() {
         &pose_entries(expected),
         1e-12,
     );
-    let j = body.state(&q).unwrap().jacobian(body.tool(), Reference::Local);
+    let j = body.state(&q).unwrap().jacobian(body.tool(), ReferenceFrame::Local);
     assert_matrix("J", &j, &Matrix::identity(6), 1e-14);
 }
 

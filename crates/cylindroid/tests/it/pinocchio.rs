@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cylindroid::{Matrix, Mechanism, Reference};
+use cylindroid::{Matrix, Mechanism, ReferenceFrame};
 use serde_json::Value;
 
 use crate::support::{assert_close, assert_matrix};
@@ -93,7 +93,7 @@ fn check(robot: &Mechanism, data: &Value) {
         for entry in configuration["jacobians"].as_array().unwrap() {
             let frame = entry["frame"].as_str().unwrap();
             let of = robot.frame(frame).unwrap();
-            for (key, reference) in Reference::NAMES {
+            for (key, reference) in ReferenceFrame::NAMES {
                 let what = format!("{label}, {frame}, {key}");
                 let expected = matrix(&entry[key], &places);
                 assert_matrix(&what, &state.jacobian(of, reference), &expected, tolerance);

@@ -4,13 +4,14 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 
-use cylindroid::control::{Gain, Secondary, Target};
+use cylindroid::control::{Gain, SecondaryTask, Target};
 use cylindroid::ik::{Budget, Goal, IkOptions, Solver};
 use cylindroid::inverse::Method;
 use cylindroid::kinematics::{Batch, Chain};
 use cylindroid::spatial::Mat3;
 use cylindroid::{
-    FrameId, Matrix, Mechanism, Pose, Reference, Rotation, Servo, ServoOptions, State, Twist, Vec3,
+    FrameId, Matrix, Mechanism, Pose, ReferenceFrame, Rotation, Servo, ServoOptions, State, Twist,
+    Vec3,
 };
 use peers::{BLOCK, Command, Result, Robot, ik, serve, single, write};
 
@@ -60,7 +61,7 @@ fn main() -> Result<()> {
         }
         "single" => Ok(single(robot, command.number(0)?, |q| {
             black_box(arm.chain.set(q));
-            arm.chain.jacobian_into(Reference::LocalWorldAligned, &mut arm.jacobian);
+            arm.chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut arm.jacobian);
             black_box(&arm.jacobian);
         })),
         "batch" => batch(robot, arm, command.number(0)?),
@@ -87,7 +88,7 @@ fn rows(m: &Matrix) -> impl Iterator<Item = f64> + '_ {
 /// Rotation by rows, position, Jacobian by rows.
 fn pose_and_jacobian(arm: &mut Arm, q: &[f64], out: &mut [f64]) {
     let pose = arm.chain.set(q);
-    arm.chain.jacobian_into(Reference::LocalWorldAligned, &mut arm.jacobian);
+    arm.chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut arm.jacobian);
     let m = pose.to_matrix();
     for (k, x) in out[..9].iter_mut().enumerate() {
         *x = m[k / 3][k % 3];
@@ -115,7 +116,7 @@ fn many(arm: &mut Arm, q: &[f64]) -> Result<()> {
     let (n, count) = (batch.n(), q.len() / batch.n());
     Ok(batch.poses_and_jacobians_into(
         q,
-        Reference::LocalWorldAligned,
+        ReferenceFrame::LocalWorldAligned,
         &mut poses[..count * 16],
         &mut jacobians[..count * 6 * n],
     )?)
@@ -157,7 +158,7 @@ fn servo(arm: &Arm, command: &Command<'_>) -> Result<String> {
             gain: Gain { position: 5.0, orientation: 5.0 },
             method: Method::Truncated { eps: 1e-3 },
             length: 1.0,
-            secondary: vec![Secondary::Posture { q: home.to_vec(), gain: 1.0 }],
+            secondary: vec![SecondaryTask::Posture { q: home.to_vec(), gain: 1.0 }],
             ..ServoOptions::new(&arm.mechanism)
         },
     )?;

@@ -4,7 +4,7 @@ use cylindroid::control::Projection;
 use cylindroid::inverse::HyperbolicDamping;
 use cylindroid::model::Mechanism;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
-use cylindroid::{Error, Method, Reference, Result, ServoOptions, Twist};
+use cylindroid::{Error, Method, ReferenceFrame, Result, ServoOptions, Twist};
 
 use crate::args::InverseArgs;
 use crate::output::number;
@@ -92,7 +92,7 @@ fn projection(
         },
         _ => Projection::Oblique {
             complement: args.give_up.iter().map(|m| Twist::from_array(m.0)).collect(),
-            reference: Reference::Local,
+            reference: ReferenceFrame::Local,
         },
     })
 }
@@ -100,7 +100,7 @@ fn projection(
 /// `--h` has no default, since it is a real choice; but there is advice.
 fn missing_pitch(name: &str, start: &[f64], robot: &Mechanism, options: &ServoOptions) -> Error {
     let advice = || -> Result<String> {
-        let j = robot.state(start)?.jacobian(options.end_effector, Reference::World);
+        let j = robot.state(start)?.jacobian(options.end_effector, ReferenceFrame::World);
         let system = ScrewSystem::of_columns(&j, &ScrewOptions::with_length(options.length))?;
         let choice = system.choose_pitch();
         Ok(match choice.pitch {

@@ -2,7 +2,7 @@
 
 use cylindroid::control::{
     Bounds, CartesianBounds, CartesianMove, CartesianPath, Gain, JointDefaults, JointMove,
-    Projector, Secondary,
+    Projector, SecondaryTask,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
@@ -155,9 +155,9 @@ fn secondary(
     robot: &Mechanism,
     options: &ServoOptions,
     start: &[f64],
-) -> Result<Vec<Secondary>> {
+) -> Result<Vec<SecondaryTask>> {
     if named.is_empty() {
-        return options.usual_secondary(robot);
+        return options.default_secondary(robot);
     }
     if let [Named { name, number: None }] = named
         && name == "none"
@@ -165,7 +165,7 @@ fn secondary(
         return Ok(Vec::new());
     }
     let build = |n: &Named| {
-        let secondary = Secondary::named(&n.name, start)?;
+        let secondary = SecondaryTask::named(&n.name, start)?;
         Ok(n.number.map_or(secondary.clone(), |gain| secondary.with_gain(gain)))
     };
     named.iter().map(build).collect()

@@ -1,6 +1,6 @@
 //! Why a motion ended, in full sentences: what happened, with names and numbers, and what to try.
 
-use cylindroid::Reference;
+use cylindroid::ReferenceFrame;
 use cylindroid::control::{Outcome, Stall, Task};
 use cylindroid::model::Mechanism;
 
@@ -203,6 +203,6 @@ fn along(task: Task, direction: &[f64]) -> String {
         .filter(|(_, share)| share.abs() >= SMALL)
         .map(|((name, _), share)| format!("{share:.2} {name}"))
         .collect();
-    let axes = if task.axes == Reference::Local { "tool" } else { "world" };
+    let axes = if task.axes == ReferenceFrame::Local { "tool" } else { "world" };
     format!("{}, {axes} axes", parts.join(", "))
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use cylindroid::kinematics::Chain;
 use cylindroid::model::Mechanism;
-use cylindroid::{EndEffector, Error, Matrix, Reference, Result, State, Twist, Vec3};
+use cylindroid::{EndEffector, Error, Matrix, ReferenceFrame, Result, State, Twist, Vec3};
 
 use super::super::{configuration, end_effector};
 use crate::args::ScrewsArgs;
@@ -79,7 +79,7 @@ impl Twists {
         let robot = state.mechanism();
         let frame = robot.frame_of(end_effector.frame).name.clone();
         let chain = Chain::new(robot, end_effector);
-        let jacobian = state.jacobian(end_effector, Reference::World);
+        let jacobian = state.jacobian(end_effector, ReferenceFrame::World);
         let column = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
         let names = chain.coordinates().iter().map(|&c| robot.coordinates()[c].name.clone());
         Self {

@@ -18,7 +18,7 @@ use super::predictor_corrector::{PathTracker, Point, StepRejected, TrackerStep};
 use crate::closure::constraint::closed_chain::LoopClosureError;
 use crate::closure::singularity::singularity_types::SingularityKind;
 use crate::error::{Error, Result};
-use crate::kinematics::Reference;
+use crate::kinematics::ReferenceFrame;
 use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::screws::Screw;
@@ -264,12 +264,12 @@ fn in_sight(tracker: &PathTracker<'_>, point: &Point) -> Result<PathSingularity>
     let rates: Vec<f64> =
         motion.iter().enumerate().map(|(i, x)| x * unit_of(mechanism, i)).collect();
     let state = mechanism.state(&point.closing.q)?;
-    let twist = |at: Reference| {
+    let twist = |at: ReferenceFrame| {
         let jacobian: Matrix = state.jacobian(mechanism.reference(), at);
         let of = jacobian.mul_vec(&rates);
         Twist::from_array(std::array::from_fn(|i| of[i]))
     };
-    let (here, world) = (twist(Reference::LocalWorldAligned), twist(Reference::World));
+    let (here, world) = (twist(ReferenceFrame::LocalWorldAligned), twist(ReferenceFrame::World));
     let small = distance.sqrt().max(VANISHES);
     let moves = (here.linear.norm() / mechanism.reach()).hypot(here.angular.norm()) > small;
     let kind = match (taken > small, moves) {

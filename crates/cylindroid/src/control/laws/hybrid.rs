@@ -39,7 +39,7 @@ pub struct HybridInput {
     /// The twist of the target.
     pub feed_forward: Twist,
     /// What the tool shall exert on its surroundings.
-    pub wanted: Wrench,
+    pub desired: Wrench,
     /// What the tool exerts on its surroundings: the negative of what a sensor in the wrist reads.
     pub measured: Wrench,
 }
@@ -53,7 +53,7 @@ pub struct HybridCommand {
     pub position_part: Twist,
     /// The part along Z, of the wrench error.
     pub force_part: Twist,
-    /// What counts of the wrench error: P* (wanted - measured).
+    /// What counts of the wrench error: P* (desired - measured).
     pub wrench_error: Wrench,
 }
 
@@ -74,10 +74,10 @@ impl HybridLaw {
     pub fn command(&self, projector: &Projector, input: &HybridInput) -> Result<HybridCommand> {
         Error::check_finite("twist error", &input.error.to_array())?;
         Error::check_finite("feed-forward twist", &input.feed_forward.to_array())?;
-        Error::check_finite("wanted wrench", &input.wanted.to_array())?;
+        Error::check_finite("desired wrench", &input.desired.to_array())?;
         Error::check_finite("measured wrench", &input.measured.to_array())?;
         let position_part = projector.motion(input.error * self.gain + input.feed_forward);
-        let wrench_error = projector.constraint(input.wanted - input.measured);
+        let wrench_error = projector.constraint(input.desired - input.measured);
         let force_part = projector.rest(self.admittance.apply(wrench_error));
         let twist = position_part + force_part;
         Error::check_finite("commanded twist", &twist.to_array())?;

@@ -1,7 +1,7 @@
 //! Internal forces of cooperating arms, hands and over-actuated mechanisms: how hard an object is
 //! squeezed, apart from how it moves.
 //!
-//! Formula  rates = gain C P (wanted - measured), C the compliance of the drives, P the projection
+//! Formula  rates = gain C P (desired - measured), C the compliance of the drives, P the projection
 //!          on the internal torques (those that do no work on any motion of the drives),
 //!          orthogonal in C
 //! Shapes   torques and rates: an entry for each driven joint
@@ -34,7 +34,7 @@ pub struct InternalForceCommand {
     pub rates: Vec<f64>,
     /// The internal part of the measured torques.
     pub internal: Vec<f64>,
-    /// The internal part of wanted less measured torques.
+    /// The internal part of desired less measured torques.
     pub error: Vec<f64>,
 }
 
@@ -51,23 +51,23 @@ impl InternalForceLaw {
         Ok(Self { gain, roots: stiffness.iter().map(|k| 1.0 / k.sqrt()).collect() })
     }
 
-    /// The rates that bring the internal part of the `measured` torques to that of the `wanted`
+    /// The rates that bring the internal part of the `measured` torques to that of the `desired`
     /// ones; both as the joints exert them. For a squeeze t at the contacts (a column of
-    /// [`internal_forces`](crate::closure::internal_forces)) the wanted torques are -J_a^T t.
+    /// [`internal_forces`](crate::closure::internal_forces)) the desired torques are -J_a^T t.
     ///
     /// # Errors
     /// Torques or stiffnesses of another number than driven joints, or not finite.
     pub fn command(
         &self,
         relation: &Relation,
-        wanted: &[f64],
+        desired: &[f64],
         measured: &[f64],
     ) -> Result<InternalForceCommand> {
         let n = relation.joints();
         Error::check_len("stiffness", n, self.roots.len())?;
-        Error::check_len("wanted torques", n, wanted.len())?;
+        Error::check_len("desired torques", n, desired.len())?;
         Error::check_len("measured torques", n, measured.len())?;
-        Error::check_finite("wanted torques", wanted)?;
+        Error::check_finite("desired torques", desired)?;
         Error::check_finite("measured torques", measured)?;
         let mut basis = relation.forces().zero;
         for j in 0..basis.cols() {
@@ -80,8 +80,8 @@ impl InternalForceLaw {
             let along = basis.transpose().mul_vec(&scaled);
             basis.mul_vec(&along).iter().zip(&self.roots).map(|(x, r)| x / r).collect()
         };
-        let (wanted, internal) = (part(wanted), part(measured));
-        let error: Vec<f64> = wanted.iter().zip(&internal).map(|(w, m)| w - m).collect();
+        let (desired, internal) = (part(desired), part(measured));
+        let error: Vec<f64> = desired.iter().zip(&internal).map(|(w, m)| w - m).collect();
         let rates: Vec<f64> =
             error.iter().zip(&self.roots).map(|(e, r)| self.gain * r * r * e).collect();
         Error::check_finite("rates", &rates)?;

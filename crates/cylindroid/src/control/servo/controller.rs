@@ -3,7 +3,7 @@
 //! Formula  x = s gain * error + feed-forward, s of `approach.rs`, error = [p_d - p; log(R_d R^T)]
 //!          (world axes), saturated to the largest speeds, then projected (`projection.rs`);
 //!          rates = J+ x + P z: J+ the chosen inverse of the task Jacobian with linear rows divided
-//!          by L, z the secondary wishes, P the null-space projector; then position, velocity and
+//!          by L, z the secondary joint velocities, P the null-space projector; then position, velocity and
 //!          acceleration limits (`limits.rs`, `solver/direct.rs`)
 //! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
 //! Units    m, rad, s
@@ -71,7 +71,7 @@ pub struct Servo {
     possible: Vec<f64>,
     projecting: Projecting,
     primary: Vec<f64>,
-    wish: Vec<f64>,
+    secondary: Vec<f64>,
     /// Bounds of the rates, and the same in scaled coordinates.
     own_bounds: Vec<RateBounds>,
     bounds: Vec<RateBounds>,
@@ -146,7 +146,7 @@ impl Servo {
         let hessian = if options
             .secondary
             .iter()
-            .any(|s| matches!(s, super::secondary::Secondary::Manipulability { .. }))
+            .any(|s| matches!(s, super::secondary::SecondaryTask::Manipulability { .. }))
         {
             vec![Matrix::zeros(6, n); n]
         } else {
@@ -172,7 +172,7 @@ impl Servo {
             possible: vec![0.0; m],
             projecting: Projecting::new(),
             primary: vec![0.0; rates],
-            wish: vec![0.0; rates],
+            secondary: vec![0.0; rates],
             own_bounds: vec![RateBounds::NONE; rates],
             bounds: vec![RateBounds::NONE; rates],
             saturator: Saturator::new(m, unknowns),
@@ -244,7 +244,7 @@ impl Servo {
         self.step_with(q, target, &[])
     }
 
-    /// [`Servo::step`] with wanted joint rates of the caller (all n of them, or none), projected
+    /// [`Servo::step`] with desired joint rates of the caller (all n of them, or none), projected
     /// on the null space like the secondary tasks: moving an elbow by hand.
     ///
     /// # Errors
@@ -253,13 +253,13 @@ impl Servo {
         &mut self,
         q: &[f64],
         target: impl Into<Target>,
-        wanted_rates: &[f64],
+        secondary_velocities: &[f64],
     ) -> Result<Step> {
         let target = target.into();
-        self.check_input(q, &target, wanted_rates)?;
+        self.check_input(q, &target, secondary_velocities)?;
 
         let pose = self.chain.set(q);
-        let wanted = target.wanted(pose, &self.options)?;
+        let desired = target.desired(pose, &self.options)?;
         self.load_jacobian(q)?;
         self.svd.decompose_warm(&self.task);
         if self.svd.values().any(f64::is_nan) {
@@ -267,12 +267,12 @@ impl Servo {
         }
         let (axes, length) = (self.options.task.axes, self.options.length);
         self.projecting.load(&self.options, &self.svd, TaskFrame { pose, axes, length });
-        self.load_task(&wanted);
+        self.load_task(&desired);
         for ((kept, gain), s) in self.kept.iter_mut().zip(&self.gains).zip(self.svd.values()) {
             *kept = is_kept(gain * s);
         }
         let rank = self.kept.iter().filter(|kept| **kept).count();
-        self.load_wish(wanted_rates);
+        self.load_secondary(secondary_velocities);
 
         let (saturation, effort) = match self.store_clear_rates(q) {
             Some(effort) => (Saturation::NONE, effort),
@@ -294,12 +294,12 @@ impl Servo {
         }
         let tolerance = self.options.tolerance;
         let (position_error, orientation_error) =
-            (wanted.error.linear.norm(), wanted.error.angular.norm());
+            (desired.error.linear.norm(), desired.error.angular.norm());
         let scaled = position_error / self.options.length + orientation_error;
         let near =
             position_error <= tolerance.position && orientation_error <= tolerance.orientation;
         let stalled = self.watch.stalled(scaled, effort, self.options.dt);
-        let status = if near && self.settled(wanted.feed_forward) {
+        let status = if near && self.settled(desired.feed_forward) {
             Status::Reached
         } else if stalled || self.is_stopped() {
             Status::Stalled
@@ -419,10 +419,10 @@ impl Servo {
         self.coordinates().iter().enumerate().filter(free).map(|(_, &c)| c)
     }
 
-    fn check_input(&self, q: &[f64], target: &Target, wanted_rates: &[f64]) -> Result<()> {
+    fn check_input(&self, q: &[f64], target: &Target, secondary_velocities: &[f64]) -> Result<()> {
         self.mechanism.check_q("q", q)?;
-        if !wanted_rates.is_empty() {
-            self.mechanism.check_q("wanted rates", wanted_rates)?;
+        if !secondary_velocities.is_empty() {
+            self.mechanism.check_q("secondary joint velocities", secondary_velocities)?;
         }
         target.check()
     }

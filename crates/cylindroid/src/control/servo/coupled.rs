@@ -164,9 +164,9 @@ impl Coupled {
         Ok(self.find_escape(&ahead, space).is_some_and(|then| then.share <= now.share))
     }
 
-    /// Turns wished rates of all joints (not weighted) into `wish`.
-    pub(super) fn load_wish(&mut self, wanted: &[f64]) {
-        self.reduced.wish = self.effort_of(wanted);
+    /// Projects joint velocities of the secondary tasks (all joints, not weighted) on the actuated motions.
+    pub(super) fn load_secondary(&mut self, velocities: &[f64]) {
+        self.reduced.secondary = self.effort_of(velocities);
     }
 
     /// The y of rates of all joints (not weighted).
@@ -227,7 +227,7 @@ mod tests {
     use crate::control::solver::direct::{Problem, RELEASE, Saturator, solve};
     use crate::control::solver::reduced::CoupledProblem;
     use crate::inverse::Method;
-    use crate::kinematics::{Chain, Reference};
+    use crate::kinematics::{Chain, ReferenceFrame};
     use crate::linalg::Svd;
     use crate::scalar::uniform;
 
@@ -248,7 +248,7 @@ mod tests {
             let q: Vec<f64> = panda.home().iter().map(|x| x + next()).collect();
             let mut coupled = Coupled::new(&panda, &[], Vec::new(), 6).unwrap();
             coupled.task =
-                panda.state(&q).unwrap().jacobian(panda.tool(), Reference::LocalWorldAligned);
+                panda.state(&q).unwrap().jacobian(panda.tool(), ReferenceFrame::LocalWorldAligned);
             let mut reduced = Matrix::zeros(6, drives);
             coupled.load(&q, &space, 1e-3, &mut reduced).unwrap();
             let x: Vec<f64> = (0..6).map(|_| next()).collect();

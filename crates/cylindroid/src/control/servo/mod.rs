@@ -23,6 +23,6 @@ pub use limits::Motion1;
 pub use options::{Gain, Projector, ServoOptions, Speed, Tolerance};
 pub use projection::Projection;
 pub use reference_point::{InverseChoice, RatesAtPoint, ReferencePoints};
-pub use secondary::Secondary;
+pub use secondary::SecondaryTask;
 pub use stall::Stall;
 pub use step::{Status, Step, Target};

@@ -1,7 +1,7 @@
 //! What a servo is told: frame, task, gains, limits, inverse.
 
 use super::projection::Projection;
-use super::secondary::Secondary;
+use super::secondary::SecondaryTask;
 use crate::error::{Error, Result};
 use crate::ik::Task;
 use crate::inverse::Method;
@@ -75,8 +75,8 @@ pub struct ServoOptions {
     pub speed: Speed,
     /// Acceleration limit of coordinates that have none of their own [rad/s^2 or m/s^2].
     pub acceleration: f64,
-    /// Wishes for the joints, added up and projected on the null space.
-    pub secondary: Vec<Secondary>,
+    /// Secondary tasks: their joint velocities are added and projected onto the null space.
+    pub secondary: Vec<SecondaryTask>,
     /// The null space that is meant.
     pub projector: Projector,
 }
@@ -111,27 +111,26 @@ impl ServoOptions {
         }
     }
 
-    /// Wishes for who has none: limit avoidance with its default numbers where there are more
-    /// joints than components of the task, or where loops couple joints (a wish that they do not
-    /// allow costs nothing); else none.
+    /// Default secondary tasks: joint-limit avoidance with default parameters for redundant arms
+    /// and for closed chains; none otherwise.
     ///
     /// ```
     /// use cylindroid::{ServoOptions, catalogue};
     ///
     /// let (panda, ur5e) = (catalogue::load("panda")?, catalogue::load("ur5e")?);
-    /// assert_eq!(ServoOptions::new(&panda).usual_secondary(&panda)?[0].name(), "limit-avoidance");
-    /// assert!(ServoOptions::new(&ur5e).usual_secondary(&ur5e)?.is_empty());
+    /// assert_eq!(ServoOptions::new(&panda).default_secondary(&panda)?[0].name(), "limit-avoidance");
+    /// assert!(ServoOptions::new(&ur5e).default_secondary(&ur5e)?.is_empty());
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
     /// # Errors
     /// A frame of another mechanism.
-    pub fn usual_secondary(&self, mechanism: &Mechanism) -> Result<Vec<Secondary>> {
+    pub fn default_secondary(&self, mechanism: &Mechanism) -> Result<Vec<SecondaryTask>> {
         mechanism.check_frame(self.end_effector.frame)?;
         let components = self.task.components.iter().filter(|c| **c).count();
         let joints = Chain::new(mechanism, self.end_effector).n();
         if joints > components || mechanism.is_closed() {
-            return Ok(vec![Secondary::named("limit-avoidance", &[])?]);
+            return Ok(vec![SecondaryTask::named("limit-avoidance", &[])?]);
         }
         Ok(Vec::new())
     }
@@ -192,9 +191,9 @@ impl ServoOptions {
         for secondary in &self.secondary {
             Error::check_finite("secondary gain", &[secondary.gain()])?;
             match secondary {
-                Secondary::Posture { q, .. } => mechanism.check_q("posture", q)?,
-                Secondary::LimitAvoidance { margin, .. } => positive("margin", *margin)?,
-                Secondary::Manipulability { .. } if mechanism.is_closed() => {
+                SecondaryTask::Posture { q, .. } => mechanism.check_q("posture", q)?,
+                SecondaryTask::LimitAvoidance { margin, .. } => positive("margin", *margin)?,
+                SecondaryTask::Manipulability { .. } if mechanism.is_closed() => {
                     return Err(Error::InvalidOption {
                         option: "secondary",
                         value: secondary.name().to_owned(),
@@ -205,7 +204,7 @@ impl ServoOptions {
                         ),
                     });
                 }
-                Secondary::Centring { .. } | Secondary::Manipulability { .. } => {}
+                SecondaryTask::Centring { .. } | SecondaryTask::Manipulability { .. } => {}
             }
         }
         for projection in [Some(&self.projection), self.fallback.as_ref()].into_iter().flatten() {

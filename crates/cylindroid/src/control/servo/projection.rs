@@ -15,7 +15,7 @@
 use super::options::ServoOptions;
 use crate::error::{Error, Result};
 use crate::inverse::HyperbolicDamping;
-use crate::kinematics::Reference;
+use crate::kinematics::ReferenceFrame;
 use crate::linalg::Svd;
 use crate::screws::{NoInverse, ScrewOptions, ScrewSystem, TaskProjector};
 use crate::spatial::{Pose, Rotation, Twist, Vec3};
@@ -46,7 +46,7 @@ pub enum Projection {
         /// As many as the arm lacks to six.
         complement: Vec<Twist>,
         /// The frame they are given in: `Local` (the tool's), `LocalWorldAligned` or `World`.
-        reference: Reference,
+        reference: ReferenceFrame,
     },
 }
 
@@ -112,22 +112,22 @@ impl Projection {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TaskFrame {
     pub(super) pose: Pose,
-    pub(super) axes: Reference,
+    pub(super) axes: ReferenceFrame,
     pub(super) length: f64,
 }
 
 impl TaskFrame {
     /// A twist given in `reference` in scaled task coordinates.
-    fn scaled(&self, twist: Twist, reference: Reference) -> [f64; 6] {
+    fn scaled(&self, twist: Twist, reference: ReferenceFrame) -> [f64; 6] {
         let turn = |t: Twist, r: Rotation| Twist { linear: r * t.linear, angular: r * t.angular };
         let aligned = match reference {
-            Reference::Local => turn(twist, self.pose.rotation),
-            Reference::World => twist.at_point(self.pose.translation),
-            Reference::LocalWorldAligned => twist,
+            ReferenceFrame::Local => turn(twist, self.pose.rotation),
+            ReferenceFrame::World => twist.at_point(self.pose.translation),
+            ReferenceFrame::LocalWorldAligned => twist,
         };
         let t = match self.axes {
-            Reference::Local => turn(aligned, self.pose.rotation.inverse()),
-            Reference::World | Reference::LocalWorldAligned => aligned,
+            ReferenceFrame::Local => turn(aligned, self.pose.rotation.inverse()),
+            ReferenceFrame::World | ReferenceFrame::LocalWorldAligned => aligned,
         };
         Twist { linear: t.linear * (1.0 / self.length), angular: t.angular }.to_array()
     }
@@ -171,7 +171,7 @@ impl Projecting {
         }
     }
 
-    /// Why the wanted projector was not used.
+    /// Why the requested projector was not used.
     pub(super) fn reason(&self) -> Option<NoInverse> {
         self.reason
     }
@@ -221,7 +221,7 @@ fn projector(
     if norm > largest { Err(NoInverse::TooLarge { norm }) } else { Ok(Some(found)) }
 }
 
-/// Why there is no hyperbolic inverse of pitch `h` that is as small as wanted.
+/// Why there is no hyperbolic inverse of pitch `h` within the bound of its norm.
 fn why_not(svd: &Svd, k: usize, h: f64, length: f64, norm: f64) -> NoInverse {
     let twist = |i: usize| {
         let [a, b, c, d, e, f] = std::array::from_fn(|r| svd.u(i)[r]);

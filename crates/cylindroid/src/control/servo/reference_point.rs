@@ -18,7 +18,7 @@ use crate::inverse::{
     HyperbolicDamping, HyperbolicOptions, Inverse, Method, hyperbolic_with, oblique,
     selectively_damped,
 };
-use crate::kinematics::{Chain, EndEffector, Reference, State};
+use crate::kinematics::{Chain, EndEffector, ReferenceFrame, State};
 use crate::linalg::{Matrix, norm};
 use crate::screws::{NoInverse, ScrewOptions};
 use crate::spatial::{Pose, Twist, Vec3};
@@ -113,7 +113,7 @@ impl InverseChoice {
     ) -> Result<RatesAtPoint> {
         let moved = pose.inverse() * Pose { translation: p, ..pose };
         let there = EndEffector { frame_from_tool: tool.frame_from_tool * moved, ..tool };
-        let all = state.jacobian(there, Reference::LocalWorldAligned);
+        let all = state.jacobian(there, ReferenceFrame::LocalWorldAligned);
         let j = Matrix::from_fn(6, coordinates.len(), |i, k| all[(i, coordinates[k])]);
         let twist = asked.at_point(p - pose.translation).to_array();
         let (inverse, twist) = self.inverse(&j, twist, (pose, p))?;
@@ -160,9 +160,9 @@ impl InverseChoice {
             }
             Projection::Oblique { complement, reference } => {
                 let at_p = |t: Twist| match reference {
-                    Reference::Local => pose.adjoint(t).at_point(p),
-                    Reference::World => t.at_point(p),
-                    Reference::LocalWorldAligned => t.at_point(p - pose.translation),
+                    ReferenceFrame::Local => pose.adjoint(t).at_point(p),
+                    ReferenceFrame::World => t.at_point(p),
+                    ReferenceFrame::LocalWorldAligned => t.at_point(p - pose.translation),
                 };
                 let given_up: Vec<[f64; 6]> =
                     complement.iter().map(|t| at_p(*t).to_array()).collect();

@@ -1,4 +1,4 @@
-//! Secondary tasks: what the joints do where the end effector does not care.
+//! Secondary tasks: joint velocities executed in the null space of the primary task.
 //!
 //! Formula  posture: k (q_0 - q), of rotation vectors and free bodies k log(R^T R_0) and
 //!          k R^T (p_0 - p), which are rates in the axes of the child;
@@ -23,9 +23,9 @@ use crate::manipulability::log_volume_slope;
 use crate::model::{CoordinateKind, Mechanism};
 use crate::spatial::{Rotation, Vec3};
 
-/// A wish for the joints, followed as far as the end effector allows.
+/// A secondary task, projected onto the null space of the end-effector task.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Secondary {
+pub enum SecondaryTask {
     /// Towards this configuration (all n coordinates of the mechanism).
     Posture {
         /// The configuration.
@@ -58,7 +58,7 @@ pub(super) struct Gradient {
     pub(super) hessian: Vec<Matrix>,
 }
 
-impl Secondary {
+impl SecondaryTask {
     /// The names of the tasks.
     pub const NAMES: [&'static str; 4] =
         ["posture", "centring", "limit-avoidance", "manipulability"];
@@ -90,7 +90,7 @@ impl Secondary {
         self
     }
 
-    /// Adds the wanted rates of the chain's coordinates to `out`.
+    /// Adds the joint velocities of the task for the chain's coordinates to `out`.
     pub(super) fn add_rates(
         &self,
         mechanism: &Mechanism,

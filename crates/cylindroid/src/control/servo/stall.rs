@@ -145,7 +145,7 @@ pub(super) struct Evidence<'a> {
     pub(super) possible: &'a [f64],
     /// Why there is no projector, if the arm was stopped for it.
     pub(super) no_inverse: Option<NoInverse>,
-    /// Coordinates that stand at a position limit against the wanted motion.
+    /// Coordinates that stand at a position limit against the desired motion.
     pub(super) at_limit: &'a [usize],
     pub(super) distance: f64,
     pub(super) length: f64,

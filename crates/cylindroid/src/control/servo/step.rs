@@ -31,11 +31,11 @@ impl Target {
     }
 
     /// The motion that is asked for, in the axes of the task, the components that matter alone.
-    pub(super) fn wanted(&self, pose: Pose, options: &ServoOptions) -> Result<Wanted> {
+    pub(super) fn desired(&self, pose: Pose, options: &ServoOptions) -> Result<DesiredMotion> {
         let error = pose.error_to(self.pose);
         let gain = options.gain;
         let seen = |t: Twist| options.task.seen(pose, t);
-        let wanted = Wanted {
+        let desired = DesiredMotion {
             error: seen(error),
             feedback: seen(Twist {
                 linear: error.linear * gain.position,
@@ -43,16 +43,16 @@ impl Target {
             }),
             feed_forward: seen(self.feed_forward),
         };
-        Error::check_finite("error to the target", &wanted.error.to_array())?;
-        let twist = wanted.feedback + wanted.feed_forward;
+        Error::check_finite("error to the target", &desired.error.to_array())?;
+        let twist = desired.feedback + desired.feed_forward;
         Error::check_finite("gain * error + feed-forward", &twist.to_array())?;
-        Ok(wanted)
+        Ok(desired)
     }
 }
 
 /// What a step is asked for, in the axes of the task.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Wanted {
+pub(super) struct DesiredMotion {
     pub(super) error: Twist,
     /// gain * error
     pub(super) feedback: Twist,

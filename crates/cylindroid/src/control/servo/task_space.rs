@@ -7,7 +7,7 @@
 //! Checked  tests/it/servo/limits.rs::joint_weights_keep_joints_still
 
 use super::options::ServoOptions;
-use crate::kinematics::{Chain, Reference};
+use crate::kinematics::{Chain, ReferenceFrame};
 use crate::linalg::Matrix;
 use crate::model::Limits;
 use crate::spatial::Twist;
@@ -15,7 +15,7 @@ use crate::spatial::Twist;
 /// Which rows and columns, scaled how.
 #[derive(Debug, Clone)]
 pub(super) struct TaskSpace {
-    pub(super) axes: Reference,
+    pub(super) axes: ReferenceFrame,
     /// Row of the 6 x n Jacobian and its scale, for each of the m components.
     pub(super) rows: Vec<(usize, f64)>,
     /// Scale of each of the n columns, and 1 for driven closing joints; 0 for joints that are locked.

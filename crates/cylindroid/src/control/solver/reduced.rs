@@ -37,9 +37,9 @@ pub(in crate::control) struct Reduced {
     pub(in crate::control) motions: Matrix,
     /// s_0 in weighted rates.
     pub(in crate::control) correction: Vec<f64>,
-    /// The y of the task, of the wishes, and of the rates.
+    /// The y of the primary task, of the secondary ones, and of the rates.
     pub(in crate::control) primary: Vec<f64>,
-    pub(in crate::control) wish: Vec<f64>,
+    pub(in crate::control) secondary: Vec<f64>,
     pub(in crate::control) y: Vec<f64>,
 }
 
@@ -50,7 +50,7 @@ impl Reduced {
             motions: Matrix::zeros(rates, drives),
             correction: vec![0.0; rates],
             primary: vec![0.0; drives],
-            wish: vec![0.0; drives],
+            secondary: vec![0.0; drives],
             y: vec![0.0; drives],
         }
     }
@@ -65,7 +65,7 @@ impl Reduced {
         (0..self.motions.cols()).map(|j| self.motions[(joint, j)] * pull[j]).sum()
     }
 
-    /// Moves primary and wish into the bounds: weighted rates into `out`.
+    /// Moves primary and secondary velocities into the bounds: weighted rates into `out`.
     pub(in crate::control) fn saturate(
         &mut self,
         p: CoupledProblem<'_>,
@@ -77,9 +77,9 @@ impl Reduced {
                 *o = bound.clamp(a + s * b);
             }
         };
-        let (mut direct, mut wished) = (vec![0.0; n], vec![0.0; n]);
+        let (mut direct, mut secondary) = (vec![0.0; n], vec![0.0; n]);
         self.lift(&self.primary, &mut direct);
-        self.lift(&self.wish, &mut wished);
+        self.lift(&self.secondary, &mut secondary);
         // At a limit the way to closed loops ends, too. Bounds of acceleration that leave out rest
         // are met by the motion: a correction that met them would open the loops.
         for (x, bound) in self.correction.iter_mut().zip(p.bounds) {
@@ -87,8 +87,8 @@ impl Reduced {
         }
         let start = self.correction.clone();
         let both: Vec<f64> = start.iter().zip(&direct).map(|(a, b)| a + b).collect();
-        if let Some(span) = interval(&both, &wished, p.bounds) {
-            clamped(&both, &wished, span.most, out);
+        if let Some(span) = interval(&both, &secondary, p.bounds) {
+            clamped(&both, &secondary, span.most, out);
             self.set_y(span.most, 1.0);
             return Saturation { scale: 1.0, bent: false };
         }
@@ -110,9 +110,9 @@ impl Reduced {
         Saturation { scale: 0.0, bent: true }
     }
 
-    fn set_y(&mut self, wish: f64, primary: f64) {
-        for ((y, p), w) in self.y.iter_mut().zip(&self.primary).zip(&self.wish) {
-            *y = primary * p + wish * w;
+    fn set_y(&mut self, secondary: f64, primary: f64) {
+        for ((y, p), w) in self.y.iter_mut().zip(&self.primary).zip(&self.secondary) {
+            *y = primary * p + secondary * w;
         }
     }
 

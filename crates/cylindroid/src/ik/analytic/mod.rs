@@ -24,7 +24,7 @@ use self::formulas::Aim;
 use self::structure::{Axes, Geometry, Three};
 use super::damped::{Damped, Wanted};
 use crate::error::{Error, Result};
-use crate::kinematics::{Chain, EndEffector, Reference};
+use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Motion};
 use crate::scalar::uniform;
@@ -385,7 +385,7 @@ impl Analytic {
 
     /// One Newton step from the posture that was looked at last; free joints stay.
     fn refine(&mut self, q: &mut [f64; 6], free: &[bool; 6], target: &Pose) {
-        self.chain.jacobian_into(Reference::LocalWorldAligned, &mut self.jacobian);
+        self.chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut self.jacobian);
         let scaled =
             |twist: Twist| Twist { linear: twist.linear * (1.0 / self.reach), ..twist }.to_array();
         let of_chain = self.chain.coordinates();
@@ -471,7 +471,7 @@ fn axes(
     jacobian: &mut Matrix,
 ) -> Option<Axes> {
     let tool = chain.set(q).translation;
-    chain.jacobian_into(Reference::World, jacobian);
+    chain.jacobian_into(ReferenceFrame::World, jacobian);
     let mut lines = [crate::screws::Line { point: tool, direction: crate::spatial::Vec3::Z }; 6];
     for (line, c) in lines.iter_mut().zip(coordinates) {
         let column = jacobian.column(chain.coordinates().partition_point(|x| x < c));

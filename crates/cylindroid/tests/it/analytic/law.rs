@@ -28,8 +28,10 @@ pub(super) fn confirm(robot: &Mechanism, target: Pose, answers: &[Posture]) {
 
 /// The smallest over the largest singular value, lengths over the reach.
 pub(super) fn condition(robot: &Mechanism, q: &[f64]) -> f64 {
-    let mut j =
-        robot.state(q).unwrap().jacobian(robot.tool(), cylindroid::Reference::LocalWorldAligned);
+    let mut j = robot
+        .state(q)
+        .unwrap()
+        .jacobian(robot.tool(), cylindroid::ReferenceFrame::LocalWorldAligned);
     for c in 0..6 {
         (0..3).for_each(|r| j[(r, c)] /= robot.reach());
     }

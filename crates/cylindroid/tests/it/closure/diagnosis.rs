@@ -6,7 +6,7 @@ use cylindroid::closure::{
 use cylindroid::model::formats;
 use cylindroid::screws::Screw;
 use cylindroid::spatial::{Vec3, Wrench};
-use cylindroid::{Error, Mechanism, Reference, catalogue};
+use cylindroid::{Error, Mechanism, ReferenceFrame, catalogue};
 
 use crate::support::Random;
 
@@ -57,7 +57,7 @@ fn a_straight_elbow_blocks_a_wrench() {
     assert!(found.separated && found.redundant.len() > 1, "{:?}", found.redundant);
     let state = arm.state(&q).unwrap();
     let unfelt = |wrench: Wrench, point: Vec3| {
-        let j = state.jacobian(arm.tool(), Reference::World);
+        let j = state.jacobian(arm.tool(), ReferenceFrame::World);
         for c in 0..6 {
             let twist = cylindroid::Twist::from_array(std::array::from_fn(|i| j[(i, c)]));
             assert!(twist.power(wrench).abs() < 1e-12, "joint {c}, {point:?}");

@@ -4,7 +4,7 @@ use cylindroid::closure::{ClosedChain, Mobility, MotionSpace};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec, LoopSpec};
-use cylindroid::{Error, Mechanism, Reference, catalogue};
+use cylindroid::{Error, Mechanism, ReferenceFrame, catalogue};
 
 use crate::support::{Random, robots};
 
@@ -83,7 +83,7 @@ fn trees_are_serial() {
         let state = robot.state(&random.q(&robot)).unwrap();
         let chain = ClosedChain::of(&state, Some(robot.tool()), Some(1.0)).unwrap();
         let got = kinematic(&chain);
-        let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
         let svd = Svd::of(&j);
         let expected: Vec<f64> = svd.values().filter(|s| *s > 1e-9).map(|s| s * s).collect();
         assert_eq!(got.len(), expected.len(), "{}", robot.name());
@@ -177,7 +177,7 @@ fn motions_of_the_reference() {
         let state = robot.state(&q).unwrap();
         let chain = ClosedChain::of(&state, None, None).unwrap();
         let system = ScrewSystem::of(&chain.reference_twists(&state), &options).unwrap();
-        let j = state.jacobian(robot.reference(), Reference::World);
+        let j = state.jacobian(robot.reference(), ReferenceFrame::World);
         let columns = ScrewSystem::of_columns(&j, &options).unwrap();
         assert_eq!(system.order(), columns.order(), "{name}");
         assert!(system.sine_to_system(&columns) < 1e-9, "{name}");

@@ -6,7 +6,7 @@ use cylindroid::linalg::Metric;
 use cylindroid::manipulability::{Manipulability, Metrics, body_inertia};
 use cylindroid::model::{Dimension, Inertial, JointKind, JointSpec, Link};
 use cylindroid::spatial::{Mat3, Pose, Vec3};
-use cylindroid::{Mechanism, Reference};
+use cylindroid::{Mechanism, ReferenceFrame};
 
 use crate::closure::case::{case, cases};
 use crate::support::{Random, assert_close};
@@ -243,7 +243,7 @@ fn inertia_is_kinetic_energy() {
         assert!((energy - twice).abs() < 1e-12 * twice);
     }
     // As a metric: the efficiency of the turning joint is its moment of inertia about the axis.
-    let j = state.jacobian(frame, Reference::LocalWorldAligned);
+    let j = state.jacobian(frame, ReferenceFrame::LocalWorldAligned);
     let relation = MotionSpace::of(&Constraint::serial(&j).unwrap()).relation();
     let metrics = Metrics::UNIT.with_inertia(&state, frame).unwrap();
     let value = Manipulability::of(&relation, &metrics).unwrap().kinematic.values()[0];

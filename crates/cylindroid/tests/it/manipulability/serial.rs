@@ -3,7 +3,7 @@
 use cylindroid::closure::{Constraint, MotionSpace};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics, Spectrum};
-use cylindroid::{Matrix, Reference, catalogue};
+use cylindroid::{Matrix, ReferenceFrame, catalogue};
 
 use crate::support::{Random, assert_close, assert_matrix};
 
@@ -25,7 +25,7 @@ fn arms_of_the_catalogue() {
         let robot = catalogue::load(name).unwrap();
         for _ in 0..20 {
             let state = robot.state(&random.q(&robot)).unwrap();
-            let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
             let svd = Svd::of(&j);
             let m = of(&j);
             let rank = j.rows().min(j.cols());

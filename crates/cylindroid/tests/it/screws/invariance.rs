@@ -4,7 +4,7 @@ use cylindroid::inverse::{self, HyperbolicOptions};
 use cylindroid::linalg::Svd;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::spatial::{Pose, Twist, Vec3};
-use cylindroid::{Matrix, Reference, catalogue};
+use cylindroid::{Matrix, ReferenceFrame, catalogue};
 
 use super::laws::adjoint_matrix;
 use super::sample::matrix;
@@ -43,7 +43,7 @@ fn seen_from_everywhere(arm: &str, h: f64) {
     let mut changes: Vec<(&str, Vec<f64>)> = vec![];
     for _ in 0..100 {
         let state = robot.state(&random.q(&robot)).unwrap();
-        let base = state.jacobian(robot.tool(), Reference::World);
+        let base = state.jacobian(robot.tool(), ReferenceFrame::World);
         let twist = matrix(&[random.twist()]);
         let options = ScrewOptions::with_length(robot.reach());
         let system = ScrewSystem::of_columns(&base, &options).unwrap();
@@ -116,7 +116,7 @@ fn within_the_span_all_agree() {
         let robot = catalogue::load(arm).unwrap();
         for _ in 0..50 {
             let state = robot.state(&random.q(&robot)).unwrap();
-            let j = state.jacobian(robot.tool(), Reference::World);
+            let j = state.jacobian(robot.tool(), ReferenceFrame::World);
             let rates = random.vector(robot.n());
             let s = j.mul_vec(&rates);
             let found = inverse::hyperbolic(&j, 0.1).unwrap();

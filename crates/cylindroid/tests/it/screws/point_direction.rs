@@ -3,7 +3,7 @@
 use cylindroid::inverse::point_direction;
 use cylindroid::linalg::Svd;
 use cylindroid::spatial::{Pose, Twist, Vec3};
-use cylindroid::{Matrix, Reference, catalogue};
+use cylindroid::{Matrix, ReferenceFrame, catalogue};
 
 use super::laws::adjoint_matrix;
 use super::sample::matrix;
@@ -72,7 +72,7 @@ fn arms_go_that_way() {
         for _ in 0..20 {
             let q = random.q(&robot);
             let state = robot.state(&q).unwrap();
-            let j = state.jacobian(robot.tool(), Reference::World);
+            let j = state.jacobian(robot.tool(), ReferenceFrame::World);
             let at = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool()).translation;
             let (point, way) = (at(&q), random.vec3(1.0));
             let found = point_direction(&j, point, way).unwrap();
@@ -100,7 +100,7 @@ fn where_no_rates_go_that_way() {
         ([0.0, 0.0, 0.0], Vec3::Y, true, 2),
     ] {
         let state = robot.state(&q).unwrap();
-        let j = state.jacobian(robot.tool(), Reference::World);
+        let j = state.jacobian(robot.tool(), ReferenceFrame::World);
         let point = state.pose(robot.tool()).translation;
         check(&j, point, way, reachable, still, 1e-13);
     }

@@ -70,7 +70,7 @@ impl Problem {
             input: HybridInput {
                 error: random.twist() * 0.1,
                 feed_forward: random.twist(),
-                wanted: wrench(random),
+                desired: wrench(random),
                 measured: wrench(random),
             },
             length: 0.5,
@@ -97,7 +97,7 @@ impl Problem {
             input: HybridInput {
                 error: g.adjoint(self.input.error),
                 feed_forward: g.adjoint(self.input.feed_forward),
-                wanted: g.coadjoint(self.input.wanted),
+                desired: g.coadjoint(self.input.desired),
                 measured: g.coadjoint(self.input.measured),
             },
             ..self.clone()
@@ -123,7 +123,7 @@ impl Problem {
             input: HybridInput {
                 error: t(self.input.error),
                 feed_forward: t(self.input.feed_forward),
-                wanted: w(self.input.wanted),
+                desired: w(self.input.desired),
                 measured: w(self.input.measured),
             },
             length: self.length * s,
@@ -275,7 +275,7 @@ fn orthogonal_selection_changes_with_the_origin_and_the_unit() {
 #[test]
 fn a_pen_writes_at_constant_force() {
     let normal = Vec3::new(0.5, 0.0, 0.75_f64.sqrt());
-    let (stiffness, dt, wanted) = (2000.0, 1e-3, -normal * 5.0);
+    let (stiffness, dt, desired) = (2000.0, 1e-3, -normal * 5.0);
     let law = HybridLaw::new(
         10.0,
         Admittance::at(Vec3::ZERO, AdmittanceGain { force: 0.01, moment: 0.0 }).unwrap(),
@@ -283,7 +283,7 @@ fn a_pen_writes_at_constant_force() {
     .unwrap();
     let along = Along::Reciprocal { h: f64::INFINITY };
     let split = split(&pen(normal), along);
-    let run = |drag: f64, wanted: Vec3| {
+    let run = |drag: f64, desired: Vec3| {
         let across = Vec3::Y;
         let mut pose = Pose::from_translation(across * 0.01);
         let mut force = Vec3::ZERO;
@@ -294,7 +294,7 @@ fn a_pen_writes_at_constant_force() {
             let input = HybridInput {
                 error: pose.screw_to(target),
                 feed_forward: slide(across * 0.05),
-                wanted: Wrench { force: wanted, moment: Vec3::ZERO },
+                desired: Wrench { force: desired, moment: Vec3::ZERO },
                 measured: Wrench { force, moment: Vec3::ZERO },
             };
             let command = law.command(&split, &input).unwrap();
@@ -302,11 +302,11 @@ fn a_pen_writes_at_constant_force() {
         }
         (pose, force)
     };
-    let (pose, force) = run(0.0, wanted);
-    assert!((force - wanted).norm() < 1e-9, "{force:?}");
+    let (pose, force) = run(0.0, desired);
+    assert!((force - desired).norm() < 1e-9, "{force:?}");
     assert!((pose.translation.dot(Vec3::Y) - 0.15).abs() < 1e-9, "{pose:?}");
     // Friction is no error of force, and ten newtons more do not move the line.
-    let (with_drag, _) = run(3.0, wanted);
+    let (with_drag, _) = run(3.0, desired);
     assert_eq!(with_drag, pose);
     let (harder, _) = run(0.0, -normal * 15.0);
     let aside = harder.translation - pose.translation;
@@ -423,7 +423,7 @@ fn bad_input_is_refused() {
     assert!(refused(HybridInput { error: slide(nan), ..input }).contains("twist error[1]"));
     assert!(refused(HybridInput { feed_forward: turn(nan), ..input }).contains("feed-forward"));
     let bad = Wrench { force: nan, moment: Vec3::ZERO };
-    assert!(refused(HybridInput { wanted: bad, ..input }).contains("wanted wrench"));
+    assert!(refused(HybridInput { desired: bad, ..input }).contains("desired wrench"));
     assert!(refused(HybridInput { measured: bad, ..input }).contains("measured wrench"));
     let huge = slide(Vec3::X * 1e308);
     assert!(refused(HybridInput { error: huge, ..input }).contains("commanded twist"));

@@ -19,7 +19,7 @@ fn two_arms_squeeze_a_box_that_rests() {
     let mut theta = q.clone();
     let of_drives = |x: &[f64]| drives.iter().map(|&i| x[i]).collect::<Vec<f64>>();
     let law = InternalForceLaw::new(10.0, &of_drives(&stiffness)).unwrap();
-    let wanted: Vec<f64> = (0..14).map(|i| 8.0 * f64::from(i).sin()).collect();
+    let desired: Vec<f64> = (0..14).map(|i| 8.0 * f64::from(i).sin()).collect();
     let before = two_arm.state(&q).unwrap().pose(two_arm.reference());
     let (dt, mut first) = (0.01_f64, None);
     for step in 0..150 {
@@ -27,7 +27,7 @@ fn two_arms_squeeze_a_box_that_rests() {
         let relation = MotionSpace::of(&chain.constraint).relation();
         assert_eq!(relation.dimensions().internal, 6);
         let torques: Vec<f64> = drives.iter().map(|&i| stiffness[i] * (theta[i] - q[i])).collect();
-        let command = law.command(&relation, &wanted, &torques).unwrap();
+        let command = law.command(&relation, &desired, &torques).unwrap();
         let error = command.error.iter().map(|e| e * e).sum::<f64>().sqrt();
         let start = *first.get_or_insert(error);
         let ideal = (1.0 - 10.0 * dt).powi(step);

@@ -17,7 +17,7 @@ fn limits_scale_before_they_bend() {
     let target = Pose { translation: start.translation + Vec3::new(-0.3, 0.2, 0.0), ..start };
     let step = servo.step(&q, target).unwrap();
     assert!(step.saturation.scale < 1.0 && !step.saturation.bent);
-    let v = state.jacobian(robot.tool(), Reference::LocalWorldAligned).mul_vec(servo.rates());
+    let v = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).mul_vec(servo.rates());
     let cross = v[0] * 0.2 - v[1] * -0.3;
     assert!(cross.abs() < 1e-12 * v[0].hypot(v[1]), "direction lost: {v:?}");
     let largest = servo.rates().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
@@ -53,7 +53,7 @@ fn saturation_uses_the_other_joints() {
     let way = Vec3::new(-0.2, 0.3, 0.0);
     let step = servo.step(&q, Pose { translation: start.translation + way, ..start }).unwrap();
     assert_eq!((step.saturation.scale, step.saturation.bent), (1.0, false));
-    let v = state.jacobian(robot.tool(), Reference::LocalWorldAligned).mul_vec(servo.rates());
+    let v = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).mul_vec(servo.rates());
     assert!((v[0] - way.x).abs() < 1e-12 && (v[1] - way.y).abs() < 1e-12, "{v:?}");
     assert!(servo.rates()[0].abs() <= 1e-3);
 }
@@ -69,13 +69,14 @@ fn speed_is_saturated_as_a_whole() {
     };
     let mut servo = servo(&robot, |o| o.speed = Speed { linear: 0.05, angular: 0.1 });
     servo.step(robot.home(), target).unwrap();
-    let twist = state.twist(servo.rates(), robot.tool(), Reference::LocalWorldAligned).unwrap();
+    let twist =
+        state.twist(servo.rates(), robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
     assert!(
         twist.linear.norm() <= 0.05 * (1.0 + 1e-9) && twist.angular.norm() <= 0.1 * (1.0 + 1e-9)
     );
     let ratio = twist.linear.norm() / twist.angular.norm();
-    let wanted = Vec3::new(-0.1, 0.2, 0.1).norm() / Vec3::new(0.2, 0.1, 0.0).norm();
-    assert!((ratio - wanted).abs() < 1e-6 * wanted);
+    let expected = Vec3::new(-0.1, 0.2, 0.1).norm() / Vec3::new(0.2, 0.1, 0.0).norm();
+    assert!((ratio - expected).abs() < 1e-6 * expected);
 }
 
 /// Whatever the options and the limits (equal ends, velocity or acceleration 0, a screw, a follower):
@@ -105,8 +106,8 @@ fn limits_hold_for_any_options() {
             }
             if round % 3 == 0 {
                 o.secondary = vec![
-                    Secondary::Centring { gain: 5.0 },
-                    Secondary::Manipulability { gain: 5.0 },
+                    SecondaryTask::Centring { gain: 5.0 },
+                    SecondaryTask::Manipulability { gain: 5.0 },
                 ];
             }
             if round % 5 == 0 {
@@ -163,7 +164,8 @@ fn singular_poses_keep_rates_bounded() {
                             .hypot(sample.step.orientation_error * gain.orientation);
                         let largest = || {
                             let state = robot.state(sample.q).unwrap();
-                            let mut j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+                            let mut j =
+                                state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
                             for c in 0..robot.n() {
                                 j.column_mut(c)[..3].iter_mut().for_each(|x| *x /= length);
                             }
@@ -222,7 +224,7 @@ fn joint_weights_keep_joints_still() {
     };
     let (even, heavy) = (rates(vec![]), rates(vec![1.0, 1e8, 1.0, 1.0]));
     assert!(heavy[1].abs() < 1e-6 && even[1].abs() > 1e-3);
-    let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
     for rates in [even, heavy] {
         let v = j.mul_vec(&rates);
         assert!((v[0] - 0.05).abs() < 1e-10 && (v[1] + 0.1).abs() < 1e-10);

@@ -15,13 +15,15 @@ mod ways;
 
 pub(crate) use cylindroid::control::{
     Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Motion1, Outcome, Projector,
-    RateBounds, Secondary, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
+    RateBounds, SecondaryTask, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
 };
 pub(crate) use cylindroid::inverse::Method;
 pub(crate) use cylindroid::linalg::{RowSpace, Svd};
 pub(crate) use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 pub(crate) use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3};
-pub(crate) use cylindroid::{Error, Matrix, Mechanism, Reference, Servo, ServoOptions, catalogue};
+pub(crate) use cylindroid::{
+    Error, Matrix, Mechanism, ReferenceFrame, Servo, ServoOptions, catalogue,
+};
 
 pub(crate) use crate::support::{Random, odd_arm, planar, unlimited};
 

@@ -2,9 +2,9 @@
 
 use cylindroid::catalogue;
 use cylindroid::closure::{ClosedChain, MotionSpace, RowSelection, assemble};
-use cylindroid::control::{Outcome, Secondary, Stall, Task, drive};
+use cylindroid::control::{Outcome, SecondaryTask, Stall, Task, drive};
 use cylindroid::model::Mechanism;
-use cylindroid::{Pose, Reference, Servo, ServoOptions, Vec3};
+use cylindroid::{Pose, ReferenceFrame, Servo, ServoOptions, Vec3};
 
 use crate::support::Random;
 
@@ -150,14 +150,16 @@ fn drives_move_with_the_least_weighted_effort() {
             assert!(along.abs() < 1e-9 * size, "{along:e} of {size:e}");
         }
         // And the object moves as it was asked to.
-        let jacobian =
-            two_arm.state(&q).unwrap().jacobian(two_arm.reference(), Reference::LocalWorldAligned);
+        let jacobian = two_arm
+            .state(&q)
+            .unwrap()
+            .jacobian(two_arm.reference(), ReferenceFrame::LocalWorldAligned);
         let twist = jacobian.mul_vec(rates);
         assert!((twist[2] - 5e-3).abs() < 1e-9, "{twist:?}");
     }
 }
 
-/// What the two arms can do beside holding the box is the null space: a wish there moves joints
+/// What the two arms can do beside holding the box is the null space: a secondary task moves joints
 /// and not the box.
 #[test]
 fn redundancy_is_the_null_space() {
@@ -165,7 +167,7 @@ fn redundancy_is_the_null_space() {
     let mut options = ServoOptions::new(&two_arm);
     let q = assembled(&two_arm, 0.0, &mut Random(15));
     let posture: Vec<f64> = q.iter().map(|x| x + 0.3).collect();
-    options.secondary = vec![Secondary::Posture { q: posture, gain: 1.0 }];
+    options.secondary = vec![SecondaryTask::Posture { q: posture, gain: 1.0 }];
     let mut servo = Servo::new(&two_arm, options).unwrap();
     let target = two_arm.state(&q).unwrap().pose(two_arm.reference());
     servo.step(&q, target).unwrap();
@@ -174,12 +176,12 @@ fn redundancy_is_the_null_space() {
     let twist = two_arm
         .state(&q)
         .unwrap()
-        .jacobian(two_arm.reference(), Reference::LocalWorldAligned)
+        .jacobian(two_arm.reference(), ReferenceFrame::LocalWorldAligned)
         .mul_vec(rates);
     assert!(twist.iter().all(|x| x.abs() < 1e-7), "{twist:?}");
     // The gradient of a manipulability of the cut tree is refused by name.
     let mut options = ServoOptions::new(&two_arm);
-    options.secondary = vec![Secondary::Manipulability { gain: 1.0 }];
+    options.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
     let error = Servo::new(&two_arm, options).unwrap_err().to_string();
     assert!(error.contains("manipulability"), "{error}");
 }

@@ -4,7 +4,7 @@ use super::*;
 
 /// The scaled Jacobian of whole poses.
 fn scaled(robot: &Mechanism, q: &[f64], length: f64) -> Matrix {
-    let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
+    let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
     Matrix::from_fn(6, j.cols(), |i, k| if i < 3 { j[(i, k)] / length } else { j[(i, k)] })
 }
 
@@ -43,11 +43,11 @@ fn singular_values_are_those_of_a_step_and_the_weakest_motion_needs_most() {
 fn the_weakest_motion_is_in_world_axes() {
     let robot = catalogue::load("panda").unwrap();
     let q = bent(&robot);
-    let posture = |axes: Reference| {
+    let posture = |axes: ReferenceFrame| {
         let task = Task { axes, ..Task::POSE };
         servo(&robot, |o| o.task = task).posture(&q).unwrap()
     };
-    let [world, local] = [Reference::LocalWorldAligned, Reference::Local].map(posture);
+    let [world, local] = [ReferenceFrame::LocalWorldAligned, ReferenceFrame::Local].map(posture);
     let (a, b) = (world.weakest.unwrap(), local.weakest.unwrap());
     let sign = a.angular.dot(b.angular).signum();
     crate::support::assert_close("twist", &(b * sign).to_array(), &a.to_array(), 1e-9);
@@ -92,7 +92,8 @@ fn self_motions_leave_the_tool_at_rest_at_full_speed() {
         assert_eq!(motions.len(), redundancy, "{name}");
         for motion in motions {
             moving += 1;
-            let twist = robot.state(&q).unwrap().twist(&motion, robot.tool(), Reference::World);
+            let twist =
+                robot.state(&q).unwrap().twist(&motion, robot.tool(), ReferenceFrame::World);
             assert!(twist.unwrap().to_array().iter().all(|x| x.abs() < 1e-12), "{name}");
             let share =
                 |(rate, c): (&f64, &cylindroid::model::Coordinate)| rate.abs() / c.limits.velocity;

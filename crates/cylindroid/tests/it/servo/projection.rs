@@ -40,7 +40,7 @@ fn rates_with(
 }
 
 fn world_jacobian(robot: &Mechanism, q: &[f64]) -> Matrix {
-    robot.state(q).unwrap().jacobian(robot.tool(), Reference::World)
+    robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::World)
 }
 
 fn assert_rates(got: &[f64], expected: &[f64]) {
@@ -100,9 +100,9 @@ fn rates_are_those_of_the_inverse() {
     let options = HyperbolicOptions { scale, ..HyperbolicOptions::default() };
     let expected = inverse::oblique(&j, &complement, &options).unwrap();
     for (twist, reference) in [
-        (roll, Reference::Local),
-        (aligned, Reference::LocalWorldAligned),
-        (world, Reference::World),
+        (roll, ReferenceFrame::Local),
+        (aligned, ReferenceFrame::LocalWorldAligned),
+        (world, ReferenceFrame::World),
     ] {
         let projection = Projection::Oblique { complement: vec![twist], reference };
         assert_rates(
@@ -111,7 +111,7 @@ fn rates_are_those_of_the_inverse() {
         );
         let local = rates_with(&robot, &q, TWIST, |o| {
             o.projection = projection;
-            o.task.axes = Reference::Local;
+            o.task.axes = ReferenceFrame::Local;
         });
         assert_rates(&local, &expected.matrix.mul_vec(&seen));
     }
@@ -223,7 +223,7 @@ fn six_joints_take_on_everything() {
     let plain = rates(&robot, Projection::Orthogonal, &q, TWIST);
     for projection in [
         Projection::Hyperbolic { h: 0.2 },
-        Projection::Oblique { complement: vec![], reference: Reference::Local },
+        Projection::Oblique { complement: vec![], reference: ReferenceFrame::Local },
     ] {
         assert_rates(&rates(&robot, projection, &q, TWIST), &plain);
     }
@@ -252,14 +252,14 @@ fn bad_projections_are_refused() {
     let text = refused(&|o| o.largest_projection = 0.0);
     assert!(text.contains("largest projection"), "{text}");
     let zero =
-        Projection::Oblique { complement: vec![Twist::ZERO; 7], reference: Reference::Local };
+        Projection::Oblique { complement: vec![Twist::ZERO; 7], reference: ReferenceFrame::Local };
     let text = refused(&|o| o.projection = zero.clone());
     assert!(text.contains("six"), "{text}");
     // A complement that is a motion of the arm does not complete it.
     let q = pitched(25.0);
     let j = world_jacobian(&robot, &q);
     let own = Twist::from_array(j.column(0).try_into().unwrap());
-    let own = Projection::Oblique { complement: vec![own], reference: Reference::World };
+    let own = Projection::Oblique { complement: vec![own], reference: ReferenceFrame::World };
     let mut servo = servo(&robot, |o| o.projection = own);
     let pose = robot.state(&q).unwrap().pose(robot.tool());
     servo.step(&q, Target { pose, feed_forward: TWIST }).unwrap();

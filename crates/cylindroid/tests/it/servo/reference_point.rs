@@ -42,9 +42,9 @@ fn only_invariant_inverses_keep_their_rates() {
         Projection::Hyperbolic { h: 0.1 },
         Projection::Hyperbolic { h: -0.3 },
         Projection::DampedHyperbolic { h: 0.1, damping },
-        given_up(Reference::Local),
-        given_up(Reference::World),
-        given_up(Reference::LocalWorldAligned),
+        given_up(ReferenceFrame::Local),
+        given_up(ReferenceFrame::World),
+        given_up(ReferenceFrame::LocalWorldAligned),
     ] {
         let found = asked(&choice(&robot, Method::default(), projection.clone()), &robot);
         assert!(found.invariant, "{projection:?}: {found:?}");
@@ -89,7 +89,7 @@ fn rates_are_those_of_servo_and_inverse() {
         frame: robot.tool(),
         frame_from_tool: pose.inverse() * Pose { translation: POINT, ..pose },
     };
-    let j = state.jacobian(tool, Reference::LocalWorldAligned);
+    let j = state.jacobian(tool, ReferenceFrame::LocalWorldAligned);
     let length = robot.reach();
     let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
     let scaled = Matrix::from_fn(6, 5, |i, k| scale(i) * j[(i, k)]);

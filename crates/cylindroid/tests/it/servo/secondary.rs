@@ -15,11 +15,11 @@ fn secondary_motion_stays_in_the_null_space() {
     };
     for q in [robot.home().to_vec(), aligned_wrist] {
         let state = robot.state(&q).unwrap();
-        let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
         for _ in 0..20 {
-            let wanted = random.vector(7);
+            let desired = random.vector(7);
             let mut servo = servo(&robot, |o| o.method = Method::Truncated { eps: 0.05 });
-            servo.step_with(&q, state.pose(robot.tool()), &wanted).unwrap();
+            servo.step_with(&q, state.pose(robot.tool()), &desired).unwrap();
             let rates = servo.rates().to_vec();
             let size: f64 = rates.iter().map(|r| r * r).sum::<f64>().sqrt();
             assert!(
@@ -37,7 +37,7 @@ fn retained_projector_disturbs_the_task_where_directions_were_cut() {
     // Stretched but for a little: the radial direction is cut.
     let q = [0.2, 1e-3, -2e-3];
     let state = robot.state(&q).unwrap();
-    let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
     let disturbance = |projector| {
         let mut servo = servo(&robot, |o| {
             o.task = Task::POSITION;
@@ -58,7 +58,7 @@ fn secondary_tasks_do_what_they_say() {
     let mut start = robot.home().to_vec();
     start[2] = 0.9;
     let pose = robot.state(&start).unwrap().pose(robot.tool());
-    let after = |secondary: Secondary| {
+    let after = |secondary: SecondaryTask| {
         let mut servo = servo(&robot, |o| {
             o.secondary = vec![secondary];
             o.tolerance = Tolerance { position: 1e-9, orientation: 1e-9 };
@@ -69,22 +69,22 @@ fn secondary_tasks_do_what_they_say() {
             assert!(step.position_error < 1e-4, "the task was disturbed");
             servo.advance(&mut q);
         }
-        // At rest where the wish has no part left in the null space.
+        // At rest where the secondary task has no part left in the null space.
         assert!(servo.rates().iter().all(|r| r.abs() < 5e-3), "{:?}", servo.rates());
         q
     };
     let distance =
         |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt();
     let posture = vec![0.0; 7];
-    let q = after(Secondary::Posture { q: posture.clone(), gain: 1.0 });
+    let q = after(SecondaryTask::Posture { q: posture.clone(), gain: 1.0 });
     assert!(distance(&q, &posture) < distance(&start, &posture) - 0.1);
-    let q = after(Secondary::Centring { gain: 1.0 });
+    let q = after(SecondaryTask::Centring { gain: 1.0 });
     assert!(distance(&q, &[0.0; 7]) < distance(&start, &[0.0; 7]) - 0.1);
     let w = |q: &[f64]| {
-        let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
+        let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
         Svd::of(&j).values().product::<f64>()
     };
-    let q = after(Secondary::Manipulability { gain: 100.0 });
+    let q = after(SecondaryTask::Manipulability { gain: 100.0 });
     assert!(w(&q) > 1.01 * w(&start), "{} from {}", w(&q), w(&start));
 }
 
@@ -95,10 +95,10 @@ fn secondary_manipulability_gradient_by_finite_differences() {
     let q = [0.3, 0.7, -0.4, 1.1];
     let task = Task {
         components: [true, false, false, false, false, false],
-        axes: Reference::LocalWorldAligned,
+        axes: ReferenceFrame::LocalWorldAligned,
     };
     let w = |q: &[f64]| {
-        let j = robot.state(q).unwrap().jacobian(robot.tool(), Reference::LocalWorldAligned);
+        let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
         (0..4).map(|k| (j[(0, k)] / robot.reach()).powi(2)).sum::<f64>().sqrt()
     };
     let h = 1e-6;
@@ -111,12 +111,12 @@ fn secondary_manipulability_gradient_by_finite_differences() {
     }
     let mut servo = servo(&robot, |o| {
         o.task = task;
-        o.secondary = vec![Secondary::Manipulability { gain: 1.0 }];
+        o.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
     });
     let state = robot.state(&q).unwrap();
     servo.step(&q, state.pose(robot.tool())).unwrap();
     // The gradient, projected on the null space of the one row.
-    let j = state.jacobian(robot.tool(), Reference::LocalWorldAligned);
+    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
     let row: Vec<f64> = (0..4).map(|k| j[(0, k)]).collect();
     let norm2: f64 = row.iter().map(|x| x * x).sum();
     let along: f64 = row.iter().zip(gradient).map(|(r, g)| r * g).sum::<f64>() / norm2;
@@ -156,7 +156,7 @@ fn secondary_posture_of_spherical_and_free_joints() {
             let mut servo = servo(&robot, |o| {
                 o.task = Task::POSITION;
                 o.dt = 0.01;
-                o.secondary = vec![Secondary::Posture { q: posture.clone(), gain: 2.0 }];
+                o.secondary = vec![SecondaryTask::Posture { q: posture.clone(), gain: 2.0 }];
             });
             let mut left = pose(&q).rotation.angle_to(pose(&posture).rotation);
             for _ in 0..1000 {
@@ -172,7 +172,7 @@ fn secondary_posture_of_spherical_and_free_joints() {
     }
 }
 
-/// Several rows, scaled and weighted: the wish is the gradient of w = s_1 ... s_m of the scaled
+/// Several rows, scaled and weighted: the secondary velocity is the gradient of w = s_1 ... s_m of the scaled
 /// Jacobian, in central differences, projected on its null space.
 #[test]
 fn secondary_manipulability_gradient_of_several_rows() {
@@ -206,7 +206,7 @@ fn secondary_manipulability_gradient_of_several_rows() {
             let mut servo = servo(&robot, |o| {
                 o.task = task;
                 o.joint_weights = weights.clone();
-                o.secondary = vec![Secondary::Manipulability { gain: 1.0 }];
+                o.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
             });
             servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
             let size = servo.rates().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
@@ -234,7 +234,7 @@ fn secondary_limit_avoidance_pushes_by_the_room_that_is_left() {
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
         // 0.8 rad of the range of 4 rad
-        o.secondary = vec![Secondary::LimitAvoidance { gain: 0.5, margin: 0.2 }];
+        o.secondary = vec![SecondaryTask::LimitAvoidance { gain: 0.5, margin: 0.2 }];
     });
     for (q, rate) in
         [(-1.0, 0.5), (-0.6, 0.25), (-0.2, 0.0), (1.0, 0.0), (2.2, 0.0), (2.8, -0.375), (3.0, -0.5)]

@@ -70,8 +70,8 @@ fn the_operator_cannot_leave_the_surface() {
         assert!(command.robot_part.linear.norm() < 1e-12, "{:?}", command.robot_part);
         // The tip moves across the normal as the operator wants; the spin about it as well.
         let out = pose.rotation.z_axis();
-        let wanted = operator.linear - out * out.dot(operator.linear);
-        assert!((command.twist.linear - wanted).norm() < 1e-9, "{wanted:?}");
+        let desired = operator.linear - out * out.dot(operator.linear);
+        assert!((command.twist.linear - desired).norm() < 1e-9, "{desired:?}");
         let spin = (command.twist.angular - operator.angular).dot(out);
         assert!(spin.abs() < 1e-9, "{spin}");
     }

@@ -143,7 +143,7 @@ fn bad_input_is_refused_and_leaves_the_servo() {
         (|o| o.task.components = [false; 6], "task"),
         (|o| o.joint_weights = vec![1.0; 3], "joint weights"),
         (|o| o.method = Method::Damped { damping: -1.0 }, "damping"),
-        (|o| o.secondary = vec![Secondary::Posture { q: vec![0.0], gain: 1.0 }], "posture"),
+        (|o| o.secondary = vec![SecondaryTask::Posture { q: vec![0.0], gain: 1.0 }], "posture"),
         (|o| o.tolerance.position = 0.0, "position tolerance"),
     ] {
         let mut options = ServoOptions::new(&robot);

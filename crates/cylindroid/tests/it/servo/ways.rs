@@ -13,7 +13,7 @@ fn random_starts_to_random_targets() {
         let mut servo = servo(&robot, |o| {
             o.dt = 4e-3;
             o.acceleration = 40.0;
-            o.secondary = vec![Secondary::LimitAvoidance { gain: 0.5, margin: 0.2 }];
+            o.secondary = vec![SecondaryTask::LimitAvoidance { gain: 0.5, margin: 0.2 }];
             o.tolerance = Tolerance { position: 1e-4, orientation: 1e-3 };
         });
         let runs = 1000;

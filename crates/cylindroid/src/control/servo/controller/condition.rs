@@ -14,7 +14,7 @@
 use super::Servo;
 use crate::error::{Error, Result};
 use crate::inverse::Inverse;
-use crate::kinematics::Reference;
+use crate::kinematics::ReferenceFrame;
 use crate::linalg::{RowSpace, Svd, norm};
 use crate::spatial::Twist;
 use crate::tolerance::UNSTEERED;
@@ -40,7 +40,7 @@ impl Servo {
         let svd = self.decomposed(q)?;
         let weakest = (!svd.is_empty() && svd.value(0) > 0.0).then(|| {
             let twist = self.space.twist(svd.u(svd.len() - 1));
-            if self.options.task.axes == Reference::Local {
+            if self.options.task.axes == ReferenceFrame::Local {
                 let turn = self.chain.pose().rotation;
                 Twist { linear: turn * twist.linear, angular: turn * twist.angular }
             } else {

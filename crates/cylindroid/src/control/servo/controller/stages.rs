@@ -1,10 +1,10 @@
-//! The stages of a servo step, in their order: task, wishes, bounds, rates.
+//! The stages of a servo step, in their order: task, secondary tasks, bounds, rates.
 
 use super::super::approach;
 use super::super::limits::Motion1;
 use super::super::options::Projector;
 use super::super::stall::Effort;
-use super::super::step::Wanted;
+use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
 use crate::control::solver::bounds::{LimitKind, RateBounds};
@@ -17,12 +17,12 @@ use crate::tolerance::AT_LIMIT;
 
 impl Servo {
     /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
-    pub(super) fn load_task(&mut self, wanted: &Wanted) {
-        self.space.scale(wanted.error, &mut self.error);
+    pub(super) fn load_task(&mut self, desired: &DesiredMotion) {
+        self.space.scale(desired.error, &mut self.error);
         self.possible.copy_from_slice(&self.error);
         self.projecting.apply(&mut self.possible);
         self.method = self.options.method;
-        let mut twist = wanted.feedback;
+        let mut twist = desired.feedback;
         let mut solved = None;
         if self.accelerates {
             self.load_twist(twist);
@@ -31,20 +31,29 @@ impl Servo {
             let gain = self.options.gain;
             if gain.position == gain.orientation {
                 let way = |(w, rate): (&mut f64, &f64)| *w = rate / gain.position;
-                self.wish.iter_mut().zip(&self.primary).for_each(way);
+                self.secondary.iter_mut().zip(&self.primary).for_each(way);
             } else if let Some(coupled) = &mut self.coupled {
-                self.svd.apply_gains_into(&self.possible, &self.gains, &mut coupled.reduced.wish);
-                coupled.reduced.lift(&coupled.reduced.wish, &mut self.wish);
+                self.svd.apply_gains_into(
+                    &self.possible,
+                    &self.gains,
+                    &mut coupled.reduced.secondary,
+                );
+                coupled.reduced.lift(&coupled.reduced.secondary, &mut self.secondary);
             } else {
-                self.svd.apply_gains_into(&self.possible, &self.gains, &mut self.wish);
+                self.svd.apply_gains_into(&self.possible, &self.gains, &mut self.secondary);
             }
             let dt = self.options.dt;
-            let share =
-                approach::share(&self.wish, &self.primary, &self.space.columns, &self.limits, dt);
+            let share = approach::share(
+                &self.secondary,
+                &self.primary,
+                &self.space.columns,
+                &self.limits,
+                dt,
+            );
             twist = twist * share;
             self.method = approach::slowed(self.method, share);
         }
-        twist = twist + wanted.feed_forward;
+        twist = twist + desired.feed_forward;
         // Saturated as a whole: the direction of the motion is kept.
         let speed = self.options.speed;
         let excess = (twist.linear.norm() / speed.linear).max(twist.angular.norm() / speed.angular);
@@ -99,12 +108,12 @@ impl Servo {
         Ok(found.closed.then_some(found.q))
     }
 
-    /// Moves primary rates and wishes into the bounds.
+    /// Moves primary and secondary velocities into the bounds.
     pub(super) fn saturate(&mut self, q: &[f64]) -> Result<Saturation> {
         let (j, x, method, bounds) = (&self.task, &self.x, &self.method, &self.bounds);
         let Some(coupled) = &mut self.coupled else {
             let problem = Problem { j, x, method, bounds };
-            let saturation = self.saturator.apply(problem, &self.wish, &mut self.primary);
+            let saturation = self.saturator.apply(problem, &self.secondary, &mut self.primary);
             return Ok(saturation);
         };
         let rates = self.space.scaled_rates(&self.rates);
@@ -135,12 +144,12 @@ impl Servo {
             && speed.angular.norm() <= gain.orientation * most.orientation
     }
 
-    /// Secondary wishes in weighted coordinates, projected on the null space.
-    pub(super) fn load_wish(&mut self, wanted_rates: &[f64]) {
-        self.wish.fill(0.0);
-        if !wanted_rates.is_empty() {
-            for (w, &c) in self.wish.iter_mut().zip(self.chain.coordinates()) {
-                *w = wanted_rates[c];
+    /// The secondary joint velocities in weighted coordinates, projected on the null space.
+    pub(super) fn load_secondary(&mut self, secondary_velocities: &[f64]) {
+        self.secondary.fill(0.0);
+        if !secondary_velocities.is_empty() {
+            for (w, &c) in self.secondary.iter_mut().zip(self.chain.coordinates()) {
+                *w = secondary_velocities[c];
             }
         }
         for secondary in &self.options.secondary {
@@ -150,24 +159,24 @@ impl Servo {
                 &self.svd,
                 &self.space,
                 &mut self.gradient,
-                &mut self.wish[..self.chain.n()],
+                &mut self.secondary[..self.chain.n()],
             );
         }
         if let Some(coupled) = &mut self.coupled {
-            coupled.load_wish(&self.wish);
+            coupled.load_secondary(&self.secondary);
         } else {
-            if self.wish.iter().all(|w| *w == 0.0) {
+            if self.secondary.iter().all(|w| *w == 0.0) {
                 return;
             }
-            self.space.scale_rates(&mut self.wish);
+            self.space.scale_rates(&mut self.secondary);
         }
         let space = match self.options.projector {
             Projector::Exact => RowSpace::exact(&self.svd),
             Projector::Retained => RowSpace::retained(&self.svd, &self.kept),
         };
         space.project_out(match &mut self.coupled {
-            Some(coupled) => &mut coupled.reduced.wish,
-            None => &mut self.wish,
+            Some(coupled) => &mut coupled.reduced.secondary,
+            None => &mut self.secondary,
         });
     }
 
@@ -176,21 +185,21 @@ impl Servo {
         if self.coupled.is_some() {
             return None;
         }
-        let scaled = self.primary.iter().zip(&self.wish).zip(&self.space.columns);
+        let scaled = self.primary.iter().zip(&self.secondary).zip(&self.space.columns);
         let places = self.chain.coordinates().iter().zip(&self.clearances);
         let mut clear = true;
-        for (((primary, wish), column), (&c, clearance)) in scaled.zip(places) {
+        for (((primary, secondary), column), (&c, clearance)) in scaled.zip(places) {
             let now = Motion1 { position: q[c], rate: self.rates[c] };
-            clear &= clearance.holds(now, (primary + wish) * column);
+            clear &= clearance.holds(now, (primary + secondary) * column);
         }
         if !clear {
             return None;
         }
-        let scaled = self.primary.iter_mut().zip(&self.wish).zip(&self.space.columns);
+        let scaled = self.primary.iter_mut().zip(&self.secondary).zip(&self.space.columns);
         let places = self.chain.coordinates().iter().zip(&self.clearances);
         let mut effort = Effort::default();
-        for (((primary, wish), column), (&c, clearance)) in scaled.zip(places) {
-            *primary += wish;
+        for (((primary, secondary), column), (&c, clearance)) in scaled.zip(places) {
+            *primary += secondary;
             self.rates[c] = *primary * column;
             if self.accelerates {
                 let time = self.rates[c].abs() * clearance.slowness;
