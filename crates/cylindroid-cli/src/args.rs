@@ -12,7 +12,7 @@ pub(crate) use closed::{
 };
 pub(crate) use ik::IkArgs;
 pub(crate) use move_to::{
-    InverseArgs, LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs, TargetArgs, TaskAxes,
+    InverseArgs, LawName, MoveArgs, NullSpaceName, PathArgs, ServoArgs, TargetArgs, TaskAxes,
 };
 
 pub(crate) use screws::ScrewsArgs;

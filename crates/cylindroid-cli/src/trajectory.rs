@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use cylindroid::control::Sample;
+use cylindroid::control::TrajectorySample;
 use cylindroid::{Error, Mechanism, Result};
 use serde::Serialize;
 
@@ -77,7 +77,7 @@ impl Trajectory {
         self.samples.clear();
     }
 
-    pub(crate) fn push(&mut self, sample: &Sample<'_>) {
+    pub(crate) fn push(&mut self, sample: &TrajectorySample<'_>) {
         let pose = sample.step.pose;
         let quaternion = pose.rotation.to_quaternion();
         self.samples.push(Row {

@@ -34,8 +34,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::control::{
-        PyAdmittance, PyHybridCommand, PyHybridLaw, PyInternalForceCommand, PyInternalForceLaw,
-        PyOperatorShare, PySharedCommand, PySharedLaw,
+        PyAdmittance, PyHybridCommand, PyHybridController, PyInternalForceCommand,
+        PyInternalForceController, PyOperatorAuthority, PySharedCommand, PySharedController,
     };
     #[pymodule_export]
     use crate::ik::PySolution;
@@ -68,7 +68,7 @@ mod _core {
         PyExistence, PyInvolution, PyMargin, PyProjector, PyScrew, PyScrewSystem, PyTransversals,
     };
     #[pymodule_export]
-    use crate::servo::{PyOutcome, PyServo, PyStall, PyTrajectory};
+    use crate::servo::{PyMotionResult, PyServo, PyStall, PyTrajectory};
 
     use super::*;
 

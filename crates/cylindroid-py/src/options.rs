@@ -1,6 +1,8 @@
 //! From Python's keywords to the options of the servo, with the names of the command line.
 
-use cylindroid::control::{Gain, Projection, Projector, SecondaryTask, Speed, Task};
+use cylindroid::control::{
+    SecondaryNullSpace, SecondaryTask, ServoGains, SpeedLimit, Task, TaskProjection,
+};
 use cylindroid::inverse::HyperbolicDamping;
 use cylindroid::{Error, Mechanism, Method, ReferenceFrame, ServoOptions, Twist};
 use pyo3::prelude::*;
@@ -51,12 +53,12 @@ pub(crate) struct InverseChoice<'a> {
 impl InverseChoice<'_> {
     /// Sets method, projection and fallback.
     pub(crate) fn apply(&self, options: &mut ServoOptions) -> Result<()> {
-        let chooses = Projection::NAMES.contains(&self.name);
+        let chooses = TaskProjection::NAMES.contains(&self.name);
         let method = if chooses {
             Method::default()
         } else {
             Method::named(self.name).map_err(|_| {
-                let all = Method::ALL.iter().map(Method::name).chain(Projection::NAMES);
+                let all = Method::ALL.iter().map(Method::name).chain(TaskProjection::NAMES);
                 Error::unknown("inverse", self.name, all)
             })?
         };
@@ -70,21 +72,21 @@ impl InverseChoice<'_> {
                 let reason = format!(
                     "the inverse '{}' always exists; a fallback is for {}",
                     self.name,
-                    Projection::NAMES.join(", ")
+                    TaskProjection::NAMES.join(", ")
                 );
                 return Err(Failure::option("fallback", name, reason));
             }
-            Some(PLAIN) => Some(Projection::Orthogonal),
-            Some(name) if Projection::NAMES.contains(&name) => Some(self.projection(name)?),
+            Some(PLAIN) => Some(TaskProjection::Orthogonal),
+            Some(name) if TaskProjection::NAMES.contains(&name) => Some(self.projection(name)?),
             Some(name) => {
-                let known = Projection::NAMES.iter().chain(&[PLAIN]);
+                let known = TaskProjection::NAMES.iter().chain(&[PLAIN]);
                 return Err(Error::unknown("fallback", name, known).into());
             }
         };
         self.refuse_unused()
     }
 
-    fn projection(&self, name: &str) -> Result<Projection> {
+    fn projection(&self, name: &str) -> Result<TaskProjection> {
         let needed = |option: &'static str, value: Option<f64>| {
             value.ok_or_else(|| {
                 let reason = format!(
@@ -95,16 +97,16 @@ impl InverseChoice<'_> {
             })
         };
         Ok(match name {
-            "hyperbolic" => Projection::Hyperbolic { h: needed("h", self.h)? },
-            "hyperbolic-damped" => Projection::DampedHyperbolic {
+            "hyperbolic" => TaskProjection::Hyperbolic { h: needed("h", self.h)? },
+            "hyperbolic-damped" => TaskProjection::DampedHyperbolic {
                 h: needed("h", self.h)?,
                 damping: HyperbolicDamping::Invariant { mu: needed("mu", self.mu)? },
             },
-            "hyperbolic-gram" => Projection::DampedHyperbolic {
+            "hyperbolic-gram" => TaskProjection::DampedHyperbolic {
                 h: needed("h", self.h)?,
                 damping: HyperbolicDamping::Gram { lambda: needed("lam", self.lam)? },
             },
-            _ => Projection::Oblique {
+            _ => TaskProjection::Oblique {
                 complement: self.give_up.clone().unwrap_or_default(),
                 reference: ReferenceFrame::Local,
             },
@@ -117,10 +119,10 @@ impl InverseChoice<'_> {
             names.contains(&self.name) || self.fallback.is_some_and(|f| names.contains(&f))
         };
         let numbers: [(&'static str, Option<f64>, &[&str]); 4] = [
-            ("h", self.h, &Projection::NAMES[..3]),
-            ("mu", self.mu, &Projection::NAMES[1..2]),
-            ("lam", self.lam, &Projection::NAMES[2..3]),
-            ("give_up", self.give_up.as_ref().map(|g| g.len() as f64), &Projection::NAMES[3..]),
+            ("h", self.h, &TaskProjection::NAMES[..3]),
+            ("mu", self.mu, &TaskProjection::NAMES[1..2]),
+            ("lam", self.lam, &TaskProjection::NAMES[2..3]),
+            ("give_up", self.give_up.as_ref().map(|g| g.len() as f64), &TaskProjection::NAMES[3..]),
         ];
         for (option, value, names) in numbers {
             if let Some(value) = value
@@ -180,18 +182,22 @@ pub(crate) fn secondary(
     names.iter().map(|name| named(name, None)).collect()
 }
 
-pub(crate) fn projector(name: &str) -> Result<Projector> {
-    named("projector", name, &[("exact", Projector::Exact), ("retained", Projector::Retained)])
+pub(crate) fn null_space(name: &str) -> Result<SecondaryNullSpace> {
+    named(
+        "null space",
+        name,
+        &[("exact", SecondaryNullSpace::Exact), ("retained", SecondaryNullSpace::Retained)],
+    )
 }
 
-pub(crate) fn gain(of: &Numbers<'_>) -> Result<Gain> {
+pub(crate) fn gain(of: &Numbers<'_>) -> Result<ServoGains> {
     let (position, orientation) = pair("gain", of, f64::NAN)?;
-    Ok(Gain { position, orientation })
+    Ok(ServoGains { position, orientation })
 }
 
-pub(crate) fn speed(of: &Numbers<'_>) -> Result<Speed> {
+pub(crate) fn speed(of: &Numbers<'_>) -> Result<SpeedLimit> {
     let (linear, angular) = pair("speed", of, f64::INFINITY)?;
-    Ok(Speed { linear, angular })
+    Ok(SpeedLimit { linear, angular })
 }
 
 /// Twists as rows, or names of components of the tool's motion.

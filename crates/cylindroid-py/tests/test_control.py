@@ -73,7 +73,7 @@ def test_hybrid_control_is_its_formula_in_every_frame():
     motions, along = rng.normal(size=(6, 4)), 0.4
     P = cy.Projector(motions, along)
     C = cy.Admittance(0.02, 0.3)
-    law = cy.HybridLaw(3.0, C)
+    law = cy.HybridController(3.0, C)
     error, forward, desired, measured = rng.normal(size=(4, 6))
     found = law.command(P, error, desired, measured, forward)
     M, one = P.matrix, np.eye(6)
@@ -94,7 +94,7 @@ def test_hybrid_control_is_its_formula_in_every_frame():
     with pytest.raises(cy.DimensionError, match="desired"):
         law.command(P, error, [1, 2], measured)
     with pytest.raises(cy.InvalidOptionError, match="gain"):
-        cy.HybridLaw(0.0, C)
+        cy.HybridController(0.0, C)
 
 
 def test_an_arm_presses_on_a_table():
@@ -102,7 +102,7 @@ def test_an_arm_presses_on_a_table():
     dt, stiffness, force = 1e-3, 1e4, 10.0
     servo = cy.Servo(r, dt=dt)
     P = cy.Projector(PLANE, np.inf, length=r.reach)
-    law = cy.HybridLaw(10.0, cy.Admittance(0.01))
+    law = cy.HybridController(10.0, cy.Admittance(0.01))
     q = r.home
     start = r.fk(q)
     target = start.copy()
@@ -123,18 +123,18 @@ def test_shared_control_is_its_formula():
     motions = rng.normal(size=(6, 3))
     P = cy.Projector(motions, rng.normal(size=(6, 3)))
     error, forward, operator = rng.normal(size=(3, 6))
-    found = cy.SharedLaw(2.0).command(P, error, operator, forward)
+    found = cy.SharedController(2.0).command(P, error, operator, forward)
     M = P.matrix
     np.testing.assert_allclose(found.operator_part, M @ operator, atol=1e-10)
     np.testing.assert_allclose(found.robot_part, (np.eye(6) - M) @ (2 * error + forward), atol=1e-10)
     np.testing.assert_allclose(found.robot_part + found.operator_part, found.twist, atol=1e-12)
     with pytest.raises(cy.NotFiniteError, match="operator"):
-        cy.SharedLaw(2.0).command(P, error, operator * np.inf)
+        cy.SharedController(2.0).command(P, error, operator * np.inf)
 
 
 def test_the_share_of_an_operator():
     r = cy.load("panda")
-    servo, share = cy.Servo(r, dt=0.001), cy.OperatorShare(0.001, fall=0.1, rise=0.01)
+    servo, share = cy.Servo(r, dt=0.001), cy.OperatorAuthority(0.001, fall=0.1, rise=0.01)
     assert share.value == 0.0
     with pytest.raises(cy.InvalidOptionError, match="first step"):
         share.update(servo)
@@ -149,7 +149,7 @@ def test_the_share_of_an_operator():
     share.update(servo)
     assert abs(share.value - np.exp(-0.01)) < 1e-12
     with pytest.raises(cy.InvalidOptionError, match="fall"):
-        cy.OperatorShare(0.001, 0.0, 1.0)
+        cy.OperatorAuthority(0.001, 0.0, 1.0)
 
 
 def test_a_squeeze_moves_nothing_in_the_stiffness():
@@ -158,7 +158,7 @@ def test_a_squeeze_moves_nothing_in_the_stiffness():
     a = len(c.actuated)
     stiffness = rng.uniform(1e3, 5e3, a)
     desired, measured = rng.normal(size=(2, a))
-    found = cy.InternalForceLaw(10.0, stiffness).command(c, desired, measured)
+    found = cy.InternalForceController(10.0, stiffness).command(c, desired, measured)
     m = c.mobility()
     motions = m.dof_basis[:a]
     # Internal torques do no work; the rates lie across all motions in the metric of the springs.
@@ -170,7 +170,7 @@ def test_a_squeeze_moves_nothing_in_the_stiffness():
     along = motions @ np.linalg.lstsq(motions, rest, rcond=None)[0]
     np.testing.assert_allclose(along, rest, atol=1e-9)
     squeeze = -c.Ja.T @ c.internal_forces()[:, 0]
-    again = cy.InternalForceLaw(1.0, stiffness).command(c, squeeze, squeeze)
+    again = cy.InternalForceController(1.0, stiffness).command(c, squeeze, squeeze)
     np.testing.assert_allclose(again.error, 0, atol=1e-9)
     with pytest.raises(cy.DimensionError, match="stiffness"):
-        cy.InternalForceLaw(1.0, [1.0]).command(c, desired, measured)
+        cy.InternalForceController(1.0, [1.0]).command(c, desired, measured)

@@ -57,7 +57,7 @@ def stop(arm, servo):
 def go_round(arm, servo, target):
     """Through joint space to another posture that reaches the target."""
     stop(arm, servo)
-    posture = servo.find_posture(arm.q, target)
+    posture = servo.find_reachable_configuration(arm.q, target)
     assert posture is not None
     start = np.clip(arm.q, arm.robot.lower, arm.robot.upper)
     move = cy.JointMove(arm.robot, start, posture, acceleration=4.0)

@@ -172,7 +172,7 @@ def test_a_way_round():
     rng = np.random.default_rng(3)
     for _ in range(3):
         target = r.fk(rng.uniform(r.lower, r.upper))
-        q = c.find_posture(r.home, target)
+        q = c.find_reachable_configuration(r.home, target)
         np.testing.assert_allclose(r.fk(q), target, atol=3e-6)
         assert r.outside_limits(q) == []
         move = cy.JointMove(r, r.home, q)
@@ -182,7 +182,7 @@ def test_a_way_round():
         assert (np.abs(rates) <= r.velocity_limit * (1 + 1e-9)).all()
     far = np.eye(4)
     far[0, 3] = 5
-    assert c.find_posture(r.home, far, runs=3) is None
+    assert c.find_reachable_configuration(r.home, far, runs=3) is None
 
 
 def test_paths_and_moves():
@@ -204,7 +204,7 @@ def test_paths_and_moves():
     assert outcome.reached and outcome.time >= move.duration - 1e-3
     off = max(line.deviation(T)[0] for T in outcome.trajectory.pose)
     assert off < 1e-5
-    turn = cy.CartesianPath.turn(start, start[:3, 3] + [0, 0, 0.1], [1, 0, 0], np.pi)
+    turn = cy.CartesianPath.rotation(start, start[:3, 3] + [0, 0, 0.1], [1, 0, 0], np.pi)
     assert abs(turn.length - 0.1 * np.pi) < 1e-12 and abs(turn.radius - 0.1) < 1e-12
     circle = cy.CartesianPath.circle(start, start[:3, 3] + [0.1, 0.1, 0], end)
     assert circle.length > line.length
@@ -248,7 +248,7 @@ def test_time_law():
         ({"h": 0.1}, cy.InvalidOptionError, "hyperbolic"),
         ({"fallback": "truncated"}, cy.InvalidOptionError, "always exists"),
         ({"secondary": "posing"}, cy.UnknownNameError, "posture"),
-        ({"projector": "null"}, cy.UnknownNameError, "exact"),
+        ({"null_space": "null"}, cy.UnknownNameError, "exact"),
         ({"task": "x,w"}, cy.UnknownNameError, "task"),
         ({"task_axes": "tool"}, cy.UnknownNameError, "reference"),
         ({"frame": "hand"}, cy.UnknownNameError, "frame"),

@@ -55,7 +55,7 @@ def beside(call):
         lambda: panda.ik_all(FAR, iterations=2000),
         lambda: cy.pinv(np.ones((5000, 6, 7))),
         lambda: cy.Servo(panda).drive(panda.home, FAR, duration=5.0),
-        lambda: cy.Servo(panda).find_posture(panda.home, FAR, runs=3),
+        lambda: cy.Servo(panda).find_reachable_configuration(panda.home, FAR, runs=3),
         lambda: panda.constraint(Q[:500]),
         lambda: panda.mobility(Q[:500]),
         lambda: panda.manipulability(Q[:500]),

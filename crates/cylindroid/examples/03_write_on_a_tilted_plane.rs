@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use cylindroid::control::{Admittance, AdmittanceGain, HybridInput, HybridLaw, Target};
+use cylindroid::control::{Admittance, AdmittanceGain, HybridController, HybridInput, Target};
 use cylindroid::kinematics::Chain;
 use cylindroid::screws::{Along, Projector, ScrewOptions};
 use cylindroid::{Pose, Rotation, Servo, ServoOptions, Twist, Vec3, Wrench};
@@ -41,7 +41,7 @@ fn main() -> cylindroid::Result<()> {
             return Ok(());
         }
     };
-    let law = HybridLaw::new(
+    let law = HybridController::new(
         10.0,
         Admittance::at(Vec3::ZERO, AdmittanceGain { force: 0.01, moment: 0.0 })?,
     )?;

@@ -1,7 +1,9 @@
 //! An operator moves a tool along a sphere that the robot keeps it on: shared control.
 #![allow(clippy::print_stdout)]
 
-use cylindroid::control::{OperatorShare, ShareTimes, SharedInput, SharedLaw, Status, Target};
+use cylindroid::control::{
+    AuthorityTimes, OperatorAuthority, SharedController, SharedInput, Status, Target,
+};
 use cylindroid::kinematics::Chain;
 use cylindroid::screws::{Along, Projector, ScrewOptions};
 use cylindroid::{Pose, Rotation, Servo, ServoOptions, Twist, Vec3};
@@ -37,8 +39,8 @@ fn main() -> cylindroid::Result<()> {
     let down = Rotation::exp(Vec3::X * 0.05) * start.rotation.z_axis();
     let center = start.translation + down * (RADIUS + 0.005);
 
-    let law = SharedLaw::new(10.0)?;
-    let mut share = OperatorShare::new(ShareTimes { dt: DT, fall: 0.1, rise: 0.5 })?;
+    let law = SharedController::new(10.0)?;
+    let mut share = OperatorAuthority::new(AuthorityTimes { dt: DT, fall: 0.1, rise: 0.5 })?;
     let options = ScrewOptions::with_length(robot.reach());
     let (mut off, mut way, mut pushed_off) = ((0.0_f64, 0.0_f64), 0.0, 0.0_f64);
     for step in 0..(DURATION / DT) as u32 {

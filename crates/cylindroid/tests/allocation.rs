@@ -5,8 +5,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use cylindroid::control::{
-    Admittance, AdmittanceGain, Gain, HybridInput, HybridLaw, Projection, SecondaryTask,
-    SharedInput, SharedLaw, Task,
+    Admittance, AdmittanceGain, HybridController, HybridInput, SecondaryTask, ServoGains,
+    SharedController, SharedInput, Task, TaskProjection,
 };
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
@@ -80,7 +80,7 @@ fn hot_paths_allocate_nothing() {
                     method,
                     task,
                     // So fast that velocity, acceleration and position limits all bite.
-                    gain: Gain { position: 100.0, orientation: 100.0 },
+                    gain: ServoGains { position: 100.0, orientation: 100.0 },
                     secondary: vec![
                         SecondaryTask::Centring { gain: 1.0 },
                         SecondaryTask::Posture { q: home.clone(), gain: 1.0 },
@@ -157,13 +157,13 @@ fn formulas_allocate_nothing() {
 /// Five joints: every projection does something.
 fn projections(robot: &Mechanism, start: Pose) {
     let give_up = Twist { linear: Vec3::ZERO, angular: Vec3::X };
-    let damped = |damping| Projection::DampedHyperbolic { h: 0.1, damping };
+    let damped = |damping| TaskProjection::DampedHyperbolic { h: 0.1, damping };
     for projection in [
-        Projection::Hyperbolic { h: 0.1 },
-        Projection::Hyperbolic { h: f64::INFINITY },
+        TaskProjection::Hyperbolic { h: 0.1 },
+        TaskProjection::Hyperbolic { h: f64::INFINITY },
         damped(HyperbolicDamping::Invariant { mu: 0.01 }),
         damped(HyperbolicDamping::Gram { lambda: 0.01 }),
-        Projection::Oblique { complement: vec![give_up], reference: ReferenceFrame::Local },
+        TaskProjection::Oblique { complement: vec![give_up], reference: ReferenceFrame::Local },
     ] {
         let name = format!("{projection:?}");
         let options = ServoOptions { projection, ..ServoOptions::new(robot) };
@@ -189,7 +189,8 @@ fn control_laws_allocate_nothing() {
     let normal = [slide(Vec3::Z)];
     let admittance =
         Admittance::at(Vec3::ZERO, AdmittanceGain { force: 1e-3, moment: 0.0 }).unwrap();
-    let (hybrid, shared) = (HybridLaw::new(5.0, admittance).unwrap(), SharedLaw::new(5.0).unwrap());
+    let (hybrid, shared) =
+        (HybridController::new(5.0, admittance).unwrap(), SharedController::new(5.0).unwrap());
     let options = ScrewOptions::with_length(0.5);
     for along in [
         Along::Twists(&normal),

@@ -184,7 +184,7 @@ pub(crate) struct ServoArgs {
     /// The null space that they may use: `exact` never disturbs the task, `retained` also lets
     /// them through directions that the inverse cut
     #[arg(long, value_name = "NAME", default_value = "exact")]
-    pub(crate) projector: ProjectorName,
+    pub(crate) null_space: NullSpaceName,
 }
 
 #[derive(Debug, Args)]
@@ -268,7 +268,7 @@ pub(crate) enum LawName {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ProjectorName {
+pub(crate) enum NullSpaceName {
     /// Never disturbs the task
     Exact,
     /// Also the directions that the inverse cut

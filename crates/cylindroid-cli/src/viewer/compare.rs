@@ -1,6 +1,6 @@
 //! Two inverses for one twist, at the tool and with its reference point moved.
 
-use cylindroid::control::{InverseChoice, Projection, RatesAtPoint};
+use cylindroid::control::{InverseChoice, TaskProjection, VelocitiesAtPoint};
 use cylindroid::inverse::HyperbolicDamping;
 use cylindroid::{Error, Method, Twist, Vec3};
 use serde::Serialize;
@@ -70,13 +70,13 @@ pub(super) fn compare(
         };
         let choice = InverseChoice {
             method: if h.is_some() { Method::default() } else { plain(name)? },
-            projection: h.map_or(Projection::Orthogonal, |h| projection(name, h)),
+            projection: h.map_or(TaskProjection::Orthogonal, |h| projection(name, h)),
             length: options.length,
         };
         let found = choice
             .at_two_points(state, options.end_effector, asked, point)
             .map_err(at("compare"))?;
-        let RatesAtPoint { rates, done, reason } = found.at_tool;
+        let VelocitiesAtPoint { rates, done, reason } = found.at_tool;
         let reason = reason.or(found.at_point.reason);
         let six = |t: Option<Twist>| t.map(Twist::to_array);
         results.push(ResultJson {
@@ -111,15 +111,15 @@ fn plain(name: &str) -> Result<Method, Complaint> {
     })
 }
 
-fn projection(name: &str, h: f64) -> Projection {
+fn projection(name: &str, h: f64) -> TaskProjection {
     let number = |of: &str| damping(name).get(of).copied();
     match (number("mu"), number("lambda")) {
         (Some(mu), _) => {
-            Projection::DampedHyperbolic { h, damping: HyperbolicDamping::Invariant { mu } }
+            TaskProjection::DampedHyperbolic { h, damping: HyperbolicDamping::Invariant { mu } }
         }
         (_, Some(lambda)) => {
-            Projection::DampedHyperbolic { h, damping: HyperbolicDamping::Gram { lambda } }
+            TaskProjection::DampedHyperbolic { h, damping: HyperbolicDamping::Gram { lambda } }
         }
-        _ => Projection::Hyperbolic { h },
+        _ => TaskProjection::Hyperbolic { h },
     }
 }

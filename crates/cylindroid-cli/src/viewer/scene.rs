@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cylindroid::control::Projection;
+use cylindroid::control::TaskProjection;
 use cylindroid::model::{Coordinate, CoordinateKind, Geometry, Link, Mechanism, Visual};
 use cylindroid::{Method, Pose, Servo};
 use serde::Serialize;
@@ -208,7 +208,7 @@ pub(super) fn damping(name: &str) -> BTreeMap<&'static str, f64> {
 
 /// The hyperbolic inverses: those that a pitch chooses.
 pub(super) fn hyperbolic() -> impl Iterator<Item = &'static str> {
-    Projection::NAMES.into_iter().filter(|name| name.starts_with("hyperbolic"))
+    TaskProjection::NAMES.into_iter().filter(|name| name.starts_with("hyperbolic"))
 }
 
 /// True where one coordinate can be set alone.

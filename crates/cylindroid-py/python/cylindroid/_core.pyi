@@ -27,9 +27,9 @@ __all__ = [
     "Gradient",
     "GraspQuality",
     "HybridCommand",
-    "HybridLaw",
+    "HybridController",
     "InternalForceCommand",
-    "InternalForceLaw",
+    "InternalForceController",
     "Inverse",
     "Involution",
     "Joint",
@@ -42,8 +42,8 @@ __all__ = [
     "Margin",
     "Mechanism",
     "Mobility",
-    "OperatorShare",
-    "Outcome",
+    "OperatorAuthority",
+    "MotionResult",
     "PointDirection",
     "Polytope",
     "Projector",
@@ -51,7 +51,7 @@ __all__ = [
     "ScrewSystem",
     "Servo",
     "SharedCommand",
-    "SharedLaw",
+    "SharedController",
     "Singularity",
     "Solution",
     "Spectrum",
@@ -158,7 +158,7 @@ class CartesianPath:
     @staticmethod
     def circle(start: ArrayLike, via: ArrayLike, end: ArrayLike) -> CartesianPath: ...
     @staticmethod
-    def turn(
+    def rotation(
         start: ArrayLike, centre: ArrayLike, axis: ArrayLike, angle: float
     ) -> CartesianPath: ...
     def pose(self, s: ArrayLike) -> _Array: ...
@@ -343,8 +343,8 @@ class HybridCommand:
     def wrench_error(self) -> _Array: ...
 
 @final
-class HybridLaw:
-    def __new__(cls, gain: float, admittance: Admittance) -> HybridLaw: ...
+class HybridController:
+    def __new__(cls, gain: float, admittance: Admittance) -> HybridController: ...
     def command(
         self,
         projector: Projector,
@@ -353,7 +353,7 @@ class HybridLaw:
         measured: ArrayLike,
         feed_forward: ArrayLike | None = None,
     ) -> HybridCommand: ...
-    def seen_from(self, a_from_b: ArrayLike) -> HybridLaw: ...
+    def seen_from(self, a_from_b: ArrayLike) -> HybridController: ...
 
 @final
 class InternalForceCommand:
@@ -365,8 +365,8 @@ class InternalForceCommand:
     def error(self) -> _Array: ...
 
 @final
-class InternalForceLaw:
-    def __new__(cls, gain: float, stiffness: ArrayLike) -> InternalForceLaw: ...
+class InternalForceController:
+    def __new__(cls, gain: float, stiffness: ArrayLike) -> InternalForceController: ...
     def command(
         self, constraint: Constraint, desired: ArrayLike, measured: ArrayLike
     ) -> InternalForceCommand: ...
@@ -744,14 +744,14 @@ class Mobility:
     def _repr_html_(self) -> str: ...
 
 @final
-class OperatorShare:
-    def __new__(cls, dt: float, fall: float, rise: float) -> OperatorShare: ...
+class OperatorAuthority:
+    def __new__(cls, dt: float, fall: float, rise: float) -> OperatorAuthority: ...
     @property
     def value(self) -> float: ...
     def update(self, servo: Servo) -> None: ...
 
 @final
-class Outcome:
+class MotionResult:
     @property
     def reached(self) -> bool: ...
     @property
@@ -912,7 +912,7 @@ class Servo:
         joint_weights: ArrayLike | None = None,
         secondary: str | Sequence[str] | dict[str, float] | None = None,
         posture: ArrayLike | None = None,
-        projector: str = "exact",
+        null_space: str = "exact",
         task: str | None = None,
         task_axes: str | None = None,
         inverse: str = "truncated",
@@ -974,8 +974,8 @@ class Servo:
         target: ArrayLike | CartesianMove,
         duration: float = 60.0,
         record: bool = False,
-    ) -> Outcome: ...
-    def find_posture(self, q: ArrayLike, target: ArrayLike, runs: int = 200) -> _Array | None: ...
+    ) -> MotionResult: ...
+    def find_reachable_configuration(self, q: ArrayLike, target: ArrayLike, runs: int = 200) -> _Array | None: ...
 
 @final
 class SharedCommand:
@@ -987,8 +987,8 @@ class SharedCommand:
     def operator_part(self) -> _Array: ...
 
 @final
-class SharedLaw:
-    def __new__(cls, gain: float) -> SharedLaw: ...
+class SharedController:
+    def __new__(cls, gain: float) -> SharedController: ...
     def command(
         self,
         projector: Projector,

@@ -1,7 +1,7 @@
 //! Hybrid control: some motions in position, the wrenches that do no work on them in force.
 
 use cylindroid::Twist;
-use cylindroid::control::{HybridCommand, HybridInput, HybridLaw};
+use cylindroid::control::{HybridCommand, HybridController, HybridInput};
 use pyo3::prelude::*;
 
 use super::PyAdmittance;
@@ -42,15 +42,15 @@ use crate::table;
 /// >>> import cylindroid as cy
 /// >>> slide_and_turn = np.eye(6)[:, [0, 1, 3, 4, 5]]
 /// >>> projector = cy.Projector(slide_and_turn, np.inf)
-/// >>> law = cy.HybridLaw(10.0, cy.Admittance(0.01))
+/// >>> law = cy.HybridController(10.0, cy.Admittance(0.01))
 /// >>> command = law.command(projector, error=[0.02, 0, 0.3, 0, 0, 0],
 /// ...                       desired=[0, 0, -10, 0, 0, 0], measured=[1, 0, -8, 0, 0, 0])
 /// >>> command.twist.round(9) + 0.0
 /// array([ 0.2 ,  0.  , -0.02,  0.  ,  0.  ,  0.  ])
-#[pyclass(frozen, name = "HybridLaw", module = "cylindroid")]
+#[pyclass(frozen, name = "HybridController", module = "cylindroid")]
 #[derive(Debug)]
-pub(crate) struct PyHybridLaw {
-    inner: HybridLaw,
+pub(crate) struct PyHybridController {
+    inner: HybridController,
 }
 
 /// What hybrid control commands.
@@ -72,11 +72,11 @@ pub(crate) struct PyHybridCommand {
 }
 
 #[pymethods]
-impl PyHybridLaw {
+impl PyHybridController {
     #[new]
     #[pyo3(signature = (gain, admittance))]
     fn new(gain: f64, admittance: PyRef<'_, PyAdmittance>) -> Result<Self> {
-        Ok(Self { inner: HybridLaw::new(gain, admittance.inner)? })
+        Ok(Self { inner: HybridController::new(gain, admittance.inner)? })
     }
 
     /// The twist of this step.
@@ -128,7 +128,7 @@ impl PyHybridLaw {
     ///
     /// Returns
     /// -------
-    /// HybridLaw
+    /// HybridController
     ///
     /// Raises
     /// ------

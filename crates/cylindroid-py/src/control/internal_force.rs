@@ -1,6 +1,6 @@
 //! Internal forces of cooperating arms, hands and over-actuated mechanisms.
 
-use cylindroid::control::{InternalForceCommand, InternalForceLaw};
+use cylindroid::control::{InternalForceCommand, InternalForceController};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
@@ -33,14 +33,14 @@ use crate::table;
 ///
 /// >>> import cylindroid as cy
 /// >>> pair = cy.Constraint([[1.0, 0.0], [0.0, 1.0]], G=[[1.0, 1.0]])
-/// >>> law = cy.InternalForceLaw(10.0, [1000.0, 1000.0])
+/// >>> law = cy.InternalForceController(10.0, [1000.0, 1000.0])
 /// >>> command = law.command(pair, desired=[5.0, -5.0], measured=[4.0, -4.0])
 /// >>> command.rates.round(9)
 /// array([ 0.01, -0.01])
-#[pyclass(frozen, name = "InternalForceLaw", module = "cylindroid")]
+#[pyclass(frozen, name = "InternalForceController", module = "cylindroid")]
 #[derive(Debug)]
-pub(crate) struct PyInternalForceLaw {
-    inner: InternalForceLaw,
+pub(crate) struct PyInternalForceController {
+    inner: InternalForceController,
 }
 
 /// What to add to the rates of the driven joints.
@@ -58,11 +58,11 @@ pub(crate) struct PyInternalForceCommand {
 }
 
 #[pymethods]
-impl PyInternalForceLaw {
+impl PyInternalForceController {
     #[new]
     #[pyo3(signature = (gain, stiffness))]
     fn new(gain: f64, stiffness: Numbers<'_>) -> Result<Self> {
-        Ok(Self { inner: InternalForceLaw::new(gain, stiffness.vector("stiffness")?)? })
+        Ok(Self { inner: InternalForceController::new(gain, stiffness.vector("stiffness")?)? })
     }
 
     /// The rates of this step.

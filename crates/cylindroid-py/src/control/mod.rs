@@ -4,11 +4,11 @@
 mod admittance;
 mod hybrid;
 mod internal_force;
-mod operator_share;
+mod operator_authority;
 mod shared;
 
 pub(crate) use admittance::PyAdmittance;
-pub(crate) use hybrid::{PyHybridCommand, PyHybridLaw};
-pub(crate) use internal_force::{PyInternalForceCommand, PyInternalForceLaw};
-pub(crate) use operator_share::PyOperatorShare;
-pub(crate) use shared::{PySharedCommand, PySharedLaw};
+pub(crate) use hybrid::{PyHybridCommand, PyHybridController};
+pub(crate) use internal_force::{PyInternalForceCommand, PyInternalForceController};
+pub(crate) use operator_authority::PyOperatorAuthority;
+pub(crate) use shared::{PySharedCommand, PySharedController};

@@ -1,7 +1,7 @@
 //! Shared control: a robot keeps some motions of its tool, an operator has the others.
 
 use cylindroid::Twist;
-use cylindroid::control::{SharedCommand, SharedInput, SharedLaw};
+use cylindroid::control::{SharedCommand, SharedController, SharedInput};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
@@ -26,7 +26,7 @@ use crate::table;
 /// Notes
 /// -----
 /// Donelan and Selig, Hyperbolic pseudoinverses for kinematics in the Euclidean group, section 6.3.
-/// Near limits pass on the share of the operator that `OperatorShare` gives.
+/// Near limits pass on the share of the operator that `OperatorAuthority` gives.
 ///
 /// Examples
 /// --------
@@ -36,15 +36,15 @@ use crate::table;
 /// >>> import cylindroid as cy
 /// >>> slide_and_turn = np.eye(6)[:, [0, 1, 3, 4, 5]]
 /// >>> projector = cy.Projector(slide_and_turn, np.inf)
-/// >>> law = cy.SharedLaw(10.0)
+/// >>> law = cy.SharedController(10.0)
 /// >>> command = law.command(projector, error=[0, 0, 0.01, 0, 0, 0],
 /// ...                       operator=[0.2, 0, -5, 0, 0, 0])
 /// >>> command.twist.round(9) + 0.0
 /// array([0.2, 0. , 0.1, 0. , 0. , 0. ])
-#[pyclass(frozen, name = "SharedLaw", module = "cylindroid")]
+#[pyclass(frozen, name = "SharedController", module = "cylindroid")]
 #[derive(Debug)]
-pub(crate) struct PySharedLaw {
-    inner: SharedLaw,
+pub(crate) struct PySharedController {
+    inner: SharedController,
 }
 
 /// What shared control commands.
@@ -61,11 +61,11 @@ pub(crate) struct PySharedCommand {
 }
 
 #[pymethods]
-impl PySharedLaw {
+impl PySharedController {
     #[new]
     #[pyo3(signature = (gain))]
     fn new(gain: f64) -> Result<Self> {
-        Ok(Self { inner: SharedLaw::new(gain)? })
+        Ok(Self { inner: SharedController::new(gain)? })
     }
 
     /// The twist of this step.

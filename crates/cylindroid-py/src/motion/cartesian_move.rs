@@ -54,7 +54,7 @@ impl PyCartesianMove {
         let bounds = CartesianBounds { linear, angular };
         let mut inner = CartesianMove::new(path.inner, bounds)?;
         if let Some(duration) = duration {
-            inner = inner.stretched_to(duration)?;
+            inner = inner.scaled_to_duration(duration)?;
         }
         Ok(Self { inner })
     }

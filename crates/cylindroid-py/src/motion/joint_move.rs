@@ -58,7 +58,7 @@ impl PyJointMove {
         let (q, to) = (q.vector("q")?, to.vector("to")?);
         let mut inner = JointMove::within_limits(&mechanism.inner, q, to, &defaults)?;
         if let Some(duration) = duration {
-            inner = inner.stretched_to(duration)?;
+            inner = inner.scaled_to_duration(duration)?;
         }
         Ok(Self { inner })
     }

@@ -6,7 +6,7 @@ mod path;
 mod time_law;
 
 use cylindroid::Error;
-use cylindroid::control::Bounds;
+use cylindroid::control::KinematicBounds;
 
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
@@ -27,7 +27,7 @@ type Given<'a, 'py> = [&'a Option<Numbers<'py>>; 3];
 
 /// Bounds of translations and rotations. A single number is that of translations, and of rotations
 /// as well if `of_both`; else those keep their default.
-fn bounds(given: Given<'_, '_>, of_both: bool) -> Result<(Bounds, Bounds)> {
+fn bounds(given: Given<'_, '_>, of_both: bool) -> Result<(KinematicBounds, KinematicBounds)> {
     let [speed, acceleration, jerk] = given;
     let of = |name, given: &Option<Numbers<'_>>, default: (f64, f64)| match given {
         None => Ok(default),
@@ -37,8 +37,8 @@ fn bounds(given: Given<'_, '_>, of_both: bool) -> Result<(Bounds, Bounds)> {
     let a = of("acceleration", acceleration, ACCELERATION)?;
     let j = of("jerk", jerk, (f64::INFINITY, f64::INFINITY))?;
     Ok((
-        Bounds { velocity: v.0, acceleration: a.0, jerk: j.0 },
-        Bounds { velocity: v.1, acceleration: a.1, jerk: j.1 },
+        KinematicBounds { velocity: v.0, acceleration: a.0, jerk: j.0 },
+        KinematicBounds { velocity: v.1, acceleration: a.1, jerk: j.1 },
     ))
 }
 

@@ -1,7 +1,7 @@
 //! The class `CartesianPath`.
 
 use cylindroid::Vec3;
-use cylindroid::control::{CartesianPath, Turn};
+use cylindroid::control::{AxisRotation, CartesianPath};
 use pyo3::prelude::*;
 
 use super::times;
@@ -9,7 +9,7 @@ use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::table;
 
-/// A path of a frame in space, over s from 0 to 1; from `line`, `circle` or `turn`.
+/// A path of a frame in space, over s from 0 to 1; from `line`, `circle` or `rotation`.
 ///
 /// Attributes
 /// ----------
@@ -80,7 +80,7 @@ impl PyCartesianPath {
         Ok(Self { inner: CartesianPath::circle(start.pose("start")?, via, end.pose("end")?)? })
     }
 
-    /// Along the arc of a turn about a fixed line, the orientation carried along.
+    /// Along the arc of a rotation about a fixed axis, the orientation carried along.
     ///
     /// Parameters
     /// ----------
@@ -88,7 +88,7 @@ impl PyCartesianPath {
     /// centre, axis : array_like, (3,)
     ///     A point of the line (m) and its direction, world axes.
     /// angle : float
-    ///     How far, right-handed; more than one turn is allowed (rad).
+    ///     Angle, right-handed; more than one revolution is allowed (rad).
     ///
     /// Returns
     /// -------
@@ -99,18 +99,18 @@ impl PyCartesianPath {
     /// NotFiniteError, InvalidOptionError
     #[staticmethod]
     #[pyo3(signature = (start, centre, axis, angle))]
-    fn turn(
+    fn rotation(
         start: Numbers<'_>,
         centre: Numbers<'_>,
         axis: Numbers<'_>,
         angle: f64,
     ) -> Result<Self> {
-        let turn = Turn {
+        let rotation = AxisRotation {
             centre: Vec3::from_array(centre.entries("centre")?),
             axis: Vec3::from_array(axis.entries("axis")?),
             angle,
         };
-        Ok(Self { inner: CartesianPath::turn(start.pose("start")?, turn)? })
+        Ok(Self { inner: CartesianPath::rotation(start.pose("start")?, rotation)? })
     }
 
     #[getter]

@@ -1,6 +1,6 @@
 //! The class `TimeLaw`.
 
-use cylindroid::control::{Bounds, TimeLaw};
+use cylindroid::control::{KinematicBounds, TimeLaw};
 use pyo3::prelude::*;
 
 use super::times;
@@ -51,9 +51,9 @@ impl PyTimeLaw {
         duration: Option<f64>,
     ) -> Result<Self> {
         let jerk = jerk.unwrap_or(f64::INFINITY);
-        let mut inner = TimeLaw::new(distance, Bounds { velocity, acceleration, jerk })?;
+        let mut inner = TimeLaw::new(distance, KinematicBounds { velocity, acceleration, jerk })?;
         if let Some(duration) = duration {
-            inner = inner.stretched_to(duration)?;
+            inner = inner.scaled_to_duration(duration)?;
         }
         Ok(Self { inner })
     }

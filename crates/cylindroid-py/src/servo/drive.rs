@@ -1,10 +1,12 @@
 //! Whole motions: a servo driving an ideal robot, and the search for a way round.
 
-use cylindroid::control::{Sample, Target, drive as drive_servo, find_posture};
+use cylindroid::control::{
+    Target, TrajectorySample, drive as drive_servo, find_reachable_configuration,
+};
 use cylindroid::{Error, Pose};
 use pyo3::prelude::*;
 
-use super::{PyOutcome, PyServo, PyTrajectory};
+use super::{PyMotionResult, PyServo, PyTrajectory};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::motion::PyCartesianMove;
@@ -28,11 +30,11 @@ impl PyServo {
     /// duration : float
     ///     Longest time (s).
     /// record : bool
-    ///     Whether to keep every step in `Outcome.trajectory`.
+    ///     Whether to keep every step in `MotionResult.trajectory`.
     ///
     /// Returns
     /// -------
-    /// Outcome
+    /// MotionResult
     ///
     /// Raises
     /// ------
@@ -45,7 +47,7 @@ impl PyServo {
         target: Bound<'_, PyAny>,
         duration: f64,
         record: bool,
-    ) -> Result<PyOutcome> {
+    ) -> Result<PyMotionResult> {
         Error::check_positive("duration", duration)?;
         let goal = match target.extract::<PyRef<'_, PyCartesianMove>>() {
             Ok(motion) => Goal::Along(Box::new(motion.inner)),
@@ -57,7 +59,7 @@ impl PyServo {
         let (n, dt) = (servo.mechanism().n(), servo.options().dt);
         let mut trajectory = record.then(|| PyTrajectory::of(n));
         let outcome = py.detach(|| {
-            let observe = |sample: Sample<'_>| {
+            let observe = |sample: TrajectorySample<'_>| {
                 if let Some(trajectory) = &mut trajectory {
                     trajectory.push(&sample);
                 }
@@ -71,7 +73,7 @@ impl PyServo {
         self.last = Some(outcome.last);
         let trajectory = trajectory.map(|t| Py::new(py, t)).transpose()?;
         let mechanism = self.inner.mechanism().clone();
-        Ok(PyOutcome { outcome, trajectory, mechanism })
+        Ok(PyMotionResult { outcome, trajectory, mechanism })
     }
 
     /// A posture within the limits that reaches a target, where one can be found: a way round
@@ -95,7 +97,7 @@ impl PyServo {
     /// ------
     /// DimensionError, NotFiniteError, InvalidOptionError
     #[pyo3(signature = (q, target, runs = 200))]
-    fn find_posture<'py>(
+    fn find_reachable_configuration<'py>(
         &self,
         py: Python<'py>,
         q: Numbers<'py>,
@@ -103,7 +105,7 @@ impl PyServo {
         runs: usize,
     ) -> Result<Option<Array<'py>>> {
         let (q, target) = (q.vector("q")?, target.pose("target")?);
-        let found = py.detach(|| find_posture(&self.inner, q, target, runs))?;
+        let found = py.detach(|| find_reachable_configuration(&self.inner, q, target, runs))?;
         Ok(found.map(|detour| arrays::vector(py, &detour.q)))
     }
 }

@@ -1,7 +1,7 @@
 //! The class `Servo`: Cartesian control, one step at a time or a whole motion.
 
 mod drive;
-mod outcome;
+mod motion_result;
 mod stall;
 mod status;
 mod trajectory;
@@ -16,7 +16,7 @@ use crate::inverse::MethodNumbers;
 use crate::mechanism::PyMechanism;
 use crate::options::{self, InverseChoice};
 
-pub(crate) use outcome::PyOutcome;
+pub(crate) use motion_result::PyMotionResult;
 pub(crate) use stall::PyStall;
 pub(crate) use trajectory::PyTrajectory;
 
@@ -53,7 +53,7 @@ pub(crate) use trajectory::PyTrajectory;
 ///     components.
 /// posture : array_like, (n,), optional
 ///     Where 'posture' goes. Default: home.
-/// projector : str
+/// null_space : str
 ///     The null space they may use: 'exact' never disturbs the task, 'retained' also lets them
 ///     through directions that the inverse cut.
 /// task : str, optional
@@ -143,7 +143,7 @@ impl PyServo {
     #[pyo3(signature = (mechanism, frame = None, gain = None, *, tool = None, dt = None,
         tolerance_position = None, tolerance_orientation = None, speed = None,
         acceleration = None, length = None, joint_weights = None, secondary = None,
-        posture = None, projector = "exact", task = None, task_axes = None,
+        posture = None, null_space = "exact", task = None, task_axes = None,
         inverse = "truncated", eps = None, damping = None, onset = None, filter = None,
         max_rate = None, shape = None, floor = None, h = None, mu = None, lam = None,
         give_up = None, fallback = None))]
@@ -162,7 +162,7 @@ impl PyServo {
         joint_weights: Option<Numbers<'_>>,
         secondary: Option<Bound<'_, PyAny>>,
         posture: Option<Numbers<'_>>,
-        projector: &str,
+        null_space: &str,
         task: Option<&str>,
         task_axes: Option<&str>,
         inverse: &str,
@@ -202,7 +202,7 @@ impl PyServo {
         if let Some(weights) = &joint_weights {
             options.joint_weights = weights.vector("joint_weights")?.to_vec();
         }
-        options.projector = options::projector(projector)?;
+        options.null_space = options::null_space(null_space)?;
         options.task = options::task(robot, task, task_axes, options.task)?;
         let give_up = give_up.map(|g| options::twists("give_up", &g)).transpose()?;
         let numbers = MethodNumbers { eps, damping, onset, filter, max_rate, shape, floor };

@@ -104,7 +104,7 @@ impl PyServo {
             self.inner.mechanism().name(),
             self.frame(),
             match options.projection {
-                cylindroid::control::Projection::Orthogonal => options.method.name(),
+                cylindroid::control::TaskProjection::Orthogonal => options.method.name(),
                 ref projection => projection.name(),
             },
             options.dt

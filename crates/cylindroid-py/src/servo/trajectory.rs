@@ -1,6 +1,6 @@
 //! The class `Trajectory`: every step of a motion.
 
-use cylindroid::control::Sample;
+use cylindroid::control::TrajectorySample;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array};
@@ -35,7 +35,7 @@ impl PyTrajectory {
         Self { n, ..Self::default() }
     }
 
-    pub(super) fn push(&mut self, sample: &Sample<'_>) {
+    pub(super) fn push(&mut self, sample: &TrajectorySample<'_>) {
         self.time.push(sample.time);
         self.q.extend(sample.q);
         self.rates.extend(sample.rates);

@@ -4,7 +4,7 @@
 //! fastest law on this path that keeps every bound. A servo follows a move, or goes straight at a
 //! pose.
 //!
-//! [`HybridLaw`] and [`SharedLaw`] give a twist from a projector on a screw system: motions and
+//! [`HybridController`] and [`SharedController`] give a twist from a projector on a screw system: motions and
 //! contact wrenches controlled side by side, a robot and an operator on one tool. A servo carries
 //! it out as the feed-forward of a [`Target`] at the tool's own pose.
 
@@ -15,16 +15,18 @@ mod solver;
 
 pub use crate::ik::Task;
 pub use laws::{
-    Admittance, AdmittanceGain, HybridCommand, HybridInput, HybridLaw, InternalForceCommand,
-    InternalForceLaw, OperatorShare, ShareTimes, SharedCommand, SharedInput, SharedLaw,
+    Admittance, AdmittanceGain, AuthorityTimes, HybridCommand, HybridController, HybridInput,
+    InternalForceCommand, InternalForceController, OperatorAuthority, SharedCommand,
+    SharedController, SharedInput,
 };
 pub use motion::{
-    Bounds, CartesianBounds, CartesianMove, CartesianPath, CartesianSample, Detour, Deviation,
-    JointDefaults, JointMove, JointPath, JointSample, LawSample, Outcome, Sample, TimeLaw, Turn,
-    drive, find_posture,
+    AxisRotation, CartesianBounds, CartesianMove, CartesianPath, CartesianSample, JointDefaults,
+    JointMove, JointPath, JointSample, KinematicBounds, LawSample, MotionResult, PathDeviation,
+    Reconfiguration, TimeLaw, TrajectorySample, drive, find_reachable_configuration,
 };
 pub use servo::{
-    Gain, InverseChoice, Motion1, Posture, Projection, Projector, RatesAtPoint, ReferencePoints,
-    SecondaryTask, Servo, ServoOptions, Speed, Stall, Status, Step, Target, Tolerance,
+    InverseChoice, JointState, PoseTolerance, Posture, ReferencePointComparison,
+    SecondaryNullSpace, SecondaryTask, Servo, ServoGains, ServoOptions, SpeedLimit, Stall, Status,
+    Step, Target, TaskProjection, VelocitiesAtPoint,
 };
-pub use solver::{LimitKind, RateBounds, Saturation};
+pub use solver::{LimitKind, Saturation, VelocityBounds};

@@ -1,13 +1,13 @@
 //! `control::TimeLaw`: bounds, optimality, continuity, derivatives, degenerate cases.
 
 use cylindroid::Error;
-use cylindroid::control::{Bounds, LawSample, TimeLaw};
+use cylindroid::control::{KinematicBounds, LawSample, TimeLaw};
 use proptest::prelude::*;
 
 const INF: f64 = f64::INFINITY;
 
 fn law(distance: f64, velocity: f64, acceleration: f64, jerk: f64) -> TimeLaw {
-    TimeLaw::new(distance, Bounds { velocity, acceleration, jerk }).unwrap()
+    TimeLaw::new(distance, KinematicBounds { velocity, acceleration, jerk }).unwrap()
 }
 
 /// A positive number whose order of magnitude is uniform.
@@ -15,14 +15,14 @@ fn log_uniform(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..high).prop_map(|e| 10f64.powf(e))
 }
 
-fn any_bounds() -> impl Strategy<Value = Bounds> {
+fn any_bounds() -> impl Strategy<Value = KinematicBounds> {
     let velocity = prop_oneof![8 => log_uniform(-3.0, 3.0), 1 => Just(INF)];
     let limits = prop_oneof![
         6 => (log_uniform(-3.0, 3.0), log_uniform(-3.0, 5.0)),
         2 => (log_uniform(-3.0, 3.0), Just(INF)),
         1 => (Just(INF), log_uniform(-3.0, 5.0)),
     ];
-    (velocity, limits).prop_map(|(velocity, (acceleration, jerk))| Bounds {
+    (velocity, limits).prop_map(|(velocity, (acceleration, jerk))| KinematicBounds {
         velocity,
         acceleration,
         jerk,
@@ -34,8 +34,8 @@ fn any_distance() -> impl Strategy<Value = f64> {
 }
 
 /// The tree of cases of the textbook (Biagiotti & Melchiorri 2008, sections 3.2.1 and 3.4.2).
-fn textbook_duration(h: f64, bounds: Bounds) -> f64 {
-    let Bounds { velocity: v, acceleration: a, jerk: j } = bounds;
+fn textbook_duration(h: f64, bounds: KinematicBounds) -> f64 {
+    let KinematicBounds { velocity: v, acceleration: a, jerk: j } = bounds;
     if j == INF {
         return if h * a >= v * v { h / v + v / a } else { 2.0 * (h / a).sqrt() };
     }
@@ -98,7 +98,7 @@ proptest! {
     fn duration_is_that_of_the_textbook(h in log_uniform(-6.0, 3.0),
             v in log_uniform(-3.0, 3.0), a in log_uniform(-3.0, 3.0), j in log_uniform(-3.0, 4.0)) {
         for jerk in [j, INF] {
-            let bounds = Bounds { velocity: v, acceleration: a, jerk };
+            let bounds = KinematicBounds { velocity: v, acceleration: a, jerk };
             let expected = textbook_duration(h, bounds);
             let got = TimeLaw::new(h, bounds).unwrap().duration();
             prop_assert!((got - expected).abs() <= 1e-12 * expected, "{got} {expected}");
@@ -109,7 +109,7 @@ proptest! {
     #[test]
     fn bounds_are_kept_and_one_is_always_reached(h in any_distance(), bounds in any_bounds()) {
         let law = TimeLaw::new(h, bounds).unwrap();
-        let peaks = law.peaks();
+        let peaks = law.extrema();
         let over = 1.0 + 1e-14;
         prop_assert!(peaks.velocity <= bounds.velocity * over, "{peaks:?}");
         prop_assert!(peaks.acceleration <= bounds.acceleration * over, "{peaks:?}");
@@ -144,7 +144,7 @@ proptest! {
     #[test]
     fn no_jump_at_any_switch(h in any_distance(), bounds in any_bounds()) {
         let law = TimeLaw::new(h, bounds).unwrap();
-        let (peaks, step) = (law.peaks(), 1e-9 * law.duration());
+        let (peaks, step) = (law.extrema(), 1e-9 * law.duration());
         for t in law.switches() {
             let (before, after) = (law.at(t - step), law.at(t + step));
             let jump = (after.position - before.position).abs();
@@ -171,7 +171,7 @@ proptest! {
             let x = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| law.at(middle + k * step));
             let rate = |f: fn(&LawSample) -> f64|
                 (f(&x[0]) - 8.0 * f(&x[1]) + 8.0 * f(&x[3]) - f(&x[4])) / (12.0 * step);
-            let peaks = law.peaks();
+            let peaks = law.extrema();
             for (got, expected, scale) in [
                 (rate(|s| s.position), x[2].velocity, peaks.velocity),
                 (rate(|s| s.velocity), x[2].acceleration, peaks.acceleration),
@@ -195,20 +195,20 @@ proptest! {
             velocity += length * middle.acceleration;
         }
         // The switches themselves are rounded to the resolution of the time.
-        let clock = 2.0 * f64::EPSILON * law.duration() * law.peaks().acceleration;
+        let clock = 2.0 * f64::EPSILON * law.duration() * law.extrema().acceleration;
         let (slack, exact) = (clock * law.duration(), 1e-13 * h.abs());
         prop_assert!((distance - h).abs() <= exact + slack, "{distance} {h}");
-        prop_assert!(velocity.abs() <= 1e-12 * law.peaks().velocity + clock, "{velocity}");
+        prop_assert!(velocity.abs() <= 1e-12 * law.extrema().velocity + clock, "{velocity}");
     }
 
     #[test]
     fn stretching_scales_time_exactly(h in any_distance(), bounds in any_bounds(),
             k in 1.0..50.0_f64, share in 0.0..1.0) {
         let law = TimeLaw::new(h, bounds).unwrap();
-        let slow = law.stretched_to(k * law.duration()).unwrap();
+        let slow = law.scaled_to_duration(k * law.duration()).unwrap();
         prop_assert_eq!(slow.duration(), k * law.duration());
         let (fast, slow) = (law.at(share * law.duration()), slow.at(share * slow.duration()));
-        let peaks = law.peaks();
+        let peaks = law.extrema();
         prop_assert!((slow.position - fast.position).abs() <= 1e-13 * h.abs());
         prop_assert!((slow.velocity * k - fast.velocity).abs() <= 1e-12 * peaks.velocity);
     }
@@ -236,7 +236,7 @@ fn no_distance_takes_no_time() {
         for t in [-1.0, 0.0, 1.0] {
             assert_eq!(law.at(t), LawSample::default());
         }
-        let slow = law.stretched_to(3.0).unwrap();
+        let slow = law.scaled_to_duration(3.0).unwrap();
         assert_eq!(slow.duration(), 3.0);
         assert_eq!(slow.at(1.0), LawSample::default());
     }
@@ -249,7 +249,9 @@ fn extreme_magnitudes_are_finite_or_refused() {
         for velocity in numbers {
             for acceleration in numbers {
                 for jerk in numbers {
-                    let Ok(law) = TimeLaw::new(*h, Bounds { velocity, acceleration, jerk }) else {
+                    let Ok(law) =
+                        TimeLaw::new(*h, KinematicBounds { velocity, acceleration, jerk })
+                    else {
                         continue;
                     };
                     for share in [0.0, 0.1, 0.25, 0.5, 0.6, 0.99, 1.0] {
@@ -265,12 +267,12 @@ fn extreme_magnitudes_are_finite_or_refused() {
 
 #[test]
 fn bad_input_is_named() {
-    let good = Bounds { velocity: 1.0, acceleration: 2.0, jerk: 3.0 };
+    let good = KinematicBounds { velocity: 1.0, acceleration: 2.0, jerk: 3.0 };
     for bad in [0.0, -0.0, -1.0, f64::NAN, -INF] {
         for (bounds, name) in [
-            (Bounds { velocity: bad, ..good }, "velocity bound"),
-            (Bounds { acceleration: bad, ..good }, "acceleration bound"),
-            (Bounds { jerk: bad, ..good }, "jerk bound"),
+            (KinematicBounds { velocity: bad, ..good }, "velocity bound"),
+            (KinematicBounds { acceleration: bad, ..good }, "acceleration bound"),
+            (KinematicBounds { jerk: bad, ..good }, "jerk bound"),
         ] {
             for h in [1.0, 0.0] {
                 let error = TimeLaw::new(h, bounds).unwrap_err();
@@ -282,15 +284,15 @@ fn bad_input_is_named() {
             }
         }
     }
-    let jump = Bounds { acceleration: INF, jerk: INF, ..good };
+    let jump = KinematicBounds { acceleration: INF, jerk: INF, ..good };
     assert!(TimeLaw::new(1.0, jump).unwrap_err().to_string().contains("would jump"));
     for h in [f64::NAN, INF, -INF] {
         assert!(matches!(TimeLaw::new(h, good), Err(Error::NotFinite { .. })));
     }
     let law = TimeLaw::new(1.0, good).unwrap();
     for duration in [0.0, -1.0, 0.999 * law.duration(), INF, f64::NAN] {
-        let error = law.stretched_to(duration).unwrap_err();
+        let error = law.scaled_to_duration(duration).unwrap_err();
         assert!(matches!(error, Error::InvalidOption { option: "duration", .. }), "{error}");
     }
-    assert_eq!(law.stretched_to(law.duration()).unwrap(), law);
+    assert_eq!(law.scaled_to_duration(law.duration()).unwrap(), law);
 }

@@ -3,30 +3,27 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use cylindroid::control::{
-    Bounds, CartesianBounds, CartesianMove, CartesianPath, JointDefaults, JointMove, JointPath,
-    JointSample, Turn,
+    AxisRotation, CartesianBounds, CartesianMove, CartesianPath, JointDefaults, JointMove,
+    JointPath, JointSample, KinematicBounds,
 };
 use cylindroid::model::{JointKind, JointSpec, Limits, Mechanism};
 use cylindroid::{Error, Pose, Rotation, Vec3};
 use proptest::prelude::*;
 
 const INF: f64 = f64::INFINITY;
-const LINEAR: Bounds = Bounds { velocity: 0.5, acceleration: 2.0, jerk: 20.0 };
-const ANGULAR: Bounds = Bounds { velocity: 1.5, acceleration: 6.0, jerk: 60.0 };
+const LINEAR: KinematicBounds = KinematicBounds { velocity: 0.5, acceleration: 2.0, jerk: 20.0 };
+const ANGULAR: KinematicBounds = KinematicBounds { velocity: 1.5, acceleration: 6.0, jerk: 60.0 };
 const BOUNDS: CartesianBounds = CartesianBounds { linear: LINEAR, angular: ANGULAR };
 
 fn log_uniform(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..high).prop_map(|e| 10f64.powf(e))
 }
 
-fn any_bounds() -> impl Strategy<Value = Bounds> {
+fn any_bounds() -> impl Strategy<Value = KinematicBounds> {
     let jerk = prop_oneof![3 => log_uniform(-2.0, 3.0), 1 => Just(INF)];
     let velocity = prop_oneof![5 => log_uniform(-2.0, 1.0), 1 => Just(INF)];
-    (velocity, log_uniform(-2.0, 2.0), jerk).prop_map(|(velocity, acceleration, jerk)| Bounds {
-        velocity,
-        acceleration,
-        jerk,
-    })
+    (velocity, log_uniform(-2.0, 2.0), jerk)
+        .prop_map(|(velocity, acceleration, jerk)| KinematicBounds { velocity, acceleration, jerk })
 }
 
 /// The largest norms of velocity, acceleration and jerk that finite differences find.
@@ -45,7 +42,7 @@ fn largest(value: impl Fn(f64) -> Vec3, duration: f64) -> [f64; 3] {
     found
 }
 
-fn within(found: [f64; 3], bounds: Bounds) -> bool {
+fn within(found: [f64; 3], bounds: KinematicBounds) -> bool {
     found[0] <= bounds.velocity * (1.0 + 1e-12)
         && found[1] <= bounds.acceleration * (1.0 + 1e-9)
         && found[2] <= bounds.jerk * (1.0 + 1e-6)
@@ -59,8 +56,8 @@ proptest! {
     fn cartesian_arc_keeps_every_bound(radius in log_uniform(-3.0, 1.0),
             angle in log_uniform(-2.0, 1.5), linear in any_bounds(), angular in any_bounds()) {
         let start = Pose::from_translation(Vec3::X * radius);
-        let turn = Turn { centre: Vec3::ZERO, axis: Vec3::Z, angle };
-        let path = CartesianPath::turn(start, turn).unwrap();
+        let turn = AxisRotation { centre: Vec3::ZERO, axis: Vec3::Z, angle };
+        let path = CartesianPath::rotation(start, turn).unwrap();
         let motion = CartesianMove::new(path, CartesianBounds { linear, angular }).unwrap();
         let end = motion.law().duration();
         let found = largest(|t| motion.at(t).twist.linear, end);
@@ -120,9 +117,9 @@ proptest! {
             share in 0.0..1.0) {
         let from: Vec<f64> = joints.iter().map(|j| j.0).collect();
         let to: Vec<f64> = joints.iter().map(|j| j.1).collect();
-        let bounds: Vec<Bounds> = joints.iter().map(|j| j.2).collect();
+        let bounds: Vec<KinematicBounds> = joints.iter().map(|j| j.2).collect();
         let motion = JointMove::new(JointPath::new(&from, &to).unwrap(), &bounds).unwrap();
-        let peaks = motion.law().peaks();
+        let peaks = motion.law().extrema();
         let [mut v, mut a, mut j] = [0.0_f64; 3];
         for (d, bound) in motion.path().displacement().iter().zip(&bounds) {
             v = v.max(peaks.velocity * d.abs() / bound.velocity);
@@ -154,13 +151,15 @@ fn cartesian_arc_that_is_short_or_slow_moves_like_a_line() {
     let start = Pose::from_translation(Vec3::X);
     let linear_only = |linear| CartesianBounds {
         linear,
-        angular: Bounds { velocity: INF, acceleration: INF, jerk: 1e12 },
+        angular: KinematicBounds { velocity: INF, acceleration: INF, jerk: 1e12 },
     };
     for jerk in [20.0, INF] {
-        let bounds = Bounds { jerk, ..LINEAR };
-        for (angle, bounds) in [(1e-4, bounds), (FRAC_PI_2, Bounds { velocity: 1e-3, ..bounds })] {
-            let turn = Turn { centre: Vec3::ZERO, axis: Vec3::Z, angle };
-            let arc = CartesianPath::turn(start, turn).unwrap();
+        let bounds = KinematicBounds { jerk, ..LINEAR };
+        for (angle, bounds) in
+            [(1e-4, bounds), (FRAC_PI_2, KinematicBounds { velocity: 1e-3, ..bounds })]
+        {
+            let turn = AxisRotation { centre: Vec3::ZERO, axis: Vec3::Z, angle };
+            let arc = CartesianPath::rotation(start, turn).unwrap();
             let to = Pose::from_translation(Vec3::new(1.0 + arc.length(), 0.0, 0.0));
             let line = CartesianPath::line(start, to).unwrap();
             let time =
@@ -174,28 +173,29 @@ fn cartesian_arc_that_is_short_or_slow_moves_like_a_line() {
 #[test]
 fn cartesian_circle_speed_is_limited_by_the_centripetal_acceleration() {
     let start = Pose::from_translation(Vec3::X);
-    let turn = Turn { centre: Vec3::ZERO, axis: Vec3::Z, angle: TAU };
-    let path = CartesianPath::turn(start, turn).unwrap();
-    let fast = Bounds { velocity: 100.0, acceleration: 2.0, jerk: INF };
-    let free = Bounds { velocity: INF, acceleration: 1e6, jerk: INF };
+    let turn = AxisRotation { centre: Vec3::ZERO, axis: Vec3::Z, angle: TAU };
+    let path = CartesianPath::rotation(start, turn).unwrap();
+    let fast = KinematicBounds { velocity: 100.0, acceleration: 2.0, jerk: INF };
+    let free = KinematicBounds { velocity: INF, acceleration: 1e6, jerk: INF };
     let motion = CartesianMove::new(path, CartesianBounds { linear: fast, angular: free }).unwrap();
     // u^2 / r = a / sqrt 2, so that a / sqrt 2 is left along the path.
-    let speed = motion.law().peaks().velocity * TAU;
+    let speed = motion.law().extrema().velocity * TAU;
     assert!((speed - (2.0 * 0.5_f64.sqrt()).sqrt()).abs() < 1e-14, "{speed}");
-    let along = motion.law().peaks().acceleration * TAU;
+    let along = motion.law().extrema().acceleration * TAU;
     assert!((along - 2.0_f64.sqrt()).abs() < 1e-14, "{along}");
 }
 
 #[test]
 fn cartesian_move_of_no_length_takes_no_time() {
     let pose = Pose { rotation: Rotation::exp(Vec3::X), translation: Vec3::new(1.0, 2.0, 3.0) };
-    let spin = |angle| Turn { centre: pose.translation, axis: Vec3::Z, angle };
-    for path in
-        [CartesianPath::line(pose, pose).unwrap(), CartesianPath::turn(pose, spin(0.0)).unwrap()]
-    {
+    let spin = |angle| AxisRotation { centre: pose.translation, axis: Vec3::Z, angle };
+    for path in [
+        CartesianPath::line(pose, pose).unwrap(),
+        CartesianPath::rotation(pose, spin(0.0)).unwrap(),
+    ] {
         let motion = CartesianMove::new(path, BOUNDS).unwrap();
         assert_eq!(motion.law().duration(), 0.0);
-        for motion in [motion, motion.stretched_to(2.0).unwrap()] {
+        for motion in [motion, motion.scaled_to_duration(2.0).unwrap()] {
             for t in [-1.0, 0.0, 1.0, 5.0, f64::NAN] {
                 let sample = motion.at(t);
                 assert_eq!(sample.pose.translation, pose.translation);
@@ -212,7 +212,8 @@ fn cartesian_move_of_no_length_takes_no_time() {
     let expected = 4.0 * (length / (2.0 * LINEAR.jerk)).cbrt();
     assert!((motion.law().duration() - expected).abs() < 1e-12 * expected);
     assert_eq!(motion.at(INF).pose, nudge);
-    let motion = CartesianMove::new(CartesianPath::turn(pose, spin(3.0)).unwrap(), BOUNDS).unwrap();
+    let motion =
+        CartesianMove::new(CartesianPath::rotation(pose, spin(3.0)).unwrap(), BOUNDS).unwrap();
     let expected = 3.0 / 1.5 + 1.5 / 6.0 + 6.0 / 60.0;
     assert!((motion.law().duration() - expected).abs() < 1e-14);
 }
@@ -222,21 +223,21 @@ fn cartesian_stretched_move_ends_together() {
     let to = Pose::from_translation(Vec3::X);
     let motion =
         CartesianMove::new(CartesianPath::line(Pose::IDENTITY, to).unwrap(), BOUNDS).unwrap();
-    let slow = motion.stretched_to(7.0).unwrap();
+    let slow = motion.scaled_to_duration(7.0).unwrap();
     assert_eq!(slow.law().duration(), 7.0);
     assert!(slow.at(6.9999).s.position < 1.0);
     assert_eq!(slow.at(7.0).pose, to);
-    assert!(motion.stretched_to(0.1).is_err());
+    assert!(motion.scaled_to_duration(0.1).is_err());
 }
 
 #[test]
 fn cartesian_bad_bounds_are_refused_even_of_a_part_that_rests() {
     let path = CartesianPath::line(Pose::IDENTITY, Pose::from_translation(Vec3::X)).unwrap();
     for bad in [0.0, -1.0, f64::NAN] {
-        let linear = Bounds { velocity: bad, ..LINEAR };
+        let linear = KinematicBounds { velocity: bad, ..LINEAR };
         let error = CartesianMove::new(path, CartesianBounds { linear, ..BOUNDS }).unwrap_err();
         assert!(error.to_string().contains("the linear part"), "{error}");
-        let angular = Bounds { jerk: bad, ..ANGULAR };
+        let angular = KinematicBounds { jerk: bad, ..ANGULAR };
         let error = CartesianMove::new(path, CartesianBounds { angular, ..BOUNDS }).unwrap_err();
         assert!(error.to_string().contains("the angular part"), "{error}");
     }
@@ -256,7 +257,7 @@ fn joint_move_ends_exactly_and_rests_where_nothing_moves() {
     // The longest way leads: the time is that of joint 1 alone.
     let alone = JointMove::new(JointPath::new(&from[1..2], &to[1..2]).unwrap(), &[LINEAR]).unwrap();
     assert!((motion.law().duration() - alone.law().duration()).abs() < 1e-14);
-    let slow = motion.stretched_to(60.0).unwrap();
+    let slow = motion.scaled_to_duration(60.0).unwrap();
     slow.sample_into(30.0, JointSample { positions: &mut q, velocities: &mut qd }).unwrap();
     assert!((q[0] - 0.2).abs() < 1e-15 && q[2] == 0.7 && qd[2] == 0.0);
 
@@ -288,7 +289,7 @@ fn joint_bad_input_is_named() {
     let path = JointPath::new(&[0.0, 0.0], &[1.0, 0.0]).unwrap();
     assert!(matches!(JointMove::new(path.clone(), &[LINEAR]), Err(Error::Dimension { .. })));
     for bad in [0.0, -1.0, f64::NAN] {
-        let bounds = [LINEAR, Bounds { acceleration: bad, ..LINEAR }];
+        let bounds = [LINEAR, KinematicBounds { acceleration: bad, ..LINEAR }];
         let error = message(JointMove::new(path.clone(), &bounds).unwrap_err());
         assert!(error.contains("acceleration bound") && error.contains("joint 1"), "{error}");
     }

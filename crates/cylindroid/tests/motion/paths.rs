@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use cylindroid::control::{CartesianPath, Turn};
+use cylindroid::control::{AxisRotation, CartesianPath};
 use cylindroid::{Error, Pose, Rotation, Twist, Vec3};
 use proptest::prelude::*;
 
@@ -22,7 +22,7 @@ fn any_path() -> impl Strategy<Value = CartesianPath> {
         .prop_filter_map("collinear", |(a, via, b)| CartesianPath::circle(a, via, b).ok());
     let turn = (any_pose(), vector(2.0), vector(1.0), -9.0..9.0).prop_map(
         |(from, centre, axis, angle)| {
-            CartesianPath::turn(from, Turn { centre, axis, angle }).unwrap()
+            CartesianPath::rotation(from, AxisRotation { centre, axis, angle }).unwrap()
         },
     );
     prop_oneof![line, circle, turn]
@@ -108,7 +108,7 @@ proptest! {
     #[test]
     fn turn_is_the_rotation_about_its_line(from in any_pose(), centre in vector(2.0),
             axis in vector(1.0), angle in -20.0..20.0_f64, s in 0.0..=1.0) {
-        let path = CartesianPath::turn(from, Turn { centre, axis, angle }).unwrap();
+        let path = CartesianPath::rotation(from, AxisRotation { centre, axis, angle }).unwrap();
         let step = Rotation::about(axis, angle * s).unwrap();
         let expected = Pose {
             rotation: step * from.rotation,
@@ -164,7 +164,7 @@ proptest! {
     fn rotation_on_the_spot_finds_the_nearest_orientation(pose in any_pose(), axis in vector(1.0),
             angle in -6.0..6.0_f64, measured in vector(1.8)) {
         let path =
-            CartesianPath::turn(pose, Turn { centre: pose.translation, axis, angle }).unwrap();
+            CartesianPath::rotation(pose, AxisRotation { centre: pose.translation, axis, angle }).unwrap();
         prop_assert!(path.length() < 1e-14);
         let rotation = Rotation::exp(measured) * pose.rotation;
         let found = path.deviation(Pose { rotation, ..pose });
@@ -191,8 +191,8 @@ fn half_turns_on_both_sides_end_where_they_should() {
 fn full_turn_comes_back() {
     let start = Pose::from_translation(Vec3::new(1.0, 2.0, 3.0));
     for angle in [TAU, -TAU, 2.0 * TAU] {
-        let turn = Turn { centre: Vec3::new(0.0, 2.0, 0.0), axis: Vec3::Z * 5.0, angle };
-        let path = CartesianPath::turn(start, turn).unwrap();
+        let turn = AxisRotation { centre: Vec3::new(0.0, 2.0, 0.0), axis: Vec3::Z * 5.0, angle };
+        let path = CartesianPath::rotation(start, turn).unwrap();
         assert!((path.radius() - 1.0).abs() < 1e-15);
         assert!((path.length() - angle.abs()).abs() < 1e-14);
         assert!(close(path.pose(1.0), start, 2e-15));
@@ -208,11 +208,11 @@ fn full_turn_comes_back() {
 #[test]
 fn paths_of_no_length_stay_and_are_never_nan() {
     let pose = Pose { rotation: Rotation::exp(Vec3::X), translation: Vec3::new(1.0, 2.0, 3.0) };
-    let still = Turn { centre: Vec3::ZERO, axis: Vec3::Y, angle: 0.0 };
+    let still = AxisRotation { centre: Vec3::ZERO, axis: Vec3::Y, angle: 0.0 };
     let nudge = Pose { translation: pose.translation + Vec3::X * 1e-12, ..pose };
     for (path, end) in [
         (CartesianPath::line(pose, pose).unwrap(), pose),
-        (CartesianPath::turn(pose, still).unwrap(), pose),
+        (CartesianPath::rotation(pose, still).unwrap(), pose),
         (CartesianPath::line(pose, nudge).unwrap(), nudge),
     ] {
         for s in [-1.0, 0.0, 1e-300, 0.3, 0.7, 1.0, 9.0] {
@@ -265,7 +265,7 @@ fn points_without_a_circle_are_refused_with_advice() {
 fn input_that_is_not_finite_is_refused() {
     let good = Pose::IDENTITY;
     let circle_via = Vec3::new(1.0, 1.0, 0.0);
-    let turn = Turn { centre: Vec3::X, axis: Vec3::Z, angle: 1.0 };
+    let turn = AxisRotation { centre: Vec3::X, axis: Vec3::Z, angle: 1.0 };
     for x in [f64::NAN, f64::INFINITY] {
         let v = Vec3::new(0.0, x, 0.0);
         let bad = Pose::from_translation(v);
@@ -275,14 +275,15 @@ fn input_that_is_not_finite_is_refused() {
             CartesianPath::circle(bad, circle_via, Pose::from_translation(Vec3::X)),
             CartesianPath::circle(good, v, Pose::from_translation(Vec3::X)),
             CartesianPath::circle(good, circle_via, bad),
-            CartesianPath::turn(bad, turn),
-            CartesianPath::turn(good, Turn { centre: v, ..turn }),
-            CartesianPath::turn(good, Turn { axis: v, ..turn }),
-            CartesianPath::turn(good, Turn { angle: x, ..turn }),
+            CartesianPath::rotation(bad, turn),
+            CartesianPath::rotation(good, AxisRotation { centre: v, ..turn }),
+            CartesianPath::rotation(good, AxisRotation { axis: v, ..turn }),
+            CartesianPath::rotation(good, AxisRotation { angle: x, ..turn }),
         ] {
             assert!(matches!(result, Err(Error::NotFinite { .. })), "{result:?}");
         }
     }
-    let error = CartesianPath::turn(good, Turn { axis: Vec3::ZERO, ..turn }).unwrap_err();
+    let error =
+        CartesianPath::rotation(good, AxisRotation { axis: Vec3::ZERO, ..turn }).unwrap_err();
     assert!(error.to_string().contains("names no direction"), "{error}");
 }

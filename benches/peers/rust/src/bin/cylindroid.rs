@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 
-use cylindroid::control::{Gain, SecondaryTask, Target};
+use cylindroid::control::{ServoGains, SecondaryTask, Target};
 use cylindroid::ik::{Budget, Goal, IkOptions, Solver};
 use cylindroid::inverse::Method;
 use cylindroid::kinematics::{Batch, Chain};
@@ -155,7 +155,7 @@ fn servo(arm: &Arm, command: &Command<'_>) -> Result<String> {
         ServoOptions {
             end_effector: arm.tip.into(),
             dt,
-            gain: Gain { position: 5.0, orientation: 5.0 },
+            gain: ServoGains { position: 5.0, orientation: 5.0 },
             method: Method::Truncated { eps: 1e-3 },
             length: 1.0,
             secondary: vec![SecondaryTask::Posture { q: home.to_vec(), gain: 1.0 }],

@@ -1,6 +1,6 @@
 //! From `--inverse` and its numbers to the options of the servo.
 
-use cylindroid::control::Projection;
+use cylindroid::control::TaskProjection;
 use cylindroid::inverse::HyperbolicDamping;
 use cylindroid::model::Mechanism;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
@@ -19,7 +19,7 @@ pub(crate) fn apply(
     robot: &Mechanism,
     options: &mut ServoOptions,
 ) -> Result<()> {
-    let chooses = Projection::NAMES.contains(&args.inverse.as_str());
+    let chooses = TaskProjection::NAMES.contains(&args.inverse.as_str());
     let method = if chooses { Method::default() } else { named(&args.inverse)? };
     options.method = with_numbers(args, method, &args.inverse)?;
     let pitch = |name: &str| match args.h {
@@ -28,7 +28,7 @@ pub(crate) fn apply(
     };
     let wanted = match chooses {
         true => projection(args, &args.inverse, pitch)?,
-        false => Projection::Orthogonal,
+        false => TaskProjection::Orthogonal,
     };
     let fallback = match args.fallback.as_deref() {
         None => None,
@@ -39,14 +39,18 @@ pub(crate) fn apply(
                 reason: format!(
                     "the inverse '{}' always exists; a fallback is for {}",
                     args.inverse,
-                    Projection::NAMES.join(", ")
+                    TaskProjection::NAMES.join(", ")
                 ),
             });
         }
-        Some(PLAIN) => Some(Projection::Orthogonal),
-        Some(name) if Projection::NAMES.contains(&name) => Some(projection(args, name, pitch)?),
+        Some(PLAIN) => Some(TaskProjection::Orthogonal),
+        Some(name) if TaskProjection::NAMES.contains(&name) => Some(projection(args, name, pitch)?),
         Some(name) => {
-            return Err(Error::unknown("fallback", name, Projection::NAMES.iter().chain(&[PLAIN])));
+            return Err(Error::unknown(
+                "fallback",
+                name,
+                TaskProjection::NAMES.iter().chain(&[PLAIN]),
+            ));
         }
     };
     (options.projection, options.fallback) = (wanted, fallback);
@@ -54,16 +58,16 @@ pub(crate) fn apply(
 }
 
 /// The name of the inverse that the options mean, as it was asked for.
-pub(super) fn name(projection: &Projection, method: &Method) -> &'static str {
+pub(super) fn name(projection: &TaskProjection, method: &Method) -> &'static str {
     match projection {
-        Projection::Orthogonal => method.name(),
+        TaskProjection::Orthogonal => method.name(),
         _ => projection.name(),
     }
 }
 
 fn named(name: &str) -> Result<Method> {
     Method::named(name).map_err(|_| {
-        let all = Method::ALL.iter().map(Method::name).chain(Projection::NAMES);
+        let all = Method::ALL.iter().map(Method::name).chain(TaskProjection::NAMES);
         Error::unknown("inverse", name, all)
     })
 }
@@ -72,7 +76,7 @@ fn projection(
     args: &InverseArgs,
     name: &str,
     pitch: impl Fn(&str) -> Result<f64>,
-) -> Result<Projection> {
+) -> Result<TaskProjection> {
     let needed = |option: &'static str, value: Option<f64>| {
         value.ok_or_else(|| Error::InvalidOption {
             option,
@@ -81,16 +85,16 @@ fn projection(
         })
     };
     Ok(match name {
-        "hyperbolic" => Projection::Hyperbolic { h: pitch(name)? },
-        "hyperbolic-damped" => Projection::DampedHyperbolic {
+        "hyperbolic" => TaskProjection::Hyperbolic { h: pitch(name)? },
+        "hyperbolic-damped" => TaskProjection::DampedHyperbolic {
             h: pitch(name)?,
             damping: HyperbolicDamping::Invariant { mu: needed("--mu", args.mu)? },
         },
-        "hyperbolic-gram" => Projection::DampedHyperbolic {
+        "hyperbolic-gram" => TaskProjection::DampedHyperbolic {
             h: pitch(name)?,
             damping: HyperbolicDamping::Gram { lambda: needed("--lambda", args.lambda)? },
         },
-        _ => Projection::Oblique {
+        _ => TaskProjection::Oblique {
             complement: args.give_up.iter().map(|m| Twist::from_array(m.0)).collect(),
             reference: ReferenceFrame::Local,
         },
@@ -134,9 +138,9 @@ fn unused(args: &InverseArgs) -> Result<()> {
         reason: format!("only {} has it; choose one with --inverse", names.join(", ")),
     };
     let numbers: [(&'static str, Option<f64>, &[&str]); 3] = [
-        ("--h", args.h, &Projection::NAMES[..3]),
-        ("--mu", args.mu, &Projection::NAMES[1..2]),
-        ("--lambda", args.lambda, &Projection::NAMES[2..3]),
+        ("--h", args.h, &TaskProjection::NAMES[..3]),
+        ("--mu", args.mu, &TaskProjection::NAMES[1..2]),
+        ("--lambda", args.lambda, &TaskProjection::NAMES[2..3]),
     ];
     for (option, value, names) in numbers {
         if let Some(value) = value
@@ -145,9 +149,9 @@ fn unused(args: &InverseArgs) -> Result<()> {
             return Err(refuse(option, value.to_string(), names));
         }
     }
-    if !args.give_up.is_empty() && !asked(&Projection::NAMES[3..]) {
+    if !args.give_up.is_empty() && !asked(&TaskProjection::NAMES[3..]) {
         let given = format!("{} motions", args.give_up.len());
-        return Err(refuse("--give-up", given, &Projection::NAMES[3..]));
+        return Err(refuse("--give-up", given, &TaskProjection::NAMES[3..]));
     }
     Ok(())
 }

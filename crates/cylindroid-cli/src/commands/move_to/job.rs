@@ -1,8 +1,8 @@
 //! From the arguments of `move` to a job that can be done: options of the servo, start, target.
 
 use cylindroid::control::{
-    Bounds, CartesianBounds, CartesianMove, CartesianPath, Gain, JointDefaults, JointMove,
-    Projector, SecondaryTask,
+    CartesianBounds, CartesianMove, CartesianPath, JointDefaults, JointMove, KinematicBounds,
+    SecondaryNullSpace, SecondaryTask, ServoGains,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
@@ -10,7 +10,7 @@ use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 use super::super::target::{target_pose, task};
 use super::super::{all_driven, configuration, end_effector, load, within_limits};
 use super::{inverse, joints};
-use crate::args::{LawName, MoveArgs, PathArgs, ProjectorName, ServoArgs};
+use crate::args::{LawName, MoveArgs, NullSpaceName, PathArgs, ServoArgs};
 use crate::values::Named;
 
 /// Speeds on a path where none are given [m/s], [rad/s].
@@ -132,7 +132,7 @@ fn no_loops(robot: &Mechanism) -> Result<()> {
 fn apply(args: &ServoArgs, options: &mut ServoOptions) {
     if let Some(gain) = args.gain {
         let orientation = gain.angular.unwrap_or(gain.linear);
-        options.gain = Gain { position: gain.linear, orientation };
+        options.gain = ServoGains { position: gain.linear, orientation };
     }
     if let Some(speed) = args.speed {
         options.speed.linear = speed.linear;
@@ -144,9 +144,9 @@ fn apply(args: &ServoArgs, options: &mut ServoOptions) {
     set(&mut options.tolerance.orientation, args.tolerance_orientation);
     set(&mut options.acceleration, args.acceleration);
     set(&mut options.length, args.length);
-    options.projector = match args.projector {
-        ProjectorName::Exact => Projector::Exact,
-        ProjectorName::Retained => Projector::Retained,
+    options.null_space = match args.null_space {
+        NullSpaceName::Exact => SecondaryNullSpace::Exact,
+        NullSpaceName::Retained => SecondaryNullSpace::Retained,
     };
 }
 
@@ -185,12 +185,12 @@ fn path_bounds(args: &MoveArgs) -> CartesianBounds {
         LawName::JerkLimited => value,
     };
     CartesianBounds {
-        linear: Bounds {
+        linear: KinematicBounds {
             velocity: speed.map_or(PATH_SPEED.0, |s| s.linear),
             acceleration: path.acceleration_linear,
             jerk: jerk(path.jerk_linear),
         },
-        angular: Bounds {
+        angular: KinematicBounds {
             velocity: speed.and_then(|s| s.angular).unwrap_or(PATH_SPEED.1),
             acceleration: path.acceleration_angular,
             jerk: jerk(path.jerk_angular),

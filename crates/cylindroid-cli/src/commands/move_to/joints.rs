@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use cylindroid::control::{
-    Bounds, JointDefaults, JointMove, JointSample, LimitKind, Outcome, Sample,
+    JointDefaults, JointMove, JointSample, KinematicBounds, LimitKind, MotionResult,
+    TrajectorySample,
 };
 use cylindroid::{Result, Servo};
 
@@ -22,12 +23,12 @@ pub(super) fn defaults(args: &MoveArgs) -> JointDefaults {
     };
     let acceleration = |on_path: f64| args.servo.acceleration.unwrap_or(on_path);
     JointDefaults {
-        angle: Bounds {
+        angle: KinematicBounds {
             velocity: PATH_SPEED.1,
             acceleration: acceleration(path.acceleration_angular),
             jerk: jerk(path.jerk_angular),
         },
-        length: Bounds {
+        length: KinematicBounds {
             velocity: PATH_SPEED.0,
             acceleration: acceleration(path.acceleration_linear),
             jerk: jerk(path.jerk_linear),
@@ -41,8 +42,8 @@ pub(super) fn drive(
     servo: &mut Servo,
     job: &Job,
     motion: &JointMove,
-    mut observe: impl FnMut(Sample<'_>),
-) -> Result<Outcome> {
+    mut observe: impl FnMut(TrajectorySample<'_>),
+) -> Result<MotionResult> {
     let dt = job.options.dt;
     let (mut q, mut rates) = (job.start.clone(), vec![0.0; job.robot.n()]);
     let mut steps = 0_usize;
@@ -54,7 +55,7 @@ pub(super) fn drive(
         servo.reset();
         let last = servo.step(&q, job.target_pose)?;
         min_singular_ratio = min_singular_ratio.min(last.singular_ratio);
-        observe(Sample { time, q: &q, rates: &rates, step: &last });
+        observe(TrajectorySample { time, q: &q, rates: &rates, step: &last });
         for (i, (coordinate, rate)) in job.robot.coordinates().iter().zip(&rates).enumerate() {
             if rate.abs() >= AT_SPEED * coordinate.limits.velocity {
                 limits_hit.insert((i, LimitKind::Velocity));
@@ -63,7 +64,7 @@ pub(super) fn drive(
         let reached = time >= motion.law().duration();
         if reached || time >= job.time_limit {
             let stall = None;
-            return Ok(Outcome {
+            return Ok(MotionResult {
                 reached,
                 stall,
                 q,

@@ -11,7 +11,10 @@ use std::process::ExitCode;
 
 use cylindroid::Servo;
 use cylindroid::closure::LoopClosureError;
-use cylindroid::control::{JointMove, Outcome, Sample, Stall, Status, Target, drive, find_posture};
+use cylindroid::control::{
+    JointMove, MotionResult, Stall, Status, Target, TrajectorySample, drive,
+    find_reachable_configuration,
+};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::job::{Goal, Job};
@@ -57,7 +60,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
     let mut deviation: Option<Deviation> = None;
     let mut closure_error: Option<LoopClosureError> = None;
     let progress = Progress::new(job.time_limit);
-    let mut observe = |sample: Sample<'_>| {
+    let mut observe = |sample: TrajectorySample<'_>| {
         progress.show(&sample);
         if job.robot.is_closed()
             && let Ok(now) =
@@ -103,7 +106,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
     if let Some(trajectory) = &mut trajectory {
         trajectory.clear();
     }
-    let push = |sample: Sample<'_>| {
+    let push = |sample: TrajectorySample<'_>| {
         if let Some(trajectory) = &mut trajectory {
             trajectory.push(&sample);
         }
@@ -121,7 +124,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
 fn other_posture(
     job: &Job,
     servo: &Servo,
-    outcome: &Outcome,
+    outcome: &MotionResult,
 ) -> cylindroid::Result<Option<Vec<f64>>> {
     let stalled = outcome.stall.is_some() && outcome.last.status == Status::Stalled;
     // Neither a proof that there is none, nor an inverse that the user asked for, is gone round.
@@ -129,7 +132,7 @@ fn other_posture(
     if !stalled || final_word {
         return Ok(None);
     }
-    let found = find_posture(servo, &job.start, job.target_pose, SEARCH_RUNS)?;
+    let found = find_reachable_configuration(servo, &job.start, job.target_pose, SEARCH_RUNS)?;
     Ok(found.map(|detour| detour.q))
 }
 
@@ -147,7 +150,7 @@ impl Progress {
         Self(bar)
     }
 
-    fn show(&self, sample: &Sample<'_>) {
+    fn show(&self, sample: &TrajectorySample<'_>) {
         self.0.inc(1);
         if self.0.position().is_multiple_of(PROGRESS_STEPS) && !self.0.is_hidden() {
             self.0.set_message(format!(

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use cylindroid::closure::LoopClosureError;
-use cylindroid::control::{Outcome, Task};
+use cylindroid::control::{MotionResult, Task};
 use serde::Serialize;
 
 use super::job::{Goal, Job};
@@ -16,7 +16,7 @@ use crate::output::{self, PoseJson};
 /// What came of a job.
 #[derive(Debug)]
 pub(super) struct Result {
-    pub(super) outcome: Outcome,
+    pub(super) outcome: MotionResult,
     pub(super) deviation: Option<Deviation>,
     /// The widest closure_error of the loops on the way.
     pub(super) closure_error: Option<LoopClosureError>,
@@ -31,7 +31,7 @@ pub(super) enum Way {
     /// As asked for, and it stalled; this posture reaches the target.
     Offered { posture: Vec<f64> },
     /// Round through joint space, since the servo alone would have ended like this.
-    Round { stalled: Box<Outcome> },
+    Round { stalled: Box<MotionResult> },
 }
 
 impl Way {
@@ -204,7 +204,7 @@ fn drives(job: &Job) -> Vec<&str> {
     tree.chain(closing).collect()
 }
 
-fn result_word(outcome: &Outcome, way: &Way) -> &'static str {
+fn result_word(outcome: &MotionResult, way: &Way) -> &'static str {
     match (outcome.reached, way) {
         (true, Way::Round { .. }) => "reached, by way of another posture",
         (true, _) => "reached",
@@ -278,7 +278,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
 }
 
 /// The inverse, its pitch and its fallback.
-fn inverse(job: &Job, outcome: &Outcome) -> String {
+fn inverse(job: &Job, outcome: &MotionResult) -> String {
     let options = &job.options;
     let mut text = inverse::name(&options.projection, &options.method).to_owned();
     if let Some(h) = options.projection.pitch() {
@@ -305,7 +305,7 @@ fn secondary(job: &Job) -> String {
 }
 
 /// `joint (kind, kind), ...`
-fn limits_met(job: &Job, outcome: &Outcome) -> String {
+fn limits_met(job: &Job, outcome: &MotionResult) -> String {
     let mut parts: Vec<String> = Vec::new();
     for (i, coordinate) in job.robot.coordinates().iter().enumerate() {
         let kinds: Vec<&str> =

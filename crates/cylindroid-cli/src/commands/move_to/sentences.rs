@@ -1,14 +1,14 @@
 //! Why a motion ended, in full sentences: what happened, with names and numbers, and what to try.
 
 use cylindroid::ReferenceFrame;
-use cylindroid::control::{Outcome, Stall, Task};
+use cylindroid::control::{MotionResult, Stall, Task};
 use cylindroid::model::Mechanism;
 
 use super::job::Job;
 use crate::output::number;
 
 /// The cause as one word: "reached", a [`Stall::name`], or "time-limit".
-pub(super) fn reason(outcome: &Outcome) -> &'static str {
+pub(super) fn reason(outcome: &MotionResult) -> &'static str {
     match &outcome.stall {
         _ if outcome.reached => "reached",
         Some(stall) => stall.name(),
@@ -17,7 +17,7 @@ pub(super) fn reason(outcome: &Outcome) -> &'static str {
 }
 
 /// Why the joints went straight to another posture.
-pub(super) fn round(job: &Job, stalled: &Outcome) -> String {
+pub(super) fn round(job: &Job, stalled: &MotionResult) -> String {
     let what = match &stalled.stall {
         Some(Stall::Limits { coordinates }) => {
             let names: Vec<&str> =
@@ -48,7 +48,11 @@ pub(super) fn round(job: &Job, stalled: &Outcome) -> String {
 }
 
 /// The cause as sentences.
-pub(super) fn explanation(job: &Job, outcome: &Outcome, other_posture: Option<&[f64]>) -> String {
+pub(super) fn explanation(
+    job: &Job,
+    outcome: &MotionResult,
+    other_posture: Option<&[f64]>,
+) -> String {
     let mut text = match &outcome.stall {
         _ if outcome.reached => {
             return format!("The target was reached.{}", without_inverse(outcome));
@@ -145,7 +149,7 @@ fn way_out(stall: &Stall) -> &'static str {
 }
 
 /// A sentence about the steps that the fallback took, if any.
-pub(super) fn without_inverse(outcome: &Outcome) -> String {
+pub(super) fn without_inverse(outcome: &MotionResult) -> String {
     match &outcome.no_inverse {
         Some(reason) if outcome.steps_without_inverse > 0 && outcome.steps > 0 => format!(
             " {} of {} steps were taken by the fallback, since the inverse that was asked for did \

@@ -26,7 +26,7 @@ use crate::spatial::{Pose, Twist, Wrench};
 
 /// The gains of hybrid control.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HybridLaw {
+pub struct HybridController {
     gain: f64,
     admittance: Admittance,
 }
@@ -57,7 +57,7 @@ pub struct HybridCommand {
     pub wrench_error: Wrench,
 }
 
-impl HybridLaw {
+impl HybridController {
     /// A law with the proportional `gain` [1/s] of the twist error, and an admittance.
     ///
     /// # Errors

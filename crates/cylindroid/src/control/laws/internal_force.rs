@@ -21,7 +21,7 @@ use crate::linalg::Qr;
 
 /// Drives an internal load to a set-point, to be added to the rates of a servo.
 #[derive(Debug, Clone, PartialEq)]
-pub struct InternalForceLaw {
+pub struct InternalForceController {
     gain: f64,
     /// Roots of the compliances.
     roots: Vec<f64>,
@@ -38,7 +38,7 @@ pub struct InternalForceCommand {
     pub error: Vec<f64>,
 }
 
-impl InternalForceLaw {
+impl InternalForceController {
     /// With a gain [1/s] and the stiffness of each driven joint [N m/rad or N/m].
     ///
     /// # Errors

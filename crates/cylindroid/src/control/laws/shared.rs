@@ -6,7 +6,7 @@
 //! Units    gain 1/s; e m and rad; x, f, u m/s and rad/s
 //! Frame    any; that of the projector and of the twists. For a servo: the world's axes at the tool
 //! Valid    gain * dt < 2. S1 and S2 h-reciprocal or merely complementary. No allocation. An arm at
-//!          its limits cannot carry out every twist: see `operator_share.rs`
+//!          its limits cannot carry out every twist: see `operator_authority.rs`
 //! Fails    on numbers that are not finite. Where P does not exist there is no law: see
 //!          [`Projector::of`](crate::screws::Projector::of)
 //! Why so   the projector on the operator's motions, as in hybrid control that on the motions in
@@ -22,7 +22,7 @@ use crate::spatial::Twist;
 
 /// The gain of shared control.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SharedLaw {
+pub struct SharedController {
     gain: f64,
 }
 
@@ -48,7 +48,7 @@ pub struct SharedCommand {
     pub operator_part: Twist,
 }
 
-impl SharedLaw {
+impl SharedController {
     /// A law with the proportional `gain` [1/s] of the twist error.
     ///
     /// # Errors

@@ -23,7 +23,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::path::CartesianPath;
-use super::time_law::{Bounds, LawSample, TimeLaw};
+use super::time_law::{KinematicBounds, LawSample, TimeLaw};
 use crate::control::servo::Target;
 use crate::error::Result;
 use crate::spatial::{Pose, Twist};
@@ -32,21 +32,21 @@ use crate::spatial::{Pose, Twist};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CartesianBounds {
     /// Of the origin [m/s, m/s^2, m/s^3].
-    pub linear: Bounds,
+    pub linear: KinematicBounds,
     /// Of the orientation [rad/s, rad/s^2, rad/s^3].
-    pub angular: Bounds,
+    pub angular: KinematicBounds,
 }
 
 /// A frame moving along a path.
 ///
 /// ```
-/// use cylindroid::control::{Bounds, CartesianBounds, CartesianMove, CartesianPath};
+/// use cylindroid::control::{KinematicBounds, CartesianBounds, CartesianMove, CartesianPath};
 /// use cylindroid::{Pose, Vec3};
 /// let target = Pose::from_translation(Vec3::new(0.0, 0.0, 0.5));
 /// let path = CartesianPath::line(Pose::IDENTITY, target)?;
 /// let bounds = CartesianBounds {
-///     linear: Bounds { velocity: 0.25, acceleration: 1.0, jerk: 10.0 },
-///     angular: Bounds { velocity: 1.0, acceleration: 4.0, jerk: 40.0 },
+///     linear: KinematicBounds { velocity: 0.25, acceleration: 1.0, jerk: 10.0 },
+///     angular: KinematicBounds { velocity: 1.0, acceleration: 4.0, jerk: 40.0 },
 /// };
 /// let motion = CartesianMove::new(path, bounds)?;
 /// let halfway = motion.at(0.5 * motion.law().duration());
@@ -92,8 +92,8 @@ impl CartesianMove {
     ///
     /// # Errors
     /// A duration shorter than that of the move, or not finite.
-    pub fn stretched_to(self, duration: f64) -> Result<Self> {
-        Ok(Self { law: self.law.stretched_to(duration)?, ..self })
+    pub fn scaled_to_duration(self, duration: f64) -> Result<Self> {
+        Ok(Self { law: self.law.scaled_to_duration(duration)?, ..self })
     }
 
     /// The path.
@@ -132,8 +132,8 @@ struct Arc {
 }
 
 /// The bounds of speed, tangential acceleration and its rate on an arc (head of this file).
-fn on_arc(bounds: Bounds, arc: Arc) -> Bounds {
-    let (Bounds { velocity: v, acceleration: a, jerk: j }, r) = (bounds, arc.radius);
+fn on_arc(bounds: KinematicBounds, arc: Arc) -> KinematicBounds {
+    let (KinematicBounds { velocity: v, acceleration: a, jerk: j }, r) = (bounds, arc.radius);
     let reach = arc.length.min(r);
     let u = v
         .min((a * arc.length.min(FRAC_1_SQRT_2 * r)).sqrt())
@@ -145,5 +145,5 @@ fn on_arc(bounds: Bounds, arc: Arc) -> Bounds {
     let across = 3.0 * (u / j) * (alpha / r);
     let along = (u / j) * (u / r) * (u / r);
     let eta = j * ((1.0 - across * across).sqrt() - along);
-    Bounds { velocity: u, acceleration: alpha, jerk: eta }
+    KinematicBounds { velocity: u, acceleration: alpha, jerk: eta }
 }

@@ -21,7 +21,7 @@ const WITHIN: f64 = 0.5;
 
 /// A posture that reaches the target.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Detour {
+pub struct Reconfiguration {
     /// The posture, all n coordinates.
     pub q: Vec<f64>,
     /// Attempts it took to find it, and to look for nearer ones.
@@ -33,12 +33,12 @@ pub struct Detour {
 ///
 /// # Errors
 /// A `q` of the wrong size or not finite; a target that is not finite.
-pub fn find_posture(
+pub fn find_reachable_configuration(
     servo: &Servo,
     q: &[f64],
     target: Pose,
     most_runs: usize,
-) -> Result<Option<Detour>> {
+) -> Result<Option<Reconfiguration>> {
     let mechanism = servo.mechanism();
     mechanism.check_q("q", q)?;
     let straight = |c: &usize| {
@@ -61,5 +61,5 @@ pub fn find_posture(
     };
     let goal = Goal { end_effector: options.end_effector, target, task: options.task };
     let found = solve(mechanism, &[goal], &ik)?;
-    Ok(found.success.then_some(Detour { q: found.q, runs: found.attempts }))
+    Ok(found.success.then_some(Reconfiguration { q: found.q, runs: found.attempts }))
 }

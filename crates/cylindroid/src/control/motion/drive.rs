@@ -9,7 +9,7 @@ use crate::screws::NoInverse;
 
 /// One instant of a motion.
 #[derive(Debug)]
-pub struct Sample<'a> {
+pub struct TrajectorySample<'a> {
     /// Time since the start (s).
     pub time: f64,
     /// The configuration before the step.
@@ -22,7 +22,7 @@ pub struct Sample<'a> {
 
 /// How a motion ended.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct MotionResult {
     /// True if the target was reached.
     pub reached: bool,
     /// Why it stalled; `None` if it was reached or the time ran out.
@@ -56,8 +56,8 @@ pub fn drive(
     q: &[f64],
     duration: f64,
     mut target: impl FnMut(f64) -> (Target, bool),
-    mut observe: impl FnMut(Sample<'_>),
-) -> Result<Outcome> {
+    mut observe: impl FnMut(TrajectorySample<'_>),
+) -> Result<MotionResult> {
     let dt = servo.options().dt;
     let mut q = q.to_vec();
     let mut steps = 0_usize;
@@ -71,7 +71,7 @@ pub fn drive(
         let step = servo.step(&q, now)?;
         min_singular_ratio = min_singular_ratio.min(step.singular_ratio);
         limits_hit.extend(servo.active_limits());
-        observe(Sample { time, q: &q, rates: servo.rates(), step: &step });
+        observe(TrajectorySample { time, q: &q, rates: servo.rates(), step: &step });
         let reached = is_final && step.status == Status::Reached;
         if let Some(reason) = servo.no_inverse() {
             no_inverse.get_or_insert(reason);
@@ -81,7 +81,7 @@ pub fn drive(
         let stalled = step.status == Status::Stalled && (is_final || servo.is_stopped());
         let in_time = time < duration; // NaN is not
         if reached || stalled || !in_time {
-            return Ok(Outcome {
+            return Ok(MotionResult {
                 reached,
                 stall: stalled.then(|| servo.stall()),
                 q,

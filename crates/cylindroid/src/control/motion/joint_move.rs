@@ -13,7 +13,7 @@
 //! Checked  tests/motion/moves.rs::joint_*
 
 use super::path::within;
-use super::time_law::{Bounds, LawSample, TimeLaw};
+use super::time_law::{KinematicBounds, LawSample, TimeLaw};
 use crate::error::{Error, Result};
 use crate::model::{CoordinateKind, Mechanism};
 
@@ -81,9 +81,9 @@ pub struct JointMove {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointDefaults {
     /// For joints that turn (rad).
-    pub angle: Bounds,
+    pub angle: KinematicBounds,
     /// For joints that slide (m).
-    pub length: Bounds,
+    pub length: KinematicBounds,
 }
 
 /// Where [`JointMove::sample_into`] writes, n entries each.
@@ -101,13 +101,17 @@ impl JointMove {
     /// # Errors
     /// A number of bounds other than the number of joints; bounds that are NaN, zero or negative,
     /// or that leave both acceleration and jerk infinite.
-    pub fn new(path: JointPath, bounds: &[Bounds]) -> Result<Self> {
+    pub fn new(path: JointPath, bounds: &[KinematicBounds]) -> Result<Self> {
         Error::check_len("bounds", path.dof(), bounds.len())?;
         Self::named(path, bounds, |i| format!("joint {i}"))
     }
 
-    fn named(path: JointPath, bounds: &[Bounds], name: impl Fn(usize) -> String) -> Result<Self> {
-        let mut tightest = Bounds::NONE;
+    fn named(
+        path: JointPath,
+        bounds: &[KinematicBounds],
+        name: impl Fn(usize) -> String,
+    ) -> Result<Self> {
+        let mut tightest = KinematicBounds::NONE;
         for (i, (bound, displacement)) in bounds.iter().zip(path.displacement()).enumerate() {
             bound.check(&name(i))?;
             tightest = tightest.tightest(bound.over(displacement.abs()));
@@ -156,7 +160,7 @@ impl JointMove {
             let own = |limit: f64, default: f64| {
                 if limit.is_finite() && *displacement != 0.0 { limit } else { default }
             };
-            bounds.push(Bounds {
+            bounds.push(KinematicBounds {
                 velocity: own(coordinate.limits.velocity, default.velocity),
                 acceleration: own(coordinate.limits.acceleration, default.acceleration),
                 jerk: default.jerk,
@@ -169,8 +173,8 @@ impl JointMove {
     ///
     /// # Errors
     /// A duration shorter than that of the move, or not finite.
-    pub fn stretched_to(self, duration: f64) -> Result<Self> {
-        Ok(Self { law: self.law.stretched_to(duration)?, ..self })
+    pub fn scaled_to_duration(self, duration: f64) -> Result<Self> {
+        Ok(Self { law: self.law.scaled_to_duration(duration)?, ..self })
     }
 
     /// The path.

@@ -12,8 +12,8 @@ mod path;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
-pub use detour::{Detour, find_posture};
-pub use drive::{Outcome, Sample, drive};
+pub use detour::{Reconfiguration, find_reachable_configuration};
+pub use drive::{MotionResult, TrajectorySample, drive};
 pub use joint_move::{JointDefaults, JointMove, JointPath, JointSample};
-pub use path::{CartesianPath, Deviation, Turn};
-pub use time_law::{Bounds, LawSample, TimeLaw};
+pub use path::{AxisRotation, CartesianPath, PathDeviation};
+pub use time_law::{KinematicBounds, LawSample, TimeLaw};

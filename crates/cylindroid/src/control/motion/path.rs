@@ -42,7 +42,7 @@ enum Curve {
 
 /// A turn about a fixed line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct AxisRotation {
     /// A point of the line, world axes (m).
     pub centre: Vec3,
     /// Direction of the line, world axes; any length but zero [-].
@@ -53,7 +53,7 @@ pub struct Turn {
 
 /// How far a pose is off a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Deviation {
+pub struct PathDeviation {
     /// Distance to the path (m).
     pub position: f64,
     /// Angle to the path's orientation at `s`, in [0, pi] (rad).
@@ -108,11 +108,11 @@ impl CartesianPath {
     /// Along the arc of a turn about a fixed line, the orientation carried along.
     ///
     /// ```
-    /// use cylindroid::control::{CartesianPath, Turn};
+    /// use cylindroid::control::{CartesianPath, AxisRotation};
     /// use cylindroid::{Pose, Vec3};
     /// let start = Pose::from_translation(Vec3::new(1.0, 0.0, 0.5));
-    /// let turn = Turn { centre: Vec3::ZERO, axis: Vec3::Z, angle: std::f64::consts::TAU };
-    /// let circle = CartesianPath::turn(start, turn)?;
+    /// let turn = AxisRotation { centre: Vec3::ZERO, axis: Vec3::Z, angle: std::f64::consts::TAU };
+    /// let circle = CartesianPath::rotation(start, turn)?;
     /// assert_eq!(circle.length(), std::f64::consts::TAU);
     /// assert!((circle.pose(0.25).translation - Vec3::new(0.0, 1.0, 0.5)).norm() < 1e-15);
     /// # Ok::<(), cylindroid::Error>(())
@@ -120,8 +120,8 @@ impl CartesianPath {
     ///
     /// # Errors
     /// Input that is not finite; an axis shorter than `tolerance::ZERO_AXIS`.
-    pub fn turn(from: Pose, turn: Turn) -> Result<Self> {
-        let Turn { centre, axis, angle } = turn;
+    pub fn rotation(from: Pose, turn: AxisRotation) -> Result<Self> {
+        let AxisRotation { centre, axis, angle } = turn;
         if !(axis.is_finite() && angle.is_finite()) {
             return Err(not_finite());
         }
@@ -221,9 +221,9 @@ impl CartesianPath {
     /// orientation decides instead. For a pose that is not finite, position and orientation are
     /// NaN.
     #[must_use]
-    pub fn deviation(&self, pose: Pose) -> Deviation {
+    pub fn deviation(&self, pose: Pose) -> PathDeviation {
         if !pose.is_finite() {
-            return Deviation { position: f64::NAN, orientation: f64::NAN, s: 0.0 };
+            return PathDeviation { position: f64::NAN, orientation: f64::NAN, s: 0.0 };
         }
         let s = within(if self.length() > POSITION {
             self.nearest_position(pose.translation)
@@ -231,7 +231,7 @@ impl CartesianPath {
             self.nearest_orientation(pose.rotation)
         });
         let error = self.pose(s).error_to(pose);
-        Deviation { position: error.linear.norm(), orientation: error.angular.norm(), s }
+        PathDeviation { position: error.linear.norm(), orientation: error.angular.norm(), s }
     }
 
     fn nearest_position(&self, p: Vec3) -> f64 {

@@ -25,7 +25,7 @@ use crate::error::{Error, Result};
 ///
 /// Infinity means no bound; acceleration and jerk cannot both be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
+pub struct KinematicBounds {
     /// Largest speed [u/s].
     pub velocity: f64,
     /// Largest acceleration [u/s^2].
@@ -50,8 +50,8 @@ pub struct LawSample {
 /// A motion of one coordinate from rest at 0 to rest at a distance.
 ///
 /// ```
-/// use cylindroid::control::{Bounds, TimeLaw};
-/// let bounds = Bounds { velocity: 1.0, acceleration: 2.0, jerk: f64::INFINITY };
+/// use cylindroid::control::{KinematicBounds, TimeLaw};
+/// let bounds = KinematicBounds { velocity: 1.0, acceleration: 2.0, jerk: f64::INFINITY };
 /// let law = TimeLaw::new(3.0, bounds)?;
 /// assert_eq!(law.duration(), 3.5); // h / v + v / a
 /// assert_eq!(law.at(1.75).position, 1.5);
@@ -63,7 +63,7 @@ pub struct TimeLaw {
     duration: f64,
     times: Times,
     /// Peak velocity, acceleration and jerk, with the sign of the distance.
-    peak: Bounds,
+    peak: KinematicBounds,
 }
 
 /// Lengths of the segments (s).
@@ -77,7 +77,7 @@ struct Times {
     cruise: f64,
 }
 
-impl Bounds {
+impl KinematicBounds {
     /// No bound at all: the neutral element of [`Self::tightest`].
     pub(crate) const NONE: Self =
         Self { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY };
@@ -135,8 +135,8 @@ impl Bounds {
 
 impl Times {
     /// The fastest law over `h > 0`.
-    fn fastest(h: f64, bounds: Bounds) -> Self {
-        let Bounds { velocity: v, acceleration: a, jerk: j } = bounds;
+    fn fastest(h: f64, bounds: KinematicBounds) -> Self {
+        let KinematicBounds { velocity: v, acceleration: a, jerk: j } = bounds;
         let limit = a / j;
         // v / j is NaN where both are infinite; `min` then keeps the other, which is right.
         let jerk = limit.min((v / j).sqrt()).min((0.5 * h / j).cbrt());
@@ -168,7 +168,7 @@ impl TimeLaw {
     /// # Errors
     /// A distance that is not finite; bounds that are NaN, zero or negative, or that leave both
     /// acceleration and jerk infinite; a duration that a number cannot hold.
-    pub fn new(distance: f64, bounds: Bounds) -> Result<Self> {
+    pub fn new(distance: f64, bounds: KinematicBounds) -> Result<Self> {
         bounds.check("the coordinate")?;
         if !distance.is_finite() {
             return Err(Error::NotFinite {
@@ -181,7 +181,7 @@ impl TimeLaw {
         }
         let times = Times::fastest(distance.abs(), bounds);
         let law = Self::from_times(distance, times, times.total());
-        let Bounds { velocity, acceleration, jerk } = law.peak;
+        let KinematicBounds { velocity, acceleration, jerk } = law.peak;
         let numbers = [law.duration, velocity, acceleration, jerk];
         if times.jerk + times.hold > 0.0 && numbers.iter().all(|x| x.is_finite()) {
             return Ok(law);
@@ -202,7 +202,7 @@ impl TimeLaw {
     }
 
     /// The law of a path coordinate from 0 to 1; what bounds nothing has no length, takes no time.
-    pub(crate) fn along(bounds: Bounds) -> Result<Self> {
+    pub(crate) fn along(bounds: KinematicBounds) -> Result<Self> {
         if bounds.is_unbounded() { Ok(Self::instant(1.0)) } else { Self::new(1.0, bounds) }
     }
 
@@ -211,7 +211,7 @@ impl TimeLaw {
         let velocity = ratio(distance, times.ramp() + times.cruise);
         let acceleration = ratio(velocity, times.jerk + times.hold);
         let jerk = ratio(acceleration, times.jerk);
-        Self { distance, duration, times, peak: Bounds { velocity, acceleration, jerk } }
+        Self { distance, duration, times, peak: KinematicBounds { velocity, acceleration, jerk } }
     }
 
     /// The same motion slowed down to end at `duration` (s), every bound still kept.
@@ -221,7 +221,7 @@ impl TimeLaw {
     ///
     /// # Errors
     /// A duration shorter than that of this law, or not finite.
-    pub fn stretched_to(self, duration: f64) -> Result<Self> {
+    pub fn scaled_to_duration(self, duration: f64) -> Result<Self> {
         if !duration.is_finite() || duration < self.duration {
             return Err(Error::InvalidOption {
                 option: "duration",
@@ -257,9 +257,13 @@ impl TimeLaw {
     /// The largest absolute values that the law reaches; jerk 0 for a trapezoidal law, whose
     /// acceleration jumps.
     #[must_use]
-    pub fn peaks(&self) -> Bounds {
-        let Bounds { velocity, acceleration, jerk } = self.peak;
-        Bounds { velocity: velocity.abs(), acceleration: acceleration.abs(), jerk: jerk.abs() }
+    pub fn extrema(&self) -> KinematicBounds {
+        let KinematicBounds { velocity, acceleration, jerk } = self.peak;
+        KinematicBounds {
+            velocity: velocity.abs(),
+            acceleration: acceleration.abs(),
+            jerk: jerk.abs(),
+        }
     }
 
     /// Where the seven segments begin, and the end (s); equal neighbours bound an empty segment.
@@ -293,7 +297,7 @@ impl TimeLaw {
 
     /// The first half.
     fn rise(&self, t: f64) -> LawSample {
-        let Bounds { velocity: v, acceleration: a, jerk: j } = self.peak;
+        let KinematicBounds { velocity: v, acceleration: a, jerk: j } = self.peak;
         let (Times { jerk: tj, hold, .. }, ramp) = (self.times, self.times.ramp());
         if t < tj {
             return LawSample {

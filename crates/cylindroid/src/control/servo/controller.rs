@@ -26,7 +26,7 @@ use super::secondary::Gradient;
 use super::stall::{Evidence, Stall, Watch, classify};
 use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
-use crate::control::solver::bounds::{LimitKind, RateBounds};
+use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::direct::{Saturation, Saturator};
 use crate::error::{Error, Result};
 use crate::inverse::{Method, is_kept};
@@ -73,8 +73,8 @@ pub struct Servo {
     primary: Vec<f64>,
     secondary: Vec<f64>,
     /// Bounds of the rates, and the same in scaled coordinates.
-    own_bounds: Vec<RateBounds>,
-    bounds: Vec<RateBounds>,
+    own_bounds: Vec<VelocityBounds>,
+    bounds: Vec<VelocityBounds>,
     saturator: Saturator,
     gradient: Gradient,
     /// For closed chains.
@@ -173,8 +173,8 @@ impl Servo {
             projecting: Projecting::new(),
             primary: vec![0.0; rates],
             secondary: vec![0.0; rates],
-            own_bounds: vec![RateBounds::NONE; rates],
-            bounds: vec![RateBounds::NONE; rates],
+            own_bounds: vec![VelocityBounds::NONE; rates],
+            bounds: vec![VelocityBounds::NONE; rates],
             saturator: Saturator::new(m, unknowns),
             gradient: Gradient { hessian },
             rates: vec![0.0; mechanism.n().max(rates)],

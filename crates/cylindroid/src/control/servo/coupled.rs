@@ -223,7 +223,7 @@ pub(super) fn not_steered(mechanism: &Mechanism, escape: &Escape, task: Task) ->
 mod tests {
     use super::*;
     use crate::control::ServoOptions;
-    use crate::control::solver::bounds::{LimitKind, RateBounds};
+    use crate::control::solver::bounds::{LimitKind, VelocityBounds};
     use crate::control::solver::direct::{Problem, RELEASE, Saturator, solve};
     use crate::control::solver::reduced::CoupledProblem;
     use crate::inverse::Method;
@@ -252,8 +252,8 @@ mod tests {
             let mut reduced = Matrix::zeros(6, drives);
             coupled.load(&q, &space, 1e-3, &mut reduced).unwrap();
             let x: Vec<f64> = (0..6).map(|_| next()).collect();
-            let bounds: Vec<RateBounds> = (0..panda.n())
-                .map(|_| RateBounds {
+            let bounds: Vec<VelocityBounds> = (0..panda.n())
+                .map(|_| VelocityBounds {
                     lower: -0.7 * next().abs(),
                     upper: 0.7 * next().abs(),
                     lower_cause: LimitKind::Position,

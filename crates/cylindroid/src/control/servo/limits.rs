@@ -16,23 +16,23 @@
 //!          A dt^2 / 8
 //! Checked  tests/it/servo/limits.rs::limits_*, tests in this file
 
-use crate::control::solver::bounds::{LimitKind, RateBounds};
+use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::model::Limits;
 use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
 
 /// A coordinate and the rate it was last given.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion1 {
+pub struct JointState {
     /// Position [rad or m].
     pub position: f64,
     /// Rate commanded in the last step [rad/s or m/s].
     pub rate: f64,
 }
 
-impl RateBounds {
+impl VelocityBounds {
     /// The interval for the next step of `dt` seconds.
     #[must_use]
-    pub fn next(limits: &Limits, now: Motion1, dt: f64) -> Self {
+    pub fn next(limits: &Limits, now: JointState, dt: f64) -> Self {
         let above = room(limits.upper - now.position, now.position, limits.upper);
         let below = room(now.position - limits.lower, now.position, limits.lower);
         let step = limits.acceleration * dt;
@@ -109,10 +109,10 @@ impl Clearance {
         Self { lower, upper, velocity, step: a * dt, square, linear, constant, slowness: 1.0 / a }
     }
 
-    /// True if [`RateBounds::next`] has the rate inside and away from its ends; false also for some
+    /// True if [`VelocityBounds::next`] has the rate inside and away from its ends; false also for some
     /// rates near them, and for NaN.
     #[inline]
-    pub(super) fn holds(&self, now: Motion1, rate: f64) -> bool {
+    pub(super) fn holds(&self, now: JointState, rate: f64) -> bool {
         const MORE: f64 = 1.0 + 1e3 * LIMIT_MET;
         let speed = MORE * rate.abs();
         let change = (rate - now.rate).abs() + (MORE - 1.0) * (speed + now.rate.abs());
@@ -168,14 +168,14 @@ mod tests {
     #[test]
     fn full_speed_into_the_limit_stops_there() {
         let (limits, dt) = (limits(), 0.003);
-        let mut now = Motion1 { position: -1.0, rate: 0.0 };
+        let mut now = JointState { position: -1.0, rate: 0.0 };
         for _ in 0..2000 {
-            let bounds = RateBounds::next(&limits, now, dt);
+            let bounds = VelocityBounds::next(&limits, now, dt);
             assert!(bounds.lower <= bounds.upper, "{bounds:?} at {now:?}");
             let rate = bounds.upper;
             assert!((rate - now.rate).abs() <= limits.acceleration * dt * (1.0 + 1e-12));
             assert!(rate.abs() <= limits.velocity);
-            now = Motion1 { position: now.position + rate * dt, rate };
+            now = JointState { position: now.position + rate * dt, rate };
             assert!(now.position <= limits.upper, "{}", now.position);
         }
         assert!(limits.upper - now.position < 1e-9, "stops short: {}", now.position);
@@ -196,13 +196,13 @@ mod tests {
                 _ => Limits { velocity: f64::INFINITY, ..some },
             };
             let dt = [1e-3, 0.1][round % 2];
-            let now = Motion1 { position: next(), rate: 2.0 * next() };
+            let now = JointState { position: next(), rate: 2.0 * next() };
             let rate = match round % 3 {
                 0 => 2.5 * next(),
                 1 => now.rate + 12.0 * dt * next(),
                 _ => stopping_rate(1.0 - now.position, limits.acceleration, dt),
             };
-            let bounds = RateBounds::next(&limits, now, dt);
+            let bounds = VelocityBounds::next(&limits, now, dt);
             let free = bounds.contains(rate) && bounds.met(rate).is_none();
             inside += usize::from(free);
             if Clearance::new(&limits, dt, false).holds(now, rate) {
@@ -237,10 +237,10 @@ mod tests {
                     for i in 1..200 {
                         let (share, dt) = (f64::from(i) * 0.005, 0.0007 * f64::from(i));
                         let start = lower + share * (upper - lower);
-                        let mut now = Motion1 { position: start, rate: 0.0 };
+                        let mut now = JointState { position: start, rate: 0.0 };
                         for _ in 0..40 {
-                            let rate = RateBounds::next(&limits, now, dt).upper;
-                            now = Motion1 { position: now.position + rate * dt, rate };
+                            let rate = VelocityBounds::next(&limits, now, dt).upper;
+                            now = JointState { position: now.position + rate * dt, rate };
                             assert!(now.position <= upper, "{} of {limits:?}", now.position);
                         }
                     }
@@ -251,16 +251,16 @@ mod tests {
 
     #[test]
     fn outside_a_limit_only_the_way_back_is_open() {
-        let now = Motion1 { position: 1.2, rate: 0.0 };
-        let bounds = RateBounds::next(&limits(), now, 0.01);
+        let now = JointState { position: 1.2, rate: 0.0 };
+        let bounds = VelocityBounds::next(&limits(), now, 0.01);
         assert_eq!(bounds.upper, 0.0);
         assert!(bounds.lower < 0.0);
     }
 
     #[test]
     fn no_limits_no_bounds() {
-        let now = Motion1 { position: 3.0, rate: 1.0 };
-        let bounds = RateBounds::next(&Limits::NONE, now, 0.01);
+        let now = JointState { position: 3.0, rate: 1.0 };
+        let bounds = VelocityBounds::next(&Limits::NONE, now, 0.01);
         assert_eq!((bounds.lower, bounds.upper), (f64::NEG_INFINITY, f64::INFINITY));
     }
 }

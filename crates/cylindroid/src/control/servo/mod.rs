@@ -19,10 +19,10 @@ mod task_space;
 
 pub use controller::Servo;
 pub use controller::condition::Posture;
-pub use limits::Motion1;
-pub use options::{Gain, Projector, ServoOptions, Speed, Tolerance};
-pub use projection::Projection;
-pub use reference_point::{InverseChoice, RatesAtPoint, ReferencePoints};
+pub use limits::JointState;
+pub use options::{PoseTolerance, SecondaryNullSpace, ServoGains, ServoOptions, SpeedLimit};
+pub use projection::TaskProjection;
+pub use reference_point::{InverseChoice, ReferencePointComparison, VelocitiesAtPoint};
 pub use secondary::SecondaryTask;
 pub use stall::Stall;
 pub use step::{Status, Step, Target};

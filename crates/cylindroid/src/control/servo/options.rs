@@ -1,6 +1,6 @@
 //! What a servo is told: frame, task, gains, limits, inverse.
 
-use super::projection::Projection;
+use super::projection::TaskProjection;
 use super::secondary::SecondaryTask;
 use crate::error::{Error, Result};
 use crate::ik::Task;
@@ -11,7 +11,7 @@ use crate::tolerance;
 
 /// Proportional gains [1/s].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gain {
+pub struct ServoGains {
     /// Of the position error.
     pub position: f64,
     /// Of the orientation error.
@@ -20,7 +20,7 @@ pub struct Gain {
 
 /// Errors below which a target counts as reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerance {
+pub struct PoseTolerance {
     /// Of the position (m).
     pub position: f64,
     /// Of the orientation (rad).
@@ -29,7 +29,7 @@ pub struct Tolerance {
 
 /// Largest speeds of the end effector.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Speed {
+pub struct SpeedLimit {
     /// Of the tool point [m/s].
     pub linear: f64,
     /// Of the tool [rad/s].
@@ -38,7 +38,7 @@ pub struct Speed {
 
 /// Which motions the secondary tasks may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Projector {
+pub enum SecondaryNullSpace {
     /// The null space of the Jacobian at machine precision: the task is never disturbed.
     Exact,
     /// The complement of the directions that the inverse retained: lets the secondary motion
@@ -56,15 +56,15 @@ pub struct ServoOptions {
     /// Time between steps (s).
     pub dt: f64,
     /// Proportional gains; `gain * dt` must be below 2.
-    pub gain: Gain,
+    pub gain: ServoGains,
     /// When the target counts as reached.
-    pub tolerance: Tolerance,
+    pub tolerance: PoseTolerance,
     /// How the Jacobian is inverted; its numbers refer to linear rows divided by `length`.
     pub method: Method,
     /// Which part of a motion is taken on where the arm cannot do all of it.
-    pub projection: Projection,
+    pub projection: TaskProjection,
     /// What takes over where `projection` does not exist; `None`: the arm stops and says why.
-    pub fallback: Option<Projection>,
+    pub fallback: Option<TaskProjection>,
     /// A projection that enlarges motions by more than this counts as not existing [-].
     pub largest_projection: f64,
     /// Characteristic length that scales the linear rows (m).
@@ -72,13 +72,13 @@ pub struct ServoOptions {
     /// A weight for each coordinate of the mechanism (large keeps it still); empty for none.
     pub joint_weights: Vec<f64>,
     /// Largest speeds of the end effector.
-    pub speed: Speed,
+    pub speed: SpeedLimit,
     /// Acceleration limit of coordinates that have none of their own [rad/s^2 or m/s^2].
     pub acceleration: f64,
     /// Secondary tasks: their joint velocities are added and projected onto the null space.
     pub secondary: Vec<SecondaryTask>,
     /// The null space that is meant.
-    pub projector: Projector,
+    pub null_space: SecondaryNullSpace,
 }
 
 impl ServoOptions {
@@ -93,21 +93,21 @@ impl ServoOptions {
             end_effector: end_effector.into(),
             task: if planar { Task::PLANAR } else { Task::POSE },
             dt: 1e-3,
-            gain: Gain { position: 5.0, orientation: 5.0 },
-            tolerance: Tolerance {
+            gain: ServoGains { position: 5.0, orientation: 5.0 },
+            tolerance: PoseTolerance {
                 position: tolerance::POSITION,
                 orientation: tolerance::ORIENTATION,
             },
             method: Method::default(),
-            projection: Projection::Orthogonal,
+            projection: TaskProjection::Orthogonal,
             fallback: None,
             largest_projection: tolerance::LARGEST_PROJECTION,
             length: mechanism.reach(),
             joint_weights: Vec::new(),
-            speed: Speed { linear: f64::INFINITY, angular: f64::INFINITY },
+            speed: SpeedLimit { linear: f64::INFINITY, angular: f64::INFINITY },
             acceleration: f64::INFINITY,
             secondary: Vec::new(),
-            projector: Projector::Exact,
+            null_space: SecondaryNullSpace::Exact,
         }
     }
 
@@ -209,7 +209,7 @@ impl ServoOptions {
         }
         for projection in [Some(&self.projection), self.fallback.as_ref()].into_iter().flatten() {
             projection.check()?;
-            if *projection != Projection::Orthogonal && self.task.components != [true; 6] {
+            if *projection != TaskProjection::Orthogonal && self.task.components != [true; 6] {
                 return Err(Error::InvalidOption {
                     option: "projection",
                     value: projection.name().to_owned(),

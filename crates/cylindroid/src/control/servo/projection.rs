@@ -23,7 +23,7 @@ use crate::tolerance::GENERIC_RANK;
 
 /// Which part of a motion is taken on.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub enum Projection {
+pub enum TaskProjection {
     /// The nearest motion in scaled task coordinates: what [`Method`](crate::Method) alone does.
     /// It changes with the tool point and the characteristic length.
     #[default]
@@ -50,7 +50,7 @@ pub enum Projection {
     },
 }
 
-impl Projection {
+impl TaskProjection {
     /// The names of those that choose a part: all but the orthogonal one.
     pub const NAMES: [&str; 4] = ["hyperbolic", "hyperbolic-damped", "hyperbolic-gram", "oblique"];
 
@@ -184,19 +184,19 @@ impl Projecting {
 
 /// `None` for the projector that changes nothing.
 fn projector(
-    projection: &Projection,
+    projection: &TaskProjection,
     largest: f64,
     svd: &Svd,
     frame: TaskFrame,
 ) -> std::result::Result<Option<TaskProjector>, NoInverse> {
-    if *projection == Projection::Orthogonal {
+    if *projection == TaskProjection::Orthogonal {
         return Ok(None);
     }
     let k = svd.rank(GENERIC_RANK).rank;
     let motions = (0..k).map(|i| std::array::from_fn(|r| svd.u(i)[r]));
     let found = match projection {
-        Projection::Orthogonal => return Ok(None),
-        Projection::Hyperbolic { h } => {
+        TaskProjection::Orthogonal => return Ok(None),
+        TaskProjection::Hyperbolic { h } => {
             let found = TaskProjector::hyperbolic(motions, h / frame.length);
             match found {
                 Some(p) if p.norm() <= largest => p,
@@ -206,13 +206,13 @@ fn projector(
                 }
             }
         }
-        Projection::DampedHyperbolic { h, damping } => {
+        TaskProjection::DampedHyperbolic { h, damping } => {
             let twists = (0..k).map(|i| std::array::from_fn(|r| svd.u(i)[r] * svd.value(i)));
             let gain = |g: f64| damping.gain(g, frame.length);
             TaskProjector::damped(twists, h / frame.length, gain)
                 .map_err(|g| NoInverse::DampingMeetsEigenvalue { eigenvalue: g * frame.length })?
         }
-        Projection::Oblique { complement, reference } => {
+        TaskProjection::Oblique { complement, reference } => {
             let given_up = complement.iter().map(|t| frame.scaled(*t, *reference));
             TaskProjector::oblique(motions, given_up)?
         }

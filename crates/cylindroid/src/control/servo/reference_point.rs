@@ -12,7 +12,7 @@
 //! Source   Donelan & Selig, sections 1 and 5; Doty, Melchiorri & Bonivento 1993
 //! Checked  tests/it/servo/reference_point.rs
 
-use super::projection::Projection;
+use super::projection::TaskProjection;
 use crate::error::{Error, Result};
 use crate::inverse::{
     HyperbolicDamping, HyperbolicOptions, Inverse, Method, hyperbolic_with, oblique,
@@ -30,14 +30,14 @@ pub struct InverseChoice {
     /// The inverse near singularities.
     pub method: Method,
     /// Which part of a motion is taken on; the method has no part in it unless it is orthogonal.
-    pub projection: Projection,
+    pub projection: TaskProjection,
     /// Characteristic length (m).
     pub length: f64,
 }
 
 /// What an inverse makes of a twist with one reference point.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RatesAtPoint {
+pub struct VelocitiesAtPoint {
     /// Rates of the joints that move the tool [rad/s or m/s]; `None` where there is no inverse.
     pub rates: Option<Vec<f64>>,
     /// The twist of the tool that they make, at the tool, world axes.
@@ -48,13 +48,13 @@ pub struct RatesAtPoint {
 
 /// The same twist inverted at the tool and at another reference point.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ReferencePoints {
+pub struct ReferencePointComparison {
     /// Places in `q` of the joints that move the tool.
     pub coordinates: Vec<usize>,
     /// With the tool's origin as reference point.
-    pub at_tool: RatesAtPoint,
+    pub at_tool: VelocitiesAtPoint,
     /// With the other one.
-    pub at_point: RatesAtPoint,
+    pub at_point: VelocitiesAtPoint,
     /// Length of the difference of the rates [rad/s or m/s]; `None` where one of them is missing.
     pub difference: Option<f64>,
     /// True where it is rounding (`tolerance::SAME_RATES` of the rates).
@@ -74,7 +74,7 @@ impl InverseChoice {
         tool: EndEffector,
         asked: Twist,
         point: Vec3,
-    ) -> Result<ReferencePoints> {
+    ) -> Result<ReferencePointComparison> {
         let mechanism = state.mechanism();
         mechanism.check_frame(tool.frame)?;
         if mechanism.is_closed() {
@@ -99,7 +99,7 @@ impl InverseChoice {
             both.map(|(a, b)| norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()));
         let size = at_tool.rates.as_ref().map_or(0.0, |rates| norm(rates));
         let invariant = difference.is_some_and(|d| d <= SAME_RATES * size);
-        Ok(ReferencePoints { coordinates, at_tool, at_point, difference, invariant })
+        Ok(ReferencePointComparison { coordinates, at_tool, at_point, difference, invariant })
     }
 
     /// With the reference point `p` (world).
@@ -110,7 +110,7 @@ impl InverseChoice {
         coordinates: &[usize],
         asked: Twist,
         p: Vec3,
-    ) -> Result<RatesAtPoint> {
+    ) -> Result<VelocitiesAtPoint> {
         let moved = pose.inverse() * Pose { translation: p, ..pose };
         let there = EndEffector { frame_from_tool: tool.frame_from_tool * moved, ..tool };
         let all = state.jacobian(there, ReferenceFrame::LocalWorldAligned);
@@ -118,13 +118,13 @@ impl InverseChoice {
         let twist = asked.at_point(p - pose.translation).to_array();
         let (inverse, twist) = self.inverse(&j, twist, (pose, p))?;
         if !inverse.exists {
-            return Ok(RatesAtPoint { rates: None, done: None, reason: inverse.reason });
+            return Ok(VelocitiesAtPoint { rates: None, done: None, reason: inverse.reason });
         }
         let rates = inverse.matrix.mul_vec(&twist);
         let done = j.mul_vec(&rates);
         let done = Twist::from_array(std::array::from_fn(|i| done[i]));
         let done = done.at_point(pose.translation - p);
-        Ok(RatesAtPoint { rates: Some(rates), done: Some(done), reason: None })
+        Ok(VelocitiesAtPoint { rates: Some(rates), done: Some(done), reason: None })
     }
 
     /// The inverse at the reference point `p`, and the twist in the units that it takes.
@@ -140,7 +140,7 @@ impl InverseChoice {
             ..HyperbolicOptions::default()
         };
         let found = match &self.projection {
-            Projection::Orthogonal => {
+            TaskProjection::Orthogonal => {
                 let scale = |i: usize| if i < 3 { 1.0 / self.length } else { 1.0 };
                 let scaled = j.clone().scale_rows(&std::array::from_fn::<f64, 6, _>(scale));
                 let twist = std::array::from_fn(|i| twist[i] * scale(i));
@@ -152,13 +152,13 @@ impl InverseChoice {
                 };
                 return Ok((inverse, twist));
             }
-            Projection::Hyperbolic { h } => {
+            TaskProjection::Hyperbolic { h } => {
                 hyperbolic_with(j, *h, &options(HyperbolicDamping::None))?
             }
-            Projection::DampedHyperbolic { h, damping } => {
+            TaskProjection::DampedHyperbolic { h, damping } => {
                 hyperbolic_with(j, *h, &options(*damping))?
             }
-            Projection::Oblique { complement, reference } => {
+            TaskProjection::Oblique { complement, reference } => {
                 let at_p = |t: Twist| match reference {
                     ReferenceFrame::Local => pose.adjoint(t).at_point(p),
                     ReferenceFrame::World => t.at_point(p),

@@ -7,7 +7,7 @@ use crate::tolerance::LIMIT_MET;
 
 /// The rates allowed in the next step, and which limit sets each end.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RateBounds {
+pub struct VelocityBounds {
     /// Smallest rate [rad/s or m/s].
     pub lower: f64,
     /// Largest rate [rad/s or m/s].
@@ -41,7 +41,7 @@ impl LimitKind {
     }
 }
 
-impl RateBounds {
+impl VelocityBounds {
     /// Any rate.
     pub(in crate::control) const NONE: Self = Self {
         lower: f64::NEG_INFINITY,

@@ -11,7 +11,7 @@
 //!          Parker 1995 (bounded-variable least squares)
 //! Checked  tests/it/servo/limits.rs::saturation_*, tests in this file (bent against the conditions)
 
-use super::bounds::{LimitKind, RateBounds};
+use super::bounds::{LimitKind, VelocityBounds};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, Svd, dot, norm};
 
@@ -56,7 +56,7 @@ pub(in crate::control) struct Problem<'a> {
     pub(in crate::control) j: &'a Matrix,
     pub(in crate::control) x: &'a [f64],
     pub(in crate::control) method: &'a Method,
-    pub(in crate::control) bounds: &'a [RateBounds],
+    pub(in crate::control) bounds: &'a [VelocityBounds],
 }
 
 impl Saturator {
@@ -206,7 +206,7 @@ impl Saturator {
 
     /// Moves the free joints towards `direction` until one reaches a bound and is held (true), or
     /// all the way (false).
-    fn move_to_first_bound(&mut self, bounds: &[RateBounds], rates: &mut [f64]) -> bool {
+    fn move_to_first_bound(&mut self, bounds: &[VelocityBounds], rates: &mut [f64]) -> bool {
         let mut first = (1.0, None);
         for (i, bound) in bounds.iter().enumerate() {
             let way = self.direction[i] - rates[i];
@@ -287,7 +287,11 @@ pub(in crate::control) struct Span {
 }
 
 /// The s in [0, 1] for which `a + s b` keeps the bounds; `None` if there are none.
-pub(in crate::control) fn interval(a: &[f64], b: &[f64], bounds: &[RateBounds]) -> Option<Span> {
+pub(in crate::control) fn interval(
+    a: &[f64],
+    b: &[f64],
+    bounds: &[VelocityBounds],
+) -> Option<Span> {
     let mut least = 0.0_f64;
     let mut span = Span { most: 1.0, cause: LimitKind::Velocity };
     for ((a, b), bound) in a.iter().zip(b).zip(bounds) {
@@ -330,11 +334,11 @@ mod tests {
             let (m, n) = [(6, 7), (6, 6), (3, 7), (2, 3), (6, 4), (3, 2)][round % 6];
             let j = Matrix::from_fn(m, n, |_, _| next(&mut state));
             let x: Vec<f64> = (0..m).map(|_| 3.0 * next(&mut state)).collect();
-            let bounds: Vec<RateBounds> = (0..n)
-                .map(|i| RateBounds {
+            let bounds: Vec<VelocityBounds> = (0..n)
+                .map(|i| VelocityBounds {
                     lower: -next(&mut state).abs() * f64::from(u8::from(i % 3 > 0)),
                     upper: next(&mut state).abs(),
-                    ..RateBounds::NONE
+                    ..VelocityBounds::NONE
                 })
                 .collect();
             let mut saturator = Saturator::new(m, n);

@@ -8,5 +8,5 @@ pub(super) mod bounds;
 pub(super) mod direct;
 pub(super) mod reduced;
 
-pub use bounds::{LimitKind, RateBounds};
+pub use bounds::{LimitKind, VelocityBounds};
 pub use direct::Saturation;

@@ -10,7 +10,7 @@
 //! Source   Flacco, De Luca & Khatib 2015, algorithm 1, for bounds on combinations of rates
 //! Checked  tests in `servo/coupled.rs` (against `direct.rs`), tests/it/servo/object.rs
 
-use super::bounds::{LimitKind, RateBounds};
+use super::bounds::{LimitKind, VelocityBounds};
 use super::direct::{LEAST_SCALE, Saturation, Span, interval, solve};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, RowSpace, Svd, norm};
@@ -23,7 +23,7 @@ pub(in crate::control) struct CoupledProblem<'a> {
     pub(in crate::control) j: &'a Matrix,
     pub(in crate::control) x: &'a [f64],
     pub(in crate::control) method: &'a Method,
-    pub(in crate::control) bounds: &'a [RateBounds],
+    pub(in crate::control) bounds: &'a [VelocityBounds],
     /// Of the last step.
     pub(in crate::control) rates: &'a [f64],
     /// Their y.

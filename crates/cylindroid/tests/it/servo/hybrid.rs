@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::support::assert_close;
-use cylindroid::control::{Admittance, AdmittanceGain, HybridCommand, HybridInput, HybridLaw};
+use cylindroid::control::{
+    Admittance, AdmittanceGain, HybridCommand, HybridController, HybridInput,
+};
 use cylindroid::linalg::{Matrix, Svd};
 use cylindroid::screws::{Along, NoInverse, Projector as Split, ScrewOptions, ScrewSystem};
 use cylindroid::spatial::exp;
@@ -44,7 +46,7 @@ struct Problem {
     motions: Vec<Twist>,
     dropped: Vec<Twist>,
     h: Option<f64>,
-    law: HybridLaw,
+    law: HybridController,
     admittance: Admittance,
     input: HybridInput,
     length: f64,
@@ -65,7 +67,7 @@ impl Problem {
             motions: (0..order).map(|_| random.twist()).collect(),
             dropped: (order..6).map(|_| random.twist()).collect(),
             h,
-            law: HybridLaw::new(5.0, admittance).unwrap(),
+            law: HybridController::new(5.0, admittance).unwrap(),
             admittance,
             input: HybridInput {
                 error: random.twist() * 0.1,
@@ -118,7 +120,7 @@ impl Problem {
             motions: self.motions.iter().map(|x| t(*x)).collect(),
             dropped: self.dropped.iter().map(|x| t(*x)).collect(),
             h: self.h.map(|h| h * s),
-            law: HybridLaw::new(5.0, admittance).unwrap(),
+            law: HybridController::new(5.0, admittance).unwrap(),
             admittance,
             input: HybridInput {
                 error: t(self.input.error),
@@ -276,7 +278,7 @@ fn orthogonal_selection_changes_with_the_origin_and_the_unit() {
 fn a_pen_writes_at_constant_force() {
     let normal = Vec3::new(0.5, 0.0, 0.75_f64.sqrt());
     let (stiffness, dt, desired) = (2000.0, 1e-3, -normal * 5.0);
-    let law = HybridLaw::new(
+    let law = HybridController::new(
         10.0,
         Admittance::at(Vec3::ZERO, AdmittanceGain { force: 0.01, moment: 0.0 }).unwrap(),
     )
@@ -412,9 +414,9 @@ fn admittance_gives_way_and_never_pushes_back() {
 fn bad_input_is_refused() {
     let soft = Admittance::at(Vec3::ZERO, AdmittanceGain { force: 1e-3, moment: 0.0 }).unwrap();
     for gain in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(HybridLaw::new(gain, soft).unwrap_err().to_string().contains("gain"));
+        assert!(HybridController::new(gain, soft).unwrap_err().to_string().contains("gain"));
     }
-    let law = HybridLaw::new(5.0, soft).unwrap();
+    let law = HybridController::new(5.0, soft).unwrap();
     let split = split(&pen(Vec3::Z), Along::Reciprocal { h: 0.2 });
     let nan = Vec3::new(0.0, f64::NAN, 0.0);
     let refused = |input: HybridInput| law.command(&split, &input).unwrap_err().to_string();

@@ -2,7 +2,7 @@
 
 use cylindroid::catalogue;
 use cylindroid::closure::{ActuationMap, ClosedChain, MotionSpace, assemble};
-use cylindroid::control::InternalForceLaw;
+use cylindroid::control::InternalForceController;
 
 /// Two arms with springs in their joints hold a box: commanded positions theta, true ones where the
 /// energy of the springs is least with all loops closed. The internal torques go to their
@@ -18,7 +18,7 @@ fn two_arms_squeeze_a_box_that_rests() {
     let mut q = assemble(&two_arm, two_arm.home(), &[]).unwrap().q;
     let mut theta = q.clone();
     let of_drives = |x: &[f64]| drives.iter().map(|&i| x[i]).collect::<Vec<f64>>();
-    let law = InternalForceLaw::new(10.0, &of_drives(&stiffness)).unwrap();
+    let law = InternalForceController::new(10.0, &of_drives(&stiffness)).unwrap();
     let desired: Vec<f64> = (0..14).map(|i| 8.0 * f64::from(i).sin()).collect();
     let before = two_arm.state(&q).unwrap().pose(two_arm.reference());
     let (dt, mut first) = (0.01_f64, None);
@@ -71,11 +71,11 @@ fn no_internal_torques_no_rates() {
     let state = five_bar.state(five_bar.home()).unwrap();
     let relation =
         MotionSpace::of(&ClosedChain::of(&state, None, None).unwrap().constraint).relation();
-    let law = InternalForceLaw::new(1.0, &[100.0, 200.0]).unwrap();
+    let law = InternalForceController::new(1.0, &[100.0, 200.0]).unwrap();
     let command = law.command(&relation, &[1.0, 2.0], &[0.0, 0.0]).unwrap();
     assert_eq!(command.rates, [0.0, 0.0]);
     assert!(law.command(&relation, &[1.0], &[0.0, 0.0]).is_err());
     assert!(law.command(&relation, &[1.0, f64::NAN], &[0.0, 0.0]).is_err());
-    assert!(InternalForceLaw::new(0.0, &[1.0]).is_err());
-    assert!(InternalForceLaw::new(1.0, &[-1.0]).is_err());
+    assert!(InternalForceController::new(0.0, &[1.0]).is_err());
+    assert!(InternalForceController::new(1.0, &[-1.0]).is_err());
 }

@@ -9,7 +9,7 @@ fn limits_scale_before_they_bend() {
     let robot = planar(2);
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
-        o.gain = Gain { position: 200.0, orientation: 1.0 };
+        o.gain = ServoGains { position: 200.0, orientation: 1.0 };
     });
     let q = [0.4, 0.9];
     let state = robot.state(&q).unwrap();
@@ -45,7 +45,7 @@ fn saturation_uses_the_other_joints() {
     let robot = b.build().unwrap();
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
-        o.gain = Gain { position: 1.0, orientation: 1.0 };
+        o.gain = ServoGains { position: 1.0, orientation: 1.0 };
     });
     let q = [0.3, 0.8, -0.5, 0.9];
     let state = robot.state(&q).unwrap();
@@ -67,7 +67,7 @@ fn speed_is_saturated_as_a_whole() {
         translation: start.translation + Vec3::new(-0.1, 0.2, 0.1),
         rotation: Rotation::exp(Vec3::new(0.2, 0.1, 0.0)) * start.rotation,
     };
-    let mut servo = servo(&robot, |o| o.speed = Speed { linear: 0.05, angular: 0.1 });
+    let mut servo = servo(&robot, |o| o.speed = SpeedLimit { linear: 0.05, angular: 0.1 });
     servo.step(robot.home(), target).unwrap();
     let twist =
         state.twist(servo.rates(), robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
@@ -95,7 +95,7 @@ fn limits_hold_for_any_options() {
         let weights: Vec<f64> = (0..robot.n()).map(|_| power(-3.0, 3.0)).collect();
         let mut servo = servo(robot, |o| {
             o.dt = dt;
-            o.gain = Gain { position: gain, orientation: gain };
+            o.gain = ServoGains { position: gain, orientation: gain };
             o.acceleration = acceleration;
             o.method = Method::ALL[round % 6];
             if let Method::SelectivelyDamped { max_rate: rate } = &mut o.method {
@@ -158,7 +158,7 @@ fn singular_poses_keep_rates_bounded() {
                     };
                     let mut servo = servo(robot, |o| o.method = method);
                     let (gain, length) = (servo.options().gain, servo.options().length);
-                    let check = |sample: cylindroid::control::Sample<'_>| {
+                    let check = |sample: cylindroid::control::TrajectorySample<'_>| {
                         let size = sample.rates.iter().map(|r| r * r).sum::<f64>().sqrt();
                         let twist = (sample.step.position_error * gain.position / length)
                             .hypot(sample.step.orientation_error * gain.orientation);

@@ -14,8 +14,9 @@ mod steps;
 mod ways;
 
 pub(crate) use cylindroid::control::{
-    Bounds, Gain, JointDefaults, JointMove, JointSample, LimitKind, Motion1, Outcome, Projector,
-    RateBounds, SecondaryTask, Speed, Stall, Status, Target, Task, Tolerance, drive, find_posture,
+    JointDefaults, JointMove, JointSample, JointState, KinematicBounds, LimitKind, MotionResult,
+    PoseTolerance, SecondaryNullSpace, SecondaryTask, ServoGains, SpeedLimit, Stall, Status,
+    Target, Task, VelocityBounds, drive, find_reachable_configuration,
 };
 pub(crate) use cylindroid::inverse::Method;
 pub(crate) use cylindroid::linalg::{RowSpace, Svd};
@@ -27,7 +28,7 @@ pub(crate) use cylindroid::{
 
 pub(crate) use crate::support::{Random, odd_arm, planar, unlimited};
 
-pub(crate) fn run(servo: &mut Servo, q: &[f64], target: Pose) -> Outcome {
+pub(crate) fn run(servo: &mut Servo, q: &[f64], target: Pose) -> MotionResult {
     drive(servo, q, 30.0, |_| (Target::from(target), true), |_| {}).unwrap()
 }
 
@@ -43,7 +44,7 @@ pub(crate) fn run_checked(
     servo: &mut Servo,
     q: &[f64],
     target: Pose,
-) -> Outcome {
+) -> MotionResult {
     run_checked_for(30.0, robot, servo, q, target)
 }
 
@@ -53,7 +54,7 @@ pub(crate) fn run_checked_for(
     servo: &mut Servo,
     q: &[f64],
     target: Pose,
-) -> Outcome {
+) -> MotionResult {
     let dt = servo.options().dt;
     let fallback = servo.options().acceleration;
     let mut before = vec![0.0; robot.n()];

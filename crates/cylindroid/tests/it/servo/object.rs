@@ -2,7 +2,7 @@
 
 use cylindroid::catalogue;
 use cylindroid::closure::{ClosedChain, MotionSpace, RowSelection, assemble};
-use cylindroid::control::{Outcome, SecondaryTask, Stall, Task, drive};
+use cylindroid::control::{MotionResult, SecondaryTask, Stall, Task, drive};
 use cylindroid::model::Mechanism;
 use cylindroid::{Pose, ReferenceFrame, Servo, ServoOptions, Vec3};
 
@@ -31,7 +31,7 @@ fn assembled(mechanism: &Mechanism, spread: f64, random: &mut Random) -> Vec<f64
 }
 
 /// From `start` towards `target`, loops closed all the way, limits of positions and rates kept.
-fn ride(servo: &mut Servo, start: &[f64], target: Pose, seconds: f64) -> Outcome {
+fn ride(servo: &mut Servo, start: &[f64], target: Pose, seconds: f64) -> MotionResult {
     let mechanism = servo.mechanism().clone();
     let mut widest: f64 = 0.0;
     let outcome = drive(

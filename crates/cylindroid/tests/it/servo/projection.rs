@@ -1,7 +1,7 @@
 //! Servos that take on the part of a motion that a form of twists, or the task, chooses.
 
 use super::*;
-use cylindroid::control::Projection;
+use cylindroid::control::TaskProjection;
 use cylindroid::inverse::{self, HyperbolicDamping, HyperbolicOptions};
 use cylindroid::linalg::{Matrix, Metric};
 use cylindroid::screws::{Class, NoInverse, ScrewOptions};
@@ -19,7 +19,7 @@ fn youbot() -> Mechanism {
 }
 
 /// The rates of one step for a small feed-forward twist, far from all limits.
-fn rates(robot: &Mechanism, projection: Projection, q: &[f64], twist: Twist) -> Vec<f64> {
+fn rates(robot: &Mechanism, projection: TaskProjection, q: &[f64], twist: Twist) -> Vec<f64> {
     rates_with(robot, q, twist, |o| o.projection = projection)
 }
 
@@ -68,7 +68,7 @@ fn rates_are_those_of_the_inverse() {
             &HyperbolicOptions { scale, ..HyperbolicOptions::default() },
         )
         .unwrap();
-        let got = rates(&robot, Projection::Hyperbolic { h }, &q, TWIST);
+        let got = rates(&robot, TaskProjection::Hyperbolic { h }, &q, TWIST);
         assert_rates(&got, &expected.matrix.mul_vec(&seen));
     }
     let weights = [1.0, 4.0, 2.0, 9.0, 1.0];
@@ -86,7 +86,7 @@ fn rates_are_those_of_the_inverse() {
         )
         .unwrap();
         let got = rates_with(&robot, &q, TWIST, |o| {
-            o.projection = Projection::DampedHyperbolic { h: 0.1, damping };
+            o.projection = TaskProjection::DampedHyperbolic { h: 0.1, damping };
             o.joint_weights = weights.to_vec();
         });
         assert_rates(&got, &expected.matrix.mul_vec(&seen));
@@ -104,7 +104,7 @@ fn rates_are_those_of_the_inverse() {
         (aligned, ReferenceFrame::LocalWorldAligned),
         (world, ReferenceFrame::World),
     ] {
-        let projection = Projection::Oblique { complement: vec![twist], reference };
+        let projection = TaskProjection::Oblique { complement: vec![twist], reference };
         assert_rates(
             &rates(&robot, projection.clone(), &q, TWIST),
             &expected.matrix.mul_vec(&seen),
@@ -122,16 +122,17 @@ fn rates_are_those_of_the_inverse() {
 fn rates_do_not_change_with_the_length() {
     let robot = youbot();
     let q = pitched(25.0);
-    let with = |projection: Projection, length: f64| {
+    let with = |projection: TaskProjection, length: f64| {
         rates_with(&robot, &q, TWIST, |o| {
             (o.projection, o.length) = (projection, length);
             o.largest_projection = f64::INFINITY;
         })
     };
-    let reference = with(Projection::Hyperbolic { h: 0.1 }, 0.655);
+    let reference = with(TaskProjection::Hyperbolic { h: 0.1 }, 0.655);
     for length in [0.1, 1.0, 655.0] {
-        assert_rates(&with(Projection::Hyperbolic { h: 0.1 }, length), &reference);
-        let (a, b) = (with(Projection::Orthogonal, length), with(Projection::Orthogonal, 0.655));
+        assert_rates(&with(TaskProjection::Hyperbolic { h: 0.1 }, length), &reference);
+        let (a, b) =
+            (with(TaskProjection::Orthogonal, length), with(TaskProjection::Orthogonal, 0.655));
         let difference = a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         assert!(difference > 1e-5, "length {length}: {difference}");
     }
@@ -143,10 +144,10 @@ fn youbot_converges_25_degrees_below_the_horizontal() {
     let target = robot.state(&pitched(25.0)).unwrap().pose(robot.tool());
     let start = [0.1, 0.5, 0.9, 0.3, -0.2];
     for projection in [
-        Projection::Hyperbolic { h: 0.1 },
-        Projection::Hyperbolic { h: 1.0 },
-        Projection::Hyperbolic { h: f64::INFINITY },
-        Projection::Orthogonal,
+        TaskProjection::Hyperbolic { h: 0.1 },
+        TaskProjection::Hyperbolic { h: 1.0 },
+        TaskProjection::Hyperbolic { h: f64::INFINITY },
+        TaskProjection::Orthogonal,
     ] {
         let mut servo = servo(&robot, |o| o.projection = projection.clone());
         let outcome = run_checked(&robot, &mut servo, &start, target);
@@ -163,7 +164,7 @@ fn straight_down_there_is_none() {
     let down = pitched(90.0);
     let mut pose = robot.state(&down).unwrap().pose(robot.tool());
     pose.translation.z -= 0.03;
-    let projection = Projection::Hyperbolic { h: 0.1 };
+    let projection = TaskProjection::Hyperbolic { h: 0.1 };
     let mut alone = servo(&robot, |o| o.projection = projection.clone());
     let outcome = run_checked(&robot, &mut alone, &down, pose);
     assert_eq!(outcome.last.status, Status::Stalled);
@@ -171,26 +172,26 @@ fn straight_down_there_is_none() {
     assert!(alone.rates().iter().all(|r| *r == 0.0));
     assert_eq!((outcome.steps, outcome.steps_without_inverse), (0, 1));
 
-    let falling_to = |fallback: Projection| {
+    let falling_to = |fallback: TaskProjection| {
         servo(&robot, |o| {
             o.projection = projection.clone();
             o.fallback = Some(fallback);
         })
     };
-    let mut plain = falling_to(Projection::Orthogonal);
+    let mut plain = falling_to(TaskProjection::Orthogonal);
     let outcome = run_checked(&robot, &mut plain, &down, pose);
     assert_eq!(outcome.last.status, Status::Reached, "{:?}", plain.stall());
     assert!(outcome.no_inverse.is_some() && outcome.steps_without_inverse > 0);
     // The damped form does not translate along the twist that is reciprocal to all joints and to
     // itself: horizontally, in the plane of the arm.
     let damping = HyperbolicDamping::Invariant { mu: 1e-3 };
-    let mut damped = falling_to(Projection::DampedHyperbolic { h: 0.1, damping });
+    let mut damped = falling_to(TaskProjection::DampedHyperbolic { h: 0.1, damping });
     run_checked(&robot, &mut damped, &down, pose);
     let Stall::GivenUp { direction } = damped.stall() else { panic!("{:?}", damped.stall()) };
     let radial = direction[0] * down[0].cos() + direction[1] * down[0].sin();
     assert!(radial.abs() > 0.99, "{direction:?}");
     // A fallback that does not exist either stops the arm too.
-    let mut twice = falling_to(Projection::Hyperbolic { h: 0.2 });
+    let mut twice = falling_to(TaskProjection::Hyperbolic { h: 0.2 });
     assert_eq!(run(&mut twice, &down, pose).last.status, Status::Stalled);
 }
 
@@ -201,14 +202,14 @@ fn a_projection_may_be_too_large() {
     let q = pitched(89.0);
     let pose = robot.state(&q).unwrap().pose(robot.tool());
     let target = Target { pose, feed_forward: TWIST };
-    let mut strict = servo(&robot, |o| o.projection = Projection::Hyperbolic { h: 0.1 });
+    let mut strict = servo(&robot, |o| o.projection = TaskProjection::Hyperbolic { h: 0.1 });
     assert_eq!(strict.step(&q, target).unwrap().status, Status::Stalled);
     let Stall::NoInverse(NoInverse::TooLarge { norm }) = strict.stall() else {
         panic!("{:?}", strict.stall())
     };
     assert!((1e3..1e4).contains(&norm), "{norm}");
     let mut bold = servo(&robot, |o| {
-        o.projection = Projection::Hyperbolic { h: 0.1 };
+        o.projection = TaskProjection::Hyperbolic { h: 0.1 };
         o.largest_projection = f64::INFINITY;
     });
     bold.step(&q, target).unwrap();
@@ -220,10 +221,10 @@ fn a_projection_may_be_too_large() {
 fn six_joints_take_on_everything() {
     let robot = catalogue::load("ur5e").unwrap();
     let q = [0.3, -1.2, 1.4, -0.9, 0.7, 0.2];
-    let plain = rates(&robot, Projection::Orthogonal, &q, TWIST);
+    let plain = rates(&robot, TaskProjection::Orthogonal, &q, TWIST);
     for projection in [
-        Projection::Hyperbolic { h: 0.2 },
-        Projection::Oblique { complement: vec![], reference: ReferenceFrame::Local },
+        TaskProjection::Hyperbolic { h: 0.2 },
+        TaskProjection::Oblique { complement: vec![], reference: ReferenceFrame::Local },
     ] {
         assert_rates(&rates(&robot, projection, &q, TWIST), &plain);
     }
@@ -237,29 +238,31 @@ fn bad_projections_are_refused() {
         change(&mut options);
         Servo::new(&robot, options).unwrap_err().to_string()
     };
-    let text = refused(&|o| o.projection = Projection::Hyperbolic { h: f64::NAN });
+    let text = refused(&|o| o.projection = TaskProjection::Hyperbolic { h: f64::NAN });
     assert!(text.contains("pitch h"), "{text}");
     let text = refused(&|o| {
-        o.projection = Projection::Hyperbolic { h: 0.1 };
+        o.projection = TaskProjection::Hyperbolic { h: 0.1 };
         o.task = Task::POSITION;
     });
     assert!(text.contains("whole poses"), "{text}");
     let text = refused(&|o| {
         let damping = HyperbolicDamping::Invariant { mu: -1.0 };
-        o.fallback = Some(Projection::DampedHyperbolic { h: 0.1, damping });
+        o.fallback = Some(TaskProjection::DampedHyperbolic { h: 0.1, damping });
     });
     assert!(text.contains("mu"), "{text}");
     let text = refused(&|o| o.largest_projection = 0.0);
     assert!(text.contains("largest projection"), "{text}");
-    let zero =
-        Projection::Oblique { complement: vec![Twist::ZERO; 7], reference: ReferenceFrame::Local };
+    let zero = TaskProjection::Oblique {
+        complement: vec![Twist::ZERO; 7],
+        reference: ReferenceFrame::Local,
+    };
     let text = refused(&|o| o.projection = zero.clone());
     assert!(text.contains("six"), "{text}");
     // A complement that is a motion of the arm does not complete it.
     let q = pitched(25.0);
     let j = world_jacobian(&robot, &q);
     let own = Twist::from_array(j.column(0).try_into().unwrap());
-    let own = Projection::Oblique { complement: vec![own], reference: ReferenceFrame::World };
+    let own = TaskProjection::Oblique { complement: vec![own], reference: ReferenceFrame::World };
     let mut servo = servo(&robot, |o| o.projection = own);
     let pose = robot.state(&q).unwrap().pose(robot.tool());
     servo.step(&q, Target { pose, feed_forward: TWIST }).unwrap();

@@ -1,7 +1,7 @@
 //! Inverses when the reference point of the twist is moved.
 
 use super::*;
-use cylindroid::control::{InverseChoice, Projection};
+use cylindroid::control::{InverseChoice, TaskProjection};
 use cylindroid::inverse::HyperbolicDamping;
 use cylindroid::{EndEffector, inverse};
 
@@ -9,7 +9,7 @@ const POINT: Vec3 = Vec3::new(0.5, -0.2, 0.4);
 const ASKED: Twist =
     Twist { linear: Vec3::new(0.1, -0.05, 0.02), angular: Vec3::new(0.2, 0.1, -0.3) };
 
-fn choice(robot: &Mechanism, method: Method, projection: Projection) -> InverseChoice {
+fn choice(robot: &Mechanism, method: Method, projection: TaskProjection) -> InverseChoice {
     InverseChoice { method, projection, length: robot.reach() }
 }
 
@@ -17,7 +17,10 @@ fn bent(robot: &Mechanism) -> Vec<f64> {
     (0..robot.n()).map(|i| [0.4, 0.6, 0.9, 0.4, 0.7, 0.5, 0.3][i]).collect()
 }
 
-fn asked(choice: &InverseChoice, robot: &Mechanism) -> cylindroid::control::ReferencePoints {
+fn asked(
+    choice: &InverseChoice,
+    robot: &Mechanism,
+) -> cylindroid::control::ReferencePointComparison {
     let state = robot.state(&bent(robot)).unwrap();
     choice.at_two_points(&state, robot.tool().into(), ASKED, POINT).unwrap()
 }
@@ -27,11 +30,11 @@ fn asked(choice: &InverseChoice, robot: &Mechanism) -> cylindroid::control::Refe
 fn only_invariant_inverses_keep_their_rates() {
     let robot = catalogue::load("youbot").unwrap();
     for method in Method::ALL {
-        let found = asked(&choice(&robot, method, Projection::Orthogonal), &robot);
+        let found = asked(&choice(&robot, method, TaskProjection::Orthogonal), &robot);
         assert!(!found.invariant && found.difference > Some(1e-3), "{}: {found:?}", method.name());
     }
     let damping = HyperbolicDamping::Invariant { mu: 0.01 };
-    let given_up = |reference| Projection::Oblique {
+    let given_up = |reference| TaskProjection::Oblique {
         complement: vec![Twist {
             linear: Vec3::new(0.3, 0.1, -0.2),
             angular: Vec3::new(0.5, 0.4, 0.1),
@@ -39,9 +42,9 @@ fn only_invariant_inverses_keep_their_rates() {
         reference,
     };
     for projection in [
-        Projection::Hyperbolic { h: 0.1 },
-        Projection::Hyperbolic { h: -0.3 },
-        Projection::DampedHyperbolic { h: 0.1, damping },
+        TaskProjection::Hyperbolic { h: 0.1 },
+        TaskProjection::Hyperbolic { h: -0.3 },
+        TaskProjection::DampedHyperbolic { h: 0.1, damping },
         given_up(ReferenceFrame::Local),
         given_up(ReferenceFrame::World),
         given_up(ReferenceFrame::LocalWorldAligned),
@@ -58,13 +61,13 @@ fn only_invariant_inverses_keep_their_rates() {
 fn arms_that_can_do_all_keep_their_rates_without_damping() {
     for name in ["panda", "ur5e"] {
         let robot = catalogue::load(name).unwrap();
-        let exact = choice(&robot, Method::Truncated { eps: 1e-9 }, Projection::Orthogonal);
+        let exact = choice(&robot, Method::Truncated { eps: 1e-9 }, TaskProjection::Orthogonal);
         let found = asked(&exact, &robot);
         assert!(found.invariant, "{name}: {found:?}");
         let done = found.at_tool.done.unwrap();
         crate::support::assert_close(name, &done.to_array(), &ASKED.to_array(), 1e-9);
         let damped = Method::Damped { damping: 0.1 };
-        assert!(!asked(&choice(&robot, damped, Projection::Orthogonal), &robot).invariant);
+        assert!(!asked(&choice(&robot, damped, TaskProjection::Orthogonal), &robot).invariant);
     }
 }
 
@@ -75,7 +78,7 @@ fn rates_are_those_of_servo_and_inverse() {
     let q = bent(&robot);
     let state = robot.state(&q).unwrap();
     let pose = state.pose(robot.tool());
-    for projection in [Projection::Orthogonal, Projection::Hyperbolic { h: 0.1 }] {
+    for projection in [TaskProjection::Orthogonal, TaskProjection::Hyperbolic { h: 0.1 }] {
         let method = Method::Truncated { eps: 1e-9 };
         let found = asked(&choice(&robot, method, projection.clone()), &robot);
         let mut servo = servo(&robot, |o| (o.method, o.projection) = (method, projection));
@@ -97,7 +100,7 @@ fn rates_are_those_of_servo_and_inverse() {
     let twist: Vec<f64> = twist.iter().enumerate().map(|(i, x)| scale(i) * x).collect();
     let by_hand = inverse::damped(&scaled, 0.05).unwrap().matrix.mul_vec(&twist);
     let method = Method::Damped { damping: 0.05 };
-    let found = asked(&choice(&robot, method, Projection::Orthogonal), &robot);
+    let found = asked(&choice(&robot, method, TaskProjection::Orthogonal), &robot);
     crate::support::assert_close("rates", &found.at_point.rates.unwrap(), &by_hand, 1e-12);
 }
 
@@ -106,16 +109,16 @@ fn what_does_not_exist_says_why() {
     // Parallel axes: a planar arm has no hyperbolic inverse of any finite pitch.
     let robot = planar(3);
     let state = robot.state(&bent(&robot)).unwrap();
-    let none = choice(&robot, Method::default(), Projection::Hyperbolic { h: 0.1 });
+    let none = choice(&robot, Method::default(), TaskProjection::Hyperbolic { h: 0.1 });
     let found = none.at_two_points(&state, robot.tool().into(), ASKED, POINT).unwrap();
     assert!(found.at_tool.rates.is_none() && found.at_tool.reason.is_some());
     assert!(found.difference.is_none() && !found.invariant);
     let linkage = catalogue::load("four-bar").unwrap();
     let state = linkage.state(linkage.home()).unwrap();
-    let plain = choice(&linkage, Method::default(), Projection::Orthogonal);
+    let plain = choice(&linkage, Method::default(), TaskProjection::Orthogonal);
     assert!(plain.at_two_points(&state, linkage.tool().into(), ASKED, POINT).is_err());
     let state = robot.state(&bent(&robot)).unwrap();
-    let plain = choice(&robot, Method::default(), Projection::Orthogonal);
+    let plain = choice(&robot, Method::default(), TaskProjection::Orthogonal);
     let nowhere = Vec3::new(f64::NAN, 0.0, 0.0);
     assert!(plain.at_two_points(&state, robot.tool().into(), ASKED, nowhere).is_err());
 }

@@ -42,14 +42,14 @@ fn retained_projector_disturbs_the_task_where_directions_were_cut() {
         let mut servo = servo(&robot, |o| {
             o.task = Task::POSITION;
             o.method = Method::Truncated { eps: 0.1 };
-            o.projector = projector;
+            o.null_space = projector;
         });
         servo.step_with(&q, state.pose(robot.tool()), &[0.3, -1.0, 1.0]).unwrap();
         let v = j.mul_vec(servo.rates());
         v[0].hypot(v[1])
     };
-    assert!(disturbance(Projector::Exact) < 1e-13);
-    assert!(disturbance(Projector::Retained) > 1e-5);
+    assert!(disturbance(SecondaryNullSpace::Exact) < 1e-13);
+    assert!(disturbance(SecondaryNullSpace::Retained) > 1e-5);
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn secondary_tasks_do_what_they_say() {
     let after = |secondary: SecondaryTask| {
         let mut servo = servo(&robot, |o| {
             o.secondary = vec![secondary];
-            o.tolerance = Tolerance { position: 1e-9, orientation: 1e-9 };
+            o.tolerance = PoseTolerance { position: 1e-9, orientation: 1e-9 };
         });
         let mut q = start.clone();
         for _ in 0..20_000 {

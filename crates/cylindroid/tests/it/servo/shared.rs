@@ -2,7 +2,9 @@
 
 use super::hybrid::split;
 use super::*;
-use cylindroid::control::{OperatorShare, Saturation, ShareTimes, SharedInput, SharedLaw};
+use cylindroid::control::{
+    AuthorityTimes, OperatorAuthority, Saturation, SharedController, SharedInput,
+};
 use cylindroid::kinematics::Chain;
 use cylindroid::screws::{Along, Projector as Split};
 use cylindroid::spatial::exp;
@@ -53,7 +55,7 @@ impl Sphere {
 #[test]
 fn the_operator_cannot_leave_the_surface() {
     let mut random = Random(11);
-    let law = SharedLaw::new(GAIN).unwrap();
+    let law = SharedController::new(GAIN).unwrap();
     for _ in 0..300 {
         let sphere = Sphere { center: random.vec3(0.5), radius: random.within(0.1, 0.5) };
         let z = Rotation::exp(random.vec3(3.0));
@@ -82,7 +84,7 @@ fn the_operator_cannot_leave_the_surface() {
 #[test]
 fn robot_and_operator_do_not_interfere() {
     let mut random = Random(12);
-    let law = SharedLaw::new(GAIN).unwrap();
+    let law = SharedController::new(GAIN).unwrap();
     let close = |a: Twist, b: Twist| {
         let size = 1.0 + b.linear.norm() + b.angular.norm();
         crate::support::assert_close("twist", &a.to_array(), &b.to_array(), 1e-10 * size);
@@ -143,10 +145,11 @@ fn robot_and_operator_do_not_interfere() {
 #[test]
 fn an_arm_keeps_the_surface() {
     let robot = catalogue::load("panda").unwrap();
-    let law = SharedLaw::new(GAIN).unwrap();
+    let law = SharedController::new(GAIN).unwrap();
     for (pushes, yields) in [(0.0, true), (0.1, true), (10.0, true), (10.0, false)] {
         let mut servo = servo(&robot, |_| {});
-        let mut share = OperatorShare::new(ShareTimes { dt: 1e-3, fall: 0.1, rise: 0.5 }).unwrap();
+        let mut share =
+            OperatorAuthority::new(AuthorityTimes { dt: 1e-3, fall: 0.1, rise: 0.5 }).unwrap();
         let mut chain = Chain::new(&robot, robot.tool());
         let mut q = robot.home().to_vec();
         let start = chain.set(&q);
@@ -207,7 +210,8 @@ fn an_arm_keeps_the_surface() {
 #[test]
 fn the_share_of_the_operator() {
     let free = Saturation { scale: 1.0, bent: false };
-    let mut share = OperatorShare::new(ShareTimes { dt: 0.01, fall: 0.02, rise: 0.1 }).unwrap();
+    let mut share =
+        OperatorAuthority::new(AuthorityTimes { dt: 0.01, fall: 0.02, rise: 0.1 }).unwrap();
     assert_eq!(share.get(), 0.0);
     for _ in 0..20 {
         share.update(free);
@@ -216,8 +220,9 @@ fn the_share_of_the_operator() {
     share.update(Saturation { scale: 0.9, ..free });
     share.update(Saturation { bent: true, ..free });
     assert!((share.get() - (-1.0_f64).exp()).abs() < 1e-15);
-    let refused =
-        |dt, fall, rise| OperatorShare::new(ShareTimes { dt, fall, rise }).unwrap_err().to_string();
+    let refused = |dt, fall, rise| {
+        OperatorAuthority::new(AuthorityTimes { dt, fall, rise }).unwrap_err().to_string()
+    };
     assert!(refused(0.0, 1.0, 1.0).contains("dt"));
     assert!(refused(1.0, -1.0, 1.0).contains("fall"));
     assert!(refused(1.0, 1.0, f64::NAN).contains("rise"));
@@ -226,9 +231,9 @@ fn the_share_of_the_operator() {
 #[test]
 fn bad_input_is_refused() {
     for gain in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(SharedLaw::new(gain).unwrap_err().to_string().contains("gain"));
+        assert!(SharedController::new(gain).unwrap_err().to_string().contains("gain"));
     }
-    let law = SharedLaw::new(GAIN).unwrap();
+    let law = SharedController::new(GAIN).unwrap();
     let p = split(&[turn(Vec3::X)], Along::Reciprocal { h: 0.2 });
     let nan = turn(Vec3::Z * f64::NAN);
     let input = SharedInput::default();

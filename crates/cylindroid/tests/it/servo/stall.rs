@@ -162,9 +162,15 @@ fn stall_with_a_locked_joint() {
             panic!("{:?}", outcome.stall)
         };
         assert_eq!((rank, task, outcome.q[1]), (1, 3, 0.9));
-        assert_eq!(find_posture(&servo, &q, nearer, 20).unwrap(), None);
-        assert_eq!(find_posture(&servo, &q, pose(&[-0.8, 0.9]), 20).unwrap().unwrap().q[1], 0.9);
-        assert!(matches!(find_posture(&servo, &[0.2], nearer, 20), Err(Error::Dimension { .. })));
+        assert_eq!(find_reachable_configuration(&servo, &q, nearer, 20).unwrap(), None);
+        assert_eq!(
+            find_reachable_configuration(&servo, &q, pose(&[-0.8, 0.9]), 20).unwrap().unwrap().q[1],
+            0.9
+        );
+        assert!(matches!(
+            find_reachable_configuration(&servo, &[0.2], nearer, 20),
+            Err(Error::Dimension { .. })
+        ));
     }
 }
 

@@ -30,8 +30,8 @@ fn the_error_contracts_as_the_theory_says() {
     let target = Pose { translation: start.translation + Vec3::new(1e-5, -2e-5, 1e-5), ..start };
     let mut servo = servo(&robot, |o| {
         o.dt = 1e-2;
-        o.gain = Gain { position: 20.0, orientation: 20.0 };
-        o.tolerance = Tolerance { position: 1e-12, orientation: 1e-12 };
+        o.gain = ServoGains { position: 20.0, orientation: 20.0 };
+        o.tolerance = PoseTolerance { position: 1e-12, orientation: 1e-12 };
     });
     let mut q = robot.home().to_vec();
     let mut last = None;
@@ -205,9 +205,9 @@ fn overflow_and_foreign_options_are_refused() {
     let again = catalogue::load("panda").unwrap();
     assert!(again.check_frame(robot.tool()).is_ok());
 
-    let bounds = RateBounds::next(
+    let bounds = VelocityBounds::next(
         &robot.coordinates()[0].limits,
-        Motion1 { position: 0.0, rate: 0.0 },
+        JointState { position: 0.0, rate: 0.0 },
         1e-3,
     );
     assert!(bounds.clamp(f64::NAN).is_nan());

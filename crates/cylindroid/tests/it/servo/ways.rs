@@ -14,7 +14,7 @@ fn random_starts_to_random_targets() {
             o.dt = 4e-3;
             o.acceleration = 40.0;
             o.secondary = vec![SecondaryTask::LimitAvoidance { gain: 0.5, margin: 0.2 }];
-            o.tolerance = Tolerance { position: 1e-4, orientation: 1e-3 };
+            o.tolerance = PoseTolerance { position: 1e-4, orientation: 1e-3 };
         });
         let runs = 1000;
         let mut causes = std::collections::BTreeMap::new();
@@ -60,7 +60,7 @@ fn a_detour_reaches_what_the_servo_does_not() {
         for _ in 0..runs {
             let (from, to) = (random.q(&robot), random.q(&robot));
             let target = robot.state(&to).unwrap().pose(robot.tool());
-            let found = find_posture(&servo, &from, target, 200).unwrap();
+            let found = find_reachable_configuration(&servo, &from, target, 200).unwrap();
             let found = found.unwrap_or_else(|| panic!("{name}: {to:?} not found"));
             assert_eq!(robot.outside_limits(&found.q).count(), 0);
             let end = robot.state(&found.q).unwrap().pose(robot.tool());
@@ -74,7 +74,7 @@ fn a_detour_reaches_what_the_servo_does_not() {
     let robot = planar(3);
     let servo = servo(&robot, |o| o.task = Task::POSITION);
     let far = Pose::from_translation(Vec3::new(4.0, 0.0, 0.0));
-    assert_eq!(find_posture(&servo, &[0.0; 3], far, 20).unwrap(), None);
+    assert_eq!(find_reachable_configuration(&servo, &[0.0; 3], far, 20).unwrap(), None);
 }
 
 /// The move of a detour keeps every limit and ends at the posture.
@@ -84,7 +84,7 @@ fn joint_moves_keep_the_limits() {
         let name = robot.name();
         let mut random = Random(71);
         let (from, to) = (random.q(&robot), random.q(&robot));
-        let default = Bounds { velocity: 1.0, acceleration: 40.0, jerk: f64::INFINITY };
+        let default = KinematicBounds { velocity: 1.0, acceleration: 40.0, jerk: f64::INFINITY };
         let defaults = JointDefaults { angle: default, length: default };
         let motion = JointMove::within_limits(&robot, &from, &to, &defaults).unwrap();
         let n = robot.n();

@@ -1,13 +1,13 @@
 //! The stages of a servo step, in their order: task, secondary tasks, bounds, rates.
 
 use super::super::approach;
-use super::super::limits::Motion1;
-use super::super::options::Projector;
+use super::super::limits::JointState;
+use super::super::options::SecondaryNullSpace;
 use super::super::stall::Effort;
 use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
-use crate::control::solver::bounds::{LimitKind, RateBounds};
+use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::direct::{Problem, RELEASE, Saturation, solve};
 use crate::control::solver::reduced::CoupledProblem;
 use crate::error::Result;
@@ -170,9 +170,9 @@ impl Servo {
             }
             self.space.scale_rates(&mut self.secondary);
         }
-        let space = match self.options.projector {
-            Projector::Exact => RowSpace::exact(&self.svd),
-            Projector::Retained => RowSpace::retained(&self.svd, &self.kept),
+        let space = match self.options.null_space {
+            SecondaryNullSpace::Exact => RowSpace::exact(&self.svd),
+            SecondaryNullSpace::Retained => RowSpace::retained(&self.svd, &self.kept),
         };
         space.project_out(match &mut self.coupled {
             Some(coupled) => &mut coupled.reduced.secondary,
@@ -189,7 +189,7 @@ impl Servo {
         let places = self.chain.coordinates().iter().zip(&self.clearances);
         let mut clear = true;
         for (((primary, secondary), column), (&c, clearance)) in scaled.zip(places) {
-            let now = Motion1 { position: q[c], rate: self.rates[c] };
+            let now = JointState { position: q[c], rate: self.rates[c] };
             clear &= clearance.holds(now, (primary + secondary) * column);
         }
         if !clear {
@@ -215,8 +215,9 @@ impl Servo {
     pub(super) fn load_bounds(&mut self, q: &[f64]) {
         for i in 0..self.bounds.len() {
             let c = self.place(i);
-            let now = Motion1 { position: q.get(c).copied().unwrap_or(0.0), rate: self.rates[c] };
-            let mut bound = RateBounds::next(&self.limits[i], now, self.options.dt);
+            let now =
+                JointState { position: q.get(c).copied().unwrap_or(0.0), rate: self.rates[c] };
+            let mut bound = VelocityBounds::next(&self.limits[i], now, self.options.dt);
             self.own_bounds[i] = bound;
             bound.lower = self.space.scaled_rate(i, bound.lower);
             bound.upper = self.space.scaled_rate(i, bound.upper);

@@ -15,9 +15,9 @@
 use crate::control::solver::direct::Saturation;
 use crate::error::{Error, Result};
 
-/// The share of the operator's twist to pass on to [`SharedLaw`](super::SharedLaw).
+/// The share of the operator's twist to pass on to [`SharedController`](super::SharedController).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OperatorShare {
+pub struct OperatorAuthority {
     share: f64,
     kept: f64,
     gained: f64,
@@ -25,7 +25,7 @@ pub struct OperatorShare {
 
 /// How fast an operator's share changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShareTimes {
+pub struct AuthorityTimes {
     /// Between two steps (s).
     pub dt: f64,
     /// In which the share falls to 1/e at limits (s): what the joints need to brake.
@@ -34,12 +34,12 @@ pub struct ShareTimes {
     pub rise: f64,
 }
 
-impl OperatorShare {
+impl OperatorAuthority {
     /// Nothing at first, all of it after a while without limits.
     ///
     /// # Errors
     /// Times that are not positive and finite.
-    pub fn new(times: ShareTimes) -> Result<Self> {
+    pub fn new(times: AuthorityTimes) -> Result<Self> {
         Error::check_positive("dt", times.dt)?;
         Error::check_positive("fall", times.fall)?;
         Error::check_positive("rise", times.rise)?;

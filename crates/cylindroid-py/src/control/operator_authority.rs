@@ -1,6 +1,6 @@
-//! The class `OperatorShare`: how much of an operator's twist an arm near its limits can take.
+//! The class `OperatorAuthority`: how much of an operator's twist an arm near its limits can take.
 
-use cylindroid::control::{OperatorShare, ShareTimes};
+use cylindroid::control::{AuthorityTimes, OperatorAuthority};
 use pyo3::prelude::*;
 
 use crate::error::{Failure, Result};
@@ -32,23 +32,23 @@ use crate::table;
 /// --------
 /// >>> import cylindroid as cy
 /// >>> robot = cy.load("panda")
-/// >>> servo, share = cy.Servo(robot), cy.OperatorShare(0.001, fall=0.1, rise=0.5)
+/// >>> servo, share = cy.Servo(robot), cy.OperatorAuthority(0.001, fall=0.1, rise=0.5)
 /// >>> rates = servo.step(robot.home, robot.fk(robot.home))
 /// >>> share.update(servo)
 /// >>> share.value
 /// 0.002
-#[pyclass(name = "OperatorShare", module = "cylindroid")]
+#[pyclass(name = "OperatorAuthority", module = "cylindroid")]
 #[derive(Debug)]
-pub(crate) struct PyOperatorShare {
-    inner: OperatorShare,
+pub(crate) struct PyOperatorAuthority {
+    inner: OperatorAuthority,
 }
 
 #[pymethods]
-impl PyOperatorShare {
+impl PyOperatorAuthority {
     #[new]
     #[pyo3(signature = (dt, fall, rise))]
     fn new(dt: f64, fall: f64, rise: f64) -> Result<Self> {
-        Ok(Self { inner: OperatorShare::new(ShareTimes { dt, fall, rise })? })
+        Ok(Self { inner: OperatorAuthority::new(AuthorityTimes { dt, fall, rise })? })
     }
 
     #[getter]
@@ -77,6 +77,6 @@ impl PyOperatorShare {
     }
 
     fn __repr__(&self) -> String {
-        format!("<OperatorShare {}>", table::number(self.inner.get()))
+        format!("<OperatorAuthority {}>", table::number(self.inner.get()))
     }
 }

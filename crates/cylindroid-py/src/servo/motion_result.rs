@@ -1,7 +1,7 @@
-//! The class `Outcome`: how a motion ended.
+//! The class `MotionResult`: how a motion ended.
 
 use cylindroid::Mechanism;
-use cylindroid::control::Outcome;
+use cylindroid::control::MotionResult;
 use pyo3::prelude::*;
 
 use super::{PyStall, PyTrajectory};
@@ -31,16 +31,16 @@ use crate::table::{self, Table};
 ///     Why the inverse that was asked for did not exist, where that happened first.
 /// steps_without_inverse : int
 /// trajectory : Trajectory or None
-#[pyclass(frozen, name = "Outcome", module = "cylindroid")]
+#[pyclass(frozen, name = "MotionResult", module = "cylindroid")]
 #[derive(Debug)]
-pub(crate) struct PyOutcome {
-    pub(super) outcome: Outcome,
+pub(crate) struct PyMotionResult {
+    pub(super) outcome: MotionResult,
     pub(super) trajectory: Option<Py<PyTrajectory>>,
     pub(super) mechanism: Mechanism,
 }
 
 #[pymethods]
-impl PyOutcome {
+impl PyMotionResult {
     #[getter]
     fn reached(&self) -> bool {
         self.outcome.reached
@@ -112,9 +112,9 @@ impl PyOutcome {
     }
 }
 
-table::shown!(PyOutcome);
+table::shown!(PyMotionResult);
 
-impl PyOutcome {
+impl PyMotionResult {
     fn table(&self) -> Table {
         let o = &self.outcome;
         let mut table = Table::new(&format!("Motion of '{}'", self.mechanism.name()));
