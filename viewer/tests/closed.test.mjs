@@ -56,7 +56,7 @@ test("the coupler of the five-bar is dragged, and the loop stays closed", () =>
     await untilReached(page, place);
     const now = await state(page);
     assert.ok(now.target.position[1] < before[1] - 0.2);
-    assert.ok(now.error.position < 2e-3 && now.gap?.closed);
+    assert.ok(now.error.position < 2e-3 && now.closure_error?.closed);
     assert.ok(Math.abs(now.target.position[0] - before[0]) < 1e-6);
   }));
 
@@ -66,6 +66,6 @@ test("the platform of the stewart follows its target with closed loops", () =>
     await untilReached(page, target);
     const now = await state(page);
     assert.ok(apart(now.tool.position.slice(2), target.slice(2)) < 2e-3);
-    assert.ok(now.gap?.closed);
+    assert.ok(now.closure_error?.closed);
     for (const { a, b } of now.loops) assert.ok(apart(a, b) < 1e-6);
   }));

@@ -25,16 +25,20 @@ mod constraint;
 mod mobility;
 mod position;
 mod singularity;
+mod singularity_kind;
 mod statics;
 
-pub use constraint::closed_chain::{ClosedChain, LoopClosureError};
+pub use constraint::closed_chain::ClosedChain;
 pub(crate) use constraint::closed_chain_batched::BatchedConstraintPlan;
+pub use constraint::loop_closure_error::LoopClosureError;
 pub use constraint::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
 pub use mobility::actuation_map::ActuationMap;
+pub use mobility::counts::MobilityCounts;
 pub use mobility::finite_mobility::{Branch, FiniteMobility, MobilityEvidence};
 pub use mobility::motion_space::{MotionSpace, RowSelection};
 pub use mobility::relation::{Relation, RelationBases, RelationDimensions};
-pub use mobility::report::{CoordinateKinds, JointMobility, Mobility, RankWarning, Subspace};
+pub use mobility::report::{CoordinateKinds, JointMobility, Mobility, RankWarning};
+pub use mobility::subspace::Subspace;
 pub use position::assembly::{Assembly, assemble, recover_passive};
 pub use position::assembly_modes::{AssemblyModes, Mode, ModeOptions, assembly_modes};
 pub use position::continuation::{
@@ -42,16 +46,15 @@ pub use position::continuation::{
 };
 pub use singularity::diagnosis::Diagnosis;
 pub use singularity::generic_mobility::GenericMobility;
-pub use singularity::singularity_types::{
-    MobilityCounts, Singularities, SingularityDistances, SingularityKind,
-};
+pub use singularity::singularity_types::{Singularities, SingularityDistances};
+pub use singularity_kind::SingularityKind;
 pub(crate) use statics::contact_forces::ContactForceSolver;
 pub use statics::contact_forces::{
-    ContactForces, JointTorques, StaticLoad, contact_forces, internal_forces, joint_torques,
-    structural_forces,
+    ContactForces, StaticLoad, contact_forces, internal_forces, structural_forces,
 };
 pub use statics::force_closure::{
     EpsilonQuality, FingerContact, Friction, GraspMetric, GraspQuality, WrenchSpace, grasp_quality,
 };
 pub use statics::grasp_contacts::{ContactProperties, grasp_contacts};
+pub use statics::joint_torques::{JointTorques, joint_torques};
 pub use statics::transmitted_wrenches::{TransmittedWrench, row_compliance, transmitted_wrenches};

@@ -17,12 +17,12 @@
 //! Checked  tests/it/closure/graph.rs
 
 use super::constraint_rows::{constraint_rows, for_each_rate, rate_unit};
+use super::loop_closure_error::LoopClosureError;
 use super::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;
 use crate::model::{FrameId, LoopJoint, Mechanism};
-use crate::tolerance::CLOSED;
 
 /// A mechanism at a configuration as a constraint, with the names of what the columns are.
 #[derive(Debug, Clone)]
@@ -43,40 +43,6 @@ pub struct ClosedChain {
     /// Of every coordinate of the tree, then of closing joints: whether it is driven, and its
     /// column among those of its sort.
     places: Vec<(bool, usize)>,
-}
-
-/// How far loops and contacts are from being closed.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LoopClosureError {
-    /// Along held directions (m).
-    pub distance: f64,
-    /// About held directions (rad).
-    pub angle: f64,
-}
-
-impl LoopClosureError {
-    /// Of the loops and contacts of `state`.
-    ///
-    /// # Errors
-    /// A driven closing joint of several coordinates.
-    pub fn of(state: &State) -> Result<Self> {
-        Ok(constraint_rows(state)?.2)
-    }
-
-    /// Takes in a row of this unit.
-    pub(crate) fn widen(&mut self, unit: Unit, residual: f64) {
-        let widest = match unit {
-            Unit::Length => &mut self.distance,
-            Unit::Angle => &mut self.angle,
-        };
-        *widest = widest.max(residual.abs());
-    }
-
-    /// True up to `tolerance::CLOSED` of a length (m), mostly the reach, and in angle.
-    #[must_use]
-    pub fn is_closed(self, length: f64) -> bool {
-        self.distance <= CLOSED * length && self.angle <= CLOSED
-    }
 }
 
 impl ClosedChain {

@@ -6,7 +6,7 @@
 //! Frame    world, wrenches at the world's origin
 //! Checked  tests/it/closure/graph.rs
 
-use super::closed_chain::LoopClosureError;
+use super::loop_closure_error::LoopClosureError;
 use super::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
@@ -259,4 +259,14 @@ impl KinematicPair {
 /// What a wrench measures: lengths where there is a force.
 pub(crate) fn unit(wrench: Wrench) -> Unit {
     if wrench.force == Vec3::ZERO { Unit::Angle } else { Unit::Length }
+}
+
+impl LoopClosureError {
+    /// Of the loops and contacts of `state`.
+    ///
+    /// # Errors
+    /// A driven closing joint of several coordinates.
+    pub fn of(state: &State) -> Result<Self> {
+        Ok(constraint_rows(state)?.2)
+    }
 }

@@ -8,4 +8,5 @@
 pub(crate) mod closed_chain;
 pub(crate) mod closed_chain_batched;
 pub(crate) mod constraint_rows;
+pub(crate) mod loop_closure_error;
 pub(crate) mod velocity_constraint;

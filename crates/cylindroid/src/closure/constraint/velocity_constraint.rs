@@ -15,8 +15,9 @@
 //! Checked  tests/it/closure/*.rs (changes of unit), tests/it/closure/bad_input.rs
 
 use crate::error::{Error, Result};
-use crate::linalg::Matrix;
+use crate::linalg::{ColumnSpace, Matrix};
 use crate::model::CoordinateKind;
+use crate::tolerance::{CLOSURE_BLOCK, KERNEL_ROUNDING};
 
 /// What a coordinate or a row of the constraint measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -244,4 +245,11 @@ pub(crate) fn check_finite(name: &str, m: &Matrix) -> Result<()> {
             value: m.as_slice()[i],
         }),
     }
+}
+
+/// The absolute threshold for blocks of a kernel [-]: the complement of `space`, the column space of
+/// a transposed constraint.
+pub(crate) fn kernel_tolerance(space: &ColumnSpace) -> f64 {
+    let conditioning = if space.rank() == 0 { 1.0 } else { space.largest() / space.cut().kept };
+    CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)
 }

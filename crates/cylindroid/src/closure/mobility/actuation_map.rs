@@ -15,12 +15,11 @@
 //! Source   Bicchi & Prattichizzo 1998, eqs. 2 to 4, in coordinates of the spanning tree
 //! Checked  tests/it/closure/actuation_map.rs
 
-use super::motion_space::block_tolerance;
-use crate::closure::constraint::closed_chain::LoopClosureError;
 use crate::closure::constraint::constraint_rows::{
     ConstraintRow, constraint_rows, for_each_rate, rate_unit,
 };
-use crate::closure::constraint::velocity_constraint::Unit;
+use crate::closure::constraint::loop_closure_error::LoopClosureError;
+use crate::closure::constraint::velocity_constraint::{Unit, kernel_tolerance};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};
@@ -81,7 +80,7 @@ impl ActuationMap {
         let sorted = Matrix::from_fn(size.len(), kernel.cols(), |i, j| kernel[(order[i], j)]);
         let cs = CosineSine::of(&sorted, driven.len());
         let unscaled = (&kernel * &cs.z).scale_rows(size);
-        let free = cs.cosines.iter().take_while(|c| **c <= block_tolerance(&space)).count();
+        let free = cs.cosines.iter().take_while(|c| **c <= kernel_tolerance(&space)).count();
         let p = kernel.cols() - free;
 
         // D = X' S' Z'^T for the driven rates of unit directions in their weights.

@@ -14,8 +14,8 @@
 //! Source   Lyapunov-Schmidt reduction; Golubitsky & Schaeffer 1985, chapter VII
 //! Checked  tests/it/closure/finite.rs
 
-use crate::closure::position::assembly::Closing;
 use crate::closure::position::coordinates::column_scale;
+use crate::closure::position::loop_closure::LoopClosure;
 use crate::error::Result;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm};
 use crate::model::Mechanism;
@@ -66,14 +66,14 @@ impl<'a> LyapunovSchmidt<'a> {
         threshold: f64,
     ) -> Result<Self> {
         let free: Vec<usize> = (0..mechanism.n()).collect();
-        let start = Closing::at(mechanism, q, &free, length)?;
-        let rows = ColumnSpace::cut_of(start.rates.transpose(), Threshold::Relative(threshold));
+        let start = LoopClosure::at(mechanism, q, &free, length)?;
+        let rows = ColumnSpace::cut_of(start.jacobian.transpose(), Threshold::Relative(threshold));
         let (kernel, complement) = (rows.complement(), rows.basis());
         // The range as the image of N: of the same rank, whatever the threshold cut off.
-        let image = Qr::plain(&start.rates * &complement);
+        let image = Qr::plain(&start.jacobian * &complement);
         let (range, cokernel) = (image.basis(), image.complement());
         let at_start = cokernel.transpose().mul_vec(&start.residuals);
-        let tolerance = LOOP_ROUNDING.max(10.0 * start.error);
+        let tolerance = LOOP_ROUNDING.max(10.0 * start.residual_norm);
         let (q, closed) = (q.to_vec(), start.is_closed(length));
         let scale = free.iter().map(|&i| column_scale(mechanism, i, length)).collect();
         Ok(Self {
@@ -134,14 +134,15 @@ impl<'a> LyapunovSchmidt<'a> {
         let mut q = self.moved(&self.q, &self.kernel.mul_vec(x));
         let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            let now = Closing::at(self.mechanism, &q, &self.free, self.length)?;
+            let now = LoopClosure::at(self.mechanism, &q, &self.free, self.length)?;
             let open = self.range.transpose().mul_vec(&now.residuals);
             let error = norm(&open);
-            let complement = Qr::plain(&self.range.transpose() * &(&now.rates * &self.complement));
+            let complement =
+                Qr::plain(&self.range.transpose() * &(&now.jacobian * &self.complement));
             if error <= self.tolerance && !(error < 0.5 * last) || error == 0.0 {
-                let along = &now.rates * &self.kernel;
+                let along = &now.jacobian * &self.kernel;
                 let follow = complement.solve(&self.range.transpose() * &along);
-                let swept = &now.rates * &(&self.complement * &follow);
+                let swept = &now.jacobian * &(&self.complement * &follow);
                 let rates = &self.cokernel.transpose()
                     * &Matrix::from_fn(along.rows(), along.cols(), |i, j| {
                         along[(i, j)] - swept[(i, j)]

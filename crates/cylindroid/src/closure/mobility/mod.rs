@@ -7,9 +7,11 @@
 
 pub(crate) mod actuation_map;
 pub(crate) mod branches;
+pub(crate) mod counts;
 pub(crate) mod finite_mobility;
 pub(crate) mod lyapunov_schmidt;
 pub(crate) mod motion_space;
 pub(crate) mod reference_twists;
 pub(crate) mod relation;
 pub(crate) mod report;
+pub(crate) mod subspace;

@@ -13,9 +13,9 @@
 //! Checked  tests/it/closure/reference.rs (31 mechanisms), tests/it/closure/mobility.rs
 
 use super::relation::{ObjectScale, Relation};
-use crate::closure::constraint::velocity_constraint::Constraint;
+use crate::closure::constraint::velocity_constraint::{Constraint, kernel_tolerance};
 use crate::linalg::{ColumnSpace, Cut, Matrix, Rank, Threshold};
-use crate::tolerance::{CLEAR_SHARE, CLOSURE_BLOCK, CLOSURE_RANK, KERNEL_ROUNDING};
+use crate::tolerance::{CLEAR_SHARE, CLOSURE_RANK};
 
 /// Groups of rows of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,12 +26,6 @@ pub struct RowSelection {
     pub passive: bool,
     /// The reference object.
     pub object: bool,
-}
-
-/// The absolute threshold for blocks of a kernel: of the complement of these columns.
-pub(crate) fn block_tolerance(space: &ColumnSpace) -> f64 {
-    let conditioning = if space.rank() == 0 { 1.0 } else { space.largest() / space.cut().kept };
-    CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)
 }
 
 /// All motions of a constraint.
@@ -71,7 +65,7 @@ impl MotionSpace {
             cut: space.cut(),
             largest: space.largest(),
             threshold,
-            tolerance: block_tolerance(&space),
+            tolerance: kernel_tolerance(&space),
         }
     }
 

@@ -24,26 +24,9 @@ use std::fmt;
 
 use super::motion_space::{MotionSpace, RowSelection};
 use super::relation::{Relation, RelationDimensions};
+use super::subspace::Subspace;
 use crate::closure::constraint::velocity_constraint::Constraint;
-use crate::closure::statics::contact_forces as statics;
 use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
-
-/// A space of motions or forces with the rank decision behind its dimension.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Subspace {
-    /// A basis, a column each.
-    pub basis: Matrix,
-    /// The decision: the dimension is what this rank leaves.
-    pub cut: Cut,
-}
-
-impl Subspace {
-    /// Number of independent elements.
-    #[must_use]
-    pub fn dimension(&self) -> usize {
-        self.basis.cols()
-    }
-}
 
 /// Coordinate motions by what takes part beside the driven joints. A motion of the driven joints
 /// that either passive joints or the object can take up is counted in `passive` and in `object`.
@@ -193,7 +176,7 @@ impl Mobility {
             uncontrollable_object_motions: space(&uncontrollable_object_motions),
             internal: Subspace { basis: internal, cut: joint_rank },
             zero_torque: Subspace { basis: structural, cut: object_rank },
-            hyperstatic: statics::undetermined(constraint, motions),
+            hyperstatic: hyperstatic_forces(constraint, motions),
             relation: relation.dimensions(),
             gruebler_kutzbach: motions.gruebler_kutzbach(),
             ambiguous_ranks: Vec::new(),
@@ -232,4 +215,16 @@ fn joint_mobility(
             idle: i >= motions.actuated() && idle.row_norm(i) > tolerance,
         })
         .collect()
+}
+
+/// ker G and ker J^T: contact forces that nothing determines.
+fn hyperstatic_forces(constraint: &Constraint, motions: &MotionSpace) -> Subspace {
+    let basis = if motions.hyperstatic() == 0 {
+        Matrix::zeros(constraint.rows(), 0)
+    } else {
+        let scaled = constraint.scaled_transpose().transpose();
+        let space = ColumnSpace::of(&scaled, Threshold::Relative(motions.threshold()));
+        space.complement().scale_rows(constraint.row_scale())
+    };
+    Subspace { basis, cut: motions.cut() }
 }

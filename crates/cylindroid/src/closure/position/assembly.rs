@@ -1,84 +1,87 @@
-//! Assembly: a configuration near a guess in which all loops and contacts are closed.
+//! Assembly: a configuration near an initial guess in which all loops and contacts are closed.
 //!
-//! Formula  damped Gauss-Newton: (J^T J + l^2) dq = -J^T r, r what should be held and is not, J its
-//!          rates; the damping falls by ten when the error does, and rises by ten when it does not;
-//!          every step is cut to the position limits, and coordinates that push against theirs
-//!          take no part in it
-//! Shapes   r: held rows, J: held rows x free coordinates
-//! Units    rows of lengths over the reach, columns of lengths times it
-//! Valid    any guess; the answer is the last configuration and how far its loops are open. Where
-//!          the guess is near an assembly the steps are Newton's, and the error falls to rounding.
-//!          It finds one assembly, mostly the nearest; there may be others, and not to find one
-//!          proves nothing
-//! Source   Levenberg 1944, Marquardt 1963; the rows: `closed_chain.rs`
+//! Formula  damped Gauss-Newton (Levenberg-Marquardt): (J^T J + l^2) dq = -J^T r, with r the
+//!          loop-closure residuals and J their Jacobian; the damping l is divided by ten when the
+//!          residual decreases and multiplied by ten when it does not. Every step is clamped to the
+//!          position limits, and coordinates that push against a limit are left out of it
+//! Shapes   r: t rows, J: t x free coordinates
+//! Units    rows of lengths divided by the reach, columns of lengths multiplied by it
+//! Valid    any guess. The result is the last configuration with its loop-closure error. Near an
+//!          assembly the steps are Newton steps, and the residual falls to rounding. One assembly
+//!          is found, usually the nearest; there may be others, and failure to find one is not a
+//!          proof that none exists
+//! Source   Levenberg 1944, Marquardt 1963; the rows: `constraint_rows.rs`
 //! Checked  tests/it/closure/assembly.rs
 
-use super::coordinates::{at_limit, column_scale, columns, free_places, moved, within_limits};
-use crate::closure::constraint::closed_chain::LoopClosureError;
-use crate::closure::constraint::constraint_rows::{ConstraintRow, constraint_rows, for_each_rate};
+use super::coordinates::{at_limit, columns, free_places, moved, within_limits};
+use super::loop_closure::LoopClosure;
+use crate::closure::constraint::loop_closure_error::LoopClosureError;
 use crate::error::Result;
 use crate::inverse::damp;
-use crate::linalg::{Matrix, Svd, norm};
+use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
 
-/// Steps at most: a dozen suffice where there is an assembly near.
-const MOST_STEPS: usize = 200;
-/// First damping, and the largest that is tried, relative to the largest singular value [-].
+/// Maximum number of steps: a dozen suffice if there is an assembly nearby.
+const MAX_STEPS: usize = 200;
+/// Initial damping, and the largest that is tried, relative to the largest singular value [-].
 const DAMPING: (f64, f64) = (1e-3, 1e8);
-/// Largest change of any coordinate in a step [rad, or reaches].
-const LARGEST_STEP: f64 = 0.5;
+/// Largest change of any coordinate in one step [rad, or reaches].
+const MAX_CHANGE: f64 = 0.5;
 
-/// What came of an attempt to close the loops.
+/// The result of closing the loops from an initial guess.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assembly {
     /// The configuration.
     pub q: Vec<f64>,
     /// True if every loop and contact is closed to `tolerance::CLOSED` of the reach and in angle.
     pub closed: bool,
-    /// How far they are open.
+    /// How far loops and contacts are open.
     pub closure_error: LoopClosureError,
-    /// Steps taken.
+    /// Number of steps taken.
     pub steps: usize,
-    /// Coordinates that stand at a position limit or beyond: places in `q`.
+    /// Coordinates at a position limit or beyond it: indices into `q`.
     pub at_limit: Vec<usize>,
 }
 
-/// Closes the loops of `mechanism` from `guess`; the coordinates in `held` keep their values, the
-/// others their position limits (a guess beyond them whose loops are closed is returned as it is,
-/// with the coordinates named in `at_limit`). Closing joints have no coordinate: their limits do
-/// not count, and one that is driven cannot be held.
+/// Closes the loops of `mechanism` from the initial guess `guess`. The `prescribed` coordinates
+/// (indices into `q`) keep their values, the others stay within their position limits (a guess
+/// beyond them whose loops are closed is returned unchanged, with these coordinates listed in
+/// `at_limit`). Loop joints have no coordinate: their limits are not enforced, and an actuated one
+/// cannot be prescribed.
 ///
 /// ```
 /// use cylindroid::closure::assemble;
 ///
 /// let five_bar = cylindroid::load("five-bar")?;
-/// // The first two joints as wanted, the others follow.
+/// // The first two coordinates are prescribed, the others follow.
 /// let assembly = assemble(&five_bar, &[-0.2, 0.1, 0.0, 0.0], &[0, 1])?;
 /// assert!(assembly.closed && assembly.q[..2] == [-0.2, 0.1]);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 ///
 /// # Errors
-/// A guess of the wrong size or not finite; a held place that is no coordinate, or one of a
-/// spherical or free joint that is not held as a whole.
-pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<Assembly> {
+/// A guess of the wrong size or with non-finite values; a prescribed index that is no coordinate,
+/// or some but not all coordinates of a spherical or free joint.
+#[doc(alias = "loop closure")]
+#[doc(alias = "Levenberg-Marquardt")]
+pub fn assemble(mechanism: &Mechanism, guess: &[f64], prescribed: &[usize]) -> Result<Assembly> {
     mechanism.check_q("guess", guess)?;
-    let free = free_places(mechanism, held)?;
+    let free = free_places(mechanism, prescribed)?;
     let length = mechanism.reach();
-    let mut now = Closing::at(mechanism, guess, &free, length)?;
+    let mut now = LoopClosure::at(mechanism, guess, &free, length)?;
     if !now.is_closed(length) {
         let within = within_limits(mechanism, guess.to_vec(), &free);
-        now = Closing::at(mechanism, &within, &free, length)?;
+        now = LoopClosure::at(mechanism, &within, &free, length)?;
     }
     let mut damping = DAMPING.0;
     let mut steps = 0;
-    while now.error > 0.0 && steps < MOST_STEPS && damping < DAMPING.1 {
+    while now.residual_norm > 0.0 && steps < MAX_STEPS && damping < DAMPING.1 {
         steps += 1;
-        let q = now.step(mechanism, &free, damping);
-        let next = Closing::at(mechanism, &q, &free, length)?;
+        let q = damped_step(mechanism, &now, &free, damping);
+        let next = LoopClosure::at(mechanism, &q, &free, length)?;
         // NaN is no improvement.
-        if next.error < now.error {
-            let little = next.error > 0.5 * now.error && next.is_closed(length);
+        if next.residual_norm < now.residual_norm {
+            let little = next.residual_norm > 0.5 * now.residual_norm && next.is_closed(length);
             (now, damping) = (next, 0.1 * damping);
             if little {
                 break; // rounding
@@ -98,92 +101,69 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], held: &[usize]) -> Result<
     })
 }
 
-/// The passive joints for given driven ones: [`assemble`] with the driven coordinates held.
+/// The passive coordinates for given actuated ones: [`assemble`] with the actuated coordinates
+/// prescribed.
 ///
-/// A driven joint that closes a loop has no coordinate whose value could be given, so that it does
-/// not hold: a mechanism with such joints keeps their motions, and the nearest of its assemblies is
-/// returned. Where there are more drives than degrees of freedom, their values may contradict each
-/// other: then the result is not closed, its closure_error is what remains, shared out by least squares, and
-/// the driven values stand as given.
+/// An actuated loop joint has no coordinate that could be prescribed: a mechanism with such joints
+/// keeps their degrees of freedom, and the nearest assembly is returned. If there are more actuators
+/// than degrees of freedom, their values may contradict each other: the result is then not closed,
+/// its loop-closure error is the remaining one, distributed by least squares, and the actuated
+/// coordinates keep the given values.
+///
+/// ```
+/// use cylindroid::closure::recover_passive;
+///
+/// let stewart = cylindroid::load("stewart")?;
+/// let mut guess = stewart.home().to_vec();
+/// let leg = stewart.actuated().next().unwrap();
+/// guess[leg] += 0.05;
+/// let assembly = recover_passive(&stewart, &guess)?;
+/// assert!(assembly.closed && assembly.q[leg] == guess[leg]);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`assemble`].
 pub fn recover_passive(mechanism: &Mechanism, guess: &[f64]) -> Result<Assembly> {
-    let driven: Vec<usize> = mechanism.actuated().collect();
-    assemble(mechanism, guess, &driven)
+    let actuated: Vec<usize> = mechanism.actuated().collect();
+    assemble(mechanism, guess, &actuated)
 }
 
-/// A configuration with its residuals and their rates, scaled.
-#[derive(Debug)]
-pub(crate) struct Closing {
-    pub(crate) q: Vec<f64>,
-    pub(crate) residuals: Vec<f64>,
-    pub(crate) rates: Matrix,
-    pub(crate) error: f64,
-    pub(crate) closure_error: LoopClosureError,
+/// The configuration after a damped step, within the position limits: coordinates at a limit that
+/// would move beyond it are left out. `free` are those of the Jacobian.
+fn damped_step(
+    mechanism: &Mechanism,
+    here: &LoopClosure,
+    free: &[usize],
+    damping: f64,
+) -> Vec<f64> {
+    let mut jacobian = here.jacobian.clone();
+    let mut places = free.to_vec();
+    loop {
+        let change = damped_change(&jacobian, &here.residuals, damping);
+        let q = moved(mechanism, &here.q, &places, &change);
+        let blocked = |i: usize| {
+            let (before, l) = (here.q[i], mechanism.coordinates()[i].limits);
+            (before <= l.lower && q[i] < l.lower) || (before >= l.upper && q[i] > l.upper)
+        };
+        let moving: Vec<usize> = (0..places.len()).filter(|&k| !blocked(places[k])).collect();
+        if moving.len() == places.len() {
+            return within_limits(mechanism, q, free);
+        }
+        jacobian = columns(&jacobian, &moving);
+        places = moving.iter().map(|&k| places[k]).collect();
+    }
 }
 
-impl Closing {
-    pub(crate) fn at(
-        mechanism: &Mechanism,
-        q: &[f64],
-        free: &[usize],
-        length: f64,
-    ) -> Result<Self> {
-        let state = mechanism.state(q)?;
-        let (all, _, closure_error) = constraint_rows(&state)?;
-        let held: Vec<ConstraintRow> =
-            all.into_iter().filter(|row| row.rate_of.is_none()).collect();
-        let residuals: Vec<f64> = held.iter().map(|row| row.scaled_residual(length)).collect();
-        let mut columns = vec![None; mechanism.n()];
-        for (j, &i) in free.iter().enumerate() {
-            columns[i] = Some((j, column_scale(mechanism, i, length)));
-        }
-        let mut rates = Matrix::zeros(held.len(), free.len());
-        for_each_rate(&state, &held, |i, coordinate, rate| {
-            if let Some((j, scale)) = columns[coordinate] {
-                rates[(i, j)] += rate * scale / held[i].unit.size(length);
-            }
-        });
-        let error = norm(&residuals);
-        Ok(Self { q: q.to_vec(), residuals, rates, error, closure_error })
+/// The damped least-squares change of the coordinates of this Jacobian.
+fn damped_change(jacobian: &Matrix, residuals: &[f64], damping: f64) -> Vec<f64> {
+    let svd = Svd::of(jacobian);
+    let l = damping * svd.values().next().unwrap_or(0.0);
+    let gain = |_, s| if s > 0.0 { -damp(s, l) } else { 0.0 };
+    let mut change = svd.apply_gains(residuals, gain);
+    let largest = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+    if largest > MAX_CHANGE {
+        change.iter_mut().for_each(|c| *c *= MAX_CHANGE / largest);
     }
-
-    pub(crate) fn is_closed(&self, length: f64) -> bool {
-        self.closure_error.is_closed(length)
-    }
-
-    /// The configuration after a damped step, within the position limits: coordinates at a limit
-    /// that would go on beyond it take no part. `free` are those of the rates.
-    fn step(&self, mechanism: &Mechanism, free: &[usize], damping: f64) -> Vec<f64> {
-        let mut rates = self.rates.clone();
-        let mut places = free.to_vec();
-        loop {
-            let change = self.change(&rates, damping);
-            let q = moved(mechanism, &self.q, &places, &change);
-            let stuck = |i: usize| {
-                let (before, l) = (self.q[i], mechanism.coordinates()[i].limits);
-                (before <= l.lower && q[i] < l.lower) || (before >= l.upper && q[i] > l.upper)
-            };
-            let going: Vec<usize> = (0..places.len()).filter(|&k| !stuck(places[k])).collect();
-            if going.len() == places.len() {
-                return within_limits(mechanism, q, free);
-            }
-            rates = columns(&rates, &going);
-            places = going.iter().map(|&k| places[k]).collect();
-        }
-    }
-
-    /// The damped step of the coordinates that have these rates.
-    fn change(&self, rates: &Matrix, damping: f64) -> Vec<f64> {
-        let svd = Svd::of(rates);
-        let l = damping * svd.values().next().unwrap_or(0.0);
-        let gain = |_, s| if s > 0.0 { -damp(s, l) } else { 0.0 };
-        let mut change = svd.apply_gains(&self.residuals, gain);
-        let most = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-        if most > LARGEST_STEP {
-            change.iter_mut().for_each(|c| *c *= LARGEST_STEP / most);
-        }
-        change
-    }
+    change
 }

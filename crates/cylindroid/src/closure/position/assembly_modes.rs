@@ -18,9 +18,10 @@ use std::f64::consts::TAU;
 
 use super::assembly::{Assembly, assemble};
 use super::configuration_signature::{Landmarks, link_poses, max_displacement, signature_distance};
-use super::coordinates::{at_limit, closing, columns, free_places, moved, within_limits};
+use super::coordinates::{at_limit, columns, free_places, moved, within_limits};
 use super::initial_guesses::anywhere;
-use crate::closure::mobility::motion_space::block_tolerance;
+use super::loop_closure::LoopClosure;
+use crate::closure::constraint::velocity_constraint::kernel_tolerance;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
 use crate::model::{CoordinateKind, JointKind, Mechanism};
@@ -227,9 +228,9 @@ impl Search<'_> {
     /// The motions of free coordinates that keep the loops closed, a column each (orthonormal,
     /// without unit), and what counts as zero in them.
     fn motions(&self, q: &[f64]) -> Result<(Matrix, f64)> {
-        let rates = columns(&closing(self.mechanism, q)?.rates, self.free);
+        let rates = columns(&LoopClosure::of(self.mechanism, q)?.jacobian, self.free);
         let space = ColumnSpace::cut_of(rates.transpose(), Threshold::Relative(CLOSURE_RANK));
-        Ok((space.complement(), block_tolerance(&space)))
+        Ok((space.complement(), kernel_tolerance(&space)))
     }
 }
 

@@ -15,8 +15,8 @@ use std::fmt;
 use super::assembly::assemble;
 use super::coordinates::{free_places, unit_of};
 use super::predictor_corrector::{PathTracker, Point, StepRejected, TrackerStep};
-use crate::closure::constraint::closed_chain::LoopClosureError;
-use crate::closure::singularity::singularity_types::SingularityKind;
+use crate::closure::constraint::loop_closure_error::LoopClosureError;
+use crate::closure::singularity_kind::SingularityKind;
 use crate::error::{Error, Result};
 use crate::kinematics::ReferenceFrame;
 use crate::linalg::Matrix;
@@ -190,8 +190,8 @@ pub fn track_path(
     let mut path = vec![path_point(&tracker, &here, 0.0)];
     let (fraction, end) = walk(&tracker, &mut here, &mut path, options)?;
     Ok(ContinuationResult {
-        closure_error: here.closing.closure_error,
-        q: here.closing.q,
+        closure_error: here.closure.closure_error,
+        q: here.closure.q,
         fraction,
         path,
         end,
@@ -199,7 +199,7 @@ pub fn track_path(
 }
 
 fn path_point(tracker: &PathTracker<'_>, point: &Point, fraction: f64) -> PathPoint {
-    PathPoint { fraction, q: point.closing.q.clone(), distance: tracker.distance(point) }
+    PathPoint { fraction, q: point.closure.q.clone(), distance: tracker.distance(point) }
 }
 
 /// Steps along the branch until it ends: the fraction of the way and why.
@@ -212,7 +212,7 @@ fn walk(
     if tracker.distance(here) < LEAST_PATH_SINGULAR {
         return Ok((0.0, PathEnd::Singular(Box::new(in_sight(tracker, here)?))));
     }
-    if let Some(coordinate) = tracker.outside(&here.closing.q) {
+    if let Some(coordinate) = tracker.outside(&here.closure.q) {
         return Ok((0.0, PathEnd::Limit { coordinate }));
     }
     let (mut fraction, mut step) = (0.0, 1.0_f64);
@@ -263,7 +263,7 @@ fn in_sight(tracker: &PathTracker<'_>, point: &Point) -> Result<PathSingularity>
         tracker.nearly_free(point).unwrap_or_else(|| (vec![0.0; mechanism.n()], 0.0));
     let rates: Vec<f64> =
         motion.iter().enumerate().map(|(i, x)| x * unit_of(mechanism, i)).collect();
-    let state = mechanism.state(&point.closing.q)?;
+    let state = mechanism.state(&point.closure.q)?;
     let twist = |at: ReferenceFrame| {
         let jacobian: Matrix = state.jacobian(mechanism.reference(), at);
         let of = jacobian.mul_vec(&rates);

@@ -4,18 +4,11 @@
 //! Valid    any mechanism; numbers of balls and free bodies are not moved one by one
 //! Checked  tests/it/closure/assembly.rs, tests/it/closure/modes.rs
 
-use super::assembly::Closing;
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Motion};
 use crate::tolerance::AT_LIMIT;
-
-/// The loops at `q` with their rates by all coordinates.
-pub(crate) fn closing(mechanism: &Mechanism, q: &[f64]) -> Result<Closing> {
-    let all: Vec<usize> = (0..mechanism.n()).collect();
-    Closing::at(mechanism, q, &all, mechanism.reach())
-}
 
 /// The columns of some coordinates.
 pub(crate) fn columns(rates: &Matrix, places: &[usize]) -> Matrix {

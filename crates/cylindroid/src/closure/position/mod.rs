@@ -1,6 +1,7 @@
 //! Loop closure at position level: configurations in which all loops and contacts are closed.
 //!
-//! Start with `assembly` (damped Gauss-Newton from an initial guess), on `coordinates`.
+//! `loop_closure` evaluates the residuals and their Jacobian; `assembly` solves them by damped
+//! Gauss-Newton from an initial guess. Start there. `coordinates` holds the lists of coordinates.
 //! `predictor_corrector` tracks one branch of closed configurations, and `continuation` moves
 //! coordinates along it up to a singularity or limit. `assembly_modes` searches for all assemblies
 //! from the random restarts of `initial_guesses`; `configuration_signature` distinguishes them.
@@ -11,4 +12,5 @@ pub(crate) mod configuration_signature;
 pub(crate) mod continuation;
 pub(crate) mod coordinates;
 pub(crate) mod initial_guesses;
+pub(crate) mod loop_closure;
 pub(crate) mod predictor_corrector;

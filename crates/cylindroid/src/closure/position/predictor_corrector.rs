@@ -16,9 +16,10 @@
 //! Source   Allgower & Georg 1990, chapters 3 and 6
 //! Checked  tests/it/closure/continuation.rs
 
-use super::assembly::{Closing, assemble};
-use super::coordinates::{closing, columns, moved, unit_of, within_limits};
+use super::assembly::assemble;
+use super::coordinates::{columns, moved, unit_of, within_limits};
 use super::initial_guesses::near;
+use super::loop_closure::LoopClosure;
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, Motion};
@@ -36,7 +37,7 @@ const NEAR: f64 = 0.05;
 /// A configuration with closed loops.
 #[derive(Debug)]
 pub(crate) struct Point {
-    pub(crate) closing: Closing,
+    pub(crate) closure: LoopClosure,
     /// J_f and its decomposition.
     by_free: Matrix,
     svd: Svd,
@@ -113,10 +114,10 @@ impl<'a> PathTracker<'a> {
     }
 
     pub(crate) fn at(&self, q: &[f64]) -> Result<Point> {
-        let closing = closing(self.mechanism, q)?;
-        let by_free = columns(&closing.rates, &self.free);
+        let closure = LoopClosure::of(self.mechanism, q)?;
+        let by_free = columns(&closure.jacobian, &self.free);
         let svd = Svd::of(&by_free);
-        Ok(Point { closing, by_free, svd })
+        Ok(Point { closure, by_free, svd })
     }
 
     /// Smallest singular value that counts over the largest: zero at a singularity, infinite where
@@ -142,14 +143,14 @@ impl<'a> PathTracker<'a> {
         for (&i, v) in self.free.iter().zip(point.svd.v(last)) {
             motion[i] = *v;
         }
-        let by_held = columns(&point.closing.rates, self.held);
+        let by_held = columns(&point.closure.jacobian, self.held);
         let taken = by_held.transpose().mul_vec(point.svd.u(last));
         Some((motion, norm(&taken) / point.svd.value(0).max(f64::MIN_POSITIVE)))
     }
 
     /// f', and true if the free coordinates can follow the held ones at all.
     pub(crate) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
-        let opened = columns(&point.closing.rates, self.held).mul_vec(&self.direction);
+        let opened = columns(&point.closure.jacobian, self.held).mul_vec(&self.direction);
         let follow = self.back(point, &opened);
         let left: Vec<f64> =
             point.by_free.mul_vec(&follow).iter().zip(&opened).map(|(a, b)| a + b).collect();
@@ -170,7 +171,7 @@ impl<'a> PathTracker<'a> {
         TrackerStep { step, to, least }: TrackerStep,
     ) -> Result<std::result::Result<Point, StepRejected>> {
         let change: Vec<f64> = tangent.iter().map(|x| step * x).collect();
-        let mut guess = moved(self.mechanism, &here.closing.q, &self.free, &change);
+        let mut guess = moved(self.mechanism, &here.closure.q, &self.free, &change);
         self.put_held(&mut guess, to);
         let Some((there, corrected)) = self.corrected(guess)? else {
             return Ok(Err(StepRejected::Far));
@@ -189,15 +190,15 @@ impl<'a> PathTracker<'a> {
         if self.distance(&there) < least {
             return Ok(Err(StepRejected::Singular));
         }
-        if let Some(i) = self.outside(&there.closing.q) {
+        if let Some(i) = self.outside(&there.closure.q) {
             return Ok(Err(StepRejected::Limit(i)));
         }
         // Beyond a limit by rounding is at it.
-        let beyond: Vec<usize> = self.mechanism.outside_limits(&there.closing.q).collect();
+        let beyond: Vec<usize> = self.mechanism.outside_limits(&there.closure.q).collect();
         if beyond.is_empty() {
             return Ok(Ok(there));
         }
-        Ok(Ok(self.at(&within_limits(self.mechanism, there.closing.q, &beyond))?))
+        Ok(Ok(self.at(&within_limits(self.mechanism, there.closure.q, &beyond))?))
     }
 
     /// The first coordinate outside its limits by more than rounding.
@@ -222,22 +223,22 @@ impl<'a> PathTracker<'a> {
         let mut now = self.at(&guess)?;
         let mut moved_by = 0.0;
         for _ in 0..MOST_CORRECTIONS {
-            if now.closing.error <= LOOP_ROUNDING {
+            if now.closure.residual_norm <= LOOP_ROUNDING {
                 break;
             }
-            let change = self.back(&now, &now.closing.residuals);
-            let q = moved(self.mechanism, &now.closing.q, &self.free, &change);
+            let change = self.back(&now, &now.closure.residuals);
+            let q = moved(self.mechanism, &now.closure.q, &self.free, &change);
             if q.iter().any(|x| !x.is_finite()) {
                 return Ok(None);
             }
             let next = self.at(&q)?;
-            if !(next.closing.error < 0.5 * now.closing.error) {
+            if !(next.closure.residual_norm < 0.5 * now.closure.residual_norm) {
                 break;
             }
             moved_by += norm(&change);
             now = next;
         }
-        Ok(now.closing.is_closed(self.mechanism.reach()).then_some((now, moved_by)))
+        Ok(now.closure.is_closed(self.mechanism.reach()).then_some((now, moved_by)))
     }
 
     /// The least change of the free coordinates that takes `opened` back.

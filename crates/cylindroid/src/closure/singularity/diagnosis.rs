@@ -22,12 +22,14 @@
 //! Checked  tests/it/closure/diagnosis.rs
 
 use super::generic_mobility::GenericMobility;
-use super::singularity_types::{MobilityCounts, Singularities, SingularityKind};
+use super::singularity_types::Singularities;
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::constraint::velocity_constraint::Unit;
+use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::FiniteMobility;
 use crate::closure::mobility::motion_space::{MotionSpace, RowSelection};
 use crate::closure::mobility::relation::Relation;
+use crate::closure::singularity_kind::SingularityKind;
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};

@@ -11,8 +11,8 @@
 //!          Grubler's count is wrong for whatever is overconstrained
 //! Checked  tests/it/closure/diagnosis.rs
 
-use super::singularity_types::MobilityCounts;
 use crate::closure::constraint::closed_chain::ClosedChain;
+use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::motion_space::MotionSpace;
 use crate::closure::position::assembly::assemble;
 use crate::closure::position::configuration_signature::{link_poses, max_displacement};

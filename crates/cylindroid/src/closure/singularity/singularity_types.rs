@@ -18,67 +18,11 @@
 //!          (configuration space, passive)
 //! Checked  tests/it/closure/singularity.rs
 
-use std::fmt;
-
-use crate::closure::mobility::motion_space::{MotionSpace, RowSelection};
-use crate::closure::mobility::relation::{Relation, RelationDimensions};
+use crate::closure::mobility::counts::{ACTUATED_AND_OBJECT, MobilityCounts};
+use crate::closure::mobility::motion_space::MotionSpace;
+use crate::closure::mobility::relation::Relation;
+use crate::closure::singularity_kind::SingularityKind;
 use crate::linalg::Matrix;
-
-/// The counts that singularities change.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MobilityCounts {
-    /// Rank of the constraint matrix.
-    pub rank: usize,
-    /// Motions of passive joints alone.
-    pub idle: usize,
-    /// Redundancy r' of the relation.
-    pub redundancy: usize,
-    /// Indeterminacy i' of the relation.
-    pub indeterminacy: usize,
-    /// Zero-torque wrenches s.
-    pub zero_torque: usize,
-}
-
-/// The kinds of singular pose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum SingularityKind {
-    /// The object loses a motion (end-effector, serial).
-    TypeI,
-    /// The object gains a motion that the driven joints do not control (actuator, parallel).
-    TypeII,
-    /// Both at once.
-    TypeIII,
-    /// The constraint loses rank: the mechanism gains a degree of freedom.
-    ConfigurationSpace,
-    /// Passive joints gain a motion of their own.
-    Passive,
-}
-
-impl SingularityKind {
-    /// Its name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::TypeI => "type-i",
-            Self::TypeII => "type-ii",
-            Self::TypeIII => "type-iii",
-            Self::ConfigurationSpace => "configuration-space",
-            Self::Passive => "passive",
-        }
-    }
-}
-
-impl fmt::Display for SingularityKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::TypeI => "type I / end-effector (object loses motion)",
-            Self::TypeII => "type II / actuator (object gains uncontrolled motion)",
-            Self::TypeIII => "type III (object loses one motion and gains another)",
-            Self::ConfigurationSpace => "configuration space (the mechanism gains a motion)",
-            Self::Passive => "passive (passive joints gain a motion of their own)",
-        })
-    }
-}
 
 /// How far a pose is from losing what it has: 0 at a singularity, at most 1 elsewhere [-].
 /// Infinite where there is nothing to lose.
@@ -107,35 +51,6 @@ pub struct Singularities {
     pub gained: Matrix,
     /// How far the pose is from each kind.
     pub distances: SingularityDistances,
-}
-
-impl MobilityCounts {
-    /// Of one pose.
-    #[must_use]
-    pub fn of(motions: &MotionSpace, relation: &Relation) -> Self {
-        let RelationDimensions { redundancy, indeterminacy, zero_torque, .. } =
-            relation.dimensions();
-        Self {
-            rank: motions.cut().rank.rank,
-            idle: motions.standing(OTHERS).cols(),
-            redundancy,
-            indeterminacy,
-            zero_torque,
-        }
-    }
-
-    /// The generic counts of two poses: the largest rank and the smallest of all others. Folded
-    /// over some poses at random it gives those of the mechanism.
-    #[must_use]
-    pub fn generic(self, other: Self) -> Self {
-        Self {
-            rank: self.rank.max(other.rank),
-            idle: self.idle.min(other.idle),
-            redundancy: self.redundancy.min(other.redundancy),
-            indeterminacy: self.indeterminacy.min(other.indeterminacy),
-            zero_torque: self.zero_torque.min(other.zero_torque),
-        }
-    }
 }
 
 /// What a pose has that is not generic.
@@ -183,8 +98,6 @@ impl SingularityDistances {
     }
 }
 
-const OTHERS: RowSelection = RowSelection { actuated: true, passive: false, object: true };
-
 impl Singularities {
     /// Of a pose, against the generic counts of its mechanism.
     #[must_use]
@@ -205,7 +118,7 @@ impl Singularities {
             type_i: pairs.last().map_or(none, |p| p.0),
             type_ii: pairs.first().map_or(none, |p| p.1),
             configuration_space: if now.rank > 0 { motions.regularity() } else { none },
-            passive: motions.still(OTHERS).1.kept,
+            passive: motions.still(ACTUATED_AND_OBJECT).1.kept,
         };
         Self {
             kinds: Beyond::of(now, generic).kinds(),

@@ -1,39 +1,23 @@
-//! Statics of a closed chain: joint torques for a wrench, forces at the contacts for both.
+//! Contact forces: forces at loop joints and contacts in equilibrium with torques and a wrench.
 //!
-//! Formula  w = G t, tau = -J_a^T t, 0 = J_p^T t, that is M^T t = -(tau, 0, w);
-//!          elastic: of all such t the one of least t^T C t (C the compliance of the contacts)
+//! Formula  w = G t, tau = -J_a^T t, 0 = J_p^T t, in short M^T t = -(tau, 0, w); of all solutions t
+//!          the one of least norm, or the elastic one of least t^T C t (C: compliance)
 //! Shapes   w: d, tau: q_a, t: t entries; C: t x t
-//! Units    of the constraint. Without a compliance the norm is that of the scaled forces: forces
-//!          times the characteristic length beside moments
-//! Frame    w acts on the object, at the point and in the axes of its twist; t acts from the
+//! Units    of the constraint. Without a compliance, the norm is that of the scaled forces: forces
+//!          are multiplied by the characteristic length
+//! Frame    w acts on the object, at the point and in the axes of its twist; t is exerted by the
 //!          object on the limbs, in the frames of the rows
-//! Valid    any constraint. What cannot be balanced is returned, not hidden: a wrench along which
-//!          the object moves freely; torques and a wrench that contradict each other. Where the
-//!          chain is not hyperstatic the compliance has no influence.
+//! Valid    any constraint. The unbalanced part of a load is returned: torques and a wrench that
+//!          contradict each other. If the chain is not hyperstatic, the compliance has no influence
 //! Source   Bicchi & Prattichizzo 1998, eq. 12; elastic forces by least complementary energy
 //! Checked  tests/it/closure/statics.rs
 
 use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::closure::mobility::motion_space::MotionSpace;
-use crate::closure::mobility::relation::{DualRelation, Relation};
-use crate::closure::mobility::report::Subspace;
+use crate::closure::mobility::subspace::Subspace;
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, Matrix, Metric, Qr, Svd, Threshold, dot, norm};
+use crate::linalg::{ColumnSpace, Metric, Svd, Threshold, dot, norm};
 use crate::tolerance::CLOSURE_RANK;
-
-/// Joint torques that balance a wrench.
-#[derive(Debug, Clone, PartialEq)]
-pub struct JointTorques {
-    /// The torques of least norm, an entry for each driven joint. Any combination of the internal
-    /// torques of the mobility report may be added.
-    pub torques: Vec<f64>,
-    /// The part of the wrench that the structure holds without torques: along the zero-torque
-    /// wrenches, orthogonal to all others in units scaled by the characteristic length.
-    pub structural: Vec<f64>,
-    /// The part of the wrench that no torque and no structure balances: zero, or along motions of
-    /// the object that the driven joints do not hold. The torques balance what both parts leave.
-    pub unbalanced: Vec<f64>,
-}
 
 /// Joint torques and the wrench on the object at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,34 +36,6 @@ pub struct ContactForces {
     /// What the load leaves unbalanced over the load (scaled) [-]: rounding, unless torques and
     /// wrench contradict each other.
     pub unbalanced: f64,
-}
-
-/// The joint torques of least norm that hold the wrench `wrench` on the object; in `metric`, or
-/// scaled by the characteristic length without one.
-///
-/// # Errors
-/// A wrench or metric of the wrong size, NaN or infinity.
-pub fn joint_torques(
-    relation: &Relation,
-    wrench: &[f64],
-    metric: Option<&Metric>,
-) -> Result<JointTorques> {
-    Error::check_len("wrench", relation.object(), wrench.len())?;
-    Error::check_finite("wrench", wrench)?;
-    let DualRelation { mut torques, structural, unbalanced } = relation.balance(wrench);
-    if let Some(metric) = metric {
-        Error::check_len("torque metric", relation.joints(), metric.len())?;
-        let mut internal = relation.forces().zero;
-        metric.whiten_rows(&mut internal);
-        metric.whiten(&mut torques);
-        let basis = Qr::plain(internal).basis();
-        for j in 0..basis.cols() {
-            let along = dot(basis.column(j), &torques);
-            torques.iter_mut().zip(basis.column(j)).for_each(|(t, b)| *t -= along * b);
-        }
-        metric.colour(&mut torques);
-    }
-    Ok(JointTorques { torques, structural, unbalanced })
 }
 
 /// The contact forces under a load: the ones of least norm, or with a compliance the elastic ones.
@@ -153,18 +109,6 @@ impl<'a> ContactForceSolver<'a> {
         let size = norm(&target);
         Ok(ContactForces { forces, unbalanced: if size > 0.0 { norm(&left) / size } else { 0.0 } })
     }
-}
-
-/// ker G and ker J^T: contact forces that nothing determines.
-pub(crate) fn undetermined(constraint: &Constraint, motions: &MotionSpace) -> Subspace {
-    let basis = if motions.hyperstatic() == 0 {
-        Matrix::zeros(constraint.rows(), 0)
-    } else {
-        let scaled = constraint.scaled_transpose().transpose();
-        let space = ColumnSpace::of(&scaled, Threshold::Relative(motions.threshold()));
-        space.complement().scale_rows(constraint.row_scale())
-    };
-    Subspace { basis, cut: motions.cut() }
 }
 
 /// ker G: contact forces without a wrench on the object. They need torques at the joints unless

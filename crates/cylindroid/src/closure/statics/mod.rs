@@ -1,6 +1,6 @@
 //! Statics: joint torques, contact forces and grasps in equilibrium.
 //!
-//! `contact_forces` balances a wrench by joint torques and by forces at the contacts;
+//! `joint_torques` balances a wrench by torques, `contact_forces` by forces at the contacts;
 //! `transmitted_wrenches` combines these forces into one wrench for each loop joint and contact.
 //! `force_closure` computes the quality of a grasp, whose contacts `grasp_contacts` reads from a
 //! mechanism. Read them in this order.
@@ -8,4 +8,5 @@
 pub(crate) mod contact_forces;
 pub(crate) mod force_closure;
 pub(crate) mod grasp_contacts;
+pub(crate) mod joint_torques;
 pub(crate) mod transmitted_wrenches;

@@ -1,0 +1,54 @@
+//! The counts of motions and wrenches that distinguish singular from regular configurations.
+//!
+//! Checked  tests/it/closure/singularity.rs
+
+use super::motion_space::{MotionSpace, RowSelection};
+use super::relation::{Relation, RelationDimensions};
+
+/// The rows of actuated joints and object: a motion that vanishes on them is idle.
+pub(crate) const ACTUATED_AND_OBJECT: RowSelection =
+    RowSelection { actuated: true, passive: false, object: true };
+
+/// The counts that singularities change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MobilityCounts {
+    /// Rank of the constraint matrix.
+    pub rank: usize,
+    /// Motions of passive joints alone.
+    pub idle: usize,
+    /// Redundancy r' of the relation.
+    pub redundancy: usize,
+    /// Indeterminacy i' of the relation.
+    pub indeterminacy: usize,
+    /// Zero-torque wrenches s.
+    pub zero_torque: usize,
+}
+
+impl MobilityCounts {
+    /// Of one pose.
+    #[must_use]
+    pub fn of(motions: &MotionSpace, relation: &Relation) -> Self {
+        let RelationDimensions { redundancy, indeterminacy, zero_torque, .. } =
+            relation.dimensions();
+        Self {
+            rank: motions.cut().rank.rank,
+            idle: motions.standing(ACTUATED_AND_OBJECT).cols(),
+            redundancy,
+            indeterminacy,
+            zero_torque,
+        }
+    }
+
+    /// The generic counts of two poses: the largest rank and the smallest of all others. Folded
+    /// over some poses at random it gives those of the mechanism.
+    #[must_use]
+    pub fn generic(self, other: Self) -> Self {
+        Self {
+            rank: self.rank.max(other.rank),
+            idle: self.idle.min(other.idle),
+            redundancy: self.redundancy.min(other.redundancy),
+            indeterminacy: self.indeterminacy.min(other.indeterminacy),
+            zero_torque: self.zero_torque.min(other.zero_torque),
+        }
+    }
+}

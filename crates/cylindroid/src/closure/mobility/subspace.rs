@@ -1,0 +1,20 @@
+//! A basis of motions or forces with the rank decision behind its dimension.
+
+use crate::linalg::{Cut, Matrix};
+
+/// A space of motions or forces with the rank decision behind its dimension.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Subspace {
+    /// A basis, a column each.
+    pub basis: Matrix,
+    /// The decision: the dimension is what this rank leaves.
+    pub cut: Cut,
+}
+
+impl Subspace {
+    /// Number of independent elements.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.basis.cols()
+    }
+}

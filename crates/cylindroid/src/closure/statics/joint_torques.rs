@@ -1,0 +1,56 @@
+//! Joint torques in equilibrium with a wrench on the object.
+//!
+//! Formula  tau of least norm with tau^T q_a + w^T u = 0 for every motion (q_a, u) of the relation
+//! Shapes   w: d, tau: q_a
+//! Units    of the constraint; without a metric the norm is that of the scaled torques
+//! Frame    w acts on the object, at the point and in the axes of its twist
+//! Valid    any constraint. The part of the wrench that no torque can balance is returned: it acts
+//!          along motions of the object that the actuated joints do not control
+//! Source   Bicchi & Prattichizzo 1998, eq. 12; virtual work
+//! Checked  tests/it/closure/statics.rs::torques_balance_the_wrench
+
+use crate::closure::mobility::relation::{DualRelation, Relation};
+use crate::error::{Error, Result};
+use crate::linalg::{Metric, Qr, dot};
+
+/// Joint torques that balance a wrench.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointTorques {
+    /// The torques of least norm, an entry for each driven joint. Any combination of the internal
+    /// torques of the mobility report may be added.
+    pub torques: Vec<f64>,
+    /// The part of the wrench that the structure holds without torques: along the zero-torque
+    /// wrenches, orthogonal to all others in units scaled by the characteristic length.
+    pub structural: Vec<f64>,
+    /// The part of the wrench that no torque and no structure balances: zero, or along motions of
+    /// the object that the driven joints do not hold. The torques balance what both parts leave.
+    pub unbalanced: Vec<f64>,
+}
+
+/// The joint torques of least norm that hold the wrench `wrench` on the object; in `metric`, or
+/// scaled by the characteristic length without one.
+///
+/// # Errors
+/// A wrench or metric of the wrong size, NaN or infinity.
+pub fn joint_torques(
+    relation: &Relation,
+    wrench: &[f64],
+    metric: Option<&Metric>,
+) -> Result<JointTorques> {
+    Error::check_len("wrench", relation.object(), wrench.len())?;
+    Error::check_finite("wrench", wrench)?;
+    let DualRelation { mut torques, structural, unbalanced } = relation.balance(wrench);
+    if let Some(metric) = metric {
+        Error::check_len("torque metric", relation.joints(), metric.len())?;
+        let mut internal = relation.forces().zero;
+        metric.whiten_rows(&mut internal);
+        metric.whiten(&mut torques);
+        let basis = Qr::plain(internal).basis();
+        for j in 0..basis.cols() {
+            let along = dot(basis.column(j), &torques);
+            torques.iter_mut().zip(basis.column(j)).for_each(|(t, b)| *t -= along * b);
+        }
+        metric.colour(&mut torques);
+    }
+    Ok(JointTorques { torques, structural, unbalanced })
+}
