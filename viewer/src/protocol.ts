@@ -118,7 +118,7 @@ export type Comparison = {
   twist: number[]; tool_point: Vec3; point: Vec3; names: string[];
   results: {
     method: string; h: number | null; exists: boolean; reason: string | null;
-    rates: number[] | null; rates_at_point: number[] | null;
+    joint_velocities: number[] | null; joint_velocities_at_point: number[] | null;
     difference: number | null; invariant: boolean;
     done: number[] | null; done_at_point: number[] | null;
   }[];

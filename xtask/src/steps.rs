@@ -172,7 +172,7 @@ pub(crate) fn figures() -> Result<()> {
             "five-bar",
             "--actuated",
             "q2,q4",
-            "--rate-limits",
+            "--velocity-limits",
             "1,1",
             "--torque-limits",
             "1,1",

@@ -146,13 +146,13 @@ pub(crate) struct JacobianArgs {
     pub(crate) reference: ReferenceName,
 
     /// Rates of angles instead of an angular velocity in the last three rows [rad/s], world axes
-    #[arg(long, value_name = "ANGLES", conflicts_with_all = ["reference", "rates"])]
+    #[arg(long, value_name = "ANGLES", conflicts_with_all = ["reference", "velocities"])]
     pub(crate) analytical: Option<Angles>,
 
-    /// Also the derivative of the Jacobian in time at these rates [rad/s or m/s]; as --q, rates
-    /// that are not named are zero
-    #[arg(long, value_name = "RATES", allow_hyphen_values = true)]
-    pub(crate) rates: Option<Joints>,
+    /// Also compute the time derivative of the Jacobian at these joint velocities [rad/s or m/s];
+    /// format as for --q, joints that are not named are at rest
+    #[arg(long, value_name = "VELOCITIES", allow_hyphen_values = true)]
+    pub(crate) velocities: Option<Joints>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

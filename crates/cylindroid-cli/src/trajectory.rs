@@ -29,7 +29,7 @@ pub(crate) struct Row {
     /// Before the step.
     pub(crate) q: Vec<f64>,
     /// Commanded by the step.
-    pub(crate) rates: Vec<f64>,
+    pub(crate) joint_velocities: Vec<f64>,
     /// Of the tool in the world [m].
     pub(crate) position: [f64; 3],
     /// w, x, y, z
@@ -83,7 +83,7 @@ impl Trajectory {
         self.samples.push(Row {
             time: sample.time,
             q: sample.q.to_vec(),
-            rates: sample.rates.to_vec(),
+            joint_velocities: sample.joint_velocities.to_vec(),
             position: pose.translation.to_array(),
             quaternion: [quaternion.w, quaternion.x, quaternion.y, quaternion.z],
             position_error: sample.step.position_error,
@@ -109,7 +109,7 @@ impl Trajectory {
         let mut csv = csv::Writer::from_writer(file);
         let mut header = vec!["time".to_owned()];
         header.extend(self.joint_names.iter().map(|name| format!("q.{name}")));
-        header.extend(self.joint_names.iter().map(|name| format!("rate.{name}")));
+        header.extend(self.joint_names.iter().map(|name| format!("velocity.{name}")));
         let rest = ["x", "y", "z", "qw", "qx", "qy", "qz"];
         header.extend(rest.map(str::to_owned));
         let rest = ["position_error", "orientation_error", "singular_ratio"];
@@ -119,7 +119,7 @@ impl Trajectory {
             let errors = [row.position_error, row.orientation_error, row.singular_ratio];
             let numbers = std::iter::once(&row.time)
                 .chain(&row.q)
-                .chain(&row.rates)
+                .chain(&row.joint_velocities)
                 .chain(&row.position)
                 .chain(&row.quaternion)
                 .chain(&errors);

@@ -145,7 +145,7 @@ def test_the_share_of_an_operator():
         assert abs(share.value - min(1.0, 0.1 * (i + 1))) < 1e-12
     # Faster than any joint: limits slow or bend the motion, and the share falls.
     servo.step(r.home, T, feed_forward=[0, 0, 50.0, 0, 0, 0])
-    assert servo.scale < 1 or servo.bent
+    assert servo.scale < 1 or servo.direction_lost
     share.update(servo)
     assert abs(share.value - np.exp(-0.01)) < 1e-12
     with pytest.raises(cy.InvalidOptionError, match="fall"):
@@ -163,8 +163,8 @@ def test_a_squeeze_moves_nothing_in_the_stiffness():
     motions = m.dof_basis[:a]
     # Internal torques do no work; the rates lie across all motions in the metric of the springs.
     np.testing.assert_allclose(motions.T @ found.internal, 0, atol=1e-9)
-    np.testing.assert_allclose(motions.T @ (stiffness * found.rates), 0, atol=1e-9)
-    np.testing.assert_allclose(stiffness * found.rates, 10.0 * found.error, atol=1e-9)
+    np.testing.assert_allclose(motions.T @ (stiffness * found.joint_velocities), 0, atol=1e-9)
+    np.testing.assert_allclose(stiffness * found.joint_velocities, 10.0 * found.error, atol=1e-9)
     # Exactly the internal part: what remains of the torques is a spring's answer to a motion.
     rest = (measured - found.internal) / stiffness
     along = motions @ np.linalg.lstsq(motions, rest, rcond=None)[0]

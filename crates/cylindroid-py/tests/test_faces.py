@@ -52,7 +52,7 @@ def test_the_rest_is_drawn(plot, tmp_path):
     panda = cy.load("panda")
     target = panda.fk(panda.home)
     target[2, 3] -= 0.05
-    way = cy.Servo(panda).drive(panda.home, target, record=True).trajectory
+    way = cy.Servo(panda).simulate(panda.home, target, record=True).trajectory
     axes = plot.trajectory(way, panda.joint_names)
     assert len(axes) == 4 and len(axes[0].lines) == 7
     axes[0].figure.savefig(tmp_path / "way.png")

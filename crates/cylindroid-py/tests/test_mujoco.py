@@ -45,7 +45,7 @@ def follow(arm, servo, target, duration=20.0):
 
 def stop(arm, servo):
     """Brakes at the acceleration that the servo counts on."""
-    rates = servo.rates
+    rates = servo.joint_velocities
     while np.abs(rates).max() > 0:
         change = 4.0 * physics.PERIOD
         rates = rates - np.clip(rates, -change, change)

@@ -28,7 +28,7 @@ def test_a_loop_reaches(name, inverse):
     for _ in range(20000):
         qd = c.step(q, target)
         assert qd.shape == (r.n,) and (np.abs(qd) <= r.velocity_limit * (1 + 1e-12)).all()
-        np.testing.assert_array_equal(qd, c.rates)
+        np.testing.assert_array_equal(qd, c.joint_velocities)
         if c.status != "moving":
             break
         q = c.advance(q)
@@ -45,20 +45,20 @@ def test_drive_does_the_same_as_steps():
     r = cy.load("panda")
     c = cy.Servo(r)
     target = lowered(r)
-    outcome = c.drive(r.home, target, record=True)
+    outcome = c.simulate(r.home, target, record=True)
     assert outcome.reached and outcome.reason == "reached" and outcome.stall is None
     way = outcome.trajectory
     assert len(way) == outcome.steps + 1 == len(way.time)
-    assert way.q.shape == way.rates.shape == (len(way), 7) and way.pose.shape == (len(way), 4, 4)
+    assert way.q.shape == way.joint_velocities.shape == (len(way), 7) and way.pose.shape == (len(way), 4, 4)
     np.testing.assert_array_equal(way.q[-1], outcome.q)
     np.testing.assert_allclose(way.pose, r.fk(way.q), atol=1e-14)
     assert way.position_error[-1] == outcome.position_error <= 1e-6
     q, again = r.home, cy.Servo(r)
     for i in range(len(way)):
-        np.testing.assert_array_equal(again.step(q, target), way.rates[i])
+        np.testing.assert_array_equal(again.step(q, target), way.joint_velocities[i])
         q = again.advance(q)
     assert "reached" in repr(outcome) and "<table>" in outcome._repr_html_()
-    assert c.drive(r.home, target).trajectory is None
+    assert c.simulate(r.home, target).trajectory is None
 
 
 def test_stalls_say_why():
@@ -66,7 +66,7 @@ def test_stalls_say_why():
     far = lowered(r)
     far[0, 3] = 3.0
     c = cy.Servo(r)
-    outcome = c.drive(r.home, far)
+    outcome = c.simulate(r.home, far)
     assert not outcome.reached and outcome.reason == "out-of-reach"
     assert outcome.stall.distance > outcome.stall.length > 0.5
     assert "stretched arm" in outcome.stall.message and "out-of-reach" in repr(outcome.stall)
@@ -74,7 +74,7 @@ def test_stalls_say_why():
     three = cy.load("3r")
     target = three.fk(three.home + 0.3)
     target[:3, :3] = target[:3, :3] @ [[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]]
-    outcome = cy.Servo(three).drive(three.home + 0.3, target)
+    outcome = cy.Servo(three).simulate(three.home + 0.3, target)
     assert outcome.reason == "too-few-joints" and not outcome.reached
     assert abs(np.linalg.norm(outcome.stall.direction) - 1) < 1e-12
     wiper = cy.parse(
@@ -86,7 +86,7 @@ def test_stalls_say_why():
     )
     beyond = np.eye(4)
     beyond[:2, 3] = np.cos(1.5), np.sin(1.5)
-    outcome = cy.Servo(wiper, task="position").drive([0.9], beyond)
+    outcome = cy.Servo(wiper, task="position").simulate([0.9], beyond)
     assert outcome.reason == "limits" and outcome.stall.joints == ["j1"] and abs(outcome.q - 1.0) < 1e-12
     assert "limit of j1" in outcome.stall.message and ("j1", "position") in outcome.limits_hit
 
@@ -151,7 +151,7 @@ def test_hyperbolic_servo_of_five_joints():
     assert given_up.no_inverse is None
     same = cy.Servo(r, inverse="oblique", give_up=[[0, 0, 0, 1, 0, 0]], secondary="none")
     same.step(q, r.fk(q), feed_forward=twist)
-    np.testing.assert_array_equal(same.rates, given_up.rates)
+    np.testing.assert_array_equal(same.joint_velocities, given_up.joint_velocities)
 
 
 def test_closed_chains_are_driven():
@@ -160,7 +160,7 @@ def test_closed_chains_are_driven():
     target = r.fk(start, r.reference)
     target[:2, 3] += [0.05, -0.05]
     c = cy.Servo(r, task="position")
-    outcome = c.drive(start, target)
+    outcome = c.simulate(start, target)
     assert outcome.reached, outcome
     assert r.constraint(outcome.q).closure_error.distance < 1e-9
     np.testing.assert_allclose(r.fk(outcome.q, r.reference)[:2, 3], target[:2, 3], atol=1e-6)
@@ -182,7 +182,7 @@ def test_a_way_round():
         assert (np.abs(rates) <= r.velocity_limit * (1 + 1e-9)).all()
     far = np.eye(4)
     far[0, 3] = 5
-    assert c.find_reachable_configuration(r.home, far, runs=3) is None
+    assert c.find_reachable_configuration(r.home, far, max_restarts=3) is None
 
 
 def test_paths_and_moves():
@@ -200,7 +200,7 @@ def test_paths_and_moves():
     poses, twists = move.at(np.linspace(0, move.duration, 101))
     assert poses.shape == (101, 4, 4) and twists.shape == (101, 6)
     assert np.linalg.norm(twists[:, :3], axis=1).max() <= 0.1 + 1e-12
-    outcome = cy.Servo(r).drive(r.home, move, record=True)
+    outcome = cy.Servo(r).simulate(r.home, move, record=True)
     assert outcome.reached and outcome.time >= move.duration - 1e-3
     off = max(line.deviation(T)[0] for T in outcome.trajectory.pose)
     assert off < 1e-5
@@ -268,7 +268,7 @@ def test_input_is_checked():
     c = cy.Servo(r)
     T = r.fk(r.home)
     c.step(r.home, T)
-    before = c.rates
+    before = c.joint_velocities
     for q, target, kind in [
         (r.home[:3], T, cy.DimensionError),
         (r.home * np.nan, T, cy.NotFiniteError),
@@ -279,12 +279,12 @@ def test_input_is_checked():
     ]:
         with pytest.raises(kind):
             c.step(q, target)
-        np.testing.assert_array_equal(c.rates, before)
+        np.testing.assert_array_equal(c.joint_velocities, before)
     with pytest.raises(cy.DimensionError, match="secondary"):
         c.step(r.home, T, [1.0])
     with pytest.raises(cy.InvalidOptionError, match="duration"):
-        c.drive(r.home, T, duration=np.nan)
+        c.simulate(r.home, T, duration=np.nan)
     with pytest.raises(TypeError):
-        c.drive(r.home, "there")
+        c.simulate(r.home, "there")
     with pytest.raises(TypeError):
         cy.Servo("panda")

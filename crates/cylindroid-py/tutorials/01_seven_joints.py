@@ -40,15 +40,15 @@ print(servo, "off by", f"{servo.position_error:.1e} m")
 assert servo.status == "reached"
 
 # The same in one call, with every step kept.
-outcome = servo.drive(robot.home, target, record=True)
+outcome = servo.simulate(robot.home, target, record=True)
 print(outcome)
-fastest = np.abs(outcome.trajectory.rates).max(axis=0)
+fastest = np.abs(outcome.trajectory.joint_velocities).max(axis=0)
 assert (fastest <= robot.velocity_limit * (1 + 1e-9)).all(), "limits hold by construction"
 
 # A target that nobody can reach ends in a report.
 far = target.copy()
 far[0, 3] = 2.0
-stall = servo.drive(robot.home, far).stall
+stall = servo.simulate(robot.home, far).stall
 print("far away:", stall)
 assert stall.name == "out-of-reach"
 

@@ -61,18 +61,18 @@ def off(outcome):
     return f"{1000 * distance:6.2f} mm, turned by {np.degrees(turn).round(2)} deg in tool axes"
 
 
-strict = cy.Servo(robot).drive(q, target)
+strict = cy.Servo(robot).simulate(q, target)
 print("whole pose:     ", off(strict), "|", strict.stall)
 assert strict.reason == "too-few-joints"
 
 # Better to say which motion does not matter: here turns about the tool's own x axis. As a task with
 # five components the target is reached, in the servo and in inverse kinematics ...
 task = {"task": "x,y,z,ry,rz", "task_axes": "local"}
-free = cy.Servo(robot, **task).drive(q, target)
+free = cy.Servo(robot, **task).simulate(q, target)
 print("five components:", off(free), "|", free.reason)
 assert free.reached and robot.ik(target, q0=q, **task).success
 
 # ... or as an inverse that leaves out exactly these turns and nothing else.
-given_up = cy.Servo(robot, inverse="oblique", give_up=["rx"]).drive(q, target)
+given_up = cy.Servo(robot, inverse="oblique", give_up=["rx"]).simulate(q, target)
 print("rx given up:    ", off(given_up), "|", given_up.stall)
-assert given_up.reason == "given-up"
+assert given_up.reason == "projected"

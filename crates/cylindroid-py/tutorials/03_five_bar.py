@@ -42,7 +42,7 @@ print(found)
 servo = cy.Servo(linkage, task="position")
 target = linkage.fk(q, linkage.reference)
 target[:2, 3] += [0.1, 0.1]
-outcome = servo.drive(q, target, record=True)
+outcome = servo.simulate(q, target, record=True)
 print(outcome)
 assert outcome.reached and linkage.constraint(outcome.q).closure_error.distance < 1e-9
 

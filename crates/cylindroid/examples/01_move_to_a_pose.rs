@@ -3,7 +3,7 @@
 //! `cargo run --release --example 01_move_to_a_pose -- path/to/robot.urdf`
 #![allow(clippy::print_stdout)]
 
-use cylindroid::control::{Target, drive};
+use cylindroid::control::{Target, simulate};
 use cylindroid::{Pose, Servo, ServoOptions, Vec3};
 
 fn main() -> cylindroid::Result<()> {
@@ -15,7 +15,8 @@ fn main() -> cylindroid::Result<()> {
     let target = Pose { translation: start.translation + Vec3::new(0.0, 0.0, -0.1), ..start };
 
     let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;
-    let outcome = drive(&mut servo, robot.home(), 10.0, |_| (Target::from(target), true), |_| {})?;
+    let outcome =
+        simulate(&mut servo, robot.home(), 10.0, |_| (Target::from(target), true), |_| {})?;
 
     println!("reached: {} after {:.3} s", outcome.reached, outcome.time);
     println!("position error: {:.1e} m", outcome.last.position_error);

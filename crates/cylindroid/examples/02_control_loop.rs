@@ -28,7 +28,7 @@ fn main() -> cylindroid::Result<()> {
             println!("stalled at {t:.3} s: {:?}", servo.stall());
             break;
         }
-        servo.advance(&mut q); // to the robot's motors: servo.rates()
+        servo.advance(&mut q); // to the robot's motors: servo.joint_velocities()
         if cycle % 500 == 0 {
             println!("{t:.1} s: {:.2e} m behind", step.position_error);
         }

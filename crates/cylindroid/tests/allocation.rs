@@ -98,7 +98,7 @@ fn hot_paths_allocate_nothing() {
                     for _ in 0..1500 {
                         let step = servo.step(&q, target).unwrap();
                         scaled += usize::from(step.saturation.scale < 1.0);
-                        bent += usize::from(step.saturation.bent);
+                        bent += usize::from(step.saturation.direction_lost);
                         servo.advance(&mut q);
                     }
                 });

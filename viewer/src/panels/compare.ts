@@ -111,7 +111,7 @@ export class Compare {
     const head = h("tr", {}, h("td", {}), ...results.map((result) => h("th", { colspan: 2, scope: "colgroup" }, result.method.replaceAll("-", " "))));
     const under = h("tr", {}, h("td", {}), ...results.flatMap(() => [h("th", { scope: "col" }, "tool"), h("th", { scope: "col" }, "point")]));
     const rows = names.map((name, i) =>
-      h("tr", {}, h("th", { scope: "row", class: "cut", title: name }, name), ...results.flatMap((r) => [h("td", {}, fixed(r.rates?.[i], 3)), h("td", {}, fixed(r.rates_at_point?.[i], 3))])),
+      h("tr", {}, h("th", { scope: "row", class: "cut", title: name }, name), ...results.flatMap((r) => [h("td", {}, fixed(r.joint_velocities?.[i], 3)), h("td", {}, fixed(r.joint_velocities_at_point?.[i], 3))])),
     );
     fill(
       this.result,

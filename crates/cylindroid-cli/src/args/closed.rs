@@ -150,7 +150,7 @@ pub(crate) struct ManipulabilityArgs {
     /// Rate limits of the driven joints in place of the model's [rad/s or m/s]: `2,-1:3,...`, one
     /// or two numbers for each
     #[arg(long, value_name = "LIMITS", allow_hyphen_values = true)]
-    pub(crate) rate_limits: Option<Intervals>,
+    pub(crate) velocity_limits: Option<Intervals>,
 
     /// Torque limits of the driven joints in place of the model's [N m or N], likewise; a cable
     /// that pulls is `-5:0` or `0:5`

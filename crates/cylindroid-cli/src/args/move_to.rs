@@ -15,7 +15,7 @@ limits of all joints, until both errors are within tolerance, the error no longe
 time is up. Without an orientation only the position is driven, and the other way round. With \
 --line or --via the target moves along a path, with --joint-to every joint moves straight to its \
 goal. Where the servo, going straight at a pose, stalls although another posture within all limits \
-reaches it, every joint moves straight to that posture instead (--no-detour keeps the servo's \
+reaches it, every joint moves straight to that posture instead (--no-reconfigure keeps the servo's \
 motion).
 
 Mechanisms with loops or contacts are driven at their reference, through their driven joints \
@@ -59,7 +59,7 @@ pub(crate) struct MoveArgs {
 
     /// Where the servo alone stalls, do not go round through joint space to another posture
     #[arg(long)]
-    pub(crate) no_detour: bool,
+    pub(crate) no_reconfigure: bool,
 
     /// Stop after this time [s]
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_hyphen_values = true)]

@@ -36,7 +36,7 @@ struct JacobianJson<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     analytical: Option<AnalyticalJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    rates: Option<Vec<f64>>,
+    joint_velocities: Option<Vec<f64>>,
     /// d matrix / dt at these rates.
     #[serde(skip_serializing_if = "Option::is_none")]
     derivative: Option<Vec<Vec<f64>>>,
@@ -75,9 +75,12 @@ pub(crate) fn run(
             (of.matrix, Some(report))
         }
     };
-    let rates = args.rates.as_ref().map(|r| r.rates(&robot, degrees)).transpose()?;
-    let derivative =
-        rates.as_ref().map(|r| state.jacobian_dot(r, end_effector, reference)).transpose()?;
+    let joint_velocities =
+        args.velocities.as_ref().map(|r| r.rates(&robot, degrees)).transpose()?;
+    let derivative = joint_velocities
+        .as_ref()
+        .map(|r| state.jacobian_dot(r, end_effector, reference))
+        .transpose()?;
     let length = robot.reach();
     let (singular_values, rank) = scaled_singular_values(&matrix, length)?;
 
@@ -94,7 +97,7 @@ pub(crate) fn run(
         gap: rank.gap,
         length,
         analytical,
-        rates,
+        joint_velocities,
         derivative: derivative.map(|d| d.to_rows()),
     };
     match style {
@@ -154,7 +157,7 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
         writeln!(
             out,
             "\nderivative in time at the rates {}",
-            output::list(report.rates.as_deref().unwrap_or(&[]))
+            output::list(report.joint_velocities.as_deref().unwrap_or(&[]))
         )?;
         output::matrix(
             out,

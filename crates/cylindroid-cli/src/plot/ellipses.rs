@@ -26,7 +26,7 @@ pub(crate) struct Drawing<'a> {
     /// Of the whole twist.
     pub(crate) metrics: &'a Metrics,
     pub(crate) metric: &'a str,
-    pub(crate) rate_limits: Option<Vec<Interval>>,
+    pub(crate) velocity_limits: Option<Vec<Interval>>,
     pub(crate) torque_limits: Option<Vec<Interval>>,
 }
 
@@ -99,7 +99,7 @@ pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
         let seen = relation.task(&map)?;
         let m = Manipulability::of(&seen, &drawing.metrics.for_task(&map)?)?;
         let corners = |p: Polytope| p.hull.polygon().iter().map(|v| [v[0], v[1]]).collect();
-        let rates = drawing.rate_limits.as_deref();
+        let rates = drawing.velocity_limits.as_deref();
         let torques = drawing.torque_limits.as_deref();
         motion.push(View {
             plane,

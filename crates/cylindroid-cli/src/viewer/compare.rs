@@ -30,8 +30,8 @@ struct ResultJson<'a> {
     h: Option<f64>,
     exists: bool,
     reason: Option<String>,
-    rates: Option<Vec<f64>>,
-    rates_at_point: Option<Vec<f64>>,
+    joint_velocities: Option<Vec<f64>>,
+    joint_velocities_at_point: Option<Vec<f64>>,
     difference: Option<f64>,
     invariant: bool,
     done: Option<[f64; 6]>,
@@ -76,7 +76,7 @@ pub(super) fn compare(
         let found = choice
             .at_two_points(state, options.end_effector, asked, point)
             .map_err(at("compare"))?;
-        let VelocitiesAtPoint { rates, done, reason } = found.at_tool;
+        let VelocitiesAtPoint { joint_velocities, done, reason } = found.at_tool;
         let reason = reason.or(found.at_point.reason);
         let six = |t: Option<Twist>| t.map(Twist::to_array);
         results.push(ResultJson {
@@ -84,8 +84,8 @@ pub(super) fn compare(
             h,
             exists: reason.is_none(),
             reason: reason.map(|r| r.to_string()),
-            rates,
-            rates_at_point: found.at_point.rates,
+            joint_velocities,
+            joint_velocities_at_point: found.at_point.joint_velocities,
             difference: found.difference,
             invariant: found.invariant,
             done: six(done),

@@ -229,7 +229,7 @@ impl Session {
         let stall = (step.status == Status::Stalled).then(|| servo.stall());
         servo.advance(q);
         self.steps += 1;
-        let still = servo.rates().iter().all(|rate| rate.abs() < REST);
+        let still = servo.joint_velocities().iter().all(|rate| rate.abs() < REST);
         let ended = match step.status {
             Status::Moving => false,
             Status::Reached => still,

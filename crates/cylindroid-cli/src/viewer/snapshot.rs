@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cylindroid::closure::LoopClosureError;
-use cylindroid::control::{Posture, Status};
+use cylindroid::control::{ConditionReport, Status};
 use cylindroid::{Pose, Result};
 use serde::Serialize;
 use serde_json::Value;
@@ -88,7 +88,7 @@ struct ClosureErrorJson {
 /// What the servo says of the configuration.
 #[derive(Debug)]
 pub(super) struct Measures {
-    pub(super) posture: Posture,
+    pub(super) condition: ConditionReport,
     length: f64,
 }
 
@@ -132,11 +132,11 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
         error: ErrorJson { position: error.linear.norm(), orientation: error.angular.norm() },
         servo,
         singular: measures.as_ref().map(|m| SingularJson {
-            values: m.posture.inverse.singular_values.clone(),
-            threshold: m.posture.inverse.threshold,
-            rank: m.posture.inverse.rank,
-            gap: m.posture.inverse.gap,
-            ratio: m.posture.singular_ratio,
+            values: m.condition.inverse.singular_values.clone(),
+            threshold: m.condition.inverse.threshold,
+            rank: m.condition.inverse.rank,
+            gap: m.condition.inverse.gap,
+            ratio: m.condition.singular_ratio,
             length: m.length,
         }),
         outside_limits: mechanism.outside_limits(state.q()).collect(),
@@ -154,8 +154,8 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
 fn measures(session: &mut Session) -> Option<Measures> {
     let q = session.state().q().to_vec();
     let length = session.options().length;
-    let posture = session.servo_mut()?.posture(&q).ok()?;
-    Some(Measures { posture, length })
+    let condition = session.servo_mut()?.condition(&q).ok()?;
+    Some(Measures { condition, length })
 }
 
 fn servo(session: &Session) -> ServoJson {

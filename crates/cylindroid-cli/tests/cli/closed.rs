@@ -92,7 +92,7 @@ fn objects_are_moved() {
     assert!(text.contains("q1, q5") && text.contains("loops open by at most"), "{text}");
     // Down to where its links are in line.
     let report = json(&["move", "five-bar", "--actuated", "q1,q5", "--to", "1.2,-1,0"], 1);
-    assert_eq!(report["reason"], "uncontrolled");
+    assert_eq!(report["reason"], "type-ii");
     assert!(report["explanation"].as_str().unwrap().contains("type II"));
 }
 

@@ -105,14 +105,14 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
         "info" => vec![vec!["panda"], vec!["two-arm"], vec!["stewart"]],
         "fk" => vec![vec!["panda"], vec!["panda", "--all"]],
         "jacobian" => vec![
-            vec!["ur5e", "--rates", "shoulder_pan_joint=0.1"],
+            vec!["ur5e", "--velocities", "shoulder_pan_joint=0.1"],
             vec!["ur5e", "--analytical", "zyz"],
         ],
         "ik" => vec![with(&["panda"], &UP), vec!["panda", "--to", "2,0,0.5"]],
         "move" => vec![
             with(&["panda", "--line"], &UP),
             vec!["puma560", "--to", "-0.5,0.2,0.3"],
-            vec!["puma560", "--to", "-0.5,0.2,0.3", "--no-detour"],
+            vec!["puma560", "--to", "-0.5,0.2,0.3", "--no-reconfigure"],
             vec!["five-bar", "--to", "1.2,1.8,0"],
             vec![
                 "youbot",

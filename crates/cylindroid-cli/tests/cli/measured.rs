@@ -104,14 +104,14 @@ fn polytopes() {
     assert_eq!(force["unbounded"].as_array().unwrap().len(), 1);
     assert!(force["range"][1][0].is_null());
     // Limits that differ both ways; those of the other kind are missing, and that is said.
-    let one = json(&with(&["--rate-limits", "1,0:2"]), 0);
+    let one = json(&with(&["--velocity-limits", "1,0:2"]), 0);
     assert_eq!(one["polytope"]["velocity"]["limits"][1], serde_json::json!([0.0, 2.0]));
     assert!(one["polytope"]["force"].is_null());
     assert!(one["polytope"]["notes"][0].as_str().unwrap().contains("'q5' has no effort limit"));
     let both = refused(&with(&["--polytope"]));
-    assert!(both.contains("--rate-limits") && both.contains("--torque-limits"), "{both}");
-    assert!(refused(&with(&["--rate-limits", "1"])).contains("rate limit has 1 entries"));
-    assert!(refused(&with(&["--rate-limits", "1,2:3"])).contains("zero between them"));
+    assert!(both.contains("--velocity-limits") && both.contains("--torque-limits"), "{both}");
+    assert!(refused(&with(&["--velocity-limits", "1"])).contains("velocity limit has 1 entries"));
+    assert!(refused(&with(&["--velocity-limits", "1,2:3"])).contains("zero between them"));
     // In space: ranges, and corners of a task.
     let panda = json(&["manipulability", "panda", "--polytope"], 0);
     assert!(panda["polytope"]["velocity"]["vertices"].is_null());

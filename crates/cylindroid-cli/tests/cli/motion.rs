@@ -143,11 +143,14 @@ fn files_hold_every_step() {
 #[test]
 fn a_stall_at_limits_goes_round_or_offers_another_posture() {
     let command = ["move", "puma560", "--to", "-0.5,0.2,0.3"];
-    let report = json(&[&command[..], &["--no-detour"]].concat(), 1);
+    let report = json(&[&command[..], &["--no-reconfigure"]].concat(), 1);
     assert_eq!(report["reason"], "limits");
     let round = json(&command, 0);
-    assert_eq!((&round["detour"], &round["detour_reason"]), (&true.into(), &"limits".into()));
-    let q = numbers(&report["other_posture"]).iter().map(f64::to_string).collect::<Vec<_>>();
+    assert_eq!(
+        (&round["reconfigured"], &round["reconfiguration_reason"]),
+        (&true.into(), &"limits".into())
+    );
+    let q = numbers(&report["other_configuration"]).iter().map(f64::to_string).collect::<Vec<_>>();
     json(&[&command[..], &["--q", &q.join(",")]].concat(), 0);
 }
 

@@ -129,9 +129,9 @@ fn jacobian_of_a_tool_point_is_the_moved_one() {
 
 #[test]
 fn jacobian_has_a_derivative_and_analytical_rates() {
-    let report = json(&["jacobian", "ur5e", "--rates", "shoulder_pan_joint=0.1"], 0);
+    let report = json(&["jacobian", "ur5e", "--velocities", "shoulder_pan_joint=0.1"], 0);
     assert_eq!(report["derivative"].as_array().unwrap().len(), 6);
-    assert_eq!(report["rates"][0], 0.1);
+    assert_eq!(report["joint_velocities"][0], 0.1);
     let report = json(&["jacobian", "ur5e", "--analytical", "rotation-vector"], 0);
     assert_eq!(report["analytical"]["exists"], true);
     let gimbal_lock = json(&["jacobian", "panda", "--analytical", "zyz"], 0);

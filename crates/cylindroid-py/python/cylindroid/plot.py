@@ -268,7 +268,7 @@ def trajectory(
     Parameters
     ----------
     way : Trajectory
-        From ``servo.drive(q, target, record=True).trajectory``.
+        From ``servo.simulate(q, target, record=True).trajectory``.
     names : list of str, optional
         Of the joints.
     figure : matplotlib Figure, optional
@@ -282,8 +282,8 @@ def trajectory(
     ax: NDArray[Any] = figure.subplots(4, 1, sharex=True)
     ax[0].plot(way.time, way.q, label=names)
     ax[0].set_ylabel("q (rad or m)")
-    ax[1].plot(way.time, way.rates)
-    ax[1].set_ylabel("rates (1/s)")
+    ax[1].plot(way.time, way.joint_velocities)
+    ax[1].set_ylabel("joint velocities (1/s)")
     ax[2].semilogy(way.time, np.maximum(way.position_error, 1e-16), label="position (m)")
     ax[2].semilogy(way.time, np.maximum(way.orientation_error, 1e-16), label="orientation (rad)")
     ax[2].set_ylabel("error")

@@ -56,7 +56,7 @@ impl Question {
             let units = task_units(constraint, self.map.as_ref())?;
             metrics = Metrics::characteristic_length(&units, constraint.inner.length())?;
             if self.preset == "limits" {
-                metrics = metrics.with_rate_limits(&limits(constraint, false)?)?;
+                metrics = metrics.with_velocity_limits(&limits(constraint, false)?)?;
             }
         }
         let given = self.given.clone();

@@ -35,7 +35,7 @@ use crate::table;
 /// >>> pair = cy.Constraint([[1.0, 0.0], [0.0, 1.0]], G=[[1.0, 1.0]])
 /// >>> law = cy.InternalForceController(10.0, [1000.0, 1000.0])
 /// >>> command = law.command(pair, desired=[5.0, -5.0], measured=[4.0, -4.0])
-/// >>> command.rates.round(9)
+/// >>> command.joint_velocities.round(9)
 /// array([ 0.01, -0.01])
 #[pyclass(frozen, name = "InternalForceController", module = "cylindroid")]
 #[derive(Debug)]
@@ -47,7 +47,7 @@ pub(crate) struct PyInternalForceController {
 ///
 /// Attributes
 /// ----------
-/// rates : ndarray, (a,)
+/// joint_velocities : ndarray, (a,)
 ///     [rad/s or m/s]
 /// internal, error : ndarray, (a,)
 ///     The internal part of the measured torques, and of desired less measured ones [N m or N].
@@ -99,8 +99,8 @@ impl PyInternalForceController {
 #[pymethods]
 impl PyInternalForceCommand {
     #[getter]
-    fn rates<'py>(&self, py: Python<'py>) -> Array<'py> {
-        arrays::vector(py, &self.inner.rates)
+    fn joint_velocities<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, &self.inner.joint_velocities)
     }
 
     #[getter]
@@ -115,8 +115,8 @@ impl PyInternalForceCommand {
 
     fn __repr__(&self) -> String {
         format!(
-            "InternalForceCommand(rates={}, internal={}, error={})",
-            table::list(&self.inner.rates),
+            "InternalForceCommand(joint_velocities={}, internal={}, error={})",
+            table::list(&self.inner.joint_velocities),
             table::list(&self.inner.internal),
             table::list(&self.inner.error)
         )

@@ -32,7 +32,7 @@ use crate::table;
 ///
 /// Notes
 /// -----
-/// Drive a servo along it with `Servo.drive(q, move)`.
+/// Drive a servo along it with `Servo.simulate(q, move)`.
 #[pyclass(frozen, name = "CartesianMove", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyCartesianMove {

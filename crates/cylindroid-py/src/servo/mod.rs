@@ -1,7 +1,7 @@
 //! The class `Servo`: Cartesian control, one step at a time or a whole motion.
 
-mod drive;
 mod motion_result;
+mod simulate;
 mod stall;
 mod status;
 mod trajectory;
@@ -87,15 +87,15 @@ pub(crate) use trajectory::PyTrajectory;
 ///     Smallest singular value of the scaled task Jacobian over the largest.
 /// rank : int
 ///     Directions realised by at least half.
-/// rates : ndarray, (n,)
+/// joint_velocities : ndarray, (n,)
 ///     Of the last step; in a closed chain driven and passive ones [rad/s or m/s].
-/// closing_rates : ndarray
+/// loop_closure_velocities : ndarray
 ///     Of driven joints that close loops.
 /// active_limits : list of (str, str)
 ///     Joints whose limit set a rate in the last step, and its kind.
 /// scale : float
 ///     The share of the desired motion that the limits left.
-/// bent : bool
+/// direction_lost : bool
 ///     True if they did not leave its direction either.
 /// no_inverse : str or None
 ///     Why the inverse that was asked for was not used in the last step.
@@ -262,7 +262,7 @@ impl PyServo {
             }
         };
         self.last = Some(self.inner.step_with(q.vector("q")?, target, desired)?);
-        Ok(arrays::vector(py, self.inner.rates()))
+        Ok(arrays::vector(py, self.inner.joint_velocities()))
     }
 
     /// `q` moved by the rates of the last step, for simulation.

@@ -12,8 +12,8 @@ use crate::table;
 /// Attributes
 /// ----------
 /// name : str
-///     'out-of-reach', 'limits', 'singular', 'too-few-joints', 'no-inverse', 'given-up',
-///     'uncontrolled' or 'slow'.
+///     'out-of-reach', 'limits', 'singular', 'too-few-joints', 'no-inverse', 'projected',
+///     'type-ii' or 'slow'.
 /// message : str
 ///     What it means, with the numbers.
 /// joints : list of str
@@ -87,11 +87,11 @@ impl PyStall {
                 format!("{rank} independent motions for a task of {task} components")
             }
             Stall::NoInverse(reason) => format!("the inverse does not exist here: {reason}"),
-            Stall::GivenUp { direction } => {
+            Stall::Projected { direction } => {
                 new.direction = Some(direction.clone());
                 "what remains is what the inverse gives up, although the arm could lessen it".into()
             }
-            Stall::Uncontrolled { share, direction } => {
+            Stall::TypeII { share, direction } => {
                 new.direction = Some(direction.clone());
                 format!(
                     "a motion is about to escape the drives (type II singularity): {} of it is \

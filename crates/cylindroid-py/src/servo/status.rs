@@ -59,18 +59,18 @@ impl PyServo {
     }
 
     #[getter]
-    fn bent(&self) -> bool {
-        self.last.is_some_and(|s| s.saturation.bent)
+    fn direction_lost(&self) -> bool {
+        self.last.is_some_and(|s| s.saturation.direction_lost)
     }
 
     #[getter]
-    fn rates<'py>(&self, py: Python<'py>) -> Array<'py> {
-        arrays::vector(py, self.inner.rates())
+    fn joint_velocities<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, self.inner.joint_velocities())
     }
 
     #[getter]
-    fn closing_rates<'py>(&self, py: Python<'py>) -> Array<'py> {
-        arrays::vector(py, self.inner.closing_rates())
+    fn loop_closure_velocities<'py>(&self, py: Python<'py>) -> Array<'py> {
+        arrays::vector(py, self.inner.loop_closure_velocities())
     }
 
     #[getter]

@@ -13,7 +13,7 @@ use crate::table;
 /// ----------
 /// time : ndarray, (S,)
 ///     Since the start (s).
-/// q, rates : ndarray, (S, n)
+/// q, joint_velocities : ndarray, (S, n)
 ///     Before each step, and as commanded by it.
 /// pose : ndarray, (S, 4, 4)
 ///     `world_from_tool` (m).
@@ -24,7 +24,7 @@ pub(crate) struct PyTrajectory {
     n: usize,
     time: Vec<f64>,
     q: Vec<f64>,
-    rates: Vec<f64>,
+    joint_velocities: Vec<f64>,
     pose: Vec<f64>,
     errors: [Vec<f64>; 3],
 }
@@ -38,7 +38,7 @@ impl PyTrajectory {
     pub(super) fn push(&mut self, sample: &TrajectorySample<'_>) {
         self.time.push(sample.time);
         self.q.extend(sample.q);
-        self.rates.extend(sample.rates);
+        self.joint_velocities.extend(sample.joint_velocities);
         self.pose.extend(sample.step.pose.to_matrix().as_flattened());
         let s = sample.step;
         let values = [s.position_error, s.orientation_error, s.singular_ratio];
@@ -63,8 +63,8 @@ impl PyTrajectory {
     }
 
     #[getter]
-    fn rates<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        self.table(py, &self.rates, &[self.n])
+    fn joint_velocities<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        self.table(py, &self.joint_velocities, &[self.n])
     }
 
     #[getter]

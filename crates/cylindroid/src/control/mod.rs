@@ -22,10 +22,10 @@ pub use laws::{
 pub use motion::{
     AxisRotation, CartesianBounds, CartesianMove, CartesianPath, CartesianSample, JointDefaults,
     JointMove, JointPath, JointSample, KinematicBounds, LawSample, MotionResult, PathDeviation,
-    Reconfiguration, TimeLaw, TrajectorySample, drive, find_reachable_configuration,
+    Reconfiguration, TimeLaw, TrajectorySample, find_reachable_configuration, simulate,
 };
 pub use servo::{
-    InverseChoice, JointState, PoseTolerance, Posture, ReferencePointComparison,
+    ConditionReport, InverseChoice, JointState, PoseTolerance, ReferencePointComparison,
     SecondaryNullSpace, SecondaryTask, Servo, ServoGains, ServoOptions, SpeedLimit, Stall, Status,
     Step, Target, TaskProjection, VelocitiesAtPoint,
 };

@@ -101,8 +101,8 @@ impl Metrics {
     ///
     /// # Errors
     /// A limit that is not positive and finite.
-    pub fn with_rate_limits(mut self, limits: &[f64]) -> Result<Self> {
-        self.joint = Some(of_limits("rate limit", limits)?);
+    pub fn with_velocity_limits(mut self, limits: &[f64]) -> Result<Self> {
+        self.joint = Some(of_limits("velocity limit", limits)?);
         Ok(self)
     }
 

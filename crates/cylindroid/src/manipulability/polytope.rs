@@ -36,8 +36,8 @@ pub struct Polytope {
 ///
 /// # Errors
 /// Limits that are not finite or not around zero, or not one for each driven joint.
-pub fn velocity_polytope(relation: &Relation, rate_limits: &[Interval]) -> Result<Polytope> {
-    Ok(Body::new(relation.motions(), "rate limit", rate_limits)?.polytope())
+pub fn velocity_polytope(relation: &Relation, velocity_limits: &[Interval]) -> Result<Polytope> {
+    Ok(Body::new(relation.motions(), "velocity limit", velocity_limits)?.polytope())
 }
 
 /// All wrenches on the object (or forces of the task) that torques within their limits balance.
@@ -53,8 +53,8 @@ pub fn force_polytope(relation: &Relation, torque_limits: &[Interval]) -> Result
 ///
 /// # Errors
 /// As [`velocity_polytope`].
-pub fn velocity_range(relation: &Relation, rate_limits: &[Interval]) -> Result<Vec<Interval>> {
-    Ok(Body::new(relation.motions(), "rate limit", rate_limits)?.range())
+pub fn velocity_range(relation: &Relation, velocity_limits: &[Interval]) -> Result<Vec<Interval>> {
+    Ok(Body::new(relation.motions(), "velocity limit", velocity_limits)?.range())
 }
 
 /// From the smallest to the largest value of each component of the wrench that torques within

@@ -82,20 +82,20 @@ pub(super) fn preset(posed: &Posed, args: &ManipulabilityArgs) -> Result<Metrics
         MetricName::Unit => Ok(Metrics::UNIT),
         MetricName::Length => length(),
         MetricName::Limits => {
-            let limits = match &args.rate_limits {
+            let limits = match &args.velocity_limits {
                 Some(given) => given.0.clone(),
                 None => of_model(posed, Quantity::Rate).map_err(|name| Error::InvalidOption {
                     option: "--metric",
                     value: "limits".to_owned(),
                     reason: format!(
-                        "joint '{name}' has no velocity limit; give it one, or --rate-limits, or \
+                        "joint '{name}' has no velocity limit; give it one, or --velocity-limits, or \
                          use 'length'"
                     ),
                 })?,
             };
-            Error::check_len("--rate-limits", chain.actuated.len(), limits.len())?;
+            Error::check_len("--velocity-limits", chain.actuated.len(), limits.len())?;
             let slower: Vec<f64> = limits.iter().map(|l| l.upper.min(-l.lower)).collect();
-            length()?.with_rate_limits(&slower)
+            length()?.with_velocity_limits(&slower)
         }
         MetricName::Inertia => Metrics::UNIT.with_inertia(&posed.state()?, chain.reference),
     }
@@ -148,14 +148,14 @@ impl Quantity {
         args: &ManipulabilityArgs,
     ) -> std::result::Result<Vec<Interval>, String> {
         let given = match self {
-            Self::Rate => &args.rate_limits,
+            Self::Rate => &args.velocity_limits,
             Self::Torque => &args.torque_limits,
         };
         if let Some(given) = given {
             return Ok(given.0.clone());
         }
         let (word, option) = match self {
-            Self::Rate => ("velocity", "--rate-limits"),
+            Self::Rate => ("velocity", "--velocity-limits"),
             Self::Torque => ("effort", "--torque-limits"),
         };
         of_model(posed, self)

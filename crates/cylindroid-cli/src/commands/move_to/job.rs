@@ -31,7 +31,7 @@ pub(super) struct Job {
     pub(super) driven: String,
     pub(super) time_limit: f64,
     /// Whether to go round where the servo alone stalls on its way to a pose.
-    pub(super) detour: bool,
+    pub(super) reconfigure: bool,
     /// For joint moves.
     pub(super) defaults: JointDefaults,
 }
@@ -100,7 +100,7 @@ impl Job {
         };
         let frame = robot.frame_of(options.end_effector.frame).name.clone();
         let time_limit = args.time_limit;
-        let detour = !args.no_detour && matches!(goal, Goal::Pose(_));
+        let reconfigure = !args.no_reconfigure && matches!(goal, Goal::Pose(_));
         Ok(Self {
             robot,
             options,
@@ -110,7 +110,7 @@ impl Job {
             goal,
             driven,
             time_limit,
-            detour,
+            reconfigure,
             defaults,
         })
     }

@@ -38,7 +38,7 @@ pub(super) fn defaults(args: &MoveArgs) -> JointDefaults {
 
 /// Runs it, step by step like a servo, until its end or the time limit. The servo only reports
 /// pose, errors and singular values on the way; its rates are not used.
-pub(super) fn drive(
+pub(super) fn simulate(
     servo: &mut Servo,
     job: &Job,
     motion: &JointMove,
@@ -55,7 +55,7 @@ pub(super) fn drive(
         servo.reset();
         let last = servo.step(&q, job.target_pose)?;
         min_singular_ratio = min_singular_ratio.min(last.singular_ratio);
-        observe(TrajectorySample { time, q: &q, rates: &rates, step: &last });
+        observe(TrajectorySample { time, q: &q, joint_velocities: &rates, step: &last });
         for (i, (coordinate, rate)) in job.robot.coordinates().iter().zip(&rates).enumerate() {
             if rate.abs() >= AT_SPEED * coordinate.limits.velocity {
                 limits_hit.insert((i, LimitKind::Velocity));

@@ -12,8 +12,8 @@ use std::process::ExitCode;
 use cylindroid::Servo;
 use cylindroid::closure::LoopClosureError;
 use cylindroid::control::{
-    JointMove, MotionResult, Stall, Status, Target, TrajectorySample, drive,
-    find_reachable_configuration,
+    JointMove, MotionResult, Stall, Status, Target, TrajectorySample, find_reachable_configuration,
+    simulate,
 };
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -26,7 +26,7 @@ use crate::trajectory::{self, Trajectory};
 
 /// Runs of the search for another posture after a stall: enough for all that were tried, about a
 /// second at the worst.
-const SEARCH_RUNS: usize = 200;
+const MAX_RESTARTS: usize = 200;
 /// Steps between two signs of life.
 const PROGRESS_STEPS: u64 = 256;
 
@@ -87,18 +87,20 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
     let outcome = match &job.goal {
         Goal::Pose(pose) => {
             let target = |_| (Target::from(*pose), true);
-            drive(&mut servo, &job.start, job.time_limit, target, &mut observe)?
+            simulate(&mut servo, &job.start, job.time_limit, target, &mut observe)?
         }
         Goal::Along(motion) => {
             let target = |t| (motion.target(t, dt), t >= motion.law().duration());
-            drive(&mut servo, &job.start, job.time_limit, target, &mut observe)?
+            simulate(&mut servo, &job.start, job.time_limit, target, &mut observe)?
         }
-        Goal::Joints(motion) => joints::drive(&mut servo, job, motion, &mut observe)?,
+        Goal::Joints(motion) => joints::simulate(&mut servo, job, motion, &mut observe)?,
     };
     drop(progress);
     let direct = |way| Ok(Result { outcome: outcome.clone(), deviation, closure_error, way });
-    let Some(posture) = other_posture(job, &servo, &outcome)? else { return direct(Way::Direct) };
-    if !job.detour {
+    let Some(posture) = other_configuration(job, &servo, &outcome)? else {
+        return direct(Way::Direct);
+    };
+    if !job.reconfigure {
         return direct(Way::Offered { posture });
     }
     // From the start once more, straight through joint space: the stalled attempt is not made.
@@ -111,7 +113,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
             trajectory.push(&sample);
         }
     };
-    let round = joints::drive(&mut servo, job, &motion, push)?;
+    let round = joints::simulate(&mut servo, job, &motion, push)?;
     Ok(Result {
         outcome: round,
         deviation: None,
@@ -121,7 +123,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
 }
 
 /// A posture that reaches the target which the servo did not, where one can be found.
-fn other_posture(
+fn other_configuration(
     job: &Job,
     servo: &Servo,
     outcome: &MotionResult,
@@ -132,8 +134,8 @@ fn other_posture(
     if !stalled || final_word {
         return Ok(None);
     }
-    let found = find_reachable_configuration(servo, &job.start, job.target_pose, SEARCH_RUNS)?;
-    Ok(found.map(|detour| detour.q))
+    let found = find_reachable_configuration(servo, &job.start, job.target_pose, MAX_RESTARTS)?;
+    Ok(found.map(|found| found.q))
 }
 
 /// A line on stderr that shows that something happens; nothing where stderr is no terminal.

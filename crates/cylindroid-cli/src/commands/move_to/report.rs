@@ -61,7 +61,7 @@ struct MoveJson<'a> {
     joint_names: Vec<&'a str>,
     reached: bool,
     /// "reached", "out-of-reach", "limits", "singular", "too-few-joints", "no-inverse",
-    /// "given-up", "uncontrolled", "slow", "time-limit".
+    /// "projected", "type-ii", "slow", "time-limit".
     reason: &'static str,
     explanation: String,
     /// The last configuration.
@@ -110,12 +110,12 @@ struct MoveJson<'a> {
     path_deviation: Option<Deviation>,
     /// Where the motion stalled: a posture that reaches the target, absent if none was found.
     #[serde(skip_serializing_if = "Option::is_none")]
-    other_posture: Option<&'a [f64]>,
+    other_configuration: Option<&'a [f64]>,
     /// True if the joints went straight to another posture because the servo alone would stall.
-    detour: bool,
+    reconfigured: bool,
     /// Why the servo alone would have stalled.
     #[serde(skip_serializing_if = "Option::is_none")]
-    detour_reason: Option<&'static str>,
+    reconfiguration_reason: Option<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -188,9 +188,9 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         start: &job.start,
         law_duration: law_duration(job),
         path_deviation: *deviation,
-        other_posture: way.offered(),
-        detour: matches!(way, Way::Round { .. }),
-        detour_reason: match way {
+        other_configuration: way.offered(),
+        reconfigured: matches!(way, Way::Round { .. }),
+        reconfiguration_reason: match way {
             Way::Round { stalled } => Some(sentences::reason(stalled)),
             Way::Direct | Way::Offered { .. } => None,
         },

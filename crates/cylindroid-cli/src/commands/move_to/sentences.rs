@@ -26,8 +26,8 @@ pub(super) fn round(job: &Job, stalled: &MotionResult) -> String {
         }
         Some(Stall::Singular { .. }) => "in a singular pose".to_owned(),
         Some(Stall::NoInverse(_)) => "where the inverse does not exist".to_owned(),
-        Some(Stall::GivenUp { .. }) => "left with what the inverse gives up".to_owned(),
-        Some(Stall::Uncontrolled { .. }) => "where a motion escapes the drives".to_owned(),
+        Some(Stall::Projected { .. }) => "left with what the inverse gives up".to_owned(),
+        Some(Stall::TypeII { .. }) => "where a motion escapes the drives".to_owned(),
         Some(Stall::Slow | Stall::TooFewJoints { .. } | Stall::OutOfReach { .. }) | None => {
             "for want of progress".to_owned()
         }
@@ -42,7 +42,7 @@ pub(super) fn round(job: &Job, stalled: &MotionResult) -> String {
     }
     format!(
         "Going straight at the target, the servo would stall {} before it, {what}. So every joint \
-         moved straight to another posture that reaches it (--no-detour keeps the servo's motion).",
+         moved straight to another posture that reaches it (--no-reconfigure keeps the servo's motion).",
         left.join(" and "),
     )
 }
@@ -51,7 +51,7 @@ pub(super) fn round(job: &Job, stalled: &MotionResult) -> String {
 pub(super) fn explanation(
     job: &Job,
     outcome: &MotionResult,
-    other_posture: Option<&[f64]>,
+    other_configuration: Option<&[f64]>,
 ) -> String {
     let mut text = match &outcome.stall {
         _ if outcome.reached => {
@@ -68,7 +68,7 @@ pub(super) fn explanation(
         }
     };
     text.push_str(&without_inverse(outcome));
-    if let Some(q) = other_posture {
+    if let Some(q) = other_configuration {
         text.push_str(&format!(
             " Another posture does reach it: --q \"{0}\" to start there, or --joint-to \"{0}\" to \
              move there first.",
@@ -104,12 +104,12 @@ pub(crate) fn cause(robot: &Mechanism, task: Task, q: &[f64], stall: &Stall) -> 
         Stall::NoInverse(reason) => {
             format!("The inverse that was asked for does not exist here: {reason}.")
         }
-        Stall::GivenUp { direction } => format!(
+        Stall::Projected { direction } => format!(
             "The remaining error ({}) is what the inverse gives up; the arm itself could lessen \
              it.",
             along(task, direction)
         ),
-        Stall::Uncontrolled { share, direction } => format!(
+        Stall::TypeII { share, direction } => format!(
             "A motion of the object ({}) is about to escape the drives: {} of it still belongs to \
              them (type II singularity), and beyond it passive joints would choose the way.",
             along(task, direction),
@@ -138,10 +138,10 @@ fn way_out(stall: &Stall) -> &'static str {
              change the target."
         }
         Stall::NoInverse(_) => "Or name what shall take over there (--fallback truncated).",
-        Stall::GivenUp { .. } => {
+        Stall::Projected { .. } => {
             "Choose another --h, other motions to give up, or another --inverse."
         }
-        Stall::Uncontrolled { .. } => "Move on another way, or drive other joints (--actuated).",
+        Stall::TypeII { .. } => "Move on another way, or drive other joints (--actuated).",
         Stall::Slow => {
             "Try less damping (--damping), another --inverse, or a higher --gain or --speed."
         }

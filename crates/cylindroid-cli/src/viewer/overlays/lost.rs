@@ -25,12 +25,12 @@ pub(in super::super) struct LostJson {
 }
 
 pub(super) fn lost(session: &Session, measures: Option<&Measures>) -> Shown {
-    let Some(Measures { posture, .. }) = measures else {
+    let Some(Measures { condition, .. }) = measures else {
         let why = session.fault().map(ToString::to_string);
         return empty(why.unwrap_or_else(|| "There is no servo.".to_owned()));
     };
-    let ratio = posture.singular_ratio;
-    let Some(weakest) = posture.weakest else {
+    let ratio = condition.singular_ratio;
+    let Some(weakest) = condition.weakest else {
         return empty("No motion of the tool is possible here.");
     };
     if ratio > DAMPING_ONSET {
@@ -44,7 +44,7 @@ pub(super) fn lost(session: &Session, measures: Option<&Measures>) -> Shown {
     let Some(screw) = Screw::of(weakest.at_point(-tool)) else {
         return empty("No motion of the tool is possible here.");
     };
-    let lost = posture.inverse.rank < posture.inverse.singular_values.len();
+    let lost = condition.inverse.rank < condition.inverse.singular_values.len();
     let planar = mechanism.dimension() == Dimension::Planar;
     let words = motion_in_words(&screw, planar);
     let state = if lost { "is lost here" } else { "is nearly lost" };

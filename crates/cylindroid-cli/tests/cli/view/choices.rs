@@ -103,7 +103,10 @@ fn two_inverses_differ_in_what_moving_the_point_changes() {
     let [plain, invariant] = [0, 1].map(|i| &answer["results"][i]);
     assert_eq!((&plain["invariant"], &invariant["invariant"]), (&false.into(), &true.into()));
     assert!(plain["difference"].as_f64().unwrap() > 1e-3);
-    assert_eq!(numbers(&invariant["rates"]).len(), answer["names"].as_array().unwrap().len());
+    assert_eq!(
+        numbers(&invariant["joint_velocities"]).len(),
+        answer["names"].as_array().unwrap().len()
+    );
     let unknown = client
         .complaint(&json!({"type": "compare", "methods": ["truncated", "x"], "point": [0, 0, 0]}));
     assert_eq!(unknown["place"], "compare.methods");

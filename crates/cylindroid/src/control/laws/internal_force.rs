@@ -31,7 +31,7 @@ pub struct InternalForceController {
 #[derive(Debug, Clone, PartialEq)]
 pub struct InternalForceCommand {
     /// To be added to those of the driven joints [rad/s or m/s].
-    pub rates: Vec<f64>,
+    pub joint_velocities: Vec<f64>,
     /// The internal part of the measured torques.
     pub internal: Vec<f64>,
     /// The internal part of desired less measured torques.
@@ -82,9 +82,9 @@ impl InternalForceController {
         };
         let (desired, internal) = (part(desired), part(measured));
         let error: Vec<f64> = desired.iter().zip(&internal).map(|(w, m)| w - m).collect();
-        let rates: Vec<f64> =
+        let joint_velocities: Vec<f64> =
             error.iter().zip(&self.roots).map(|(e, r)| self.gain * r * r * e).collect();
-        Error::check_finite("rates", &rates)?;
-        Ok(InternalForceCommand { rates, internal, error })
+        Error::check_finite("joint velocities", &joint_velocities)?;
+        Ok(InternalForceCommand { joint_velocities, internal, error })
     }
 }

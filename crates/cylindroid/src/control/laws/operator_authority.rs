@@ -55,7 +55,7 @@ impl OperatorAuthority {
 
     /// Learns what became of the last step.
     pub fn update(&mut self, saturation: Saturation) {
-        self.share = if saturation.bent || saturation.scale < 1.0 {
+        self.share = if saturation.direction_lost || saturation.scale < 1.0 {
             self.share * self.kept
         } else {
             (self.share + self.gained).min(1.0)

@@ -1,19 +1,19 @@
 //! Motions over time: trajectories for a servo to follow, and their simulation.
 //!
 //! Read `time_law` (one coordinate over time), `path` (the geometry of a Cartesian motion),
-//! `cartesian_move` and `joint_move` (both together), then `drive` (a servo simulated until it
-//! arrives or stalls) and `detour` (a configuration that reaches the target where the servo did not).
+//! `cartesian_move` and `joint_move` (both together), then `simulation` (a servo simulated until it
+//! arrives or stalls) and `reconfiguration` (a configuration that reaches the target where the servo did not).
 
 mod cartesian_move;
-mod detour;
-mod drive;
 mod joint_move;
 mod path;
+mod reconfiguration;
+mod simulation;
 mod time_law;
 
 pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
-pub use detour::{Reconfiguration, find_reachable_configuration};
-pub use drive::{MotionResult, TrajectorySample, drive};
 pub use joint_move::{JointDefaults, JointMove, JointPath, JointSample};
 pub use path::{AxisRotation, CartesianPath, PathDeviation};
+pub use reconfiguration::{Reconfiguration, find_reachable_configuration};
+pub use simulation::{MotionResult, TrajectorySample, simulate};
 pub use time_law::{KinematicBounds, LawSample, TimeLaw};

@@ -320,14 +320,14 @@ impl Servo {
     /// The rates of the last step, for all n coordinates [rad/s or m/s]: in a closed chain driven
     /// and passive ones.
     #[must_use]
-    pub fn rates(&self) -> &[f64] {
+    pub fn joint_velocities(&self) -> &[f64] {
         &self.rates[..self.mechanism.n()]
     }
 
     /// The rates of driven joints that close loops, in the order of `Mechanism::loops`
     /// [rad/s or m/s].
     #[must_use]
-    pub fn closing_rates(&self) -> &[f64] {
+    pub fn loop_closure_velocities(&self) -> &[f64] {
         &self.rates[self.mechanism.n()..]
     }
 
@@ -346,7 +346,7 @@ impl Servo {
         let escape = self.coupled.as_ref().and_then(|c| c.escape());
         if let Some(escape) = escape.filter(|_| self.is_escaping) {
             let (share, direction) = (escape.share, escape.direction.clone());
-            return Stall::Uncontrolled { share, direction };
+            return Stall::TypeII { share, direction };
         }
         classify(&Evidence {
             svd: &self.svd,
@@ -401,7 +401,7 @@ impl Servo {
     /// # Panics
     /// If `q` is shorter than the mechanism's.
     pub fn advance(&self, q: &mut [f64]) {
-        self.mechanism.integrate_in_place(q, self.rates(), self.options.dt);
+        self.mechanism.integrate_in_place(q, self.joint_velocities(), self.options.dt);
         if let Some(coupled) = &self.coupled {
             coupled.close(q);
         }

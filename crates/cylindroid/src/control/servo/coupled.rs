@@ -285,13 +285,13 @@ mod tests {
             };
             let mut found = vec![0.0; panda.n()];
             let saturation = coupled.reduced.saturate(problem, &mut found);
-            assert_eq!(saturation.bent, expected.bent);
+            assert_eq!(saturation.direction_lost, expected.direction_lost);
             assert!(found.iter().zip(&bounds).all(|(r, b)| b.contains(*r)));
             let left = |rates: &[f64]| -> f64 {
                 let done = task.mul_vec(rates);
                 done.iter().zip(&x).map(|(d, x)| (d - x) * (d - x)).sum()
             };
-            if saturation.bent {
+            if saturation.direction_lost {
                 bent += 1;
                 // The best, but for joints that a pull below `RELEASE` would have released: by
                 // convexity that is worth this much at the most.

@@ -26,7 +26,7 @@ pub struct JointState {
     /// Position [rad or m].
     pub position: f64,
     /// Rate commanded in the last step [rad/s or m/s].
-    pub rate: f64,
+    pub velocity: f64,
 }
 
 impl VelocityBounds {
@@ -45,11 +45,11 @@ impl VelocityBounds {
             lower_cause: LimitKind::Velocity,
             upper_cause: LimitKind::Velocity,
         };
-        if now.rate + step < bounds.upper {
-            (bounds.upper, bounds.upper_cause) = (now.rate + step, LimitKind::Acceleration);
+        if now.velocity + step < bounds.upper {
+            (bounds.upper, bounds.upper_cause) = (now.velocity + step, LimitKind::Acceleration);
         }
-        if now.rate - step > bounds.lower {
-            (bounds.lower, bounds.lower_cause) = (now.rate - step, LimitKind::Acceleration);
+        if now.velocity - step > bounds.lower {
+            (bounds.lower, bounds.lower_cause) = (now.velocity - step, LimitKind::Acceleration);
         }
         // Positions last: they win where a measured state contradicts the other two.
         if brake_up < bounds.upper {
@@ -66,7 +66,7 @@ impl VelocityBounds {
         }
         if bounds.lower > bounds.upper {
             // Velocity against acceleration after a push: slow down as fast as allowed.
-            let rate = if now.rate > 0.0 { bounds.lower } else { bounds.upper };
+            let rate = if now.velocity > 0.0 { bounds.lower } else { bounds.upper };
             (bounds.lower, bounds.upper) = (rate, rate);
         }
         bounds
@@ -115,7 +115,7 @@ impl Clearance {
     pub(super) fn holds(&self, now: JointState, rate: f64) -> bool {
         const MORE: f64 = 1.0 + 1e3 * LIMIT_MET;
         let speed = MORE * rate.abs();
-        let change = (rate - now.rate).abs() + (MORE - 1.0) * (speed + now.rate.abs());
+        let change = (rate - now.velocity).abs() + (MORE - 1.0) * (speed + now.velocity.abs());
         let way = (self.square * speed + self.linear) * speed + self.constant;
         let way = MORE * way + 2.0 * LIMIT_ROUNDING * now.position.abs();
         let (up, down) = (now.position + way < self.upper, now.position - way > self.lower);
@@ -168,14 +168,14 @@ mod tests {
     #[test]
     fn full_speed_into_the_limit_stops_there() {
         let (limits, dt) = (limits(), 0.003);
-        let mut now = JointState { position: -1.0, rate: 0.0 };
+        let mut now = JointState { position: -1.0, velocity: 0.0 };
         for _ in 0..2000 {
             let bounds = VelocityBounds::next(&limits, now, dt);
             assert!(bounds.lower <= bounds.upper, "{bounds:?} at {now:?}");
             let rate = bounds.upper;
-            assert!((rate - now.rate).abs() <= limits.acceleration * dt * (1.0 + 1e-12));
+            assert!((rate - now.velocity).abs() <= limits.acceleration * dt * (1.0 + 1e-12));
             assert!(rate.abs() <= limits.velocity);
-            now = JointState { position: now.position + rate * dt, rate };
+            now = JointState { position: now.position + rate * dt, velocity: rate };
             assert!(now.position <= limits.upper, "{}", now.position);
         }
         assert!(limits.upper - now.position < 1e-9, "stops short: {}", now.position);
@@ -196,10 +196,10 @@ mod tests {
                 _ => Limits { velocity: f64::INFINITY, ..some },
             };
             let dt = [1e-3, 0.1][round % 2];
-            let now = JointState { position: next(), rate: 2.0 * next() };
+            let now = JointState { position: next(), velocity: 2.0 * next() };
             let rate = match round % 3 {
                 0 => 2.5 * next(),
-                1 => now.rate + 12.0 * dt * next(),
+                1 => now.velocity + 12.0 * dt * next(),
                 _ => stopping_rate(1.0 - now.position, limits.acceleration, dt),
             };
             let bounds = VelocityBounds::next(&limits, now, dt);
@@ -237,10 +237,10 @@ mod tests {
                     for i in 1..200 {
                         let (share, dt) = (f64::from(i) * 0.005, 0.0007 * f64::from(i));
                         let start = lower + share * (upper - lower);
-                        let mut now = JointState { position: start, rate: 0.0 };
+                        let mut now = JointState { position: start, velocity: 0.0 };
                         for _ in 0..40 {
                             let rate = VelocityBounds::next(&limits, now, dt).upper;
-                            now = JointState { position: now.position + rate * dt, rate };
+                            now = JointState { position: now.position + rate * dt, velocity: rate };
                             assert!(now.position <= upper, "{} of {limits:?}", now.position);
                         }
                     }
@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn outside_a_limit_only_the_way_back_is_open() {
-        let now = JointState { position: 1.2, rate: 0.0 };
+        let now = JointState { position: 1.2, velocity: 0.0 };
         let bounds = VelocityBounds::next(&limits(), now, 0.01);
         assert_eq!(bounds.upper, 0.0);
         assert!(bounds.lower < 0.0);
@@ -259,7 +259,7 @@ mod tests {
 
     #[test]
     fn no_limits_no_bounds() {
-        let now = JointState { position: 3.0, rate: 1.0 };
+        let now = JointState { position: 3.0, velocity: 1.0 };
         let bounds = VelocityBounds::next(&Limits::NONE, now, 0.01);
         assert_eq!((bounds.lower, bounds.upper), (f64::NEG_INFINITY, f64::INFINITY));
     }

@@ -18,7 +18,7 @@ mod step;
 mod task_space;
 
 pub use controller::Servo;
-pub use controller::condition::Posture;
+pub use controller::condition::ConditionReport;
 pub use limits::JointState;
 pub use options::{PoseTolerance, SecondaryNullSpace, ServoGains, ServoOptions, SpeedLimit};
 pub use projection::TaskProjection;

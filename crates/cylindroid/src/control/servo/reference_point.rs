@@ -39,7 +39,7 @@ pub struct InverseChoice {
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocitiesAtPoint {
     /// Rates of the joints that move the tool [rad/s or m/s]; `None` where there is no inverse.
-    pub rates: Option<Vec<f64>>,
+    pub joint_velocities: Option<Vec<f64>>,
     /// The twist of the tool that they make, at the tool, world axes.
     pub done: Option<Twist>,
     /// Why there is none.
@@ -94,10 +94,10 @@ impl InverseChoice {
         let coordinates = Chain::new(mechanism, tool).coordinates().to_vec();
         let at = |p: Vec3| self.at_point(state, (tool, pose), &coordinates, asked, p);
         let (at_tool, at_point) = (at(pose.translation)?, at(point)?);
-        let both = at_tool.rates.as_ref().zip(at_point.rates.as_ref());
+        let both = at_tool.joint_velocities.as_ref().zip(at_point.joint_velocities.as_ref());
         let difference =
             both.map(|(a, b)| norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()));
-        let size = at_tool.rates.as_ref().map_or(0.0, |rates| norm(rates));
+        let size = at_tool.joint_velocities.as_ref().map_or(0.0, |rates| norm(rates));
         let invariant = difference.is_some_and(|d| d <= SAME_RATES * size);
         Ok(ReferencePointComparison { coordinates, at_tool, at_point, difference, invariant })
     }
@@ -118,13 +118,17 @@ impl InverseChoice {
         let twist = asked.at_point(p - pose.translation).to_array();
         let (inverse, twist) = self.inverse(&j, twist, (pose, p))?;
         if !inverse.exists {
-            return Ok(VelocitiesAtPoint { rates: None, done: None, reason: inverse.reason });
+            return Ok(VelocitiesAtPoint {
+                joint_velocities: None,
+                done: None,
+                reason: inverse.reason,
+            });
         }
         let rates = inverse.matrix.mul_vec(&twist);
         let done = j.mul_vec(&rates);
         let done = Twist::from_array(std::array::from_fn(|i| done[i]));
         let done = done.at_point(pose.translation - p);
-        Ok(VelocitiesAtPoint { rates: Some(rates), done: Some(done), reason: None })
+        Ok(VelocitiesAtPoint { joint_velocities: Some(rates), done: Some(done), reason: None })
     }
 
     /// The inverse at the reference point `p`, and the twist in the units that it takes.

@@ -62,13 +62,13 @@ pub enum Stall {
     /// The inverse that was asked for does not exist here, and no other was named.
     NoInverse(NoInverse),
     /// The remaining error is what the projection gives up, although the arm could lessen it.
-    GivenUp {
+    Projected {
         /// The remaining error as a unit vector in task space.
         direction: Vec<f64>,
     },
     /// A motion of the object is about to escape the drives of a closed chain (type II
     /// singularity): the servo stops before.
-    Uncontrolled {
+    TypeII {
         /// How much of that motion still belongs to the drives, of a motion of length one in units
         /// scaled by the reach [-].
         share: f64,
@@ -90,8 +90,8 @@ impl Stall {
             Self::Singular { .. } => "singular",
             Self::TooFewJoints { .. } => "too-few-joints",
             Self::NoInverse(_) => "no-inverse",
-            Self::GivenUp { .. } => "given-up",
-            Self::Uncontrolled { .. } => "uncontrolled",
+            Self::Projected { .. } => "projected",
+            Self::TypeII { .. } => "type-ii",
             Self::Slow => "slow",
         }
     }
@@ -177,7 +177,7 @@ pub(super) fn classify(e: &Evidence<'_>) -> Stall {
     }
     let direction: Vec<f64> = e.error.iter().map(|x| x / norm).collect();
     if realised(e.error) > POSSIBLE * total {
-        return Stall::GivenUp { direction };
+        return Stall::Projected { direction };
     }
     let rank = (0..e.svd.len()).filter(kept).count();
     if rank >= e.generic_rank {

@@ -28,12 +28,12 @@ pub struct Saturation {
     /// The share of the task twist that is carried out; 1 when no limit bites.
     pub scale: f64,
     /// True if the direction could not be kept.
-    pub bent: bool,
+    pub direction_lost: bool,
 }
 
 impl Saturation {
     /// No limit bites.
-    pub(in crate::control) const NONE: Self = Self { scale: 1.0, bent: false };
+    pub(in crate::control) const NONE: Self = Self { scale: 1.0, direction_lost: false };
 }
 
 /// Memory for the decompositions.
@@ -100,15 +100,15 @@ impl Saturator {
             for (rate, bound) in rates.iter_mut().zip(bounds) {
                 *rate = bound.clamp(*rate * span.most);
             }
-            return Saturation { scale: span.most, bent: false };
+            return Saturation { scale: span.most, direction_lost: false };
         }
         let (scale, cause) = self.scaled(problem);
         if scale >= LEAST_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
             rates.copy_from_slice(&self.best);
-            return Saturation { scale, bent: false };
+            return Saturation { scale, direction_lost: false };
         }
         self.bend(problem, rates);
-        Saturation { scale: 0.0, bent: true }
+        Saturation { scale: 0.0, direction_lost: true }
     }
 
     /// The largest feasible scale, with its rates in `best`, and what limits it; 0 if none.

@@ -90,7 +90,7 @@ impl Reduced {
         if let Some(span) = interval(&both, &secondary, p.bounds) {
             clamped(&both, &secondary, span.most, out);
             self.set_y(span.most, 1.0);
-            return Saturation { scale: 1.0, bent: false };
+            return Saturation { scale: 1.0, direction_lost: false };
         }
         if let Some(span) = interval(&start, &direct, p.bounds)
             && span.most > 0.0
@@ -98,16 +98,16 @@ impl Reduced {
         {
             clamped(&start, &direct, span.most, out);
             self.set_y(0.0, span.most);
-            return Saturation { scale: span.most, bent: false };
+            return Saturation { scale: span.most, direction_lost: false };
         }
         let (scale, cause) = self.scaled(&p, out);
         if scale >= LEAST_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
-            return Saturation { scale, bent: false };
+            return Saturation { scale, direction_lost: false };
         }
         if !self.bend(&p, out) {
             self.brake(&p, out);
         }
-        Saturation { scale: 0.0, bent: true }
+        Saturation { scale: 0.0, direction_lost: true }
     }
 
     fn set_y(&mut self, secondary: f64, primary: f64) {

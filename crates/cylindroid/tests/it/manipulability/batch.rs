@@ -144,7 +144,7 @@ fn agrees_in_other_metrics_frames_and_lengths() {
     compare("rod", &stewart, &BatchOptions { reference, ..BatchOptions::default() }, &q);
     let two_arm = catalogue::load("two-arm").unwrap();
     let limits: Vec<f64> = (0..14).map(|i| 1.0 + 0.2 * f64::from(i)).collect();
-    let metrics = Metrics::UNIT.with_rate_limits(&limits).unwrap();
+    let metrics = Metrics::UNIT.with_velocity_limits(&limits).unwrap();
     let options = BatchOptions { metrics, ..BatchOptions::default() };
     compare("limits", &two_arm, &options, &postures(&two_arm, 13, 0.2));
     // Generic counts of one's own: every posture is then singular.

@@ -64,7 +64,7 @@ fn force_metrics_of_their_own() {
 fn limits_measure() {
     let relation = MotionSpace::of(&Constraint::serial(&Matrix::identity(2)).unwrap()).relation();
     let metrics = Metrics::UNIT
-        .with_rate_limits(&[2.0, 0.5])
+        .with_velocity_limits(&[2.0, 0.5])
         .unwrap()
         .with_torque_limits(&[3.0, 7.0])
         .unwrap();
@@ -73,7 +73,7 @@ fn limits_measure() {
     assert_close("rates", &m.kinematic.values(), &[4.0, 0.25], 1e-14);
     assert_close("forces", &m.force.values(), &[49.0, 9.0], 1e-12);
     for limits in [[1.0, 0.0], [1.0, f64::INFINITY], [f64::NAN, 1.0]] {
-        let error = Metrics::UNIT.with_rate_limits(&limits).unwrap_err().to_string();
+        let error = Metrics::UNIT.with_velocity_limits(&limits).unwrap_err().to_string();
         assert!(error.starts_with("rate limit = "), "{error}");
     }
 }

@@ -137,7 +137,7 @@ fn limits_that_are_none() {
     let relation = serial(&Matrix::identity(2));
     for limits in [&[1.0, 0.0][..], &[1.0, f64::INFINITY], &[f64::NAN, 1.0], &[1.0]] {
         let error = velocity_polytope(&relation, &symmetric(limits)).unwrap_err().to_string();
-        assert!(error.starts_with("rate limit"), "{error}");
+        assert!(error.starts_with("velocity limit"), "{error}");
     }
     // Nothing driven: nothing moves on command.
     let none = velocity_polytope(&serial(&Matrix::zeros(3, 0)), &[]).unwrap();

@@ -33,7 +33,7 @@ fn two_arms_squeeze_a_box_that_rests() {
         let ideal = (1.0 - 10.0 * dt).powi(step);
         // The springs give way by milliradians, and the set-point turns with the box by as much.
         assert!((error / start - ideal).abs() < 1e-2, "step {step}: {error} of {start}, {ideal}");
-        for (&i, rate) in drives.iter().zip(&command.rates) {
+        for (&i, rate) in drives.iter().zip(&command.joint_velocities) {
             theta[i] += rate * dt;
         }
         // Equilibrium: least energy on the loops.
@@ -73,7 +73,7 @@ fn no_internal_torques_no_rates() {
         MotionSpace::of(&ClosedChain::of(&state, None, None).unwrap().constraint).relation();
     let law = InternalForceController::new(1.0, &[100.0, 200.0]).unwrap();
     let command = law.command(&relation, &[1.0, 2.0], &[0.0, 0.0]).unwrap();
-    assert_eq!(command.rates, [0.0, 0.0]);
+    assert_eq!(command.joint_velocities, [0.0, 0.0]);
     assert!(law.command(&relation, &[1.0], &[0.0, 0.0]).is_err());
     assert!(law.command(&relation, &[1.0, f64::NAN], &[0.0, 0.0]).is_err());
     assert!(InternalForceController::new(0.0, &[1.0]).is_err());

@@ -16,11 +16,13 @@ fn limits_scale_before_they_bend() {
     let start = state.pose(robot.tool());
     let target = Pose { translation: start.translation + Vec3::new(-0.3, 0.2, 0.0), ..start };
     let step = servo.step(&q, target).unwrap();
-    assert!(step.saturation.scale < 1.0 && !step.saturation.bent);
-    let v = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).mul_vec(servo.rates());
+    assert!(step.saturation.scale < 1.0 && !step.saturation.direction_lost);
+    let v = state
+        .jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
+        .mul_vec(servo.joint_velocities());
     let cross = v[0] * 0.2 - v[1] * -0.3;
     assert!(cross.abs() < 1e-12 * v[0].hypot(v[1]), "direction lost: {v:?}");
-    let largest = servo.rates().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
+    let largest = servo.joint_velocities().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
     assert!((largest - 2.0).abs() < 1e-12, "the fastest joint goes at its limit: {largest}");
     assert!(servo.active_limits().any(|(_, kind)| kind == LimitKind::Velocity));
 }
@@ -52,10 +54,12 @@ fn saturation_uses_the_other_joints() {
     let start = state.pose(robot.tool());
     let way = Vec3::new(-0.2, 0.3, 0.0);
     let step = servo.step(&q, Pose { translation: start.translation + way, ..start }).unwrap();
-    assert_eq!((step.saturation.scale, step.saturation.bent), (1.0, false));
-    let v = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).mul_vec(servo.rates());
+    assert_eq!((step.saturation.scale, step.saturation.direction_lost), (1.0, false));
+    let v = state
+        .jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
+        .mul_vec(servo.joint_velocities());
     assert!((v[0] - way.x).abs() < 1e-12 && (v[1] - way.y).abs() < 1e-12, "{v:?}");
-    assert!(servo.rates()[0].abs() <= 1e-3);
+    assert!(servo.joint_velocities()[0].abs() <= 1e-3);
 }
 
 #[test]
@@ -69,8 +73,9 @@ fn speed_is_saturated_as_a_whole() {
     };
     let mut servo = servo(&robot, |o| o.speed = SpeedLimit { linear: 0.05, angular: 0.1 });
     servo.step(robot.home(), target).unwrap();
-    let twist =
-        state.twist(servo.rates(), robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
+    let twist = state
+        .twist(servo.joint_velocities(), robot.tool(), ReferenceFrame::LocalWorldAligned)
+        .unwrap();
     assert!(
         twist.linear.norm() <= 0.05 * (1.0 + 1e-9) && twist.angular.norm() <= 0.1 * (1.0 + 1e-9)
     );
@@ -159,7 +164,8 @@ fn singular_poses_keep_rates_bounded() {
                     let mut servo = servo(robot, |o| o.method = method);
                     let (gain, length) = (servo.options().gain, servo.options().length);
                     let check = |sample: cylindroid::control::TrajectorySample<'_>| {
-                        let size = sample.rates.iter().map(|r| r * r).sum::<f64>().sqrt();
+                        let size =
+                            sample.joint_velocities.iter().map(|r| r * r).sum::<f64>().sqrt();
                         let twist = (sample.step.position_error * gain.position / length)
                             .hypot(sample.step.orientation_error * gain.orientation);
                         let largest = || {
@@ -176,7 +182,7 @@ fn singular_poses_keep_rates_bounded() {
                         assert!(size <= most * (1.0 + 1e-9), "{name}: {size} over {most} rad/s");
                         fastest[k] = fastest[k].max(size);
                     };
-                    drive(&mut servo, &q, 2.0, |_| (target.into(), true), check).unwrap();
+                    simulate(&mut servo, &q, 2.0, |_| (target.into(), true), check).unwrap();
                 }
             }
         }
@@ -220,7 +226,7 @@ fn joint_weights_keep_joints_still() {
             o.joint_weights = weights;
         });
         servo.step(&q, target).unwrap();
-        servo.rates().to_vec()
+        servo.joint_velocities().to_vec()
     };
     let (even, heavy) = (rates(vec![]), rates(vec![1.0, 1e8, 1.0, 1.0]));
     assert!(heavy[1].abs() < 1e-6 && even[1].abs() > 1e-3);

@@ -1,22 +1,22 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
+mod condition;
 mod hybrid;
 mod internal_force;
 mod limits;
 mod object;
-mod posture;
 mod projection;
+mod reconfiguration;
 mod reference_point;
 mod secondary;
 mod shared;
 mod stall;
 mod steps;
-mod ways;
 
 pub(crate) use cylindroid::control::{
     JointDefaults, JointMove, JointSample, JointState, KinematicBounds, LimitKind, MotionResult,
     PoseTolerance, SecondaryNullSpace, SecondaryTask, ServoGains, SpeedLimit, Stall, Status,
-    Target, Task, VelocityBounds, drive, find_reachable_configuration,
+    Target, Task, VelocityBounds, find_reachable_configuration, simulate,
 };
 pub(crate) use cylindroid::inverse::Method;
 pub(crate) use cylindroid::linalg::{RowSpace, Svd};
@@ -29,7 +29,7 @@ pub(crate) use cylindroid::{
 pub(crate) use crate::support::{Random, odd_arm, planar, unlimited};
 
 pub(crate) fn run(servo: &mut Servo, q: &[f64], target: Pose) -> MotionResult {
-    drive(servo, q, 30.0, |_| (Target::from(target), true), |_| {}).unwrap()
+    simulate(servo, q, 30.0, |_| (Target::from(target), true), |_| {}).unwrap()
 }
 
 pub(crate) fn servo(robot: &Mechanism, change: impl FnOnce(&mut ServoOptions)) -> Servo {
@@ -59,14 +59,14 @@ pub(crate) fn run_checked_for(
     let fallback = servo.options().acceleration;
     let mut before = vec![0.0; robot.n()];
     servo.reset();
-    drive(
+    simulate(
         servo,
         q,
         duration,
         |_| (Target::from(target), true),
         |sample| {
             for (i, c) in robot.coordinates().iter().enumerate() {
-                let (l, q, rate) = (&c.limits, sample.q[i], sample.rates[i]);
+                let (l, q, rate) = (&c.limits, sample.q[i], sample.joint_velocities[i]);
                 let a = if l.acceleration.is_finite() { l.acceleration } else { fallback };
                 assert!(rate.is_finite() && q.is_finite(), "{} is not finite", c.name);
                 assert!(q >= l.lower && q <= l.upper, "{} left its limits: {q}", c.name);

@@ -2,7 +2,7 @@
 
 use cylindroid::catalogue;
 use cylindroid::closure::{ClosedChain, MotionSpace, RowSelection, assemble};
-use cylindroid::control::{MotionResult, SecondaryTask, Stall, Task, drive};
+use cylindroid::control::{MotionResult, SecondaryTask, Stall, Task, simulate};
 use cylindroid::model::Mechanism;
 use cylindroid::{Pose, ReferenceFrame, Servo, ServoOptions, Vec3};
 
@@ -34,7 +34,7 @@ fn assembled(mechanism: &Mechanism, spread: f64, random: &mut Random) -> Vec<f64
 fn ride(servo: &mut Servo, start: &[f64], target: Pose, seconds: f64) -> MotionResult {
     let mechanism = servo.mechanism().clone();
     let mut widest: f64 = 0.0;
-    let outcome = drive(
+    let outcome = simulate(
         servo,
         start,
         seconds,
@@ -42,7 +42,7 @@ fn ride(servo: &mut Servo, start: &[f64], target: Pose, seconds: f64) -> MotionR
         |sample| {
             widest = widest.max(gap(&mechanism, sample.q));
             assert_eq!(mechanism.outside_limits(sample.q).next(), None);
-            for (rate, c) in sample.rates.iter().zip(mechanism.coordinates()) {
+            for (rate, c) in sample.joint_velocities.iter().zip(mechanism.coordinates()) {
                 assert!(rate.abs() <= c.limits.velocity, "{}", c.name);
             }
         },
@@ -84,10 +84,14 @@ fn rates_keep_loops_closed() {
             .pose(mechanism.reference());
         let mut servo = Servo::new(&mechanism, ServoOptions::new(&mechanism)).unwrap();
         servo.step(&q, target).unwrap();
-        assert!(servo.rates().iter().any(|r| r.abs() > 1e-2), "{:?}", servo.rates());
+        assert!(
+            servo.joint_velocities().iter().any(|r| r.abs() > 1e-2),
+            "{:?}",
+            servo.joint_velocities()
+        );
         let before = gap(&mechanism, &q);
         let mut opened = [1e-3, 1e-4].map(|dt| {
-            let moved = mechanism.integrate(&q, servo.rates(), dt).unwrap();
+            let moved = mechanism.integrate(&q, servo.joint_velocities(), dt).unwrap();
             gap(&mechanism, &moved)
         });
         opened.iter_mut().for_each(|gap| *gap = (*gap - before).max(1e-13));
@@ -108,7 +112,7 @@ fn drift_is_corrected() {
         let open = gap(&mechanism, &q);
         servo.step(&q, target).unwrap();
         let dt = servo.options().dt;
-        q = mechanism.integrate(&q, servo.rates(), dt).unwrap();
+        q = mechanism.integrate(&q, servo.joint_velocities(), dt).unwrap();
         let left = gap(&mechanism, &q);
         // Speed limits of the arms may ask for more than one step.
         assert!(left < 0.5 * open, "{name}: {open:e} to {left:e}");
@@ -141,7 +145,7 @@ fn drives_move_with_the_least_weighted_effort() {
         let object = RowSelection { actuated: false, passive: false, object: true };
         let at_rest = MotionSpace::of(&chain.constraint).standing(object);
         assert_eq!(at_rest.cols(), 2);
-        let rates = servo.rates();
+        let rates = servo.joint_velocities();
         let size = rates.iter().map(|r| r * r).sum::<f64>().sqrt();
         for j in 0..at_rest.cols() {
             let along: f64 = (0..two_arm.n())
@@ -171,7 +175,7 @@ fn redundancy_is_the_null_space() {
     let mut servo = Servo::new(&two_arm, options).unwrap();
     let target = two_arm.state(&q).unwrap().pose(two_arm.reference());
     servo.step(&q, target).unwrap();
-    let rates = servo.rates();
+    let rates = servo.joint_velocities();
     assert!(rates.iter().any(|r| r.abs() > 1e-3), "{rates:?}");
     let twist = two_arm
         .state(&q)
@@ -222,12 +226,12 @@ fn the_servo_stops_before_a_motion_escapes_the_drives() {
     let mut servo = Servo::new(&five_bar, options).unwrap();
     let mut target = five_bar.state(&start).unwrap().pose(five_bar.reference());
     target.translation.y -= 2.0;
-    let outcome = drive(&mut servo, &start, 30.0, |_| (target.into(), true), |_| ()).unwrap();
-    let Some(Stall::Uncontrolled { share, direction }) = outcome.stall else {
+    let outcome = simulate(&mut servo, &start, 30.0, |_| (target.into(), true), |_| ()).unwrap();
+    let Some(Stall::TypeII { share, direction }) = outcome.stall else {
         panic!("{outcome:?}");
     };
     assert!(share < 1e-2 && share > 5e-3, "{share}");
-    assert!(servo.is_stopped() && servo.rates().iter().all(|r| *r == 0.0));
+    assert!(servo.is_stopped() && servo.joint_velocities().iter().all(|r| *r == 0.0));
     // Links 2-3 and 3-4 are nearly in line, and have not passed it; the tip escapes across them.
     let state = five_bar.state(&outcome.q).unwrap();
     let at = |link: &str| state.pose(five_bar.frame(link).unwrap()).translation;
@@ -239,7 +243,7 @@ fn the_servo_stops_before_a_motion_escapes_the_drives() {
     assert!(along.abs() < 0.1, "{along}");
     // The other way is open.
     target.translation.y += 2.0;
-    let back = drive(&mut servo, &outcome.q, 30.0, |_| (target.into(), true), |_| ()).unwrap();
+    let back = simulate(&mut servo, &outcome.q, 30.0, |_| (target.into(), true), |_| ()).unwrap();
     assert!(back.reached, "{back:?}");
 }
 
@@ -258,13 +262,13 @@ fn weak_joints_keep_loops_closed() {
         let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
         target.translation += Vec3::from_array(way);
         let (mut before, mut widest) = (start.clone(), 0.0_f64);
-        let outcome = drive(
+        let outcome = simulate(
             &mut servo,
             &start,
             5.0,
             |_| (target.into(), true),
             |sample| {
-                let moved = mechanism.integrate(&before, sample.rates, dt).unwrap();
+                let moved = mechanism.integrate(&before, sample.joint_velocities, dt).unwrap();
                 widest = widest.max(gap(&mechanism, &moved));
                 before.copy_from_slice(sample.q);
             },
@@ -286,7 +290,7 @@ fn weak_joints_slide_along_limits() {
     let start = mechanism.home().to_vec();
     let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
     target.translation = Vec3::new(0.05, 0.0, 0.05);
-    let outcome = drive(&mut servo, &start, 8.0, |_| (target.into(), true), |_| ()).unwrap();
+    let outcome = simulate(&mut servo, &start, 8.0, |_| (target.into(), true), |_| ()).unwrap();
     assert!(outcome.stall.is_some() && outcome.last.position_error < 0.415, "{outcome:?}");
 }
 

@@ -36,7 +36,7 @@ fn rates_with(
     let pose = robot.state(q).unwrap().pose(robot.tool());
     let step = servo.step(q, Target { pose, feed_forward: twist }).unwrap();
     assert_eq!(step.saturation.scale, 1.0);
-    servo.rates().to_vec()
+    servo.joint_velocities().to_vec()
 }
 
 fn world_jacobian(robot: &Mechanism, q: &[f64]) -> Matrix {
@@ -169,7 +169,7 @@ fn straight_down_there_is_none() {
     let outcome = run_checked(&robot, &mut alone, &down, pose);
     assert_eq!(outcome.last.status, Status::Stalled);
     assert_eq!(alone.stall(), Stall::NoInverse(NoInverse::Class { class: Class::Inf, order: 5 }));
-    assert!(alone.rates().iter().all(|r| *r == 0.0));
+    assert!(alone.joint_velocities().iter().all(|r| *r == 0.0));
     assert_eq!((outcome.steps, outcome.steps_without_inverse), (0, 1));
 
     let falling_to = |fallback: TaskProjection| {
@@ -187,7 +187,7 @@ fn straight_down_there_is_none() {
     let damping = HyperbolicDamping::Invariant { mu: 1e-3 };
     let mut damped = falling_to(TaskProjection::DampedHyperbolic { h: 0.1, damping });
     run_checked(&robot, &mut damped, &down, pose);
-    let Stall::GivenUp { direction } = damped.stall() else { panic!("{:?}", damped.stall()) };
+    let Stall::Projected { direction } = damped.stall() else { panic!("{:?}", damped.stall()) };
     let radial = direction[0] * down[0].cos() + direction[1] * down[0].sin();
     assert!(radial.abs() > 0.99, "{direction:?}");
     // A fallback that does not exist either stops the arm too.

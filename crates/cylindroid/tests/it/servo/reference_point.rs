@@ -85,8 +85,13 @@ fn rates_are_those_of_servo_and_inverse() {
         // Slow enough for every limit.
         let feed_forward = ASKED * 1e-2;
         servo.step(&q, Target { pose, feed_forward }).unwrap();
-        let rates: Vec<f64> = servo.rates().iter().map(|x| 1e2 * x).collect();
-        crate::support::assert_close("rates", found.at_tool.rates.as_ref().unwrap(), &rates, 1e-9);
+        let rates: Vec<f64> = servo.joint_velocities().iter().map(|x| 1e2 * x).collect();
+        crate::support::assert_close(
+            "rates",
+            found.at_tool.joint_velocities.as_ref().unwrap(),
+            &rates,
+            1e-9,
+        );
     }
     let tool = EndEffector {
         frame: robot.tool(),
@@ -101,7 +106,12 @@ fn rates_are_those_of_servo_and_inverse() {
     let by_hand = inverse::damped(&scaled, 0.05).unwrap().matrix.mul_vec(&twist);
     let method = Method::Damped { damping: 0.05 };
     let found = asked(&choice(&robot, method, TaskProjection::Orthogonal), &robot);
-    crate::support::assert_close("rates", &found.at_point.rates.unwrap(), &by_hand, 1e-12);
+    crate::support::assert_close(
+        "rates",
+        &found.at_point.joint_velocities.unwrap(),
+        &by_hand,
+        1e-12,
+    );
 }
 
 #[test]
@@ -111,7 +121,7 @@ fn what_does_not_exist_says_why() {
     let state = robot.state(&bent(&robot)).unwrap();
     let none = choice(&robot, Method::default(), TaskProjection::Hyperbolic { h: 0.1 });
     let found = none.at_two_points(&state, robot.tool().into(), ASKED, POINT).unwrap();
-    assert!(found.at_tool.rates.is_none() && found.at_tool.reason.is_some());
+    assert!(found.at_tool.joint_velocities.is_none() && found.at_tool.reason.is_some());
     assert!(found.difference.is_none() && !found.invariant);
     let linkage = catalogue::load("four-bar").unwrap();
     let state = linkage.state(linkage.home()).unwrap();

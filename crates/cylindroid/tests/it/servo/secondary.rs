@@ -20,7 +20,7 @@ fn secondary_motion_stays_in_the_null_space() {
             let desired = random.vector(7);
             let mut servo = servo(&robot, |o| o.method = Method::Truncated { eps: 0.05 });
             servo.step_with(&q, state.pose(robot.tool()), &desired).unwrap();
-            let rates = servo.rates().to_vec();
+            let rates = servo.joint_velocities().to_vec();
             let size: f64 = rates.iter().map(|r| r * r).sum::<f64>().sqrt();
             assert!(
                 size > 0.0 || robot.coordinates().iter().any(|c| c.limits.acceleration.is_finite())
@@ -45,7 +45,7 @@ fn retained_projector_disturbs_the_task_where_directions_were_cut() {
             o.null_space = projector;
         });
         servo.step_with(&q, state.pose(robot.tool()), &[0.3, -1.0, 1.0]).unwrap();
-        let v = j.mul_vec(servo.rates());
+        let v = j.mul_vec(servo.joint_velocities());
         v[0].hypot(v[1])
     };
     assert!(disturbance(SecondaryNullSpace::Exact) < 1e-13);
@@ -70,7 +70,11 @@ fn secondary_tasks_do_what_they_say() {
             servo.advance(&mut q);
         }
         // At rest where the secondary task has no part left in the null space.
-        assert!(servo.rates().iter().all(|r| r.abs() < 5e-3), "{:?}", servo.rates());
+        assert!(
+            servo.joint_velocities().iter().all(|r| r.abs() < 5e-3),
+            "{:?}",
+            servo.joint_velocities()
+        );
         q
     };
     let distance =
@@ -122,7 +126,11 @@ fn secondary_manipulability_gradient_by_finite_differences() {
     let along: f64 = row.iter().zip(gradient).map(|(r, g)| r * g).sum::<f64>() / norm2;
     for k in 0..4 {
         let expected = gradient[k] - along * row[k];
-        assert!((servo.rates()[k] - expected).abs() < 1e-9, "{} {expected}", servo.rates()[k]);
+        assert!(
+            (servo.joint_velocities()[k] - expected).abs() < 1e-9,
+            "{} {expected}",
+            servo.joint_velocities()[k]
+        );
     }
 }
 
@@ -209,10 +217,10 @@ fn secondary_manipulability_gradient_of_several_rows() {
                 o.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
             });
             servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
-            let size = servo.rates().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
+            let size = servo.joint_velocities().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
             assert!(size > 1e-6, "{round}: nothing to compare in {size:e}");
             for (c, expected) in expected.iter().enumerate() {
-                let (rate, expected) = (servo.rates()[c], expected * scale(c));
+                let (rate, expected) = (servo.joint_velocities()[c], expected * scale(c));
                 assert!((rate - expected).abs() < 1e-9, "{round}, {c}: {rate} {expected}");
             }
         }
@@ -242,7 +250,13 @@ fn secondary_limit_avoidance_pushes_by_the_room_that_is_left() {
         let q = [0.3, q, 2.0];
         servo.reset();
         servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
-        assert!((servo.rates()[1] - rate).abs() < 1e-12, "{q:?}: {:?}", servo.rates());
-        assert!(servo.rates()[0].abs() < 1e-12 && servo.rates()[2].abs() < 1e-12);
+        assert!(
+            (servo.joint_velocities()[1] - rate).abs() < 1e-12,
+            "{q:?}: {:?}",
+            servo.joint_velocities()
+        );
+        assert!(
+            servo.joint_velocities()[0].abs() < 1e-12 && servo.joint_velocities()[2].abs() < 1e-12
+        );
     }
 }

@@ -181,7 +181,7 @@ fn an_arm_keeps_the_surface() {
             let done = servo.step(&q, target).unwrap();
             assert_ne!(done.status, Status::Stalled);
             share.update(done.saturation);
-            at_limits += usize::from(done.saturation.bent);
+            at_limits += usize::from(done.saturation.direction_lost);
             servo.advance(&mut q);
         }
         println!(
@@ -209,7 +209,7 @@ fn an_arm_keeps_the_surface() {
 
 #[test]
 fn the_share_of_the_operator() {
-    let free = Saturation { scale: 1.0, bent: false };
+    let free = Saturation { scale: 1.0, direction_lost: false };
     let mut share =
         OperatorAuthority::new(AuthorityTimes { dt: 0.01, fall: 0.02, rise: 0.1 }).unwrap();
     assert_eq!(share.get(), 0.0);
@@ -218,7 +218,7 @@ fn the_share_of_the_operator() {
     }
     assert_eq!(share.get(), 1.0);
     share.update(Saturation { scale: 0.9, ..free });
-    share.update(Saturation { bent: true, ..free });
+    share.update(Saturation { direction_lost: true, ..free });
     assert!((share.get() - (-1.0_f64).exp()).abs() < 1e-15);
     let refused = |dt, fall, rise| {
         OperatorAuthority::new(AuthorityTimes { dt, fall, rise }).unwrap_err().to_string()

@@ -102,7 +102,7 @@ fn feed_forward_removes_the_lag() {
     let velocity = Vec3::new(0.0, 0.1, -0.05);
     let lag = |feed_forward: bool| {
         let mut servo = servo(&robot, |_| {});
-        let outcome = drive(
+        let outcome = simulate(
             &mut servo,
             robot.home(),
             1.0,
@@ -127,7 +127,7 @@ fn bad_input_is_refused_and_leaves_the_servo() {
     let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
     let target = Pose { translation: pose.translation + Vec3::X * 0.01, ..pose };
     servo.step(robot.home(), target).unwrap();
-    let rates = servo.rates().to_vec();
+    let rates = servo.joint_velocities().to_vec();
     let mut q = robot.home().to_vec();
     q[2] = f64::INFINITY;
     assert!(matches!(servo.step(&q, target), Err(Error::NotFinite { .. })));
@@ -135,7 +135,7 @@ fn bad_input_is_refused_and_leaves_the_servo() {
     let nan = Pose { translation: Vec3::new(0.0, f64::NAN, 0.0), ..pose };
     let error = servo.step(robot.home(), nan).unwrap_err().to_string();
     assert!(error.contains("target position[1]"), "{error}");
-    assert_eq!(servo.rates(), rates);
+    assert_eq!(servo.joint_velocities(), rates);
     for (change, word) in [
         ((|o| o.dt = 0.0) as fn(&mut ServoOptions), "dt"),
         (|o| o.length = f64::NAN, "length"),
@@ -160,7 +160,7 @@ fn status_is_reached_at_the_target() {
     let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
     let step = servo.step(robot.home(), pose).unwrap();
     assert_eq!(step.status, Status::Reached);
-    assert!(servo.rates().iter().all(|r| r.abs() < 1e-12));
+    assert!(servo.joint_velocities().iter().all(|r| r.abs() < 1e-12));
 }
 
 /// A duration that is NaN ends the motion, it does not make it endless.
@@ -169,7 +169,7 @@ fn a_duration_of_nan_ends() {
     let robot = planar(2);
     let mut servo = servo(&robot, |o| o.task = Task::POSITION);
     let target = Target::from(Pose::from_translation(Vec3::Y));
-    let outcome = drive(&mut servo, &[0.1, 0.2], f64::NAN, |_| (target, false), |_| {}).unwrap();
+    let outcome = simulate(&mut servo, &[0.1, 0.2], f64::NAN, |_| (target, false), |_| {}).unwrap();
     assert_eq!((outcome.steps, outcome.reached, outcome.stall), (0, false, None));
 }
 
@@ -180,13 +180,13 @@ fn overflow_and_foreign_options_are_refused() {
     let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
     let mut servo = servo(&robot, |_| {});
     servo.step(robot.home(), pose * Pose::from_translation(Vec3::X * 0.01)).unwrap();
-    let rates = servo.rates().to_vec();
+    let rates = servo.joint_velocities().to_vec();
     let far = Pose { translation: Vec3::X * 1e308, ..pose };
     assert!(matches!(servo.step(robot.home(), far), Err(Error::NotFinite { .. })));
     let mut overtaken = Target::from(pose);
     overtaken.feed_forward.linear = Vec3::new(f64::MAX, f64::MAX, f64::MAX);
     assert!(matches!(servo.step(robot.home(), overtaken), Err(Error::NotFinite { .. })));
-    assert_eq!(servo.rates(), rates);
+    assert_eq!(servo.joint_velocities(), rates);
 
     let mut options = ServoOptions::new(&robot);
     options.end_effector.frame_from_tool.translation.y = f64::NAN;
@@ -207,7 +207,7 @@ fn overflow_and_foreign_options_are_refused() {
 
     let bounds = VelocityBounds::next(
         &robot.coordinates()[0].limits,
-        JointState { position: 0.0, rate: 0.0 },
+        JointState { position: 0.0, velocity: 0.0 },
         1e-3,
     );
     assert!(bounds.clamp(f64::NAN).is_nan());
@@ -226,7 +226,7 @@ fn weak_joints_arrive() {
                 o.method = method;
             });
             let mut most = 0.0_f64;
-            let outcome = drive(
+            let outcome = simulate(
                 &mut servo,
                 &[0.0],
                 300.0,
@@ -236,7 +236,11 @@ fn weak_joints_arrive() {
             .unwrap();
             let name = method.name();
             assert!(outcome.reached, "{acceleration}, {name}: {outcome:?}");
-            assert!(servo.rates()[0].abs() <= 5e-6 * (1.0 + 1e-9), "{:?}", servo.rates());
+            assert!(
+                servo.joint_velocities()[0].abs() <= 5e-6 * (1.0 + 1e-9),
+                "{:?}",
+                servo.joint_velocities()
+            );
             assert!(most <= 1.0 + 1e-6, "{acceleration}, {name}: swings to {most}");
         }
     }
@@ -264,8 +268,8 @@ fn reached_means_at_rest() {
         servo.step(&q, far).unwrap();
         servo.advance(&mut q);
     }
-    assert!(servo.rates()[0] > 0.5);
+    assert!(servo.joint_velocities()[0] > 0.5);
     assert_eq!(servo.step(&[1.0], target).unwrap().status, Status::Moving);
-    let outcome = drive(&mut servo, &q, 30.0, |_| (target.into(), true), |_| {}).unwrap();
+    let outcome = simulate(&mut servo, &q, 30.0, |_| (target.into(), true), |_| {}).unwrap();
     assert!(outcome.reached && (outcome.q[0] - 1.0).abs() <= 1e-6, "{outcome:?}");
 }

@@ -65,7 +65,7 @@ pub(crate) fn run(
             chain: &found.posed.chain,
             metrics: &measured::metrics(&found.posed, args, None)?,
             metric: found.metric,
-            rate_limits: rates.limits(&found.posed, args).ok(),
+            velocity_limits: rates.limits(&found.posed, args).ok(),
             torque_limits: torques.limits(&found.posed, args).ok(),
         };
         plot::ellipses::draw(&drawing, path)?;
@@ -85,7 +85,7 @@ fn find(posed: Posed, args: &ManipulabilityArgs) -> Result<Found> {
     let relation = MotionSpace::of(&posed.chain.constraint).relation();
     let relation = measured::of_task(relation, task.as_ref())?;
     let efficiencies = Manipulability::of(&relation, &metrics)?;
-    let asked = args.polytope || args.rate_limits.is_some() || args.torque_limits.is_some();
+    let asked = args.polytope || args.velocity_limits.is_some() || args.torque_limits.is_some();
     let polytopes = if asked { Some(polytopes(&posed, &relation, args)?) } else { None };
     let gradient = match args.gradient {
         None => None,

@@ -9,7 +9,7 @@
 //! Frame    the weakest motion at the tool, world axes
 //! Valid    any rank. A self-motion is scaled so that the fastest joint moves at its speed limit
 //!          (1 rad/s or m/s where it has none); its sign is open, its largest entry positive
-//! Checked  tests/it/servo/posture.rs
+//! Checked  tests/it/servo/condition.rs
 
 use super::Servo;
 use crate::error::{Error, Result};
@@ -21,7 +21,7 @@ use crate::tolerance::UNSTEERED;
 
 /// A configuration as a servo sees it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Posture {
+pub struct ConditionReport {
     /// The servo's inverse of the scaled task Jacobian, with its report.
     pub inverse: Inverse,
     /// Smallest singular value over the largest.
@@ -36,7 +36,7 @@ impl Servo {
     ///
     /// # Errors
     /// As [`Servo::step`].
-    pub fn posture(&mut self, q: &[f64]) -> Result<Posture> {
+    pub fn condition(&mut self, q: &[f64]) -> Result<ConditionReport> {
         let svd = self.decomposed(q)?;
         let weakest = (!svd.is_empty() && svd.value(0) > 0.0).then(|| {
             let twist = self.space.twist(svd.u(svd.len() - 1));
@@ -51,7 +51,11 @@ impl Servo {
             Some(_) => svd.value(svd.len() - 1) / svd.value(0),
             None => 0.0,
         };
-        Ok(Posture { inverse: self.options.method.inverse(&self.task)?, singular_ratio, weakest })
+        Ok(ConditionReport {
+            inverse: self.options.method.inverse(&self.task)?,
+            singular_ratio,
+            weakest,
+        })
     }
 
     /// How many independent motions leave the tool at rest in postures that are not singular.

@@ -123,7 +123,7 @@ impl Servo {
         self.is_escaping = coupled.is_escaping(q, &self.primary, &self.space, self.options.dt)?;
         if self.is_escaping {
             coupled.reduced.brake(&problem, &mut self.primary);
-            saturation = Saturation { scale: 0.0, bent: false };
+            saturation = Saturation { scale: 0.0, direction_lost: false };
         }
         Ok(saturation)
     }
@@ -189,7 +189,7 @@ impl Servo {
         let places = self.chain.coordinates().iter().zip(&self.clearances);
         let mut clear = true;
         for (((primary, secondary), column), (&c, clearance)) in scaled.zip(places) {
-            let now = JointState { position: q[c], rate: self.rates[c] };
+            let now = JointState { position: q[c], velocity: self.rates[c] };
             clear &= clearance.holds(now, (primary + secondary) * column);
         }
         if !clear {
@@ -216,7 +216,7 @@ impl Servo {
         for i in 0..self.bounds.len() {
             let c = self.place(i);
             let now =
-                JointState { position: q.get(c).copied().unwrap_or(0.0), rate: self.rates[c] };
+                JointState { position: q.get(c).copied().unwrap_or(0.0), velocity: self.rates[c] };
             let mut bound = VelocityBounds::next(&self.limits[i], now, self.options.dt);
             self.own_bounds[i] = bound;
             bound.lower = self.space.scaled_rate(i, bound.lower);

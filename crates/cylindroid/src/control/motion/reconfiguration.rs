@@ -8,7 +8,7 @@
 //!          attempt of so many reached it: likely, not proved, that no posture does. The attempts
 //!          are the same on every run.
 //! Why so   what stops a servo is nearly always the posture it started from
-//! Checked  tests/it/servo/ways.rs::a_detour_reaches_what_the_servo_does_not
+//! Checked  tests/it/servo/reconfiguration.rs::a_reconfiguration_reaches_what_the_servo_does_not
 
 use crate::control::servo::Servo;
 use crate::error::Result;
@@ -25,7 +25,7 @@ pub struct Reconfiguration {
     /// The posture, all n coordinates.
     pub q: Vec<f64>,
     /// Attempts it took to find it, and to look for nearer ones.
-    pub runs: usize,
+    pub restarts: usize,
 }
 
 /// A posture within the limits in which the servo's end effector is at `target`; coordinates
@@ -37,7 +37,7 @@ pub fn find_reachable_configuration(
     servo: &Servo,
     q: &[f64],
     target: Pose,
-    most_runs: usize,
+    max_restarts: usize,
 ) -> Result<Option<Reconfiguration>> {
     let mechanism = servo.mechanism();
     mechanism.check_q("q", q)?;
@@ -56,10 +56,10 @@ pub fn find_reachable_configuration(
         fixed: (0..mechanism.n()).filter(|c| !free.contains(c)).collect(),
         nearest: true,
         seed: 0,
-        budget: Budget { iterations: ATTEMPT_STEPS * most_runs.max(1), time: None },
+        budget: Budget { iterations: ATTEMPT_STEPS * max_restarts.max(1), time: None },
         length: Some(options.length),
     };
     let goal = Goal { end_effector: options.end_effector, target, task: options.task };
     let found = solve(mechanism, &[goal], &ik)?;
-    Ok(found.success.then_some(Reconfiguration { q: found.q, runs: found.attempts }))
+    Ok(found.success.then_some(Reconfiguration { q: found.q, restarts: found.attempts }))
 }

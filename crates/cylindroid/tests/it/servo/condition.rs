@@ -18,7 +18,7 @@ fn singular_values_are_those_of_a_step_and_the_weakest_motion_needs_most() {
         let robot = catalogue::load(name).unwrap();
         let q = bent(&robot);
         let mut servo = servo(&robot, |_| ());
-        let posture = servo.posture(&q).unwrap();
+        let posture = servo.condition(&q).unwrap();
         let step = servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
         assert!((posture.singular_ratio - step.singular_ratio).abs() < 1e-12);
         assert_eq!(posture.inverse.rank, step.rank);
@@ -45,7 +45,7 @@ fn the_weakest_motion_is_in_world_axes() {
     let q = bent(&robot);
     let posture = |axes: ReferenceFrame| {
         let task = Task { axes, ..Task::POSE };
-        servo(&robot, |o| o.task = task).posture(&q).unwrap()
+        servo(&robot, |o| o.task = task).condition(&q).unwrap()
     };
     let [world, local] = [ReferenceFrame::LocalWorldAligned, ReferenceFrame::Local].map(posture);
     let (a, b) = (world.weakest.unwrap(), local.weakest.unwrap());
@@ -70,7 +70,7 @@ fn looking_at_a_posture_changes_no_motion() {
             looked.step(&b, target(&looked)).unwrap();
             looked.advance(&mut b);
             if i % 7 == 0 {
-                looked.posture(robot.home()).unwrap();
+                looked.condition(robot.home()).unwrap();
                 looked.self_motions(&b).unwrap();
             }
         }
@@ -138,6 +138,6 @@ fn self_motions_of_closed_chains_keep_their_loops() {
 fn postures_refuse_what_steps_refuse() {
     let robot = catalogue::load("panda").unwrap();
     let mut servo = servo(&robot, |_| ());
-    assert!(servo.posture(&[0.0; 3]).is_err() && servo.self_motions(&[f64::NAN; 7]).is_err());
+    assert!(servo.condition(&[0.0; 3]).is_err() && servo.self_motions(&[f64::NAN; 7]).is_err());
     assert!(servo.next_self_motion(&[0.0; 7], &[0.0; 6]).is_err());
 }

@@ -1,8 +1,6 @@
 //! Whole motions: a servo driving an ideal robot, and the search for a way round.
 
-use cylindroid::control::{
-    Target, TrajectorySample, drive as drive_servo, find_reachable_configuration,
-};
+use cylindroid::control::{Target, TrajectorySample, find_reachable_configuration, simulate};
 use cylindroid::{Error, Pose};
 use pyo3::prelude::*;
 
@@ -40,7 +38,7 @@ impl PyServo {
     /// ------
     /// DimensionError, NotFiniteError, InvalidOptionError
     #[pyo3(signature = (q, target, duration = 60.0, record = false))]
-    fn drive(
+    fn simulate(
         &mut self,
         py: Python<'_>,
         q: Numbers<'_>,
@@ -68,7 +66,7 @@ impl PyServo {
                 Goal::Pose(pose) => (Target::from(*pose), true),
                 Goal::Along(motion) => (motion.target(time, dt), time >= motion.law().duration()),
             };
-            drive_servo(servo, q, duration, aim, observe)
+            simulate(servo, q, duration, aim, observe)
         })?;
         self.last = Some(outcome.last);
         let trajectory = trajectory.map(|t| Py::new(py, t)).transpose()?;
@@ -85,7 +83,7 @@ impl PyServo {
     ///     Coordinates that do not move the frame keep these values.
     /// target : array_like, (4, 4)
     ///     `world_from_tool` (m).
-    /// runs : int
+    /// max_restarts : int
     ///     Attempts at most.
     ///
     /// Returns
@@ -96,16 +94,17 @@ impl PyServo {
     /// Raises
     /// ------
     /// DimensionError, NotFiniteError, InvalidOptionError
-    #[pyo3(signature = (q, target, runs = 200))]
+    #[pyo3(signature = (q, target, max_restarts = 200))]
     fn find_reachable_configuration<'py>(
         &self,
         py: Python<'py>,
         q: Numbers<'py>,
         target: Numbers<'py>,
-        runs: usize,
+        max_restarts: usize,
     ) -> Result<Option<Array<'py>>> {
         let (q, target) = (q.vector("q")?, target.pose("target")?);
-        let found = py.detach(|| find_reachable_configuration(&self.inner, q, target, runs))?;
-        Ok(found.map(|detour| arrays::vector(py, &detour.q)))
+        let found =
+            py.detach(|| find_reachable_configuration(&self.inner, q, target, max_restarts))?;
+        Ok(found.map(|found| arrays::vector(py, &found.q)))
     }
 }

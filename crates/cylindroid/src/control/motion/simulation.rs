@@ -15,7 +15,7 @@ pub struct TrajectorySample<'a> {
     /// The configuration before the step.
     pub q: &'a [f64],
     /// The rates commanded by the step [rad/s or m/s].
-    pub rates: &'a [f64],
+    pub joint_velocities: &'a [f64],
     /// What the step reported.
     pub step: &'a Step,
 }
@@ -51,7 +51,7 @@ pub struct MotionResult {
 ///
 /// # Errors
 /// As [`Servo::step`].
-pub fn drive(
+pub fn simulate(
     servo: &mut Servo,
     q: &[f64],
     duration: f64,
@@ -71,7 +71,12 @@ pub fn drive(
         let step = servo.step(&q, now)?;
         min_singular_ratio = min_singular_ratio.min(step.singular_ratio);
         limits_hit.extend(servo.active_limits());
-        observe(TrajectorySample { time, q: &q, rates: servo.rates(), step: &step });
+        observe(TrajectorySample {
+            time,
+            q: &q,
+            joint_velocities: servo.joint_velocities(),
+            step: &step,
+        });
         let reached = is_final && step.status == Status::Reached;
         if let Some(reason) = servo.no_inverse() {
             no_inverse.get_or_insert(reason);

@@ -37,9 +37,9 @@ fn random_starts_to_random_targets() {
                     Some(Stall::Limits { .. }) => "joint limits",
                     Some(Stall::Singular { .. }) => "singular",
                     Some(Stall::TooFewJoints { .. }) => "too few joints",
-                    Some(Stall::NoInverse(_) | Stall::GivenUp { .. }) => "no inverse",
+                    Some(Stall::NoInverse(_) | Stall::Projected { .. }) => "no inverse",
                     Some(Stall::Slow) => "slow",
-                    Some(Stall::Uncontrolled { .. }) => "uncontrolled",
+                    Some(Stall::TypeII { .. }) => "type II",
                 };
                 *causes.entry(cause).or_insert(0) += 1;
             }
@@ -51,7 +51,7 @@ fn random_starts_to_random_targets() {
 
 /// Random motions that stall are reached by way of another posture, within all limits.
 #[test]
-fn a_detour_reaches_what_the_servo_does_not() {
+fn a_reconfiguration_reaches_what_the_servo_does_not() {
     for (name, seed) in [("panda", 61), ("ur5e", 62), ("puma560", 63)] {
         let robot = catalogue::load(name).unwrap();
         let mut random = Random(seed);
@@ -66,9 +66,9 @@ fn a_detour_reaches_what_the_servo_does_not() {
             let end = robot.state(&found.q).unwrap().pose(robot.tool());
             assert!((end.translation - target.translation).norm() <= 1e-6);
             assert!(end.rotation.angle_to(target.rotation) <= 1e-6);
-            most = most.max(found.runs);
+            most = most.max(found.restarts);
         }
-        println!("{name}: {runs} of {runs} found, at most {most} runs");
+        println!("{name}: {runs} of {runs} found, at most {most} restarts");
     }
     // What nothing reaches is not found.
     let robot = planar(3);
@@ -77,7 +77,7 @@ fn a_detour_reaches_what_the_servo_does_not() {
     assert_eq!(find_reachable_configuration(&servo, &[0.0; 3], far, 20).unwrap(), None);
 }
 
-/// The move of a detour keeps every limit and ends at the posture.
+/// The move of a reconfiguration keeps every limit and ends at the posture.
 #[test]
 fn joint_moves_keep_the_limits() {
     for robot in crate::support::robots() {
