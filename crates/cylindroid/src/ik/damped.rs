@@ -10,7 +10,7 @@
 //! Checked  tests in this file (against the SVD)
 
 use crate::linalg::dot;
-use crate::scalar::Field;
+use crate::scalar::SimdFloat;
 
 /// What a step shall do; of one configuration, or of several side by side.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +76,7 @@ impl Damped {
 /// The step where A has at least as many columns as rows, with memory of m x m and m; false where a
 /// matrix is not positive definite: what it gives there is no step.
 #[inline(always)]
-pub(super) fn by_rows<R: Field>(
+pub(super) fn by_rows<R: SimdFloat>(
     m: usize,
     wanted: Wanted<'_, R>,
     (gram, rest): (&mut [R], &mut [R]),
@@ -90,7 +90,7 @@ pub(super) fn by_rows<R: Field>(
         }
         for i in 0..m {
             for j in 0..=i {
-                gram[i * m + j] = column[i].times_plus(column[j], gram[i * m + j]);
+                gram[i * m + j] = column[i].mul_add(column[j], gram[i * m + j]);
             }
         }
     }
@@ -104,7 +104,7 @@ pub(super) fn by_rows<R: Field>(
         *d = R::splat(0.0);
         if !*held {
             for (x, y) in column.iter().zip(&*rest) {
-                *d = x.times_plus(*y, *d);
+                *d = x.mul_add(*y, *d);
             }
         }
     }
@@ -114,7 +114,7 @@ pub(super) fn by_rows<R: Field>(
 /// The Cholesky factor in place, lower, rows after each other, its diagonal inverted; false where
 /// the matrix is not positive definite.
 #[inline(always)]
-fn factor<R: Field>(n: usize, g: &mut [R]) -> bool {
+fn factor<R: SimdFloat>(n: usize, g: &mut [R]) -> bool {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let mut indefinite = zero;
     for j in 0..n {
@@ -122,8 +122,8 @@ fn factor<R: Field>(n: usize, g: &mut [R]) -> bool {
         for k in 0..j {
             pivot = pivot - g[j * n + k] * g[j * n + k];
         }
-        indefinite = indefinite + R::where_less(zero, pivot, zero, one);
-        let inverse = one / pivot.root();
+        indefinite = indefinite + R::select_lt(zero, pivot, zero, one);
+        let inverse = one / pivot.sqrt();
         g[j * n + j] = inverse;
         for i in j + 1..n {
             let mut sum = g[i * n + j];
@@ -133,11 +133,11 @@ fn factor<R: Field>(n: usize, g: &mut [R]) -> bool {
             g[i * n + j] = sum * inverse;
         }
     }
-    indefinite.all_within(0.0)
+    indefinite.all_abs_le(0.0)
 }
 
 #[inline(always)]
-fn solve<R: Field>(n: usize, l: &[R], x: &mut [R]) {
+fn solve<R: SimdFloat>(n: usize, l: &[R], x: &mut [R]) {
     for i in 0..n {
         let mut sum = x[i];
         for k in 0..i {

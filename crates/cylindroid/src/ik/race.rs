@@ -12,13 +12,12 @@ use super::attempt::{DAMPING, Errors, LARGEST_STEP, LEAST_DAMPING, PATIENCE, is_
 use super::damped::{Wanted, by_rows};
 use super::goal::Goal;
 use super::options::IkOptions;
-#[cfg(target_arch = "x86_64")]
-use crate::kinematics::along_avx2;
-use crate::kinematics::{Serial, Turned, Turns, along_several, jacobian_of_several, whole_way};
-use crate::scalar::{Array, Field};
+use crate::kinematics::Serial;
+use crate::kinematics::serial_batched::{self, FrameAtTip, SinCos, tool_offset};
+use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, has_avx2};
-use crate::spatial::{Columns, Padded};
+use crate::spatial::{AlignedPose, Columns};
 
 /// Attempts side by side.
 pub(super) const LANES: usize = 4;
@@ -97,20 +96,22 @@ pub(super) fn race(course: &Course<'_>, runners: &mut [Runner; LANES]) {
         }
         return;
     }
-    race_with::<Array<LANES>>(course, runners, along_several);
+    race_with::<Array<LANES>>(course, runners, serial_batched::forward);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn race_avx2(course: &Course<'_>, runners: &mut [Runner; LANES]) {
-    race_with::<Lanes4>(course, runners, |serial, turns, rows| along_avx2(serial, turns, rows));
+    race_with::<Lanes4>(course, runners, |serial, turns, rows| {
+        serial_batched::forward_avx2(serial, turns, rows)
+    });
 }
 
 #[inline(always)]
-fn race_with<R: Field>(
+fn race_with<R: SimdFloat>(
     course: &Course<'_>,
     runners: &mut [Runner; LANES],
-    along: impl Fn(&Serial, Turns<'_, R>, &mut [R]) -> Turned<R>,
+    forward: impl Fn(&Serial, SinCos<'_, R>, &mut [R]) -> FrameAtTip<R>,
 ) {
     let zero = R::splat(0.0);
     let joints = course.serial.joints();
@@ -130,8 +131,8 @@ fn race_with<R: Field>(
         R::sines_cosines(&mut cosines[..n], &mut sines[..n], &mut rows[..n]);
         let turns = (&sines[..n], &cosines[..n]);
         let rows = &mut rows[..6 * n];
-        let turned = along(course.serial, turns, rows);
-        let tool = turned.tool(whole_way(course.serial, &x, rows));
+        let turned = forward(course.serial, turns, rows);
+        let tool = turned.tool(tool_offset(course.serial, &x, rows));
         let mut squares = [0.0; LANES];
         look(course, tool, step, runners, &mut e, &mut squares);
         if runners.iter().any(|r| r.ends_at(step)) {
@@ -156,7 +157,7 @@ fn race_with<R: Field>(
 
 /// The errors of each, scaled.
 #[inline(always)]
-fn look<R: Field>(
+fn look<R: SimdFloat>(
     course: &Course<'_>,
     tool: Columns<[R; 3]>,
     step: usize,
@@ -172,7 +173,7 @@ fn look<R: Field>(
     }
     let mut all = [[0.0; LANES]; 6];
     for (l, runner) in runners.iter_mut().enumerate().filter(|(_, r)| r.runs) {
-        let mut pose = Padded::IDENTITY;
+        let mut pose = AlignedPose::IDENTITY;
         for (axis, out) in columns.iter().zip([&mut pose.x, &mut pose.y, &mut pose.z, &mut pose.p])
         {
             for (x, out) in axis.iter().zip(out) {
@@ -200,9 +201,15 @@ fn look<R: Field>(
 
 /// The scaled rates of the components that matter, by columns.
 #[inline(always)]
-fn rates<R: Field>(course: &Course<'_>, q: &[R], turned: &Turned<R>, rows: &mut [R], a: &mut [R]) {
+fn rates<R: SimdFloat>(
+    course: &Course<'_>,
+    q: &[R],
+    turned: &FrameAtTip<R>,
+    rows: &mut [R],
+    a: &mut [R],
+) {
     let (joints, m) = (course.serial.joints(), course.rows.len());
-    jacobian_of_several(course.serial, course.goal.task.axes, q, turned, rows);
+    serial_batched::jacobian(course.serial, course.goal.task.axes, q, turned, rows);
     for (&(row, scale), i) in course.rows.iter().zip(0..) {
         let row = &rows[row * joints.len()..][..joints.len()];
         for (joint, x) in joints.iter().zip(row) {
@@ -212,17 +219,17 @@ fn rates<R: Field>(course: &Course<'_>, q: &[R], turned: &Turned<R>, rows: &mut 
 }
 
 #[inline(always)]
-fn damping<R: Field>(a: &[R], squared: R) -> R {
+fn damping<R: SimdFloat>(a: &[R], squared: R) -> R {
     let mut size = R::splat(0.0);
     for x in a {
-        size = x.times_plus(*x, size);
+        size = x.mul_add(*x, size);
     }
-    squared.times_plus(R::splat(DAMPING), size * R::splat(LEAST_DAMPING))
+    squared.mul_add(R::splat(DAMPING), size * R::splat(LEAST_DAMPING))
 }
 
 /// One step of each; what would leave its limits is held, and counts as zero in `a`.
 #[inline(always)]
-fn step_within<R: Field>(
+fn step_within<R: SimdFloat>(
     course: &Course<'_>,
     a: &mut [R],
     e: &[R],
@@ -246,12 +253,12 @@ fn step_within<R: Field>(
         let (mut out, mut any) = ([zero; MOST], zero);
         for c in 0..n {
             let (lower, upper) = (k(course.lower[c]), k(course.upper[c]));
-            let below = R::where_less(lower, q[c], zero, R::where_less(d[c], zero, one, zero));
-            let above = R::where_less(q[c], upper, zero, R::where_less(zero, d[c], one, zero));
+            let below = R::select_lt(lower, q[c], zero, R::select_lt(d[c], zero, one, zero));
+            let above = R::select_lt(q[c], upper, zero, R::select_lt(zero, d[c], one, zero));
             out[c] = below + above;
             any = any + out[c];
         }
-        if any.all_within(0.0) {
+        if any.all_abs_le(0.0) {
             break;
         }
         for (column, out) in a.chunks_exact_mut(m).zip(out) {
@@ -262,16 +269,16 @@ fn step_within<R: Field>(
     }
     let (mut most, mut sum) = (zero, zero);
     for d in &*d {
-        most = most.larger(d.size());
-        sum = sum + d.size();
+        most = most.max(d.abs());
+        sum = sum + d.abs();
     }
-    let cut = R::where_less(k(LARGEST_STEP), most, k(LARGEST_STEP) / most, one);
+    let cut = R::select_lt(k(LARGEST_STEP), most, k(LARGEST_STEP) / most, one);
     for c in 0..n {
-        let there = cut.times_plus(d[c], q[c]);
+        let there = cut.mul_add(d[c], q[c]);
         let (lower, upper) = (k(course.lower[c]), k(course.upper[c]));
-        let there = R::where_less(there, lower, lower, R::where_less(upper, there, upper, there));
+        let there = R::select_lt(there, lower, lower, R::select_lt(upper, there, upper, there));
         // Where the matrix is not positive definite there is no step.
-        q[c] = R::where_less(sum, k(f64::MAX), there, q[c]);
+        q[c] = R::select_lt(sum, k(f64::MAX), there, q[c]);
     }
 }
 
@@ -321,7 +328,7 @@ mod tests {
                 if round % 4 < 2 {
                     race(&course, &mut runners);
                 } else {
-                    race_with::<Array<LANES>>(&course, &mut runners, along_several);
+                    race_with::<Array<LANES>>(&course, &mut runners, serial_batched::forward);
                 }
                 assert!(!all || runners.iter().all(Runner::has_ended));
                 for (mut q, runner) in seeds.into_iter().zip(&runners) {

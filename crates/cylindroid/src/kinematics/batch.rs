@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use super::chain::Chain;
 use super::jacobian::ReferenceFrame;
-use super::lanes::{self, Work};
+use super::serial_batched::{self, Work};
 use super::state::EndEffector;
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
@@ -171,7 +171,15 @@ impl Batch {
         let n = self.mechanism.n();
         if let Some(serial) = self.chain.serial() {
             let coordinates = self.chain.coordinates();
-            return lanes::run(Work { serial, coordinates, n, q, poses, jacobians, large });
+            return serial_batched::run(Work {
+                serial,
+                coordinates,
+                n,
+                q,
+                poses,
+                jacobians,
+                large,
+            });
         }
         // One after the other.
         let mut chain = self.chain.clone();

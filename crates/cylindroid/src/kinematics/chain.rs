@@ -3,14 +3,14 @@
 //! What a control loop needs of a mechanism, and nothing else: a humanoid's arm costs what an arm
 //! costs. Nothing here allocates after construction.
 
-use super::along::{along, columns};
 use super::forward::forward;
 use super::jacobian::{ReferenceFrame, Tip};
 use super::serial::Serial;
+use super::serial_single;
 use super::state::EndEffector;
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Motion, Node};
-use crate::spatial::{Padded, Pose, Vec3};
+use crate::spatial::{AlignedPose, Pose, Vec3};
 
 /// The moving part of a mechanism from the ground to one end effector.
 #[derive(Debug, Clone)]
@@ -20,7 +20,7 @@ pub struct Chain {
     /// other languages that take in what holds a chain know 16 bytes at the most.
     serial: Option<Box<Serial>>,
     /// The ground, the nodes, the tool.
-    slots: Vec<Padded>,
+    slots: Vec<AlignedPose>,
     coordinates: Vec<usize>,
     local: Vec<f64>,
 }
@@ -66,7 +66,7 @@ impl Chain {
             });
         }
         let mut chain = Self {
-            slots: vec![Padded::IDENTITY; nodes.len() + 1],
+            slots: vec![AlignedPose::IDENTITY; nodes.len() + 1],
             local: vec![0.0; coordinates.len()],
             serial: Serial::of(&nodes).map(Box::new),
             nodes,
@@ -118,7 +118,7 @@ impl Chain {
     }
 
     #[inline]
-    fn tool(&self) -> &Padded {
+    fn tool(&self) -> &AlignedPose {
         &self.slots[self.nodes.len()]
     }
 
@@ -136,7 +136,7 @@ impl Chain {
         };
         match (&self.serial, point) {
             (Some(serial), Some(p)) if serial.has_one_for_each(self.n()) => {
-                columns(serial, &self.slots, p, out);
+                serial_single::jacobian(serial, &self.slots, p, out);
             }
             _ => self.tip().jacobian_into(reference, out),
         }
@@ -196,7 +196,7 @@ impl Chain {
 
     fn run(&mut self) {
         match &self.serial {
-            Some(serial) => along(serial, &self.local, &mut self.slots),
+            Some(serial) => serial_single::forward(serial, &self.local, &mut self.slots),
             None => forward(&self.nodes, &self.local, &mut self.slots),
         }
     }

@@ -12,19 +12,19 @@
 use crate::model::{Motion, Node};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::has_avx2;
-use crate::scalar::{Real, sin_cos};
+use crate::scalar::{Simd, sin_cos};
 #[cfg(target_arch = "x86_64")]
-use crate::spatial::Register;
-use crate::spatial::{Columns, Padded, Pose, Rotation, Single, Vec3};
+use crate::spatial::PackedVec3;
+use crate::spatial::{AlignedPose, Columns, Pose, Rotation, SingleVector3, Vec3};
 
 /// How many angles are taken at once.
-pub(super) const MANY: usize = 8;
+pub(super) const CHUNK: usize = 8;
 
 /// Sines and cosines of several angles, as many at once as there are lanes.
 #[inline(always)]
-pub(super) fn sines<W: Real>(angle: impl Fn(usize) -> f64) -> ([f64; MANY], [f64; MANY]) {
-    let (mut sin, mut cos) = ([0.0; MANY], [0.0; MANY]);
-    for i in (0..MANY).step_by(W::LANES) {
+pub(super) fn sines<W: Simd>(angle: impl Fn(usize) -> f64) -> ([f64; CHUNK], [f64; CHUNK]) {
+    let (mut sin, mut cos) = ([0.0; CHUNK], [0.0; CHUNK]);
+    for i in (0..CHUNK).step_by(W::LANES) {
         let (s, c) = sin_cos(W::from_fn(|l| angle(i + l)));
         s.store(&mut sin[i..]);
         c.store(&mut cos[i..]);
@@ -34,7 +34,7 @@ pub(super) fn sines<W: Real>(angle: impl Fn(usize) -> f64) -> ([f64; MANY], [f64
 
 /// Writes the pose of each node into `slots[1..]`; `slots[0]` is the ground and stays.
 #[inline]
-pub(crate) fn forward(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
+pub(crate) fn forward(nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {
         #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
@@ -49,16 +49,16 @@ pub(crate) fn forward(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn forward_avx2(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
-    forward_with::<Register>(nodes, q, slots);
+fn forward_avx2(nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
+    forward_with::<PackedVec3>(nodes, q, slots);
 }
 
 /// The kernel; with fused products results differ in the last digits.
 #[inline(always)]
-fn forward_with<T: Single>(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
-    for (chunk, nodes) in nodes.chunks(MANY).enumerate() {
+fn forward_with<T: SingleVector3>(nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
+    for (chunk, nodes) in nodes.chunks(CHUNK).enumerate() {
         // All angles first: they wait for nothing, and go four to a register.
-        let mut x = [0.0; MANY];
+        let mut x = [0.0; CHUNK];
         for (x, node) in x.iter_mut().zip(nodes) {
             *x = q[node.coordinate] * node.multiplier + node.offset;
         }
@@ -66,10 +66,10 @@ fn forward_with<T: Single>(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
         for (k, node) in nodes.iter().enumerate() {
             let base = Columns::<T>::load(&slots[node.parent]).then(&node.placement);
             let moved = match node.motion {
-                Motion::Revolute => base.turned(sin[k], cos[k]),
-                Motion::Prismatic => base.slid(x[k]),
+                Motion::Revolute => base.rotated_z(sin[k], cos[k]),
+                Motion::Prismatic => base.translated_z(x[k]),
                 Motion::Fixed => base,
-                Motion::Helical(pitch) => base.turned(sin[k], cos[k]).slid(pitch * x[k]),
+                Motion::Helical(pitch) => base.rotated_z(sin[k], cos[k]).translated_z(pitch * x[k]),
                 Motion::Spherical => {
                     let turn = Pose::from_rotation(Rotation::exp(three(q, node.coordinate)));
                     base.then(&turn.into())
@@ -82,7 +82,7 @@ fn forward_with<T: Single>(nodes: &[Node], q: &[f64], slots: &mut [Padded]) {
                     base.then(&free.into())
                 }
             };
-            moved.store(&mut slots[chunk * MANY + k + 1]);
+            moved.store(&mut slots[chunk * CHUNK + k + 1]);
         }
     }
 }
@@ -128,7 +128,7 @@ mod tests {
             });
         }
         let q: Vec<f64> = (0..13).map(|i| 0.17 * f64::from(i) - 0.9).collect();
-        let mut plain = vec![Padded::IDENTITY; 10];
+        let mut plain = vec![AlignedPose::IDENTITY; 10];
         let mut fused = plain.clone();
         forward_with::<[f64; 3]>(&nodes, &q, &mut plain);
         forward(&nodes, &q, &mut fused);

@@ -17,7 +17,7 @@
 
 use crate::linalg::Matrix;
 use crate::model::{Motion, Node};
-use crate::spatial::{Padded, Pose, Twist, Vec3};
+use crate::spatial::{AlignedPose, Pose, Twist, Vec3};
 
 /// The point and the axes of a twist or a Jacobian, in the field's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -53,7 +53,7 @@ impl ReferenceFrame {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tip<'a> {
     pub(crate) nodes: &'a [Node],
-    pub(crate) slots: &'a [Padded],
+    pub(crate) slots: &'a [AlignedPose],
     pub(crate) slot: usize,
     pub(crate) world_from_tip: Pose,
 }

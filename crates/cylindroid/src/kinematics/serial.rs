@@ -15,10 +15,10 @@
 
 use std::array::from_fn;
 
-use super::forward::MANY;
+use super::forward::CHUNK;
 use crate::model::{Motion, Node};
-use crate::scalar::Real;
-use crate::spatial::{Columns, Padded, Pose, Rotation, Triple, Vec3};
+use crate::scalar::Simd;
+use crate::spatial::{AlignedPose, Columns, Pose, Rotation, Vec3, Vector3Like};
 
 /// A joint and the way to the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,12 +38,12 @@ pub(crate) struct SerialJoint {
     scaled: bool,
 }
 
-/// The angles of [`MANY`] joints, those that are not there 0.
+/// The angles of [`CHUNK`] joints, those that are not there 0.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Angles {
-    coordinates: [usize; MANY],
-    turns: [f64; MANY],
-    angles: [f64; MANY],
+    coordinates: [usize; CHUNK],
+    turns: [f64; CHUNK],
+    angles: [f64; CHUNK],
 }
 
 impl Angles {
@@ -69,7 +69,7 @@ enum Tilt {
     /// Axes are parallel.
     None,
     /// By a right angle.
-    Right,
+    RightAngle,
     By {
         sin: f64,
         cos: f64,
@@ -79,7 +79,7 @@ enum Tilt {
 /// The chain.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Serial {
-    first: Padded,
+    first: AlignedPose,
     joints: Vec<SerialJoint>,
     angles: Vec<Angles>,
     /// Sine and cosine of what the tool is turned by; `None` where the angle of the last joint
@@ -109,7 +109,7 @@ impl Serial {
                 Motion::Fixed | Motion::Spherical | Motion::Free => return None,
             };
             let turned = if turn == 0.0 { 0.0 } else { node.offset };
-            let mut way = Way::of(nodes[i + 1].placement.pose());
+            let mut way = LinkTransform::of(nodes[i + 1].placement.pose());
             if i + 1 == moving.len() && way.tilt == Tilt::None {
                 way.turn_before(); // no joint comes after
             }
@@ -129,7 +129,7 @@ impl Serial {
         let mut coordinates: Vec<usize> = joints.iter().map(|j| j.coordinate).collect();
         coordinates.sort_unstable();
         let shared = coordinates.windows(2).any(|w| w[0] == w[1]);
-        let angles = joints.chunks(MANY).map(Angles::of).collect();
+        let angles = joints.chunks(CHUNK).map(Angles::of).collect();
         let last = (carried.abs() > f64::EPSILON).then(|| carried.sin_cos().into());
         Some(Self { first, joints, angles, last, shared })
     }
@@ -139,10 +139,10 @@ impl Serial {
         &self.joints
     }
 
-    /// The joints, [`MANY`] at a time, and their angles.
+    /// The joints, [`CHUNK`] at a time, and their angles.
     #[inline(always)]
     pub(crate) fn chunks(&self) -> impl Iterator<Item = (&[SerialJoint], &Angles)> {
-        self.joints.chunks(MANY).zip(&self.angles)
+        self.joints.chunks(CHUNK).zip(&self.angles)
     }
 
     /// True if each of n coordinates has one joint: none where columns are zero or add.
@@ -153,16 +153,16 @@ impl Serial {
 
     /// The frame of the first joint before it moves.
     #[inline(always)]
-    pub(crate) fn start<T: Triple>(&self) -> Columns<T> {
+    pub(crate) fn start<T: Vector3Like>(&self) -> Columns<T> {
         Columns::load(&self.first)
     }
 
     /// The tool, from the frame after the last joint.
     #[inline(always)]
-    pub(crate) fn end<T: Triple>(&self, frame: Columns<T>) -> Columns<T> {
+    pub(crate) fn end<T: Vector3Like>(&self, frame: Columns<T>) -> Columns<T> {
         let k = T::Scalar::splat;
         match self.last {
-            Some([sin, cos]) => frame.turned(k(sin), k(cos)),
+            Some([sin, cos]) => frame.rotated_z(k(sin), k(cos)),
             None => frame,
         }
     }
@@ -171,77 +171,74 @@ impl Serial {
 impl SerialJoint {
     /// Its angle at a coordinate.
     #[inline(always)]
-    pub(crate) fn angle<R: Real>(&self, q: R) -> R {
+    pub(crate) fn angle<R: Simd>(&self, q: R) -> R {
         // Rounded twice, as in `Angles::at`.
         q * R::splat(self.turn) + R::splat(self.angle)
     }
 
     /// Its frame after it has moved, its coordinate being q.
     #[inline(always)]
-    pub(crate) fn moved<T: Triple>(
+    pub(crate) fn after_joint<T: Vector3Like>(
         &self,
         frame: Columns<T>,
         sin: T::Scalar,
         cos: T::Scalar,
         q: T::Scalar,
     ) -> Columns<T> {
-        let turned = frame.turned(sin, cos);
-        if self.slides { turned.slid(q * T::Scalar::splat(self.slide)) } else { turned }
+        let turned = frame.rotated_z(sin, cos);
+        if self.slides { turned.translated_z(q * T::Scalar::splat(self.slide)) } else { turned }
     }
 
     /// The frame of the next joint before it moves.
     #[inline(always)]
-    pub(crate) fn passed<T: Triple>(&self, frame: Columns<T>) -> Columns<T> {
-        let there = if self.aside { frame.moved(&self.by) } else { frame.moved_xz(&self.by) };
-        self.tilted(there)
+    pub(crate) fn next_joint_frame<T: Vector3Like>(&self, frame: Columns<T>) -> Columns<T> {
+        let there =
+            if self.aside { frame.translated(&self.by) } else { frame.translated_xz(&self.by) };
+        self.next_axis_frame(there)
     }
 
     /// The same frame with z along the axis of the next joint.
     #[inline(always)]
-    pub(crate) fn tilted<T: Triple>(&self, frame: Columns<T>) -> Columns<T> {
+    pub(crate) fn next_axis_frame<T: Vector3Like>(&self, frame: Columns<T>) -> Columns<T> {
         let k = T::Scalar::splat;
         match self.tilt {
             Tilt::None => frame,
-            Tilt::Right => frame.upended(),
-            Tilt::By { sin, cos } => frame.tilted(k(sin), k(cos)),
+            Tilt::RightAngle => frame.rotated_x_90(),
+            Tilt::By { sin, cos } => frame.rotated_x(k(sin), k(cos)),
         }
     }
 
     /// From its origin, before it slides, to that of the next joint; x and z are its axes after it
     /// has turned.
     #[inline(always)]
-    pub(crate) fn way<T: Triple>(&self, x: T, z: T, q: T::Scalar) -> T {
+    pub(crate) fn link_offset<T: Vector3Like>(&self, x: T, z: T, q: T::Scalar) -> T {
         let k = T::Scalar::splat;
         let along = k(self.by[2]);
-        let along = if self.slides { q.times_plus(k(self.slide), along) } else { along };
-        let way = x.times_plus(k(self.by[0]), z.times(along));
-        if self.aside { z.cross(x).times_plus(k(self.by[1]), way) } else { way }
+        let along = if self.slides { q.mul_add(k(self.slide), along) } else { along };
+        let way = x.mul_add(k(self.by[0]), z.times(along));
+        if self.aside { z.cross(x).mul_add(k(self.by[1]), way) } else { way }
     }
 
     /// What it does to a point: linear and angular part, for its axis and the way from any point
     /// on that.
     #[inline(always)]
-    pub(crate) fn column<T: Triple>(&self, axis: T, lever: T) -> (T, T) {
+    pub(crate) fn column<T: Vector3Like>(&self, axis: T, lever: T) -> (T, T) {
         let k = T::Scalar::splat;
         let angular = if self.scaled { axis.times(k(self.turn)) } else { axis };
         let linear = angular.cross(lever);
-        if self.slides {
-            (axis.times_plus(k(self.slide), linear), angular)
-        } else {
-            (linear, angular)
-        }
+        if self.slides { (axis.mul_add(k(self.slide), linear), angular) } else { (linear, angular) }
     }
 }
 
 /// A placement as Rz(before) T(by) Rx(tilt) Rz(after).
-struct Way {
+struct LinkTransform {
     before: f64,
     by: Vec3,
     tilt: Tilt,
     after: f64,
 }
 
-impl Way {
+impl LinkTransform {
     fn of(placement: Pose) -> Self {
         let z = placement.rotation.matrix().cols[2];
         // What is less than rounding is none: parallel and perpendicular axes are meant so.
@@ -255,7 +252,7 @@ impl Way {
             before,
             by: turn.inverse() * placement.translation,
             tilt: match (sin, cos) {
-                (_, 0.0) => Tilt::Right,
+                (_, 0.0) => Tilt::RightAngle,
                 (0.0, c) if c > 0.0 => Tilt::None,
                 _ => Tilt::By { sin, cos },
             },

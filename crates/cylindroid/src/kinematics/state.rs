@@ -6,7 +6,7 @@ use super::jacobian::{ReferenceFrame, Tip};
 use crate::error::Result;
 use crate::linalg::Matrix;
 use crate::model::{FrameId, Joint, Mechanism};
-use crate::spatial::{Padded, Pose, Twist, Vec3};
+use crate::spatial::{AlignedPose, Pose, Twist, Vec3};
 
 /// A frame of a mechanism and a tool point fixed to it.
 ///
@@ -32,7 +32,7 @@ impl From<FrameId> for EndEffector {
 pub struct State {
     mechanism: Mechanism,
     q: Vec<f64>,
-    slots: Vec<Padded>,
+    slots: Vec<AlignedPose>,
 }
 
 impl Mechanism {
@@ -44,7 +44,7 @@ impl Mechanism {
         let mut state = State {
             mechanism: self.clone(),
             q: vec![0.0; self.n()],
-            slots: vec![Padded::IDENTITY; self.nodes().len() + 1],
+            slots: vec![AlignedPose::IDENTITY; self.nodes().len() + 1],
         };
         state.set(q)?;
         Ok(state)

@@ -3,12 +3,12 @@
 //! Formula  y' = y + C diag(f) B^T x;  x' = x - C diag(f) C^T x
 //! Shapes   B: m x k, C: n x k, padded; f: k
 //! Why so   what a servo does with a decomposition is nothing else. Eight columns at once, a block,
-//!          wait for each other nowhere; written once over [`Four`], compiled for the baseline and
+//!          wait for each other nowhere; written once over [`Simd4`], compiled for the baseline and
 //!          for AVX2
 //! Checked  tests/it/svd.rs::null_space_is_the_kernel, tests/it/inverse.rs
 
-use super::padded::{LANES, PaddedColumns};
-use crate::scalar::{Array, Four};
+use super::small_gemm::{AlignedColumns, LANES};
+use crate::scalar::{Array, Simd4};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, has_avx2};
 
@@ -18,9 +18,9 @@ const BLOCK: usize = 8;
 /// Adds to `y` the columns of `to`, each times its factor and the product of `x` with that of `from`.
 #[inline]
 pub(super) fn add_through(
-    from: &PaddedColumns,
+    from: &AlignedColumns,
     factors: &[f64],
-    to: &PaddedColumns,
+    to: &AlignedColumns,
     x: &[f64],
     y: &mut [f64],
 ) {
@@ -42,7 +42,7 @@ pub(super) fn add_through(
 
 /// Takes the parts along the columns out of `x`, each times its factor. "Twice is enough" (Kahan).
 #[inline]
-pub(super) fn remove_twice(columns: &PaddedColumns, factor: impl Fn(usize) -> f64, x: &mut [f64]) {
+pub(super) fn remove_twice(columns: &AlignedColumns, factor: impl Fn(usize) -> f64, x: &mut [f64]) {
     for i in 0..columns.cols.div_ceil(BLOCK) {
         let factors: [f64; BLOCK] = std::array::from_fn(|l| factor(i * BLOCK + l));
         #[cfg(target_arch = "x86_64")]
@@ -65,7 +65,7 @@ pub(super) fn remove_twice(columns: &PaddedColumns, factor: impl Fn(usize) -> f6
 /// Six columns of five to eight numbers, as arms have them.
 #[inline]
 #[cfg(target_arch = "x86_64")]
-fn six(columns: &PaddedColumns) -> Option<&[f64; 48]> {
+fn six(columns: &AlignedColumns) -> Option<&[f64; 48]> {
     if columns.stride == 8 { columns.data.as_slice().try_into().ok() } else { None }
 }
 
@@ -95,7 +95,7 @@ struct Block<'a> {
 impl<'a> Block<'a> {
     /// The i-th block.
     #[inline(always)]
-    fn of(columns: &'a PaddedColumns, i: usize) -> Self {
+    fn of(columns: &'a AlignedColumns, i: usize) -> Self {
         let (stride, first) = (columns.stride, i * BLOCK);
         let count = columns.cols.saturating_sub(first).min(BLOCK);
         Self { numbers: &columns.data[first * stride..][..count * stride], count, stride }
@@ -109,24 +109,24 @@ impl<'a> Block<'a> {
 }
 
 #[inline(always)]
-fn add<R: Four>(from: Block<'_>, factors: &[f64], to: Block<'_>, x: &[f64], y: &mut [f64]) {
+fn add<R: Simd4>(from: Block<'_>, factors: &[f64], to: Block<'_>, x: &[f64], y: &mut [f64]) {
     combine::<R>(to, &times(coefficients::<R>(from, x), factors, 1.0), y);
 }
 
 #[inline(always)]
-fn remove<R: Four>(columns: Block<'_>, factors: &[f64; BLOCK], x: &mut [f64]) {
+fn remove<R: Simd4>(columns: Block<'_>, factors: &[f64; BLOCK], x: &mut [f64]) {
     combine::<R>(columns, &times(coefficients::<R>(columns, x), factors, -1.0), x);
 }
 
 /// Products of `x` with the columns, in two registers.
 #[inline(always)]
-fn coefficients<R: Four>(block: Block<'_>, x: &[f64]) -> [R; 2] {
+fn coefficients<R: Simd4>(block: Block<'_>, x: &[f64]) -> [R; 2] {
     let Block { numbers, count, stride } = block;
     let mut products = [R::splat(0.0); BLOCK];
     for row in (0..stride).step_by(LANES) {
-        let x = R::load_some(x.get(row..).unwrap_or(&[]));
+        let x = R::load_partial(x.get(row..).unwrap_or(&[]));
         for j in 0..count {
-            products[j] = R::load(&numbers[j * stride + row..]).times_plus(x, products[j]);
+            products[j] = R::load(&numbers[j * stride + row..]).mul_add(x, products[j]);
         }
     }
     let [a, b, c, d, e, f, g, h] = products;
@@ -134,24 +134,24 @@ fn coefficients<R: Four>(block: Block<'_>, x: &[f64]) -> [R; 2] {
 }
 
 #[inline(always)]
-fn times<R: Four>(along: [R; 2], factors: &[f64], sign: f64) -> [f64; BLOCK] {
+fn times<R: Simd4>(along: [R; 2], factors: &[f64], sign: f64) -> [f64; BLOCK] {
     let (mut to, sign) = ([0.0; BLOCK], R::splat(sign));
     let (four, eight) = to.split_at_mut(LANES);
-    (along[0] * R::load_some(factors) * sign).store(four);
-    (along[1] * R::load_some(factors.get(LANES..).unwrap_or(&[])) * sign).store(eight);
+    (along[0] * R::load_partial(factors) * sign).store(four);
+    (along[1] * R::load_partial(factors.get(LANES..).unwrap_or(&[])) * sign).store(eight);
     to
 }
 
 #[inline(always)]
-fn combine<R: Four>(block: Block<'_>, factors: &[f64; BLOCK], y: &mut [f64]) {
+fn combine<R: Simd4>(block: Block<'_>, factors: &[f64; BLOCK], y: &mut [f64]) {
     let Block { numbers, count, stride } = block;
     for row in (0..stride).step_by(LANES) {
         let y = y.get_mut(row..).unwrap_or(&mut []);
-        let mut sum = R::load_some(y);
+        let mut sum = R::load_partial(y);
         for j in 0..count {
-            sum = R::load(&numbers[j * stride + row..]).times_plus(R::splat(factors[j]), sum);
+            sum = R::load(&numbers[j * stride + row..]).mul_add(R::splat(factors[j]), sum);
         }
-        sum.store_some(y);
+        sum.store_partial(y);
     }
 }
 
@@ -165,7 +165,7 @@ mod tests {
         let mut state = 9;
         let mut next = || 2.0 * crate::scalar::uniform(&mut state) - 1.0;
         for (m, n, k) in [(6, 7, 6), (6, 6, 6), (3, 7, 3), (12, 20, 11), (6, 5, 6)] {
-            let (mut from, mut to) = (PaddedColumns::zeros(m, k), PaddedColumns::zeros(n, k));
+            let (mut from, mut to) = (AlignedColumns::zeros(m, k), AlignedColumns::zeros(n, k));
             for j in 0..k {
                 from.column_mut(j).iter_mut().chain(to.column_mut(j)).for_each(|x| *x = next());
             }

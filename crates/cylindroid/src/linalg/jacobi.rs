@@ -11,17 +11,17 @@
 //! Shapes   B: long x k, W and K: k x k, columns padded with zeros to a multiple of four numbers
 //! Why so   rotations one by one wait for each other's divisions and square roots; together they
 //!          are matrix products. Both stop by the same test, so the result is as exact. Four
-//!          numbers are one register: written once over [`Four`], compiled for the baseline and
+//!          numbers are one register: written once over [`Simd4`], compiled for the baseline and
 //!          for AVX2
 //! Source   Hestenes 1958; de Rijk 1989; Ogita & Aishima 2018 (all angles of a step at once)
 //! Checked  tests/it/svd.rs
 
 use super::matrix::Matrix;
-use super::padded::{
-    LANES, PaddedColumns, Size, add, dot, gram, load_transposed, newton, pair, product, rotate,
+use super::small_gemm::{
+    AlignedColumns, LANES, Size, add, dot, gram, load_transposed, newton, pair, product, rotate,
     scale, squares, times, transposed_block, unit,
 };
-use crate::scalar::{Array, Four};
+use crate::scalar::{Array, Simd4};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, has_avx2};
 use crate::tolerance::JACOBI_ORTHOGONAL;
@@ -63,21 +63,21 @@ pub(super) struct Rotations {
     /// Number of columns.
     pub(super) k: usize,
     /// B W, columns of length `long`.
-    pub(super) b: PaddedColumns,
+    pub(super) b: AlignedColumns,
     /// The accumulated rotations.
-    pub(super) w: PaddedColumns,
+    pub(super) w: AlignedColumns,
     /// How the last warm start was turned, and W turned on in the same way: where the next starts.
-    last_turn: PaddedColumns,
-    next: PaddedColumns,
+    last_turn: AlignedColumns,
+    next: AlignedColumns,
     /// Lengths that the columns of B W had; [`super::Svd`] scales them to singular values.
-    pub(super) lengths: PaddedColumns,
+    pub(super) lengths: AlignedColumns,
     /// The order of a sweep.
     pairs: Vec<(usize, usize)>,
     /// G, K, E and a matrix for products.
-    products: PaddedColumns,
-    angles: PaddedColumns,
-    turn: PaddedColumns,
-    square: PaddedColumns,
+    products: AlignedColumns,
+    angles: AlignedColumns,
+    turn: AlignedColumns,
+    square: AlignedColumns,
     row: Vec<f64>,
 }
 
@@ -85,16 +85,16 @@ impl Rotations {
     pub(super) fn zeros(long: usize, k: usize) -> Self {
         Self {
             k,
-            b: PaddedColumns::zeros(long, k),
-            w: PaddedColumns::zeros(k, k),
-            last_turn: PaddedColumns::zeros(k, k),
-            next: PaddedColumns::zeros(k, k),
-            lengths: PaddedColumns::zeros(k, 1),
-            pairs: tournament(k),
-            products: PaddedColumns::zeros(k, k),
-            angles: PaddedColumns::zeros(k, k),
-            turn: PaddedColumns::zeros(k, k),
-            square: PaddedColumns::zeros(k, k),
+            b: AlignedColumns::zeros(long, k),
+            w: AlignedColumns::zeros(k, k),
+            last_turn: AlignedColumns::zeros(k, k),
+            next: AlignedColumns::zeros(k, k),
+            lengths: AlignedColumns::zeros(k, 1),
+            pairs: round_robin_pairs(k),
+            products: AlignedColumns::zeros(k, k),
+            angles: AlignedColumns::zeros(k, k),
+            turn: AlignedColumns::zeros(k, k),
+            square: AlignedColumns::zeros(k, k),
             row: vec![0.0; k * LANES],
         }
     }
@@ -136,7 +136,7 @@ impl Rotations {
     }
 
     #[inline(always)]
-    fn run_with<R: Four>(&mut self, a: &Matrix, factor: f64, start: Start, size: Size) -> usize {
+    fn run_with<R: Simd4>(&mut self, a: &Matrix, factor: f64, start: Start, size: Size) -> usize {
         self.load::<R>(a, factor, size);
         if start == Start::Cold {
             self.reset();
@@ -188,7 +188,7 @@ impl Rotations {
     }
 
     #[inline(always)]
-    fn load<R: Four>(&mut self, a: &Matrix, factor: f64, size: Size) {
+    fn load<R: Simd4>(&mut self, a: &Matrix, factor: f64, size: Size) {
         if a.rows() > a.cols() {
             for j in 0..a.cols() {
                 for (b, x) in self.b.column_mut(j).iter_mut().zip(a.column(j)) {
@@ -203,22 +203,22 @@ impl Rotations {
 
     /// The squares of the lengths of all columns.
     #[inline(always)]
-    fn measure<R: Four>(&mut self, size: Size) {
+    fn measure<R: Simd4>(&mut self, size: Size) {
         squares::<R>(&self.b.data, size.long, &mut self.lengths.data, size);
     }
 
     /// Columns of length 1 or 0, and the lengths that they had.
     #[inline(always)]
-    fn normalise<R: Four>(&mut self, size: Size) {
+    fn normalise<R: Simd4>(&mut self, size: Size) {
         let (b, lengths) = (&mut self.b.data[..size.k * size.long], &mut self.lengths.data);
         for four in lengths.as_chunks_mut::<LANES>().0 {
-            R::load(four).root().store(four);
+            R::load(four).sqrt().store(four);
         }
         let inverses = &mut self.row[..size.short];
         for (four, to) in lengths.as_chunks::<LANES>().0.iter().zip(inverses.as_chunks_mut().0) {
             let (length, zero) = (R::load(four), R::splat(0.0));
             let inverse: &mut [f64; LANES] = to;
-            (R::splat(1.0) / length).where_larger(length, zero).store(inverse);
+            (R::splat(1.0) / length).zero_unless_gt(length, zero).store(inverse);
         }
         for (j, inverse) in inverses[..size.k].iter().enumerate() {
             scale::<R>(&mut b[j * size.long..][..size.long], *inverse);
@@ -260,7 +260,7 @@ impl Rotations {
     /// One sweep over all pairs; the tangent of the largest angle, 0 if nothing was turned. Squares
     /// of lengths are kept up to date by the rotations.
     #[inline(always)]
-    fn sweep<R: Four>(&mut self, size: Size) -> f64 {
+    fn sweep<R: Simd4>(&mut self, size: Size) -> f64 {
         let mut largest = 0.0_f64;
         for &(i, j) in &self.pairs {
             let (bi, bj) = pair(&mut self.b.data, size.long, i, j);
@@ -286,7 +286,7 @@ impl Rotations {
 
     /// Writes the angles, 0 for columns that are orthogonal.
     #[inline(always)]
-    fn find_angles<R: Four>(&mut self, size: Size) -> Angles {
+    fn find_angles<R: Simd4>(&mut self, size: Size) -> Angles {
         let Size { k, short, .. } = size;
         let numbers = k * short;
         let Self { b, products, angles, square, turn, row, lengths, .. } = self;
@@ -299,7 +299,7 @@ impl Rotations {
             let mut diagonal = R::splat(0.0);
             for j in first..k.min(first + LANES) {
                 let four = R::load(&products[j * short + first..]);
-                diagonal = four.times_plus(unit(first, j), diagonal);
+                diagonal = four.mul_add(unit(first, j), diagonal);
             }
             diagonal.store(&mut lengths[first..]);
         }
@@ -318,11 +318,11 @@ impl Rotations {
                 let (ab_ab, aa_bb) = (ab * ab, aa * bb);
                 let inverse = one / (bb - aa);
                 inverse.store(&mut inverses[here..]);
-                let angle = (ab * inverse).where_larger(ab_ab, least * aa_bb);
+                let angle = (ab * inverse).zero_unless_gt(ab_ab, least * aa_bb);
                 angle.store(&mut angles[here..]);
-                squares = angle.times_plus(angle, squares);
-                oblique = oblique + one.where_larger(ab_ab, little * aa_bb);
-                too_oblique = too_oblique + one.where_larger(ab_ab, some * aa_bb);
+                squares = angle.mul_add(angle, squares);
+                oblique = oblique + one.zero_unless_gt(ab_ab, little * aa_bb);
+                too_oblique = too_oblique + one.zero_unless_gt(ab_ab, some * aa_bb);
             }
         }
         let norm = norm(squares);
@@ -344,8 +344,8 @@ impl Rotations {
                             (R::load(&left[here..]) + transposed) * (half - half * unit(i, j + l));
                         let aa_bb = R::load(&lengths[i..]) * R::splat(lengths[j + l]);
                         let angle = (left * R::load(&inverses[here..]))
-                            .where_larger(left * left, least * aa_bb);
-                        squares = angle.times_plus(angle, squares);
+                            .zero_unless_gt(left * left, least * aa_bb);
+                        squares = angle.mul_add(angle, squares);
                         (R::load(&angles[here..]) + angle).store(&mut products[here..]);
                     }
                 }
@@ -363,7 +363,7 @@ impl Rotations {
 
     /// Turns all columns by the angles found.
     #[inline(always)]
-    fn turn<R: Four>(&mut self, norm: f64, size: Size) {
+    fn turn<R: Simd4>(&mut self, norm: f64, size: Size) {
         let Self { b, w, angles, turn, square, row, last_turn, .. } = self;
         let (angles, e, square) = (&angles.data, &mut turn.data, &mut square.data);
         if norm > TWO_TERMS {
@@ -402,13 +402,13 @@ struct Angles {
 /// A bound of the spectral norm of a skew matrix, from the squares of its entries: its singular
 /// values come in pairs.
 #[inline(always)]
-fn norm<R: Four>(squares: R) -> f64 {
+fn norm<R: Simd4>(squares: R) -> f64 {
     (0.5 * squares.sum()).sqrt()
 }
 
 /// All pairs of k columns, ordered so that neighbours share no column: the processor works on
 /// several rotations at once, whose square roots would otherwise wait for each other.
-pub(crate) fn tournament(k: usize) -> Vec<(usize, usize)> {
+pub(crate) fn round_robin_pairs(k: usize) -> Vec<(usize, usize)> {
     let ring = (k + k % 2).saturating_sub(1);
     let mut pairs = Vec::with_capacity(k * k / 2);
     for round in 0..ring {
@@ -430,7 +430,7 @@ mod tests {
     #[test]
     fn every_pair_once() {
         for k in 0..12 {
-            let mut pairs = tournament(k);
+            let mut pairs = round_robin_pairs(k);
             assert!(pairs.iter().all(|(i, j)| i < j && *j < k));
             pairs.sort_unstable();
             pairs.dedup();

@@ -1,20 +1,19 @@
 //! Small dense linear algebra: matrices, singular values, rank with its gap, the spaces of columns
 //! and of kernels, angles between spaces, metrics, hulls of convex bodies.
 
-pub(crate) mod abreast;
+pub(crate) mod batched;
 mod blocks;
 mod box_program;
 mod column_space;
 mod cs;
 mod hull;
 mod jacobi;
-mod lanes;
 mod matrix;
 mod metric;
 mod null_space;
-mod padded;
 mod qr;
 mod singular_values;
+mod small_gemm;
 mod svd;
 mod symmetric;
 mod vector;

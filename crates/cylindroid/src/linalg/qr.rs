@@ -11,8 +11,8 @@
 //!          of a Jacobi decomposition Drmac & Veselic 2008
 //! Checked  tests/it/subspaces.rs::qr_*
 
-use super::lanes::dot;
 use super::matrix::Matrix;
+use super::vector::dot_unrolled as dot;
 
 /// A decomposition, the reflections below the diagonal of R.
 #[derive(Debug, Clone)]

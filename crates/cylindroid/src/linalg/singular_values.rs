@@ -17,8 +17,8 @@
 //!          B^T B - t without forming it)
 //! Checked  tests/it/subspaces.rs and below (values against the Jacobi decomposition)
 
-use super::lanes::dot;
 use super::matrix::Matrix;
+use super::vector::dot_unrolled as dot;
 
 /// QR steps for each value before giving up; two or three are usual.
 const STEPS: usize = 12;

@@ -19,7 +19,7 @@
 use super::blocks::add_through;
 use super::jacobi::{Rotations, Start};
 use super::matrix::Matrix;
-use super::padded::{LANES, PaddedColumns};
+use super::small_gemm::{AlignedColumns, LANES};
 use crate::tolerance::MACHINE_RANK;
 
 /// Warm starts between two repairs of W and of how it turned, which drift by a rounding each time.
@@ -149,12 +149,12 @@ impl Svd {
 
     /// U and V.
     #[inline]
-    fn left(&self) -> &PaddedColumns {
+    fn left(&self) -> &AlignedColumns {
         if self.rows > self.cols { &self.rotations.b } else { &self.rotations.w }
     }
 
     #[inline]
-    pub(super) fn right(&self) -> &PaddedColumns {
+    pub(super) fn right(&self) -> &AlignedColumns {
         if self.rows > self.cols { &self.rotations.w } else { &self.rotations.b }
     }
 

@@ -17,8 +17,8 @@
 
 use rayon::prelude::*;
 
+use super::closed_chain_batched::{Found, Kernel};
 use super::efficiency::Manipulability;
-use super::lanes::{Found, Kernel};
 use super::metrics::Metrics;
 use crate::closure::{
     BatchedConstraintPlan, ClosedChain, GenericMobility, LoopClosureError, MobilityCounts,

@@ -22,11 +22,11 @@
 //! [`Relation`]: crate::closure::Relation
 
 mod batch;
+mod closed_chain_batched;
 mod efficiency;
 mod gradient;
 mod index;
 mod inertia;
-mod lanes;
 mod metrics;
 mod polytope;
 

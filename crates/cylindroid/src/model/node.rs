@@ -3,7 +3,7 @@
 //! Every joint is written as one or more nodes that turn about or slide along their own z axis
 //! (or move freely); fixed joints and fixed links are folded into the placements.
 
-use crate::spatial::Padded;
+use crate::spatial::AlignedPose;
 
 /// A moving frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,7 +11,7 @@ pub(crate) struct Node {
     /// Slot of the parent: 0 is the ground, node `i` is slot `i + 1`.
     pub(crate) parent: usize,
     /// The frame at zero, seen from the parent.
-    pub(crate) placement: Padded,
+    pub(crate) placement: AlignedPose,
     /// What it does.
     pub(crate) motion: Motion,
     /// Its first coordinate.

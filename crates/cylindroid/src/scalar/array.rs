@@ -4,7 +4,7 @@
 use std::array::from_fn;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Four, Real};
+use super::{Simd, Simd4};
 
 /// Several numbers side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ impl<const N: usize> Neg for Array<N> {
     }
 }
 
-impl<const N: usize> Real for Array<N> {
+impl<const N: usize> Simd for Array<N> {
     const LANES: usize = N;
     const FUSED: bool = false;
 
@@ -91,40 +91,40 @@ impl<const N: usize> Real for Array<N> {
     }
 
     #[inline(always)]
-    fn times_plus(self, b: Self, c: Self) -> Self {
+    fn mul_add(self, b: Self, c: Self) -> Self {
         self * b + c
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
+    fn abs(self) -> Self {
         Self(self.0.map(f64::abs))
     }
 
     #[inline(always)]
-    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
-        let pairs: [_; N] = from_fn(|i| f64::swap_where_odd(a.0[i], b.0[i], bits.0[i]));
+    fn swap_if_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
+        let pairs: [_; N] = from_fn(|i| f64::swap_if_odd(a.0[i], b.0[i], bits.0[i]));
         (Self(pairs.map(|p| p.0)), Self(pairs.map(|p| p.1)))
     }
 
     #[inline(always)]
-    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
-        Self(from_fn(|i| self.0[i].negate_where_second_bit(bits.0[i], more)))
+    fn negate_if_second_bit(self, bits: Self, more: u64) -> Self {
+        Self(from_fn(|i| self.0[i].negate_if_second_bit(bits.0[i], more)))
     }
 
     #[inline(always)]
-    fn all_within(self, limit: f64) -> bool {
+    fn all_abs_le(self, limit: f64) -> bool {
         self.0.iter().all(|x| x.abs() <= limit)
     }
 }
 
-impl Four for Array<4> {
+impl Simd4 for Array<4> {
     #[inline(always)]
-    fn load_some(from: &[f64]) -> Self {
+    fn load_partial(from: &[f64]) -> Self {
         Self(from_fn(|i| from.get(i).copied().unwrap_or(0.0)))
     }
 
     #[inline(always)]
-    fn store_some(self, to: &mut [f64]) {
+    fn store_partial(self, to: &mut [f64]) {
         to.iter_mut().zip(self.0).for_each(|(to, x)| *to = x);
     }
 
@@ -142,17 +142,17 @@ impl Four for Array<4> {
 
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
-    use super::super::{Lanes4, Lanes8, MOST_LANES, has_avx2, has_avx512};
+    use super::super::{Lanes4, Lanes8, MAX_LANES, has_avx2, has_avx512};
     use super::*;
 
-    fn bits<R: Real>(of: &[R]) -> Vec<u64> {
-        let mut lanes = [0.0; MOST_LANES];
+    fn bits<R: Simd>(of: &[R]) -> Vec<u64> {
+        let mut lanes = [0.0; MAX_LANES];
         of.iter().flat_map(|x| (x.store(&mut lanes), lanes.map(f64::to_bits)).1).collect()
     }
 
     /// Registers do what arrays do, to the bit: rows of any length, and whatever numbers there are.
     #[inline(always)]
-    fn as_arrays<R: Real, const N: usize>() {
+    fn as_arrays<R: Simd, const N: usize>() {
         for n in 0..=9 {
             for stride in [n, n + 1, n + 5] {
                 let from: Vec<f64> = (0..(N - 1) * stride + n).map(|i| i as f64 * 0.37).collect();
@@ -169,25 +169,25 @@ mod tests {
         let some = [0.0, -0.0, 1.5, -2.0, 1e5, -1e300, f64::NAN, f64::INFINITY];
         let whole = 6_755_399_441_055_744.0;
         for turn in 0..some.len() {
-            let x: [f64; MOST_LANES] = from_fn(|l| some[(turn + l) % some.len()]);
-            let y: [f64; MOST_LANES] = from_fn(|l| whole + ((turn * 3 + l) % 7) as f64 - 3.0);
+            let x: [f64; MAX_LANES] = from_fn(|l| some[(turn + l) % some.len()]);
+            let y: [f64; MAX_LANES] = from_fn(|l| whole + ((turn * 3 + l) % 7) as f64 - 3.0);
             let ((a, c), (b, d)) =
                 ((R::load(&x), R::load(&y)), (Array::<N>::load(&x), Array::<N>::load(&y)));
-            let swapped = (R::swap_where_odd(a, c, c), Array::swap_where_odd(b, d, d));
+            let swapped = (R::swap_if_odd(a, c, c), Array::swap_if_odd(b, d, d));
             for (a, b) in [
-                (a.size(), b.size()),
+                (a.abs(), b.abs()),
                 (-a, -b),
                 (swapped.0.0, swapped.1.0),
                 (swapped.0.1, swapped.1.1),
-                (a.negate_where_second_bit(c, 0), b.negate_where_second_bit(d, 0)),
-                (a.negate_where_second_bit(c, 1), b.negate_where_second_bit(d, 1)),
+                (a.negate_if_second_bit(c, 0), b.negate_if_second_bit(d, 0)),
+                (a.negate_if_second_bit(c, 1), b.negate_if_second_bit(d, 1)),
             ] {
                 assert_eq!(bits(&[a]), bits(&[b]), "{x:?} {y:?}");
             }
             for limit in [0.0, 1e5, f64::MAX, f64::INFINITY] {
-                assert_eq!(a.all_within(limit), b.all_within(limit), "{x:?} {limit}");
-                let (a, b) = (a.times_plus(R::splat(0.0), c), b.times_plus(Array::splat(0.0), d));
-                assert_eq!(a.all_within(limit), b.all_within(limit));
+                assert_eq!(a.all_abs_le(limit), b.all_abs_le(limit), "{x:?} {limit}");
+                let (a, b) = (a.mul_add(R::splat(0.0), c), b.mul_add(Array::splat(0.0), d));
+                assert_eq!(a.all_abs_le(limit), b.all_abs_le(limit));
             }
             let (a, b) = (c - R::splat(whole), d - Array::splat(whole));
             assert_eq!(a.sum(), b.sum());

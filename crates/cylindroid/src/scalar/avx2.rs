@@ -8,7 +8,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Four, Real, trig};
+use super::{Simd, Simd4, trig};
 
 /// Sums, differences and products by intrinsics.
 macro_rules! operators {
@@ -95,15 +95,15 @@ fn lanes_of(numbers: &[f64]) -> __m256i {
     unsafe { _mm256_loadu_si256(window.as_ptr().cast()) }
 }
 
-impl Four for Lanes4 {
+impl Simd4 for Lanes4 {
     #[inline(always)]
-    fn load_some(from: &[f64]) -> Self {
+    fn load_partial(from: &[f64]) -> Self {
         // SAFETY: only numbers that are there are read; see the head of this file.
         Self(unsafe { _mm256_maskload_pd(from.as_ptr(), lanes_of(from)) })
     }
 
     #[inline(always)]
-    fn store_some(self, to: &mut [f64]) {
+    fn store_partial(self, to: &mut [f64]) {
         // SAFETY: only places that are there are written; see the head of this file.
         unsafe { _mm256_maskstore_pd(to.as_mut_ptr(), lanes_of(to), self.0) }
     }
@@ -210,7 +210,7 @@ pub(super) unsafe fn store_rest(rest: &[Lanes4], to: *mut f64, stride: usize) {
     }
 }
 
-impl Real for Lanes4 {
+impl Simd for Lanes4 {
     const LANES: usize = 4;
     const FUSED: bool = true;
 
@@ -285,19 +285,19 @@ impl Real for Lanes4 {
     }
 
     #[inline(always)]
-    fn times_plus(self, b: Self, c: Self) -> Self {
+    fn mul_add(self, b: Self, c: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm256_fmadd_pd(self.0, b.0, c.0) })
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
+    fn abs(self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
     }
 
     #[inline(always)]
-    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
+    fn swap_if_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
         // SAFETY: see the head of this file.
         unsafe {
             // What is chosen by is the sign.
@@ -307,7 +307,7 @@ impl Real for Lanes4 {
     }
 
     #[inline(always)]
-    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
+    fn negate_if_second_bit(self, bits: Self, more: u64) -> Self {
         // SAFETY: see the head of this file.
         unsafe {
             let sum = _mm256_castpd_si256(bits.0);
@@ -321,7 +321,7 @@ impl Real for Lanes4 {
     }
 
     #[inline(always)]
-    fn all_within(self, limit: f64) -> bool {
+    fn all_abs_le(self, limit: f64) -> bool {
         // SAFETY: see the head of this file.
         unsafe {
             let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0);

@@ -9,7 +9,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::avx2::{Lanes4, operators, rows_in, rows_of, store_rest, store_rows, transposed_rows};
-use super::{Real, trig};
+use super::{Simd, trig};
 
 /// The bit of the sign.
 const SIGN: i64 = i64::MIN;
@@ -52,7 +52,7 @@ impl Neg for Lanes8 {
     }
 }
 
-impl Real for Lanes8 {
+impl Simd for Lanes8 {
     const LANES: usize = 8;
     const FUSED: bool = true;
 
@@ -140,19 +140,19 @@ impl Real for Lanes8 {
     }
 
     #[inline(always)]
-    fn times_plus(self, b: Self, c: Self) -> Self {
+    fn mul_add(self, b: Self, c: Self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm512_fmadd_pd(self.0, b.0, c.0) })
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
+    fn abs(self) -> Self {
         // SAFETY: see the head of this file.
         Self(unsafe { _mm512_abs_pd(self.0) })
     }
 
     #[inline(always)]
-    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
+    fn swap_if_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
         // SAFETY: see the head of this file.
         unsafe {
             let odd = _mm512_test_epi64_mask(_mm512_castpd_si512(bits.0), _mm512_set1_epi64(1));
@@ -161,7 +161,7 @@ impl Real for Lanes8 {
     }
 
     #[inline(always)]
-    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
+    fn negate_if_second_bit(self, bits: Self, more: u64) -> Self {
         // SAFETY: see the head of this file.
         unsafe {
             let sum = _mm512_add_epi64(
@@ -174,7 +174,7 @@ impl Real for Lanes8 {
     }
 
     #[inline(always)]
-    fn all_within(self, limit: f64) -> bool {
+    fn all_abs_le(self, limit: f64) -> bool {
         // SAFETY: see the head of this file.
         unsafe {
             let size = _mm512_abs_pd(self.0);

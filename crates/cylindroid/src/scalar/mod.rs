@@ -1,6 +1,6 @@
 //! The numbers that kernels compute with: one f64, or several side by side.
 //!
-//! A kernel is written once over [`Real`] and compiled for plain numbers (the specification), for
+//! A kernel is written once over [`Simd`] and compiled for plain numbers (the specification), for
 //! one register of four or eight, and for arrays where the processor is another one.
 
 mod array;
@@ -8,8 +8,8 @@ mod array;
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
-mod field;
-mod sequence;
+mod simd_float;
+mod splitmix64;
 mod trig;
 
 use std::ops::{Add, Mul, Neg, Sub};
@@ -19,8 +19,8 @@ pub(crate) use array::Array;
 pub(crate) use avx2::Lanes4;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx512::Lanes8;
-pub(crate) use field::Field;
-pub(crate) use sequence::uniform;
+pub(crate) use simd_float::SimdFloat;
+pub(crate) use splitmix64::uniform;
 pub(crate) use trig::sin_cos;
 
 /// True if the processor has AVX2 and fused products: what four lanes need.
@@ -37,15 +37,15 @@ pub(crate) fn has_avx512() -> bool {
 }
 
 /// Lanes at the most.
-pub(crate) const MOST_LANES: usize = 8;
+pub(crate) const MAX_LANES: usize = 8;
 
 /// One number, or several that go the same way.
-pub(crate) trait Real:
+pub(crate) trait Simd:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
     /// How many.
     const LANES: usize;
-    /// True if [`Real::times_plus`] rounds once.
+    /// True if [`Simd::mul_add`] rounds once.
     const FUSED: bool;
     /// The same number in all lanes.
     fn splat(x: f64) -> Self;
@@ -62,15 +62,15 @@ pub(crate) trait Real:
     /// All lanes together.
     fn sum(self) -> f64;
     /// `self * b + c`, with one rounding where the processor can.
-    fn times_plus(self, b: Self, c: Self) -> Self;
+    fn mul_add(self, b: Self, c: Self) -> Self;
     /// Without its sign.
-    fn size(self) -> Self;
+    fn abs(self) -> Self;
     /// `(a, b)`, in lanes where the lowest bit of `bits` is set `(b, a)`.
-    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self);
+    fn swap_if_odd(a: Self, b: Self, bits: Self) -> (Self, Self);
     /// Negated in lanes where the second bit of `bits + more` (as integers) is set.
-    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self;
+    fn negate_if_second_bit(self, bits: Self, more: u64) -> Self;
     /// True if no lane is larger than `limit` or not a number.
-    fn all_within(self, limit: f64) -> bool;
+    fn all_abs_le(self, limit: f64) -> bool;
     /// [`sin_cos`] of each of `x`: cosines take the place of the angles; `memory` is overwritten.
     ///
     /// Registers do this in a function of its own: its constants need many of them, which numbers of
@@ -85,18 +85,18 @@ pub(crate) trait Real:
 }
 
 /// Four lanes, which can change places.
-pub(crate) trait Four: Field {
+pub(crate) trait Simd4: SimdFloat {
     /// The first four numbers, zeros where there are fewer.
-    fn load_some(from: &[f64]) -> Self;
+    fn load_partial(from: &[f64]) -> Self;
     /// Into the first four places, or those that there are.
-    fn store_some(self, to: &mut [f64]);
+    fn store_partial(self, to: &mut [f64]);
     /// Lane l is the sum of all lanes of the l-th.
     fn sums(of: [Self; 4]) -> Self;
     /// Lane l of the k-th is lane k of the l-th.
     fn transposed(of: [Self; 4]) -> [Self; 4];
 }
 
-impl Real for f64 {
+impl Simd for f64 {
     const LANES: usize = 1;
     const FUSED: bool = false;
 
@@ -136,28 +136,28 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn times_plus(self, b: Self, c: Self) -> Self {
+    fn mul_add(self, b: Self, c: Self) -> Self {
         self * b + c
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
+    fn abs(self) -> Self {
         self.abs()
     }
 
     #[inline(always)]
-    fn swap_where_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
+    fn swap_if_odd(a: Self, b: Self, bits: Self) -> (Self, Self) {
         if bits.to_bits() & 1 == 0 { (a, b) } else { (b, a) }
     }
 
     #[inline(always)]
-    fn negate_where_second_bit(self, bits: Self, more: u64) -> Self {
+    fn negate_if_second_bit(self, bits: Self, more: u64) -> Self {
         let sign = (bits.to_bits().wrapping_add(more) & 2) << 62;
         Self::from_bits(self.to_bits() ^ sign)
     }
 
     #[inline(always)]
-    fn all_within(self, limit: f64) -> bool {
+    fn all_abs_le(self, limit: f64) -> bool {
         self.abs() <= limit
     }
 }

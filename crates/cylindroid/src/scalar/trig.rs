@@ -12,7 +12,7 @@
 //! Checked  `tests::agrees_with_std`, `tests::handles_every_quadrant_and_bad_input`,
 //!          `tests::lanes_agree_with_std`, `tests::many_are_as_each`
 
-use super::{MOST_LANES, Real};
+use super::{MAX_LANES, Simd};
 
 const LARGE: f64 = 1e5;
 const TWO_OVER_PI: f64 = std::f64::consts::FRAC_2_PI;
@@ -45,8 +45,8 @@ const C: [f64; 6] = [
 
 /// `(sin x, cos x)`, x in rad.
 #[inline(always)]
-pub(crate) fn sin_cos<R: Real>(x: R) -> (R, R) {
-    if x.all_within(LARGE) { small(x) } else { beyond(x) }
+pub(crate) fn sin_cos<R: Simd>(x: R) -> (R, R) {
+    if x.all_abs_le(LARGE) { small(x) } else { beyond(x) }
 }
 
 /// [`sin_cos`] of each: cosines take the place of the angles; `memory` is overwritten.
@@ -57,15 +57,15 @@ pub(crate) fn sin_cos<R: Real>(x: R) -> (R, R) {
 /// # Panics
 /// If not all have one length.
 #[inline(always)]
-pub(super) fn sines_cosines<R: Real>(x: &mut [R], sines: &mut [R], memory: &mut [R]) {
+pub(super) fn sines_cosines<R: Simd>(x: &mut [R], sines: &mut [R], memory: &mut [R]) {
     let n = x.len();
     assert!(sines.len() == n && memory.len() == n, "as many sines as angles");
     // None is larger than the sum.
     let mut sizes = R::splat(0.0);
     for x in &*x {
-        sizes = sizes + x.size();
+        sizes = sizes + x.abs();
     }
-    if !(R::FUSED && sizes.all_within(LARGE)) {
+    if !(R::FUSED && sizes.all_abs_le(LARGE)) {
         for i in 0..n {
             (sines[i], x[i]) = sin_cos(x[i]);
         }
@@ -89,7 +89,7 @@ pub(super) fn sines_cosines<R: Real>(x: &mut [R], sines: &mut [R], memory: &mut 
 
 /// For |x| <= `LARGE`; anything for other x.
 #[inline(always)]
-fn small<R: Real>(x: R) -> (R, R) {
+fn small<R: Simd>(x: R) -> (R, R) {
     if R::FUSED {
         let (y, bits) = reduced(x);
         let z = y * y;
@@ -108,42 +108,42 @@ fn small<R: Real>(x: R) -> (R, R) {
 
 /// n, the whole number nearest to x / (pi/2), and a number whose lowest bits are those of n.
 #[inline(always)]
-fn quarters<R: Real>(x: R) -> (R, R) {
-    let rounded = x.times_plus(R::splat(TWO_OVER_PI), R::splat(ROUND));
+fn quarters<R: Simd>(x: R) -> (R, R) {
+    let rounded = x.mul_add(R::splat(TWO_OVER_PI), R::splat(ROUND));
     (rounded - R::splat(ROUND), rounded)
 }
 
 /// `x - n pi/2` in two parts, the first difference exact, as x is near `n pi/2`; and the bits of n.
 #[inline(always)]
-fn reduced<R: Real>(x: R) -> (R, R) {
+fn reduced<R: Simd>(x: R) -> (R, R) {
     let (n, bits) = quarters(x);
-    let near = n.times_plus(R::splat(-PIO2_HIGH), x);
-    (n.times_plus(R::splat(-PIO2_LOW), near), bits)
+    let near = n.mul_add(R::splat(-PIO2_HIGH), x);
+    (n.mul_add(R::splat(-PIO2_LOW), near), bits)
 }
 
 /// Sines and cosines change places in the odd quadrants; sines are negative in 2 and 3, cosines in
 /// 1 and 2.
 #[inline(always)]
-fn in_quadrant<R: Real>(sin: R, cos: R, bits: R) -> (R, R) {
-    let (s, c) = R::swap_where_odd(sin, cos, bits);
-    (s.negate_where_second_bit(bits, 0), c.negate_where_second_bit(bits, 1))
+fn in_quadrant<R: Simd>(sin: R, cos: R, bits: R) -> (R, R) {
+    let (s, c) = R::swap_if_odd(sin, cos, bits);
+    (s.negate_if_second_bit(bits, 0), c.negate_if_second_bit(bits, 1))
 }
 
 /// Of y in [-pi/4, pi/4], `z = y^2`.
 #[inline(always)]
-fn sine<R: Real>(y: R, z: R) -> R {
-    (y * z).times_plus(z.times_plus(polynomial(z, &S[1..]), R::splat(S[0])), y)
+fn sine<R: Simd>(y: R, z: R) -> R {
+    (y * z).mul_add(z.mul_add(polynomial(z, &S[1..]), R::splat(S[0])), y)
 }
 
 /// Of a number in [-pi/4, pi/4] with the square z.
 #[inline(always)]
-fn cosine<R: Real>(z: R) -> R {
-    (z * z).times_plus(polynomial(z, &C), z.times_plus(R::splat(-0.5), R::splat(1.0)))
+fn cosine<R: Simd>(z: R) -> R {
+    (z * z).mul_add(polynomial(z, &C), z.mul_add(R::splat(-0.5), R::splat(1.0)))
 }
 
 /// Sine and cosine of y + tail, with the roundings of y carried along.
 #[inline(always)]
-fn with_tail<R: Real>(y: R, tail: R) -> (R, R) {
+fn with_tail<R: Simd>(y: R, tail: R) -> (R, R) {
     let k = R::splat;
     let z = y * y;
     let (p, q) = (polynomial(z, &S[1..]), polynomial(z, &C));
@@ -157,10 +157,10 @@ fn with_tail<R: Real>(y: R, tail: R) -> (R, R) {
 
 /// `a[0] + z (a[1] + z (a[2] + ...))`
 #[inline(always)]
-fn polynomial<R: Real>(z: R, a: &[f64]) -> R {
+fn polynomial<R: Simd>(z: R, a: &[f64]) -> R {
     let mut sum = R::splat(a[a.len() - 1]);
     for a in a[..a.len() - 1].iter().rev() {
-        sum = sum.times_plus(z, R::splat(*a));
+        sum = sum.mul_add(z, R::splat(*a));
     }
     sum
 }
@@ -168,14 +168,14 @@ fn polynomial<R: Real>(z: R, a: &[f64]) -> R {
 /// Where a lane is larger than `LARGE`: those by the standard library.
 #[cold]
 #[inline(never)]
-fn beyond<R: Real>(x: R) -> (R, R) {
+fn beyond<R: Simd>(x: R) -> (R, R) {
     let (small_sin, small_cos) = small(x);
-    let mut lanes = [0.0; MOST_LANES];
+    let mut lanes = [0.0; MAX_LANES];
     let (mut sin, mut cos) = (lanes, lanes);
     x.store(&mut lanes);
     small_sin.store(&mut sin);
     small_cos.store(&mut cos);
-    for (l, x) in lanes.into_iter().enumerate().filter(|(_, x)| !x.all_within(LARGE)) {
+    for (l, x) in lanes.into_iter().enumerate().filter(|(_, x)| !x.all_abs_le(LARGE)) {
         (sin[l], cos[l]) = x.sin_cos();
     }
     (R::load(&sin), R::load(&cos))
@@ -185,7 +185,7 @@ fn beyond<R: Real>(x: R) -> (R, R) {
 mod tests {
     use super::super::Array;
     #[cfg(target_arch = "x86_64")]
-    use super::super::{Lanes4, Lanes8, MOST_LANES, Real, has_avx2, has_avx512};
+    use super::super::{Lanes4, Lanes8, MAX_LANES, Simd, has_avx2, has_avx512};
     use super::sin_cos;
     #[cfg(target_arch = "x86_64")]
     use std::array::from_fn;
@@ -233,16 +233,16 @@ mod tests {
         assert!(sines.0[2].is_nan() && sin_cos(f64::INFINITY).1.is_nan());
     }
 
-    /// [`Real::sines_cosines`] of rows of lanes: the sines and then the cosines of each row.
+    /// [`Simd::sines_cosines`] of rows of lanes: the sines and then the cosines of each row.
     #[cfg(target_arch = "x86_64")]
     macro_rules! of_lanes {
         ($name:ident, $lanes:ident, $features:literal) => {
             #[target_feature(enable = $features)]
-            fn $name(rows: &[[f64; MOST_LANES]]) -> Vec<[[f64; MOST_LANES]; 2]> {
+            fn $name(rows: &[[f64; MAX_LANES]]) -> Vec<[[f64; MAX_LANES]; 2]> {
                 let mut x: Vec<$lanes> = rows.iter().map(|x| $lanes::load(x)).collect();
                 let (mut sines, mut memory) = (x.clone(), x.clone());
                 $lanes::sines_cosines(&mut x, &mut sines, &mut memory);
-                let mut all = vec![[[0.0; MOST_LANES]; 2]; rows.len()];
+                let mut all = vec![[[0.0; MAX_LANES]; 2]; rows.len()];
                 for ((all, sines), cosines) in all.iter_mut().zip(sines).zip(x) {
                     sines.store(&mut all[0]);
                     cosines.store(&mut all[1]);
@@ -258,7 +258,7 @@ mod tests {
     of_lanes!(of_eight, Lanes8, "avx512f,avx2,fma");
 
     #[cfg(target_arch = "x86_64")]
-    type Many<'a> = &'a dyn Fn(&[[f64; MOST_LANES]]) -> Vec<[[f64; MOST_LANES]; 2]>;
+    type Many<'a> = &'a dyn Fn(&[[f64; MAX_LANES]]) -> Vec<[[f64; MAX_LANES]; 2]>;
 
     /// With the number of lanes, for all that the processor has.
     #[cfg(target_arch = "x86_64")]

@@ -4,27 +4,27 @@
 //! wrenches by the coadjoint, so that power is the same in every frame. `a_from_b` names the pose
 //! that takes coordinates in frame b to coordinates in frame a.
 
+mod aligned_pose;
 mod angles;
 mod exp;
 mod forms;
-mod padded;
 mod pose;
 mod rotation;
 mod series;
-mod triple;
 mod twist;
 mod vec3;
+mod vector3_like;
 
+pub(crate) use aligned_pose::AlignedPose;
 pub use angles::{Quaternion, Rpy, Zyz};
 pub use exp::{
     Derivative6, exp, exp_derivative, log, log_derivative, rotation_exp_derivative,
     rotation_log_derivative,
 };
-pub(crate) use padded::Padded;
 pub use pose::Pose;
 pub use rotation::Rotation;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use triple::Register;
-pub(crate) use triple::{Columns, Single, Triple, dot};
 pub use twist::{Twist, Wrench};
 pub use vec3::{Mat3, Vec3};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use vector3_like::PackedVec3;
+pub(crate) use vector3_like::{Columns, SingleVector3, Vector3Like, dot};

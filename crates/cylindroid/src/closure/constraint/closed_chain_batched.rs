@@ -15,10 +15,10 @@ use super::closed_chain::Columns;
 use super::constraint_rows::{self, KinematicPair, PairConstraints};
 use super::velocity_constraint::Unit;
 use crate::error::Result;
-use crate::kinematics::{Frame, forward_several};
+use crate::kinematics::tree_batched::{self, Frame};
 use crate::model::{FrameId, Mechanism, Motion, Node};
-use crate::scalar::{Field, MOST_LANES};
-use crate::spatial::{Padded, Pose, Triple, Vec3, Wrench, dot};
+use crate::scalar::{MAX_LANES, SimdFloat};
+use crate::spatial::{AlignedPose, Pose, Vec3, Vector3Like, Wrench, dot};
 use crate::tolerance::CROSSED_AXES;
 
 /// What does not change with the configuration.
@@ -42,7 +42,7 @@ pub(crate) struct BatchedConstraintPlan {
 #[derive(Debug, Clone)]
 struct AttachedFrame {
     slot: usize,
-    from: Padded,
+    from: AlignedPose,
 }
 
 /// What a coordinate does to what its joint carries: it turns about, or slides along, an axis of the
@@ -128,7 +128,7 @@ impl BatchedConstraintPlan {
         Ok(Self {
             nodes: mechanism.nodes().to_vec(),
             held: pairs.iter().map(BatchedPair::len).sum(),
-            pairs: pairs,
+            pairs,
             columns_of: between(mechanism.nodes(), &places, 0, target.slot),
             reference: target,
             components,
@@ -166,13 +166,13 @@ impl BatchedConstraintPlan {
 
     /// Writes all rows at q, those held first, one after the other.
     #[inline(always)]
-    pub(crate) fn write<R: Field>(
+    pub(crate) fn write<R: SimdFloat>(
         &self,
         q: &[R],
         frames: &mut [Frame<R>],
         rows: &mut [R],
     ) -> BatchedClosureError<R> {
-        forward_several(&self.nodes, q, frames);
+        tree_batched::forward(&self.nodes, q, frames);
         rows.fill(R::splat(0.0));
         let columns = self.columns();
         let mut written = BatchedClosureError {
@@ -195,14 +195,14 @@ impl BatchedConstraintPlan {
             let v = v.times(inverse);
             let six = [v[0], v[1], v[2], w[0], w[1], w[2]];
             for (row, &c) in rows.chunks_exact_mut(columns).zip(self.components) {
-                row[way.column] = rate.times_plus(six[c], row[way.column]);
+                row[way.column] = rate.mul_add(six[c], row[way.column]);
             }
         }
         written
     }
 
     #[inline(always)]
-    fn tie<R: Field>(
+    fn tie<R: SimdFloat>(
         &self,
         tie: &BatchedPair,
         frames: &[Frame<R>],
@@ -223,24 +223,24 @@ impl BatchedConstraintPlan {
             let force = turned(&a, w.force);
             wrenches[i] = (force, turned(&a, w.moment));
             if i < tie.residuals && tie.turned.is_none() {
-                let open = (dot(force, offset) * k(self.length)).size();
-                written.distance = written.distance.larger(open);
+                let open = (dot(force, offset) * k(self.length)).abs();
+                written.distance = written.distance.max(open);
             }
         }
         if let Some(held) = &tie.turned {
             let closure_error = closure_error(held, &a, &b);
-            written.distance = written.distance.larger(closure_error[0]);
-            written.angle = written.angle.larger(closure_error[1]);
+            written.distance = written.distance.max(closure_error[0]);
+            written.angle = written.angle.max(closure_error[1]);
         }
         if let Some([first, second]) = tie.crossed {
             let (on_a, on_b) = (turned(&a, first), turned(&b, second));
             let normal = on_a.cross(on_b);
-            let size = dot(normal, normal).root();
+            let size = dot(normal, normal).sqrt();
             let inverse = k(1.0) / size;
             wrenches[tie.rows.len()] = (none, normal.times(inverse));
             let open = (k(first.dot(second)) - dot(on_a, on_b)) * inverse;
-            written.angle = written.angle.larger(open.size());
-            written.usable = R::where_less(size, k(CROSSED_AXES), k(0.0), written.usable);
+            written.angle = written.angle.max(open.abs());
+            written.usable = R::select_lt(size, k(CROSSED_AXES), k(0.0), written.usable);
         }
         let wrenches = &wrenches[..tie.len()];
         for way in &tie.columns_of {
@@ -248,7 +248,7 @@ impl BatchedConstraintPlan {
             let (v, w) = way.twist(frames, b.p);
             for (row, (force, moment)) in rows.chunks_exact_mut(columns).zip(wrenches) {
                 let power = dot(v, *force) + dot(w, *moment);
-                row[way.column] = rate.times_plus(power, row[way.column]);
+                row[way.column] = rate.mul_add(power, row[way.column]);
             }
         }
         if let Some(rate) = tie.rate {
@@ -262,7 +262,7 @@ impl BatchedConstraintPlan {
 impl JacobianColumn {
     /// Velocity of the point p, and angular velocity.
     #[inline(always)]
-    fn twist<R: Field>(&self, frames: &[Frame<R>], p: [R; 3]) -> ([R; 3], [R; 3]) {
+    fn twist<R: SimdFloat>(&self, frames: &[Frame<R>], p: [R; 3]) -> ([R; 3], [R; 3]) {
         let frame = &frames[self.slot];
         let axis = [frame.x, frame.y, frame.z][self.axis];
         if self.turns { (axis.cross(p.minus(frame.p)), axis) } else { (axis, [R::splat(0.0); 3]) }
@@ -310,8 +310,8 @@ fn between(
 
 /// The closure_error along and about `held`, lane by lane as for one configuration.
 #[inline(always)]
-fn closure_error<R: Field>(held: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2] {
-    let (mut distance, mut angle) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
+fn closure_error<R: SimdFloat>(held: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2] {
+    let (mut distance, mut angle) = ([0.0; MAX_LANES], [0.0; MAX_LANES]);
     let (a, b) = (poses(a), poses(b));
     for l in 0..R::LANES {
         let closure_error = KinematicPair::new(0, [0, 0], [a[l], b[l]]).closure_error(held);
@@ -321,16 +321,16 @@ fn closure_error<R: Field>(held: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2
 }
 
 #[inline(always)]
-fn poses<R: Field>(frame: &Frame<R>) -> [Pose; MOST_LANES] {
-    let mut numbers = [[0.0; MOST_LANES]; 12];
+fn poses<R: SimdFloat>(frame: &Frame<R>) -> [Pose; MAX_LANES] {
+    let mut numbers = [[0.0; MAX_LANES]; 12];
     for (i, column) in [frame.x, frame.y, frame.z, frame.p].iter().enumerate() {
         for (j, x) in column.iter().enumerate() {
             x.store(&mut numbers[3 * i + j]);
         }
     }
-    let mut poses = [Pose::IDENTITY; MOST_LANES];
+    let mut poses = [Pose::IDENTITY; MAX_LANES];
     for (l, pose) in poses.iter_mut().enumerate().take(R::LANES) {
-        let mut padded = Padded::IDENTITY;
+        let mut padded = AlignedPose::IDENTITY;
         for j in 0..3 {
             padded.x[j] = numbers[j][l];
             padded.y[j] = numbers[3 + j][l];
@@ -344,6 +344,6 @@ fn poses<R: Field>(frame: &Frame<R>) -> [Pose; MOST_LANES] {
 
 /// A vector of the frame in the axes of the world.
 #[inline(always)]
-fn turned<R: Field>(frame: &Frame<R>, v: Vec3) -> [R; 3] {
-    frame.seen_outside([R::splat(v.x), R::splat(v.y), R::splat(v.z)])
+fn turned<R: SimdFloat>(frame: &Frame<R>, v: Vec3) -> [R; 3] {
+    frame.transform_vector([R::splat(v.x), R::splat(v.y), R::splat(v.z)])
 }

@@ -16,19 +16,19 @@
 //! Checked  tests/it/manipulability/batch.rs
 
 use crate::closure::BatchedConstraintPlan;
-use crate::kinematics::Frame;
+use crate::kinematics::tree_batched::Frame;
 use crate::linalg::Matrix;
-use crate::linalg::abreast::{
-    End, Reflections, divide_by_upper, dot, extreme_eigenvalues, singular_values, tournament,
-    tridiagonal,
+use crate::linalg::batched::{
+    End, Reflections, divide_by_upper, dot, extreme_eigenvalues, round_robin_pairs,
+    singular_values, tridiagonal,
 };
-use crate::scalar::{Array, Field};
+use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, has_avx2};
-use crate::spatial::Padded;
+use crate::spatial::AlignedPose;
 
 /// Numbers before the singular values.
-const BEFORE: usize = 6;
+const HEADER: usize = 6;
 
 /// What does not change with the configuration.
 #[derive(Debug, Clone)]
@@ -71,7 +71,7 @@ impl Kernel {
         let first = joint[(0, 0)];
         let same = Matrix::diagonal(&vec![first; joint.rows()]);
         let alike = (joint == same).then_some(first);
-        let pairs = tournament(k.min(plan.object()));
+        let pairs = round_robin_pairs(k.min(plan.object()));
         Some(Self { plan: Box::new(plan), object, joint, alike, pairs })
     }
 
@@ -92,12 +92,12 @@ impl Kernel {
 
     /// Numbers for each configuration.
     pub(super) fn width(&self) -> usize {
-        BEFORE + 2 * self.values()
+        HEADER + 2 * self.values()
     }
 
     /// The numbers of a configuration, read.
     pub(super) fn read<'a>(&self, numbers: &'a [f64]) -> Found<'a> {
-        let (scaled, measured) = numbers[BEFORE..].split_at(self.values());
+        let (scaled, measured) = numbers[HEADER..].split_at(self.values());
         Found {
             distance: numbers[0],
             angle: numbers[1],
@@ -131,7 +131,7 @@ impl Kernel {
     }
 
     #[inline(always)]
-    fn run_with<R: Field>(&self, q: &[f64], n: usize, out: &mut [f64]) {
+    fn run_with<R: SimdFloat>(&self, q: &[f64], n: usize, out: &mut [f64]) {
         let width = self.width();
         let mut scratch = Scratch::of(self, n);
         let blocks = q.chunks(R::LANES * n).zip(out.chunks_mut(R::LANES * width));
@@ -153,7 +153,7 @@ impl Kernel {
     }
 
     #[inline(always)]
-    fn analyse<R: Field>(&self, s: &mut Scratch<R>) {
+    fn analyse<R: SimdFloat>(&self, s: &mut Scratch<R>) {
         let plan = &*self.plan;
         let (t, d, m, a) = (plan.held(), plan.object(), plan.columns(), plan.actuated());
         let (k, values) = (self.dof(), self.values());
@@ -179,7 +179,7 @@ impl Kernel {
         let share = self.least_share(s);
         s.ratios.copy_from_slice(&s.twists);
         s.divide_by_driven(a);
-        let scaled = BEFORE..BEFORE + values;
+        let scaled = HEADER..HEADER + values;
         columns_of(&s.ratios, k, &mut s.columns, d);
         singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[scaled]);
         // In the metrics. What is orthogonal in one is so nearly in the other: where it can be, the
@@ -199,15 +199,15 @@ impl Kernel {
             s.divide_by_driven(a);
             columns_of(&s.ratios, k, &mut s.columns, d);
         }
-        singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[BEFORE + values..]);
+        singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[HEADER + values..]);
         let [smallest, largest] = self.extremes(s);
         let numbers = [written.distance, written.angle, written.usable, smallest, largest, share];
-        s.numbers[..BEFORE].copy_from_slice(&numbers);
+        s.numbers[..HEADER].copy_from_slice(&numbers);
     }
 
     /// The ends of the spectrum of M M^T.
     #[inline(always)]
-    fn extremes<R: Field>(&self, s: &mut Scratch<R>) -> [R; 2] {
+    fn extremes<R: SimdFloat>(&self, s: &mut Scratch<R>) -> [R; 2] {
         let (t, m) = (self.plan.held(), self.plan.columns());
         let size = t + self.plan.object();
         for j in 0..size {
@@ -228,7 +228,7 @@ impl Kernel {
 
     /// The square of the least share of drives and object in a motion.
     #[inline(always)]
-    fn least_share<R: Field>(&self, s: &mut Scratch<R>) -> R {
+    fn least_share<R: SimdFloat>(&self, s: &mut Scratch<R>) -> R {
         let one = R::splat(1.0);
         let (k, a) = (self.dof(), self.plan.actuated());
         if a == self.plan.columns() {
@@ -254,7 +254,7 @@ impl Kernel {
                 let sum = dot(&before[i * k..i * k + i], &own[..i]);
                 own[i] = (own[i] - sum) * s.roots[i];
             }
-            let rest = (own[j] - dot(&own[..j], &own[..j])).root();
+            let rest = (own[j] - dot(&own[..j], &own[..j])).sqrt();
             s.roots[j] = one / rest;
             s.weight_diagonal[j] = rest;
         }
@@ -300,7 +300,7 @@ struct Scratch<R> {
     numbers: Vec<R>,
 }
 
-impl<R: Field> Scratch<R> {
+impl<R: SimdFloat> Scratch<R> {
     /// Ratios over the triangle of the driven rates, which are `a` rows.
     #[inline(always)]
     fn divide_by_driven(&mut self, a: usize) {
@@ -321,7 +321,7 @@ impl<R: Field> Scratch<R> {
         let zeros = |count: usize| vec![R::splat(0.0); count];
         Self {
             q: zeros(n),
-            frames: vec![Frame::load(&Padded::IDENTITY); plan.frames()],
+            frames: vec![Frame::load(&AlignedPose::IDENTITY); plan.frames()],
             rows: zeros(size * m),
             diagonal: zeros(t),
             factors: zeros(t),
@@ -347,7 +347,7 @@ impl<R: Field> Scratch<R> {
 
 /// Rows of k numbers as columns.
 #[inline(always)]
-fn columns_into<R: Field>(rows: &[R], k: usize, columns: &mut [R]) {
+fn columns_into<R: SimdFloat>(rows: &[R], k: usize, columns: &mut [R]) {
     let d = rows.len() / k;
     for (i, row) in rows.chunks_exact(k).enumerate() {
         for (j, x) in row.iter().enumerate() {
@@ -358,7 +358,7 @@ fn columns_into<R: Field>(rows: &[R], k: usize, columns: &mut [R]) {
 
 /// The longer of rows and columns of a matrix of d rows of k numbers.
 #[inline(always)]
-fn columns_of<R: Field>(rows: &[R], k: usize, columns: &mut [R], d: usize) {
+fn columns_of<R: SimdFloat>(rows: &[R], k: usize, columns: &mut [R], d: usize) {
     if k > d {
         columns.copy_from_slice(rows);
     } else {
@@ -368,14 +368,14 @@ fn columns_of<R: Field>(rows: &[R], k: usize, columns: &mut [R], d: usize) {
 
 /// `factor * m` times rows of k numbers.
 #[inline(always)]
-fn times<R: Field>(m: &Matrix, factor: f64, rows: &[R], k: usize, out: &mut [R]) {
+fn times<R: SimdFloat>(m: &Matrix, factor: f64, rows: &[R], k: usize, out: &mut [R]) {
     for (i, out) in out.chunks_exact_mut(k).enumerate() {
         out.fill(R::splat(0.0));
         for (j, row) in rows.chunks_exact(k).enumerate() {
             let entry = m[(i, j)] * factor;
             if entry != 0.0 {
                 for (x, y) in out.iter_mut().zip(row) {
-                    *x = R::splat(entry).times_plus(*y, *x);
+                    *x = R::splat(entry).mul_add(*y, *x);
                 }
             }
         }

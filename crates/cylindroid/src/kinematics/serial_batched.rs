@@ -12,10 +12,10 @@
 
 use super::jacobian::ReferenceFrame;
 use super::serial::Serial;
-use crate::scalar::{Array, MOST_LANES, Real};
+use crate::scalar::{Array, MAX_LANES, Simd};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Lanes4, Lanes8, has_avx2, has_avx512};
-use crate::spatial::{Columns, Triple};
+use crate::spatial::{Columns, Vector3Like};
 
 /// What there is, and what is asked for.
 pub(super) struct Work<'a> {
@@ -32,10 +32,10 @@ pub(super) struct Work<'a> {
 }
 
 /// Numbers of a joint: coordinate, cosine, sine, rows.
-const EACH: usize = 9;
+const VALUES_PER_JOINT: usize = 9;
 /// Numbers that are kept on the stack: those of 12 joints, or of a robot of 10 of which 7 move the
 /// end effector. Calls for larger robots ask for memory once.
-const FEW: usize = 12 * EACH + 20;
+const STACK_LIMIT: usize = 12 * VALUES_PER_JOINT + 20;
 
 /// As many configurations at once as the processor can.
 pub(super) fn run(work: Work<'_>) {
@@ -52,46 +52,50 @@ pub(super) fn run(work: Work<'_>) {
             }
         }
     }
-    run_with::<Array<4>>(work, along);
+    run_with::<Array<4>>(work, forward);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx2,fma")]
 fn run_avx512(work: Work<'_>) {
-    run_with::<Lanes8>(work, |serial, turns, rows| along_avx512(serial, turns, rows));
+    run_with::<Lanes8>(work, |serial, turns, rows| forward_avx512(serial, turns, rows));
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn run_avx2(work: Work<'_>) {
-    run_with::<Lanes4>(work, |serial, turns, rows| along_avx2(serial, turns, rows));
+    run_with::<Lanes4>(work, |serial, turns, rows| forward_avx2(serial, turns, rows));
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx2,fma")]
-#[inline(never)] // as `along_avx2`
-fn along_avx512(serial: &Serial, turns: Turns<'_, Lanes8>, rows: &mut [Lanes8]) -> Turned<Lanes8> {
-    along(serial, turns, rows)
+#[inline(never)] // as `forward_avx2`
+fn forward_avx512(
+    serial: &Serial,
+    turns: SinCos<'_, Lanes8>,
+    rows: &mut [Lanes8],
+) -> FrameAtTip<Lanes8> {
+    forward(serial, turns, rows)
 }
 
-/// [`along`] apart from other code: frames fill the registers, and beside other numbers some would
+/// [`forward`] apart from other code: frames fill the registers, and beside other numbers some would
 /// be put aside in every step, which the next one waits for.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 #[inline(never)]
-pub(crate) fn along_avx2(
+pub(crate) fn forward_avx2(
     serial: &Serial,
-    turns: Turns<'_, Lanes4>,
+    turns: SinCos<'_, Lanes4>,
     rows: &mut [Lanes4],
-) -> Turned<Lanes4> {
-    along(serial, turns, rows)
+) -> FrameAtTip<Lanes4> {
+    forward(serial, turns, rows)
 }
 
-/// `along` is [`along`], in whatever form.
+/// `forward` is [`forward`], in whatever form.
 #[inline(always)]
-fn run_with<R: Real>(
+fn run_with<R: Simd>(
     mut work: Work<'_>,
-    along: impl Fn(&Serial, Turns<'_, R>, &mut [R]) -> Turned<R>,
+    forward: impl Fn(&Serial, SinCos<'_, R>, &mut [R]) -> FrameAtTip<R>,
 ) {
     let Work { serial, coordinates, n, .. } = work;
     let joints = serial.joints();
@@ -99,10 +103,10 @@ fn run_with<R: Real>(
     let zero = R::splat(0.0);
     let in_order = (0..m).all(|i| coordinates[joints[i].coordinate] == i);
     let in_place = work.jacobians.is_none() || (in_order && m == n);
-    let size = m * EACH + if in_place { 0 } else { 6 * n };
-    let mut few = [zero; FEW];
-    let mut many = vec![zero; if size <= FEW { 0 } else { size }];
-    let memory = if size <= FEW { &mut few[..size] } else { &mut many[..] };
+    let size = m * VALUES_PER_JOINT + if in_place { 0 } else { 6 * n };
+    let mut few = [zero; STACK_LIMIT];
+    let mut many = vec![zero; if size <= STACK_LIMIT { 0 } else { size }];
+    let memory = if size <= STACK_LIMIT { &mut few[..size] } else { &mut many[..] };
     let (x, memory) = memory.split_at_mut(m);
     let (cosines, memory) = memory.split_at_mut(m);
     let (sines, memory) = memory.split_at_mut(m);
@@ -120,7 +124,7 @@ fn run_with<R: Real>(
             cosines[i] = joints[i].angle(x[i]);
         }
         R::sines_cosines(cosines, sines, &mut rows[..m]);
-        let turned = along(serial, (sines, cosines), rows);
+        let turned = forward(serial, (sines, cosines), rows);
         let way = if let Some((reference, jacobians)) = &mut work.jacobians {
             let way = jacobian(serial, *reference, x, &turned, rows);
             let jacobians = &mut jacobians[done * 6 * n..];
@@ -132,7 +136,7 @@ fn run_with<R: Real>(
             }
             way
         } else {
-            whole_way(serial, x, rows)
+            tool_offset(serial, x, rows)
         };
         if let Some(poses) = &mut work.poses {
             put(&turned.pose_rows(way), &mut poses[done * 16..], count);
@@ -169,9 +173,9 @@ fn fetch(places: &[f64]) {
 /// The coordinates of the joints, at any places; lanes that are left over repeat the last
 /// configuration.
 #[inline(always)]
-fn gather<R: Real>(q: &[f64], n: usize, serial: &Serial, coordinates: &[usize], x: &mut [R]) {
+fn gather<R: Simd>(q: &[f64], n: usize, serial: &Serial, coordinates: &[usize], x: &mut [R]) {
     let last = q.len() / n - 1;
-    let mut all = [&q[last * n..]; MOST_LANES];
+    let mut all = [&q[last * n..]; MAX_LANES];
     for (row, q) in all.iter_mut().zip(q.chunks_exact(n)) {
         *row = q;
     }
@@ -182,12 +186,12 @@ fn gather<R: Real>(q: &[f64], n: usize, serial: &Serial, coordinates: &[usize], 
 }
 
 /// Sines and cosines of the angles of the joints.
-pub(crate) type Turns<'a, R> = (&'a [R], &'a [R]);
+pub(crate) type SinCos<'a, R> = (&'a [R], &'a [R]);
 
 /// What is known after going along a chain: the axes of the tool, and where the first joint is.
-pub(crate) struct Turned<R>(Columns<[R; 3]>);
+pub(crate) struct FrameAtTip<R>(Columns<[R; 3]>);
 
-impl<R: Real> Turned<R> {
+impl<R: Simd> FrameAtTip<R> {
     /// The tool, for the way to it from the origin of the first joint.
     #[inline(always)]
     pub(crate) fn tool(&self, way: [R; 3]) -> Columns<[R; 3]> {
@@ -205,46 +209,46 @@ impl<R: Real> Turned<R> {
 
 /// Goes along the chain: `rows` get one number for each joint, axes x and z.
 ///
-/// Origins follow from them, on the way back, in [`jacobian`] or [`whole_way`].
+/// Origins follow from them, on the way back, in [`jacobian`] or [`tool_offset`].
 #[inline(always)]
-pub(crate) fn along<R: Real>(
+pub(crate) fn forward<R: Simd>(
     serial: &Serial,
-    (sines, cosines): Turns<'_, R>,
+    (sines, cosines): SinCos<'_, R>,
     rows: &mut [R],
-) -> Turned<R> {
+) -> FrameAtTip<R> {
     let joints = serial.joints();
     let m = joints.len();
     let (sines, cosines) = (&sines[..m], &cosines[..m]);
     let [a, b, c, d, e, f] = split(rows, m);
     let mut frame = serial.start::<[R; 3]>();
     for i in 0..m {
-        frame = frame.turned(sines[i], cosines[i]);
+        frame = frame.rotated_z(sines[i], cosines[i]);
         [a[i], b[i], c[i]] = frame.x;
         [d[i], e[i], f[i]] = frame.z;
-        frame = joints[i].tilted(frame);
+        frame = joints[i].next_axis_frame(frame);
     }
-    Turned(serial.end(frame))
+    FrameAtTip(serial.end(frame))
 }
 
-/// From the origin of the first joint to that of the tool, from the rows of [`along`].
+/// From the origin of the first joint to that of the tool, from the rows of [`forward`].
 #[inline(always)]
-pub(crate) fn whole_way<R: Real>(serial: &Serial, q: &[R], rows: &mut [R]) -> [R; 3] {
+pub(crate) fn tool_offset<R: Simd>(serial: &Serial, q: &[R], rows: &mut [R]) -> [R; 3] {
     let joints = serial.joints();
     let (q, [a, b, c, d, e, f]) = (&q[..joints.len()], split(rows, joints.len()));
     let mut way = [R::splat(0.0); 3];
     for i in (0..joints.len()).rev() {
-        way = way.plus(joints[i].way([a[i], b[i], c[i]], [d[i], e[i], f[i]], q[i]));
+        way = way.plus(joints[i].link_offset([a[i], b[i], c[i]], [d[i], e[i], f[i]], q[i]));
     }
     way
 }
 
-/// The Jacobian of the joints from the rows of [`along`], in their place. Gives [`whole_way`].
+/// The Jacobian of the joints from the rows of [`forward`], in their place. Gives [`tool_offset`].
 #[inline(always)]
-pub(crate) fn jacobian<R: Real>(
+pub(crate) fn jacobian<R: Simd>(
     serial: &Serial,
     reference: ReferenceFrame,
     q: &[R],
-    turned: &Turned<R>,
+    turned: &FrameAtTip<R>,
     rows: &mut [R],
 ) -> [R; 3] {
     let joints = serial.joints();
@@ -252,21 +256,21 @@ pub(crate) fn jacobian<R: Real>(
     let mut lever = [R::splat(0.0); 3];
     let mut way = lever;
     if reference == ReferenceFrame::World {
-        way = whole_way(serial, q, rows);
+        way = tool_offset(serial, q, rows);
         lever = turned.tool(way).p.negative();
     }
     let (q, [a, b, c, d, e, f]) = (&q[..joints.len()], split(rows, joints.len()));
     for i in (0..joints.len()).rev() {
         let axis = [d[i], e[i], f[i]];
-        lever = lever.plus(joints[i].way([a[i], b[i], c[i]], axis, q[i]));
+        lever = lever.plus(joints[i].link_offset([a[i], b[i], c[i]], axis, q[i]));
         let (linear, angular) = joints[i].column(axis, lever);
         [a[i], b[i], c[i]] = linear;
         [d[i], e[i], f[i]] = angular;
     }
     if reference == ReferenceFrame::Local {
         for i in 0..joints.len() {
-            [a[i], b[i], c[i]] = turned.0.seen([a[i], b[i], c[i]]);
-            [d[i], e[i], f[i]] = turned.0.seen([d[i], e[i], f[i]]);
+            [a[i], b[i], c[i]] = turned.0.inverse_transform_vector([a[i], b[i], c[i]]);
+            [d[i], e[i], f[i]] = turned.0.inverse_transform_vector([d[i], e[i], f[i]]);
         }
     }
     if reference == ReferenceFrame::World { way } else { lever }
@@ -285,7 +289,7 @@ fn split<R>(rows: &mut [R], m: usize) -> [&mut [R]; 6] {
 
 /// The columns of joints as those of coordinates: at any places, zero, or the sum of several.
 #[inline(always)]
-fn by_coordinates<R: Real>(rows: &[R], serial: &Serial, coordinates: &[usize], columns: &mut [R]) {
+fn by_coordinates<R: Simd>(rows: &[R], serial: &Serial, coordinates: &[usize], columns: &mut [R]) {
     columns.fill(R::splat(0.0));
     let (m, n) = (serial.joints().len(), columns.len() / 6);
     for (row, out) in rows.chunks_exact(m).zip(columns.chunks_exact_mut(n)) {
@@ -300,7 +304,7 @@ fn by_coordinates<R: Real>(rows: &[R], serial: &Serial, coordinates: &[usize], c
 // The memory for groups that are not whole, once a call, costs less than what would be in the way
 // of whole ones.
 #[inline(always)]
-fn put<R: Real>(numbers: &[R], out: &mut [f64], count: usize) {
+fn put<R: Simd>(numbers: &[R], out: &mut [f64], count: usize) {
     let size = numbers.len();
     if count == R::LANES {
         R::scatter(numbers, out, size);
@@ -378,13 +382,13 @@ mod tests {
             let q: Vec<f64> =
                 (0..n * 21).map(|i| f64::from(i as u32 * 7919 % 6283) / 1e3 - 3.1).collect();
             let of = |run: &dyn Fn(Work<'_>)| of(&chain, (n, &q), reference, run);
-            let plain = of(&|work| run_with::<f64>(work, along));
+            let plain = of(&|work| run_with::<f64>(work, forward));
             let near = |what: &str, other: &[f64]| {
                 for (a, b) in plain.iter().zip(other) {
                     assert!((a - b).abs() <= 16.0 * f64::EPSILON, "{name} {what}: {a} and {b}");
                 }
             };
-            near("array", &of(&|work| run_with::<Array<4>>(work, along)));
+            near("array", &of(&|work| run_with::<Array<4>>(work, forward)));
             #[cfg(target_arch = "x86_64")]
             if has_avx2() {
                 // SAFETY: the processor has these features.

@@ -2,11 +2,11 @@
 //! have no rest, four numbers in a register.
 //!
 //! Shapes   B: long x k, square matrices k x k; strides are lengths of columns in memory
-//! Why so   written once over [`Four`], to be inlined where it is known for what processor
+//! Why so   written once over [`Simd4`], to be inlined where it is known for what processor
 //! Checked  tests/it/svd.rs
 
 use super::matrix::Matrix;
-use crate::scalar::Four;
+use crate::scalar::Simd4;
 
 pub(super) const LANES: usize = 4;
 
@@ -20,14 +20,14 @@ pub(super) struct Size {
 
 /// Columns padded with zeros.
 #[derive(Debug, Clone)]
-pub(super) struct PaddedColumns {
+pub(super) struct AlignedColumns {
     rows: usize,
     pub(super) cols: usize,
     pub(super) stride: usize,
     pub(super) data: Vec<f64>,
 }
 
-impl PaddedColumns {
+impl AlignedColumns {
     pub(super) fn zeros(rows: usize, cols: usize) -> Self {
         let stride = rows.next_multiple_of(LANES);
         Self { rows, cols, stride, data: vec![0.0; stride * cols] }
@@ -73,13 +73,13 @@ pub(super) fn pair(
 
 /// Four entries of column j of the identity, from row `first` on.
 #[inline(always)]
-pub(super) fn unit<R: Four>(first: usize, j: usize) -> R {
+pub(super) fn unit<R: Simd4>(first: usize, j: usize) -> R {
     R::from_fn(|l| if first + l == j { 1.0 } else { 0.0 })
 }
 
 /// Four rows from `i` on of four columns from `j` on, in M^T; zeros beyond the k columns.
 #[inline(always)]
-pub(super) fn transposed_block<R: Four>(m: &[f64], i: usize, j: usize, size: Size) -> [R; LANES] {
+pub(super) fn transposed_block<R: Simd4>(m: &[f64], i: usize, j: usize, size: Size) -> [R; LANES] {
     R::transposed([
         four_of(m, j, i, size),
         four_of(m, j, i + 1, size),
@@ -90,13 +90,13 @@ pub(super) fn transposed_block<R: Four>(m: &[f64], i: usize, j: usize, size: Siz
 
 /// Four rows from `first` on of column j.
 #[inline(always)]
-fn four_of<R: Four>(m: &[f64], first: usize, j: usize, size: Size) -> R {
+fn four_of<R: Simd4>(m: &[f64], first: usize, j: usize, size: Size) -> R {
     if j < size.k { R::load(&m[j * size.short + first..]) } else { R::splat(0.0) }
 }
 
 /// `b = A^T`, A of k rows.
 #[inline(always)]
-pub(super) fn load_transposed<R: Four>(a: &Matrix, b: &mut [f64], stride: usize, size: Size) {
+pub(super) fn load_transposed<R: Simd4>(a: &Matrix, b: &mut [f64], stride: usize, size: Size) {
     let (k, b) = (size.k, &mut b[..size.k * stride]);
     for first in (0..stride).step_by(LANES) {
         for i in (0..k).step_by(LANES) {
@@ -117,7 +117,7 @@ pub(super) fn load_transposed<R: Four>(a: &Matrix, b: &mut [f64], stride: usize,
 
 /// Four numbers from row i of column j on, the last ones any; zero beyond the columns.
 #[inline(always)]
-fn four_rows<R: Four>(a: &Matrix, rows: usize, i: usize, j: usize) -> R {
+fn four_rows<R: Simd4>(a: &Matrix, rows: usize, i: usize, j: usize) -> R {
     let numbers = a.as_slice();
     let at = j * rows + i;
     match numbers.get(at..at + LANES) {
@@ -127,7 +127,7 @@ fn four_rows<R: Four>(a: &Matrix, rows: usize, i: usize, j: usize) -> R {
 }
 
 #[inline(always)]
-pub(super) fn scale<R: Four>(m: &mut [f64], factor: f64) {
+pub(super) fn scale<R: Simd4>(m: &mut [f64], factor: f64) {
     for four in m.as_chunks_mut::<LANES>().0 {
         (R::load(four) * R::splat(factor)).store(four);
     }
@@ -135,27 +135,27 @@ pub(super) fn scale<R: Four>(m: &mut [f64], factor: f64) {
 
 /// `to = to + factor from + diagonal`, square
 #[inline(always)]
-pub(super) fn add<R: Four>(to: &mut [f64], factor: f64, from: &[f64], diagonal: f64, size: Size) {
+pub(super) fn add<R: Simd4>(to: &mut [f64], factor: f64, from: &[f64], diagonal: f64, size: Size) {
     let Size { k, short, .. } = size;
     let (to, from) = (&mut to[..k * short], &from[..k * short]);
     for j in 0..k {
         for first in (0..short).step_by(LANES) {
             let (x, y) = (R::load(&to[j * short + first..]), R::load(&from[j * short + first..]));
-            let sum = y.times_plus(R::splat(factor), x);
+            let sum = y.mul_add(R::splat(factor), x);
             unit::<R>(first, j)
-                .times_plus(R::splat(diagonal), sum)
+                .mul_add(R::splat(diagonal), sum)
                 .store(&mut to[j * short + first..]);
         }
     }
 }
 
 /// Columns of which four rows stay in registers, and of which eight do.
-const FEW: usize = 8;
-const VERY_FEW: usize = 6;
+const MAX_COLUMNS_OF_FOUR_ROWS: usize = 8;
+const MAX_COLUMNS_OF_EIGHT_ROWS: usize = 6;
 
 /// `to = from m`, m square; `row` holds four rows.
 #[inline(always)]
-pub(super) fn product<R: Four>(
+pub(super) fn product<R: Simd4>(
     from: &[f64],
     stride: usize,
     m: &[f64],
@@ -164,20 +164,20 @@ pub(super) fn product<R: Four>(
     row: &mut [f64],
 ) {
     let k = size.k;
-    if k > FEW {
+    if k > MAX_COLUMNS_OF_FOUR_ROWS {
         to[..k * stride].copy_from_slice(&from[..k * stride]);
         times::<R>(to, stride, m, size, row);
         return;
     }
     let (from, to, m) = (&from[..k * stride], &mut to[..k * stride], &m[..k * size.short]);
     let mut first = 0;
-    while k <= VERY_FEW && first + 2 * LANES <= stride {
-        let rows: [[R; 2]; VERY_FEW] = rows_of(from, stride, first, k);
+    while k <= MAX_COLUMNS_OF_EIGHT_ROWS && first + 2 * LANES <= stride {
+        let rows: [[R; 2]; MAX_COLUMNS_OF_EIGHT_ROWS] = rows_of(from, stride, first, k);
         rows_times(&rows, m, to, stride, first, size);
         first += 2 * LANES;
     }
     while first < stride {
-        let rows: [[R; 1]; FEW] = rows_of(from, stride, first, k);
+        let rows: [[R; 1]; MAX_COLUMNS_OF_FOUR_ROWS] = rows_of(from, stride, first, k);
         rows_times(&rows, m, to, stride, first, size);
         first += LANES;
     }
@@ -185,17 +185,23 @@ pub(super) fn product<R: Four>(
 
 /// `a = a m`, m square; `row` holds four rows.
 #[inline(always)]
-pub(super) fn times<R: Four>(a: &mut [f64], stride: usize, m: &[f64], size: Size, row: &mut [f64]) {
+pub(super) fn times<R: Simd4>(
+    a: &mut [f64],
+    stride: usize,
+    m: &[f64],
+    size: Size,
+    row: &mut [f64],
+) {
     let k = size.k;
     let (a, m) = (&mut a[..k * stride], &m[..k * size.short]);
     let mut first = 0;
-    while k <= VERY_FEW && first + 2 * LANES <= stride {
-        let rows: [[R; 2]; VERY_FEW] = rows_of(a, stride, first, k);
+    while k <= MAX_COLUMNS_OF_EIGHT_ROWS && first + 2 * LANES <= stride {
+        let rows: [[R; 2]; MAX_COLUMNS_OF_EIGHT_ROWS] = rows_of(a, stride, first, k);
         rows_times(&rows, m, a, stride, first, size);
         first += 2 * LANES;
     }
-    while k <= FEW && first < stride {
-        let rows: [[R; 1]; FEW] = rows_of(a, stride, first, k);
+    while k <= MAX_COLUMNS_OF_FOUR_ROWS && first < stride {
+        let rows: [[R; 1]; MAX_COLUMNS_OF_FOUR_ROWS] = rows_of(a, stride, first, k);
         rows_times(&rows, m, a, stride, first, size);
         first += LANES;
     }
@@ -206,7 +212,7 @@ pub(super) fn times<R: Four>(a: &mut [f64], stride: usize, m: &[f64], size: Size
         for j in 0..k {
             let mut sum = R::splat(0.0);
             for (l, x) in padded(m, size.short, j)[..k].iter().enumerate() {
-                sum = R::load(&row[l * LANES..]).times_plus(R::splat(*x), sum);
+                sum = R::load(&row[l * LANES..]).mul_add(R::splat(*x), sum);
             }
             sum.store(&mut a[j * stride + first..]);
         }
@@ -216,7 +222,7 @@ pub(super) fn times<R: Four>(a: &mut [f64], stride: usize, m: &[f64], size: Size
 
 /// The rows from `first` on, four for each of C registers, of at most K columns.
 #[inline(always)]
-fn rows_of<R: Four, const C: usize, const K: usize>(
+fn rows_of<R: Simd4, const C: usize, const K: usize>(
     a: &[f64],
     stride: usize,
     first: usize,
@@ -233,7 +239,7 @@ fn rows_of<R: Four, const C: usize, const K: usize>(
 
 /// These rows of a times m, into `to`.
 #[inline(always)]
-fn rows_times<R: Four, const C: usize, const K: usize>(
+fn rows_times<R: Simd4, const C: usize, const K: usize>(
     rows: &[[R; C]; K],
     m: &[f64],
     to: &mut [f64],
@@ -247,7 +253,7 @@ fn rows_times<R: Four, const C: usize, const K: usize>(
         for l in 0..size.k {
             let factor = R::splat(m[l]);
             for c in 0..C {
-                sums[c] = rows[l][c].times_plus(factor, sums[c]);
+                sums[c] = rows[l][c].mul_add(factor, sums[c]);
             }
         }
         for c in 0..C {
@@ -258,7 +264,7 @@ fn rows_times<R: Four, const C: usize, const K: usize>(
 
 /// `products = B^T B`
 #[inline(always)]
-pub(super) fn gram<R: Four>(b: &[f64], stride: usize, products: &mut [f64], size: Size) {
+pub(super) fn gram<R: Simd4>(b: &[f64], stride: usize, products: &mut [f64], size: Size) {
     let Size { k, short, .. } = size;
     let (b, products) = (&b[..k * stride], &mut products[..k * short]);
     for j in 0..k {
@@ -276,7 +282,7 @@ pub(super) fn gram<R: Four>(b: &[f64], stride: usize, products: &mut [f64], size
 
 /// Squares of the lengths of the columns; `to` is padded.
 #[inline(always)]
-pub(super) fn squares<R: Four>(b: &[f64], stride: usize, to: &mut [f64], size: Size) {
+pub(super) fn squares<R: Simd4>(b: &[f64], stride: usize, to: &mut [f64], size: Size) {
     let Size { k, short, .. } = size;
     let (b, to) = (&b[..k * stride], &mut to[..short]);
     for j in (0..short).step_by(LANES) {
@@ -292,39 +298,39 @@ pub(super) fn squares<R: Four>(b: &[f64], stride: usize, to: &mut [f64], size: S
 
 /// Products of columns i and j whose sum is theirs; zeros beyond the k columns.
 #[inline(always)]
-fn lanes_of_dot<R: Four>(b: &[f64], stride: usize, i: usize, j: usize, k: usize) -> R {
+fn lanes_of_dot<R: Simd4>(b: &[f64], stride: usize, i: usize, j: usize, k: usize) -> R {
     if i < k { lanes::<R>(padded(b, stride, i), padded(b, stride, j)) } else { R::splat(0.0) }
 }
 
 #[inline(always)]
-fn lanes<R: Four>(a: &[f64], b: &[f64]) -> R {
+fn lanes<R: Simd4>(a: &[f64], b: &[f64]) -> R {
     let mut sum = R::splat(0.0);
     for (x, y) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
-        sum = R::load(x).times_plus(R::load(y), sum);
+        sum = R::load(x).mul_add(R::load(y), sum);
     }
     sum
 }
 
 /// Scalar product of padded columns.
 #[inline(always)]
-pub(super) fn dot<R: Four>(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot<R: Simd4>(a: &[f64], b: &[f64]) -> f64 {
     lanes::<R>(a, b).sum()
 }
 
 #[inline(always)]
-pub(super) fn rotate<R: Four>(a: &mut [f64], b: &mut [f64], c: f64, s: f64) {
+pub(super) fn rotate<R: Simd4>(a: &mut [f64], b: &mut [f64], c: f64, s: f64) {
     let (c, s) = (R::splat(c), R::splat(s));
     let (a, b) = (a.as_chunks_mut::<LANES>().0, b.as_chunks_mut::<LANES>().0);
     for (x, y) in a.iter_mut().zip(b) {
         let (p, q) = (R::load(x), R::load(y));
-        (-s).times_plus(q, c * p).store(x);
-        s.times_plus(p, c * q).store(y);
+        (-s).mul_add(q, c * p).store(x);
+        s.mul_add(p, c * q).store(y);
     }
 }
 
 /// One Newton step to the nearest orthogonal matrix, W (3 - W^T W) / 2.
 #[inline(always)]
-pub(super) fn newton<R: Four>(w: &mut [f64], products: &mut [f64], size: Size, row: &mut [f64]) {
+pub(super) fn newton<R: Simd4>(w: &mut [f64], products: &mut [f64], size: Size, row: &mut [f64]) {
     let Size { k, short, .. } = size;
     gram::<R>(w, short, products, size);
     for j in 0..k {

@@ -6,7 +6,7 @@
 //! Checked  tests::agrees_with_single
 
 use super::{dot, reflect, reflector};
-use crate::scalar::Field;
+use crate::scalar::SimdFloat;
 
 /// What the first columns were reduced by.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub(crate) struct Reflections<'a, R> {
     pub(crate) factors: &'a mut [R],
 }
 
-impl<R: Field> Reflections<'_, R> {
+impl<R: SimdFloat> Reflections<'_, R> {
     /// Reduces as many columns as there are places for a diagonal.
     #[inline(always)]
     pub(crate) fn run(&mut self) {
@@ -53,7 +53,12 @@ impl<R: Field> Reflections<'_, R> {
 /// Every row x of `rows`, as long as the diagonal of R, to `x R^-1`. `columns` hold R above its
 /// diagonal, each of length n.
 #[inline(always)]
-pub(crate) fn divide_by_upper<R: Field>(rows: &mut [R], columns: &[R], n: usize, diagonal: &[R]) {
+pub(crate) fn divide_by_upper<R: SimdFloat>(
+    rows: &mut [R],
+    columns: &[R],
+    n: usize,
+    diagonal: &[R],
+) {
     let k = diagonal.len();
     for (l, d) in diagonal.iter().enumerate() {
         let inverse = R::splat(1.0) / *d;
@@ -66,15 +71,15 @@ pub(crate) fn divide_by_upper<R: Field>(rows: &mut [R], columns: &[R], n: usize,
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{Four, abreast, four};
+    use super::super::tests::{Four, four, side_by_side};
     use super::*;
     use crate::linalg::{ColumnSpace, Matrix, Threshold};
-    use crate::scalar::Real;
+    use crate::scalar::Simd;
 
     #[test]
     fn agrees_with_single() {
         let a = four(7, 4, 5);
-        let mut columns = abreast(&a);
+        let mut columns = side_by_side(&a);
         let zero = Four::splat(0.0);
         let (mut diagonal, mut factors) = ([zero; 4], [zero; 4]);
         let mut all = Reflections {
@@ -86,7 +91,7 @@ mod tests {
         all.run();
         let mut k = vec![zero; 7 * 3];
         all.complement(&mut k);
-        let mut rows = abreast(&four(2, 4, 8).map(|m| m.transpose()));
+        let mut rows = side_by_side(&four(2, 4, 8).map(|m| m.transpose()));
         divide_by_upper(&mut rows, &columns, 7, &diagonal);
         for (l, a) in a.iter().enumerate() {
             let kernel = Matrix::from_fn(7, 3, |i, j| k[j * 7 + i].0[l]);

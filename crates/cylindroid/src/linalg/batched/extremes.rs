@@ -13,7 +13,7 @@
 //! Checked  tests::agrees_with_single
 
 use super::{add_times, dot, reflector};
-use crate::scalar::Field;
+use crate::scalar::SimdFloat;
 
 /// Laguerre's steps at the most; seven are usual.
 const MOST_STEPS: usize = 40;
@@ -39,7 +39,7 @@ pub(crate) enum End {
 
 /// Diagonal and squares of the off-diagonal of T; `a`, n x n, is used up, `product` holds n.
 #[inline(always)]
-pub(crate) fn tridiagonal<R: Field>(
+pub(crate) fn tridiagonal<R: SimdFloat>(
     a: &mut [R],
     diagonal: &mut [R],
     squares: &mut [R],
@@ -75,32 +75,32 @@ pub(crate) fn tridiagonal<R: Field>(
 /// `p <- p + A v`, A the lower triangle at the end of columns of length n; two columns at a time,
 /// so that p and v are read half as often.
 #[inline(always)]
-fn times_symmetric<R: Field>(columns: &[R], n: usize, v: &[R], p: &mut [R]) {
+fn times_symmetric<R: SimdFloat>(columns: &[R], n: usize, v: &[R], p: &mut [R]) {
     let m = v.len();
     let mut c = 0;
     while c + 1 < m {
         let a = &columns[(c + 1) * n - m + c..(c + 1) * n];
         let b = &columns[(c + 2) * n - m + c + 1..(c + 2) * n];
         let (x, y) = (v[c], v[c + 1]);
-        let mut first = a[1].times_plus(y, a[0].times_plus(x, p[c]));
-        let mut second = a[1].times_plus(x, b[0].times_plus(y, p[c + 1]));
+        let mut first = a[1].mul_add(y, a[0].mul_add(x, p[c]));
+        let mut second = a[1].mul_add(x, b[0].mul_add(y, p[c + 1]));
         let rows = p[c + 2..].iter_mut().zip(&v[c + 2..]);
         for (((p, v), a), b) in rows.zip(&a[2..]).zip(&b[1..]) {
-            *p = a.times_plus(x, b.times_plus(y, *p));
-            first = a.times_plus(*v, first);
-            second = b.times_plus(*v, second);
+            *p = a.mul_add(x, b.mul_add(y, *p));
+            first = a.mul_add(*v, first);
+            second = b.mul_add(*v, second);
         }
         (p[c], p[c + 1]) = (first, second);
         c += 2;
     }
     if c < m {
-        p[c] = columns[(c + 1) * n - 1].times_plus(v[c], p[c]);
+        p[c] = columns[(c + 1) * n - 1].mul_add(v[c], p[c]);
     }
 }
 
 /// `A <- A - v p^T - p v^T` of the same triangle.
 #[inline(always)]
-fn subtract_both<R: Field>(columns: &mut [R], n: usize, v: &[R], p: &[R]) {
+fn subtract_both<R: SimdFloat>(columns: &mut [R], n: usize, v: &[R], p: &[R]) {
     let m = v.len();
     let mut c = 0;
     while c + 1 < m {
@@ -108,23 +108,23 @@ fn subtract_both<R: Field>(columns: &mut [R], n: usize, v: &[R], p: &[R]) {
         let a = &mut head[(c + 1) * n - m + c..];
         let b = &mut tail[n - m + c + 1..n];
         let (va, pa, vb, pb) = (-v[c], -p[c], -v[c + 1], -p[c + 1]);
-        a[0] = va.times_plus(p[c], pa.times_plus(v[c], a[0]));
+        a[0] = va.mul_add(p[c], pa.mul_add(v[c], a[0]));
         let rows = v[c + 1..].iter().zip(&p[c + 1..]);
         for (((v, p), a), b) in rows.zip(&mut a[1..]).zip(b) {
-            *a = va.times_plus(*p, pa.times_plus(*v, *a));
-            *b = vb.times_plus(*p, pb.times_plus(*v, *b));
+            *a = va.mul_add(*p, pa.mul_add(*v, *a));
+            *b = vb.mul_add(*p, pb.mul_add(*v, *b));
         }
         c += 2;
     }
     if c < m {
         let last = &mut columns[(c + 1) * n - 1];
-        *last = (-v[c]).times_plus(p[c] + p[c], *last);
+        *last = (-v[c]).mul_add(p[c] + p[c], *last);
     }
 }
 
 /// The eigenvalues at these ends.
 #[inline(always)]
-pub(crate) fn extreme_eigenvalues<R: Field, const E: usize>(
+pub(crate) fn extreme_eigenvalues<R: SimdFloat, const E: usize>(
     diagonal: &[R],
     squares: &[R],
     ends: [End; E],
@@ -152,49 +152,49 @@ pub(crate) fn extreme_eigenvalues<R: Field, const E: usize>(
             let Slopes { g, h, least } = slopes[e];
             let seem = g * g / h;
             let whole = (seem + k(ROUND)) - k(ROUND);
-            let whole = R::where_less(whole, one, one, whole);
-            let several = R::where_less((seem - whole).size(), near[e], whole, one);
-            let inner = (n - several) / several * n.times_plus(h, -(g * g));
-            let step = n / (g + inner.larger(zero).root().signed_as(g));
-            let beyond = R::where_less(zero, least, zero, one);
+            let whole = R::select_lt(whole, one, one, whole);
+            let several = R::select_lt((seem - whole).abs(), near[e], whole, one);
+            let inner = (n - several) / several * n.mul_add(h, -(g * g));
+            let step = n / (g + inner.max(zero).sqrt().copysign(g));
+            let beyond = R::select_lt(zero, least, zero, one);
             // By rounding, or by taking several values for one?
-            let rounding = R::where_less(back[e].size(), noise * k(MOST_BACK), beyond, zero);
-            let again = R::where_less(rounding, beyond, one, zero);
-            let settled = R::where_less(step.size(), noise, one, passed[e]);
-            let ends_here = R::where_less(half, beyond, zero, settled);
-            let forward = R::where_less(half, passed[e], t[e], t[e] - step);
-            let next = R::where_less(half, beyond, t[e] - back[e], forward);
-            let next = R::where_less(half, again, before[e], next);
-            before[e] = R::where_less(half, beyond, before[e], t[e]);
-            passed[e] = R::where_less(half, beyond, rounding, passed[e]);
-            near[e] = R::where_less(half, again, near[e] * k(0.01), near[e]);
-            let more = R::where_less(half, beyond, back[e] * k(4.0), back[e]);
-            back[e] = R::where_less(half, again, noise.signed_as(more), more);
-            t[e] = R::where_less(half, done[e], t[e], next);
-            done[e] = ends_here.larger(done[e]);
-            all = R::where_less(half, done[e], all, zero);
+            let rounding = R::select_lt(back[e].abs(), noise * k(MOST_BACK), beyond, zero);
+            let again = R::select_lt(rounding, beyond, one, zero);
+            let settled = R::select_lt(step.abs(), noise, one, passed[e]);
+            let ends_here = R::select_lt(half, beyond, zero, settled);
+            let forward = R::select_lt(half, passed[e], t[e], t[e] - step);
+            let next = R::select_lt(half, beyond, t[e] - back[e], forward);
+            let next = R::select_lt(half, again, before[e], next);
+            before[e] = R::select_lt(half, beyond, before[e], t[e]);
+            passed[e] = R::select_lt(half, beyond, rounding, passed[e]);
+            near[e] = R::select_lt(half, again, near[e] * k(0.01), near[e]);
+            let more = R::select_lt(half, beyond, back[e] * k(4.0), back[e]);
+            back[e] = R::select_lt(half, again, noise.copysign(more), more);
+            t[e] = R::select_lt(half, done[e], t[e], next);
+            done[e] = ends_here.max(done[e]);
+            all = R::select_lt(half, done[e], all, zero);
         }
-        if (one - all).all_within(0.0) {
+        if (one - all).all_abs_le(0.0) {
             break;
         }
     }
     for e in 0..E {
-        t[e] = R::where_less(half, done[e], t[e], k(f64::NAN));
+        t[e] = R::select_lt(half, done[e], t[e], k(f64::NAN));
     }
     t
 }
 
 /// Gershgorin's bound of the largest eigenvalue.
 #[inline(always)]
-fn bound<R: Field>(diagonal: &[R], squares: &[R]) -> R {
+fn bound<R: SimdFloat>(diagonal: &[R], squares: &[R]) -> R {
     let mut bound = R::splat(0.0);
     let mut before = R::splat(0.0);
     for (i, d) in diagonal.iter().enumerate() {
         let after = match squares.get(i) {
-            Some(s) => s.root(),
+            Some(s) => s.sqrt(),
             None => R::splat(0.0),
         };
-        bound = bound.larger(*d + before + after);
+        bound = bound.max(*d + before + after);
         before = after;
     }
     bound
@@ -210,7 +210,7 @@ struct Slopes<R> {
 }
 
 #[inline(always)]
-fn logarithmic_derivatives<R: Field, const E: usize>(
+fn logarithmic_derivatives<R: SimdFloat, const E: usize>(
     diagonal: &[R],
     squares: &[R],
     t: &[R; E],
@@ -226,13 +226,13 @@ fn logarithmic_derivatives<R: Field, const E: usize>(
             let (weight, g, c) = last[e];
             let pivot = (*d - t[e]) - weight;
             let inverse = one / pivot;
-            let first = weight.times_plus(g, -one) * inverse;
+            let first = weight.mul_add(g, -one) * inverse;
             let second = weight * (c - k(2.0) * g * g) * inverse;
             sums[e].g = sums[e].g + first;
-            sums[e].h = sums[e].h + first.times_plus(first, -second);
+            sums[e].h = sums[e].h + first.mul_add(first, -second);
             let signed = if ends[e] == End::Smallest { pivot } else { -pivot };
             // Not a number stays.
-            sums[e].least = R::where_less(sums[e].least, signed, sums[e].least, signed);
+            sums[e].least = R::select_lt(sums[e].least, signed, sums[e].least, signed);
             let square = match squares.get(i) {
                 Some(s) => *s,
                 None => zero,
@@ -245,11 +245,11 @@ fn logarithmic_derivatives<R: Field, const E: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{abreast, four};
+    use super::super::tests::{four, side_by_side};
     use super::*;
     use crate::linalg::{Matrix, Svd};
 
-    fn ends<R: Field>(squares: &mut [R], n: usize) -> [R; 2] {
+    fn ends<R: SimdFloat>(squares: &mut [R], n: usize) -> [R; 2] {
         let zero = R::splat(0.0);
         let (mut d, mut e, mut p) = (vec![zero; n], vec![zero; n], vec![zero; n]);
         tridiagonal(squares, &mut d, &mut e[..n - 1], &mut p);
@@ -268,7 +268,7 @@ mod tests {
             );
             roots[3].column_mut(0).iter_mut().for_each(|x| *x *= 1e-3);
             let squares = roots.clone().map(|a| &a * &a.transpose());
-            let got = ends(&mut abreast(&squares), n);
+            let got = ends(&mut side_by_side(&squares), n);
             for (l, a) in roots.iter().enumerate() {
                 let svd = Svd::of(a);
                 let expected = [svd.value(n - 1).powi(2), svd.value(0).powi(2)];

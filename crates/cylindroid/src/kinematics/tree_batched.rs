@@ -6,27 +6,27 @@
 //! Checked  tests/it/manipulability/batch.rs
 
 use crate::model::{Motion, Node};
-use crate::scalar::{Field, MOST_LANES, sin_cos};
-use crate::spatial::{Columns, Padded, Pose, Rotation, Triple, Vec3};
+use crate::scalar::{MAX_LANES, SimdFloat, sin_cos};
+use crate::spatial::{AlignedPose, Columns, Pose, Rotation, Vec3, Vector3Like};
 
 /// `world_from_node` in every lane.
 pub(crate) type Frame<R> = Columns<[R; 3]>;
 
 /// Writes the pose of each node into `frames[1..]`, the ground into `frames[0]`.
 #[inline(always)]
-pub(crate) fn forward<R: Field>(nodes: &[Node], q: &[R], frames: &mut [Frame<R>]) {
+pub(crate) fn forward<R: SimdFloat>(nodes: &[Node], q: &[R], frames: &mut [Frame<R>]) {
     let k = R::splat;
-    frames[0] = Frame::load(&Padded::IDENTITY);
+    frames[0] = Frame::load(&AlignedPose::IDENTITY);
     for (i, node) in nodes.iter().enumerate() {
         let base = frames[node.parent].then(&node.placement);
         let c = node.coordinate;
         frames[i + 1] = match node.motion {
             Motion::Fixed => base,
             Motion::Revolute | Motion::Prismatic | Motion::Helical(_) => {
-                let x = q[c].times_plus(k(node.multiplier), k(node.offset));
+                let x = q[c].mul_add(k(node.multiplier), k(node.offset));
                 match node.motion {
-                    Motion::Prismatic => base.slid(x),
-                    Motion::Helical(pitch) => turned(base, x).slid(x * k(pitch)),
+                    Motion::Prismatic => base.translated_z(x),
+                    Motion::Helical(pitch) => turned(base, x).translated_z(x * k(pitch)),
                     _ => turned(base, x),
                 }
             }
@@ -37,36 +37,36 @@ pub(crate) fn forward<R: Field>(nodes: &[Node], q: &[R], frames: &mut [Frame<R>]
 }
 
 #[inline(always)]
-fn turned<R: Field>(base: Frame<R>, angle: R) -> Frame<R> {
+fn turned<R: SimdFloat>(base: Frame<R>, angle: R) -> Frame<R> {
     let (sin, cos) = sin_cos(angle);
-    base.turned(sin, cos)
+    base.rotated_z(sin, cos)
 }
 
 /// By a translation and a rotation vector in its own axes.
 #[inline(always)]
-fn moved<R: Field>(base: Frame<R>, by: &[R], turn: &[R]) -> Frame<R> {
+fn moved<R: SimdFloat>(base: Frame<R>, by: &[R], turn: &[R]) -> Frame<R> {
     let turn = exponential(turn);
     Frame {
-        x: base.seen_outside(turn.x),
-        y: base.seen_outside(turn.y),
-        z: base.seen_outside(turn.z),
-        p: base.seen_outside([by[0], by[1], by[2]]).times_plus(R::splat(1.0), base.p),
+        x: base.transform_vector(turn.x),
+        y: base.transform_vector(turn.y),
+        z: base.transform_vector(turn.z),
+        p: base.transform_vector([by[0], by[1], by[2]]).mul_add(R::splat(1.0), base.p),
     }
 }
 
 /// The rotation of a rotation vector, lane by lane as for one configuration.
 #[inline(always)]
-fn exponential<R: Field>(turn: &[R]) -> Frame<R> {
-    let mut lanes = [[0.0; MOST_LANES]; 3];
+fn exponential<R: SimdFloat>(turn: &[R]) -> Frame<R> {
+    let mut lanes = [[0.0; MAX_LANES]; 3];
     for (lanes, x) in lanes.iter_mut().zip(turn) {
         x.store(lanes);
     }
-    let mut all = [Padded::IDENTITY; MOST_LANES];
+    let mut all = [AlignedPose::IDENTITY; MAX_LANES];
     for (l, pose) in all.iter_mut().take(R::LANES).enumerate() {
         let vector = Vec3::new(lanes[0][l], lanes[1][l], lanes[2][l]);
         *pose = Pose::from_rotation(Rotation::exp(vector)).into();
     }
-    let mut frame = Frame::load(&Padded::IDENTITY);
+    let mut frame = Frame::load(&AlignedPose::IDENTITY);
     for i in 0..3 {
         frame.x[i] = R::from_fn(|l| all[l].x[i]);
         frame.y[i] = R::from_fn(|l| all[l].y[i]);

@@ -11,43 +11,43 @@ use std::ops::Div;
 
 #[cfg(target_arch = "x86_64")]
 use super::Lanes4;
-use super::{Array, Real};
+use super::{Array, Simd};
 
 /// Numbers that are divided and compared, lane by lane.
-pub(crate) trait Field: Real + Div<Output = Self> {
+pub(crate) trait SimdFloat: Simd + Div<Output = Self> {
     /// The square root; not a number for negative ones.
-    fn root(self) -> Self;
+    fn sqrt(self) -> Self;
     /// The size of `self` with the sign of `other`.
-    fn signed_as(self, other: Self) -> Self;
+    fn copysign(self, other: Self) -> Self;
     /// The larger; of no number and one, anything.
-    fn larger(self, other: Self) -> Self;
+    fn max(self, other: Self) -> Self;
     /// `then` where `a < b`, else `otherwise`, also where one of them is no number.
-    fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    fn select_lt(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// Zero where not `a > b`.
     #[inline(always)]
-    fn where_larger(self, a: Self, b: Self) -> Self {
-        Self::where_less(b, a, self, Self::splat(0.0))
+    fn zero_unless_gt(self, a: Self, b: Self) -> Self {
+        Self::select_lt(b, a, self, Self::splat(0.0))
     }
 }
 
-impl Field for f64 {
+impl SimdFloat for f64 {
     #[inline(always)]
-    fn root(self) -> Self {
+    fn sqrt(self) -> Self {
         self.sqrt()
     }
 
     #[inline(always)]
-    fn signed_as(self, other: Self) -> Self {
+    fn copysign(self, other: Self) -> Self {
         self.copysign(other)
     }
 
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
 
     #[inline(always)]
-    fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+    fn select_lt(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         if a < b { then } else { otherwise }
     }
 }
@@ -61,25 +61,25 @@ impl<const N: usize> Div for Array<N> {
     }
 }
 
-impl<const N: usize> Field for Array<N> {
+impl<const N: usize> SimdFloat for Array<N> {
     #[inline(always)]
-    fn root(self) -> Self {
+    fn sqrt(self) -> Self {
         Self(self.0.map(f64::sqrt))
     }
 
     #[inline(always)]
-    fn signed_as(self, other: Self) -> Self {
+    fn copysign(self, other: Self) -> Self {
         Self(from_fn(|i| self.0[i].copysign(other.0[i])))
     }
 
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
-        Self(from_fn(|i| self.0[i].larger(other.0[i])))
+    fn max(self, other: Self) -> Self {
+        Self(from_fn(|i| SimdFloat::max(self.0[i], other.0[i])))
     }
 
     #[inline(always)]
-    fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
-        Self(from_fn(|i| f64::where_less(a.0[i], b.0[i], then.0[i], otherwise.0[i])))
+    fn select_lt(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Self(from_fn(|i| f64::select_lt(a.0[i], b.0[i], then.0[i], otherwise.0[i])))
     }
 }
 
@@ -96,15 +96,15 @@ impl Div for Lanes4 {
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Field for Lanes4 {
+impl SimdFloat for Lanes4 {
     #[inline(always)]
-    fn root(self) -> Self {
+    fn sqrt(self) -> Self {
         // SAFETY: as above.
         Self(unsafe { _mm256_sqrt_pd(self.0) })
     }
 
     #[inline(always)]
-    fn signed_as(self, other: Self) -> Self {
+    fn copysign(self, other: Self) -> Self {
         // SAFETY: as above.
         unsafe {
             let sign = _mm256_set1_pd(-0.0);
@@ -113,13 +113,13 @@ impl Field for Lanes4 {
     }
 
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         // SAFETY: as above.
         Self(unsafe { _mm256_max_pd(self.0, other.0) })
     }
 
     #[inline(always)]
-    fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+    fn select_lt(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         // SAFETY: as above.
         unsafe {
             let less = _mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0);

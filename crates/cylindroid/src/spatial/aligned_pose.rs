@@ -10,14 +10,14 @@ use super::vec3::{Mat3, Vec3};
 /// A pose `a_from_b`, padded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(32))]
-pub(crate) struct Padded {
+pub(crate) struct AlignedPose {
     pub(crate) x: [f64; 4],
     pub(crate) y: [f64; 4],
     pub(crate) z: [f64; 4],
     pub(crate) p: [f64; 4],
 }
 
-impl Padded {
+impl AlignedPose {
     /// Frame b is frame a.
     pub(crate) const IDENTITY: Self = Self {
         x: [1.0, 0.0, 0.0, 0.0],
@@ -29,19 +29,19 @@ impl Padded {
     /// The axes of b in a.
     #[inline]
     pub(crate) fn axes(&self) -> [Vec3; 3] {
-        [unpadded(&self.x), unpadded(&self.y), unpadded(&self.z)]
+        [xyz(&self.x), xyz(&self.y), xyz(&self.z)]
     }
 
     /// Axis z of b in a.
     #[inline]
     pub(crate) fn z_axis(&self) -> Vec3 {
-        unpadded(&self.z)
+        xyz(&self.z)
     }
 
     /// Origin of b in a.
     #[inline]
     pub(crate) fn translation(&self) -> Vec3 {
-        unpadded(&self.p)
+        xyz(&self.p)
     }
 
     /// The same as a pose.
@@ -55,7 +55,7 @@ impl Padded {
     }
 }
 
-impl From<Pose> for Padded {
+impl From<Pose> for AlignedPose {
     fn from(pose: Pose) -> Self {
         let pad = |v: Vec3| [v.x, v.y, v.z, 0.0];
         let [x, y, z] = pose.rotation.matrix().cols;
@@ -64,6 +64,6 @@ impl From<Pose> for Padded {
 }
 
 #[inline(always)]
-fn unpadded(c: &[f64; 4]) -> Vec3 {
+fn xyz(c: &[f64; 4]) -> Vec3 {
     Vec3::new(c[0], c[1], c[2])
 }

@@ -5,79 +5,84 @@
 //!          the tool; the Jacobian 6 x n
 //! Units    rad, m; m/s and rad/s for each unit of rate
 //! Frame    world axes; the point is the tool's origin or any other
-//! Why so   written once over [`Single`]: three numbers, or one register of them
+//! Why so   written once over [`SingleVector3`]: three numbers, or one register of them
 //! Checked  tests/it/batch.rs::chains_agree_with_trees, tests/it/pinocchio.rs
 
-use super::forward::{MANY, sines};
+use super::forward::{CHUNK, sines};
 use super::serial::Serial;
 use crate::linalg::Matrix;
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::has_avx2;
 #[cfg(target_arch = "x86_64")]
-use crate::spatial::Register;
-use crate::spatial::{Padded, Single};
+use crate::spatial::PackedVec3;
+use crate::spatial::{AlignedPose, SingleVector3};
 
 /// Goes along the chain.
 #[inline]
-pub(super) fn along(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
+pub(super) fn forward(serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {
         #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
         // SAFETY: the processor has both features, as just asked.
         unsafe {
-            along_avx2(serial, q, slots);
+            forward_avx2(serial, q, slots);
         }
         return;
     }
-    along_with::<[f64; 3]>(serial, q, slots);
+    forward_with::<[f64; 3]>(serial, q, slots);
 }
 
-/// The columns of the Jacobian in world axes at the point p, from the slots of [`along`]; two
+/// The columns of the Jacobian in world axes at the point p, from the slots of [`forward`]; two
 /// joints must not share a coordinate.
 #[inline]
-pub(super) fn columns(serial: &Serial, slots: &[Padded], p: &[f64; 4], out: &mut Matrix) {
+pub(super) fn jacobian(serial: &Serial, slots: &[AlignedPose], p: &[f64; 4], out: &mut Matrix) {
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {
         #[allow(unsafe_code)] // as above
         // SAFETY: the processor has both features, as just asked.
         unsafe {
-            columns_avx2(serial, slots, p, out);
+            jacobian_avx2(serial, slots, p, out);
         }
         return;
     }
-    columns_with::<[f64; 3]>(serial, slots, p, out);
+    jacobian_with::<[f64; 3]>(serial, slots, p, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn along_avx2(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
-    along_with::<Register>(serial, q, slots);
+fn forward_avx2(serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
+    forward_with::<PackedVec3>(serial, q, slots);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn columns_avx2(serial: &Serial, slots: &[Padded], p: &[f64; 4], out: &mut Matrix) {
-    columns_with::<Register>(serial, slots, p, out);
+fn jacobian_avx2(serial: &Serial, slots: &[AlignedPose], p: &[f64; 4], out: &mut Matrix) {
+    jacobian_with::<PackedVec3>(serial, slots, p, out);
 }
 
 #[inline(always)]
-fn along_with<T: Single>(serial: &Serial, q: &[f64], slots: &mut [Padded]) {
+fn forward_with<T: SingleVector3>(serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
     let mut frame = serial.start::<T>();
     for (chunk, (joints, angles)) in serial.chunks().enumerate() {
         // All angles first: they wait for nothing, and go four to a register.
         let (sin, cos) = sines::<T::Wide>(|k| angles.at(k, q));
-        let slots = &mut slots[chunk * MANY + 1..][..joints.len()];
+        let slots = &mut slots[chunk * CHUNK + 1..][..joints.len()];
         for (k, (joint, slot)) in joints.iter().zip(slots).enumerate() {
-            frame = joint.moved(frame, sin[k], cos[k], q[joint.coordinate]);
+            frame = joint.after_joint(frame, sin[k], cos[k], q[joint.coordinate]);
             frame.store_axis(slot);
-            frame = joint.passed(frame);
+            frame = joint.next_joint_frame(frame);
         }
     }
     serial.end(frame).store(&mut slots[serial.joints().len() + 1]);
 }
 
 #[inline(always)]
-fn columns_with<T: Single>(serial: &Serial, slots: &[Padded], p: &[f64; 4], out: &mut Matrix) {
+fn jacobian_with<T: SingleVector3>(
+    serial: &Serial,
+    slots: &[AlignedPose],
+    p: &[f64; 4],
+    out: &mut Matrix,
+) {
     let p = T::load(p);
     let (columns, _) = out.as_mut_slice().as_chunks_mut::<6>();
     for (joint, slot) in serial.joints().iter().zip(&slots[1..]) {

@@ -1,21 +1,21 @@
 //! Vectors of three numbers as kernels hold them, and the frames that they make.
 //!
-//! A kernel is written once over [`Triple`]: for three scalars or three registers of lanes (an
+//! A kernel is written once over [`Vector3Like`]: for three scalars or three registers of lanes (an
 //! array, the specification), and for one configuration with the three numbers in one register.
 
-use super::padded::Padded;
-use crate::scalar::Real;
+use super::aligned_pose::AlignedPose;
+use crate::scalar::Simd;
 
 /// A vector of three numbers.
-pub(crate) trait Triple: Copy {
+pub(crate) trait Vector3Like: Copy {
     /// What it is multiplied by.
-    type Scalar: Real;
+    type Scalar: Simd;
     /// The same in all lanes; the fourth number is 0.
     fn load(from: &[f64; 4]) -> Self;
     /// `self * s`
     fn times(self, s: Self::Scalar) -> Self;
     /// `self * s + b`
-    fn times_plus(self, s: Self::Scalar, b: Self) -> Self;
+    fn mul_add(self, s: Self::Scalar, b: Self) -> Self;
     /// `self + b`
     fn plus(self, b: Self) -> Self;
     /// `self - b`
@@ -27,16 +27,16 @@ pub(crate) trait Triple: Copy {
 }
 
 /// The vector of one configuration.
-pub(crate) trait Single: Triple<Scalar = f64> {
+pub(crate) trait SingleVector3: Vector3Like<Scalar = f64> {
     /// What several angles are computed with together.
-    type Wide: Real;
+    type Wide: Simd;
     /// The numbers, the fourth one 0.
     fn store(self, to: &mut [f64; 4]);
     /// Three numbers and three more.
     fn store_pair(first: Self, second: Self, to: &mut [f64; 6]);
 }
 
-impl<R: Real> Triple for [R; 3] {
+impl<R: Simd> Vector3Like for [R; 3] {
     type Scalar = R;
 
     #[inline(always)]
@@ -50,8 +50,8 @@ impl<R: Real> Triple for [R; 3] {
     }
 
     #[inline(always)]
-    fn times_plus(self, s: R, b: Self) -> Self {
-        [self[0].times_plus(s, b[0]), self[1].times_plus(s, b[1]), self[2].times_plus(s, b[2])]
+    fn mul_add(self, s: R, b: Self) -> Self {
+        [self[0].mul_add(s, b[0]), self[1].mul_add(s, b[1]), self[2].mul_add(s, b[2])]
     }
 
     #[inline(always)]
@@ -72,14 +72,14 @@ impl<R: Real> Triple for [R; 3] {
     #[inline(always)]
     fn cross(self, b: Self) -> Self {
         [
-            self[1].times_plus(b[2], -(self[2] * b[1])),
-            self[2].times_plus(b[0], -(self[0] * b[2])),
-            self[0].times_plus(b[1], -(self[1] * b[0])),
+            self[1].mul_add(b[2], -(self[2] * b[1])),
+            self[2].mul_add(b[0], -(self[0] * b[2])),
+            self[0].mul_add(b[1], -(self[1] * b[0])),
         ]
     }
 }
 
-impl Single for [f64; 3] {
+impl SingleVector3 for [f64; 3] {
     type Wide = f64;
 
     #[inline(always)]
@@ -105,11 +105,11 @@ mod avx2 {
     /// One register: three numbers and a 0. To be named only inside functions that are compiled for
     /// AVX2 and FMA and run only where the processor has them.
     #[derive(Debug, Clone, Copy)]
-    pub(crate) struct Register(__m256d);
+    pub(crate) struct PackedVec3(__m256d);
 
     // SAFETY, for every call below: as said above; loads are of arrays of four numbers and need no
     // alignment.
-    impl super::Triple for Register {
+    impl super::Vector3Like for PackedVec3 {
         type Scalar = f64;
 
         #[inline(always)]
@@ -125,7 +125,7 @@ mod avx2 {
         }
 
         #[inline(always)]
-        fn times_plus(self, s: f64, b: Self) -> Self {
+        fn mul_add(self, s: f64, b: Self) -> Self {
             // SAFETY: as above.
             Self(unsafe { _mm256_fmadd_pd(self.0, _mm256_set1_pd(s), b.0) })
         }
@@ -162,7 +162,7 @@ mod avx2 {
         }
     }
 
-    impl super::Single for Register {
+    impl super::SingleVector3 for PackedVec3 {
         type Wide = crate::scalar::Lanes4;
 
         #[inline(always)]
@@ -188,7 +188,7 @@ mod avx2 {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx2::Register;
+pub(crate) use avx2::PackedVec3;
 
 /// A pose `a_from_b` while it is computed with: axes and origin of b in a.
 #[derive(Debug, Clone, Copy)]
@@ -199,67 +199,67 @@ pub(crate) struct Columns<T> {
     pub(crate) p: T,
 }
 
-impl<T: Triple> Columns<T> {
+impl<T: Vector3Like> Columns<T> {
     #[inline(always)]
-    pub(crate) fn load(from: &Padded) -> Self {
+    pub(crate) fn load(from: &AlignedPose) -> Self {
         Self { x: T::load(&from.x), y: T::load(&from.y), z: T::load(&from.z), p: T::load(&from.p) }
     }
 
     /// Turned about its own z axis.
     #[inline(always)]
-    pub(crate) fn turned(self, sin: T::Scalar, cos: T::Scalar) -> Self {
+    pub(crate) fn rotated_z(self, sin: T::Scalar, cos: T::Scalar) -> Self {
         Self {
-            x: self.y.times_plus(sin, self.x.times(cos)),
-            y: self.x.times_plus(-sin, self.y.times(cos)),
+            x: self.y.mul_add(sin, self.x.times(cos)),
+            y: self.x.mul_add(-sin, self.y.times(cos)),
             ..self
         }
     }
 
     /// Turned about its own x axis.
     #[inline(always)]
-    pub(crate) fn tilted(self, sin: T::Scalar, cos: T::Scalar) -> Self {
+    pub(crate) fn rotated_x(self, sin: T::Scalar, cos: T::Scalar) -> Self {
         Self {
-            y: self.z.times_plus(sin, self.y.times(cos)),
-            z: self.y.times_plus(-sin, self.z.times(cos)),
+            y: self.z.mul_add(sin, self.y.times(cos)),
+            z: self.y.mul_add(-sin, self.z.times(cos)),
             ..self
         }
     }
 
     /// Turned about its own x axis by a right angle.
     #[inline(always)]
-    pub(crate) fn upended(self) -> Self {
+    pub(crate) fn rotated_x_90(self) -> Self {
         Self { y: self.z, z: self.y.negative(), ..self }
     }
 
     /// Moved along its own z axis.
     #[inline(always)]
-    pub(crate) fn slid(self, length: T::Scalar) -> Self {
-        Self { p: self.z.times_plus(length, self.p), ..self }
+    pub(crate) fn translated_z(self, length: T::Scalar) -> Self {
+        Self { p: self.z.mul_add(length, self.p), ..self }
     }
 
     /// Moved by a vector in its own axes.
     #[inline(always)]
-    pub(crate) fn moved(self, by: &[f64; 4]) -> Self {
+    pub(crate) fn translated(self, by: &[f64; 4]) -> Self {
         let k = T::Scalar::splat;
-        let from_z = self.z.times_plus(k(by[2]), self.p);
-        Self { p: self.y.times_plus(k(by[1]), self.x.times_plus(k(by[0]), from_z)), ..self }
+        let from_z = self.z.mul_add(k(by[2]), self.p);
+        Self { p: self.y.mul_add(k(by[1]), self.x.mul_add(k(by[0]), from_z)), ..self }
     }
 
     /// The same without a component along y.
     #[inline(always)]
-    pub(crate) fn moved_xz(self, by: &[f64; 4]) -> Self {
+    pub(crate) fn translated_xz(self, by: &[f64; 4]) -> Self {
         let k = T::Scalar::splat;
-        Self { p: self.x.times_plus(k(by[0]), self.z.times_plus(k(by[2]), self.p)), ..self }
+        Self { p: self.x.mul_add(k(by[0]), self.z.mul_add(k(by[2]), self.p)), ..self }
     }
 
     /// `a_from_b.then(b_from_c) = a_from_c`
     #[inline(always)]
-    pub(crate) fn then(self, o: &Padded) -> Self {
+    pub(crate) fn then(self, o: &AlignedPose) -> Self {
         Self {
             x: self.rotated(&o.x),
             y: self.rotated(&o.y),
             z: self.rotated(&o.z),
-            p: self.moved(&o.p).p,
+            p: self.translated(&o.p).p,
         }
     }
 
@@ -269,38 +269,38 @@ impl<T: Triple> Columns<T> {
     #[inline(always)]
     fn rotated(self, v: &[f64; 4]) -> T {
         let k = T::Scalar::splat;
-        self.y.times_plus(k(v[1]), self.x.times_plus(k(v[0]), self.z.times(k(v[2]))))
+        self.y.mul_add(k(v[1]), self.x.mul_add(k(v[0]), self.z.times(k(v[2]))))
     }
 }
 
-impl<R: Real> Columns<[R; 3]> {
+impl<R: Simd> Columns<[R; 3]> {
     /// A vector in the axes of b.
     #[inline(always)]
-    pub(crate) fn seen(&self, v: [R; 3]) -> [R; 3] {
+    pub(crate) fn inverse_transform_vector(&self, v: [R; 3]) -> [R; 3] {
         [dot(self.x, v), dot(self.y, v), dot(self.z, v)]
     }
 
     /// A vector in the axes of b, in those of a.
     #[inline(always)]
-    pub(crate) fn seen_outside(&self, v: [R; 3]) -> [R; 3] {
+    pub(crate) fn transform_vector(&self, v: [R; 3]) -> [R; 3] {
         let Self { x, y, z, .. } = self;
         [
-            x[0].times_plus(v[0], y[0].times_plus(v[1], z[0] * v[2])),
-            x[1].times_plus(v[0], y[1].times_plus(v[1], z[1] * v[2])),
-            x[2].times_plus(v[0], y[2].times_plus(v[1], z[2] * v[2])),
+            x[0].mul_add(v[0], y[0].mul_add(v[1], z[0] * v[2])),
+            x[1].mul_add(v[0], y[1].mul_add(v[1], z[1] * v[2])),
+            x[2].mul_add(v[0], y[2].mul_add(v[1], z[2] * v[2])),
         ]
     }
 }
 
 /// Scalar product.
 #[inline(always)]
-pub(crate) fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
-    a[0].times_plus(b[0], a[1].times_plus(b[1], a[2] * b[2]))
+pub(crate) fn dot<R: Simd>(a: [R; 3], b: [R; 3]) -> R {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
 }
 
-impl<T: Single> Columns<T> {
+impl<T: SingleVector3> Columns<T> {
     #[inline(always)]
-    pub(crate) fn store(self, to: &mut Padded) {
+    pub(crate) fn store(self, to: &mut AlignedPose) {
         self.x.store(&mut to.x);
         self.y.store(&mut to.y);
         self.z.store(&mut to.z);
@@ -309,7 +309,7 @@ impl<T: Single> Columns<T> {
 
     /// Only axis z and origin.
     #[inline(always)]
-    pub(crate) fn store_axis(self, to: &mut Padded) {
+    pub(crate) fn store_axis(self, to: &mut AlignedPose) {
         self.z.store(&mut to.z);
         self.p.store(&mut to.p);
     }

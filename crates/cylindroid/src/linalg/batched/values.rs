@@ -9,7 +9,7 @@
 //! Checked  tests::agrees_with_single
 
 use super::dot;
-use crate::scalar::Field;
+use crate::scalar::SimdFloat;
 use crate::tolerance::JACOBI_ORTHOGONAL;
 
 /// Sweeps at the most: six are usual.
@@ -23,7 +23,7 @@ const NEARLY: f64 = 0.25 * f64::EPSILON;
 /// of columns, neighbours without a column in common: roots and quotients of several are then on
 /// their way at a time.
 #[inline(always)]
-pub(crate) fn singular_values<R: Field>(
+pub(crate) fn singular_values<R: SimdFloat>(
     columns: &mut [R],
     rows: usize,
     pairs: &[(usize, usize)],
@@ -38,7 +38,12 @@ pub(crate) fn singular_values<R: Field>(
 }
 
 #[inline(always)]
-fn of_length<R: Field>(columns: &mut [R], rows: usize, pairs: &[(usize, usize)], values: &mut [R]) {
+fn of_length<R: SimdFloat>(
+    columns: &mut [R],
+    rows: usize,
+    pairs: &[(usize, usize)],
+    values: &mut [R],
+) {
     let k = R::splat;
     let (zero, one) = (k(0.0), k(1.0));
     // Cosines whose square is larger are turned away: none, in lanes that have come to an end.
@@ -56,37 +61,37 @@ fn of_length<R: Field>(columns: &mut [R], rows: usize, pairs: &[(usize, usize)],
             let (square, product) = (ab * ab, aa * bb);
             let difference = bb - aa;
             let double = ab + ab;
-            let h = difference.times_plus(difference, double * double).root();
-            let t = double.signed_as(double * difference) / (difference.size() + h);
-            let t = R::where_less(limit * product, square, t, zero);
-            let c = one / t.times_plus(t, one).root();
+            let h = difference.mul_add(difference, double * double).sqrt();
+            let t = double.copysign(double * difference) / (difference.abs() + h);
+            let t = R::select_lt(limit * product, square, t, zero);
+            let c = one / t.mul_add(t, one).sqrt();
             let s = c * t;
             for (x, y) in a.iter_mut().zip(&mut *b) {
                 let (p, q) = (*x, *y);
-                *x = c.times_plus(p, -(s * q));
-                *y = s.times_plus(p, c * q);
+                *x = c.mul_add(p, -(s * q));
+                *y = s.mul_add(p, c * q);
             }
-            values[i] = (-t).times_plus(ab, aa).larger(zero);
-            values[j] = t.times_plus(ab, bb);
-            oblique = R::where_less(k(NEARLY) * product, square, one, oblique);
+            values[i] = (-t).mul_add(ab, aa).max(zero);
+            values[j] = t.mul_add(ab, bb);
+            oblique = R::select_lt(k(NEARLY) * product, square, one, oblique);
         }
-        limit = R::where_less(zero, oblique, limit, k(f64::MAX));
-        if oblique.all_within(0.0) {
+        limit = R::select_lt(zero, oblique, limit, k(f64::MAX));
+        if oblique.all_abs_le(0.0) {
             break;
         }
     }
     for (value, column) in values.iter_mut().zip(columns.chunks_exact(rows)) {
-        *value = dot(column, column).root();
+        *value = dot(column, column).sqrt();
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{Four, abreast, four};
+    use super::super::tests::{Four, four, side_by_side};
     use super::*;
-    use crate::linalg::abreast::tournament;
+    use crate::linalg::batched::round_robin_pairs;
     use crate::linalg::{Matrix, Svd};
-    use crate::scalar::Real;
+    use crate::scalar::Simd;
 
     #[test]
     fn agrees_with_single() {
@@ -96,9 +101,9 @@ mod tests {
             // Rank one, and columns of sizes far apart.
             a[2] = Matrix::from_fn(rows, cols, |i, j| (i + 1) as f64 * (j + 1) as f64);
             a[3] = Matrix::from_fn(rows, cols, |i, j| a[3][(i, j)] * 10.0_f64.powi(-3 * j as i32));
-            let mut columns = abreast(&a);
+            let mut columns = side_by_side(&a);
             let mut values = vec![Four::splat(0.0); cols];
-            singular_values(&mut columns, rows, &tournament(cols), &mut values);
+            singular_values(&mut columns, rows, &round_robin_pairs(cols), &mut values);
             for (l, a) in a.iter().enumerate() {
                 let mut got: Vec<f64> = values.iter().map(|v| v.0[l]).collect();
                 got.sort_by(|x, y| y.total_cmp(x));
@@ -110,7 +115,7 @@ mod tests {
                 // The same alone.
                 let mut alone: Vec<f64> = a.as_slice().to_vec();
                 let mut own = vec![0.0; cols];
-                singular_values(&mut alone, rows, &tournament(cols), &mut own);
+                singular_values(&mut alone, rows, &round_robin_pairs(cols), &mut own);
                 let lane: Vec<f64> = values.iter().map(|v| v.0[l]).collect();
                 assert_eq!(own, lane, "{rows} x {cols}, {l}");
             }
