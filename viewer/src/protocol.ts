@@ -29,9 +29,10 @@ export type Coordinate = {
   name: string; joint: number; unit: "rad" | "m"; lower: number | null; upper: number | null;
   velocity: number | null; actuated: boolean; adjustable: boolean;
 };
-export type Method = { name: string; numbers: Record<string, number>; pitch: boolean; servo: boolean };
+export type Parameter = { name: string; unit: string; default: number; description: string };
+export type Method = { name: string; description: string; parameters: Parameter[]; pitch: boolean; servo: boolean };
 export type ChosenMethod = {
-  name: string; numbers: Record<string, number>; h: number | null; fallback: string | null;
+  name: string; parameters: Record<string, number>; h: number | null; fallback: string | null;
 };
 export type OverlayInfo = { name: OverlayName; title: string; unit: string; frame: string };
 export type Drive = { name: string; kind: JointKind; actuated: boolean };
@@ -145,7 +146,7 @@ export type ToServer = { id?: string | number } & (
   | { type: "play" | "pause" | "reset" }
   | { type: "null_space"; rate: number; index: number }
   | { type: "actuated"; names: string[] }
-  | { type: "method"; name: string; numbers: Record<string, number>; h: number | null; fallback: string | null }
+  | { type: "method"; name: string; parameters: Record<string, number>; h: number | null; fallback: string | null }
   | { type: "overlays"; names: OverlayName[] }
   | { type: "compare"; methods: string[]; point: Vec3; h: number | null; twist: number[] | null }
   | { type: "report"; name: ReportName }

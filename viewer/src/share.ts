@@ -85,5 +85,5 @@ function names(text: string | null): string[] | null {
 function method(text: string | null): ChosenMethod | null {
   const value = json(text) as Partial<ChosenMethod> | null;
   if (typeof value?.name !== "string") return null;
-  return { name: value.name, numbers: value.numbers ?? {}, h: value.h ?? null, fallback: value.fallback ?? null };
+  return { name: value.name, parameters: value.parameters ?? {}, h: value.h ?? null, fallback: value.fallback ?? null };
 }

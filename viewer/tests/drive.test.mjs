@@ -98,7 +98,7 @@ test("frame, task and inverse are chosen; the handle offers what the task minds"
     assert.ok(await page.getByRole("button", { name: "Turn" }).isDisabled());
     await page.getByLabel("Inverse", { exact: true }).selectOption("damped");
     await enter(page.getByLabel("damping", { exact: true }), 0.07);
-    await until(page, "scene.method.numbers.damping === 0.07");
+    await until(page, "scene.method.parameters.damping === 0.07");
   }));
 
 test("two inverses side by side: one changes with the reference point, the hyperbolic one does not", () =>

@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 mod closed;
 mod ik;
+pub(crate) mod inverses;
 mod move_to;
 mod screws;
 mod view;

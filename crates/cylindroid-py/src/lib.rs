@@ -40,7 +40,7 @@ mod _core {
     #[pymodule_export]
     use crate::ik::PySolution;
     #[pymodule_export]
-    use crate::inverse::by_name::inverse_by_name;
+    use crate::inverse::by_name::{inverse_by_name, inverse_methods};
     #[pymodule_export]
     use crate::inverse::damped::{damped, selectively_damped};
     #[pymodule_export]

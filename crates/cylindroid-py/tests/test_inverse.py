@@ -151,3 +151,26 @@ def test_point_direction():
     np.testing.assert_allclose(v @ found.along, [0, 0, 1], atol=1e-12)
     np.testing.assert_allclose(v @ found.still, 0, atol=1e-12)
     assert found.still.shape == (5, 2)
+
+
+def test_methods_are_documented():
+    """What the table of methods lists is in the docstrings and is taken as keywords."""
+    J = of_rank(6)
+    robot = cy.load("panda")
+    for method in cy.inverse_methods():
+        name, rows = method["name"], method["parameters"]
+        assert method["description"] and name in cy.Servo.__doc__ + cy.inverse.__doc__
+        values = {row["name"]: row["default"] or 0.07 for row in rows}
+        assert all(row["unit"] and row["domain"] and row["description"] for row in rows)
+        servo = {"give_up": []} if name == "oblique" else values
+        cy.Servo(robot, inverse=name, **servo)
+        if name in ("hyperbolic", "hyperbolic-damped", "hyperbolic-gram", "oblique"):
+            continue
+        assert f"'{name}'" in cy.inverse.__doc__
+        assert all(f"- {row['name']} [{row['unit']}]" in cy.inverse.__doc__ for row in rows)
+        found = cy.inverse(J, name, **values)
+        assert (found.matrix == cy.inverse(J, name).matrix).all()
+    with pytest.raises(TypeError, match="unexpected keyword argument 'dmping'"):
+        cy.inverse(J, "damped", dmping=0.1)
+    with pytest.raises(cy.InvalidOptionError, match="no such parameter but damping"):
+        cy.inverse(J, "damped", eps=0.1)

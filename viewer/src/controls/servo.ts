@@ -41,7 +41,7 @@ export class ServoControls {
         method.name,
         (name) => this.choose(scene, name),
       ),
-      chosen && this.numbers(chosen, method),
+      chosen && this.parameters(chosen, method),
       scene.methods.some((other) => !other.servo) &&
         h("p", { class: "note" }, "Hyperbolic inverses need a task of all six components; Compare has them always."),
     );
@@ -63,31 +63,35 @@ export class ServoControls {
     const method = scene.methods.find((other) => other.name === name);
     if (!method) return;
     const h = method.pitch ? (scene.method.h ?? PITCH) : null;
-    this.session.send({ type: "method", name, numbers: {}, h, fallback: method.pitch ? "truncated" : null });
+    this.session.send({ type: "method", name, parameters: {}, h, fallback: method.pitch ? "truncated" : null });
   }
 
-  /** The numbers of the inverse, sent together when one is changed. */
-  private numbers(method: Method, now: ChosenMethod): HTMLElement {
-    const values: Record<string, number> = { ...method.numbers, ...now.numbers };
+  /** The parameters of the inverse, sent together when one is changed. */
+  private parameters(method: Method, now: ChosenMethod): HTMLElement {
+    const values: Record<string, number> = { ...now.parameters };
+    for (const { name, default: usual } of method.parameters) values[name] ??= usual;
     let pitch = now.h;
     const send = (): void => {
-      this.session.send({ type: "method", name: method.name, numbers: values, h: pitch, fallback: now.fallback });
+      this.session.send({ type: "method", name: method.name, parameters: values, h: pitch, fallback: now.fallback });
     };
-    const field = (label: string, value: number | null, set: (value: number) => void): HTMLElement => {
+    const field = (label: string, title: string, value: number | null, set: (value: number) => void): HTMLElement => {
       const input = h("input", { class: "field", type: "number", step: "any", value: value ?? "" });
       input.addEventListener("change", () => {
         if (!Number.isFinite(input.valueAsNumber)) return;
         set(input.valueAsNumber);
         send();
       });
-      return h("label", { class: "line" }, h("span", { class: "note" }, label), input);
+      return h("label", { class: "line", title }, h("span", { class: "note" }, label), input);
     };
     return h(
       "div", {},
-      ...Object.keys(values).map((name) => field(name.replaceAll("_", " "), values[name] ?? null, (value) => {
-        values[name] = value;
-      })),
-      method.pitch && field("pitch h [m/rad]", pitch, (value) => {
+      ...method.parameters.map(({ name, unit, description }) => {
+        const label = unit === "-" ? name : `${name} [${unit}]`;
+        return field(label.replaceAll("_", " "), description, values[name] ?? null, (value) => {
+          values[name] = value;
+        });
+      }),
+      method.pitch && field("pitch h [m/rad]", "Pitch of the form", pitch, (value) => {
         pitch = value;
       }),
       method.pitch && now.fallback && h("p", { class: "note" }, `Where it does not exist: ${now.fallback}`),

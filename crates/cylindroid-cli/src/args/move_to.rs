@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{FrameArgs, PostureArgs};
+use super::{FrameArgs, PostureArgs, inverses};
 use crate::values::{Joints, Motion, Named, Numbers, Pair};
 
 pub(crate) const ABOUT: &str = "\
@@ -190,62 +190,18 @@ pub(crate) struct ServoArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Inverse")]
 pub(crate) struct InverseArgs {
-    /// How the Jacobian is inverted: `truncated`, `damped`, `variable-damping`,
-    /// `numerical-filtering`, `selectively-damped`, `singular-value-filtering`; for arms that
-    /// cannot do all of a motion, in rates that no frame or unit changes: `hyperbolic` (--h),
-    /// `hyperbolic-damped` (--h, --mu), `hyperbolic-gram` (--h, --lambda), `oblique` (--give-up)
-    #[arg(long, value_name = "NAME", default_value = "truncated")]
+    #[arg(long, value_name = "NAME", default_value = "truncated", help = inverses::help())]
     pub(crate) inverse: String,
 
-    /// Share of the largest singular value at which others are cut [-] (truncated)
-    #[arg(long, value_name = "EPS", allow_hyphen_values = true)]
-    pub(crate) eps: Option<f64>,
-
-    /// Damping, in the unit of the scaled singular values [rad] (damped, variable-damping,
-    /// numerical-filtering)
-    #[arg(long, value_name = "D", allow_hyphen_values = true)]
-    pub(crate) damping: Option<f64>,
-
-    /// Share of the largest singular value below which damping sets in [-] (variable-damping,
-    /// numerical-filtering)
-    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
-    pub(crate) onset: Option<f64>,
-
-    /// Further damping of the weakest direction (numerical-filtering)
-    #[arg(long, value_name = "D", allow_hyphen_values = true)]
-    pub(crate) filter: Option<f64>,
-
-    /// Largest rate of any joint [rad/s or m/s] (selectively-damped)
-    #[arg(long, value_name = "RATE", allow_hyphen_values = true)]
-    pub(crate) max_rate: Option<f64>,
-
-    /// Shape of the filter, larger is nearer the exact inverse [-] (singular-value-filtering)
-    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
-    pub(crate) shape: Option<f64>,
-
-    /// Smallest filtered singular value (singular-value-filtering)
-    #[arg(long, value_name = "S", allow_hyphen_values = true)]
-    pub(crate) floor: Option<f64>,
-
-    /// Pitch of the form that tells motions apart [m/rad], or `inf` (hyperbolic inverses); a
-    /// length of the order of the arm, `screws` shows which
-    #[arg(long, value_name = "H", allow_hyphen_values = true)]
-    pub(crate) h: Option<f64>,
-
-    /// Invariant damping [m/rad] (hyperbolic-damped)
-    #[arg(long, value_name = "MU", allow_hyphen_values = true)]
-    pub(crate) mu: Option<f64>,
-
-    /// Damping of the Gram matrix [m/rad] (hyperbolic-gram)
-    #[arg(long, value_name = "LAMBDA", allow_hyphen_values = true)]
-    pub(crate) lambda: Option<f64>,
+    #[command(flatten)]
+    pub(crate) parameters: inverses::Parameters,
 
     /// A motion of the tool, in its axes, that may be given up: x, y, z, rx, ry, rz, or a twist
     /// `vx,vy,vz,wx,wy,wz`; as often as the arm lacks joints to six (oblique)
     #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
     pub(crate) give_up: Vec<Motion>,
 
-    /// What takes over where that inverse does not exist: `truncated`, `hyperbolic-damped`,
+    /// Inverse used where the chosen one does not exist: `truncated`, `hyperbolic-damped`,
     /// `hyperbolic-gram`, `hyperbolic`, `oblique` [default: none, the arm stops and says why]
     #[arg(long, value_name = "NAME")]
     pub(crate) fallback: Option<String>,

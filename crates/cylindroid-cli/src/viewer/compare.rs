@@ -63,7 +63,7 @@ pub(super) fn compare(
     let mut results = Vec::new();
     let mut coordinates = Vec::new();
     for name in &wanted.methods {
-        let h = match (hyperbolic().any(|n| n == name), wanted.h) {
+        let h = match (hyperbolic().any(|i| i.name == name), wanted.h) {
             (false, _) => None,
             (true, Some(h)) => Some(h),
             (true, None) => Some(session.best_pitch().map_err(at("compare.h"))?),
@@ -106,7 +106,7 @@ pub(super) fn compare(
 
 fn plain(name: &str) -> Result<Method, Complaint> {
     Method::named(name).map_err(|_| {
-        let all = Method::ALL.iter().map(Method::name).chain(hyperbolic());
+        let all = Method::ALL.iter().map(Method::name).chain(hyperbolic().map(|i| i.name));
         Complaint::of("compare.methods", &Error::unknown("inverse", name, all))
     })
 }

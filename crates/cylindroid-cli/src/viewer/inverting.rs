@@ -2,26 +2,28 @@
 
 use std::collections::BTreeMap;
 
+use cylindroid::control::NamedInverse;
 use cylindroid::{Error, Method, Result, ServoOptions, State};
 use serde::Serialize;
 
 use super::messages::{Complaint, MethodChoice};
-use super::scene::{damping, hyperbolic, numbers};
+use super::scene::{damping, hyperbolic, values};
 use crate::args::InverseArgs;
+use crate::args::inverses::Parameters;
 use crate::commands::move_to::inverse;
 
-/// The inverse as it was asked for, with the numbers that it got.
+/// The inverse as it was asked for, with the values of its parameters.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Chosen {
     name: String,
-    numbers: BTreeMap<&'static str, f64>,
+    parameters: BTreeMap<&'static str, f64>,
     h: Option<f64>,
     fallback: Option<String>,
 }
 
 impl Chosen {
     pub(super) fn plain(method: Method) -> Self {
-        Self { name: method.name().to_owned(), numbers: numbers(method), h: None, fallback: None }
+        Self { name: method.name().to_owned(), parameters: values(method), h: None, fallback: None }
     }
 }
 
@@ -34,23 +36,23 @@ pub(super) fn invert_by(
     best_pitch: impl FnOnce() -> Result<f64>,
 ) -> std::result::Result<(Chosen, ServoOptions), Complaint> {
     let at = |error| Complaint::of("method", &error);
-    let MethodChoice { name, numbers: given, h, fallback } = choice;
-    let chooses = hyperbolic().any(|n| n == name);
+    let MethodChoice { name, parameters: given, h, fallback } = choice;
+    let chooses = hyperbolic().any(|i| i.name == name);
     let h = if chooses && h.is_none() { Some(best_pitch().map_err(at)?) } else { h };
     let mut all = damping(&name);
     all.extend(damping(fallback.as_deref().unwrap_or_default()));
     let mut all: BTreeMap<String, f64> =
-        all.into_iter().map(|(number, x)| (number.to_owned(), x)).collect();
+        all.into_iter().map(|(name, x)| (name.to_owned(), x)).collect();
     all.extend(given);
     let args = arguments(&name, h, fallback.clone(), &all)?;
     inverse::apply(&args, state.q(), state.mechanism(), &mut options).map_err(at)?;
-    let numbers = if chooses {
+    let parameters = if chooses {
         let own = damping(&name).into_iter();
-        own.map(|(number, x)| (number, all.get(number).copied().unwrap_or(x))).collect()
+        own.map(|(name, x)| (name, all.get(name).copied().unwrap_or(x))).collect()
     } else {
-        numbers(options.method)
+        values(options.method)
     };
-    Ok((Chosen { name, numbers, h, fallback }, options))
+    Ok((Chosen { name, parameters, h, fallback }, options))
 }
 
 /// The options of `move` that say the same.
@@ -58,43 +60,17 @@ fn arguments(
     name: &str,
     h: Option<f64>,
     fallback: Option<String>,
-    numbers: &BTreeMap<String, f64>,
+    parameters: &BTreeMap<String, f64>,
 ) -> std::result::Result<InverseArgs, Complaint> {
-    let mut args = InverseArgs {
-        inverse: name.to_owned(),
-        eps: None,
-        damping: None,
-        onset: None,
-        filter: None,
-        max_rate: None,
-        shape: None,
-        floor: None,
-        h,
-        mu: None,
-        lambda: None,
-        give_up: Vec::new(),
-        fallback,
-    };
-    for (number, value) in numbers {
-        let place = match number.as_str() {
-            "eps" => &mut args.eps,
-            "damping" => &mut args.damping,
-            "onset" => &mut args.onset,
-            "filter" => &mut args.filter,
-            "max_rate" => &mut args.max_rate,
-            "shape" => &mut args.shape,
-            "floor" => &mut args.floor,
-            "mu" => &mut args.mu,
-            "lambda" => &mut args.lambda,
-            _ => {
-                let all =
-                    Method::ALL.into_iter().flat_map(|m| super::scene::numbers(m).into_keys());
-                let error =
-                    Error::unknown("number of an inverse", number, all.chain(["mu", "lambda"]));
-                return Err(Complaint::of("method.numbers", &error));
-            }
+    let mut given = BTreeMap::from_iter(h.map(|h| ("h", h)));
+    for (name, value) in parameters {
+        let all = || NamedInverse::all().flat_map(|i| i.parameters).map(|p| p.name);
+        let Some(known) = all().find(|known| known == name) else {
+            let error = Error::unknown("parameter of an inverse", name, all());
+            return Err(Complaint::of("method.parameters", &error));
         };
-        *place = Some(*value);
+        given.insert(known, *value);
     }
-    Ok(args)
+    let inverse = name.to_owned();
+    Ok(InverseArgs { inverse, parameters: Parameters(given), give_up: Vec::new(), fallback })
 }

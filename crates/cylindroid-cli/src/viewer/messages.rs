@@ -105,7 +105,7 @@ pub(super) struct NullSpace {
 pub(super) struct MethodChoice {
     pub(super) name: String,
     #[serde(default)]
-    pub(super) numbers: BTreeMap<String, f64>,
+    pub(super) parameters: BTreeMap<String, f64>,
     #[serde(default)]
     pub(super) h: Option<f64>,
     #[serde(default)]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cylindroid::control::TaskProjection;
+use cylindroid::control::NamedInverse;
 use cylindroid::model::{Coordinate, CoordinateKind, Geometry, Link, Mechanism, Visual};
 use cylindroid::{Method, Pose, Servo};
 use serde::Serialize;
@@ -177,9 +177,18 @@ struct DriveJson<'a> {
 #[derive(Debug, Serialize)]
 struct ChoiceJson {
     name: &'static str,
-    numbers: BTreeMap<&'static str, f64>,
+    description: &'static str,
+    parameters: Vec<ParameterJson>,
     pitch: bool,
     servo: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct ParameterJson {
+    name: &'static str,
+    unit: &'static str,
+    default: f64,
+    description: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -190,25 +199,24 @@ struct OverlayJson {
     frame: &'static str,
 }
 
-/// The numbers of a method by their names.
-pub(super) fn numbers(mut method: Method) -> BTreeMap<&'static str, f64> {
-    method.numbers_mut().into_iter().map(|(name, number)| (name, *number)).collect()
+/// The parameters of a method and their values.
+pub(super) fn values(mut method: Method) -> BTreeMap<&'static str, f64> {
+    method.parameters_mut().map(|(parameter, value)| (parameter.name, *value)).collect()
 }
 
-/// Default numbers of the damped hyperbolic inverses, by their names.
+/// The parameters of an inverse of this name but the pitch, with their defaults.
 pub(super) fn damping(name: &str) -> BTreeMap<&'static str, f64> {
-    /// [m/rad]; what the help of `move` advises to try.
-    const DAMPING: f64 = 0.01;
-    match name {
-        "hyperbolic-damped" => BTreeMap::from([("mu", DAMPING)]),
-        "hyperbolic-gram" => BTreeMap::from([("lambda", DAMPING)]),
-        _ => BTreeMap::new(),
-    }
+    let inverse = hyperbolic().find(|i| i.name == name);
+    let own = inverse.into_iter().flat_map(|i| i.parameters).filter(|p| p.name != PITCH);
+    own.map(|p| (p.name, p.default)).collect()
 }
+
+/// The parameter that chooses a hyperbolic inverse.
+const PITCH: &str = "h";
 
 /// The hyperbolic inverses: those that a pitch chooses.
-pub(super) fn hyperbolic() -> impl Iterator<Item = &'static str> {
-    TaskProjection::NAMES.into_iter().filter(|name| name.starts_with("hyperbolic"))
+pub(super) fn hyperbolic() -> impl Iterator<Item = NamedInverse> {
+    NamedInverse::all().filter(|i| i.parameters.iter().any(|p| p.name == PITCH))
 }
 
 /// True where one coordinate can be set alone.
@@ -299,21 +307,27 @@ fn overlay(o: Overlay) -> OverlayJson {
     OverlayJson { name: o.name(), title: o.title(), unit: o.unit(), frame: o.frame() }
 }
 
+/// All but those that need a complement, which the page cannot give.
 fn methods(session: &Session) -> Vec<ChoiceJson> {
     let whole = session.options().task.components == [true; 6];
-    let plain = Method::ALL.into_iter().map(|method| ChoiceJson {
-        name: method.name(),
-        numbers: numbers(method),
-        pitch: false,
-        servo: true,
-    });
-    let chosen = hyperbolic().map(|name| ChoiceJson {
-        name,
-        numbers: damping(name),
-        pitch: true,
-        servo: whole,
-    });
-    plain.chain(chosen).collect()
+    let choice = |inverse: NamedInverse| {
+        let own = inverse.parameters.iter().filter(|p| p.name != PITCH);
+        ChoiceJson {
+            name: inverse.name,
+            description: inverse.description,
+            parameters: own
+                .map(|p| ParameterJson {
+                    name: p.name,
+                    unit: p.unit,
+                    default: p.default,
+                    description: p.description,
+                })
+                .collect(),
+            pitch: inverse.is_partial,
+            servo: !inverse.is_partial || whole,
+        }
+    };
+    NamedInverse::all().filter(|i| !i.takes_complement).map(choice).collect()
 }
 
 fn links(session: &Session) -> Vec<LinkJson<'_>> {

@@ -54,7 +54,7 @@ fn servo_options_must_make_a_controller() {
     refused_move(&["--time-limit", "0"], "--time-limit = 0");
     refused_move(&["--tolerance-position", "0"], "position tolerance = 0");
     refused_move(&["--speed", "0"], "linear speed = 0");
-    refused_move(&["--damping", "0.1"], "the inverse 'truncated' has no such number but --eps");
+    refused_move(&["--damping", "0.1"], "the inverse 'truncated' has no such parameter but eps");
     refused_move(&["--eps", "1"], "eps = 1 cannot be used");
     refused_move(&["--acceleration-linear", "0", "--line"], "acceleration bound = 0");
 }

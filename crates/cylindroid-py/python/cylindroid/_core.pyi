@@ -916,18 +916,9 @@ class Servo:
         task: str | None = None,
         task_axes: str | None = None,
         inverse: str = "truncated",
-        eps: float | None = None,
-        damping: float | None = None,
-        onset: float | None = None,
-        filter: float | None = None,
-        max_rate: float | None = None,
-        shape: float | None = None,
-        floor: float | None = None,
-        h: float | None = None,
-        mu: float | None = None,
-        lam: float | None = None,
         give_up: Sequence[str] | ArrayLike | None = None,
         fallback: str | None = None,
+        **parameters: float | None,
     ) -> Servo: ...
     @property
     def rank(self) -> int: ...
@@ -1161,14 +1152,9 @@ def inverse(
     *,
     joint_weights: ArrayLike | None = None,
     task_weights: ArrayLike | None = None,
-    eps: float | None = None,
-    damping: float | None = None,
-    onset: float | None = None,
-    filter: float | None = None,
-    max_rate: float | None = None,
-    shape: float | None = None,
-    floor: float | None = None,
+    **parameters: float | None,
 ) -> Inverse: ...
+def inverse_methods() -> list[dict[str, Any]]: ...
 def involution(
     lines: ArrayLike,
     length: float | None = None,
@@ -1198,7 +1184,7 @@ def projector(
 ) -> _Array: ...
 def screw_to(pose: ArrayLike, target: ArrayLike) -> _Array: ...
 def selectively_damped(
-    J: ArrayLike, task: ArrayLike, max_rate: float = 0.7853981633974483
+    J: ArrayLike, task: ArrayLike, max_joint_velocity: float = 0.7853981633974483
 ) -> Inverse: ...
 def transversals(
     lines: ArrayLike,

@@ -1,49 +1,84 @@
-//! Inverses by name, with their numbers and metrics.
+//! Inverses by name, with their parameters and metrics.
 
-use cylindroid::inverse::{self, Method, Weights};
+use cylindroid::control::{InverseSelection, NamedInverse};
+use cylindroid::inverse::{self, Weights};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::{PyInverse, by_method, of_each};
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
 
-/// The numbers of an inverse, as they are named on the command line.
-#[derive(Debug, Default)]
-pub(crate) struct MethodNumbers {
-    pub(crate) eps: Option<f64>,
-    pub(crate) damping: Option<f64>,
-    pub(crate) onset: Option<f64>,
-    pub(crate) filter: Option<f64>,
-    pub(crate) max_rate: Option<f64>,
-    pub(crate) shape: Option<f64>,
-    pub(crate) floor: Option<f64>,
+/// The methods as a list of a docstring.
+macro_rules! documented {
+    ($(
+        $(#[doc = $doc:literal])+
+        $variant:ident = $name:literal {
+            $($(#[doc = $about:literal])+ $parameter:ident: $unit:literal in $domain:ident = $default:expr;)+
+        } => |$svd:ident, $task:ident, $out:ident| $gains:expr,
+    )+) => {
+        concat!($(
+            "'", $name, "' :", $($doc,)+ "\n\n",
+            $("    - ", stringify!($parameter), " [", $unit, "]:", $($about,)+ "\n",)+ "\n",
+        )+)
+    };
 }
 
-impl MethodNumbers {
-    /// The method of this name with the numbers that were given; others are refused.
-    pub(crate) fn apply(&self, mut method: Method) -> Result<Method> {
-        let name = method.name();
-        let mut own = method.numbers_mut();
-        let given = [
-            ("eps", self.eps),
-            ("damping", self.damping),
-            ("onset", self.onset),
-            ("filter", self.filter),
-            ("max_rate", self.max_rate),
-            ("shape", self.shape),
-            ("floor", self.floor),
-        ];
-        for (option, value) in given.into_iter().filter_map(|(o, v)| Some((o, v?))) {
-            let Some((_, number)) = own.iter_mut().find(|(o, _)| *o == option) else {
-                let names: Vec<&str> = own.iter().map(|(o, _)| *o).collect();
-                let reason =
-                    format!("the inverse '{name}' has no such number but {}", names.join(", "));
-                return Err(Failure::option(option, value.to_string(), reason));
-            };
-            **number = value;
+/// Values of parameters by name, from keyword arguments: `lam` stands for `lambda`, which Python
+/// reserves.
+pub(crate) fn parameters_of(
+    function: &str,
+    keywords: Option<&Bound<'_, PyDict>>,
+) -> Result<Vec<(&'static str, f64)>> {
+    let mut given = Vec::new();
+    for (name, value) in keywords.into_iter().flatten() {
+        let name: String = name.extract()?;
+        let meant = if name == "lam" { "lambda" } else { name.as_str() };
+        let all = || NamedInverse::all().flat_map(|i| i.parameters).map(|p| p.name);
+        let Some(known) = all().find(|known| *known == meant && name != "lambda") else {
+            let message = format!("{function}() got an unexpected keyword argument '{name}'");
+            return Err(Failure::kind(message));
+        };
+        // None is as if it were not given.
+        if let Some(value) = value.extract()? {
+            given.push((known, value));
         }
-        Ok(method)
     }
+    Ok(given)
+}
+
+/// The inverses that `inverse` and `Servo` take by name, and their parameters.
+///
+/// Returns
+/// -------
+/// list of dict
+///     `name`, `description` and `parameters`: for each its `name` (a keyword argument), `unit`,
+///     `default` (None where it must be given), `domain` and `description`.
+///
+/// Examples
+/// --------
+/// >>> import cylindroid as cy
+/// >>> [p["name"] for p in cy.inverse_methods()[2]["parameters"]]
+/// ['onset', 'damping']
+#[pyfunction]
+pub(crate) fn inverse_methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |inverse: NamedInverse| {
+        let parameters = inverse.parameters.iter().map(|p| {
+            let row = PyDict::new(py);
+            row.set_item("name", if p.name == "lambda" { "lam" } else { p.name })?;
+            row.set_item("unit", p.unit)?;
+            row.set_item("default", (!p.required).then_some(p.default))?;
+            row.set_item("domain", p.domain.describe())?;
+            row.set_item("description", p.description)?;
+            Ok(row)
+        });
+        let row = PyDict::new(py);
+        row.set_item("name", inverse.name)?;
+        row.set_item("description", inverse.description)?;
+        row.set_item("parameters", parameters.collect::<PyResult<Vec<_>>>()?)?;
+        Ok(row)
+    };
+    NamedInverse::all().map(row).collect()
 }
 
 /// An inverse by name, in the metrics of joints and task.
@@ -53,14 +88,12 @@ impl MethodNumbers {
 /// J : array_like, (m, n) or (N, m, n)
 ///     One matrix or a stack of them.
 /// method : str
-///     'truncated' (eps), 'damped' (damping), 'variable-damping' (onset, damping),
-///     'numerical-filtering' (onset, damping, filter), 'selectively-damped' (max_rate),
-///     'singular-value-filtering' (shape, floor).
+///     A name of the list below.
 /// joint_weights, task_weights : array_like, (n,), (n, n) and (m,), (m, m), optional
 ///     Symmetric and positive definite: a large joint weight keeps a joint still, a large task
 ///     weight a direction exact.
-/// eps, damping, onset, filter, max_rate, shape, floor : float, optional
-///     The numbers of the method, else their defaults.
+/// **parameters : float
+///     Parameters of the method; the others keep their defaults (`inverse_methods` lists both).
 ///
 /// Returns
 /// -------
@@ -71,7 +104,9 @@ impl MethodNumbers {
 /// UnknownNameError
 ///     For a method that there is not, with the nearest names.
 /// InvalidOptionError
-///     For a number that the method has not, or outside of its interval.
+///     For a parameter of another method, or outside its domain.
+/// TypeError
+///     For a keyword that is no parameter of any method.
 /// NotFiniteError, DimensionError
 ///     For entries that are not finite, weights of the wrong size.
 ///
@@ -80,29 +115,25 @@ impl MethodNumbers {
 /// >>> import cylindroid as cy
 /// >>> cy.inverse([[1.0, 0.0], [0.0, 1e-3]], 'variable-damping').rank
 /// 1
+///
+/// Methods
+/// -------
+#[doc = cylindroid::inverse_methods!(documented)]
 #[pyfunction]
 #[pyo3(name = "inverse")]
 #[pyo3(signature = (J, method = "truncated", *, joint_weights = None, task_weights = None,
-    eps = None, damping = None, onset = None, filter = None, max_rate = None, shape = None,
-    floor = None))]
+    **parameters))]
 #[expect(non_snake_case, reason = "the field's name")]
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub(crate) fn inverse_by_name(
     py: Python<'_>,
     J: Numbers<'_>,
     method: &str,
     joint_weights: Option<Numbers<'_>>,
     task_weights: Option<Numbers<'_>>,
-    eps: Option<f64>,
-    damping: Option<f64>,
-    onset: Option<f64>,
-    filter: Option<f64>,
-    max_rate: Option<f64>,
-    shape: Option<f64>,
-    floor: Option<f64>,
+    parameters: Option<&Bound<'_, PyDict>>,
 ) -> Result<PyInverse> {
-    let numbers = MethodNumbers { eps, damping, onset, filter, max_rate, shape, floor };
-    let method = numbers.apply(Method::named(method)?)?;
+    let parameters = parameters_of("inverse", parameters)?;
+    let method = InverseSelection { name: method, parameters, ..Default::default() }.method()?;
     let weights = Weights {
         joint: joint_weights.map(|w| w.metric("joint_weights")).transpose()?,
         task: task_weights.map(|w| w.metric("task_weights")).transpose()?,

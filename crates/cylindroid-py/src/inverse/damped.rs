@@ -49,13 +49,13 @@ pub(crate) fn damped(py: Python<'_>, J: Numbers<'_>, damping: f64) -> Result<PyI
 /// J : array_like, (m, n)
 /// task : array_like, (m,)
 ///     The motion to be realised.
-/// max_rate : float
+/// max_joint_velocity : float
 ///     Largest rate of any joint [rad/s or m/s].
 ///
 /// Returns
 /// -------
 /// Inverse
-///     `matrix @ task` has no entry above `max_rate`.
+///     `matrix @ task` has no entry above `max_joint_velocity`.
 ///
 /// Raises
 /// ------
@@ -65,15 +65,15 @@ pub(crate) fn damped(py: Python<'_>, J: Numbers<'_>, damping: f64) -> Result<PyI
 /// -----
 /// Buss and Kim 2005.
 #[pyfunction]
-#[pyo3(signature = (J, task, max_rate = std::f64::consts::FRAC_PI_4))]
-#[pyo3(text_signature = "(J, task, max_rate=0.7853981633974483)")]
+#[pyo3(signature = (J, task, max_joint_velocity = std::f64::consts::FRAC_PI_4))]
+#[pyo3(text_signature = "(J, task, max_joint_velocity=0.7853981633974483)")]
 #[expect(non_snake_case, reason = "the field's name")]
 pub(crate) fn selectively_damped(
     J: Numbers<'_>,
     task: Numbers<'_>,
-    max_rate: f64,
+    max_joint_velocity: f64,
 ) -> Result<PyInverse> {
     let j = J.matrix("J")?;
-    let inner = inverse::selectively_damped(&j, task.vector("task")?, max_rate)?;
+    let inner = inverse::selectively_damped(&j, task.vector("task")?, max_joint_velocity)?;
     Ok(PyInverse::new(&Many::One(j), Many::One(inner), (0, 0)))
 }

@@ -15,7 +15,7 @@ use crate::arrays::{Many, Numbers};
 use crate::error::Result;
 use crate::threads;
 
-pub(crate) use by_name::MethodNumbers;
+pub(crate) use by_name::parameters_of;
 pub(crate) use point_direction::PyPointDirection;
 pub(crate) use report::{PyDropped, PyInverse};
 

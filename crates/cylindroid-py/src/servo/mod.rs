@@ -6,15 +6,16 @@ mod stall;
 mod status;
 mod trajectory;
 
-use cylindroid::control::{Step, Target};
+use cylindroid::control::{InverseSelection, Step, Target};
 use cylindroid::{Servo, ServoOptions, Twist};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
-use crate::inverse::MethodNumbers;
+use crate::inverse::parameters_of;
 use crate::mechanism::PyMechanism;
-use crate::options::{self, InverseChoice};
+use crate::options;
 
 pub(crate) use motion_result::PyMotionResult;
 pub(crate) use stall::PyStall;
@@ -62,18 +63,16 @@ pub(crate) use trajectory::PyTrajectory;
 /// task_axes : str, optional
 ///     'world' or 'local', the axes of the components.
 /// inverse : str
-///     How the Jacobian is inverted: 'truncated', 'damped', 'variable-damping',
-///     'numerical-filtering', 'selectively-damped', 'singular-value-filtering'; for arms that
-///     cannot do all of a motion 'hyperbolic' (h), 'hyperbolic-damped' (h, mu), 'hyperbolic-gram'
-///     (h, lam), 'oblique' (give_up).
-/// eps, damping, onset, filter, max_rate, shape, floor : float, optional
-///     Numbers of the inverse, see `inverse`.
-/// h, mu, lam : float, optional
-///     Pitch and dampings of the hyperbolic inverses [m/rad].
+///     How the Jacobian is inverted: a name of `inverse_methods`, which lists parameters, units and
+///     defaults: 'truncated', ... (see `inverse`); for arms that cannot realise all of a motion
+///     'hyperbolic' (h), 'hyperbolic-damped' (h, mu), 'hyperbolic-gram' (h, lam), 'oblique'
+///     (give_up).
 /// give_up : list of str or array_like, (k, 6), optional
 ///     Motions of the tool, in its axes, that may be given up: names like 'rz', or twists as rows.
 /// fallback : str, optional
-///     What takes over where that inverse does not exist. Default: none, the arm stops.
+///     The inverse used where that one does not exist. Default: none, the arm stops.
+/// **parameters : float
+///     Parameters of the inverse: `damping=0.05`, `h=0.1`, `mu=0.01`, ...
 ///
 /// Attributes
 /// ----------
@@ -144,9 +143,7 @@ impl PyServo {
         tolerance_position = None, tolerance_orientation = None, speed = None,
         acceleration = None, length = None, joint_weights = None, secondary = None,
         posture = None, null_space = "exact", task = None, task_axes = None,
-        inverse = "truncated", eps = None, damping = None, onset = None, filter = None,
-        max_rate = None, shape = None, floor = None, h = None, mu = None, lam = None,
-        give_up = None, fallback = None))]
+        inverse = "truncated", give_up = None, fallback = None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         mechanism: PyRef<'_, PyMechanism>,
@@ -166,18 +163,9 @@ impl PyServo {
         task: Option<&str>,
         task_axes: Option<&str>,
         inverse: &str,
-        eps: Option<f64>,
-        damping: Option<f64>,
-        onset: Option<f64>,
-        filter: Option<f64>,
-        max_rate: Option<f64>,
-        shape: Option<f64>,
-        floor: Option<f64>,
-        h: Option<f64>,
-        mu: Option<f64>,
-        lam: Option<f64>,
         give_up: Option<Bound<'_, PyAny>>,
         fallback: Option<&str>,
+        parameters: Option<&Bound<'_, PyDict>>,
     ) -> Result<Self> {
         let robot = &mechanism.inner;
         let mut options = ServoOptions::new(robot);
@@ -204,10 +192,14 @@ impl PyServo {
         }
         options.null_space = options::null_space(null_space)?;
         options.task = options::task(robot, task, task_axes, options.task)?;
-        let give_up = give_up.map(|g| options::twists("give_up", &g)).transpose()?;
-        let numbers = MethodNumbers { eps, damping, onset, filter, max_rate, shape, floor };
-        InverseChoice { name: inverse, numbers, h, mu, lam, give_up, fallback }
-            .apply(&mut options)?;
+        let complement = give_up.map(|g| options::twists("give_up", &g)).transpose()?;
+        let selection = InverseSelection {
+            name: inverse,
+            parameters: parameters_of("Servo", parameters)?,
+            complement: complement.unwrap_or_default(),
+            fallback,
+        };
+        selection.apply(&mut options)?;
         let posture = mechanism.or_home("posture", posture.as_ref())?;
         options.secondary = options::secondary(secondary.as_ref(), posture, robot, &options)?;
         Ok(Self { inner: Servo::new(robot, options)?, last: None })

@@ -25,8 +25,8 @@ pub use motion::{
     Reconfiguration, TimeLaw, TrajectorySample, find_reachable_configuration, simulate,
 };
 pub use servo::{
-    ConditionReport, InverseChoice, JointState, PoseTolerance, ReferencePointComparison,
-    SecondaryNullSpace, SecondaryTask, Servo, ServoGains, ServoOptions, SpeedLimit, Stall, Status,
-    Step, Target, TaskProjection, VelocitiesAtPoint,
+    ConditionReport, InverseChoice, InverseSelection, JointState, NamedInverse, PoseTolerance,
+    ReferencePointComparison, SecondaryNullSpace, SecondaryTask, Servo, ServoGains, ServoOptions,
+    SpeedLimit, Stall, Status, Step, Target, TaskProjection, VelocitiesAtPoint,
 };
 pub use solver::{LimitKind, Saturation, VelocityBounds};

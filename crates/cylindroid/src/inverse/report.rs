@@ -1,7 +1,5 @@
 //! The report that comes with every inverse.
 
-use super::{Method, Weights};
-use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank, Svd};
 use crate::screws::NoInverse;
 
@@ -41,47 +39,6 @@ pub struct Dropped {
     pub direction: Vec<f64>,
     /// The share of a motion along it that is realised, in [0, 1/2).
     pub realised: f64,
-}
-
-impl Inverse {
-    pub(super) fn compute(
-        method: Method,
-        j: &Matrix,
-        task: &[f64],
-        weights: &Weights,
-    ) -> Result<Self> {
-        method.check()?;
-        if !j.is_finite() {
-            let i = j.as_slice().iter().position(|x| !x.is_finite()).unwrap_or(0);
-            return Err(Error::NotFinite {
-                what: format!("matrix entry ({}, {})", i % j.rows(), i / j.rows()),
-                value: j.as_slice()[i],
-            });
-        }
-        let svd = Svd::of(&weights.apply(j)?);
-        let mut gains = vec![0.0; svd.len()];
-        let threshold = method.gains(&svd, task, &mut gains);
-        let Rank { rank, threshold, gap } = rank(&svd, &gains, threshold);
-        let share = |i: usize| gains[i] * svd.value(i);
-        let dropped = (0..svd.len())
-            .filter(|&i| !is_kept(share(i)))
-            .map(|i| Dropped {
-                singular_value: svd.value(i),
-                direction: svd.u(i).to_vec(),
-                realised: share(i),
-            })
-            .collect();
-        Ok(Self {
-            matrix: weights.unapply(assemble(&svd, &gains)),
-            singular_values: svd.values().collect(),
-            rank,
-            gap,
-            threshold,
-            dropped,
-            exists: true,
-            reason: None,
-        })
-    }
 }
 
 /// How many directions are kept, and how sure that is. Not always the first ones: selectively

@@ -1,11 +1,11 @@
 //! Selectively damped least squares: each direction slowed by as much as its joint rates need.
 //!
 //! Formula  r_i = (u_i . x) / s_i v_i, the rates along direction i; N_i = |u_i| = 1;
-//!          M_i = sum_j |v_ji| |J_j| / s_i; g_i = min(1, N_i / M_i) max_rate;
-//!          r_i scaled so that its largest entry is at most g_i, then the sum at most max_rate
+//!          M_i = sum_j |v_ji| |J_j| / s_i; g_i = min(1, N_i / M_i) max_joint_velocity;
+//!          r_i scaled so that its largest entry is at most g_i, then the sum at most max_joint_velocity
 //! Shapes   m x n and a task of m entries -> n x m (for this task)
-//! Units    max_rate in rad/s (m/s for sliding joints)
-//! Valid    any rank; |rates| <= max_rate always. Continuous in x, and in J where its singular
+//! Units    max_joint_velocity in rad/s (m/s for sliding joints)
+//! Valid    any rank; |rates| <= max_joint_velocity always. Continuous in x, and in J where its singular
 //!          values differ and none is zero: where two are equal their directions are not
 //!          determined, each choice has its own clamps, and the rates may jump (for motions so
 //!          small that nothing is clamped they do not)
@@ -16,10 +16,11 @@
 
 use crate::linalg::{Svd, dot};
 
-pub(super) fn gains(svd: &Svd, max_rate: f64, task: &[f64], out: &mut [f64]) -> f64 {
+pub(super) fn gains(svd: &Svd, max_joint_velocity: f64, task: &[f64], out: &mut [f64]) -> f64 {
     let machine = svd.machine_rank();
     for (i, gain) in out.iter_mut().enumerate() {
-        *gain = if i < machine.rank { direction_gain(svd, i, max_rate, task) } else { 0.0 };
+        *gain =
+            if i < machine.rank { direction_gain(svd, i, max_joint_velocity, task) } else { 0.0 };
     }
     // The sum of the directions is held to the largest rate as well.
     let along = |i: usize| along(svd, i, task);
@@ -28,13 +29,13 @@ pub(super) fn gains(svd: &Svd, max_rate: f64, task: &[f64], out: &mut [f64]) -> 
         let rate: f64 = (0..machine.rank).map(|i| out[i] * along(i) * svd.v(i)[j]).sum();
         largest = largest.max(rate.abs());
     }
-    if largest > max_rate {
-        out.iter_mut().for_each(|g| *g *= max_rate / largest);
+    if largest > max_joint_velocity {
+        out.iter_mut().for_each(|g| *g *= max_joint_velocity / largest);
     }
     machine.threshold
 }
 
-fn direction_gain(svd: &Svd, i: usize, max_rate: f64, task: &[f64]) -> f64 {
+fn direction_gain(svd: &Svd, i: usize, max_joint_velocity: f64, task: &[f64]) -> f64 {
     let (s, v) = (svd.value(i), svd.v(i));
     // |J_j|^2 = sum_l (s_l v_lj)^2: the columns of J without J, over s_i so that nothing vanishes.
     let moved: f64 = v
@@ -46,7 +47,7 @@ fn direction_gain(svd: &Svd, i: usize, max_rate: f64, task: &[f64]) -> f64 {
             vj.abs() * column2.sqrt()
         })
         .sum::<f64>();
-    let allowed = (1.0 / moved).min(1.0) * max_rate;
+    let allowed = (1.0 / moved).min(1.0) * max_joint_velocity;
     // s times the largest rate along direction i
     let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * along(svd, i, task).abs();
     if largest > allowed * s { allowed / largest } else { 1.0 / s }

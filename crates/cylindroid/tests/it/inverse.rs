@@ -112,7 +112,7 @@ fn every_method_is_bounded_through_a_singularity() {
             assert!(inverse.matrix.is_finite() && inverse.exists);
             (inverse.matrix[(2, 2)], inverse)
         };
-        // max_rate / M with M = sum |v| |J_j| / s: at most max_rate; others: their own bounds
+        // max_joint_velocity / M with M = sum |v| |J_j| / s: at most max_joint_velocity; others: their own bounds
         let bound = 1.01 / cylindroid::tolerance::TRUNCATION;
         let mut last = gain(1.0).0;
         let mut s = 1.0;
@@ -198,20 +198,21 @@ fn filtered_is_the_rational_function() {
 #[test]
 fn selectively_damped_never_exceeds_the_rate() {
     let mut random = Random(23);
-    let max_rate = 0.6;
+    let max_joint_velocity = 0.6;
     for round in 0..500 {
         let rank = 1 + round % 6;
         let j = &random.matrix(6, rank) * &random.matrix(rank, 7);
         let task: Vec<f64> = random.vector(6).iter().map(|x| x * 10.0).collect();
-        let inverse = inverse::selectively_damped(&j, &task, max_rate).unwrap();
+        let inverse = inverse::selectively_damped(&j, &task, max_joint_velocity).unwrap();
         let rates = inverse.matrix.mul_vec(&task);
-        assert!(rates.iter().all(|r| r.abs() <= max_rate * (1.0 + 1e-12)), "{rates:?}");
+        assert!(rates.iter().all(|r| r.abs() <= max_joint_velocity * (1.0 + 1e-12)), "{rates:?}");
     }
     // A small motion in a regular pose is not damped at all.
     let j = Matrix::diagonal(&[1.0, 0.9, 1.1]);
     let task = [1e-3, 2e-3, -1e-3];
     let exact = inverse::truncated(&j, 1e-9).unwrap().matrix.mul_vec(&task);
-    let got = inverse::selectively_damped(&j, &task, max_rate).unwrap().matrix.mul_vec(&task);
+    let got =
+        inverse::selectively_damped(&j, &task, max_joint_velocity).unwrap().matrix.mul_vec(&task);
     assert_close("rates", &got, &exact, 1e-16);
 }
 
@@ -366,7 +367,7 @@ fn bad_input_is_refused() {
         (Method::Truncated { eps: -1e-3 }, "eps"),
         (Method::Damped { damping: 0.0 }, "damping"),
         (Method::Damped { damping: f64::INFINITY }, "damping"),
-        (Method::SelectivelyDamped { max_rate: f64::NAN }, "max_rate"),
+        (Method::SelectivelyDamped { max_joint_velocity: f64::NAN }, "max_joint_velocity"),
         (Method::SingularValueFiltering { shape: 10.0, floor: 0.0 }, "floor"),
     ] {
         let error = method.inverse(&Matrix::identity(2)).unwrap_err().to_string();

@@ -20,6 +20,7 @@ mod inverse_batch;
 mod kinematics;
 mod manipulability;
 mod model;
+mod parameters;
 mod pinocchio;
 mod screws;
 mod servo;

@@ -1,16 +1,12 @@
-//! From `--inverse` and its numbers to the options of the servo.
+//! From `--inverse` and its parameters to the options of the servo.
 
-use cylindroid::control::TaskProjection;
-use cylindroid::inverse::HyperbolicDamping;
+use cylindroid::control::{InverseSelection, NamedInverse, TaskProjection};
 use cylindroid::model::Mechanism;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Error, Method, ReferenceFrame, Result, ServoOptions, Twist};
 
-use crate::args::InverseArgs;
+use crate::args::{InverseArgs, inverses};
 use crate::output::number;
-
-/// The one that chooses nothing, as a fallback.
-const PLAIN: &str = "truncated";
 
 /// Sets method, projection and fallback.
 pub(crate) fn apply(
@@ -19,42 +15,17 @@ pub(crate) fn apply(
     robot: &Mechanism,
     options: &mut ServoOptions,
 ) -> Result<()> {
-    let chooses = TaskProjection::NAMES.contains(&args.inverse.as_str());
-    let method = if chooses { Method::default() } else { named(&args.inverse)? };
-    options.method = with_numbers(args, method, &args.inverse)?;
-    let pitch = |name: &str| match args.h {
-        Some(h) => Ok(h),
-        None => Err(missing_pitch(name, start, robot, options)),
+    let given = &args.parameters.0;
+    if let Some(name) = lacks_pitch(args) {
+        return Err(missing_pitch(name, start, robot, options));
+    }
+    let selection = InverseSelection {
+        name: &args.inverse,
+        parameters: given.iter().map(|(name, value)| (*name, *value)).collect(),
+        complement: args.give_up.iter().map(|m| Twist::from_array(m.0)).collect(),
+        fallback: args.fallback.as_deref(),
     };
-    let wanted = match chooses {
-        true => projection(args, &args.inverse, pitch)?,
-        false => TaskProjection::Orthogonal,
-    };
-    let fallback = match args.fallback.as_deref() {
-        None => None,
-        Some(_) if !chooses => {
-            return Err(Error::InvalidOption {
-                option: "--fallback",
-                value: args.fallback.clone().unwrap_or_default(),
-                reason: format!(
-                    "the inverse '{}' always exists; a fallback is for {}",
-                    args.inverse,
-                    TaskProjection::NAMES.join(", ")
-                ),
-            });
-        }
-        Some(PLAIN) => Some(TaskProjection::Orthogonal),
-        Some(name) if TaskProjection::NAMES.contains(&name) => Some(projection(args, name, pitch)?),
-        Some(name) => {
-            return Err(Error::unknown(
-                "fallback",
-                name,
-                TaskProjection::NAMES.iter().chain(&[PLAIN]),
-            ));
-        }
-    };
-    (options.projection, options.fallback) = (wanted, fallback);
-    unused(args)
+    selection.apply(options).map_err(as_typed)
 }
 
 /// The name of the inverse that the options mean, as it was asked for.
@@ -65,40 +36,31 @@ pub(super) fn name(projection: &TaskProjection, method: &Method) -> &'static str
     }
 }
 
-fn named(name: &str) -> Result<Method> {
-    Method::named(name).map_err(|_| {
-        let all = Method::ALL.iter().map(Method::name).chain(TaskProjection::NAMES);
-        Error::unknown("inverse", name, all)
-    })
+/// The inverse, or its fallback, that needs `--h` where none was given.
+fn lacks_pitch(args: &InverseArgs) -> Option<&str> {
+    if args.parameters.0.contains_key("h") {
+        return None;
+    }
+    let needs_it = |name: &&str| {
+        let mut found = NamedInverse::all().filter(|i| i.name == *name);
+        found.any(|i| i.parameters.iter().any(|p| p.name == "h"))
+    };
+    [Some(args.inverse.as_str()), args.fallback.as_deref()].into_iter().flatten().find(needs_it)
 }
 
-fn projection(
-    args: &InverseArgs,
-    name: &str,
-    pitch: impl Fn(&str) -> Result<f64>,
-) -> Result<TaskProjection> {
-    let needed = |option: &'static str, value: Option<f64>| {
-        value.ok_or_else(|| Error::InvalidOption {
-            option,
-            value: "missing".to_owned(),
-            reason: format!("the inverse '{name}' needs this number, in m/rad: try 0.01"),
-        })
-    };
-    Ok(match name {
-        "hyperbolic" => TaskProjection::Hyperbolic { h: pitch(name)? },
-        "hyperbolic-damped" => TaskProjection::DampedHyperbolic {
-            h: pitch(name)?,
-            damping: HyperbolicDamping::Invariant { mu: needed("--mu", args.mu)? },
-        },
-        "hyperbolic-gram" => TaskProjection::DampedHyperbolic {
-            h: pitch(name)?,
-            damping: HyperbolicDamping::Gram { lambda: needed("--lambda", args.lambda)? },
-        },
-        _ => TaskProjection::Oblique {
-            complement: args.give_up.iter().map(|m| Twist::from_array(m.0)).collect(),
-            reference: ReferenceFrame::Local,
-        },
-    })
+/// Names options as they are typed.
+fn as_typed(error: Error) -> Error {
+    match error {
+        Error::InvalidOption { option, value, reason } => {
+            let option = match option {
+                "give_up" => "--give-up",
+                "fallback" => "--fallback",
+                name => inverses::option(name).unwrap_or(name),
+            };
+            Error::InvalidOption { option, value, reason }
+        }
+        other => other,
+    }
 }
 
 /// `--h` has no default, since it is a real choice; but there is advice.
@@ -124,64 +86,4 @@ fn missing_pitch(name: &str, start: &[f64], robot: &Mechanism, options: &ServoOp
             advice().unwrap_or_default()
         ),
     }
-}
-
-/// Refuses numbers of inverses that were not asked for.
-fn unused(args: &InverseArgs) -> Result<()> {
-    let asked = |names: &[&str]| {
-        names.contains(&args.inverse.as_str())
-            || args.fallback.as_deref().is_some_and(|f| names.contains(&f))
-    };
-    let refuse = |option: &'static str, value: String, names: &[&str]| Error::InvalidOption {
-        option,
-        value,
-        reason: format!("only {} has it; choose one with --inverse", names.join(", ")),
-    };
-    let numbers: [(&'static str, Option<f64>, &[&str]); 3] = [
-        ("--h", args.h, &TaskProjection::NAMES[..3]),
-        ("--mu", args.mu, &TaskProjection::NAMES[1..2]),
-        ("--lambda", args.lambda, &TaskProjection::NAMES[2..3]),
-    ];
-    for (option, value, names) in numbers {
-        if let Some(value) = value
-            && !asked(names)
-        {
-            return Err(refuse(option, value.to_string(), names));
-        }
-    }
-    if !args.give_up.is_empty() && !asked(&TaskProjection::NAMES[3..]) {
-        let given = format!("{} motions", args.give_up.len());
-        return Err(refuse("--give-up", given, &TaskProjection::NAMES[3..]));
-    }
-    Ok(())
-}
-
-/// The inverse with the numbers that were given.
-fn with_numbers(args: &InverseArgs, mut method: Method, name: &str) -> Result<Method> {
-    let flag = |number: &str| format!("--{}", number.replace('_', "-"));
-    let mut numbers = method.numbers_mut();
-    let given = [
-        ("--eps", args.eps),
-        ("--damping", args.damping),
-        ("--onset", args.onset),
-        ("--filter", args.filter),
-        ("--max-rate", args.max_rate),
-        ("--shape", args.shape),
-        ("--floor", args.floor),
-    ];
-    for (option, value) in given.into_iter().filter_map(|(o, v)| Some((o, v?))) {
-        let Some((_, number)) = numbers.iter_mut().find(|(o, _)| flag(o) == option) else {
-            let own: Vec<String> = numbers.iter().map(|(o, _)| flag(o)).collect();
-            return Err(Error::InvalidOption {
-                option,
-                value: value.to_string(),
-                reason: format!(
-                    "the inverse '{name}' has no such number but {}; choose one with --inverse",
-                    own.join(", ")
-                ),
-            });
-        };
-        **number = value;
-    }
-    Ok(method)
 }

@@ -122,11 +122,11 @@ fn methods_tasks_and_frames_are_taken_or_refused_as_a_whole() {
     let server = Server::new(&["youbot", "--q", "0.4,0.6,0.9,0.4,0.2"]);
     let mut client = server.client();
     client.next("scene");
-    client.say(&json!({"type": "method", "name": "damped", "numbers": {"damping": 0.05}}));
+    client.say(&json!({"type": "method", "name": "damped", "parameters": {"damping": 0.05}}));
     let scene = client.next("scene");
     assert_eq!(
         scene["method"],
-        json!({"name": "damped", "numbers": {"damping": 0.05}, "h": null, "fallback": null})
+        json!({"name": "damped", "parameters": {"damping": 0.05}, "h": null, "fallback": null})
     );
     client.say(&json!({"type": "method", "name": "hyperbolic", "fallback": "truncated"}));
     assert_eq!(client.next("scene")["method"]["fallback"], "truncated");
@@ -134,8 +134,8 @@ fn methods_tasks_and_frames_are_taken_or_refused_as_a_whole() {
     assert!(wrong["message"].as_str().unwrap().contains("whole poses"), "{wrong}");
     for (message, word) in [
         (json!({"type": "method", "name": "dampd"}), "damped"),
-        (json!({"type": "method", "name": "damped", "numbers": {"dmping": 1}}), "damping"),
-        (json!({"type": "method", "name": "damped", "numbers": {"damping": -1}}), "positive"),
+        (json!({"type": "method", "name": "damped", "parameters": {"dmping": 1}}), "damping"),
+        (json!({"type": "method", "name": "damped", "parameters": {"damping": -1}}), "positive"),
         (json!({"type": "task", "name": "x,yaw"}), "pose"),
         (json!({"type": "frame", "name": "arm_link_9"}), "arm_link_"),
         (json!({"type": "overlays", "names": ["velocity"]}), "velocity-ellipsoid"),

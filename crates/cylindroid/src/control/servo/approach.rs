@@ -47,8 +47,8 @@ pub(super) fn share(
 /// damped least squares would give back what the twist loses.
 pub(super) fn slowed(method: Method, share: f64) -> Method {
     match method {
-        Method::SelectivelyDamped { max_rate } => {
-            Method::SelectivelyDamped { max_rate: max_rate * share }
+        Method::SelectivelyDamped { max_joint_velocity } => {
+            Method::SelectivelyDamped { max_joint_velocity: max_joint_velocity * share }
         }
         other => other,
     }

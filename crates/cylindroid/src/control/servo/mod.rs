@@ -3,12 +3,14 @@
 //! Read `options`, `step` (the input and output of a step) and `controller`, which runs the stages
 //! in `controller/stages.rs`. A stage calls `task_space` (scaling), `projection` and `secondary`
 //! (primary and secondary task), `coupled` (closed chains), `approach` and `limits` (braking), then
-//! the solver; `stall` reports why there is no progress. `reference_point` compares inverses.
+//! the solver; `stall` reports why there is no progress. `named_inverse` lists the
+//! inverses for front ends, `reference_point` compares them.
 
 mod approach;
 mod controller;
 mod coupled;
 mod limits;
+mod named_inverse;
 mod options;
 mod projection;
 mod reference_point;
@@ -20,6 +22,7 @@ mod task_space;
 pub use controller::Servo;
 pub use controller::condition::ConditionReport;
 pub use limits::JointState;
+pub use named_inverse::{InverseSelection, NamedInverse};
 pub use options::{PoseTolerance, SecondaryNullSpace, ServoGains, ServoOptions, SpeedLimit};
 pub use projection::TaskProjection;
 pub use reference_point::{InverseChoice, ReferencePointComparison, VelocitiesAtPoint};

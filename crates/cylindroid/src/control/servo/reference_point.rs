@@ -149,8 +149,8 @@ impl InverseChoice {
                 let scaled = j.clone().scale_rows(&std::array::from_fn::<f64, 6, _>(scale));
                 let twist = std::array::from_fn(|i| twist[i] * scale(i));
                 let inverse = match self.method {
-                    Method::SelectivelyDamped { max_rate } => {
-                        selectively_damped(&scaled, &twist, max_rate)?
+                    Method::SelectivelyDamped { max_joint_velocity } => {
+                        selectively_damped(&scaled, &twist, max_joint_velocity)?
                     }
                     method => method.inverse(&scaled)?,
                 };

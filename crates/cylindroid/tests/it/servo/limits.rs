@@ -95,16 +95,16 @@ fn limits_hold_for_any_options() {
         let robot = &robots[round % robots.len()];
         let mut power = |lower: f64, upper: f64| 10_f64.powf(random.within(lower, upper));
         let dt = power(-4.0, -1.3);
-        let (gain, acceleration, max_rate) =
+        let (gain, acceleration, max_joint_velocity) =
             (power(-1.0, 0.28) / dt, power(-2.0, 4.0), power(-2.0, 1.0));
         let weights: Vec<f64> = (0..robot.n()).map(|_| power(-3.0, 3.0)).collect();
         let mut servo = servo(robot, |o| {
             o.dt = dt;
             o.gain = ServoGains { position: gain, orientation: gain };
             o.acceleration = acceleration;
-            o.method = Method::ALL[round % 6];
-            if let Method::SelectivelyDamped { max_rate: rate } = &mut o.method {
-                *rate = max_rate;
+            o.method = Method::ALL[round % Method::ALL.len()];
+            if let Method::SelectivelyDamped { max_joint_velocity: rate } = &mut o.method {
+                *rate = max_joint_velocity;
             }
             if round % 2 == 0 {
                 o.joint_weights = weights;
@@ -151,7 +151,7 @@ fn singular_poses_keep_rates_bounded() {
         (&ur5e, vec![0.3, -1.2, 1.4, -0.4, 0.0, 0.3]), // wrist aligned
         (&ur5e, vec![0.0; 6]),                         // both
     ];
-    let mut fastest = [0.0_f64; 6];
+    let mut fastest = [0.0_f64; Method::ALL.len()];
     for (robot, q) in cases {
         let start = robot.state(&q).unwrap().pose(robot.tool());
         for (k, method) in Method::ALL.into_iter().enumerate() {
@@ -205,9 +205,12 @@ fn bound(method: Method, largest: impl Fn() -> f64, twist: f64) -> f64 {
         Method::VariableDamping { onset, damping } => rising(damping, onset * largest()),
         Method::NumericalFiltering { onset, damping, .. } => rising(damping, onset * largest()),
         // Each of at most seven joints on its own; the twist does not matter.
-        Method::SelectivelyDamped { max_rate } => return max_rate * 7.0_f64.sqrt(),
+        Method::SelectivelyDamped { max_joint_velocity } => {
+            return max_joint_velocity * 7.0_f64.sqrt();
+        }
         // f rises from its floor for shape * floor < 2.
         Method::SingularValueFiltering { floor, .. } => 1.0 / floor,
+        _ => panic!("state the bound of '{}' here", method.name()),
     };
     gain * twist
 }

@@ -78,7 +78,8 @@ fn stall_of_a_weak_inverse_is_slow() {
     let robot = catalogue::load("panda").unwrap();
     let start = robot.state(robot.home()).unwrap().pose(robot.tool());
     let target = Pose { translation: start.translation + Vec3::new(0.05, 0.1, -0.1), ..start };
-    for method in [Method::Damped { damping: 200.0 }, Method::SelectivelyDamped { max_rate: 1e-4 }]
+    for method in
+        [Method::Damped { damping: 200.0 }, Method::SelectivelyDamped { max_joint_velocity: 1e-4 }]
     {
         let mut servo = servo(&robot, |o| o.method = method);
         let outcome = run(&mut servo, robot.home(), target);
