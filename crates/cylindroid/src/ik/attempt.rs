@@ -19,7 +19,7 @@ use super::race::{self, Course};
 use crate::error::{Error, Result};
 use crate::kinematics::Chain;
 use crate::linalg::Matrix;
-use crate::model::{CoordinateKind, Mechanism, Motion};
+use crate::model::{CoordinateKind, Mechanism, NodeKind};
 
 /// Damping over the squared error [-].
 pub(super) const DAMPING: f64 = 0.03;
@@ -378,9 +378,9 @@ impl Problem {
 /// follow it by other than whole numbers.
 fn is_back_after_a_turn(mechanism: &Mechanism, coordinate: usize) -> bool {
     let nodes = mechanism.nodes().iter();
-    let range = |start: usize, motion: Motion| start..start + motion.dof();
-    let mut own = nodes.filter(|n| range(n.coordinate, n.motion).contains(&coordinate));
-    own.all(|n| n.motion == Motion::Revolute && n.multiplier.fract() == 0.0)
+    let range = |start: usize, kind: NodeKind| start..start + kind.dof();
+    let mut own = nodes.filter(|n| range(n.coordinate, n.kind).contains(&coordinate));
+    own.all(|n| n.kind == NodeKind::Revolute && n.multiplier.fract() == 0.0)
 }
 
 /// True where all errors are within tolerance.

@@ -9,7 +9,7 @@ use super::serial::Serial;
 use super::serial_single;
 use super::state::EndEffector;
 use crate::linalg::Matrix;
-use crate::model::{Mechanism, Motion, Node};
+use crate::model::{Mechanism, Node, NodeKind};
 use crate::spatial::{AlignedPose, Pose, Vec3};
 
 /// The moving part of a mechanism from the ground to one end effector.
@@ -31,7 +31,7 @@ impl Chain {
     pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
         let (path, slot_from_tool) = path(mechanism, of.into());
         let mut coordinates: Vec<usize> =
-            path.iter().flat_map(|n| n.coordinate..n.coordinate + n.motion.dof()).collect();
+            path.iter().flat_map(|n| n.coordinate..n.coordinate + n.kind.dof()).collect();
         coordinates.sort_unstable();
         coordinates.dedup();
         Self::over(coordinates, path, slot_from_tool)
@@ -59,7 +59,7 @@ impl Chain {
             nodes.push(Node {
                 parent: nodes.len(),
                 placement: slot_from_tool.into(),
-                motion: Motion::Fixed,
+                kind: NodeKind::Fixed,
                 coordinate: 0,
                 multiplier: 0.0,
                 offset: 0.0,
@@ -166,18 +166,18 @@ impl Chain {
         let slides: f64 = self
             .nodes
             .iter()
-            .filter(|node| node.motion != Motion::Fixed)
+            .filter(|node| node.kind != NodeKind::Fixed)
             .map(|node| {
                 let limits = mechanism.coordinates()[self.coordinates[node.coordinate]].limits;
                 // Zero times an infinite limit is zero.
                 let times = |q: f64, factor: f64| if factor == 0.0 { 0.0 } else { q * factor };
                 let end = |q: f64| (times(q, node.multiplier) + node.offset).abs();
                 let most = end(limits.lower).max(end(limits.upper));
-                match node.motion {
-                    Motion::Fixed | Motion::Revolute | Motion::Spherical => 0.0,
-                    Motion::Prismatic => most,
-                    Motion::Helical(pitch) => times(most, pitch.abs()),
-                    Motion::Free => f64::INFINITY,
+                match node.kind {
+                    NodeKind::Fixed | NodeKind::Revolute | NodeKind::Spherical => 0.0,
+                    NodeKind::Prismatic => most,
+                    NodeKind::Helical(pitch) => times(most, pitch.abs()),
+                    NodeKind::Free => f64::INFINITY,
                 }
             })
             .sum();
@@ -186,7 +186,7 @@ impl Chain {
 
     /// True where all coordinates are angles and lengths.
     pub(crate) fn turns_and_slides(&self) -> bool {
-        self.nodes.iter().all(|node| node.motion.dof() <= 1)
+        self.nodes.iter().all(|node| node.kind.dof() <= 1)
     }
 
     /// The chain as joints that turn and slide, where it is nothing else.

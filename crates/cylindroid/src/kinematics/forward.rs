@@ -9,7 +9,7 @@
 //!          today's processors, and compiled twice: baseline and AVX2 with fused multiplication
 //! Checked  tests/it/pinocchio.rs, tests/it/kinematics.rs
 
-use crate::model::{Motion, Node};
+use crate::model::{Node, NodeKind};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::has_avx2;
 use crate::scalar::{Simd, sin_cos};
@@ -65,16 +65,18 @@ fn forward_with<T: SingleVector3>(nodes: &[Node], q: &[f64], slots: &mut [Aligne
         let (sin, cos) = sines::<T::Wide>(|k| x[k]);
         for (k, node) in nodes.iter().enumerate() {
             let base = Columns::<T>::load(&slots[node.parent]).then(&node.placement);
-            let moved = match node.motion {
-                Motion::Revolute => base.rotated_z(sin[k], cos[k]),
-                Motion::Prismatic => base.translated_z(x[k]),
-                Motion::Fixed => base,
-                Motion::Helical(pitch) => base.rotated_z(sin[k], cos[k]).translated_z(pitch * x[k]),
-                Motion::Spherical => {
+            let moved = match node.kind {
+                NodeKind::Revolute => base.rotated_z(sin[k], cos[k]),
+                NodeKind::Prismatic => base.translated_z(x[k]),
+                NodeKind::Fixed => base,
+                NodeKind::Helical(pitch) => {
+                    base.rotated_z(sin[k], cos[k]).translated_z(pitch * x[k])
+                }
+                NodeKind::Spherical => {
                     let turn = Pose::from_rotation(Rotation::exp(three(q, node.coordinate)));
                     base.then(&turn.into())
                 }
-                Motion::Free => {
+                NodeKind::Free => {
                     let free = Pose {
                         rotation: Rotation::exp(three(q, node.coordinate + 3)),
                         translation: three(q, node.coordinate),
@@ -99,16 +101,16 @@ mod tests {
     #[test]
     fn fused_and_plain_agree() {
         let mut nodes = Vec::new();
-        for (i, motion) in [
-            Motion::Revolute,
-            Motion::Prismatic,
-            Motion::Helical(0.1),
-            Motion::Spherical,
-            Motion::Free,
-            Motion::Revolute,
-            Motion::Fixed,
-            Motion::Revolute,
-            Motion::Revolute,
+        for (i, kind) in [
+            NodeKind::Revolute,
+            NodeKind::Prismatic,
+            NodeKind::Helical(0.1),
+            NodeKind::Spherical,
+            NodeKind::Free,
+            NodeKind::Revolute,
+            NodeKind::Fixed,
+            NodeKind::Revolute,
+            NodeKind::Revolute,
         ]
         .into_iter()
         .enumerate()
@@ -121,7 +123,7 @@ mod tests {
             nodes.push(Node {
                 parent: i,
                 placement: placement.into(),
-                motion,
+                kind,
                 coordinate: [0, 1, 2, 3, 6, 12, 0, 11, 0][i],
                 multiplier: 1.5,
                 offset: 0.1,

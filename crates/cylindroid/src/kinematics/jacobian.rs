@@ -16,7 +16,7 @@
 //!          ::jacobian_dot_*
 
 use crate::linalg::Matrix;
-use crate::model::{Motion, Node};
+use crate::model::{Node, NodeKind};
 use crate::spatial::{AlignedPose, Pose, Twist, Vec3};
 
 /// The point and the axes of a twist or a Jacobian, in the field's words.
@@ -86,17 +86,17 @@ impl Tip<'_> {
             let turn = |axis: Vec3| Twist { linear: axis.cross(arm), angular: axis };
             let slide = |axis: Vec3| Twist { linear: axis, angular: Vec3::ZERO };
             let c = node.coordinate;
-            match node.motion {
-                Motion::Fixed => {}
-                Motion::Revolute => f(depth, c, turn(z) * node.multiplier),
-                Motion::Prismatic => f(depth, c, slide(z) * node.multiplier),
-                Motion::Helical(pitch) => {
+            match node.kind {
+                NodeKind::Fixed => {}
+                NodeKind::Revolute => f(depth, c, turn(z) * node.multiplier),
+                NodeKind::Prismatic => f(depth, c, slide(z) * node.multiplier),
+                NodeKind::Helical(pitch) => {
                     f(depth, c, (turn(z) + slide(z * pitch)) * node.multiplier);
                 }
-                Motion::Spherical => {
+                NodeKind::Spherical => {
                     here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + k, turn(a)));
                 }
-                Motion::Free => {
+                NodeKind::Free => {
                     here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + k, slide(a)));
                     here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + 3 + k, turn(a)));
                 }

@@ -16,7 +16,7 @@
 use std::array::from_fn;
 
 use super::forward::CHUNK;
-use crate::model::{Motion, Node};
+use crate::model::{Node, NodeKind};
 use crate::scalar::Simd;
 use crate::spatial::{AlignedPose, Columns, Pose, Rotation, Vec3, Vector3Like};
 
@@ -94,7 +94,7 @@ impl Serial {
     pub(crate) fn of(nodes: &[Node]) -> Option<Self> {
         let (tool, moving) = nodes.split_last()?;
         // The tool is the last way.
-        if tool.motion != Motion::Fixed {
+        if tool.kind != NodeKind::Fixed {
             return None;
         }
         let first = moving.first()?.placement;
@@ -102,11 +102,11 @@ impl Serial {
         let mut carried = 0.0;
         for (i, node) in moving.iter().enumerate() {
             let m = node.multiplier;
-            let (turn, slide, pitch) = match node.motion {
-                Motion::Revolute => (m, 0.0, 0.0),
-                Motion::Prismatic => (0.0, m, 1.0),
-                Motion::Helical(pitch) => (m, pitch * m, pitch),
-                Motion::Fixed | Motion::Spherical | Motion::Free => return None,
+            let (turn, slide, pitch) = match node.kind {
+                NodeKind::Revolute => (m, 0.0, 0.0),
+                NodeKind::Prismatic => (0.0, m, 1.0),
+                NodeKind::Helical(pitch) => (m, pitch * m, pitch),
+                NodeKind::Fixed | NodeKind::Spherical | NodeKind::Free => return None,
             };
             let turned = if turn == 0.0 { 0.0 } else { node.offset };
             let mut way = LinkTransform::of(nodes[i + 1].placement.pose());

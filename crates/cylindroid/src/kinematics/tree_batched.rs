@@ -5,7 +5,7 @@
 //! Units    rad, m
 //! Checked  tests/it/manipulability/batch.rs
 
-use crate::model::{Motion, Node};
+use crate::model::{Node, NodeKind};
 use crate::scalar::{MAX_LANES, SimdFloat, sin_cos};
 use crate::spatial::{AlignedPose, Columns, Pose, Rotation, Vec3, Vector3Like};
 
@@ -20,18 +20,18 @@ pub(crate) fn forward<R: SimdFloat>(nodes: &[Node], q: &[R], frames: &mut [Frame
     for (i, node) in nodes.iter().enumerate() {
         let base = frames[node.parent].then(&node.placement);
         let c = node.coordinate;
-        frames[i + 1] = match node.motion {
-            Motion::Fixed => base,
-            Motion::Revolute | Motion::Prismatic | Motion::Helical(_) => {
+        frames[i + 1] = match node.kind {
+            NodeKind::Fixed => base,
+            NodeKind::Revolute | NodeKind::Prismatic | NodeKind::Helical(_) => {
                 let x = q[c].mul_add(k(node.multiplier), k(node.offset));
-                match node.motion {
-                    Motion::Prismatic => base.translated_z(x),
-                    Motion::Helical(pitch) => turned(base, x).translated_z(x * k(pitch)),
+                match node.kind {
+                    NodeKind::Prismatic => base.translated_z(x),
+                    NodeKind::Helical(pitch) => turned(base, x).translated_z(x * k(pitch)),
                     _ => turned(base, x),
                 }
             }
-            Motion::Spherical => moved(base, &[k(0.0); 3], &q[c..c + 3]),
-            Motion::Free => moved(base, &q[c..c + 3], &q[c + 3..c + 6]),
+            NodeKind::Spherical => moved(base, &[k(0.0); 3], &q[c..c + 3]),
+            NodeKind::Free => moved(base, &q[c..c + 3], &q[c + 3..c + 6]),
         };
     }
 }

@@ -302,7 +302,7 @@ impl Batch {
         let (volume, smallest, largest) = measured(found.measured, coordinate)?;
         let dof = kernel.dof();
         let counts = MobilityCounts {
-            rank: plan.held() + plan.object(),
+            rank: plan.constraint_rows() + plan.object(),
             idle: 0,
             redundancy: dof - coordinate,
             indeterminacy: 0,

@@ -64,7 +64,7 @@ impl Kernel {
     /// With the metrics as factors; `None` where motions of the loops leave nothing to decide, or
     /// are more than the drives could set.
     pub(super) fn new(plan: BatchedConstraintPlan, object: Matrix, joint: Matrix) -> Option<Self> {
-        let k = plan.columns().checked_sub(plan.held())?;
+        let k = plan.columns().checked_sub(plan.constraint_rows())?;
         if k == 0 || k > plan.actuated() {
             return None;
         }
@@ -77,7 +77,7 @@ impl Kernel {
 
     /// Degrees of freedom k.
     pub(super) fn dof(&self) -> usize {
-        self.plan.columns() - self.plan.held()
+        self.plan.columns() - self.plan.constraint_rows()
     }
 
     /// The plan.
@@ -155,7 +155,7 @@ impl Kernel {
     #[inline(always)]
     fn analyse<R: SimdFloat>(&self, s: &mut Scratch<R>) {
         let plan = &*self.plan;
-        let (t, d, m, a) = (plan.held(), plan.object(), plan.columns(), plan.actuated());
+        let (t, d, m, a) = (plan.constraint_rows(), plan.object(), plan.columns(), plan.actuated());
         let (k, values) = (self.dof(), self.values());
         let written = plan.write(&s.q, &mut s.frames, &mut s.rows);
         let mut loops = Reflections {
@@ -208,7 +208,7 @@ impl Kernel {
     /// The ends of the spectrum of M M^T.
     #[inline(always)]
     fn extremes<R: SimdFloat>(&self, s: &mut Scratch<R>) -> [R; 2] {
-        let (t, m) = (self.plan.held(), self.plan.columns());
+        let (t, m) = (self.plan.constraint_rows(), self.plan.columns());
         let size = t + self.plan.object();
         for j in 0..size {
             // L has j + 1 numbers in a row, J Q all.
@@ -316,7 +316,7 @@ impl<R: SimdFloat> Scratch<R> {
 
     fn of(kernel: &Kernel, n: usize) -> Self {
         let plan = &*kernel.plan;
-        let (t, d, m, a) = (plan.held(), plan.object(), plan.columns(), plan.actuated());
+        let (t, d, m, a) = (plan.constraint_rows(), plan.object(), plan.columns(), plan.actuated());
         let (k, size) = (kernel.dof(), t + d);
         let zeros = |count: usize| vec![R::splat(0.0); count];
         Self {

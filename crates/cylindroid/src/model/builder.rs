@@ -6,14 +6,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::assembly::{Assembly, default_tool};
-use super::closing::{Contact, ContactSpec, LoopJoint, LoopSpec};
-use super::held::Dimension;
+use super::contact::{Contact, ContactSpec};
+use super::dimension::Dimension;
+use super::flatten::FlatMechanism;
 use super::joint::{Joint, Limits};
+use super::joint_spec::JointSpec;
 use super::link::Link;
+use super::loop_joint::{LoopJoint, LoopJointSpec};
 use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
-use super::spec::JointSpec;
+use super::tree_order::{TreeOrder, default_tool};
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
@@ -27,7 +29,7 @@ pub struct Builder {
     pub(super) name: String,
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<JointSpec>,
-    pub(super) loops: Vec<LoopSpec>,
+    pub(super) loops: Vec<LoopJointSpec>,
     contacts: Vec<ContactSpec>,
     dimension: Dimension,
     frames: Vec<(String, String, Pose)>,
@@ -69,7 +71,7 @@ impl Builder {
     }
 
     /// Adds a joint that closes a loop of the others; both links must exist without it.
-    pub fn close(&mut self, joint: LoopSpec) -> &mut Self {
+    pub fn loop_joint(&mut self, joint: LoopJointSpec) -> &mut Self {
         self.loops.push(joint);
         self
     }
@@ -143,20 +145,20 @@ impl Builder {
         let order = self.depth_first(&links)?;
         let mimics = self.resolve_mimics()?;
 
-        let mut assembly = Assembly::new(self.links.len());
+        let mut flat = FlatMechanism::new(self.links.len());
         let root = order.root;
-        assembly.place(root, 0, Pose::IDENTITY, 0.0);
+        flat.place(root, 0, Pose::IDENTITY, 0.0);
         for &j in &order.joints {
             if !mimics.contains_key(&j) {
-                assembly.allocate(j, &self.joints[j]);
+                flat.allocate(j, &self.joints[j]);
             }
         }
         for &j in &order.joints {
             let spec = &self.joints[j];
             let source = mimics.get(&j).copied();
             if let Some((of, multiplier, offset)) = source {
-                let c = assembly.ranges[&of].start;
-                let clash = assembly.count_mimic_limits(c, spec, multiplier, offset);
+                let c = flat.ranges[&of].start;
+                let clash = flat.count_mimic_limits(c, spec, multiplier, offset);
                 if clash {
                     self.report.ignore(
                         0,
@@ -165,9 +167,9 @@ impl Builder {
                     );
                 }
             }
-            assembly.connect(j, spec, links[&spec.parent], links[&spec.child], source);
+            flat.connect(j, spec, links[&spec.parent], links[&spec.child], source);
         }
-        self.finish(&links, &order, assembly)
+        self.finish(&links, &order, flat)
     }
 
     /// Link names to indices, links named only by joints added.
@@ -256,7 +258,7 @@ impl Builder {
             let name = name.to_owned();
             move |message| Error::Model { model: self.name.clone(), culprit: name, message }
         };
-        let close = |l: &LoopSpec| l.resolve(links, self.dimension).map_err(place(&l.name));
+        let close = |l: &LoopJointSpec| l.resolve(links, self.dimension).map_err(place(&l.name));
         let touch = |c: &ContactSpec| c.resolve(links, self.dimension).map_err(place(&c.name));
         Ok((
             self.loops.iter().map(close).collect::<Result<_>>()?,
@@ -266,8 +268,8 @@ impl Builder {
 
     /// The home configuration: the one that was set, else that of each joint, else rest; zero in a
     /// closed chain, whose loops close there even where a limit excludes it.
-    fn home_of(&self, assembly: &Assembly) -> Result<Vec<f64>> {
-        let n = assembly.coordinates.len();
+    fn home_of(&self, flat: &FlatMechanism) -> Result<Vec<f64>> {
+        let n = flat.coordinates.len();
         if let Some(q) = &self.home {
             if q.len() == n && q.iter().all(|x| x.is_finite()) {
                 return Ok(q.clone());
@@ -279,12 +281,12 @@ impl Builder {
         }
         let closed = !(self.loops.is_empty() && self.contacts.is_empty());
         let still = |c: &Coordinate| if closed { 0.0 } else { rest(&c.limits) };
-        let mut home: Vec<f64> = assembly.coordinates.iter().map(still).collect();
+        let mut home: Vec<f64> = flat.coordinates.iter().map(still).collect();
         for (j, spec) in self.joints.iter().enumerate() {
             let Some(start) = self.starts.get(&spec.name).filter(|_| spec.mimic.is_none()) else {
                 continue;
             };
-            let range = assembly.ranges.get(&j).cloned().unwrap_or(0..0);
+            let range = flat.ranges.get(&j).cloned().unwrap_or(0..0);
             if start.len() != range.len() || start.iter().any(|x| !x.is_finite()) {
                 return self.refuse(
                     &spec.name,
@@ -301,7 +303,7 @@ impl Builder {
         Ok(home)
     }
 
-    fn depth_first(&self, links: &BTreeMap<String, usize>) -> Result<Order> {
+    fn depth_first(&self, links: &BTreeMap<String, usize>) -> Result<TreeOrder> {
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.links.len()];
         let mut parent_joint = vec![None; self.links.len()];
         for (j, joint) in self.joints.iter().enumerate() {
@@ -336,7 +338,7 @@ impl Builder {
             stack.extend(children[link].iter().rev().map(|&j| links[&self.joints[j].child]));
         }
         match visited.iter().position(|v| !v) {
-            None => Ok(Order { root, joints }),
+            None => Ok(TreeOrder { root, joints }),
             Some(unreached) => self.refuse_cycle(links, &parent_joint, unreached),
         }
     }
@@ -347,7 +349,7 @@ impl Builder {
         links: &BTreeMap<String, usize>,
         parent_joint: &[Option<usize>],
         start: usize,
-    ) -> Result<Order> {
+    ) -> Result<TreeOrder> {
         let mut path = vec![start];
         let mut link = start;
         while let Some(j) = parent_joint[link] {
@@ -374,12 +376,12 @@ impl Builder {
     fn finish(
         self,
         links: &BTreeMap<String, usize>,
-        order: &Order,
-        mut assembly: Assembly,
+        order: &TreeOrder,
+        mut flat: FlatMechanism,
     ) -> Result<Mechanism> {
         let mut frames: Vec<Frame> = Vec::with_capacity(self.links.len() + self.frames.len());
         for (link, l) in self.links.iter().enumerate() {
-            frames.push(assembly.frame(l.name.clone(), link, Pose::IDENTITY));
+            frames.push(flat.frame(l.name.clone(), link, Pose::IDENTITY));
         }
         for (name, link, pose) in &self.frames {
             let Some(&index) = links.get(link) else {
@@ -395,8 +397,8 @@ impl Builder {
             if !pose.is_finite() {
                 return self.refuse(name, format!("the pose of frame '{name}' is not finite"));
             }
-            assembly.stretch(index, pose.translation.norm());
-            frames.push(assembly.frame(name.clone(), index, *pose));
+            flat.stretch(index, pose.translation.norm());
+            frames.push(flat.frame(name.clone(), index, *pose));
         }
 
         let named = |what: &str, name: &String| match frames.iter().position(|f| f.name == *name) {
@@ -414,7 +416,7 @@ impl Builder {
             None => tool,
             Some(name) => named("reference", name)?,
         };
-        let home = self.home_of(&assembly)?;
+        let home = self.home_of(&flat)?;
         let (loops, contacts) = self.closings(links)?;
 
         let joints = order
@@ -432,7 +434,7 @@ impl Builder {
                     axis: spec.axis.unit(ZERO_AXIS).unwrap_or(Vec3::Z),
                     limits: spec.limits,
                     mimic: spec.mimic.clone(),
-                    coordinates: assembly.ranges.get(&j).cloned().unwrap_or(0..0),
+                    coordinates: flat.ranges.get(&j).cloned().unwrap_or(0..0),
                     actuated: spec.actuated && spec.mimic.is_none(),
                 }
             })
@@ -440,7 +442,7 @@ impl Builder {
         // From places in the specification to places in the order.
         let mut places = vec![0; self.joints.len()];
         order.joints.iter().enumerate().for_each(|(place, &j)| places[j] = place);
-        for c in &mut assembly.coordinates {
+        for c in &mut flat.coordinates {
             c.joint = places[c.joint];
         }
         let frame_key = frame_key(&frames);
@@ -456,11 +458,11 @@ impl Builder {
                 dimension: self.dimension,
                 reference: id(reference),
                 frames,
-                coordinates: assembly.coordinates,
-                nodes: assembly.nodes,
+                coordinates: flat.coordinates,
+                nodes: flat.nodes,
                 home,
                 tool: id(tool),
-                reach: assembly.reach.max(LEAST_REACH),
+                reach: flat.reach.max(LEAST_REACH),
                 report: self.report,
             }),
         })
@@ -478,8 +480,10 @@ fn rest(limits: &Limits) -> f64 {
     }
 }
 
-/// The root link and the joints, depth-first.
-pub(super) struct Order {
-    pub(super) root: usize,
-    pub(super) joints: Vec<usize>,
+impl Mechanism {
+    /// A builder for a mechanism of this name.
+    #[must_use]
+    pub fn builder(name: &str) -> Builder {
+        Builder::new(name)
+    }
 }

@@ -79,5 +79,11 @@ pub fn load(name: &str) -> Result<Mechanism> {
 }
 
 fn read(name: &str, text: &str) -> Result<(Mechanism, String)> {
-    toml::describe(text, Path::new(&format!("catalogue/{name}.toml")), "catalogue", 0)
+    toml::describe(
+        text,
+        Path::new(&format!("catalogue/{name}.toml")),
+        "catalogue",
+        0,
+        &|_, name, _| load(name),
+    )
 }

@@ -3,11 +3,12 @@
 //! Checked  tests/it/graph.rs::an_included_mechanism_*
 
 use super::builder::Builder;
-use super::closing::{ContactSpec, LoopSpec};
+use super::contact::ContactSpec;
 use super::joint::{JointKind, Mimic};
+use super::joint_spec::JointSpec;
 use super::link::Link;
+use super::loop_joint::LoopJointSpec;
 use super::mechanism::Mechanism;
-use super::spec::JointSpec;
 use crate::error::Result;
 use crate::spatial::Pose;
 
@@ -86,7 +87,7 @@ impl Builder {
             }
         }
         for joint in robot.loops() {
-            self.close(LoopSpec {
+            self.loop_joint(LoopJointSpec {
                 name: how.prefixed(&joint.name),
                 kind: joint.kind,
                 a: name(joint.a),

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::builder::Builder;
-use super::closing::{Contact, LoopJoint};
-use super::held::Dimension;
+use super::contact::Contact;
+use super::dimension::Dimension;
 use super::joint::{Joint, Limits};
 use super::link::Link;
-use super::node::{Motion, Node};
+use super::loop_joint::LoopJoint;
+use super::node::{Node, NodeKind};
 use super::report::LoadReport;
 use crate::error::{Error, Result, all_finite};
 use crate::spatial::{Pose, Rotation, Twist, Vec3, exp};
@@ -111,12 +111,6 @@ pub(super) fn frame_key(frames: &[Frame]) -> u64 {
 }
 
 impl Mechanism {
-    /// A builder for a mechanism of this name.
-    #[must_use]
-    pub fn builder(name: &str) -> Builder {
-        Builder::new(name)
-    }
-
     /// Its name.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -413,13 +407,16 @@ impl Mechanism {
         }
         for node in self.nodes() {
             let c = node.coordinate;
-            match node.motion {
-                Motion::Fixed | Motion::Revolute | Motion::Prismatic | Motion::Helical(_) => {}
-                Motion::Spherical => {
+            match node.kind {
+                NodeKind::Fixed
+                | NodeKind::Revolute
+                | NodeKind::Prismatic
+                | NodeKind::Helical(_) => {}
+                NodeKind::Spherical => {
                     let r = Rotation::exp(vec3(q, c)) * Rotation::exp(vec3(rates, c) * dt);
                     put(q, c, r.renormalised().log());
                 }
-                Motion::Free => {
+                NodeKind::Free => {
                     let here =
                         Pose { rotation: Rotation::exp(vec3(q, c + 3)), translation: vec3(q, c) };
                     let twist = Twist { linear: vec3(rates, c), angular: vec3(rates, c + 3) };

@@ -2,30 +2,34 @@
 //!
 //! Formats are loaders, never classes: whatever the file, the result is one [`Mechanism`].
 
-mod assembly;
 mod builder;
 pub mod catalogue;
-mod closing;
+mod constraint_wrenches;
+mod contact;
+mod dimension;
+mod flatten;
 pub mod formats;
-mod held;
 mod include;
 mod joint;
+mod joint_spec;
+mod joint_transform;
 mod link;
+mod loop_joint;
 mod mechanism;
 mod mimic;
-mod motion;
 mod node;
 mod report;
-mod spec;
+mod tree_order;
 
 pub use builder::Builder;
-pub use closing::{Contact, ContactSpec, LoopJoint, LoopSpec};
+pub use contact::{Contact, ContactKind, ContactSpec};
+pub use dimension::Dimension;
 pub use formats::load;
-pub use held::{ContactKind, Dimension};
 pub use include::Inclusion;
 pub use joint::{Joint, JointKind, Limits, Mimic};
+pub use joint_spec::JointSpec;
 pub use link::{Geometry, Inertial, Link, Visual};
+pub use loop_joint::{LoopJoint, LoopJointSpec};
 pub use mechanism::{Coordinate, CoordinateKind, Frame, FrameId, Mechanism};
-pub(crate) use node::{Motion, Node};
+pub(crate) use node::{Node, NodeKind};
 pub use report::{Ignored, LoadReport};
-pub use spec::JointSpec;

@@ -13,7 +13,7 @@ pub(crate) struct Node {
     /// The frame at zero, seen from the parent.
     pub(crate) placement: AlignedPose,
     /// What it does.
-    pub(crate) motion: Motion,
+    pub(crate) kind: NodeKind,
     /// Its first coordinate.
     pub(crate) coordinate: usize,
     /// Mimic ratio (1 for joints of their own).
@@ -24,7 +24,7 @@ pub(crate) struct Node {
 
 /// What a node does with its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Motion {
+pub(crate) enum NodeKind {
     /// Nothing: the tool at the end of a chain. Its coordinate is not read for anything.
     Fixed,
     /// Turns about z.
@@ -39,7 +39,7 @@ pub(crate) enum Motion {
     Free,
 }
 
-impl Motion {
+impl NodeKind {
     /// Number of coordinates.
     pub(crate) const fn dof(self) -> usize {
         match self {

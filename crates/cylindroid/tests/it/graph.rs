@@ -1,7 +1,7 @@
 //! The graph beyond the tree: closing joints, contacts, what they hold, who is driven.
 
 use cylindroid::model::{
-    ContactKind, ContactSpec, Dimension, Inclusion, JointKind, JointSpec, LoopSpec, Mimic,
+    ContactKind, ContactSpec, Dimension, Inclusion, JointKind, JointSpec, LoopJointSpec, Mimic,
 };
 use cylindroid::{Error, Mechanism, Pose, Twist, Vec3, Wrench};
 
@@ -28,7 +28,7 @@ fn velocity(kind: JointKind, axis: Vec3, coordinate: usize) -> Twist {
     let at = |x: f64| {
         let mut q = vec![0.0; kind.dof()];
         q[coordinate] = x;
-        kind.motion(axis, &q)
+        kind.transform(axis, &q)
     };
     let (a, b) = (at(-h), at(h));
     Twist {
@@ -55,7 +55,7 @@ fn held_rows_do_no_work_in_the_motion_and_fill_the_rest() {
     for _ in 0..20 {
         let axis = random.vec3(1.0);
         for kind in kinds(&mut random) {
-            let held = kind.held(axis, Dimension::Spatial);
+            let held = kind.constraint_wrenches(axis, Dimension::Spatial);
             assert_eq!(held.len(), 6 - kind.dof(), "{kind:?}");
             assert!(independent(&held), "{kind:?}");
             for c in 0..kind.dof() {
@@ -79,7 +79,7 @@ fn held_rows_in_the_plane_are_those_of_the_plane() {
         (JointKind::Fixed, Vec3::Z, 3),
         (JointKind::Planar, Vec3::Z, 0),
     ] {
-        let held = kind.held(axis, Dimension::Planar);
+        let held = kind.constraint_wrenches(axis, Dimension::Planar);
         assert_eq!(held.len(), count, "{kind:?}");
         assert!(independent(&held));
         for row in &held {
@@ -96,13 +96,13 @@ fn held_rows_in_the_plane_are_those_of_the_plane() {
 fn held_by_contacts() {
     let counts = [(1, 1), (3, 2), (4, 2), (2, 2), (5, 3), (3, 2), (6, 3)];
     for (kind, (spatial, planar)) in ContactKind::ALL.into_iter().zip(counts) {
-        assert_eq!(kind.held(Dimension::Spatial).len(), spatial, "{}", kind.name());
-        assert_eq!(kind.held(Dimension::Planar).len(), planar, "{}", kind.name());
+        assert_eq!(kind.constraint_wrenches(Dimension::Spatial).len(), spatial, "{}", kind.name());
+        assert_eq!(kind.constraint_wrenches(Dimension::Planar).len(), planar, "{}", kind.name());
         assert_eq!(ContactKind::parse(kind.name()).unwrap(), kind);
     }
     // A line along x with friction rolls about x and does nothing else.
     let roll = Twist { linear: Vec3::ZERO, angular: Vec3::X };
-    let line = ContactKind::LineFriction.held(Dimension::Spatial);
+    let line = ContactKind::LineFriction.constraint_wrenches(Dimension::Spatial);
     assert!(line.iter().all(|w| roll.power(*w) == 0.0));
     let error = ContactKind::parse("soft").unwrap_err().to_string();
     assert!(error.contains("nearest: soft_finger"), "{error}");
@@ -126,7 +126,7 @@ fn motion_is_that_of_the_kinematics() {
         let q: Vec<f64> = (0..m.n()).map(|_| random.vec3(1.0).x).collect();
         let state = m.state(&q).unwrap();
         let link = state.pose(m.frame("link").unwrap());
-        let expected = parent_from_joint * kind.motion(axis, &q) * joint_from_child;
+        let expected = parent_from_joint * kind.transform(axis, &q) * joint_from_child;
         let error = expected.error_to(link);
         assert!(error.linear.norm() < 1e-14 && error.angular.norm() < 1e-14, "{kind:?}");
     }
@@ -144,10 +144,10 @@ fn five_bar() -> Mechanism {
         });
     }
     b.dimension(Dimension::Planar);
-    b.close(LoopSpec {
+    b.loop_joint(LoopJointSpec {
         link_a_from_joint: Pose::from_translation(Vec3::X),
         link_b_from_joint: Pose::from_translation(Vec3::X * 4.0),
-        ..LoopSpec::new("q5", JointKind::Revolute, "d", "ground")
+        ..LoopJointSpec::new("q5", JointKind::Revolute, "d", "ground")
     });
     b.contact(ContactSpec {
         friction: Some(0.5),
@@ -203,11 +203,15 @@ fn what_does_not_fit_is_refused_with_a_reason() {
         assert!(matches!(error, Error::Model { .. }), "{error:?}");
         assert!(error.to_string().contains(says), "{error}");
     };
-    let spherical = |name: &str, a: &str, b: &str| LoopSpec::new(name, JointKind::Spherical, a, b);
-    refused(&|b| _ = b.close(spherical("l", "amr", "base")), "no link named 'amr'; nearest: arm");
-    refused(&|b| _ = b.close(spherical("l", "arm", "arm")), "link 'arm' with itself");
-    refused(&|b| _ = b.close(spherical("j", "arm", "base")), "named 'j'");
-    refused(&|b| _ = b.close(spherical("", "arm", "base")), "no name");
+    let spherical =
+        |name: &str, a: &str, b: &str| LoopJointSpec::new(name, JointKind::Spherical, a, b);
+    refused(
+        &|b| _ = b.loop_joint(spherical("l", "amr", "base")),
+        "no link named 'amr'; nearest: arm",
+    );
+    refused(&|b| _ = b.loop_joint(spherical("l", "arm", "arm")), "link 'arm' with itself");
+    refused(&|b| _ = b.loop_joint(spherical("j", "arm", "base")), "named 'j'");
+    refused(&|b| _ = b.loop_joint(spherical("", "arm", "base")), "no name");
     let touch = |kind| ContactSpec::new("c", kind, "arm", "base");
     refused(
         &|b| _ = b.contact(ContactSpec { b: "box".into(), ..touch(ContactKind::Complete) }),
@@ -224,7 +228,7 @@ fn what_does_not_fit_is_refused_with_a_reason() {
         "line_frictionless",
     );
     refused(
-        &|b| _ = b.dimension(Dimension::Planar).close(spherical("l", "arm", "base")),
+        &|b| _ = b.dimension(Dimension::Planar).loop_joint(spherical("l", "arm", "base")),
         "leaves the plane",
     );
     refused(&|b| _ = b.start("j", &[1.0, 2.0]), "start of joint 'j' has 2 entries");

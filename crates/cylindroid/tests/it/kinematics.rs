@@ -428,7 +428,7 @@ fn screws_of_closing_joints() {
             let frame = state.pose(link) * joint.link_a_from_joint;
             let screws = state.loop_screws(i);
             assert_eq!(screws.len(), joint.kind.dof(), "{}", joint.name);
-            for wrench in joint.kind.held(joint.axis, mechanism.dimension()) {
+            for wrench in joint.kind.constraint_wrenches(joint.axis, mechanism.dimension()) {
                 let wrench = frame.coadjoint(wrench);
                 for screw in &screws {
                     looked += 1;

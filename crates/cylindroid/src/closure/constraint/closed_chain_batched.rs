@@ -16,7 +16,7 @@ use super::constraint_rows::{self, KinematicPair, PairConstraints};
 use super::velocity_constraint::Unit;
 use crate::error::Result;
 use crate::kinematics::tree_batched::{self, Frame};
-use crate::model::{FrameId, Mechanism, Motion, Node};
+use crate::model::{FrameId, Mechanism, Node, NodeKind};
 use crate::scalar::{MAX_LANES, SimdFloat};
 use crate::spatial::{AlignedPose, Pose, Vec3, Vector3Like, Wrench, dot};
 use crate::tolerance::CROSSED_AXES;
@@ -140,7 +140,7 @@ impl BatchedConstraintPlan {
     }
 
     /// Number of rows that loops and contacts hold.
-    pub(crate) fn held(&self) -> usize {
+    pub(crate) fn constraint_rows(&self) -> usize {
         self.held
     }
 
@@ -291,16 +291,16 @@ fn between(
                 rate: sign * rate * scale,
             });
         };
-        match node.motion {
-            Motion::Fixed => {}
-            Motion::Revolute => add(2, true, 0, node.multiplier),
-            Motion::Prismatic => add(2, false, 0, node.multiplier),
-            Motion::Helical(pitch) => {
+        match node.kind {
+            NodeKind::Fixed => {}
+            NodeKind::Revolute => add(2, true, 0, node.multiplier),
+            NodeKind::Prismatic => add(2, false, 0, node.multiplier),
+            NodeKind::Helical(pitch) => {
                 add(2, true, 0, node.multiplier);
                 add(2, false, 0, pitch * node.multiplier);
             }
-            Motion::Spherical => (0..3).for_each(|i| add(i, true, i, 1.0)),
-            Motion::Free => (0..6).for_each(|i| add(i % 3, i >= 3, i, 1.0)),
+            NodeKind::Spherical => (0..3).for_each(|i| add(i, true, i, 1.0)),
+            NodeKind::Free => (0..6).for_each(|i| add(i % 3, i >= 3, i, 1.0)),
         }
         let next = if a > b { &mut a } else { &mut b };
         *next = node.parent;

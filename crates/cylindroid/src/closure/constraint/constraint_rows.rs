@@ -101,7 +101,7 @@ pub(crate) fn pair_constraints(
                 ),
             });
         }
-        let mut wrenches = joint.kind.held(joint.axis, dimension);
+        let mut wrenches = joint.kind.constraint_wrenches(joint.axis, dimension);
         let mut crossed = None;
         if let (JointKind::Universal { second }, Dimension::Spatial) = (joint.kind, dimension) {
             wrenches.pop();
@@ -119,7 +119,7 @@ pub(crate) fn pair_constraints(
         Ok(PairConstraints {
             ends: [contact.a, contact.b],
             frames: [contact.link_a_from_contact, contact.link_b_from_contact],
-            wrenches: contact.kind.held(dimension),
+            wrenches: contact.kind.constraint_wrenches(dimension),
             crossed: None,
             measure: None,
         })

@@ -7,7 +7,7 @@
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
-use crate::model::{Mechanism, Motion};
+use crate::model::{Mechanism, NodeKind};
 use crate::tolerance::AT_LIMIT;
 
 /// The columns of some coordinates.
@@ -39,10 +39,10 @@ pub(crate) fn free_places(mechanism: &Mechanism, held: &[usize]) -> Result<Vec<u
         return refuse(place.to_string(), format!("the mechanism has {n} coordinates"));
     }
     for node in mechanism.nodes() {
-        if !matches!(node.motion, Motion::Spherical | Motion::Free) {
+        if !matches!(node.kind, NodeKind::Spherical | NodeKind::Free) {
             continue;
         }
-        let group = node.coordinate..node.coordinate + node.motion.dof();
+        let group = node.coordinate..node.coordinate + node.kind.dof();
         let kept = group.clone().filter(|i| held.contains(i)).count();
         if let (Some(place), true) =
             (group.clone().find(|i| held.contains(i)), kept > 0 && kept < group.len())

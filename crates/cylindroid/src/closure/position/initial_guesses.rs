@@ -8,7 +8,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::coordinates::{moved, within_limits};
-use crate::model::{CoordinateKind, Mechanism, Motion};
+use crate::model::{CoordinateKind, Mechanism, NodeKind};
 use crate::scalar::uniform;
 use crate::spatial::Quaternion;
 
@@ -41,9 +41,9 @@ pub(crate) fn anywhere(
         q[i] = upper - (upper - lower) * uniform(random);
     }
     for node in mechanism.nodes() {
-        let at = match node.motion {
-            Motion::Spherical => node.coordinate,
-            Motion::Free => node.coordinate + 3,
+        let at = match node.kind {
+            NodeKind::Spherical => node.coordinate,
+            NodeKind::Free => node.coordinate + 3,
             _ => continue,
         };
         if free.contains(&at) {

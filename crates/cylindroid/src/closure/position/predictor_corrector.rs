@@ -22,7 +22,7 @@ use super::initial_guesses::near;
 use super::loop_closure::LoopClosure;
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd, norm};
-use crate::model::{Mechanism, Motion};
+use crate::model::{Mechanism, NodeKind};
 use crate::spatial::{Pose, Rotation, Vec3, log};
 use crate::tolerance::{
     CLOSURE_RANK, CONTRADICTION, CORRECTION_ROUNDING, LIMIT_MET, LOOP_ROUNDING,
@@ -256,17 +256,17 @@ fn displacement(mechanism: &Mechanism, q: &[f64], held: &[usize], goal: &[f64]) 
     let vector = |x: &[f64], i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
     for node in mechanism.nodes() {
         let c = node.coordinate;
-        let pose = |x: &[f64]| match node.motion {
-            Motion::Spherical => Some(Pose::from_rotation(Rotation::exp(vector(x, c)))),
-            Motion::Free => {
+        let pose = |x: &[f64]| match node.kind {
+            NodeKind::Spherical => Some(Pose::from_rotation(Rotation::exp(vector(x, c)))),
+            NodeKind::Free => {
                 Some(Pose { rotation: Rotation::exp(vector(x, c + 3)), translation: vector(x, c) })
             }
             _ => None,
         };
         if let (Some(here), Some(there)) = (pose(q), pose(&target)) {
             let twist = log(here.inverse() * there).to_array();
-            let skip = 6 - node.motion.dof(); // balls only turn
-            rates[c..c + node.motion.dof()].copy_from_slice(&twist[skip..]);
+            let skip = 6 - node.kind.dof(); // balls only turn
+            rates[c..c + node.kind.dof()].copy_from_slice(&twist[skip..]);
         }
     }
     held.iter().map(|&i| rates[i] / unit_of(mechanism, i)).collect()

@@ -26,7 +26,7 @@ use super::damped::{Damped, Wanted};
 use crate::error::{Error, Result};
 use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::Matrix;
-use crate::model::{Mechanism, Motion};
+use crate::model::{Mechanism, NodeKind};
 use crate::scalar::uniform;
 use crate::screws::Screw;
 use crate::spatial::{Pose, Rotation, Twist};
@@ -452,8 +452,8 @@ fn are_hinges(mechanism: &Mechanism, end_effector: EndEffector, coordinates: &[u
     let mut hinges = 0;
     while slot > 0 {
         let node = &mechanism.nodes()[slot - 1];
-        if coordinates.contains(&node.coordinate) && node.motion.dof() > 0 {
-            if node.motion != Motion::Revolute || (node.multiplier, node.offset) != (1.0, 0.0) {
+        if coordinates.contains(&node.coordinate) && node.kind.dof() > 0 {
+            if node.kind != NodeKind::Revolute || (node.multiplier, node.offset) != (1.0, 0.0) {
                 return false;
             }
             hinges += 1;

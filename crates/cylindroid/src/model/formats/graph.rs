@@ -24,7 +24,7 @@ pub(super) struct Branch {
 
 /// A graph taken apart.
 #[derive(Debug, Default)]
-pub(super) struct Span {
+pub(super) struct SpanningTree {
     /// Parents before children.
     pub(super) tree: Vec<Branch>,
     /// Joints that close loops, in the order of the file.
@@ -62,7 +62,12 @@ impl Groups {
 
 /// Spans the graph of `links` links whose joint `j` connects `ends[j]`. The roots count as
 /// connected with one another.
-pub(super) fn span(links: usize, ends: &[[usize; 2]], weights: &[u8], roots: &[usize]) -> Span {
+pub(super) fn spanning_tree(
+    links: usize,
+    ends: &[[usize; 2]],
+    weights: &[u8],
+    roots: &[usize],
+) -> SpanningTree {
     let mut groups = Groups::new(links);
     for pair in roots.windows(2) {
         groups.join(pair[0], pair[1]);
@@ -82,7 +87,7 @@ pub(super) fn span(links: usize, ends: &[[usize; 2]], weights: &[u8], roots: &[u
     let mut reached = vec![false; links];
     roots.iter().for_each(|&r| reached[r] = true);
     let mut queue: VecDeque<usize> = roots.iter().copied().collect();
-    let mut span = Span::default();
+    let mut span = SpanningTree::default();
     while let Some(parent) = queue.pop_front() {
         for &joint in at_link[parent].iter().filter(|&&j| in_tree[j]) {
             let [a, b] = ends[joint];

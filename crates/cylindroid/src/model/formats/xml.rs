@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::place::{Notes, Source};
+use super::span::{IgnoredLog, Source};
 use crate::error::{Error, Result};
 use crate::model::LoadReport;
 
@@ -19,7 +19,7 @@ pub(super) struct Reader<'a> {
     pub(super) source: Source<'a>,
     /// The texts of files that the main one includes.
     pub(super) included: Vec<Source<'a>>,
-    pub(super) notes: Notes,
+    pub(super) notes: IgnoredLog,
     /// The namespace of the root: elements of another one are extensions.
     pub(super) namespace: Option<&'a str>,
     /// Elements whose names tell in notes whose something was.
@@ -51,7 +51,7 @@ pub(super) fn xacro(source: &Source<'_>, span: Range<usize>) -> Error {
 impl<'a> Reader<'a> {
     /// A reader of one file.
     pub(super) fn new(source: Source<'a>, namespace: Option<&'a str>) -> Self {
-        let (included, notes) = (Vec::new(), Notes::default());
+        let (included, notes) = (Vec::new(), IgnoredLog::default());
         let why = |_: &str| "not known to this reader";
         Self { source, included, notes, namespace, owners: &[], why }
     }

@@ -1,7 +1,7 @@
 //! Motions to first order and motions that exist.
 
 use cylindroid::closure::{ClosedChain, FiniteMobility, Mobility, MobilityEvidence, assemble};
-use cylindroid::model::{Dimension, JointKind, JointSpec, LoopSpec};
+use cylindroid::model::{Dimension, JointKind, JointSpec, LoopJointSpec};
 use cylindroid::screws::Line;
 use cylindroid::spatial::{Pose, Vec3};
 use cylindroid::{Matrix, Mechanism, catalogue};
@@ -80,10 +80,10 @@ fn a_shaky_part_on_a_turntable() {
             ..JointSpec::new(name, JointKind::Revolute, parent, child)
         });
     }
-    b.close(LoopSpec {
+    b.loop_joint(LoopJointSpec {
         link_a_from_joint: at(1.0),
         link_b_from_joint: at(2.5),
-        ..LoopSpec::new("q4", JointKind::Revolute, "b", "table")
+        ..LoopJointSpec::new("q4", JointKind::Revolute, "b", "table")
     });
     let found = at_home(&b.build().unwrap());
     assert_eq!((found.infinitesimal, found.finite), (2, Some(1)), "{found:?}");

@@ -3,7 +3,7 @@
 use cylindroid::closure::{ClosedChain, Mobility, MotionSpace};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics};
-use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec, LoopSpec};
+use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec, LoopJointSpec};
 use cylindroid::{Error, Mechanism, ReferenceFrame, catalogue};
 
 use crate::support::{Random, robots};
@@ -111,10 +111,10 @@ fn a_spatial_four_bar_is_hyperstatic() {
         joint("q1", "ground", "crank", at(0.0, 0.0));
         joint("q2", "crank", "coupler", at(0.0, 1.0));
         joint("q3", "coupler", "rocker", at(2.0, 0.5));
-        b.close(LoopSpec {
+        b.loop_joint(LoopJointSpec {
             link_a_from_joint: at(0.0, -1.5),
             link_b_from_joint: at(2.0, 0.0),
-            ..LoopSpec::new("q4", closing, "rocker", "ground")
+            ..LoopJointSpec::new("q4", closing, "rocker", "ground")
         });
         b.reference("coupler");
         b.build().unwrap()
@@ -142,9 +142,9 @@ fn bad_requests_are_refused() {
     let mut b = Mechanism::builder("ball loop");
     b.joint(JointSpec::new("q1", JointKind::Revolute, "ground", "a"));
     b.joint(JointSpec::new("q2", JointKind::Revolute, "a", "b"));
-    b.close(LoopSpec {
+    b.loop_joint(LoopJointSpec {
         actuated: true,
-        ..LoopSpec::new("ball", JointKind::Spherical, "b", "ground")
+        ..LoopJointSpec::new("ball", JointKind::Spherical, "b", "ground")
     });
     let m = b.build().unwrap();
     let refused = ClosedChain::of(&m.state(m.home()).unwrap(), None, None).unwrap_err();

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use cylindroid::closure::{AssemblyModes, ModeOptions, assembly_modes};
-use cylindroid::model::{JointKind, JointSpec, LoopSpec};
+use cylindroid::model::{JointKind, JointSpec, LoopJointSpec};
 use cylindroid::spatial::{Mat3, Pose, Vec3};
 use cylindroid::{Mechanism, catalogue};
 
@@ -267,10 +267,10 @@ fn spins_do_not_hide_modes() {
         parent_from_joint: at(2.5, 0.0),
         ..JointSpec::new("drive", JointKind::Revolute, "ground", "crank")
     });
-    b.close(LoopSpec {
+    b.loop_joint(LoopJointSpec {
         link_a_from_joint: at(0.0, 2.0),
         link_b_from_joint: at(0.0, 1.0),
-        ..LoopSpec::new("socket", JointKind::Spherical, "rod", "crank")
+        ..LoopJointSpec::new("socket", JointKind::Spherical, "rod", "crank")
     });
     let mechanism = b.build().unwrap();
     let drive = place(&mechanism, "drive");

@@ -1,7 +1,7 @@
 //! Single loops of revolute joints, given by their axes in one posture.
 
 use cylindroid::Mechanism;
-use cylindroid::model::{Dimension, JointKind, JointSpec, LoopSpec};
+use cylindroid::model::{Dimension, JointKind, JointSpec, LoopJointSpec};
 use cylindroid::screws::Line;
 use cylindroid::spatial::{Pose, Rotation, Vec3};
 
@@ -21,11 +21,11 @@ pub(crate) fn ring(name: &str, axes: &[Line], dimension: Dimension) -> Mechanism
         });
         from = axis.point;
     }
-    b.close(LoopSpec {
+    b.loop_joint(LoopJointSpec {
         link_a_from_joint: Pose::from_translation(axes[last].point - from),
         link_b_from_joint: Pose::from_translation(axes[last].point),
         axis: axes[last].direction,
-        ..LoopSpec::new(&format!("q{}", last + 1), JointKind::Revolute, &link(last), "ground")
+        ..LoopJointSpec::new(&format!("q{}", last + 1), JointKind::Revolute, &link(last), "ground")
     });
     b.reference(&link(last / 2 + 1));
     b.build().unwrap()

@@ -5,7 +5,7 @@ use cylindroid::closure::{
     ClosedChain, Mobility, MobilityCounts, MotionSpace, Singularities, assemble,
 };
 use cylindroid::manipulability::{Batch, BatchOptions, Manipulability, Metrics};
-use cylindroid::model::{CoordinateKind, JointKind, JointSpec, LoopSpec, Mimic};
+use cylindroid::model::{CoordinateKind, JointKind, JointSpec, LoopJointSpec, Mimic};
 use cylindroid::spatial::Vec3;
 use cylindroid::{Error, Matrix, Mechanism, catalogue};
 
@@ -194,11 +194,11 @@ fn agrees_for_closing_joints_of_all_kinds() {
             ..JointSpec::new("follower", JointKind::Revolute, "l5", "l6")
         });
         let (a, of_a, of_b) = ("l1", random.pose(), random.pose());
-        b.close(LoopSpec {
+        b.loop_joint(LoopJointSpec {
             link_a_from_joint: of_a,
             link_b_from_joint: of_b,
             axis: Vec3::new(0.1, -0.2, 1.0),
-            ..LoopSpec::new("end", kind, a, "l6")
+            ..LoopJointSpec::new("end", kind, a, "l6")
         });
         b.reference("l4");
         let mechanism = b.build().unwrap();

@@ -7,13 +7,13 @@
 //! Source   mujoco.readthedocs.io, XML reference, body, joint; mj_kinematics
 //! Checked  tests/formats/mjcf.rs, against poses that MuJoCo computed
 
-use std::collections::BTreeSet;
-
 use roxmltree::Node;
 
+use super::Mjcf;
+use super::attributes::used;
 use super::compiler::ORIENTATIONS;
 use super::defaults::Element;
-use super::{Mjcf, used};
+use super::unique_name::unique;
 use crate::error::{Error, Result};
 use crate::model::{JointKind, JointSpec, Limits, Link};
 use crate::spatial::{Pose, Vec3};
@@ -37,17 +37,6 @@ struct Inside<'d> {
     geoms: Vec<(Node<'d, 'd>, Pose, usize)>,
     sites: Vec<(Node<'d, 'd>, Pose, usize)>,
     inertial: Option<Node<'d, 'd>>,
-}
-
-/// A name that no other thing of its kind has.
-pub(super) fn unique(taken: &mut BTreeSet<String>, wanted: &str) -> String {
-    let mut name = wanted.to_owned();
-    let mut count = 1;
-    while !taken.insert(name.clone()) {
-        count += 1;
-        name = format!("{wanted}.{count}");
-    }
-    name
 }
 
 impl<'d> Mjcf<'d> {
@@ -205,7 +194,7 @@ impl<'d> Mjcf<'d> {
                 self.starts.push((spec.name.clone(), q));
             } else {
                 let anchor = spec.parent_from_joint;
-                let back = spec.kind.motion(spec.axis, &reference).inverse();
+                let back = spec.kind.transform(spec.axis, &reference).inverse();
                 spec.parent_from_joint = pending * anchor * back;
                 spec.joint_from_child = anchor.inverse();
                 self.starts.push((spec.name.clone(), reference));

@@ -6,8 +6,8 @@
 
 use roxmltree::Node;
 
+use super::attributes::used;
 use super::files::Files;
-use super::used;
 use crate::error::{Error, Result};
 use crate::model::formats::xml::Reader;
 
@@ -105,18 +105,18 @@ impl<'d> Element<'d> {
     }
 
     /// The element that gives an attribute: itself, or a default.
-    pub(super) fn giver(&self, attribute: &str) -> Option<Node<'d, 'd>> {
+    pub(super) fn source_element(&self, attribute: &str) -> Option<Node<'d, 'd>> {
         self.places.iter().find(|n| n.has_attribute(attribute)).copied()
     }
 
     /// The text of an attribute.
     pub(super) fn text(&self, attribute: &str) -> Option<&'d str> {
-        self.giver(attribute).and_then(|n| n.attribute(attribute)).map(str::trim)
+        self.source_element(attribute).and_then(|n| n.attribute(attribute)).map(str::trim)
     }
 
     /// An error at the value of an attribute.
     pub(super) fn refuse(&self, reader: &Reader<'_>, attribute: &str, message: String) -> Error {
-        reader.refuse(self.giver(attribute).unwrap_or(self.node), attribute, message)
+        reader.refuse(self.source_element(attribute).unwrap_or(self.node), attribute, message)
     }
 
     /// Finite numbers, as many as the attribute must have.
@@ -125,7 +125,7 @@ impl<'d> Element<'d> {
         reader: &Reader<'_>,
         attribute: &str,
     ) -> Result<Option<[f64; N]>> {
-        self.giver(attribute).map_or(Ok(None), |n| reader.vector::<N>(n, attribute))
+        self.source_element(attribute).map_or(Ok(None), |n| reader.vector::<N>(n, attribute))
     }
 
     /// A finite number.
@@ -135,7 +135,7 @@ impl<'d> Element<'d> {
 
     /// Finite numbers, any count.
     pub(super) fn list(&self, reader: &Reader<'_>, attribute: &str) -> Result<Option<Vec<f64>>> {
-        let Some(node) = self.giver(attribute) else { return Ok(None) };
+        let Some(node) = self.source_element(attribute) else { return Ok(None) };
         match reader.list(node, attribute)? {
             Some(list) if list.iter().any(|x| !x.is_finite()) => {
                 let message = format!("{attribute} of <{}> is not finite", node.tag_name().name());

@@ -11,10 +11,10 @@
 use roxmltree::Node;
 
 use super::Mjcf;
-use super::body::unique;
 use super::defaults::Element;
+use super::unique_name::unique;
 use crate::error::{Error, Result};
-use crate::model::{JointKind, LoopSpec, Mimic};
+use crate::model::{JointKind, LoopJointSpec, Mimic};
 use crate::spatial::{Pose, Quaternion, Vec3};
 
 impl<'d> Mjcf<'d> {
@@ -82,10 +82,10 @@ impl<'d> Mjcf<'d> {
             return Err(self.reader.refuse(node, "name", message));
         }
         let name = unique(&mut self.joint_names, name);
-        self.loops.push(LoopSpec {
+        self.loops.push(LoopJointSpec {
             link_a_from_joint: on_a,
             link_b_from_joint: on_b,
-            ..LoopSpec::new(&name, kind, &a, &b)
+            ..LoopJointSpec::new(&name, kind, &a, &b)
         });
         Ok(())
     }

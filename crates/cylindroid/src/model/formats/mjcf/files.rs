@@ -4,8 +4,9 @@ use std::path::{Component, Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
+use super::attributes::FORMAT;
 use crate::error::Result;
-use crate::model::formats::place::Source;
+use crate::model::formats::span::Source;
 use crate::model::formats::xml::{self, Reader};
 
 /// The text of an included file.
@@ -18,7 +19,7 @@ pub(super) struct Included {
 
 impl Included {
     pub(super) fn source(&self) -> Source<'_> {
-        Source { format: super::FORMAT, path: &self.path, text: &self.text }
+        Source { format: FORMAT, path: &self.path, text: &self.text }
     }
 }
 
@@ -31,7 +32,7 @@ pub(super) fn gather(main: &Source<'_>) -> Result<Vec<Included>> {
     while next < found.len() {
         // The text is moved out while its own includes are read.
         let (path, text) = (found[next].path.clone(), std::mem::take(&mut found[next].text));
-        read(&Source { format: super::FORMAT, path: &path, text: &text }, folder, &mut found)?;
+        read(&Source { format: FORMAT, path: &path, text: &text }, folder, &mut found)?;
         found[next].text = text;
         next += 1;
     }

@@ -2,25 +2,16 @@
 //!
 //! Units    MJCF gives half sizes; ours are whole ones
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::Mjcf;
+use super::attributes::used;
 use super::compiler::turn_z_to;
 use super::defaults::Element;
-use super::{Mjcf, used};
 use crate::error::Result;
 use crate::model::formats::mesh::Packages;
 use crate::model::{Geometry, Inertial, Link, Visual};
 use crate::spatial::{Mat3, Pose, Vec3};
-
-/// What geoms refer to by name.
-#[derive(Default)]
-pub(super) struct Assets<'d> {
-    colours: BTreeMap<&'d str, [f64; 4]>,
-    /// Files and scales.
-    meshes: BTreeMap<String, (String, Vec3)>,
-    packages: Option<Packages>,
-}
 
 impl<'d> Mjcf<'d> {
     /// Colours and meshes.
@@ -125,7 +116,7 @@ impl<'d> Mjcf<'d> {
     fn shape(&mut self, element: &Element<'d>, size: &[f64]) -> Result<Option<Geometry>> {
         let node = element.node;
         let body = self.reader.owner(node).to_owned();
-        let implied = if element.giver("mesh").is_some() { "mesh" } else { "sphere" };
+        let implied = if element.source_element("mesh").is_some() { "mesh" } else { "sphere" };
         let kind = element.text("type").unwrap_or(implied);
         let shape = match (kind, size) {
             ("sphere", [radius, ..]) => Some(Geometry::Sphere { radius: *radius }),

@@ -11,30 +11,34 @@
 //! Source   mujoco.readthedocs.io, XML reference
 //! Checked  tests/formats/mjcf.rs, against vectors that MuJoCo made
 
+mod actuators;
+mod assets;
+mod attributes;
 mod body;
 mod compiler;
 mod defaults;
-mod drive;
+
 mod equality;
 mod files;
 mod geom;
+mod unique_name;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use roxmltree::Document;
 
+use self::assets::Assets;
+use self::attributes::{FORMAT, why_unused};
 use self::compiler::Compiler;
 use self::defaults::Defaults;
 use self::files::Files;
-use self::geom::Assets;
-use super::place::Source;
+use self::unique_name::unique;
+use super::span::Source;
 use super::xml::{self, Reader};
 use crate::error::{Error, Result};
-use crate::model::{JointSpec, Link, LoopSpec, Mechanism};
+use crate::model::{JointSpec, Link, LoopJointSpec, Mechanism};
 use crate::spatial::Pose;
-
-const FORMAT: &str = "MJCF";
 
 /// What is read so far.
 struct Mjcf<'d> {
@@ -45,7 +49,7 @@ struct Mjcf<'d> {
     assets: Assets<'d>,
     links: Vec<Link>,
     joints: Vec<JointSpec>,
-    loops: Vec<LoopSpec>,
+    loops: Vec<LoopJointSpec>,
     /// Name, body, place on it.
     sites: Vec<(String, String, Pose)>,
     /// Home positions of joints; later ones count.
@@ -144,16 +148,13 @@ impl Mjcf<'_> {
             builder.joint(joint);
         }
         for joint in self.loops {
-            builder.close(joint);
+            builder.loop_joint(joint);
         }
         // Sites and bodies have names of their own in MJCF; frames have one list of names here.
         for (name, link, pose) in self.sites {
             let free = self.link_names.insert(name.clone());
-            let name = if free {
-                name
-            } else {
-                body::unique(&mut self.link_names, &format!("site:{name}"))
-            };
+            let name =
+                if free { name } else { unique(&mut self.link_names, &format!("site:{name}")) };
             builder.frame(&name, &link, pose);
         }
         for (joint, q) in self.starts {
@@ -173,81 +174,5 @@ impl Mjcf<'_> {
                 None => source.error(Reader::tag(root), message, ""),
             }
         })
-    }
-}
-
-/// The attributes that are read of an element; those of other elements are not looked at.
-fn used(element: &str) -> &'static [&'static str] {
-    match element {
-        "joint" | "freejoint" => &[
-            "name",
-            "class",
-            "type",
-            "group",
-            "pos",
-            "axis",
-            "range",
-            "limited",
-            "ref",
-            "actuatorfrcrange",
-        ],
-        "geom" => &[
-            "name",
-            "class",
-            "type",
-            "size",
-            "pos",
-            "quat",
-            "axisangle",
-            "euler",
-            "xyaxes",
-            "zaxis",
-            "fromto",
-            "rgba",
-            "material",
-            "mesh",
-            "contype",
-            "conaffinity",
-            "group",
-            "mass",
-            "density",
-        ],
-        "site" => &[
-            "name",
-            "class",
-            "type",
-            "size",
-            "pos",
-            "quat",
-            "axisangle",
-            "euler",
-            "xyaxes",
-            "zaxis",
-            "rgba",
-            "material",
-            "group",
-        ],
-        "mesh" => &["name", "class", "file", "scale"],
-        "material" => &["name", "class", "rgba"],
-        _ => &[],
-    }
-}
-
-fn why_unused(name: &str) -> &'static str {
-    match name {
-        "damping" | "armature" | "frictionloss" | "stiffness" | "springref" | "springdamper"
-        | "solreflimit" | "solimplimit" | "solreffriction" | "solimpfriction" | "gravcomp" => {
-            "springs, friction and inertia do not enter the kinematics"
-        }
-        "friction" | "condim" | "solref" | "solimp" | "margin" | "gap" | "priority" | "solmix"
-        | "contact" | "fluidshape" | "fluidcoef" => "contacts of the simulation are not used",
-        "option" | "size" | "visual" | "statistic" | "sensor" | "custom" | "extension"
-        | "plugin" | "actuatorfrclimited" | "user" => "settings of the simulator are not used",
-        "camera" | "light" | "texture" | "hfield" | "skin" => "it is not drawn",
-        "tendon" | "deformable" | "flexcomp" | "composite" => {
-            "it is not read; what it ties together is free here"
-        }
-        "replicate" | "attach" => "it is not expanded: what it would bring is missing",
-        _ => "not known to this reader",
     }
 }

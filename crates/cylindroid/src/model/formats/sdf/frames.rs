@@ -19,7 +19,7 @@ pub(super) const MODEL: &str = "__model__";
 
 /// A link, joint, frame or model.
 #[derive(Debug, Clone)]
-pub(super) struct Placed<'d> {
+pub(super) struct PosedFrame<'d> {
     /// Where it stands in the file.
     pub(super) node: Node<'d, 'd>,
     /// Relative to which it is placed.
@@ -32,7 +32,7 @@ pub(super) struct Placed<'d> {
 /// All frames by their full name (`model::frame` in nested models).
 #[derive(Debug, Default)]
 pub(super) struct Frames<'d> {
-    all: BTreeMap<String, Placed<'d>>,
+    all: BTreeMap<String, PosedFrame<'d>>,
 }
 
 impl<'d> Frames<'d> {
@@ -40,7 +40,7 @@ impl<'d> Frames<'d> {
         &mut self,
         reader: &Reader<'_>,
         name: String,
-        placed: Placed<'d>,
+        placed: PosedFrame<'d>,
     ) -> Result<()> {
         let node = placed.node;
         if self.all.contains_key(&name) {
@@ -51,7 +51,7 @@ impl<'d> Frames<'d> {
         Ok(())
     }
 
-    pub(super) fn get(&self, name: &str) -> Option<&Placed<'d>> {
+    pub(super) fn get(&self, name: &str) -> Option<&PosedFrame<'d>> {
         self.all.get(name)
     }
 

@@ -12,10 +12,11 @@ use roxmltree::Node;
 
 use super::Sdf;
 use super::frames::MODEL;
+use super::joint_entry::JointEntry;
 use crate::error::{Error, Result};
 use crate::model::formats::xml::Reader;
 use crate::model::{JointKind, Limits, Mimic};
-use crate::spatial::{Pose, Vec3};
+use crate::spatial::Vec3;
 use crate::tolerance::ZERO_AXIS;
 
 const TYPES: [&str; 9] = [
@@ -33,23 +34,13 @@ const TYPES: [&str; 9] = [
 /// SDF writes this for a limit that is none.
 const UNLIMITED: f64 = 1e16;
 
-/// A joint as it stands in the file; the poses are in the outermost model.
-#[derive(Debug)]
-pub(super) struct Written<'d> {
-    pub(super) node: Node<'d, 'd>,
-    pub(super) name: String,
-    pub(super) kind: JointKind,
-    /// Parent and child link.
-    pub(super) between: [String; 2],
-    pub(super) model_from_joint: Pose,
-    pub(super) axis: Vec3,
-    pub(super) limits: Limits,
-    pub(super) mimic: Option<Mimic>,
-}
-
 impl<'d> Sdf<'d> {
     /// A joint of the model `scope`; `None` (and a note) for kinds that are not modelled.
-    pub(super) fn joint(&mut self, node: Node<'d, 'd>, scope: &str) -> Result<Option<Written<'d>>> {
+    pub(super) fn joint(
+        &mut self,
+        node: Node<'d, 'd>,
+        scope: &str,
+    ) -> Result<Option<JointEntry<'d>>> {
         let reader = &mut self.reader;
         let own = reader.required(node, "name")?;
         let name = super::scoped(scope, own);
@@ -95,7 +86,7 @@ impl<'d> Sdf<'d> {
         }
         let (limits, mimic) = self.axis_settings(node, kind, scope, own)?;
         let axis = first.unwrap_or(Vec3::Z);
-        Ok(Some(Written { node, name, kind, between, model_from_joint, axis, limits, mimic }))
+        Ok(Some(JointEntry { node, name, kind, between, model_from_joint, axis, limits, mimic }))
     }
 
     /// The link at one end: one that is named, or that carries the frame that is named.

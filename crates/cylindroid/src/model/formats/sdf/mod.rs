@@ -13,6 +13,7 @@
 
 mod frames;
 mod joint;
+mod joint_entry;
 mod link;
 mod text;
 mod write;
@@ -21,10 +22,10 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use self::frames::{Frames, MODEL, Placed};
-use self::joint::Written;
+use self::frames::{Frames, MODEL, PosedFrame};
+use self::joint_entry::JointEntry;
 use super::mesh::Packages;
-use super::place::Source;
+use super::span::Source;
 use super::xml::{self, Reader};
 use crate::error::Result;
 use crate::model::{Link, Mechanism};
@@ -38,7 +39,7 @@ struct Sdf<'d> {
     version: f64,
     frames: Frames<'d>,
     links: Vec<(Link, Node<'d, 'd>)>,
-    joints: Vec<Written<'d>>,
+    joints: Vec<JointEntry<'d>>,
     /// Full names of `<frame>` elements.
     named: Vec<String>,
 }
@@ -144,14 +145,14 @@ impl<'d> Sdf<'d> {
             let attached_to = canonical.or(first_link).unwrap_or_default();
             if scope.is_empty() {
                 let (relative_to, pose) = (MODEL.to_owned(), Pose::IDENTITY);
-                let placed = Placed { node: model, relative_to, pose, attached_to };
+                let placed = PosedFrame { node: model, relative_to, pose, attached_to };
                 self.frames.insert(&self.reader, MODEL.to_owned(), placed)?;
             } else {
                 let outer = scope.rsplit_once("::").map_or("", |s| s.0);
                 let (relative_to, pose) = self.pose_of(model, outer, MODEL)?;
-                let placed = Placed { node: model, relative_to, pose, attached_to };
+                let placed = PosedFrame { node: model, relative_to, pose, attached_to };
                 let own = scoped(&scope, MODEL);
-                let alias = Placed {
+                let alias = PosedFrame {
                     relative_to: own.clone(),
                     pose: Pose::IDENTITY,
                     attached_to: own.clone(),
@@ -181,7 +182,7 @@ impl<'d> Sdf<'d> {
             Some(on) => (scoped(scope, &on), on),
         };
         let (relative_to, pose) = self.pose_of(node, scope, &missing)?;
-        let placed = Placed { node, relative_to, pose, attached_to };
+        let placed = PosedFrame { node, relative_to, pose, attached_to };
         self.frames.insert(&self.reader, name.clone(), placed)?;
         Ok(name)
     }

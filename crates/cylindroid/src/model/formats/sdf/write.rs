@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use roxmltree::Node;
 
-use super::joint::Written;
+use super::joint_entry::JointEntry;
 use super::{FORMAT, MODEL, Sdf};
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
-use crate::model::formats::graph::{Branch, span};
+use crate::model::formats::graph::{Branch, spanning_tree};
 use crate::model::formats::xml::Reader;
-use crate::model::{JointKind, JointSpec, Link, LoopSpec, Mechanism};
+use crate::model::{JointKind, JointSpec, Link, LoopJointSpec, Mechanism};
 use crate::spatial::Pose;
 
 /// The root of models that are fixed to the world.
@@ -110,7 +110,7 @@ impl<'d> Sdf<'d> {
                 roots.push(link);
             }
         }
-        let spanned = span(graph.names.len(), &ends, &weights, &roots);
+        let spanned = spanning_tree(graph.names.len(), &ends, &weights, &roots);
         for branch in &spanned.tree {
             let joint = &self.joints[branch.joint];
             if branch.reversed && joint.kind.dof() > 1 {
@@ -121,7 +121,7 @@ impl<'d> Sdf<'d> {
             builder.joint(graph.branch(joint, branch));
         }
         for &j in &spanned.loops {
-            builder.close(graph.closing(&self.joints[j], ends[j]));
+            builder.loop_joint(graph.closing(&self.joints[j], ends[j]));
         }
         if let Some(&first) = spanned.loops.first() {
             let node = self.joints[first].node;
@@ -159,7 +159,7 @@ struct Graph<'a> {
 
 impl Graph<'_> {
     /// A joint of the tree, its motion that of the link farther from the root.
-    fn branch(&self, joint: &Written<'_>, branch: &Branch) -> JointSpec {
+    fn branch(&self, joint: &JointEntry<'_>, branch: &Branch) -> JointSpec {
         let world_from_joint = self.world_from_model * joint.model_from_joint;
         let (axis, kind) = match (branch.reversed, joint.kind) {
             (false, kind) => (joint.axis, kind),
@@ -183,9 +183,9 @@ impl Graph<'_> {
         }
     }
 
-    fn closing(&self, joint: &Written<'_>, [a, b]: [usize; 2]) -> LoopSpec {
+    fn closing(&self, joint: &JointEntry<'_>, [a, b]: [usize; 2]) -> LoopJointSpec {
         let world_from_joint = self.world_from_model * joint.model_from_joint;
-        LoopSpec {
+        LoopJointSpec {
             name: joint.name.clone(),
             kind: joint.kind,
             a: self.names[a].clone(),

@@ -7,7 +7,7 @@
 //!          tangent for all but line contacts; in the plane the tangent follows from the normal
 //! Checked  tests/formats/closed_file.rs::contacts_*
 
-use super::tree::GROUND;
+use super::names::GROUND;
 use super::value::Table;
 use super::world::World;
 use crate::error::{Error, Result};
@@ -18,7 +18,7 @@ use crate::tolerance::ZERO_AXIS;
 const KEYS: [&str; 7] = ["name", "type", "between", "point", "normal", "tangent", "friction"];
 
 /// A contact as it stands in the file.
-pub(super) struct Touch<'t> {
+pub(super) struct ContactEntry<'t> {
     table: Table<'t>,
     name: &'t str,
     kind: ContactKind,
@@ -34,11 +34,11 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
 }
 
 /// The contacts as they stand in the file.
-pub(super) fn contacts<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<Touch<'t>>> {
+pub(super) fn contacts<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<ContactEntry<'t>>> {
     tables(file)?.into_iter().map(|t| read(t, planar)).collect()
 }
 
-fn read(table: Table<'_>, planar: bool) -> Result<Touch<'_>> {
+fn read(table: Table<'_>, planar: bool) -> Result<ContactEntry<'_>> {
     let name = table.required_string("name")?;
     let between = table.pair("between")?;
     let kind = ContactKind::parse(table.required_string("type")?).map_err(|e| {
@@ -48,7 +48,7 @@ fn read(table: Table<'_>, planar: bool) -> Result<Touch<'_>> {
     let point = table.vector("point", planar)?.ok_or_else(|| table.missing("point"))?;
     let axes = axes(&table, kind, planar)?;
     let friction = table.number("friction")?;
-    Ok(Touch { name, kind, between, point, axes, friction, table })
+    Ok(ContactEntry { name, kind, between, point, axes, friction, table })
 }
 
 fn axes(table: &Table<'_>, kind: ContactKind, planar: bool) -> Result<Rotation> {
@@ -83,7 +83,11 @@ fn axes(table: &Table<'_>, kind: ContactKind, planar: bool) -> Result<Rotation> 
 
 /// Refuses a contact whose first link nobody else names: only what is touched (the second link)
 /// may be an object that exists by its contacts alone.
-pub(super) fn check(contacts: &[Touch<'_>], world: &World<'_>, joined: &[&str]) -> Result<()> {
+pub(super) fn check(
+    contacts: &[ContactEntry<'_>],
+    world: &World<'_>,
+    joined: &[&str],
+) -> Result<()> {
     let is_object = |link: &str| contacts.iter().any(|c| c.between[1] == link);
     for contact in contacts {
         let [a, b] = contact.between;
@@ -111,7 +115,7 @@ pub(super) fn check(contacts: &[Touch<'_>], world: &World<'_>, joined: &[&str]) 
 }
 
 /// Writes the contacts, when all links have their place.
-pub(super) fn write(world: &mut World<'_>, contacts: &[Touch<'_>]) {
+pub(super) fn write(world: &mut World<'_>, contacts: &[ContactEntry<'_>]) {
     for contact in contacts {
         let world_from_contact = Pose { rotation: contact.axes, translation: contact.point };
         let [a, b] = contact.between;

@@ -13,19 +13,23 @@
 mod arm;
 mod body;
 mod contact;
+mod names;
+mod parse;
 mod robot;
 mod tree;
 mod value;
 mod world;
 
+pub use self::parse::parse;
+
 use std::path::Path;
 
 use ::toml::de::DeTable;
 
-use self::tree::GROUND;
+use self::names::{GROUND, REFERENCE};
 use self::value::Table;
 use self::world::World;
-use super::place::Source;
+use super::span::Source;
 use crate::error::Result;
 use crate::model::{Dimension, Mechanism};
 use crate::spatial::{Pose, Vec3};
@@ -47,23 +51,9 @@ const KEYS: [&str; 14] = [
     "robot",
 ];
 
-/// The name of the frame that the reference point makes.
-const REFERENCE: &str = "reference";
-
-/// Reads the text of a mechanism file. The path is used in errors, and to find the files of
-/// `[[robot]]` tables, which are read.
-///
-/// # Errors
-/// [`Error::File`](crate::Error::File) with line and column for broken TOML, unknown keys, values of a wrong type,
-/// and all that the builder refuses; the errors of included files.
-pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
-    read(text, path, 0)
-}
-
-/// As [`parse`], for a file that others include: `depth` of them.
-pub(super) fn read(text: &str, path: &Path, depth: usize) -> Result<Mechanism> {
-    Ok(describe(text, path, "mechanism file", depth)?.0)
-}
+/// Loads the model that a `[[robot]]` table names: from the folder of the file, by name or path, at
+/// a depth of inclusion.
+pub(in crate::model) type Loader<'a> = &'a dyn Fn(&Path, &str, usize) -> Result<Mechanism>;
 
 /// The mechanism and its description.
 pub(in crate::model) fn describe(
@@ -71,6 +61,7 @@ pub(in crate::model) fn describe(
     path: &Path,
     format: &'static str,
     depth: usize,
+    loader: Loader<'_>,
 ) -> Result<(Mechanism, String)> {
     let source = Source { format, path, text };
     let document = DeTable::parse(text).map_err(|e| {
@@ -83,7 +74,7 @@ pub(in crate::model) fn describe(
 
     let stem = path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default();
     let mut world = World::new(source, file.string("name")?.unwrap_or(&stem), dimension);
-    world.note_places(&file)?;
+    note_places(&mut world, &file)?;
     let arm = arm::joints(&file, planar)?;
     if arm.is_empty() {
         if !["joint", "robot", "contact"].iter().any(|key| file.has(key)) {
@@ -94,7 +85,7 @@ pub(in crate::model) fn describe(
     }
     world.arm(arm);
     let own = world.placed();
-    robot::include(&file, &mut world, depth)?;
+    robot::include(&file, &mut world, depth, loader)?;
     let brought: Vec<String> = world.placed().into_iter().filter(|l| !own.contains(l)).collect();
     let joints = tree::joints(&file, planar)?;
     let contacts = contact::contacts(&file, planar)?;
@@ -156,4 +147,27 @@ fn dimension(file: &Table<'_>) -> Result<Dimension> {
             Err(file.refuse("dimension", message, "2 (the plane x-y) or 3"))
         }
     }
+}
+
+/// Records where joints, contacts, robots and frames stand in the file.
+fn note_places(world: &mut World<'_>, file: &Table<'_>) -> Result<()> {
+    let rows = match arm::table(file)? {
+        Some(dh) => arm::rows(&dh)?,
+        None => Vec::new(),
+    };
+    let frames = file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])?;
+    let contacts = contact::tables(file)?;
+    for table in rows.iter().chain(&tree::tables(file)?).chain(&contacts).chain(&frames) {
+        world.note_place(table.required_string("name")?, table.at("name"));
+    }
+    for table in robot::tables(file)? {
+        let name = table.string("name")?.unwrap_or("");
+        world.note_place(name, table.span.clone());
+    }
+    world.note_place(REFERENCE, file.at("reference_point"));
+    if let Some(tool) = file.string("tool")? {
+        world.note_place(tool, file.at("tool"));
+    }
+    world.note_place("home", file.at("home"));
+    Ok(())
 }

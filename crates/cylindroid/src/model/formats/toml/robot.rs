@@ -7,11 +7,12 @@
 //!          joints and contacts can be added to a URDF as it is
 //! Checked  tests/formats/closed_file.rs::robots_*
 
-use super::tree::GROUND;
+use super::Loader;
+use super::names::GROUND;
 use super::value::Table;
 use super::world::World;
 use crate::error::{Error, Result};
-use crate::model::{Dimension, Inclusion, Mechanism, formats};
+use crate::model::{Dimension, Inclusion, Mechanism};
 use crate::spatial::Pose;
 
 const KEYS: [&str; 8] = ["name", "model", "link", "base", "start", "free", "actuated", "passive"];
@@ -25,7 +26,12 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
 }
 
 /// Brings in the robots, in the order of the file.
-pub(super) fn include(file: &Table<'_>, world: &mut World<'_>, depth: usize) -> Result<()> {
+pub(super) fn include(
+    file: &Table<'_>,
+    world: &mut World<'_>,
+    depth: usize,
+    loader: Loader<'_>,
+) -> Result<()> {
     let tables = tables(file)?;
     if let (Some(table), true) = (tables.first(), file.has("dh")) {
         let help = "put the [dh] arm into a file of its own and bring it in as a [[robot]]";
@@ -46,18 +52,18 @@ pub(super) fn include(file: &Table<'_>, world: &mut World<'_>, depth: usize) -> 
             return Err(table.refuse("name", message, "what the robot brings is called name/..."));
         }
         names.push(name);
-        add(table, name, world, depth)?;
+        let robot = load(table, depth, loader)?;
+        add(table, name, world, robot)?;
     }
     Ok(())
 }
 
-fn add(table: &Table<'_>, name: &str, world: &mut World<'_>, depth: usize) -> Result<()> {
-    let robot = load(table, depth)?;
+fn add(table: &Table<'_>, name: &str, world: &mut World<'_>, robot: Mechanism) -> Result<()> {
     if world.dimension == Dimension::Planar && robot.dimension() == Dimension::Spatial {
         let message = format!("'{}' moves in space, this file in the plane", robot.name());
         return Err(table.refuse("model", message, "leave out dimension = 2"));
     }
-    let robot = drive(table, robot)?;
+    let robot = set_actuated(table, robot)?;
     let start = start(table, &robot)?;
     let parent = table.string("link")?.unwrap_or(GROUND);
     world.check_link(table, "link", parent)?;
@@ -85,14 +91,14 @@ fn add(table: &Table<'_>, name: &str, world: &mut World<'_>, depth: usize) -> Re
     Ok(())
 }
 
-fn load(table: &Table<'_>, depth: usize) -> Result<Mechanism> {
+fn load(table: &Table<'_>, depth: usize, loader: Loader<'_>) -> Result<Mechanism> {
     let model = table.required_string("model")?;
     if depth >= DEEPEST {
         let message = format!("'{model}' is included by {DEEPEST} files, one in the other");
         return Err(table.refuse("model", message, "does a file include itself?"));
     }
     let folder = table.source.path.parent().unwrap_or_else(|| std::path::Path::new(""));
-    match formats::load_from(folder, model, depth + 1) {
+    match loader(folder, model, depth + 1) {
         Err(error) if !matches!(error, Error::File(_)) => {
             let help = "name a catalogue model, or a file by its path from this file's folder";
             Err(table.refuse("model", error.to_string(), help))
@@ -101,8 +107,8 @@ fn load(table: &Table<'_>, depth: usize) -> Result<Mechanism> {
     }
 }
 
-/// The robot driven as the table says.
-fn drive(table: &Table<'_>, robot: Mechanism) -> Result<Mechanism> {
+/// The robot with the actuated joints that the table names.
+fn set_actuated(table: &Table<'_>, robot: Mechanism) -> Result<Mechanism> {
     let refuse = |key: &'static str| move |e: Error| table.refuse(key, e.to_string(), "");
     match (table.names("actuated")?, table.names("passive")?) {
         (None, None) => Ok(robot),

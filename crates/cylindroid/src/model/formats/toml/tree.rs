@@ -10,12 +10,13 @@
 
 use std::collections::BTreeMap;
 
-use super::contact::Touch;
+use super::contact::ContactEntry;
+use super::names::GROUND;
 use super::value::Table;
 use super::world::World;
 use crate::error::{Error, Result};
-use crate::model::formats::graph::{Branch, Groups, span};
-use crate::model::{JointKind, JointSpec, Limits, LoopSpec, Mimic};
+use crate::model::formats::graph::{Branch, Groups, spanning_tree};
+use crate::model::{JointKind, JointSpec, Limits, LoopJointSpec, Mimic};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
@@ -35,11 +36,8 @@ const TYPES: [&str; 10] = [
 const KEYS: [&str; 10] =
     ["name", "type", "between", "origin", "axis", "axis2", "pitch", "actuated", "limits", "mimic"];
 
-/// The root of every mechanism file.
-pub(super) const GROUND: &str = "ground";
-
 /// A joint as it stands in the file.
-pub(super) struct Written<'t> {
+pub(super) struct JointEntry<'t> {
     table: Table<'t>,
     name: &'t str,
     kind: JointKind,
@@ -57,7 +55,7 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
 }
 
 /// The joints as they stand in the file.
-pub(super) fn joints<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<Written<'t>>> {
+pub(super) fn joints<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<JointEntry<'t>>> {
     tables(file)?.into_iter().map(|t| read(t, planar)).collect()
 }
 
@@ -65,8 +63,8 @@ pub(super) fn joints<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<Written<'
 /// only contacts hold.
 pub(super) fn write(
     world: &mut World<'_>,
-    joints: &[Written<'_>],
-    contacts: &[Touch<'_>],
+    joints: &[JointEntry<'_>],
+    contacts: &[ContactEntry<'_>],
     reference: Option<(&str, Option<Vec3>)>,
 ) -> Result<()> {
     let mut names: Vec<&str> = Vec::new();
@@ -105,13 +103,13 @@ pub(super) fn write(
 
     let followed =
         |name: &str| joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == name));
-    let weight = |j: &Written<'_>| match () {
+    let weight = |j: &JointEntry<'_>| match () {
         () if j.mimic.is_some() || followed(j.name) => 2,
         () if j.actuated => 1,
         () => 0,
     };
     let weights: Vec<u8> = joints.iter().map(weight).collect();
-    let graph = span(names.len(), &ends, &weights, &roots);
+    let graph = spanning_tree(names.len(), &ends, &weights, &roots);
     if let Some(&loose) = graph.loose.first() {
         return Err(in_the_air(&joints[loose], joints.iter().any(|j| j.between.contains(&GROUND))));
     }
@@ -131,7 +129,7 @@ pub(super) fn write(
 /// The links that hang on contacts alone, one for each group of links: the reference where it is
 /// one of them, else the first that is touched.
 fn objects(
-    contacts: &[Touch<'_>],
+    contacts: &[ContactEntry<'_>],
     reference: Option<&str>,
     index: &BTreeMap<&str, usize>,
     groups: &mut Groups,
@@ -155,11 +153,11 @@ fn objects(
 }
 
 /// The origin of the first joint that names the link.
-pub(super) fn first_origin(joints: &[Written<'_>], link: &str) -> Option<Vec3> {
+pub(super) fn first_origin(joints: &[JointEntry<'_>], link: &str) -> Option<Vec3> {
     joints.iter().find(|j| j.between.contains(&link)).and_then(|j| j.origin)
 }
 
-fn in_the_air(joint: &Written<'_>, grounded: bool) -> Error {
+fn in_the_air(joint: &JointEntry<'_>, grounded: bool) -> Error {
     let [a, b] = joint.between;
     let message = format!(
         "joint '{}' hangs in the air: neither '{a}' nor '{b}' is connected to '{GROUND}'",
@@ -175,7 +173,7 @@ fn in_the_air(joint: &Written<'_>, grounded: bool) -> Error {
 
 fn branch_out(
     world: &mut World<'_>,
-    joint: &Written<'_>,
+    joint: &JointEntry<'_>,
     parent: &str,
     child: &str,
     reversed: bool,
@@ -212,7 +210,7 @@ fn branch_out(
     Ok(())
 }
 
-fn close(world: &mut World<'_>, joint: &Written<'_>) -> Result<()> {
+fn close(world: &mut World<'_>, joint: &JointEntry<'_>) -> Result<()> {
     let [a, b] = joint.between;
     if joint.mimic.is_some() {
         let message = format!(
@@ -224,7 +222,7 @@ fn close(world: &mut World<'_>, joint: &Written<'_>) -> Result<()> {
     }
     let [world_from_a, world_from_b] = [world.pose(a), world.pose(b)];
     let world_from_joint = Pose::from_translation(joint.origin.unwrap_or(world_from_a.translation));
-    world.builder.close(LoopSpec {
+    world.builder.loop_joint(LoopJointSpec {
         name: joint.name.to_owned(),
         kind: joint.kind,
         a: a.to_owned(),
@@ -238,7 +236,7 @@ fn close(world: &mut World<'_>, joint: &Written<'_>) -> Result<()> {
     Ok(())
 }
 
-fn read(table: Table<'_>, planar: bool) -> Result<Written<'_>> {
+fn read(table: Table<'_>, planar: bool) -> Result<JointEntry<'_>> {
     let name = table.required_string("name")?;
     let between = table.pair("between")?;
     let (kind, axis) = kind_and_axis(&table, planar)?;
@@ -257,7 +255,7 @@ fn read(table: Table<'_>, planar: bool) -> Result<Written<'_>> {
     };
     let limits = table.limits()?;
     let actuated = table.boolean("actuated")?.unwrap_or(false);
-    Ok(Written { name, kind, between, origin, axis, limits, mimic, actuated, table })
+    Ok(JointEntry { name, kind, between, origin, axis, limits, mimic, actuated, table })
 }
 
 fn kind_and_axis(table: &Table<'_>, planar: bool) -> Result<(JointKind, Vec3)> {

@@ -8,7 +8,7 @@ use ::toml::de::{DeString, DeTable, DeValue};
 
 use crate::error::{Error, Result};
 use crate::model::Limits;
-use crate::model::formats::place::Source;
+use crate::model::formats::span::Source;
 use crate::spatial::{Pose, Rpy, Vec3};
 
 /// A table of the file.

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use super::names::GROUND;
 use super::value::Table;
-use super::{arm, contact, robot, tree};
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
-use crate::model::formats::place::{Notes, Source};
+use crate::model::formats::span::{IgnoredLog, Source};
 use crate::model::{Dimension, JointKind, JointSpec, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
@@ -21,7 +21,7 @@ pub(super) struct World<'t> {
     index: BTreeMap<String, usize>,
     /// Where names stand in the file, for errors of the builder.
     places: Vec<(String, Range<usize>)>,
-    notes: Notes,
+    notes: IgnoredLog,
 }
 
 impl<'t> World<'t> {
@@ -29,7 +29,7 @@ impl<'t> World<'t> {
         let mut builder = Mechanism::builder(name);
         builder.dimension(dimension);
         let (links, index, places) = (Vec::new(), BTreeMap::new(), Vec::new());
-        Self { source, builder, dimension, links, index, places, notes: Notes::default() }
+        Self { source, builder, dimension, links, index, places, notes: IgnoredLog::default() }
     }
 
     /// Says where a link stands; it counts as connected with the root.
@@ -85,7 +85,7 @@ impl<'t> World<'t> {
     /// A link that hangs on nothing: free in space, or in the plane. The joint is to be written
     /// after those of the file, so that their coordinates come first.
     pub(super) fn free(&mut self, link: &str, world_from_link: Pose) -> JointSpec {
-        let root = self.links.first().map_or(tree::GROUND, |l| l.0.as_str()).to_owned();
+        let root = self.links.first().map_or(GROUND, |l| l.0.as_str()).to_owned();
         let kind = match self.dimension {
             Dimension::Planar => JointKind::Planar,
             Dimension::Spatial => JointKind::Free,
@@ -105,27 +105,9 @@ impl<'t> World<'t> {
         Err(table.refuse(key, unknown.to_string(), ""))
     }
 
-    /// Notes where joints, contacts, robots and frames stand in the file.
-    pub(super) fn note_places(&mut self, file: &Table<'t>) -> Result<()> {
-        let rows = match arm::table(file)? {
-            Some(dh) => arm::rows(&dh)?,
-            None => Vec::new(),
-        };
-        let frames = file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])?;
-        let contacts = contact::tables(file)?;
-        for table in rows.iter().chain(&tree::tables(file)?).chain(&contacts).chain(&frames) {
-            self.places.push((table.required_string("name")?.to_owned(), table.at("name")));
-        }
-        for table in robot::tables(file)? {
-            let name = table.string("name")?.unwrap_or("");
-            self.places.push((name.to_owned(), table.span.clone()));
-        }
-        self.places.push((super::REFERENCE.to_owned(), file.at("reference_point")));
-        if let Some(tool) = file.string("tool")? {
-            self.places.push((tool.to_owned(), file.at("tool")));
-        }
-        self.places.push(("home".to_owned(), file.at("home")));
-        Ok(())
+    /// Records where a joint, contact, robot or frame stands in the file, for errors of the builder.
+    pub(super) fn note_place(&mut self, name: &str, span: Range<usize>) {
+        self.places.push((name.to_owned(), span));
     }
 
     /// The mechanism; errors of the builder get their place in the file.

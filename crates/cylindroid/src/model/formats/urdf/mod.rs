@@ -18,7 +18,7 @@ use std::path::Path;
 use roxmltree::Node;
 
 use super::mesh::Packages;
-use super::place::Source;
+use super::span::Source;
 use super::xml::{self, Reader};
 use crate::error::{Error, Result};
 use crate::model::Mechanism;

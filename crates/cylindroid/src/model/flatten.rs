@@ -2,15 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::builder::Order;
 use super::joint::{JointKind, Limits};
+use super::joint_spec::JointSpec;
 use super::mechanism::{Coordinate, CoordinateKind, Frame};
-use super::node::{Motion, Node};
-use super::spec::JointSpec;
+use super::node::{Node, NodeKind};
 use crate::spatial::{Pose, Rotation, Vec3};
 
 /// Where the links have got to while the nodes are written.
-pub(super) struct Assembly {
+pub(super) struct FlatMechanism {
     pub(super) nodes: Vec<Node>,
     pub(super) coordinates: Vec<Coordinate>,
     /// Coordinates of each joint (index of the specification).
@@ -21,7 +20,7 @@ pub(super) struct Assembly {
     pub(super) reach: f64,
 }
 
-impl Assembly {
+impl FlatMechanism {
     pub(super) fn new(links: usize) -> Self {
         Self {
             nodes: Vec::new(),
@@ -144,24 +143,24 @@ impl Assembly {
         let axis = z_to(spec.axis);
         match spec.kind {
             JointKind::Fixed => {}
-            JointKind::Revolute | JointKind::Continuous => chain.push(axis, Motion::Revolute),
-            JointKind::Prismatic => chain.push(axis, Motion::Prismatic),
-            JointKind::Helical { pitch } => chain.push(axis, Motion::Helical(pitch)),
+            JointKind::Revolute | JointKind::Continuous => chain.push(axis, NodeKind::Revolute),
+            JointKind::Prismatic => chain.push(axis, NodeKind::Prismatic),
+            JointKind::Helical { pitch } => chain.push(axis, NodeKind::Helical(pitch)),
             JointKind::Cylindrical => {
-                chain.push(axis, Motion::Prismatic);
-                chain.push(axis, Motion::Revolute);
+                chain.push(axis, NodeKind::Prismatic);
+                chain.push(axis, NodeKind::Revolute);
             }
             JointKind::Universal { second } => {
-                chain.push(axis, Motion::Revolute);
-                chain.push(z_to(second), Motion::Revolute);
+                chain.push(axis, NodeKind::Revolute);
+                chain.push(z_to(second), NodeKind::Revolute);
             }
             JointKind::Planar => {
-                chain.push(axis * z_to(Vec3::X), Motion::Prismatic);
-                chain.push(axis * z_to(Vec3::Y), Motion::Prismatic);
-                chain.push(axis, Motion::Revolute);
+                chain.push(axis * z_to(Vec3::X), NodeKind::Prismatic);
+                chain.push(axis * z_to(Vec3::Y), NodeKind::Prismatic);
+                chain.push(axis, NodeKind::Revolute);
             }
-            JointKind::Spherical => chain.push(Rotation::IDENTITY, Motion::Spherical),
-            JointKind::Free => chain.push(Rotation::IDENTITY, Motion::Free),
+            JointKind::Spherical => chain.push(Rotation::IDENTITY, NodeKind::Spherical),
+            JointKind::Free => chain.push(Rotation::IDENTITY, NodeKind::Free),
         }
         let (slot, slot_from_child) = (chain.slot, chain.pending);
         let slide = match spec.kind {
@@ -190,62 +189,18 @@ struct NodeChain<'a> {
 
 impl NodeChain<'_> {
     /// Adds a node whose z axis is `joint_from_z * z` in the joint frame.
-    fn push(&mut self, joint_from_z: Rotation, motion: Motion) {
+    fn push(&mut self, joint_from_z: Rotation, kind: NodeKind) {
         let turn = Pose::from_rotation(joint_from_z);
         self.nodes.push(Node {
             parent: self.slot,
             placement: (self.pending * turn).into(),
-            motion,
+            kind,
             coordinate: self.next,
             multiplier: self.multiplier,
             offset: self.offset,
         });
-        self.next += motion.dof();
+        self.next += kind.dof();
         self.slot = self.nodes.len();
         self.pending = turn.inverse();
     }
-}
-
-/// The link whose frame is driven when none is named: from the root along the only branch that moves to
-/// where none or several do (a hand with fingers), then to the last link fixed there. Where the
-/// root itself branches (humanoids, hands), the end of the branch with the most moving joints.
-pub(super) fn default_tool(
-    order: &Order,
-    joints: &[JointSpec],
-    links: &BTreeMap<String, usize>,
-) -> usize {
-    let ends: Vec<(usize, usize)> =
-        joints.iter().map(|j| (links[&j.parent], links[&j.child])).collect();
-    let moves = |j: usize| joints[j].kind.dof() > 0;
-    // For each link: the joints that leave it, the moving joints below it and above it.
-    let mut children = vec![Vec::new(); links.len()];
-    let mut above = vec![0; links.len()];
-    for &j in &order.joints {
-        let (parent, child) = ends[j];
-        children[parent].push(j);
-        above[child] = above[parent] + usize::from(moves(j));
-    }
-    let mut below = vec![0; links.len()];
-    for &j in order.joints.iter().rev() {
-        let (parent, child) = ends[j];
-        below[parent] += below[child] + usize::from(moves(j));
-    }
-    let carries = |j: usize| moves(j) || below[ends[j].1] > 0;
-
-    let mut link = order.root;
-    let mut moved = false;
-    loop {
-        let mut branches = children[link].iter().copied().filter(|&j| carries(j));
-        let (Some(only), None) = (branches.next(), branches.next()) else { break };
-        moved |= moves(only);
-        link = ends[only].1;
-    }
-    if !moved {
-        let deepest = (0..above.len()).max_by_key(|&l| (above[l], l));
-        link = deepest.unwrap_or(order.root);
-    }
-    while let Some(&fixed) = children[link].iter().rev().find(|&&j| !carries(j)) {
-        link = ends[fixed].1;
-    }
-    link
 }

@@ -1,6 +1,6 @@
 //! A joint as the builder takes it, and the checks of its numbers.
 
-use super::held::Dimension;
+use super::dimension::Dimension;
 use super::joint::{JointKind, Limits, Mimic};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;

@@ -68,7 +68,7 @@ const NAMES_SHOWN: usize = 60;
 
 /// What was not used, one note for each distinct thing.
 #[derive(Debug, Default)]
-pub(super) struct Notes {
+pub(super) struct IgnoredLog {
     notes: Vec<Note>,
 }
 
@@ -83,7 +83,7 @@ struct Note {
     names: Vec<String>,
 }
 
-impl Notes {
+impl IgnoredLog {
     /// Notes `what` at a byte offset; `name` says whose it is (may be empty). The same `what`
     /// again is counted.
     pub(super) fn add(
@@ -96,7 +96,7 @@ impl Notes {
         self.add_in(0, offset, what, why, name);
     }
 
-    /// [`Notes::add`] for a file that the main one (0) includes.
+    /// [`IgnoredLog::add`] for a file that the main one (0) includes.
     pub(super) fn add_in(
         &mut self,
         file: usize,
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn notes_of_the_same_thing_are_one() {
-        let mut notes = Notes::default();
+        let mut notes = IgnoredLog::default();
         notes.add(20, "<dynamics>", "not used", "b");
         notes.add(5, "<dynamics>", "not used", "a");
         notes.add(0, "<gazebo>", "not used", "");

@@ -1,13 +1,13 @@
 //! What makes a graph of a tree: joints that close loops, and contacts.
 //!
 //! A closing joint has no coordinate in `q`. It is at zero where its two frames coincide, and
-//! holds what its kind holds ([`JointKind::held`]) wherever the tree goes.
+//! holds what its kind holds ([`JointKind::constraint_wrenches`]) wherever the tree goes.
 
 use std::collections::BTreeMap;
 
-use super::held::{ContactKind, Dimension};
+use super::dimension::Dimension;
 use super::joint::{JointKind, Limits};
-use super::spec;
+use super::joint_spec;
 use crate::error::Error;
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
@@ -36,29 +36,9 @@ pub struct LoopJoint {
     pub actuated: bool,
 }
 
-/// Two links that touch.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Contact {
-    /// Its name.
-    pub name: String,
-    /// What it holds.
-    pub kind: ContactKind,
-    /// Index of the link that touches.
-    pub a: usize,
-    /// Index of the link that is touched: the object.
-    pub b: usize,
-    /// The contact frame on the first link: origin at the point, x tangent, y binormal, z normal.
-    /// By convention the normal points into the second link, so that pushing is positive.
-    pub link_a_from_contact: Pose,
-    /// The contact frame on the second link; both coincide where the links touch.
-    pub link_b_from_contact: Pose,
-    /// Coefficient of friction [-], where the file gives one.
-    pub friction: Option<f64>,
-}
-
 /// A closing joint as the builder takes it; links by name.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LoopSpec {
+pub struct LoopJointSpec {
     /// Its name.
     pub name: String,
     /// Its kind.
@@ -79,7 +59,7 @@ pub struct LoopSpec {
     pub actuated: bool,
 }
 
-impl LoopSpec {
+impl LoopJointSpec {
     /// A passive joint about (or along) z at the origins of both links, without limits.
     #[must_use]
     pub fn new(name: &str, kind: JointKind, a: &str, b: &str) -> Self {
@@ -106,7 +86,8 @@ impl LoopSpec {
         if !(self.link_a_from_joint.is_finite() && self.link_b_from_joint.is_finite()) {
             return Err(format!("the place of joint '{name}' is not finite"));
         }
-        if let Some(fault) = spec::fault(name, self.kind, self.axis, &self.limits, dimension) {
+        if let Some(fault) = joint_spec::fault(name, self.kind, self.axis, &self.limits, dimension)
+        {
             return Err(fault);
         }
         Ok(LoopJoint {
@@ -123,73 +104,8 @@ impl LoopSpec {
     }
 }
 
-/// A contact as the builder takes it; links by name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ContactSpec {
-    /// Its name.
-    pub name: String,
-    /// What it holds.
-    pub kind: ContactKind,
-    /// Name of the link that touches.
-    pub a: String,
-    /// Name of the link that is touched.
-    pub b: String,
-    /// The contact frame on the first link: x tangent, y binormal, z normal.
-    pub link_a_from_contact: Pose,
-    /// The contact frame on the second link.
-    pub link_b_from_contact: Pose,
-    /// Coefficient of friction [-], not negative.
-    pub friction: Option<f64>,
-}
-
-impl ContactSpec {
-    /// A contact at the origins of both links, its normal along z, friction not given.
-    #[must_use]
-    pub fn new(name: &str, kind: ContactKind, a: &str, b: &str) -> Self {
-        Self {
-            name: name.to_owned(),
-            kind,
-            a: a.to_owned(),
-            b: b.to_owned(),
-            link_a_from_contact: Pose::IDENTITY,
-            link_b_from_contact: Pose::IDENTITY,
-            friction: None,
-        }
-    }
-
-    pub(super) fn resolve(
-        &self,
-        links: &BTreeMap<String, usize>,
-        dimension: Dimension,
-    ) -> Result<Contact, String> {
-        let name = self.name.as_str();
-        let (a, b) = ends("contact", name, [&self.a, &self.b], links)?;
-        if !(self.link_a_from_contact.is_finite() && self.link_b_from_contact.is_finite()) {
-            return Err(format!("the place of contact '{name}' is not finite"));
-        }
-        if self.friction.is_some_and(|mu| !(mu >= 0.0 && mu.is_finite())) {
-            return Err(format!("the friction of contact '{name}' is not a number from 0 on"));
-        }
-        if dimension == Dimension::Planar && self.kind == ContactKind::PlaneFrictionless {
-            return Err(format!(
-                "contact '{name}' is plane_frictionless, which the plane x-y does not have; \
-                 line_frictionless holds the same there"
-            ));
-        }
-        Ok(Contact {
-            name: self.name.clone(),
-            kind: self.kind,
-            a,
-            b,
-            link_a_from_contact: self.link_a_from_contact,
-            link_b_from_contact: self.link_b_from_contact,
-            friction: self.friction,
-        })
-    }
-}
-
 /// The indices of two different links.
-fn ends(
+pub(super) fn ends(
     what: &str,
     name: &str,
     [a, b]: [&String; 2],

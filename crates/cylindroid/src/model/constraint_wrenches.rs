@@ -12,107 +12,18 @@
 //!          their "2D spherical" is the spatial spherical joint)
 //! Checked  tests/it/graph.rs::held_*
 
+use super::contact::ContactKind;
+use super::dimension::Dimension;
 use super::joint::JointKind;
-use crate::error::{Error, Result};
 use crate::spatial::{Rotation, Vec3, Wrench};
 use crate::tolerance::ZERO_AXIS;
 
-/// Where a mechanism moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Dimension {
-    /// In the plane x-y of the world: two translations and the turn about z.
-    Planar,
-    /// In space.
-    #[default]
-    Spatial,
-}
-
-impl Dimension {
-    /// 2 or 3, as in files.
-    #[must_use]
-    pub const fn number(self) -> usize {
-        match self {
-            Self::Planar => 2,
-            Self::Spatial => 3,
-        }
-    }
-
-    /// The components of a twist `[v; w]` or wrench `[f; m]` that a body has: in the plane x, y and
-    /// the turn about z.
-    #[must_use]
-    pub const fn components(self) -> &'static [usize] {
-        match self {
-            Self::Planar => &[0, 1, 5],
-            Self::Spatial => &[0, 1, 2, 3, 4, 5],
-        }
-    }
-
-    /// Freedoms of a body: 3 in the plane, 6 in space.
-    #[must_use]
-    pub const fn freedoms(self) -> usize {
-        self.components().len()
-    }
-}
-
-/// What two touching bodies hold of each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactKind {
-    /// A point that slides: the normal velocity.
-    PointFrictionless,
-    /// A point with friction: the velocity of the point.
-    HardFinger,
-    /// A soft point: the velocity of the point and the turn about the normal.
-    SoftFinger,
-    /// A line along x that slides: the normal velocity and the tilt about y.
-    LineFrictionless,
-    /// A line along x with friction: all but the roll about the line.
-    LineFriction,
-    /// A face that slides: the normal velocity and both tilts. Spatial only.
-    PlaneFrictionless,
-    /// A firm grasp: everything.
-    Complete,
-}
-
 impl ContactKind {
-    /// All kinds.
-    pub const ALL: [Self; 7] = [
-        Self::PointFrictionless,
-        Self::HardFinger,
-        Self::SoftFinger,
-        Self::LineFrictionless,
-        Self::LineFriction,
-        Self::PlaneFrictionless,
-        Self::Complete,
-    ];
-
-    /// The word for it, as in files and tables.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::PointFrictionless => "point_frictionless",
-            Self::HardFinger => "hard_finger",
-            Self::SoftFinger => "soft_finger",
-            Self::LineFrictionless => "line_frictionless",
-            Self::LineFriction => "line_friction",
-            Self::PlaneFrictionless => "plane_frictionless",
-            Self::Complete => "complete",
-        }
-    }
-
-    /// The kind of a word.
-    ///
-    /// # Errors
-    /// [`Error::UnknownName`] with the nearest kinds.
-    pub fn parse(name: &str) -> Result<Self> {
-        let found = Self::ALL.into_iter().find(|k| k.name() == name);
-        found.ok_or_else(|| Error::unknown("contact type", name, Self::ALL.map(Self::name)))
-    }
-
     /// What the contact holds (table 1), in the contact frame.
     ///
     /// In the plane a soft finger is a hard finger, and a line with friction is complete.
     #[must_use]
-    pub fn held(self, dimension: Dimension) -> Vec<Wrench> {
+    pub fn constraint_wrenches(self, dimension: Dimension) -> Vec<Wrench> {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
         let (linear, angular): (&[Vec3], &[Vec3]) = match self {
             Self::PointFrictionless => (&[z], &[]),
@@ -139,7 +50,7 @@ impl JointKind {
     /// planar and spherical joints are fixed in both bodies; the moment of a universal joint is
     /// normal to the first axis in its first body and the second axis in its second body.
     #[must_use]
-    pub fn held(self, axis: Vec3, dimension: Dimension) -> Vec<Wrench> {
+    pub fn constraint_wrenches(self, axis: Vec3, dimension: Dimension) -> Vec<Wrench> {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
         let along = axis.unit(ZERO_AXIS).unwrap_or(z);
         if dimension == Dimension::Planar {

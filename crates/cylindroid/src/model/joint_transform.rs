@@ -14,7 +14,7 @@ impl JointKind {
     /// Where the joint takes its second body: the pose of the joint frame moved by `q` in the
     /// joint frame at zero. Coordinates that are missing count as zero.
     #[must_use]
-    pub fn motion(self, axis: Vec3, q: &[f64]) -> Pose {
+    pub fn transform(self, axis: Vec3, q: &[f64]) -> Pose {
         let axis = axis.unit(ZERO_AXIS).unwrap_or(Vec3::Z);
         let x = |i: usize| q.get(i).copied().unwrap_or(0.0);
         let vector = |i: usize| Vec3::new(x(i), x(i + 1), x(i + 2));
@@ -59,9 +59,9 @@ impl Mechanism {
         let mut poses = vec![Pose::IDENTITY; self.links().len()];
         for (i, joint) in joints.iter().enumerate() {
             let motion = if joint.mimic.is_some() {
-                joint.kind.motion(joint.axis, &[value(i)])
+                joint.kind.transform(joint.axis, &[value(i)])
             } else {
-                joint.kind.motion(joint.axis, &q[joint.coordinates.clone()])
+                joint.kind.transform(joint.axis, &q[joint.coordinates.clone()])
             };
             poses[joint.child] =
                 poses[joint.parent] * joint.parent_from_joint * motion * joint.joint_from_child;

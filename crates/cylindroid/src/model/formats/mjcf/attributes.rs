@@ -1,0 +1,79 @@
+//! The attributes that are read of MJCF elements, and the reasons for ignoring others.
+
+pub(super) const FORMAT: &str = "MJCF";
+
+/// The attributes that are read of an element; those of other elements are not looked at.
+pub(super) fn used(element: &str) -> &'static [&'static str] {
+    match element {
+        "joint" | "freejoint" => &[
+            "name",
+            "class",
+            "type",
+            "group",
+            "pos",
+            "axis",
+            "range",
+            "limited",
+            "ref",
+            "actuatorfrcrange",
+        ],
+        "geom" => &[
+            "name",
+            "class",
+            "type",
+            "size",
+            "pos",
+            "quat",
+            "axisangle",
+            "euler",
+            "xyaxes",
+            "zaxis",
+            "fromto",
+            "rgba",
+            "material",
+            "mesh",
+            "contype",
+            "conaffinity",
+            "group",
+            "mass",
+            "density",
+        ],
+        "site" => &[
+            "name",
+            "class",
+            "type",
+            "size",
+            "pos",
+            "quat",
+            "axisangle",
+            "euler",
+            "xyaxes",
+            "zaxis",
+            "rgba",
+            "material",
+            "group",
+        ],
+        "mesh" => &["name", "class", "file", "scale"],
+        "material" => &["name", "class", "rgba"],
+        _ => &[],
+    }
+}
+
+pub(super) fn why_unused(name: &str) -> &'static str {
+    match name {
+        "damping" | "armature" | "frictionloss" | "stiffness" | "springref" | "springdamper"
+        | "solreflimit" | "solimplimit" | "solreffriction" | "solimpfriction" | "gravcomp" => {
+            "springs, friction and inertia do not enter the kinematics"
+        }
+        "friction" | "condim" | "solref" | "solimp" | "margin" | "gap" | "priority" | "solmix"
+        | "contact" | "fluidshape" | "fluidcoef" => "contacts of the simulation are not used",
+        "option" | "size" | "visual" | "statistic" | "sensor" | "custom" | "extension"
+        | "plugin" | "actuatorfrclimited" | "user" => "settings of the simulator are not used",
+        "camera" | "light" | "texture" | "hfield" | "skin" => "it is not drawn",
+        "tendon" | "deformable" | "flexcomp" | "composite" => {
+            "it is not read; what it ties together is free here"
+        }
+        "replicate" | "attach" => "it is not expanded: what it would bring is missing",
+        _ => "not known to this reader",
+    }
+}

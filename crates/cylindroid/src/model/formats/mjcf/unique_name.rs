@@ -1,0 +1,14 @@
+//! Unique names: MJCF has a list of names for each kind of element, a mechanism one for frames.
+
+use std::collections::BTreeSet;
+
+/// A name that no other thing of its kind has.
+pub(super) fn unique(taken: &mut BTreeSet<String>, wanted: &str) -> String {
+    let mut name = wanted.to_owned();
+    let mut count = 1;
+    while !taken.insert(name.clone()) {
+        count += 1;
+        name = format!("{wanted}.{count}");
+    }
+    name
+}

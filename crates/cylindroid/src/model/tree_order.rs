@@ -1,0 +1,55 @@
+//! The order of the spanning tree, and the link at the end of its only branch.
+
+use std::collections::BTreeMap;
+
+use super::joint_spec::JointSpec;
+
+/// The root link and the joints, depth-first.
+pub(super) struct TreeOrder {
+    pub(super) root: usize,
+    pub(super) joints: Vec<usize>,
+}
+
+/// The link whose frame is driven when none is named: from the root along the only branch that moves to
+/// where none or several do (a hand with fingers), then to the last link fixed there. Where the
+/// root itself branches (humanoids, hands), the end of the branch with the most moving joints.
+pub(super) fn default_tool(
+    order: &TreeOrder,
+    joints: &[JointSpec],
+    links: &BTreeMap<String, usize>,
+) -> usize {
+    let ends: Vec<(usize, usize)> =
+        joints.iter().map(|j| (links[&j.parent], links[&j.child])).collect();
+    let moves = |j: usize| joints[j].kind.dof() > 0;
+    // For each link: the joints that leave it, the moving joints below it and above it.
+    let mut children = vec![Vec::new(); links.len()];
+    let mut above = vec![0; links.len()];
+    for &j in &order.joints {
+        let (parent, child) = ends[j];
+        children[parent].push(j);
+        above[child] = above[parent] + usize::from(moves(j));
+    }
+    let mut below = vec![0; links.len()];
+    for &j in order.joints.iter().rev() {
+        let (parent, child) = ends[j];
+        below[parent] += below[child] + usize::from(moves(j));
+    }
+    let carries = |j: usize| moves(j) || below[ends[j].1] > 0;
+
+    let mut link = order.root;
+    let mut moved = false;
+    loop {
+        let mut branches = children[link].iter().copied().filter(|&j| carries(j));
+        let (Some(only), None) = (branches.next(), branches.next()) else { break };
+        moved |= moves(only);
+        link = ends[only].1;
+    }
+    if !moved {
+        let deepest = (0..above.len()).max_by_key(|&l| (above[l], l));
+        link = deepest.unwrap_or(order.root);
+    }
+    while let Some(&fixed) = children[link].iter().rev().find(|&&j| !carries(j)) {
+        link = ends[fixed].1;
+    }
+    link
+}
