@@ -93,7 +93,7 @@ pub(crate) struct InfoArgs {
 
 /// A model at a configuration.
 #[derive(Debug, Args)]
-pub(crate) struct PostureArgs {
+pub(crate) struct ConfigurationArgs {
     /// A model file or a name of the catalogue
     pub(crate) model: String,
 
@@ -123,7 +123,7 @@ pub(crate) struct FrameArgs {
 #[derive(Debug, Args)]
 pub(crate) struct FkArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
@@ -136,7 +136,7 @@ pub(crate) struct FkArgs {
 #[derive(Debug, Args)]
 pub(crate) struct JacobianArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,

@@ -20,7 +20,7 @@ def test_answers_reach_within_limits(name):
     assert found.analytic.all() or name == "panda"
     one = r.ik(targets[0])
     np.testing.assert_array_equal(one.q, found.q[0])
-    assert one.success is True and one.iterations == found.iterations[0] and one.attempts >= 1
+    assert one.success is True and one.iterations == found.iterations[0] and one.restarts >= 1
     assert "success" in repr(one) and "<table>" in one._repr_html_() and "20 targets" in repr(found)
 
 

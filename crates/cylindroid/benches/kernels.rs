@@ -394,7 +394,7 @@ fn inverse_kinematics(bencher: Bencher<'_, '_>, name: &str) {
     let mut i = 0;
     bencher.bench_local(|| {
         i = (i + 1) % tasks.len();
-        solver.start_at(&tasks[i].0).unwrap();
+        solver.set_initial_guess(&tasks[i].0).unwrap();
         let found = solver.solve(&[tasks[i].1]).unwrap();
         assert!(found.success);
         black_box(found)

@@ -140,7 +140,7 @@ fn batches_allocate_nothing() {
 fn formulas_allocate_nothing() {
     for (name, held) in [("ur5e", &[][..]), ("puma560", &[]), ("panda", &[6])] {
         let robot = catalogue::load(name).unwrap();
-        let mut ik = Analytic::holding(&robot, robot.tool(), held).unwrap();
+        let mut ik = Analytic::with_locked(&robot, robot.tool(), held).unwrap();
         let mut start = robot.home().to_vec();
         let target = robot.state(&start).unwrap().pose(robot.tool());
         let mut answers = 0;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::PostureArgs;
+use super::ConfigurationArgs;
 use crate::values::Joints;
 use crate::values::{ByName, Intervals, List, Weights};
 
@@ -40,7 +40,7 @@ Examples:
 #[derive(Debug, Args)]
 pub(crate) struct ClosedArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     /// The driven joints, in place of those of the file
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
@@ -76,7 +76,7 @@ Examples:
 #[derive(Debug, Args)]
 pub(crate) struct AssembleArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     /// Coordinates that keep the values of --q: names of coordinates or joints, or `driven` for
     /// all that are driven (the passive ones follow)
@@ -263,7 +263,7 @@ Examples:
 #[derive(Debug, Args)]
 pub(crate) struct GraspArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     /// A frame of the object; moments are about its origin [default: the reference of the file]
     #[arg(long, value_name = "NAME")]

@@ -3,17 +3,18 @@
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
-use super::{FrameArgs, PostureArgs, TargetArgs};
+use super::{ConfigurationArgs, FrameArgs, TargetArgs};
 
 pub(crate) const ABOUT: &str = "\
 Inverse kinematics: configurations that put a frame at a target, within all limits
 
-Where six joints are hinges and three of their axes meet or are parallel (a spherical wrist, a UR arm), \
-formulas give all answers; where there are seven, those for one value after another of one of them. Else \
-attempts start at --q (moved within the limits), then at postures drawn within them, until one reaches the target; \
-what is claimed was checked by forward kinematics. The same seed gives the same answer. Where \
-nothing is found the nearest posture is printed: a proof that none reaches only where the target \
-is farther away than the arm is long.
+For six revolute joints of which three axes intersect or are parallel (a spherical wrist, a UR \
+arm), all solutions are computed in closed form; for seven, one joint is sampled over its range. \
+Otherwise, a numerical solver starts at --q (clamped to the limits) and then at random \
+configurations, until one reaches the target. Every solution is verified by forward kinematics, \
+and the same seed gives the same solution. If no solution is found, the closest configuration is \
+printed; this proves that none exists only if the target is farther away than the length of the \
+arm.
 
 Exit code 0 if the target is reached, 1 if not, 2 on an error.";
 
@@ -26,7 +27,7 @@ Examples:
 #[derive(Debug, Args)]
 pub(crate) struct IkArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
@@ -34,28 +35,28 @@ pub(crate) struct IkArgs {
     #[command(flatten)]
     pub(crate) target: TargetArgs,
 
-    /// Of the answers that are found, the nearest to --q
+    /// Return the solution closest to --q
     #[arg(long)]
     pub(crate) nearest: bool,
 
-    /// Up to so many distinct answers, the nearest to --q first
+    /// Return up to N distinct solutions, the closest to --q first
     #[arg(long, value_name = "N", conflicts_with = "nearest", allow_negative_numbers = true)]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) all: Option<usize>,
 
-    /// Of the postures that are drawn
+    /// Seed for the random restarts
     #[arg(long, value_name = "SEED", default_value_t = 0, allow_negative_numbers = true)]
     pub(crate) seed: u64,
 
-    /// Largest position error of an answer [m]
+    /// Position tolerance of a solution [m]
     #[arg(long, value_name = "M", default_value_t = 1e-6, allow_hyphen_values = true)]
     pub(crate) tolerance_position: f64,
 
-    /// Largest orientation error of an answer [rad]
+    /// Orientation tolerance of a solution [rad]
     #[arg(long, value_name = "RAD", default_value_t = 1e-6, allow_hyphen_values = true)]
     pub(crate) tolerance_orientation: f64,
 
-    /// Steps of all attempts, when to give up
+    /// Iteration limit, over all restarts
     #[arg(long, value_name = "N", default_value_t = 20_000, allow_negative_numbers = true)]
     pub(crate) iterations: usize,
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{FrameArgs, PostureArgs, inverses};
+use super::{ConfigurationArgs, FrameArgs, inverses};
 use crate::values::{Joints, Motion, Named, Numbers, Pair};
 
 pub(crate) const ABOUT: &str = "\
@@ -36,7 +36,7 @@ Examples:
 #[derive(Debug, Args)]
 pub(crate) struct MoveArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,

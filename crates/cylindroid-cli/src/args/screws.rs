@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{FrameArgs, PostureArgs};
+use super::{ConfigurationArgs, FrameArgs};
 use crate::values::Numbers;
 
 pub(crate) const ABOUT: &str = "\
@@ -28,7 +28,7 @@ or a JSON list of lists.";
 #[derive(Debug, Args)]
 pub(crate) struct ScrewsArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,

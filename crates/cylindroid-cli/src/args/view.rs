@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{FrameArgs, PostureArgs};
+use super::{ConfigurationArgs, FrameArgs};
 
 pub(crate) const ABOUT: &str = "\
 The web viewer: see a model, drag its tool or object, and watch its measures
@@ -25,7 +25,7 @@ Examples:
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
     #[command(flatten)]
-    pub(crate) posture: PostureArgs,
+    pub(crate) configuration: ConfigurationArgs,
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,

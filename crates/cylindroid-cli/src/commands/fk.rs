@@ -37,8 +37,8 @@ struct FrameJson<'a> {
 }
 
 pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.posture.model)?;
-    let state = robot.state(&configuration(&robot, &args.posture)?)?;
+    let robot = cylindroid::load(&args.configuration.model)?;
+    let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let outside_limits = output::outside_limits(&robot, state.q());
     let joint_names = output::joint_names(&robot);
     let (model, q) = (robot.name(), state.q());

@@ -19,22 +19,22 @@ struct IkJson<'a> {
     tool: [f64; 3],
     joint_names: Vec<&'a str>,
     success: bool,
-    /// The first answer; without success the nearest posture that was found.
+    /// The first solution; without success the closest configuration found.
     q: &'a [f64],
     position_error: f64,
     orientation_error: f64,
-    /// "analytic" or "search".
+    /// "analytic" or "numerical".
     found_by: &'static str,
-    /// The formulas that there are for this frame.
+    /// The closed form for this frame.
     #[serde(skip_serializing_if = "Option::is_none")]
     analytic: Option<AnalyticJson<'a>>,
     iterations: usize,
-    attempts: usize,
-    /// How far the target is from the first joint and how long the arm is from there [m], where
-    /// that proves that nothing reaches.
+    restarts: usize,
+    /// Distance of the target from the first joint and length of the arm from there [m], if the
+    /// target is provably out of reach.
     #[serde(skip_serializing_if = "Option::is_none")]
     out_of_reach: Option<ReachJson>,
-    /// All answers.
+    /// All solutions.
     solutions: Vec<&'a [f64]>,
     start: &'a [f64],
     target: PoseJson,
@@ -43,8 +43,8 @@ struct IkJson<'a> {
 #[derive(Debug, Serialize)]
 struct AnalyticJson<'a> {
     structure: String,
-    /// Joints that are held at one value after another.
-    held: Vec<&'a str>,
+    /// Joints that are sampled over their range.
+    locked: Vec<&'a str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -54,16 +54,16 @@ struct ReachJson {
 }
 
 pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.posture.model)?;
-    let start = configuration(&robot, &args.posture)?;
+    let robot = cylindroid::load(&args.configuration.model)?;
+    let start = configuration(&robot, &args.configuration)?;
     let end_effector = end_effector(&robot, &args.frame)?;
     let (task, what) = task(&args.target, &robot)?;
     let from = robot.state(&start)?.pose(end_effector);
-    let target = target_pose(&args.target, from, args.posture.degrees, "")?;
+    let target = target_pose(&args.target, from, args.configuration.degrees, "")?;
     let options = IkOptions {
         position_tolerance: args.tolerance_position,
         orientation_tolerance: args.tolerance_orientation,
-        start: Some(start.clone()),
+        initial_guess: Some(start.clone()),
         nearest: args.nearest,
         seed: args.seed,
         budget: Budget { iterations: args.iterations, time: None },
@@ -73,17 +73,17 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     let mut solver = Solver::new(&robot, &goals, &options)?;
     let found = match args.all {
         None => vec![solver.solve(&goals)?],
-        Some(count) => match solver.solve_several(&goals, count)? {
+        Some(count) => match solver.solve_distinct(&goals, count)? {
             none if none.is_empty() => vec![solver.solve(&goals)?],
             some => some,
         },
     };
     let joint_names = output::joint_names(&robot);
     let analytic = solver.analytic().map(|analytic| AnalyticJson {
-        structure: analytic.structure().to_string(),
-        held: analytic.held().iter().map(|&c| joint_names[c]).collect(),
+        structure: analytic.geometry().to_string(),
+        locked: analytic.locked().iter().map(|&c| joint_names[c]).collect(),
     });
-    let Some(first) = found.first() else { anyhow::bail!("no posture was looked at") };
+    let Some(first) = found.first() else { anyhow::bail!("no configuration was evaluated") };
     let frame = robot.frame_of(end_effector.frame).name.as_str();
     let report = IkJson {
         model: robot.name(),
@@ -97,7 +97,7 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         found_by: first.found_by.name(),
         analytic,
         iterations: first.iterations,
-        attempts: first.attempts,
+        restarts: first.restarts,
         out_of_reach: first.out_of_reach.map(|(distance, length)| ReachJson { distance, length }),
         solutions: found.iter().filter(|s| s.success).map(|s| s.q.as_slice()).collect(),
         start: &start,
@@ -118,17 +118,21 @@ fn print(
 ) -> anyhow::Result<()> {
     let result = match (&report.out_of_reach, report.success, found.len()) {
         (_, true, 1) => "reached".to_owned(),
-        (_, true, several) => format!("reached by {several} postures, the nearest to --q first"),
+        (_, true, several) => {
+            format!("reached by {several} configurations, the closest to --q first")
+        }
         (Some(reach), ..) => format!(
             "out of reach: the target is {} m from the first joint, the arm {} m long from there; \
-             the nearest posture follows",
+             the closest configuration follows",
             number(reach.distance),
             number(reach.length)
         ),
-        (None, ..) => "not reached in so many attempts, which proves nothing: try more \
-                       (--iterations), another --seed, or leave components free (--task); the \
-                       nearest posture follows"
-            .to_owned(),
+        (None, ..) => {
+            "not reached within the iteration limit, which does not prove that no solution \
+                       exists: raise --iterations, change --seed, or leave components free \
+                       (--task); the closest configuration follows"
+                .to_owned()
+        }
     };
     let [position_error, orientation_error] =
         errors(task, report.position_error, report.orientation_error);
@@ -137,19 +141,19 @@ fn print(
         [
             ("model", report.model.to_owned()),
             ("frame", report.frame.to_owned()),
-            ("asked for", what.to_owned()),
+            ("target", what.to_owned()),
             ("result", result),
             position_error,
             orientation_error,
             ("found by", found_by(report)),
-            ("attempts", format!("{}, {} steps", report.attempts, report.iterations)),
+            ("restarts", format!("{}, {} iterations", report.restarts, report.iterations)),
             ("q [rad or m]", output::entries(report.q)),
         ],
     )?;
     if found.len() > 1 {
         writeln!(out)?;
         let names = report.joint_names.iter().map(|name| (*name, Align::Right));
-        let columns: Vec<_> = std::iter::once(("answer", Align::Left)).chain(names).collect();
+        let columns: Vec<_> = std::iter::once(("solution", Align::Left)).chain(names).collect();
         let rows = found.iter().enumerate().map(|(i, s)| {
             let entries = s.q.iter().map(|x| number(*x));
             std::iter::once((i + 1).to_string()).chain(entries).collect::<Vec<_>>()
@@ -159,16 +163,16 @@ fn print(
     Ok(())
 }
 
-/// Empty without an answer.
+/// Empty without a solution.
 fn found_by(report: &IkJson<'_>) -> String {
     match &report.analytic {
         _ if !report.success => String::new(),
         Some(analytic) if report.found_by == FoundBy::Analytic.name() => {
-            let held = match analytic.held.as_slice() {
+            let held = match analytic.locked.as_slice() {
                 [] => String::new(),
-                names => format!("; {} held", names.join(", ")),
+                names => format!("; {} sampled", names.join(", ")),
             };
-            format!("formulas ({}{held})", analytic.structure)
+            format!("closed form ({}{held})", analytic.structure)
         }
         _ => report.found_by.to_owned(),
     }

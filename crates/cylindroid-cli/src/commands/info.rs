@@ -167,7 +167,7 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
     let reference = robot.frame_of(robot.reference());
     let ignored = robot.report().ignored.iter();
     let (structure, reason) = match Analytic::of(robot, robot.tool()) {
-        Ok(analytic) => (Some(analytic.structure().to_string()), None),
+        Ok(analytic) => (Some(analytic.geometry().to_string()), None),
         Err(reason) => (None, Some(reason.to_string())),
     };
     InfoJson {

@@ -56,9 +56,9 @@ pub(crate) fn run(
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.posture.model)?;
-    let degrees = args.posture.degrees;
-    let state = robot.state(&configuration(&robot, &args.posture)?)?;
+    let robot = cylindroid::load(&args.configuration.model)?;
+    let degrees = args.configuration.degrees;
+    let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let end_effector = end_effector(&robot, &args.frame)?;
     let reference = match args.reference {
         ReferenceName::Local => ReferenceFrame::Local,

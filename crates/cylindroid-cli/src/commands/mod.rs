@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use cylindroid::model::Mechanism;
 use cylindroid::{EndEffector, Error, Pose, Vec3};
 
-use crate::args::{Cli, Command, FrameArgs, PostureArgs};
+use crate::args::{Cli, Command, ConfigurationArgs, FrameArgs};
 
 /// How a command prints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +58,7 @@ fn load(model: &str, actuated: &[String]) -> cylindroid::Result<Mechanism> {
 }
 
 /// The configuration that is meant, of the right size and finite.
-fn configuration(robot: &Mechanism, args: &PostureArgs) -> cylindroid::Result<Vec<f64>> {
+fn configuration(robot: &Mechanism, args: &ConfigurationArgs) -> cylindroid::Result<Vec<f64>> {
     let q = args.q.configuration(robot, args.degrees)?;
     robot.check_q("--q", &q)?;
     Ok(q)

@@ -62,11 +62,11 @@ fn note() {
 }
 
 fn start(args: &ViewArgs) -> Result<Start> {
-    let robot = load(&args.posture.model, &args.actuated)?;
+    let robot = load(&args.configuration.model, &args.actuated)?;
     if !args.actuated.is_empty() && !robot.is_closed() {
         return Err(all_driven(&robot));
     }
-    let q = configuration(&robot, &args.posture)?;
+    let q = configuration(&robot, &args.configuration)?;
     // What a file calls its home is taken as it is, as by the other commands.
     if q != robot.home() {
         within_limits(&robot, "--q", &q)?;
@@ -75,5 +75,5 @@ fn start(args: &ViewArgs) -> Result<Start> {
     if args.frame.frame.is_none() && robot.is_closed() {
         tool.frame = robot.reference();
     }
-    Start::new((robot, &args.posture.model), &q, tool, &args.meshes)
+    Start::new((robot, &args.configuration.model), &q, tool, &args.meshes)
 }

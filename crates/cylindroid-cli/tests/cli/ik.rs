@@ -29,7 +29,10 @@ fn several_answers() {
     assert_eq!(report["found_by"], "analytic");
     assert_eq!(report["analytic"]["structure"], "parallel axes 2, 3 and 4, axes 5 and 6 meet");
     let table = text(&command);
-    assert!(table.contains("8 postures") && table.contains("formulas (parallel axes"), "{table}");
+    assert!(
+        table.contains("8 configurations") && table.contains("closed form (parallel axes"),
+        "{table}"
+    );
 }
 
 #[test]
@@ -42,9 +45,9 @@ fn formulas_are_named() {
     assert!(panda["inverse_kinematics"]["structure"].is_null());
     assert!(panda["inverse_kinematics"]["reason"].as_str().unwrap().contains("7 joints"));
     let report = json(&["ik", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"], 0);
-    assert_eq!(report["analytic"]["held"][0], "panda_joint7");
+    assert_eq!(report["analytic"]["locked"][0], "panda_joint7");
     let part = json(&["ik", "ur5e", "--to", "0.3,0.4,0.5"], 0);
-    assert_eq!(part["found_by"], "search");
+    assert_eq!(part["found_by"], "numerical");
     assert!(part.get("analytic").is_none());
 }
 

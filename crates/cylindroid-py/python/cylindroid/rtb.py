@@ -221,5 +221,5 @@ class Robot:
         if found.out_of_reach:
             reason = "out of reach: the target is farther away than the arm is long"
         return IKSolution(
-            found.q, found.success, found.iterations, found.attempts, residual, reason
+            found.q, found.success, found.iterations, found.restarts, residual, reason
         )

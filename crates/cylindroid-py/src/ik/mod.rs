@@ -4,7 +4,7 @@ mod search;
 mod solution;
 
 use cylindroid::Error;
-use cylindroid::ik::{IkOptions, Solver, solve_several};
+use cylindroid::ik::{IkOptions, Solver, solve_distinct};
 use pyo3::prelude::*;
 
 use self::search::Search;
@@ -18,33 +18,34 @@ pub(crate) use solution::PySolution;
 impl PyMechanism {
     /// A configuration that puts a frame at a target, within all limits.
     ///
-    /// By formulas where the arm has a structure that they take: then the answer nearest to `q0`.
-    /// Else attempts start at `q0`, then at postures drawn within the limits, until one reaches. The
-    /// same seed gives the same answer.
+    /// For six revolute joints of which three axes intersect or are parallel, all solutions are
+    /// computed in closed form and the one closest to `q0` is returned. Otherwise a numerical
+    /// solver starts at `q0` and then at random configurations within the limits, until one reaches
+    /// the target. The same seed gives the same solution.
     ///
     /// Parameters
     /// ----------
     /// target : array_like, (4, 4) or (N, 4, 4), or dict of them by frame
-    ///     `world_from_tool` as it should be (m); a dict names several frames that shall be reached
-    ///     at once.
+    ///     Desired `world_from_tool` (m); a dict gives several frames that must be reached
+    ///     simultaneously.
     /// frame : str, optional
     ///     Default: `tool`.
     /// q0 : array_like, (n,) or (N, n), optional
-    ///     Where to start. Default: home.
+    ///     Initial guess. Default: home.
     /// tool : array_like, (4, 4), optional
     ///     `frame_from_tool`, a tool point fixed to the frame.
     /// task, task_axes : str, optional
     ///     The components that matter, as of `Servo`. Default: the pose.
     /// nearest : bool
-    ///     Prefer the answer nearest to `q0` over the one found first.
+    ///     Prefer the solution closest to `q0` over the one found first.
     /// fixed : list of str, optional
     ///     Coordinates that keep the values of `q0`.
     /// tolerance_position, tolerance_orientation : float
-    ///     Largest errors of an answer (m, rad).
+    ///     Tolerances of a solution (m, rad).
     /// seed : int
-    ///     Of the postures that are drawn.
+    ///     Seed for the random restarts.
     /// iterations : int
-    ///     Steps of all attempts, when to give up.
+    ///     Iteration limit, over all restarts.
     ///
     /// Returns
     /// -------
@@ -65,7 +66,7 @@ impl PyMechanism {
     /// >>> found.success, bool(abs(arm.fk(found.q) - target).max() < 1e-5)
     /// (True, True)
     ///
-    /// Two frames at once, here a link and the tool, of which the positions matter:
+    /// Two frames simultaneously, here the positions of a link and of the tool:
     ///
     /// >>> q = [0.3, -1.2, 1.1, -0.4, 0.9, 0.2]
     /// >>> both = {"link3": arm.fk(q, "link3"), arm.tool: arm.fk(q)}
@@ -116,7 +117,11 @@ impl PyMechanism {
             let mut solver = Solver::new(robot, &targets.goals, &options)?;
             let mut solve = |i: usize| {
                 if let Some(starts) = &starts {
-                    solver.start_at(starts.row(if starts.count.is_some() { i } else { 0 }))?;
+                    solver.set_initial_guess(starts.row(if starts.count.is_some() {
+                        i
+                    } else {
+                        0
+                    }))?;
                 }
                 solver.solve(&targets.at(i))
             };
@@ -128,14 +133,14 @@ impl PyMechanism {
         Ok(PySolution { inner, n: robot.n() })
     }
 
-    /// Several configurations that put a frame at a target, the nearest to `q0` first.
+    /// Several configurations that put a frame at a target, the closest to `q0` first.
     ///
     /// Parameters
     /// ----------
     /// target : array_like, (4, 4), or dict of them by frame
     /// count : int
-    ///     At most so many. Of arms with more joints than the task needs there are infinitely
-    ///     many: these are some.
+    ///     Maximum number of solutions. A redundant arm has infinitely many, of which some are
+    ///     returned.
     /// frame, q0, tool, task, task_axes, fixed, tolerance_position, tolerance_orientation
     ///     As `ik`.
     /// seed, iterations
@@ -182,13 +187,14 @@ impl PyMechanism {
             iterations,
         };
         let mut options = search.options(self)?;
-        options.start = q0.as_ref().map(|q| q.vector("q0").map(<[f64]>::to_vec)).transpose()?;
+        options.initial_guess =
+            q0.as_ref().map(|q| q.vector("q0").map(<[f64]>::to_vec)).transpose()?;
         let targets = search.targets(self, &target)?;
         if targets.count().is_some() {
             return Err(Failure::option("target", "a batch", "give one pose, (4, 4)"));
         }
         let goals = targets.at(0);
-        let found = py.detach(|| solve_several(robot, &goals, &options, count.max(1)))?;
+        let found = py.detach(|| solve_distinct(robot, &goals, &options, count.max(1)))?;
         arrays::rows(py, Some(found.len()), robot.n(), found.iter().map(|s| &s.q))
     }
 }

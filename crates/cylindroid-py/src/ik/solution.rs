@@ -1,4 +1,4 @@
-//! The class `Solution`: what came of a search.
+//! The class `Solution`: the result of inverse kinematics.
 
 use cylindroid::ik::{FoundBy, Solution};
 use pyo3::prelude::*;
@@ -7,22 +7,22 @@ use crate::arrays::{self, Array, Many};
 use crate::error::Result;
 use crate::table::{self, Table};
 
-/// What came of a search for a configuration; of several targets everything has their axis first.
+/// The result of inverse kinematics; for several targets every attribute has a leading axis.
 ///
 /// Attributes
 /// ----------
 /// success : bool or ndarray of bool, (N,)
 ///     True if the target is reached within tolerance, checked by forward kinematics.
 /// q : ndarray, (n,) or (N, n)
-///     The configuration, within the limits; without success the nearest that was found.
+///     The configuration, within the limits; without success the closest one found.
 /// position_error, orientation_error : float or ndarray, (N,)
-///     Of the components that matter (m, rad).
+///     Of the components of the task (m, rad).
 /// analytic : bool or ndarray of bool, (N,)
-///     True where formulas gave the answer: for arms whose axes have a structure that they take.
-/// iterations, attempts : int or ndarray of int, (N,)
+///     True if the solution was computed in closed form.
+/// iterations, restarts : int or ndarray of int, (N,)
 /// out_of_reach : bool or ndarray of bool, (N,)
-///     True where it is proved that nothing reaches: the target is farther from the first joint
-///     than the chain is long. No success alone proves nothing.
+///     True if no solution exists: the target is farther from the first joint than the length of
+///     the chain. Failure alone does not prove this.
 #[pyclass(frozen, name = "Solution", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PySolution {
@@ -49,7 +49,7 @@ impl PySolution {
         let errors = format!("{:.1e} m, {:.1e} rad", s.position_error, s.orientation_error);
         table.row("errors", errors);
         table.row("found by", s.found_by.name());
-        table.row("iterations", format!("{} in {} attempts", s.iterations, s.attempts));
+        table.row("iterations", format!("{} in {} restarts", s.iterations, s.restarts));
         table.row("q", table::list(&s.q));
         table
     }
@@ -89,8 +89,8 @@ impl PySolution {
     }
 
     #[getter]
-    fn attempts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::each(py, &self.inner, |s| s.attempts as i64)
+    fn restarts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        arrays::each(py, &self.inner, |s| s.restarts as i64)
     }
 
     #[getter]

@@ -16,16 +16,17 @@
 //! ```
 
 mod analytic;
-mod attempt;
-mod damped;
-mod formulas;
+mod closed_form;
+mod convergence;
+mod damped_step;
 mod goal;
+mod levenberg_marquardt;
 mod options;
-mod race;
+mod parallel_restarts;
 mod solve;
 
-pub use analytic::{Analytic, NoStructure, Posture, Postures, Structure};
+pub use analytic::{Analytic, AnalyticSolution, AnalyticSolutions, ArmGeometry, NotSolvable};
 pub use goal::{Goal, Task};
 pub use options::{Budget, IkOptions};
-pub(crate) use solve::STEPS as ATTEMPT_STEPS;
-pub use solve::{FoundBy, Solution, Solver, solve, solve_several};
+pub(crate) use solve::ITERATIONS_PER_RESTART;
+pub use solve::{FoundBy, Solution, Solver, solve, solve_distinct};

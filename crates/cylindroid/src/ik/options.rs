@@ -23,7 +23,7 @@ pub struct IkOptions {
     /// Largest orientation error of an answer (rad).
     pub orientation_tolerance: f64,
     /// Where to start: all n coordinates, moved into the limits; `None`: home.
-    pub start: Option<Vec<f64>>,
+    pub initial_guess: Option<Vec<f64>>,
     /// Coordinates that keep the values of the start: their places.
     pub fixed: Vec<usize>,
     /// Prefer the answer that is nearest to the start over the one that is found first. Of answers by
@@ -43,7 +43,7 @@ impl Default for IkOptions {
         Self {
             position_tolerance: tolerance::IK_POSITION,
             orientation_tolerance: tolerance::IK_ORIENTATION,
-            start: None,
+            initial_guess: None,
             fixed: Vec::new(),
             nearest: false,
             seed: 0,
@@ -61,8 +61,8 @@ impl IkOptions {
         if let Some(length) = self.length {
             Error::check_positive("length", length)?;
         }
-        if let Some(start) = &self.start {
-            mechanism.check_q("start", start)?;
+        if let Some(guess) = &self.initial_guess {
+            mechanism.check_q("initial guess", guess)?;
         }
         if let Some(&place) = self.fixed.iter().find(|&&i| i >= mechanism.n()) {
             return Err(Error::InvalidOption {

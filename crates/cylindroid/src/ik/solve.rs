@@ -14,25 +14,26 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use super::analytic::Analytic;
-use super::attempt::{Errors, Problem, is_reached};
-use super::formulas::{Formulas, VALUES};
+use super::closed_form::{ClosedForm, REDUNDANCY_SAMPLES};
+use super::convergence::{Errors, is_reached};
 use super::goal::Goal;
+use super::levenberg_marquardt::Problem;
 use super::options::IkOptions;
-use super::race::{Course, LANES, MOST, Runner, race};
+use super::parallel_restarts::{BatchedProblem, LANES, MAX_COORDINATES, Restart, solve_batched};
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::scalar::uniform;
 
 /// Steps of one attempt at most.
-pub(crate) const STEPS: usize = 60;
+pub(crate) const ITERATIONS_PER_RESTART: usize = 60;
 /// Steps by which the nearest failure is brought as near as it goes.
-const LAST_STEPS: usize = 200;
+const REFINEMENT_ITERATIONS: usize = 200;
 /// Attempts after the first answer where the nearest is asked for.
-const NEARER: usize = 48;
+const MAX_RESTARTS_AFTER_FIRST: usize = 48;
 /// How far from the start every other of them begins at most [rad, lengths].
-const NEARBY: f64 = 1.0;
+const PERTURBATION: f64 = 1.0;
 /// Answers whose coordinates differ by less than this, whole turns apart, are one [rad, lengths].
-const SAME: f64 = 1e-3;
+const SAME_CONFIGURATION: f64 = 1e-3;
 
 /// How an answer was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,16 +41,16 @@ pub enum FoundBy {
     /// By formulas: see [`Analytic`](super::Analytic).
     Analytic,
     /// By attempts from the start and from drawn postures; also where nothing was found.
-    Search,
+    Numerical,
 }
 
 impl FoundBy {
-    /// Its name: "analytic" or "search".
+    /// Its name: "analytic" or "numerical".
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Analytic => "analytic",
-            Self::Search => "search",
+            Self::Numerical => "numerical",
         }
     }
 }
@@ -70,7 +71,7 @@ pub struct Solution {
     /// Steps of all attempts, one for each call of formulas.
     pub iterations: usize,
     /// Attempts, calls of formulas among them.
-    pub attempts: usize,
+    pub restarts: usize,
     /// A proof that nothing can reach: how far the target is from the first joint, and how long
     /// the chain is from there (m).
     pub out_of_reach: Option<(f64, f64)>,
@@ -81,14 +82,14 @@ pub struct Solution {
 #[derive(Debug, Clone)]
 pub struct Solver {
     problem: Problem,
-    formulas: Option<Formulas>,
+    formulas: Option<ClosedForm>,
     options: IkOptions,
     start: Vec<f64>,
 }
 
 /// A configuration that reaches, with its distance from the start.
 #[derive(Debug, Clone)]
-struct Answer {
+struct Candidate {
     distance: f64,
     q: Vec<f64>,
     errors: Errors,
@@ -97,11 +98,11 @@ struct Answer {
 
 /// What formulas leave to the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Left {
+enum Remaining {
     /// There may be answers that they do not give.
-    Open,
+    Possible,
     /// None but what tolerances allow: there is nothing, or all there is was found.
-    Nothing,
+    None,
 }
 
 /// A configuration that reaches all `goals`.
@@ -118,13 +119,13 @@ pub fn solve(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Resu
 ///
 /// # Errors
 /// As [`solve`].
-pub fn solve_several(
+pub fn solve_distinct(
     mechanism: &Mechanism,
     goals: &[Goal],
     options: &IkOptions,
     count: usize,
 ) -> Result<Vec<Solution>> {
-    Solver::new(mechanism, goals, options)?.solve_several(goals, count)
+    Solver::new(mechanism, goals, options)?.solve_distinct(goals, count)
 }
 
 impl Solver {
@@ -136,9 +137,9 @@ impl Solver {
         options.check(mechanism)?;
         check(mechanism, goals)?;
         let problem = Problem::new(mechanism, goals, options);
-        let mut start = options.start.clone().unwrap_or_else(|| mechanism.home().to_vec());
+        let mut start = options.initial_guess.clone().unwrap_or_else(|| mechanism.home().to_vec());
         problem.clamp(&mut start);
-        let formulas = Formulas::of(mechanism, goals, options);
+        let formulas = ClosedForm::of(mechanism, goals, options);
         Ok(Self { problem, formulas, options: options.clone(), start })
     }
 
@@ -153,8 +154,8 @@ impl Solver {
     ///
     /// # Errors
     /// A `q` of the wrong size or not finite.
-    pub fn start_at(&mut self, q: &[f64]) -> Result<()> {
-        self.problem.mechanism.check_q("start", q)?;
+    pub fn set_initial_guess(&mut self, q: &[f64]) -> Result<()> {
+        self.problem.mechanism.check_q("initial guess", q)?;
         self.start.copy_from_slice(q);
         self.problem.clamp(&mut self.start);
         Ok(())
@@ -167,18 +168,20 @@ impl Solver {
     /// Goals of another number, end effector or task, numbers that are not finite.
     pub fn solve(&mut self, goals: &[Goal]) -> Result<Solution> {
         if self.options.nearest {
-            let mut found = self.search(goals, NEARER, |answers| answers >= NEARER)?;
+            let mut found = self.search(goals, MAX_RESTARTS_AFTER_FIRST, |answers| {
+                answers >= MAX_RESTARTS_AFTER_FIRST
+            })?;
             return Ok(found.swap_remove(0));
         }
         let mut found = self.search(goals, usize::MAX, |answers| answers >= 1)?;
         Ok(found.swap_remove(0))
     }
 
-    /// Several of them: see [`solve_several`].
+    /// Several of them: see [`solve_distinct`].
     ///
     /// # Errors
     /// As [`Solver::solve`].
-    pub fn solve_several(&mut self, goals: &[Goal], count: usize) -> Result<Vec<Solution>> {
+    pub fn solve_distinct(&mut self, goals: &[Goal], count: usize) -> Result<Vec<Solution>> {
         let mut found = self.search(goals, usize::MAX, |answers| answers >= count)?;
         found.retain(|s| s.success);
         found.truncate(count);
@@ -193,51 +196,57 @@ impl Solver {
         enough: impl Fn(usize) -> bool,
     ) -> Result<Vec<Solution>> {
         check(&self.problem.mechanism, goals)?;
-        self.problem.aim(goals)?;
+        self.problem.set_goals(goals)?;
         let out_of_reach = self.problem.out_of_reach();
         let begin = Instant::now();
         let mut random = self.options.seed;
         let (mut iterations, mut since_first) = (0, 0);
-        let mut answers: Vec<Answer> = Vec::new();
+        let mut answers: Vec<Candidate> = Vec::new();
         let mut best: Option<(Vec<f64>, Errors)> = None;
-        let (left, mut attempts) = self.by_formulas(goals, &enough, &mut answers)?;
+        let (left, mut attempts) = self.closed_form_candidates(goals, &enough, &mut answers)?;
         iterations += attempts;
         let first = attempts;
         let mut q = self.start.clone();
         let budget = self.options.budget;
         let in_time = |begin: Instant| budget.time.is_none_or(|most| begin.elapsed() < most);
-        let found_all = !answers.is_empty() && left == Left::Nothing;
+        let found_all = !answers.is_empty() && left == Remaining::None;
         while !(found_all || enough(answers.len()) && !answers.is_empty()) {
             let most = budget.iterations.saturating_sub(iterations);
             let begun = attempts - first;
             let all = !enough(answers.len() + 1);
             let mut tell = |solver: &mut Self, q: &mut [f64], errors: Errors| {
                 if is_reached(errors, &solver.options) {
-                    solver.unwind(q);
-                    solver.approach(q);
-                    solver.add(&mut answers, q, FoundBy::Search);
+                    solver.wrap_angles(q);
+                    solver.approach_start(q);
+                    solver.add(&mut answers, q, FoundBy::Numerical);
                 } else if best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared) {
                     best = Some((q.to_vec(), errors));
                 }
             };
-            let (of_each, steps) = match self.drawn(begun, most, &mut q, &mut random) {
-                Some(mut runners) => {
-                    let steps = self.race(&mut runners, (most / LANES).min(STEPS), all);
-                    for runner in runners.iter().filter(|r| r.has_ended()) {
-                        for (x, &c) in runner.q.iter().zip(&self.problem.coordinates) {
+            let (of_each, steps) = match self.next_start(begun, most, &mut q, &mut random) {
+                Some(mut restarts) => {
+                    let steps = self.solve_batched(
+                        &mut restarts,
+                        (most / LANES).min(ITERATIONS_PER_RESTART),
+                        all,
+                    );
+                    for restart in restarts.iter().filter(|r| r.has_ended()) {
+                        for (x, &c) in restart.q.iter().zip(&self.problem.coordinates) {
                             q[c] = *x;
                         }
-                        let mut errors = runner.errors;
-                        if runner.has_reached(&self.options) {
+                        let mut errors = restart.errors;
+                        if restart.has_reached(&self.options) {
                             // Beside the others it was looked at with other roundings.
-                            (errors, _) = self.problem.run(&mut q, &self.options, STEPS);
+                            (errors, _) =
+                                self.problem.run(&mut q, &self.options, ITERATIONS_PER_RESTART);
                         }
                         tell(self, &mut q, errors);
                     }
                     (LANES, steps)
                 }
                 None => {
-                    let (errors, steps) = self.problem.run(&mut q, &self.options, most.min(STEPS));
+                    let (errors, steps) =
+                        self.problem.run(&mut q, &self.options, most.min(ITERATIONS_PER_RESTART));
                     tell(self, &mut q, errors);
                     (1, steps)
                 }
@@ -246,28 +255,28 @@ impl Solver {
             iterations += steps.max(of_each);
             since_first += if answers.is_empty() { 0 } else { of_each };
             let over = iterations >= budget.iterations || !in_time(begin);
-            let nowhere = out_of_reach.is_some() || left == Left::Nothing;
-            let hopeless = nowhere && attempts >= first + NEARER;
+            let nowhere = out_of_reach.is_some() || left == Remaining::None;
+            let hopeless = nowhere && attempts >= first + MAX_RESTARTS_AFTER_FIRST;
             if enough(answers.len()) || since_first > after_first || over || hopeless {
                 break;
             }
         }
-        let solution = |success: bool, answer: Answer| Solution {
+        let solution = |success: bool, answer: Candidate| Solution {
             success,
             q: answer.q,
             position_error: answer.errors.position,
             orientation_error: answer.errors.orientation,
             found_by: answer.found_by,
             iterations,
-            attempts,
+            restarts: attempts,
             // Farther by less than the tolerance is reached.
             out_of_reach: out_of_reach.filter(|_| !success),
         };
         if answers.is_empty() {
             let (mut q, _) =
-                best.unwrap_or_else(|| (self.start.clone(), self.problem.look(&self.start)));
-            let errors = self.problem.settle(&mut q, LAST_STEPS);
-            let nearest = Answer { distance: 0.0, q, errors, found_by: FoundBy::Search };
+                best.unwrap_or_else(|| (self.start.clone(), self.problem.evaluate(&self.start)));
+            let errors = self.problem.refine(&mut q, REFINEMENT_ITERATIONS);
+            let nearest = Candidate { distance: 0.0, q, errors, found_by: FoundBy::Numerical };
             return Ok(vec![solution(false, nearest)]);
         }
         answers.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -275,21 +284,21 @@ impl Solver {
     }
 
     /// Adds the answers that formulas give, and tells what is left and in how many calls.
-    fn by_formulas(
+    fn closed_form_candidates(
         &mut self,
         goals: &[Goal],
         enough: &impl Fn(usize) -> bool,
-        answers: &mut Vec<Answer>,
-    ) -> Result<(Left, usize)> {
+        answers: &mut Vec<Candidate>,
+    ) -> Result<(Remaining, usize)> {
         let (Some(mut formulas), [goal]) = (self.formulas.take(), goals) else {
-            return Ok((Left::Open, 0));
+            return Ok((Remaining::Possible, 0));
         };
-        let (mut left, mut calls) = (Left::Open, 0);
+        let (mut left, mut calls) = (Remaining::Possible, 0);
         // Along the answers of a redundant arm the search comes nearer than values of one joint.
         let most = match (formulas.are_all(), self.options.nearest) {
             (true, _) => 1,
             (false, true) => 0,
-            (false, false) => VALUES.min(self.options.budget.iterations - 1),
+            (false, false) => REDUNDANCY_SAMPLES.min(self.options.budget.iterations - 1),
         };
         let mut start = self.start.clone();
         while calls < most && (calls == 0 || !enough(answers.len())) {
@@ -313,12 +322,12 @@ impl Solver {
                     q[c] = angle;
                 }
                 if posture.free != [false; 6] {
-                    self.approach(&mut q);
+                    self.approach_start(&mut q);
                 }
                 self.add(answers, &q, FoundBy::Analytic);
             }
             if formulas.are_all() && formulas.analytic.is_exact() && !postures.is_open() {
-                left = Left::Nothing;
+                left = Remaining::None;
             }
         }
         self.formulas = Some(formulas);
@@ -327,55 +336,59 @@ impl Solver {
 
     /// Where to begin after so many attempts: drawn postures for a race, or `q` for one attempt,
     /// the first of all at the start.
-    fn drawn(
+    fn next_start(
         &self,
         begun: usize,
         most: usize,
         q: &mut [f64],
         random: &mut u64,
-    ) -> Option<[Runner; LANES]> {
+    ) -> Option<[Restart; LANES]> {
         let is_near = |attempt: usize| self.options.nearest && attempt % 2 == 1;
         if begun == 0 {
             return None;
         }
-        if most < LANES || self.problem.course(&self.options).is_none() {
-            self.draw(q, is_near(begun), random);
+        if most < LANES || self.problem.batched(&self.options).is_none() {
+            self.sample_configuration(q, is_near(begun), random);
             return None;
         }
-        let mut runners = [Runner::at([0.0; MOST]); LANES];
-        for (k, runner) in runners.iter_mut().enumerate() {
-            self.draw(q, is_near(begun + k), random);
-            for (x, &c) in runner.q.iter_mut().zip(&self.problem.coordinates) {
+        let mut restarts = [Restart::at([0.0; MAX_COORDINATES]); LANES];
+        for (k, restart) in restarts.iter_mut().enumerate() {
+            self.sample_configuration(q, is_near(begun + k), random);
+            for (x, &c) in restart.q.iter_mut().zip(&self.problem.coordinates) {
                 *x = q[c];
             }
         }
-        Some(runners)
+        Some(restarts)
     }
 
     /// Several attempts at once, to the end of one that reaches or of all; gives their steps.
-    fn race(&self, runners: &mut [Runner; LANES], most: usize, all: bool) -> usize {
-        if let Some(course) = self.problem.course(&self.options) {
-            race(&Course { most, all, ..course }, runners);
+    fn solve_batched(&self, restarts: &mut [Restart; LANES], most: usize, all: bool) -> usize {
+        if let Some(batched) = self.problem.batched(&self.options) {
+            solve_batched(
+                &BatchedProblem { max_steps: most, until_all_end: all, ..batched },
+                restarts,
+            );
         }
-        runners.iter().map(|r| r.steps).sum()
+        restarts.iter().map(|r| r.steps).sum()
     }
 
     /// Adds an answer that is none of those that are there.
-    fn add(&mut self, answers: &mut Vec<Answer>, q: &[f64], found_by: FoundBy) {
-        let errors = self.problem.look(q);
+    fn add(&mut self, answers: &mut Vec<Candidate>, q: &[f64], found_by: FoundBy) {
+        let errors = self.problem.evaluate(q);
         let known = answers.iter().any(|other| self.is_same(&other.q, q));
         if !known && is_reached(errors, &self.options) {
-            answers.push(Answer { distance: self.distance(q), q: q.to_vec(), errors, found_by });
+            answers.push(Candidate { distance: self.distance(q), q: q.to_vec(), errors, found_by });
         }
     }
 
     /// A posture drawn within the limits, anywhere or near the start.
-    fn draw(&self, q: &mut [f64], near: bool, random: &mut u64) {
+    fn sample_configuration(&self, q: &mut [f64], near: bool, random: &mut u64) {
         let p = &self.problem;
         for (i, &c) in p.coordinates.iter().enumerate().filter(|(i, _)| !p.fixed[*i]) {
             let bounded = p.lower[i].is_finite() && p.upper[i].is_finite();
             let anywhere = if bounded && !p.turns[i] { f64::INFINITY } else { PI };
-            let (middle, spread) = if near { (self.start[c], NEARBY) } else { (0.0, anywhere) };
+            let (middle, spread) =
+                if near { (self.start[c], PERTURBATION) } else { (0.0, anywhere) };
             let (lower, upper) = (p.lower[i].max(middle - spread), p.upper[i].min(middle + spread));
             // Limits that exclude what is drawn from leave one end of it.
             q[c] = (lower + (upper - lower) * uniform(random)).clamp(p.lower[i], p.upper[i]);
@@ -383,14 +396,14 @@ impl Solver {
     }
 
     /// Where the nearest is asked for: along the answers of one posture towards the start.
-    fn approach(&mut self, q: &mut [f64]) {
+    fn approach_start(&mut self, q: &mut [f64]) {
         if self.options.nearest {
-            self.problem.approach(q, &self.start, &self.options);
+            self.problem.approach_start(q, &self.start, &self.options);
         }
     }
 
     /// Where the nearest is asked for: whole turns of joints that can make them, towards the start.
-    fn unwind(&mut self, q: &mut [f64]) {
+    fn wrap_angles(&mut self, q: &mut [f64]) {
         if !self.options.nearest {
             return;
         }
@@ -416,7 +429,7 @@ impl Solver {
         all.all(|(&c, turns)| {
             let apart = a[c] - b[c];
             let turns = if *turns { (apart / (2.0 * PI)).round() } else { 0.0 };
-            (apart - 2.0 * PI * turns).abs() < SAME
+            (apart - 2.0 * PI * turns).abs() < SAME_CONFIGURATION
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Inverse kinematics against forward kinematics.
 
 use cylindroid::ik::{
-    Budget, FoundBy, Goal, IkOptions, Solution, Solver, Task, solve, solve_several,
+    Budget, FoundBy, Goal, IkOptions, Solution, Solver, Task, solve, solve_distinct,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Pose, ReferenceFrame, Vec3, catalogue};
@@ -52,7 +52,7 @@ fn reachable_poses_are_reached() {
             };
             for _ in 0..200 {
                 let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool());
-                options.start = Some(random.q(&robot));
+                options.initial_guess = Some(random.q(&robot));
                 let goals = [Goal::pose(robot.tool(), target)];
                 let found = solve(&robot, &goals, &options).unwrap();
                 checked(&robot, &goals, &options, &found);
@@ -61,7 +61,7 @@ fn reachable_poses_are_reached() {
                 let twice = [goals[0], goals[0]];
                 let found = solve(&robot, &twice, &options).unwrap();
                 checked(&robot, &twice, &options, &found);
-                assert!(found.success && found.found_by == FoundBy::Search, "{found:?}");
+                assert!(found.success && found.found_by == FoundBy::Numerical, "{found:?}");
             }
         }
     }
@@ -82,7 +82,7 @@ fn singular_and_extreme_poses_are_reached() {
             let target = robot.state(&q).unwrap().pose(robot.tool());
             let goals = [Goal::pose(robot.tool(), target)];
             let start: Vec<f64> = q.iter().map(|x| x + 0.4).collect();
-            let options = IkOptions { start: Some(start), ..IkOptions::default() };
+            let options = IkOptions { initial_guess: Some(start), ..IkOptions::default() };
             let found = solve(&robot, &goals, &options).unwrap();
             checked(&robot, &goals, &options, &found);
             assert!(found.success, "{}: {found:?}", robot.name());
@@ -198,8 +198,11 @@ fn the_nearest_answer() {
             let known = random.q(&robot);
             let start: Vec<f64> = known.iter().map(|x| x + random.within(-0.5, 0.5)).collect();
             let goals = [Goal::pose(robot.tool(), robot.state(&known).unwrap().pose(robot.tool()))];
-            let options =
-                IkOptions { start: Some(start.clone()), nearest: true, ..IkOptions::default() };
+            let options = IkOptions {
+                initial_guess: Some(start.clone()),
+                nearest: true,
+                ..IkOptions::default()
+            };
             let found = solve(&robot, &goals, &options).unwrap();
             checked(&robot, &goals, &options, &found);
             // The start is moved into the limits first, which brings it nearer to all answers.
@@ -219,8 +222,8 @@ fn several_answers() {
     let ur5e = catalogue::load("ur5e").unwrap();
     let q = [0.3, -1.1, 1.4, 0.2, 1.0, 0.4];
     let goals = [Goal::pose(ur5e.tool(), ur5e.state(&q).unwrap().pose(ur5e.tool()))];
-    let options = IkOptions { start: Some(q.to_vec()), ..IkOptions::default() };
-    let found = solve_several(&ur5e, &goals, &options, 20).unwrap();
+    let options = IkOptions { initial_guess: Some(q.to_vec()), ..IkOptions::default() };
+    let found = solve_distinct(&ur5e, &goals, &options, 20).unwrap();
     assert_eq!(found.len(), 8);
     let mut before = 0.0;
     for one in &found {
@@ -255,7 +258,7 @@ limits = { lower = 0.0, upper = 1.0 }
     let found = solve(&robot, &[Goal::pose(hand, target)], &options).unwrap();
     assert!(!found.success && found.out_of_reach.is_some(), "{found:?}");
     target.translation.x = 0.5;
-    assert!(solve_several(&robot, &[Goal::pose(hand, target)], &options, 0).unwrap().is_empty());
+    assert!(solve_distinct(&robot, &[Goal::pose(hand, target)], &options, 0).unwrap().is_empty());
 }
 
 /// A whole turn brings a hinge back to where it was, a screw not: its places are several answers.
@@ -279,7 +282,7 @@ limits = { lower = -13.0, upper = 13.0 }
         let hand = robot.frame("hand").unwrap();
         let target = robot.state(&[0.5]).unwrap().pose(hand);
         let goals = [Goal { task: Task::ORIENTATION, ..Goal::pose(hand, target) }];
-        let found = solve_several(&robot, &goals, &IkOptions::default(), 4).unwrap();
+        let found = solve_distinct(&robot, &goals, &IkOptions::default(), 4).unwrap();
         assert_eq!(found.len(), answers, "{}: {found:?}", robot.name());
         found.iter().for_each(|one| checked(&robot, &goals, &IkOptions::default(), one));
     }
@@ -327,7 +330,8 @@ fn the_nearest_answer_does_not_unwind() {
     let start = vec![0.3, -1.1, 1.4, 0.2, 1.0, 5.9];
     let mut target = ur5e.state(&start).unwrap().pose(ur5e.tool());
     target.translation.z += 0.01;
-    let options = IkOptions { start: Some(start.clone()), nearest: true, ..IkOptions::default() };
+    let options =
+        IkOptions { initial_guess: Some(start.clone()), nearest: true, ..IkOptions::default() };
     let found = solve(&ur5e, &[Goal::pose(ur5e.tool(), target)], &options).unwrap();
     assert!(found.success && (found.q[5] - 5.9).abs() < 0.2, "{found:?}");
 }
@@ -345,7 +349,11 @@ fn bad_requests_are_named() {
     let nan = Pose::from_translation(Vec3::new(f64::NAN, 0.0, 0.0));
     refused(&[Goal::pose(panda.tool(), nan)], &options, "target");
     refused(&[goal], &IkOptions { position_tolerance: 0.0, ..options.clone() }, "tolerance");
-    refused(&[goal], &IkOptions { start: Some(vec![0.0]), ..options.clone() }, "start");
+    refused(
+        &[goal],
+        &IkOptions { initial_guess: Some(vec![0.0]), ..options.clone() },
+        "initial guess",
+    );
     let none = Task { components: [false; 6], ..Task::POSE };
     refused(&[Goal { task: none, ..goal }], &options, "components");
     let mut solver = Solver::new(&panda, &[goal], &options).unwrap();

@@ -201,7 +201,7 @@ fn inverse(robot: &Robot, targets: &[f64], arm: &mut Arm, command: &Command<'_>)
         let options = IkOptions {
             position_tolerance: tolerance,
             orientation_tolerance: tolerance,
-            start: Some(robot.middle()),
+            initial_guess: Some(robot.middle()),
             budget: Budget { iterations: 20_000, time: None },
             ..IkOptions::default()
         };

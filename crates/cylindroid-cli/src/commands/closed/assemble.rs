@@ -52,10 +52,10 @@ pub(crate) fn run(
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
-    let mechanism = cylindroid::load(&args.posture.model)?;
+    let mechanism = cylindroid::load(&args.configuration.model)?;
     let job = Job {
         names: output::joint_names(&mechanism),
-        guess: configuration(&mechanism, &args.posture)?,
+        guess: configuration(&mechanism, &args.configuration)?,
         held: held(&mechanism, &args.hold)?,
         mechanism: &mechanism,
     };
@@ -63,7 +63,7 @@ pub(crate) fn run(
         return modes::run(&job, ModeOptions { starts, seed: args.seed }, style, out);
     }
     if let Some(to) = &args.to {
-        let goal = goal(&job, to, args.posture.degrees)?;
+        let goal = goal(&job, to, args.configuration.degrees)?;
         return continuation::run(&job, &goal, args.least_distance, style, out);
     }
     let found = assemble(&mechanism, &job.guess, &job.held)?;

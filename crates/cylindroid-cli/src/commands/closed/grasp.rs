@@ -57,8 +57,8 @@ struct ContactJson<'a> {
 }
 
 pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let mechanism = cylindroid::load(&args.posture.model)?;
-    let q = configuration(&mechanism, &args.posture)?;
+    let mechanism = cylindroid::load(&args.configuration.model)?;
+    let q = configuration(&mechanism, &args.configuration)?;
     let object = match &args.frame {
         Some(name) => mechanism.frame(name)?,
         None => mechanism.reference(),

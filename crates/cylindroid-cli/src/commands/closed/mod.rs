@@ -27,8 +27,8 @@ pub(crate) struct Posed {
 
 impl Posed {
     fn new(args: &ClosedArgs) -> Result<Self> {
-        let mechanism = load(&args.posture.model, &args.actuated)?;
-        let q = configuration(&mechanism, &args.posture)?;
+        let mechanism = load(&args.configuration.model, &args.actuated)?;
+        let q = configuration(&mechanism, &args.configuration)?;
         let frame = args.frame.as_deref().map(|name| mechanism.frame(name)).transpose()?;
         if let Some(length) = args.length {
             Error::check_positive("--length", length)?;

@@ -49,12 +49,12 @@ pub(super) enum Goal {
 
 impl Job {
     pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
-        let robot = load(&args.posture.model, &args.actuated)?;
+        let robot = load(&args.configuration.model, &args.actuated)?;
         if !args.actuated.is_empty() && !robot.is_closed() {
             return Err(all_driven(&robot).into());
         }
-        let degrees = args.posture.degrees;
-        let start = configuration(&robot, &args.posture)?;
+        let degrees = args.configuration.degrees;
+        let start = configuration(&robot, &args.configuration)?;
         within_limits(&robot, "--q", &start)?;
         if !(args.time_limit > 0.0 && args.time_limit.is_finite()) {
             return Err(Error::InvalidOption {

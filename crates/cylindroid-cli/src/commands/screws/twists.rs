@@ -25,7 +25,7 @@ pub(super) struct Twists {
 
 impl Twists {
     pub(super) fn read(args: &ScrewsArgs) -> Result<Self> {
-        let path = Path::new(&args.posture.model);
+        let path = Path::new(&args.configuration.model);
         match path.extension().and_then(OsStr::to_str) {
             Some("csv" | "json") => {
                 let rows = number_file::rows(path)?;
@@ -40,7 +40,7 @@ impl Twists {
         if args.frame.frame.is_some() || args.frame.tool.is_some() {
             return Err(Error::InvalidOption {
                 option: "--frame or --tool",
-                value: args.posture.model.clone(),
+                value: args.configuration.model.clone(),
                 reason: "a file of twists has no frames; leave the option out".to_owned(),
             });
         }
@@ -53,7 +53,7 @@ impl Twists {
         };
         Ok(Self {
             robot: None,
-            file: args.posture.model.clone(),
+            file: args.configuration.model.clone(),
             names: (1..=rows.len()).map(|i| i.to_string()).collect(),
             twists: rows.into_iter().map(twist).collect(),
             length: 1.0,
@@ -64,12 +64,12 @@ impl Twists {
         if args.angular_first {
             return Err(Error::InvalidOption {
                 option: "--angular-first",
-                value: args.posture.model.clone(),
+                value: args.configuration.model.clone(),
                 reason: "it is for files of twists (.csv, .json)".to_owned(),
             });
         }
-        let robot = cylindroid::load(&args.posture.model)?;
-        let q = configuration(&robot, &args.posture)?;
+        let robot = cylindroid::load(&args.configuration.model)?;
+        let q = configuration(&robot, &args.configuration)?;
         let end_effector = end_effector(&robot, &args.frame)?;
         Ok(Self::of(&robot.state(&q)?, end_effector))
     }

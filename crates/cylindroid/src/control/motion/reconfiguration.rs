@@ -12,7 +12,7 @@
 
 use crate::control::servo::Servo;
 use crate::error::Result;
-use crate::ik::{ATTEMPT_STEPS, Budget, Goal, IkOptions, solve};
+use crate::ik::{Budget, Goal, ITERATIONS_PER_RESTART, IkOptions, solve};
 use crate::model::CoordinateKind;
 use crate::spatial::Pose;
 
@@ -52,14 +52,14 @@ pub fn find_reachable_configuration(
     let ik = IkOptions {
         position_tolerance: WITHIN * options.tolerance.position,
         orientation_tolerance: WITHIN * options.tolerance.orientation,
-        start: Some(q.to_vec()),
+        initial_guess: Some(q.to_vec()),
         fixed: (0..mechanism.n()).filter(|c| !free.contains(c)).collect(),
         nearest: true,
         seed: 0,
-        budget: Budget { iterations: ATTEMPT_STEPS * max_restarts.max(1), time: None },
+        budget: Budget { iterations: ITERATIONS_PER_RESTART * max_restarts.max(1), time: None },
         length: Some(options.length),
     };
     let goal = Goal { end_effector: options.end_effector, target, task: options.task };
     let found = solve(mechanism, &[goal], &ik)?;
-    Ok(found.success.then_some(Reconfiguration { q: found.q, restarts: found.attempts }))
+    Ok(found.success.then_some(Reconfiguration { q: found.q, restarts: found.restarts }))
 }

@@ -8,21 +8,21 @@
 //!          besides any that are held. Nearer to a singular posture than the root of what the axes
 //!          depart from their structure an answer may be missing
 //! Why so   what is answered is true by forward kinematics, not by the formulas
-//! Source   see [`structure`] and [`formulas`]
+//! Source   see [`geometry`] and [`pieper`]
 //! Checked  tests/it/analytic.rs
 
-mod circle;
-mod formulas;
-mod structure;
+mod geometry;
+mod pieper;
+mod subproblems;
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::ops::Deref;
 
-use self::circle::Turn;
-use self::formulas::Aim;
-use self::structure::{Axes, Geometry, Three};
-use super::damped::{Damped, Wanted};
+use self::geometry::{ArmParameters, Axes, Three};
+use self::pieper::Target;
+use self::subproblems::Angle;
+use super::damped_step::{Damped, DampedProblem};
 use crate::error::{Error, Result};
 use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::Matrix;
@@ -34,7 +34,7 @@ use crate::tolerance::{
     ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED, ANALYTIC_SAME,
 };
 
-pub use self::structure::Structure;
+pub use self::geometry::ArmGeometry;
 
 /// Newton steps for one candidate.
 const STEPS: usize = 2;
@@ -45,7 +45,7 @@ const DAMPING: f64 = 1e-12;
 /// Why formulas do not solve a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum NoStructure {
+pub enum NotSolvable {
     /// Not six coordinates move the tool, those that are held left out: how many do.
     Joints(usize),
     /// Loops or contacts couple the joints.
@@ -56,7 +56,7 @@ pub enum NoStructure {
     Axes,
 }
 
-impl fmt::Display for NoStructure {
+impl fmt::Display for NotSolvable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Joints(n) => write!(f, "{n} joints move the tool, formulas take six"),
@@ -72,7 +72,7 @@ impl fmt::Display for NoStructure {
 
 /// One answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Posture {
+pub struct AnalyticSolution {
     /// The angles of the six joints, in the order of [`Analytic::coordinates`] (rad).
     pub q: [f64; 6],
     /// True for joints whose angle the pose leaves free: the posture is singular and one of a
@@ -87,16 +87,16 @@ pub struct Posture {
 
 /// The answers for a pose: at most eight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Postures {
-    list: [Posture; 8],
+pub struct AnalyticSolutions {
+    list: [AnalyticSolution; 8],
     len: usize,
     open: bool,
 }
 
-impl Deref for Postures {
-    type Target = [Posture];
+impl Deref for AnalyticSolutions {
+    type Target = [AnalyticSolution];
 
-    fn deref(&self) -> &[Posture] {
+    fn deref(&self) -> &[AnalyticSolution] {
         &self.list[..self.len]
     }
 }
@@ -105,14 +105,14 @@ impl Deref for Postures {
 #[derive(Debug, Clone)]
 pub struct Analytic {
     chain: Chain,
-    structure: Structure,
+    structure: ArmGeometry,
     departure: f64,
-    geometry: Geometry,
+    geometry: ArmParameters,
     /// Of the tool at zero.
     zero: Rotation,
     /// Places of the six in `q`, and those of the chain that are held.
     coordinates: [usize; 6],
-    held: Vec<usize>,
+    locked: Vec<usize>,
     lower: [f64; 6],
     upper: [f64; 6],
     reach: f64,
@@ -131,7 +131,7 @@ impl Analytic {
     ///
     /// let arm = cylindroid::load("ur5e")?;
     /// let mut ik = Analytic::of(&arm, arm.tool()).expect("three axes are parallel");
-    /// assert_eq!(ik.structure().to_string(), "parallel axes 2, 3 and 4, axes 5 and 6 meet");
+    /// assert_eq!(ik.geometry().to_string(), "parallel axes 2, 3 and 4, axes 5 and 6 meet");
     /// let q = [0.3, -1.1, 1.4, 0.2, 1.0, 0.4];
     /// let answers = ik.solve(arm.state(&q)?.pose(arm.tool()), &q)?;
     /// assert_eq!(answers.len(), 8);
@@ -147,8 +147,8 @@ impl Analytic {
     pub fn of(
         mechanism: &Mechanism,
         end_effector: impl Into<EndEffector>,
-    ) -> std::result::Result<Self, NoStructure> {
-        Self::holding(mechanism, end_effector, &[])
+    ) -> std::result::Result<Self, NotSolvable> {
+        Self::with_locked(mechanism, end_effector, &[])
     }
 
     /// The same with some coordinates held: they keep the values of the start in each call. Of an
@@ -159,22 +159,22 @@ impl Analytic {
     ///
     /// # Panics
     /// If the frame is of another mechanism.
-    pub fn holding(
+    pub fn with_locked(
         mechanism: &Mechanism,
         end_effector: impl Into<EndEffector>,
         held: &[usize],
-    ) -> std::result::Result<Self, NoStructure> {
+    ) -> std::result::Result<Self, NotSolvable> {
         if mechanism.is_closed() {
-            return Err(NoStructure::Loops);
+            return Err(NotSolvable::Loops);
         }
         let end_effector = end_effector.into();
         let mut chain = Chain::new(mechanism, end_effector);
         let (held, free): (Vec<usize>, Vec<usize>) =
             chain.coordinates().iter().partition(|c| held.contains(c));
         let coordinates: [usize; 6] =
-            free.as_slice().try_into().map_err(|_| NoStructure::Joints(free.len()))?;
+            free.as_slice().try_into().map_err(|_| NotSolvable::Joints(free.len()))?;
         if !are_hinges(mechanism, end_effector, &coordinates) {
-            return Err(NoStructure::Kind);
+            return Err(NotSolvable::Kind);
         }
         let mut jacobian = Matrix::zeros(6, chain.n());
         // What holds at drawn values of the held joints holds at all but special ones.
@@ -182,8 +182,8 @@ impl Analytic {
         let mut q = vec![0.0; mechanism.n()];
         held.iter().for_each(|&c| q[c] = 2.0 * uniform(&mut state) - 1.0);
         let reach = mechanism.reach();
-        let axes = axes(&mut chain, &coordinates, &q, &mut jacobian).ok_or(NoStructure::Kind)?;
-        let (structure, departure) = axes.structure(reach).ok_or(NoStructure::Axes)?;
+        let axes = axes(&mut chain, &coordinates, &q, &mut jacobian).ok_or(NotSolvable::Kind)?;
+        let (structure, departure) = axes.structure(reach).ok_or(NotSolvable::Axes)?;
         let limits = coordinates.map(|c| mechanism.coordinates()[c].limits);
         Ok(Self {
             geometry: axes.geometry(structure, reach),
@@ -192,7 +192,7 @@ impl Analytic {
             structure,
             departure,
             coordinates,
-            held,
+            locked: held,
             lower: limits.map(|l| l.lower),
             upper: limits.map(|l| l.upper),
             reach,
@@ -205,7 +205,7 @@ impl Analytic {
 
     /// What the formulas rest on.
     #[must_use]
-    pub fn structure(&self) -> Structure {
+    pub fn geometry(&self) -> ArmGeometry {
         self.structure
     }
 
@@ -223,8 +223,8 @@ impl Analytic {
 
     /// Places of the joints of the chain that keep the values of the start.
     #[must_use]
-    pub fn held(&self) -> &[usize] {
-        &self.held
+    pub fn locked(&self) -> &[usize] {
+        &self.locked
     }
 
     /// All answers within the limits for `world_from_tool`, confirmed by forward kinematics to
@@ -233,17 +233,17 @@ impl Analytic {
     ///
     /// # Errors
     /// A `start` of the wrong size, numbers that are not finite.
-    pub fn solve(&mut self, target: Pose, start: &[f64]) -> Result<Postures> {
+    pub fn solve(&mut self, target: Pose, start: &[f64]) -> Result<AnalyticSolutions> {
         self.check(target, start)?;
-        if self.held.iter().any(|&c| self.q[c] != start[c]) {
+        if self.locked.iter().any(|&c| self.q[c] != start[c]) {
             self.hold(start);
         }
         self.q.copy_from_slice(start);
         let rotation = target.rotation.matrix() * self.zero.inverse().matrix();
         let near = self.coordinates.map(|c| start[c]);
-        let Structure { three, reversed, .. } = self.structure;
+        let ArmGeometry { three, reversed, .. } = self.structure;
         let mut angles = near;
-        let mut aim = Aim { rotation, position: target.translation, start: near };
+        let mut aim = Target { rotation, position: target.translation, start: near };
         if reversed {
             angles.reverse();
             let back = rotation.transpose();
@@ -254,8 +254,8 @@ impl Analytic {
             *angle *= sign;
         }
         aim.start = angles;
-        let mut postures = Postures {
-            list: [Posture {
+        let mut postures = AnalyticSolutions {
+            list: [AnalyticSolution {
                 q: [0.0; 6],
                 free: [false; 6],
                 position_error: 0.0,
@@ -264,7 +264,7 @@ impl Analytic {
             len: 0,
             open: false,
         };
-        let found = |turns: &[Turn; 6]| {
+        let found = |turns: &[Angle; 6]| {
             let mut q = [0.0; 6];
             let mut free = [false; 6];
             for (i, turn) in turns.iter().enumerate() {
@@ -278,8 +278,8 @@ impl Analytic {
             true
         };
         match three {
-            Three::Meet => formulas::meeting(&geometry, &aim, found),
-            Three::Parallel => formulas::parallel(&geometry, &aim, found),
+            Three::Meet => pieper::meeting(&geometry, &aim, found),
+            Three::Parallel => pieper::parallel(&geometry, &aim, found),
         }
         Ok(postures)
     }
@@ -287,7 +287,7 @@ impl Analytic {
     /// Every angle of a posture with all whole turns that the limits allow, the posture itself among
     /// them; of joints without limits that of the posture alone.
     #[must_use]
-    pub fn with_whole_turns(&self, posture: &Posture) -> Vec<[f64; 6]> {
+    pub fn with_full_turns(&self, posture: &AnalyticSolution) -> Vec<[f64; 6]> {
         let mut all = vec![posture.q];
         for i in 0..6 {
             let (lower, upper) = (self.lower[i], self.upper[i]);
@@ -338,7 +338,7 @@ impl Analytic {
         free: [bool; 6],
         target: &Pose,
         near: &[f64; 6],
-    ) -> Option<Posture> {
+    ) -> Option<AnalyticSolution> {
         for i in 0..6 {
             q[i] = turned(q[i], near[i], self.lower[i], self.upper[i])?;
         }
@@ -356,7 +356,7 @@ impl Analytic {
             }
         }
         let (position_error, orientation_error) = errors;
-        self.are_below(errors, ANALYTIC_CONFIRMED).then_some(Posture {
+        self.are_below(errors, ANALYTIC_CONFIRMED).then_some(AnalyticSolution {
             q,
             free,
             position_error,
@@ -398,14 +398,14 @@ impl Analytic {
         let e = scaled(self.chain.pose().error_to(*target));
         let size: f64 = self.a.iter().map(|x| x * x).sum();
         let mut d = [0.0; 6];
-        let wanted = Wanted { a: &self.a, e: &e, held: free, damping: DAMPING * size };
-        if self.damped.solve(wanted, &mut d) {
+        let problem = DampedProblem { a: &self.a, e: &e, held: free, damping: DAMPING * size };
+        if self.damped.solve(problem, &mut d) {
             q.iter_mut().zip(d).for_each(|(q, d)| *q += d);
         }
     }
 }
 
-impl Postures {
+impl AnalyticSolutions {
     /// True if the pose may leave a joint free: these are then some of many answers.
     #[must_use]
     pub fn is_open(&self) -> bool {
@@ -413,15 +413,15 @@ impl Postures {
     }
 
     /// One that is not there yet, whole turns apart; the truer of two that are one.
-    fn insert(&mut self, posture: Posture) {
-        let same = |other: &Posture| {
+    fn insert(&mut self, posture: AnalyticSolution) {
+        let same = |other: &AnalyticSolution| {
             other.q.iter().zip(posture.q).all(|(a, b)| {
                 let apart = (a - b).abs();
                 let turned = |apart: f64| (apart - TAU * (apart / TAU).round()).abs();
                 apart < ANALYTIC_SAME || (apart > PI && turned(apart) < ANALYTIC_SAME)
             })
         };
-        let error = |p: &Posture| p.position_error + p.orientation_error;
+        let error = |p: &AnalyticSolution| p.position_error + p.orientation_error;
         if let Some(other) = self.list[..self.len].iter_mut().find(|other| same(other)) {
             if error(&posture) < error(other) {
                 *other = posture;

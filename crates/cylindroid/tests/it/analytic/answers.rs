@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use cylindroid::ik::{Analytic, Goal, IkOptions, Posture, solve_several};
+use cylindroid::ik::{Analytic, AnalyticSolution, Goal, IkOptions, solve_distinct};
 use cylindroid::model::Limits;
 use cylindroid::{Mechanism, Pose, Vec3, catalogue};
 
@@ -22,7 +22,7 @@ fn published_arms() {
     ];
     for (robot, name) in published().iter().zip(names) {
         let ik = Analytic::of(robot, robot.tool()).unwrap();
-        assert!(ik.structure().to_string() == name && ik.is_exact(), "{}", ik.structure());
+        assert!(ik.geometry().to_string() == name && ik.is_exact(), "{}", ik.geometry());
         assert_eq!(known_postures_are_found(robot, &mut random, 2000), 8);
     }
 }
@@ -34,11 +34,7 @@ fn random_arms_of_every_structure() {
         for _ in 0..20 {
             let robot = random_arm(name, &mut random);
             let ik = Analytic::of(&robot, robot.tool()).unwrap();
-            assert!(
-                ik.structure().to_string() == name && ik.is_exact(),
-                "{} {name}",
-                ik.structure()
-            );
+            assert!(ik.geometry().to_string() == name && ik.is_exact(), "{} {name}", ik.geometry());
             known_postures_are_found(&robot, &mut random, 100);
         }
     }
@@ -62,7 +58,7 @@ fn frames_change_nothing() {
         let plain = arm(&axes, Pose::IDENTITY, Pose::IDENTITY, Limits::NONE);
         let (base, tool) = (random.pose(), random.pose());
         let moved = arm(&axes, base, tool, Limits::NONE);
-        let structure = |robot: &Mechanism| Analytic::of(robot, robot.tool()).unwrap().structure();
+        let structure = |robot: &Mechanism| Analytic::of(robot, robot.tool()).unwrap().geometry();
         assert_eq!(structure(&plain), structure(&moved));
         let q: Vec<f64> = random.vector(6);
         let solve = |robot: &Mechanism| {
@@ -102,8 +98,8 @@ fn as_many_as_a_long_search_finds() {
                 orientation_tolerance: 1e-9,
                 ..IkOptions::default()
             };
-            let found = solve_several(&robot, &[goal, goal], &options, 20).unwrap();
-            assert_eq!(found.len(), answers.len(), "{}", ik.structure());
+            let found = solve_distinct(&robot, &[goal, goal], &options, 20).unwrap();
+            assert_eq!(found.len(), answers.len(), "{}", ik.geometry());
             for one in &found {
                 assert!(answers.iter().any(|a| apart(&a.q, &one.q) < 1e-3), "{one:?} {answers:?}");
             }
@@ -136,7 +132,7 @@ fn limits_and_whole_turns() {
             assert!(found, "{q:?} {answers:?}");
             for answer in answers.iter() {
                 assert_eq!(robot.outside_limits(&answer.q).next(), None);
-                let all = ik.with_whole_turns(answer);
+                let all = ik.with_full_turns(answer);
                 assert!(all.contains(&answer.q), "{answer:?} {all:?}");
                 let turns = |i: usize| ((limits[i].upper - limits[i].lower) / TAU + 1.0) as usize;
                 assert!(all.len() <= (0..6).map(turns).product());
@@ -153,11 +149,11 @@ fn limits_and_whole_turns() {
     }
     let robot = catalogue::load("ur5e").unwrap();
     let ik = Analytic::of(&robot, robot.tool()).unwrap();
-    let answer = Posture {
+    let answer = AnalyticSolution {
         q: [0.3, -1.1, 1.4, 0.2, 1.0, 0.4],
         free: [false; 6],
         position_error: 0.0,
         orientation_error: 0.0,
     };
-    assert_eq!(ik.with_whole_turns(&answer).len(), 32);
+    assert_eq!(ik.with_full_turns(&answer).len(), 32);
 }

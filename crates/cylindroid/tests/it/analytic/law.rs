@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use cylindroid::ik::{Analytic, Posture};
+use cylindroid::ik::{Analytic, AnalyticSolution};
 use cylindroid::{Mechanism, Pose};
 
 use crate::support::Random;
@@ -14,7 +14,7 @@ pub(super) fn apart(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Forward kinematics says the same, to 1e-10 in both parts.
-pub(super) fn confirm(robot: &Mechanism, target: Pose, answers: &[Posture]) {
+pub(super) fn confirm(robot: &Mechanism, target: Pose, answers: &[AnalyticSolution]) {
     for answer in answers {
         let error = robot.state(&answer.q).unwrap().pose(robot.tool()).error_to(target);
         let far = (error.linear.norm(), error.angular.norm());
@@ -59,7 +59,7 @@ pub(super) fn known_postures_are_found(
         assert!(
             near < 1e-9 + 1e-12 / condition || condition < 1e-7,
             "{}: {near:e} at {condition:e}, {answers:?}, {q:?}",
-            ik.structure()
+            ik.geometry()
         );
         most = most.max(answers.len());
     }

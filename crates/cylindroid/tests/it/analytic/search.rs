@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use cylindroid::ik::{Analytic, FoundBy, Goal, IkOptions, NoStructure, Solver, solve_several};
+use cylindroid::ik::{Analytic, FoundBy, Goal, IkOptions, NotSolvable, Solver, solve_distinct};
 use cylindroid::model::{JointKind, JointSpec, Limits};
 use cylindroid::{Mechanism, Pose, Vec3, catalogue};
 
@@ -21,8 +21,8 @@ fn seven_joints_with_one_held() {
     ];
     for (name, held, words) in cases {
         let robot = unlimited(&catalogue::load(name).unwrap());
-        let mut ik = Analytic::holding(&robot, robot.tool(), &[held]).unwrap();
-        assert!(ik.structure().to_string().starts_with(words), "{}", ik.structure());
+        let mut ik = Analytic::with_locked(&robot, robot.tool(), &[held]).unwrap();
+        assert!(ik.geometry().to_string().starts_with(words), "{}", ik.geometry());
         for _ in 0..500 {
             let q: Vec<f64> = random.vector(7).iter().map(|x| 3.0 * x).collect();
             let target = robot.state(&q).unwrap().pose(robot.tool());
@@ -48,14 +48,14 @@ fn why_not() {
         let robot = catalogue::load(name).unwrap();
         Analytic::of(&robot, robot.tool()).unwrap_err()
     };
-    assert_eq!(of("panda"), NoStructure::Joints(7));
-    assert_eq!(of("youbot"), NoStructure::Joints(5));
-    assert_eq!(of("two-arm"), NoStructure::Loops);
+    assert_eq!(of("panda"), NotSolvable::Joints(7));
+    assert_eq!(of("youbot"), NotSolvable::Joints(5));
+    assert_eq!(of("two-arm"), NotSolvable::Loops);
     assert!(of("panda").to_string().contains('7'));
     let mut random = Random(81);
     let axes: Vec<_> = (0..6).map(|_| (unit(&mut random), random.vec3(0.5))).collect();
     let skew = arm(&axes, Pose::IDENTITY, Pose::IDENTITY, Limits::NONE);
-    assert_eq!(Analytic::of(&skew, skew.tool()).unwrap_err(), NoStructure::Axes);
+    assert_eq!(Analytic::of(&skew, skew.tool()).unwrap_err(), NotSolvable::Axes);
     let mut b = Mechanism::builder("slides");
     for i in 0..6 {
         let kind = if i == 3 { JointKind::Prismatic } else { JointKind::Revolute };
@@ -63,7 +63,7 @@ fn why_not() {
         b.joint(JointSpec::new(&format!("q{i}"), kind, &parent, &child));
     }
     let slides = b.build().unwrap();
-    assert_eq!(Analytic::of(&slides, slides.tool()).unwrap_err(), NoStructure::Kind);
+    assert_eq!(Analytic::of(&slides, slides.tool()).unwrap_err(), NotSolvable::Kind);
     let ur5e = catalogue::load("ur5e").unwrap();
     let mut ik = Analytic::of(&ur5e, ur5e.tool()).unwrap();
     assert!(ik.solve(Pose::IDENTITY, &[0.0; 5]).is_err());
@@ -94,22 +94,25 @@ fn the_search_uses_formulas() {
                 let target = robot.state(&known).unwrap().pose(robot.tool());
                 let goals = [Goal::pose(robot.tool(), target)];
                 let start: Vec<f64> = known.iter().map(|x| x + random.within(-0.3, 0.3)).collect();
-                let options =
-                    IkOptions { nearest, start: Some(start.clone()), ..IkOptions::default() };
+                let options = IkOptions {
+                    nearest,
+                    initial_guess: Some(start.clone()),
+                    ..IkOptions::default()
+                };
                 let solver =
                     solver.get_or_insert_with(|| Solver::new(&robot, &goals, &options).unwrap());
                 assert_eq!(
-                    solver.analytic().map(|a| a.structure().to_string()).as_deref(),
+                    solver.analytic().map(|a| a.geometry().to_string()).as_deref(),
                     structure
                 );
-                solver.start_at(&start).unwrap();
+                solver.set_initial_guess(&start).unwrap();
                 let found = solver.solve(&goals).unwrap();
                 assert!(found.success && robot.outside_limits(&found.q).next().is_none());
                 let formulas = found.found_by == FoundBy::Analytic;
                 by_formulas += usize::from(formulas);
                 assert!(structure.is_some() || !formulas);
                 if robot.n() == 6 && formulas {
-                    assert_eq!(found.attempts, 1);
+                    assert_eq!(found.restarts, 1);
                     assert!(found.position_error < 1e-9 && found.orientation_error < 1e-9);
                 }
             }
@@ -133,10 +136,10 @@ fn the_search_uses_formulas() {
     let mut ik = Analytic::of(&free, free.tool()).unwrap();
     assert!(!ik.solve(target, &q).unwrap().is_empty());
     let goals = [Goal::pose(puma.tool(), target)];
-    let found = solve_several(&puma, &goals, &IkOptions::default(), 8).unwrap();
+    let found = solve_distinct(&puma, &goals, &IkOptions::default(), 8).unwrap();
     let alone = cylindroid::ik::solve(&puma, &goals, &IkOptions::default()).unwrap();
     assert_eq!(found.is_empty(), !alone.success);
-    assert!(alone.success || alone.attempts < 60, "{alone:?}");
+    assert!(alone.success || alone.restarts < 60, "{alone:?}");
 }
 
 /// Of seven joints none is held whose value the target decides, though its formulas be there: the
@@ -157,12 +160,12 @@ fn an_elbow_is_not_held() {
     ];
     let limits = Limits { lower: -2.5, upper: 2.5, ..Limits::NONE };
     let robot = arm(&axes, Pose::IDENTITY, Pose::from_translation(at(0.0, 1.306)), limits);
-    assert!(Analytic::holding(&robot, robot.tool(), &[3]).is_ok());
+    assert!(Analytic::with_locked(&robot, robot.tool(), &[3]).is_ok());
     let mut random = Random(83);
     let mut goal =
         || [Goal::pose(robot.tool(), robot.state(&random.q(&robot)).unwrap().pose(robot.tool()))];
     let mut solver = Solver::new(&robot, &goal(), &IkOptions::default()).unwrap();
-    assert!(solver.analytic().is_some_and(|a| a.held() != [3]));
+    assert!(solver.analytic().is_some_and(|a| a.locked() != [3]));
     let found: Vec<_> = (0..200).map(|_| solver.solve(&goal()).unwrap()).collect();
     assert!(found.iter().all(|f| f.success));
     let by_formulas = found.iter().filter(|f| f.found_by == FoundBy::Analytic).count();

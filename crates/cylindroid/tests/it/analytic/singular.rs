@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use cylindroid::ik::{Analytic, NoStructure};
+use cylindroid::ik::{Analytic, NotSolvable};
 use cylindroid::model::Limits;
 use cylindroid::{Pose, Vec3};
 
@@ -153,6 +153,6 @@ fn nearly_a_structure() {
     let (axes, tool) = puma(1e-3);
     let robot = arm(&axes, Pose::IDENTITY, tool, Limits::NONE);
     let why = Analytic::of(&robot, robot.tool()).unwrap_err();
-    assert_eq!(why, NoStructure::Axes);
+    assert_eq!(why, NotSolvable::Axes);
     assert!(why.to_string().contains("neither"), "{why}");
 }

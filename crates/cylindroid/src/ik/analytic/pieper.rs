@@ -10,7 +10,7 @@
 //!          h2 . R1^T R h6 - h2 . R5 h6 = 0, then the turn 2 + 3 + 4 by one vector, and 2 and 3 as
 //!          the two links of a plane arm
 //! Units    rad, m
-//! Valid    as [`circle`](super::circle): up to eight candidates for every posture of the wrist or
+//! Valid    as [`subproblems`](super::subproblems): up to eight candidates for every posture of the wrist or
 //!          elbow, to be confirmed
 //! Why so   turns found from a vector nearly along their axis are ill-determined alone; the last
 //!          one is always found from a vector across its axis given all others, so that their sum is
@@ -18,22 +18,22 @@
 //! Source   Elias & Wen 2025 (IK-Geo); Pieper 1968
 //! Checked  tests/it/analytic.rs
 
-use super::circle::{Pair, Turn, across, coefficients, linear, onto};
-use super::structure::Geometry;
+use super::geometry::ArmParameters;
+use super::subproblems::{Angle, EquationPair, across, coefficients, linear, onto};
 use crate::spatial::{Mat3, Vec3};
 
 /// A pose of the tool, as rotation from zero and position, in the order the chain is read, and the
 /// angles of the start.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Aim {
+pub(super) struct Target {
     pub(super) rotation: Mat3,
     pub(super) position: Vec3,
     pub(super) start: [f64; 6],
 }
 
 /// Calls `found` with the candidates; it says whether one is confirmed.
-pub(super) fn meeting(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]) -> bool) {
-    let Geometry { h, p: [p01, p12, p23, p34, _, _, p6t], reach, .. } = *g;
+pub(super) fn meeting(g: &ArmParameters, aim: &Target, mut found: impl FnMut(&[Angle; 6]) -> bool) {
+    let ArmParameters { h, p: [p01, p12, p23, p34, _, _, p6t], reach, .. } = *g;
     let start = aim.start;
     let p = aim.position - p01 - aim.rotation * p6t;
     let ([x1, x2], x_rest) = coefficients(h[1], -h[0], p);
@@ -41,7 +41,7 @@ pub(super) fn meeting(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6])
     let ([u1, u2], u_rest) = coefficients(p12, -h[0], p);
     let ([v1, v2], v_rest) = coefficients(p23, h[2], p34);
     let squares = p.dot(p) + p12.dot(p12) - p23.dot(p23) - p34.dot(p34);
-    let pair = Pair {
+    let pair = EquationPair {
         x: [[x1, x2], [u1, u2]],
         y: [[-y1, -y2], [v1, v2]],
         d: [h[1].dot(p12 + p23) - x_rest + y_rest, 0.5 * squares - u_rest - v_rest],
@@ -69,8 +69,12 @@ pub(super) fn meeting(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6])
 }
 
 /// The same for three parallel axes.
-pub(super) fn parallel(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]) -> bool) {
-    let Geometry { h, p: [p01, p12, p23, p34, p45, p56, p6t], reach, .. } = *g;
+pub(super) fn parallel(
+    g: &ArmParameters,
+    aim: &Target,
+    mut found: impl FnMut(&[Angle; 6]) -> bool,
+) {
+    let ArmParameters { h, p: [p01, p12, p23, p34, p45, p56, p6t], reach, .. } = *g;
     let (n, start) = (h[1], aim.start);
     let p = aim.position - p01 - aim.rotation * p6t;
     let (pointing, sideways) = (aim.rotation * h[5], aim.rotation * g.side);
@@ -78,7 +82,7 @@ pub(super) fn parallel(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]
     let ([y1, y2], y_rest) = coefficients(n, h[4], p56);
     let ([u1, u2], u_rest) = coefficients(n, -h[0], pointing);
     let ([v1, v2], v_rest) = coefficients(n, h[4], h[5]);
-    let pair = Pair {
+    let pair = EquationPair {
         x: [[x1, x2], [u1, u2]],
         y: [[-y1, -y2], [-v1, -v2]],
         d: [n.dot(p12 + p23 + p34 + p45) - x_rest + y_rest, v_rest - u_rest],
@@ -89,7 +93,7 @@ pub(super) fn parallel(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]
     let links = p23.dot(p23) + p34.dot(p34) + 2.0 * elbow_rest;
     pair.any(g.order, |first, fifth| {
         let shoulder = first.back(h[0], p) - p12;
-        let mut arm = |whole: Turn, sixth: Turn| {
+        let mut arm = |whole: Angle, sixth: Angle| {
             let wrist = shoulder - whole.of(n, p45 + fifth.of(h[4], p56));
             let wrist = wrist - n * n.dot(wrist);
             let d = 0.5 * (wrist.dot(wrist) - links);
@@ -97,13 +101,13 @@ pub(super) fn parallel(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]
                 let inner = p23 + third.of(n, p34);
                 onto(n, inner, wrist, reach, start[1]).any(|second| {
                     let angle = whole.angle - second.angle - third.angle;
-                    let fourth = Turn { angle, ..whole };
+                    let fourth = Angle { angle, ..whole };
                     found(&[first, second, third, fourth, fifth, sixth])
                 })
             })
         };
         let (pointing, sideways) = (first.back(h[0], pointing), first.back(h[0], sideways));
-        let last = |whole: Turn| {
+        let last = |whole: Angle| {
             let seen = fifth.back(h[4], whole.back(n, sideways));
             across(h[5], g.side, seen)
         };
@@ -129,7 +133,7 @@ pub(super) fn parallel(g: &Geometry, aim: &Aim, mut found: impl FnMut(&[Turn; 6]
             let (amid, rest) = coefficients(far, n, hand);
             let squares = far.dot(far) + hand.dot(hand) - distance * distance;
             return linear(amid, 0.5 * squares - rest, reach * reach, 0.0)
-                .any(|turn| arm(turn, Turn { free: true, ..last(turn) }));
+                .any(|turn| arm(turn, Angle { free: true, ..last(turn) }));
         }
         any
     });

@@ -14,7 +14,7 @@ use crate::scalar::SimdFloat;
 
 /// What a step shall do; of one configuration, or of several side by side.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Wanted<'a, R = f64> {
+pub(super) struct DampedProblem<'a, R = f64> {
     pub(super) a: &'a [R],
     pub(super) e: &'a [R],
     /// Columns that count as zero.
@@ -36,24 +36,24 @@ impl Damped {
     }
 
     /// Writes the step into `d`; false where the matrix is not positive definite.
-    pub(super) fn solve(&mut self, wanted: Wanted<'_>, d: &mut [f64]) -> bool {
+    pub(super) fn solve(&mut self, problem: DampedProblem<'_>, d: &mut [f64]) -> bool {
         // Said once more as a constant, the common size compiles to straight code.
-        match (wanted.e.len(), wanted.held.len()) {
-            (6, 6..) => self.by_rows(6, wanted, d),
-            (3, 3..) => self.by_rows(3, wanted, d),
-            (m, n) if n >= m => self.by_rows(m, wanted, d),
-            _ => self.by_columns(wanted, d),
+        match (problem.e.len(), problem.held.len()) {
+            (6, 6..) => self.by_rows(6, problem, d),
+            (3, 3..) => self.by_rows(3, problem, d),
+            (m, n) if n >= m => self.by_rows(m, problem, d),
+            _ => self.by_columns(problem, d),
         }
     }
 
     #[inline(always)]
-    fn by_rows(&mut self, m: usize, wanted: Wanted<'_>, d: &mut [f64]) -> bool {
+    fn by_rows(&mut self, m: usize, problem: DampedProblem<'_>, d: &mut [f64]) -> bool {
         let (gram, rest) = (&mut self.gram[..m * m], &mut self.rest[..m]);
-        by_rows(m, wanted, (gram, rest), d)
+        by_rows(m, problem, (gram, rest), d)
     }
 
-    fn by_columns(&mut self, wanted: Wanted<'_>, d: &mut [f64]) -> bool {
-        let Wanted { a, e, held, damping } = wanted;
+    fn by_columns(&mut self, problem: DampedProblem<'_>, d: &mut [f64]) -> bool {
+        let DampedProblem { a, e, held, damping } = problem;
         let (m, n) = (e.len(), held.len());
         let column = |j: usize| &a[j * m..(j + 1) * m];
         for i in 0..n {
@@ -78,11 +78,11 @@ impl Damped {
 #[inline(always)]
 pub(super) fn by_rows<R: SimdFloat>(
     m: usize,
-    wanted: Wanted<'_, R>,
+    problem: DampedProblem<'_, R>,
     (gram, rest): (&mut [R], &mut [R]),
     d: &mut [R],
 ) -> bool {
-    let Wanted { a, e, held, damping } = wanted;
+    let DampedProblem { a, e, held, damping } = problem;
     gram.fill(R::splat(0.0));
     for (column, held) in a.chunks_exact(m).zip(held) {
         if *held {
@@ -171,8 +171,8 @@ mod tests {
             let held: Vec<bool> = (0..n).map(|_| uniform(&mut random) < 0.2).collect();
             let damping = 0.01;
             let mut d = vec![0.0; n];
-            let wanted = Wanted { a: a.as_slice(), e: &e, held: &held, damping };
-            assert!(Damped::new(m, n).solve(wanted, &mut d));
+            let problem = DampedProblem { a: a.as_slice(), e: &e, held: &held, damping };
+            assert!(Damped::new(m, n).solve(problem, &mut d));
             let free = Matrix::from_fn(m, n, |i, j| if held[j] { 0.0 } else { a[(i, j)] });
             let svd = Svd::of(&free);
             let mut expected = vec![0.0; n];

@@ -26,7 +26,7 @@ const EIGHTHS: [f64; 8] = [0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0];
 
 /// A turn by an angle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Turn {
+pub(super) struct Angle {
     pub(super) cos: f64,
     pub(super) sin: f64,
     /// (rad)
@@ -35,7 +35,7 @@ pub(super) struct Turn {
     pub(super) free: bool,
 }
 
-impl Turn {
+impl Angle {
     pub(super) const NONE: Self = Self { cos: 1.0, sin: 0.0, angle: 0.0, free: false };
 
     /// By an angle that the conditions leave free.
@@ -112,17 +112,17 @@ fn angle(cos: f64, sin: f64) -> f64 {
 
 /// The turns that meet a condition, at most N.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Turns<const N: usize> {
+pub(super) struct Angles<const N: usize> {
     /// The angle of the start, where nothing determines the turn but rounding.
     free: Option<f64>,
-    list: [Turn; N],
+    list: [Angle; N],
     len: usize,
 }
 
-impl<const N: usize> Turns<N> {
-    const NONE: Self = Self { free: None, list: [Turn::NONE; N], len: 0 };
+impl<const N: usize> Angles<N> {
+    const NONE: Self = Self { free: None, list: [Angle::NONE; N], len: 0 };
 
-    fn push(&mut self, turn: Turn) {
+    fn push(&mut self, turn: Angle) {
         if self.len < N {
             self.list[self.len] = turn;
             self.len += 1;
@@ -137,9 +137,9 @@ impl<const N: usize> Turns<N> {
     /// Calls `f`, which says whether anything was confirmed, for each turn, and tells whether
     /// anything was. Of free turns the first that is confirmed is enough.
     #[inline]
-    pub(super) fn any(&self, mut f: impl FnMut(Turn) -> bool) -> bool {
+    pub(super) fn any(&self, mut f: impl FnMut(Angle) -> bool) -> bool {
         if let Some(start) = self.free
-            && EIGHTHS.iter().any(|i| f(Turn::free(start + i * FRAC_PI_4)))
+            && EIGHTHS.iter().any(|i| f(Angle::free(start + i * FRAC_PI_4)))
         {
             return true;
         }
@@ -152,8 +152,8 @@ impl<const N: usize> Turns<N> {
 }
 
 /// `a cos q + b sin q = c`, numbers of size `scale`.
-pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Turns<2> {
-    let mut turns = Turns::NONE;
+pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Angles<2> {
+    let mut turns = Angles::NONE;
     let square = a * a + b * b;
     let least = FREE_TURN * scale;
     if square <= least * least && c.abs() <= least {
@@ -164,19 +164,19 @@ pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Turns<
         return turns;
     }
     if height <= 0.0 {
-        turns.push(Turn::along(a * c, b * c));
+        turns.push(Angle::along(a * c, b * c));
     } else {
         let h = height.sqrt();
-        turns.push(Turn::along_known(a * c - b * h, b * c + a * h, square));
-        turns.push(Turn::along_known(a * c + b * h, b * c - a * h, square));
+        turns.push(Angle::along_known(a * c - b * h, b * c + a * h, square));
+        turns.push(Angle::along_known(a * c + b * h, b * c - a * h, square));
     }
     turns
 }
 
 /// The turn about `k` that brings `p` onto `onto`, vectors of size `scale`.
 #[inline]
-pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Turns<2> {
-    let mut turns = Turns::NONE;
+pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Angles<2> {
+    let mut turns = Angles::NONE;
     let beside = p - k * k.dot(p);
     let least = FREE_TURN * scale;
     if beside.dot(beside) <= least * least {
@@ -184,15 +184,15 @@ pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Turn
     }
     let (cos, sin) = (beside.dot(onto), k.cross(p).dot(onto));
     if cos != 0.0 || sin != 0.0 {
-        turns.push(Turn::along(cos, sin));
+        turns.push(Angle::along(cos, sin));
     }
     turns
 }
 
 /// The one turn about `k` that brings `p`, which is across it, onto `onto`.
 #[inline]
-pub(super) fn across(k: Vec3, p: Vec3, onto: Vec3) -> Turn {
-    Turn::along(p.dot(onto), k.cross(p).dot(onto))
+pub(super) fn across(k: Vec3, p: Vec3, onto: Vec3) -> Angle {
+    Angle::along(p.dot(onto), k.cross(p).dot(onto))
 }
 
 /// Coefficients of `w . R v = c[0] cos q + c[1] sin q + rest`, R the turn about `k` by q.
@@ -215,7 +215,7 @@ pub(super) enum Order {
 
 /// Two equations `x[i] . (cos, sin of one turn) + y[i] . (cos, sin of another) = d[i]`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pair {
+pub(super) struct EquationPair {
     pub(super) x: [[f64; 2]; 2],
     pub(super) y: [[f64; 2]; 2],
     pub(super) d: [f64; 2],
@@ -225,10 +225,10 @@ pub(super) struct Pair {
     pub(super) start: [f64; 2],
 }
 
-impl Pair {
-    /// Calls `f` for all pairs of turns, as [`Turns::any`].
-    pub(super) fn any(&self, order: Order, mut f: impl FnMut(Turn, Turn) -> bool) -> bool {
-        let dot = |a: [f64; 2], t: Turn| a[0] * t.cos + a[1] * t.sin;
+impl EquationPair {
+    /// Calls `f` for all pairs of turns, as [`Angles::any`].
+    pub(super) fn any(&self, order: Order, mut f: impl FnMut(Angle, Angle) -> bool) -> bool {
+        let dot = |a: [f64; 2], t: Angle| a[0] * t.cos + a[1] * t.sin;
         let Self { x, y, d, scale, start } = *self;
         match order {
             Order::FirstX(i) => linear(x[i], d[i], scale[i], start[0]).any(|first| {
@@ -251,7 +251,7 @@ impl Pair {
                 let d = inverse(d);
                 Ellipse { p, q, d }.on_circle(start[0]).any(|first| {
                     let y = |i: usize| d[i] - p[i] * first.cos - q[i] * first.sin;
-                    f(first, Turn::along(y(0), y(1)))
+                    f(first, Angle::along(y(0), y(1)))
                 })
             }
         }
@@ -267,7 +267,7 @@ struct Ellipse {
 
 impl Ellipse {
     /// The turns x whose points are at distance 1 from the origin.
-    fn on_circle(&self, start: f64) -> Turns<7> {
+    fn on_circle(&self, start: f64) -> Angles<7> {
         let Self { p, q, d } = *self;
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let excess = |c: f64, s: f64| {
@@ -283,7 +283,7 @@ impl Ellipse {
                 (worst, c, s) = (excess(x, y).abs(), x, y);
             }
         }
-        let mut turns = Turns::NONE;
+        let mut turns = Angles::NONE;
         if worst <= FREE_TURN {
             turns.free = Some(start);
             return turns;
@@ -304,7 +304,7 @@ impl Ellipse {
         ];
         real_roots(quartic, |t| {
             let (x, y) = (1.0 - t * t, 2.0 * t);
-            turns.push(Turn::along(-c * x + s * y, -s * x - c * y));
+            turns.push(Angle::along(-c * x + s * y, -s * x - c * y));
         });
         turns
     }
@@ -376,7 +376,7 @@ fn between(p: impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Order, Pair, angle, linear, real_roots};
+    use super::{EquationPair, Order, angle, linear, real_roots};
 
     #[test]
     fn angles_agree_with_std() {
@@ -460,7 +460,7 @@ mod tests {
         let mut state = 5_u64;
         let mut random = || 2.0 * crate::scalar::uniform(&mut state) - 1.0;
         for i in 0..3000 {
-            let mut pair = Pair {
+            let mut pair = EquationPair {
                 x: [[random(), random()], [random(), random()]],
                 y: [[random(), random()], [random(), random()]],
                 d: [0.0; 2],

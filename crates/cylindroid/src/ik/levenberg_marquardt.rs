@@ -12,38 +12,19 @@
 //! Source   Sugihara 2011 (damping by the error); projected Newton steps: Bertsekas 1982
 //! Checked  tests/it/ik.rs
 
-use super::damped::{Damped, Wanted};
+use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
+use super::damped_step::{Damped, DampedProblem};
 use super::goal::Goal;
 use super::options::IkOptions;
-use super::race::{self, Course};
+use super::parallel_restarts::{BatchedProblem, MAX_COORDINATES};
 use crate::error::{Error, Result};
 use crate::kinematics::Chain;
 use crate::linalg::Matrix;
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
 
-/// Damping over the squared error [-].
-pub(super) const DAMPING: f64 = 0.03;
-/// Damping at the least, relative to the size of A squared: keeps the matrix positive definite.
-pub(super) const LEAST_DAMPING: f64 = 1e-14;
-/// Steps within which the squared error must fall to a quarter, or the attempt is abandoned.
-pub(super) const PATIENCE: usize = 4;
 /// Steps towards the start at most, and their damping, relative to the size of A squared.
-const APPROACHES: usize = 60;
+const APPROACH_ITERATIONS: usize = 60;
 const APPROACH_DAMPING: f64 = 1e-9;
-/// Largest change of a coordinate in a step [rad, or lengths].
-pub(super) const LARGEST_STEP: f64 = 1.5;
-
-/// The errors of a posture: the largest of all goals.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Errors {
-    /// (m)
-    pub(super) position: f64,
-    /// (rad)
-    pub(super) orientation: f64,
-    /// Scaled, squared, of all together [-].
-    pub(super) squared: f64,
-}
-
 /// A goal with its chain.
 #[derive(Debug, Clone)]
 struct Part {
@@ -131,7 +112,7 @@ impl Problem {
     }
 
     /// Other targets for the same end effectors.
-    pub(super) fn aim(&mut self, goals: &[Goal]) -> Result<()> {
+    pub(super) fn set_goals(&mut self, goals: &[Goal]) -> Result<()> {
         Error::check_len("goals", self.parts.len(), goals.len())?;
         for (i, (part, goal)) in self.parts.iter_mut().zip(goals).enumerate() {
             if (part.goal.end_effector, part.goal.task) != (goal.end_effector, goal.task) {
@@ -148,7 +129,7 @@ impl Problem {
     }
 
     /// Forward kinematics at `q`; writes the errors, scaled.
-    pub(super) fn look(&mut self, q: &[f64]) -> Errors {
+    pub(super) fn evaluate(&mut self, q: &[f64]) -> Errors {
         let mut errors = Errors { position: 0.0, orientation: 0.0, squared: 0.0 };
         let mut row = 0;
         for part in &mut self.parts {
@@ -167,7 +148,7 @@ impl Problem {
     }
 
     /// Writes A at the posture that was looked at last.
-    fn load_rates(&mut self) {
+    fn load_jacobian(&mut self) {
         let m = self.m;
         if self.parts.len() > 1 {
             self.a.fill(0.0);
@@ -188,13 +169,13 @@ impl Problem {
 
     /// One step from `q`, which was looked at with these errors.
     pub(super) fn step(&mut self, q: &mut [f64], squared: f64) {
-        self.load_rates();
+        self.load_jacobian();
         let size = self.a.iter().map(|x| x * x).sum::<f64>();
-        let damping = DAMPING * squared + LEAST_DAMPING * size;
+        let damping = DAMPING * squared + MIN_DAMPING * size;
         self.held.copy_from_slice(&self.fixed);
         for _ in 0..=self.coordinates.len() {
-            let wanted = Wanted { a: &self.a, e: &self.e, held: &self.held, damping };
-            if !self.damped.solve(wanted, &mut self.d) {
+            let problem = DampedProblem { a: &self.a, e: &self.e, held: &self.held, damping };
+            if !self.damped.solve(problem, &mut self.d) {
                 self.d.fill(0.0);
                 return;
             }
@@ -221,7 +202,7 @@ impl Problem {
 
     fn advance(&mut self, q: &mut [f64]) {
         let most = self.d.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
-        let cut = if most > LARGEST_STEP { LARGEST_STEP / most } else { 1.0 };
+        let cut = if most > MAX_STEP { MAX_STEP / most } else { 1.0 };
         if self.simple {
             for (i, &c) in self.coordinates.iter().enumerate() {
                 q[c] = (q[c] + cut * self.d[i]).clamp(self.lower[i], self.upper[i]);
@@ -250,18 +231,18 @@ impl Problem {
         options: &IkOptions,
         most: usize,
     ) -> (Errors, usize) {
-        let mut errors = self.look(q);
-        let (mut mark, mut since) = (errors.squared, 0);
+        let mut errors = self.evaluate(q);
+        let (mut best_error, mut stagnation) = (errors.squared, 0);
         for steps in 0..most {
             if is_reached(errors, options) {
                 return (errors, steps);
             }
             self.step(q, errors.squared);
-            errors = self.look(q);
-            since += 1;
-            if errors.squared < 0.25 * mark {
-                (mark, since) = (errors.squared, 0);
-            } else if since >= PATIENCE || !errors.squared.is_finite() {
+            errors = self.evaluate(q);
+            stagnation += 1;
+            if errors.squared < 0.25 * best_error {
+                (best_error, stagnation) = (errors.squared, 0);
+            } else if stagnation >= MAX_STAGNATION || !errors.squared.is_finite() {
                 return (errors, steps + 1);
             }
         }
@@ -269,20 +250,22 @@ impl Problem {
     }
 
     /// What a race of attempts needs, where the goals allow one.
-    pub(super) fn course<'a>(&'a self, options: &'a IkOptions) -> Option<Course<'a>> {
+    pub(super) fn batched<'a>(&'a self, options: &'a IkOptions) -> Option<BatchedProblem<'a>> {
         let ([part], n) = (&self.parts[..], self.coordinates.len()) else { return None };
         let serial = part.chain.serial().filter(|s| s.has_one_for_each(n))?;
-        (self.simple && self.m > 0 && (self.m..=race::MOST).contains(&n)).then_some(Course {
-            serial,
-            goal: &part.goal,
-            rows: &part.rows,
-            lower: &self.lower,
-            upper: &self.upper,
-            fixed: &self.fixed,
-            options,
-            most: 0,
-            all: false,
-        })
+        (self.simple && self.m > 0 && (self.m..=MAX_COORDINATES).contains(&n)).then_some(
+            BatchedProblem {
+                serial,
+                goal: &part.goal,
+                rows: &part.rows,
+                lower: &self.lower,
+                upper: &self.upper,
+                fixed: &self.fixed,
+                options,
+                max_steps: 0,
+                until_all_end: false,
+            },
+        )
     }
 
     /// A goal that is farther from the first joint of its chain than the chain is long: both (m).
@@ -296,13 +279,13 @@ impl Problem {
     }
 
     /// As near as it goes from `q`: steps that lessen the error are taken, the others damped more.
-    pub(super) fn settle(&mut self, q: &mut [f64], most: usize) -> Errors {
-        let mut errors = self.look(q);
+    pub(super) fn refine(&mut self, q: &mut [f64], most: usize) -> Errors {
+        let mut errors = self.evaluate(q);
         let (mut next, mut extra) = (q.to_vec(), 1.0);
         for _ in 0..most {
             next.copy_from_slice(q);
             self.step(&mut next, extra * errors.squared);
-            let then = self.look(&next);
+            let then = self.evaluate(&next);
             if then.squared < errors.squared {
                 let little = then.squared > errors.squared * (1.0 - 1e-12);
                 q.copy_from_slice(&next);
@@ -316,21 +299,21 @@ impl Problem {
                     break;
                 }
             }
-            self.look(q);
+            self.evaluate(q);
         }
-        self.look(q)
+        self.evaluate(q)
     }
 
     /// Along the postures that keep the goals, towards `start`, as near as that goes.
-    pub(super) fn approach(&mut self, q: &mut [f64], start: &[f64], options: &IkOptions) {
+    pub(super) fn approach_start(&mut self, q: &mut [f64], start: &[f64], options: &IkOptions) {
         let (mut next, mut share) = (q.to_vec(), 0.5);
         let distance = |coordinates: &[usize], q: &[f64]| -> f64 {
             coordinates.iter().map(|&c| (q[c] - start[c]).powi(2)).sum()
         };
         let mut far = distance(&self.coordinates, q);
-        for _ in 0..APPROACHES {
-            self.look(q);
-            self.load_rates();
+        for _ in 0..APPROACH_ITERATIONS {
+            self.evaluate(q);
+            self.load_jacobian();
             let size = self.a.iter().map(|x| x * x).sum::<f64>();
             // wish - A+ A wish, with joints at a limit that it would leave held.
             self.held.copy_from_slice(&self.fixed);
@@ -342,8 +325,8 @@ impl Problem {
                     .map(|i| (0..wished.len()).map(|j| self.a[j * self.m + i] * wished[j]).sum())
                     .collect();
                 let damping = APPROACH_DAMPING * size;
-                let wanted = Wanted { a: &self.a, e: &done, held: &self.held, damping };
-                if !self.damped.solve(wanted, &mut self.d) {
+                let problem = DampedProblem { a: &self.a, e: &done, held: &self.held, damping };
+                if !self.damped.solve(problem, &mut self.d) {
                     return;
                 }
                 self.d.iter_mut().zip(&wished).for_each(|(d, w)| *d = w - *d);
@@ -383,8 +366,112 @@ fn is_back_after_a_turn(mechanism: &Mechanism, coordinate: usize) -> bool {
     own.all(|n| n.kind == NodeKind::Revolute && n.multiplier.fract() == 0.0)
 }
 
-/// True where all errors are within tolerance.
-pub(super) fn is_reached(errors: Errors, options: &IkOptions) -> bool {
-    errors.position <= options.position_tolerance
-        && errors.orientation <= options.orientation_tolerance
+#[cfg(test)]
+mod tests {
+    use super::super::goal::Task;
+    use super::super::parallel_restarts::{LANES, Restart, solve_batched, solve_with};
+    use super::*;
+    use crate::kinematics::{ReferenceFrame, serial_batched};
+    use crate::model::catalogue;
+    use crate::scalar::{Array, uniform};
+
+    /// Each is the attempt that it would be alone, but for rounding, which some feel: what it
+    /// claims to reach is reached within the limits, and nearly all come to the same end.
+    #[test]
+    fn runners_are_single_attempts() {
+        let mut random = 5;
+        for (name, task) in [
+            ("panda", Task::POSE),
+            ("panda", Task::POSITION),
+            ("iiwa14", Task { axes: ReferenceFrame::Local, ..Task::POSE }),
+            ("ur5e", Task::POSE),
+            ("3r", Task::PLANAR),
+        ] {
+            let robot = catalogue::load(name).unwrap();
+            let options = IkOptions::default();
+            let limits = |c: usize| robot.coordinates()[c].limits;
+            let mut draw = || -> Vec<f64> {
+                let mut spread = |(l, u): (f64, f64)| l + (u - l) * uniform(&mut random);
+                (0..robot.n())
+                    .map(|c| spread((limits(c).lower.max(-3.0), limits(c).upper.min(3.0))))
+                    .collect()
+            };
+            let (mut same, mut reached, mut total) = (0, 0, 0);
+            for round in 0..40 {
+                let target = robot.state(&draw()).unwrap().pose(robot.tool());
+                let goal = Goal { task, ..Goal::pose(robot.tool(), target) };
+                let mut problem = Problem::new(&robot, &[goal], &options);
+                let seeds: [Vec<f64>; LANES] = std::array::from_fn(|_| draw());
+                let all = round % 2 == 0;
+                let mut restarts = seeds.each_ref().map(|seed| {
+                    let mut q = [0.0; MAX_COORDINATES];
+                    q[..seed.len()].copy_from_slice(seed);
+                    Restart::at(q)
+                });
+                let batched = BatchedProblem {
+                    max_steps: 60,
+                    until_all_end: all,
+                    ..problem.batched(&options).unwrap()
+                };
+                if round % 4 < 2 {
+                    solve_batched(&batched, &mut restarts);
+                } else {
+                    solve_with::<Array<LANES>>(&batched, &mut restarts, serial_batched::forward);
+                }
+                assert!(!all || restarts.iter().all(Restart::has_ended));
+                for (mut q, restart) in seeds.into_iter().zip(&restarts) {
+                    if !restart.has_ended() {
+                        continue;
+                    }
+                    let (errors, steps) = problem.run(&mut q, &options, 60);
+                    let there = &restart.q[..robot.n()];
+                    let is_there = is_reached(errors, &options);
+                    let apart = q.iter().zip(there).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+                    let is_same =
+                        steps == restart.steps && is_there == restart.has_reached(&options);
+                    same += usize::from(is_same && (apart < 1e-6 || !is_there));
+                    total += 1;
+                    if restart.has_reached(&options) {
+                        let errors = problem.evaluate(there);
+                        assert!(errors.position < 1.001 * options.position_tolerance, "{name}");
+                        assert!(
+                            errors.orientation < 1.001 * options.orientation_tolerance,
+                            "{name}"
+                        );
+                        assert!(robot.outside_limits(there).next().is_none());
+                        reached += 1;
+                    }
+                }
+            }
+            assert!(
+                10 * same >= 9 * total && 4 * reached > total,
+                "{name}: {same} {reached} {total}"
+            );
+        }
+    }
+
+    /// Coordinates that keep their values keep them.
+    #[test]
+    fn fixed_coordinates_rest() {
+        let robot = catalogue::load("panda").unwrap();
+        let options = IkOptions { fixed: vec![2], ..IkOptions::default() };
+        let mut q = robot.home().to_vec();
+        q[2] = 0.3;
+        q[3] -= 0.4;
+        let goal = Goal::pose(robot.tool(), robot.state(&q).unwrap().pose(robot.tool()));
+        let problem = Problem::new(&robot, &[goal], &options);
+        let mut start = [0.0; MAX_COORDINATES];
+        start[..7].copy_from_slice(robot.home());
+        start[2] = 0.3;
+        let mut restarts = [Restart::at(start); LANES];
+        solve_batched(
+            &BatchedProblem {
+                max_steps: 60,
+                until_all_end: true,
+                ..problem.batched(&options).unwrap()
+            },
+            &mut restarts,
+        );
+        assert!(restarts.iter().all(|r| r.q[2] == 0.3 && r.has_reached(&options)));
+    }
 }

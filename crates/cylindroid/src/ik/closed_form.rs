@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use super::analytic::{Analytic, Postures};
+use super::analytic::{Analytic, AnalyticSolutions};
 use super::goal::{Goal, Task};
 use super::options::IkOptions;
 use crate::error::Result;
@@ -19,7 +19,7 @@ use crate::scalar::uniform;
 use crate::spatial::Pose;
 
 /// Values of the held joint before the search takes over.
-pub(super) const VALUES: usize = 16;
+pub(super) const REDUNDANCY_SAMPLES: usize = 16;
 /// Steps of this share of a range spread evenly, however many there are: the golden ratio.
 const SHARE: f64 = 0.618_033_988_749_894_9;
 /// Values whose equations split, in the time of one whose do not, about.
@@ -29,13 +29,13 @@ const LOOKS: usize = 8;
 
 /// Formulas for the goal of a solver.
 #[derive(Debug, Clone)]
-pub(super) struct Formulas {
+pub(super) struct ClosedForm {
     pub(super) analytic: Analytic,
     /// Of seven joints the one that is held, with the range of its values.
-    held: Option<(usize, [f64; 2])>,
+    locked: Option<(usize, [f64; 2])>,
 }
 
-impl Formulas {
+impl ClosedForm {
     /// `None` where there are none.
     pub(super) fn of(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Option<Self> {
         let [goal] = goals else { return None };
@@ -45,20 +45,21 @@ impl Formulas {
         let chain = Chain::new(mechanism, goal.end_effector);
         let all = chain.coordinates();
         let free: Vec<_> = (0..all.len()).filter(|&i| !options.fixed.contains(&all[i])).collect();
-        let holding = |held: &[usize]| Analytic::holding(mechanism, goal.end_effector, held).ok();
+        let holding =
+            |held: &[usize]| Analytic::with_locked(mechanism, goal.end_effector, held).ok();
         if free.len() != 7 {
-            return Some(Self { analytic: holding(&options.fixed)?, held: None });
+            return Some(Self { analytic: holding(&options.fixed)?, locked: None });
         }
         let mut best: Option<(f64, Self)> = None;
         for (&i, moves) in free.iter().zip(self_motion(mechanism, chain.clone(), &free)) {
             let c = all[i];
             let Some(analytic) = holding(&[&options.fixed[..], &[c]].concat()) else { continue };
-            let value = moves / if analytic.structure().splits() { 1.0 } else { QUARTIC };
+            let value = moves / if analytic.geometry().splits() { 1.0 } else { QUARTIC };
             if best.as_ref().is_none_or(|(most, _)| value > *most) {
                 let limits = mechanism.coordinates()[c].limits;
                 let upper = limits.upper.min(PI);
                 let range = [limits.lower.max(upper - 2.0 * PI), upper];
-                best = Some((value, Self { analytic, held: Some((c, range)) }));
+                best = Some((value, Self { analytic, locked: Some((c, range)) }));
             }
         }
         best.map(|(_, formulas)| formulas)
@@ -66,12 +67,17 @@ impl Formulas {
 
     /// True if they give all answers there are.
     pub(super) fn are_all(&self) -> bool {
-        self.held.is_none()
+        self.locked.is_none()
     }
 
     /// Answers; of seven joints those of the i-th value of the one that is held. `start` gets it.
-    pub(super) fn solve(&mut self, target: Pose, start: &mut [f64], i: usize) -> Result<Postures> {
-        if let Some((c, [lower, upper])) = self.held
+    pub(super) fn solve(
+        &mut self,
+        target: Pose,
+        start: &mut [f64],
+        i: usize,
+    ) -> Result<AnalyticSolutions> {
+        if let Some((c, [lower, upper])) = self.locked
             && i > 0
         {
             start[c] = lower + (upper - lower) * (SHARE * i as f64).fract();

@@ -13,7 +13,7 @@
 
 use std::fmt;
 
-use super::circle::Order;
+use super::subproblems::Order;
 use crate::screws::Line;
 use crate::spatial::{Rotation, Vec3};
 use crate::tolerance::{ALIGNED_AXES, OBLIQUE_AXES};
@@ -21,7 +21,7 @@ use crate::tolerance::{ALIGNED_AXES, OBLIQUE_AXES};
 /// The axes of a chain whose inverse kinematics is solved by formulas. Printed it says which: the
 /// numbers count the joints from the ground, from 1, those that are held left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Structure {
+pub struct ArmGeometry {
     pub(super) three: Three,
     /// True if the pattern is that of the chain read from the tool.
     pub(super) reversed: bool,
@@ -45,14 +45,14 @@ pub(super) enum Two {
     None,
 }
 
-impl Structure {
+impl ArmGeometry {
     /// True if two more axes split the equations that three leave.
     pub(in crate::ik) fn splits(&self) -> bool {
         self.two != Two::None
     }
 }
 
-impl fmt::Display for Structure {
+impl fmt::Display for ArmGeometry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let pair = |first: usize| {
             if self.reversed { (6 - first, 7 - first) } else { (first, first + 1) }
@@ -87,7 +87,7 @@ pub(super) struct Axes {
 /// What the formulas work with, in the order in which the chain is read: axis i turns about `h[i]`
 /// through `o[i]`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Geometry {
+pub(super) struct ArmParameters {
     pub(super) h: [Vec3; 6],
     /// From the base to the first axis, from axis to axis, to the tool.
     pub(super) p: [Vec3; 7],
@@ -113,8 +113,8 @@ impl Axes {
 
     /// The structure of these axes, `None` if there is none; one that splits the equations before
     /// one that does not. Beside it how far the axes depart from it (rad, or reaches).
-    pub(super) fn structure(&self, reach: f64) -> Option<(Structure, f64)> {
-        let mut found: Option<(Structure, f64)> = None;
+    pub(super) fn structure(&self, reach: f64) -> Option<(ArmGeometry, f64)> {
+        let mut found: Option<(ArmGeometry, f64)> = None;
         for three in [Three::Meet, Three::Parallel] {
             for reversed in [false, true] {
                 let lines = self.read(reversed);
@@ -133,7 +133,7 @@ impl Axes {
                     Some((before, _)) => before.two == Two::None && two != Two::None,
                 };
                 if better {
-                    found = Some((Structure { three, reversed, two }, departure.max(more)));
+                    found = Some((ArmGeometry { three, reversed, two }, departure.max(more)));
                 }
             }
         }
@@ -141,7 +141,7 @@ impl Axes {
     }
 
     /// The numbers of the formulas.
-    pub(super) fn geometry(&self, structure: Structure, reach: f64) -> Geometry {
+    pub(super) fn geometry(&self, structure: ArmGeometry, reach: f64) -> ArmParameters {
         let lines = self.read(structure.reversed);
         let mut h = lines.map(|line| line.direction);
         let mut sign = [1.0; 6];
@@ -187,7 +187,7 @@ impl Axes {
             6 => tool - o[5],
             _ => o[i] - o[i - 1],
         };
-        Geometry {
+        ArmParameters {
             h,
             p: [0, 1, 2, 3, 4, 5, 6].map(step),
             sign,
