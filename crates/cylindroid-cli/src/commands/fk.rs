@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use super::{Style, configuration, end_effector};
 use crate::args::FkArgs;
+use crate::commands::shared::{Style, configuration, end_effector};
 use crate::output::{self, Align, PoseJson};
 
 #[derive(Debug, Serialize)]

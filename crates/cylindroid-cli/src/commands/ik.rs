@@ -7,8 +7,8 @@ use cylindroid::ik::{Budget, FoundBy, Goal, IkOptions, Solution, Solver, Task};
 use serde::Serialize;
 
 use super::target::{errors, target_pose, task};
-use super::{Style, answer, configuration, end_effector};
 use crate::args::IkArgs;
+use crate::commands::shared::{Style, answer, configuration, end_effector};
 use crate::output::{self, Align, PoseJson, number};
 
 #[derive(Debug, Serialize)]

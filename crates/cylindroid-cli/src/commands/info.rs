@@ -8,8 +8,8 @@ use cylindroid::ik::Analytic;
 use cylindroid::model::{CoordinateKind, Joint};
 use serde::Serialize;
 
-use super::Style;
 use crate::args::InfoArgs;
+use crate::commands::shared::Style;
 use crate::output::{self, Align, MimicJson};
 
 #[derive(Debug, Serialize)]

@@ -8,8 +8,8 @@ use cylindroid::linalg::{Metric, Rank, Svd};
 use cylindroid::{Matrix, ReferenceFrame};
 use serde::Serialize;
 
-use super::{Style, configuration, end_effector};
 use crate::args::{Angles, JacobianArgs, ReferenceName};
+use crate::commands::shared::{Style, configuration, end_effector};
 use crate::output;
 
 #[derive(Debug, Serialize)]

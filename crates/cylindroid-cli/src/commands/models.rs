@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use cylindroid::catalogue;
 use serde::Serialize;
 
-use super::Style;
+use crate::commands::shared::Style;
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]

@@ -7,8 +7,10 @@ use anyhow::Context;
 use cylindroid::Result;
 use serde::Serialize;
 
-use super::{Style, all_driven, configuration, end_effector, load, within_limits};
 use crate::args::ViewArgs;
+use crate::commands::shared::{
+    Style, all_driven, configuration, end_effector, load, within_limits,
+};
 use crate::viewer::{Server, Start, page_is_built};
 
 #[derive(Debug, Serialize)]

@@ -18,10 +18,9 @@ use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 #[allow_missing = true]
 pub(super) struct Page;
 
-impl Page {
-    pub(super) fn is_built() -> bool {
-        Self::get("index.html").is_some()
-    }
+/// True if the page is in the binary.
+pub(crate) fn page_is_built() -> bool {
+    Page::get("index.html").is_some()
 }
 
 /// What is a mesh, and what may belong to one.

@@ -6,8 +6,9 @@ use cylindroid::{Error, Method, Twist, Vec3};
 use serde::Serialize;
 use serde_json::Value;
 
+use super::inverse_parameters::{damping, hyperbolic};
+use super::json::text;
 use super::messages::{Compare, Complaint};
-use super::scene::{damping, hyperbolic};
 use super::session::Session;
 
 /// What is asked for where nothing else is [m/s].
@@ -94,7 +95,7 @@ pub(super) fn compare(
         coordinates = found.coordinates;
     }
     let name = |c: &usize| session.mechanism().coordinates()[*c].name.as_str();
-    Ok(super::text(&CompareJson {
+    Ok(text(&CompareJson {
         reply_to: id,
         twist: asked.to_array(),
         tool_point: tool.translation.to_array(),

@@ -5,108 +5,21 @@
 mod ellipsoid;
 mod lost;
 
-use cylindroid::closure::ClosedChain;
-use cylindroid::kinematics::Chain;
-use cylindroid::screws::{Line, Screw, ScrewOptions, ScrewSystem};
-use cylindroid::{Error, ReferenceFrame, Result, Twist, Vec3};
+use cylindroid::Vec3;
+use cylindroid::screws::{Line, Screw, ScrewSystem};
 use serde::Serialize;
 
 use self::ellipsoid::{Ellipsoid, EllipsoidJson, ellipsoid};
 use self::lost::{LostJson, lost};
-use super::scene::PoseJson;
+use super::json::PoseJson;
+use super::measures::Measures;
+use super::names::Overlay;
 use super::session::Session;
-use super::snapshot::Measures;
 use crate::commands::screws::report::reciprocal_screws;
 use crate::output::ScrewJson;
 
 /// Screws of a cylindroid that are drawn.
 const RULINGS: usize = 72;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Overlay {
-    Velocity,
-    AngularVelocity,
-    ActiveForce,
-    PassiveForce,
-    JointAxes,
-    PrincipalScrews,
-    Reciprocal,
-    Cylindroid,
-    LostDirection,
-}
-
-impl Overlay {
-    pub(super) const ALL: [Self; 9] = [
-        Self::Velocity,
-        Self::AngularVelocity,
-        Self::ActiveForce,
-        Self::PassiveForce,
-        Self::JointAxes,
-        Self::PrincipalScrews,
-        Self::Reciprocal,
-        Self::Cylindroid,
-        Self::LostDirection,
-    ];
-
-    pub(super) fn named(name: &str) -> Result<Self> {
-        let found = Self::ALL.into_iter().find(|o| o.name() == name);
-        found.ok_or_else(|| Error::unknown("overlay", name, Self::ALL.map(Self::name)))
-    }
-
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Velocity => "velocity-ellipsoid",
-            Self::AngularVelocity => "angular-velocity-ellipsoid",
-            Self::ActiveForce => "active-force-ellipsoid",
-            Self::PassiveForce => "passive-force-ellipsoid",
-            Self::JointAxes => "joint-axes",
-            Self::PrincipalScrews => "principal-screws",
-            Self::Reciprocal => "reciprocal-system",
-            Self::Cylindroid => "cylindroid",
-            Self::LostDirection => "lost-direction",
-        }
-    }
-
-    pub(super) const fn title(self) -> &'static str {
-        match self {
-            Self::Velocity => "Velocity ellipsoid",
-            Self::AngularVelocity => "Angular velocity ellipsoid",
-            Self::ActiveForce => "Force ellipsoid, exerted (active)",
-            Self::PassiveForce => "Force ellipsoid, resisted (passive)",
-            Self::JointAxes => "Joint axes as screws",
-            Self::PrincipalScrews => "Principal screws",
-            Self::Reciprocal => "Reciprocal system",
-            Self::Cylindroid => "Cylindroid of a two-system",
-            Self::LostDirection => "Lost direction",
-        }
-    }
-
-    pub(super) const fn unit(self) -> &'static str {
-        match self {
-            Self::Velocity => "m/s, for rates of the drives of length 1 (rad/s, m/s)",
-            Self::AngularVelocity => "rad/s, for rates of the drives of length 1 (rad/s, m/s)",
-            Self::ActiveForce => "N, for torques of the drives of length 1 (N m, N)",
-            Self::PassiveForce => "N, held with torques of the drives of length 1 (N m, N)",
-            Self::JointAxes | Self::PrincipalScrews | Self::Reciprocal => "pitch in m/rad",
-            Self::Cylindroid => "pitch in m/rad, along each axis",
-            Self::LostDirection => "m and rad, of length 1 with lengths over the reach",
-        }
-    }
-
-    pub(super) const fn frame(self) -> &'static str {
-        match self {
-            Self::Velocity | Self::AngularVelocity | Self::LostDirection => {
-                "at the tool point, world axes"
-            }
-            Self::ActiveForce | Self::PassiveForce => {
-                "forces at the tool point without moment, world axes"
-            }
-            Self::JointAxes | Self::PrincipalScrews | Self::Reciprocal | Self::Cylindroid => {
-                "seen from the world"
-            }
-        }
-    }
-}
 
 /// An overlay, or why there is nothing to see.
 #[derive(Debug, Serialize)]
@@ -166,19 +79,22 @@ struct RulingJson {
     to: [f64; 3],
     pitch: f64,
 }
-
 /// The overlay as it is now.
 pub(super) fn shown(overlay: Overlay, session: &Session, measures: Option<&Measures>) -> Shown {
+    let drawn = |kind| {
+        let nothing = || empty("The drives do nothing at the tool point here.");
+        Ok(ellipsoid(session, kind)?.map_or_else(nothing, Shown::Ellipsoid))
+    };
     let found = match overlay {
-        Overlay::Velocity => ellipsoid(session, Ellipsoid::Velocity),
-        Overlay::AngularVelocity => ellipsoid(session, Ellipsoid::AngularVelocity),
-        Overlay::ActiveForce => ellipsoid(session, Ellipsoid::ActiveForce),
-        Overlay::PassiveForce => ellipsoid(session, Ellipsoid::PassiveForce),
+        Overlay::Velocity => drawn(Ellipsoid::Velocity),
+        Overlay::AngularVelocity => drawn(Ellipsoid::AngularVelocity),
+        Overlay::ActiveForce => drawn(Ellipsoid::ActiveForce),
+        Overlay::PassiveForce => drawn(Ellipsoid::PassiveForce),
         Overlay::JointAxes => Ok(Shown::Axes { axes: axes(session) }),
-        Overlay::PrincipalScrews => system(session).map(|s| principal(&s)),
-        Overlay::Reciprocal => system(session).map(|s| reciprocal(&s)),
-        Overlay::Cylindroid => system(session).map(|s| cylindroid(&s)),
-        Overlay::LostDirection => Ok(lost(session, measures)),
+        Overlay::PrincipalScrews => session.screw_system().map(|s| principal(&s)),
+        Overlay::Reciprocal => session.screw_system().map(|s| reciprocal(&s)),
+        Overlay::Cylindroid => session.screw_system().map(|s| cylindroid(&s)),
+        Overlay::LostDirection => Ok(lost(session, measures).map_or_else(empty, Shown::Lost)),
     };
     found.unwrap_or_else(|error| empty(error.to_string()))
 }
@@ -205,21 +121,6 @@ fn axes(session: &Session) -> Vec<AxisJson> {
         }));
     }
     all
-}
-
-/// The screw system of what moves the tool: of the joints of a tree, of the motions that a closed
-/// chain leaves its object.
-pub(super) fn system(session: &Session) -> Result<ScrewSystem> {
-    let (mechanism, state) = (session.mechanism(), session.state());
-    let of = session.options().end_effector;
-    let twists = if mechanism.is_closed() {
-        ClosedChain::of(state, Some(of.frame), None)?.reference_twists(state)
-    } else {
-        let jacobian = state.jacobian(of, ReferenceFrame::World);
-        let column = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
-        Chain::new(mechanism, of).coordinates().iter().map(column).collect()
-    };
-    ScrewSystem::of(&twists, &ScrewOptions::with_length(mechanism.reach()))
 }
 
 fn principal(system: &ScrewSystem) -> Shown {

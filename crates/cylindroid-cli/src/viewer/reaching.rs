@@ -1,13 +1,17 @@
 //! Configurations that a client asks for: one coordinate, or all of them, with loops kept closed.
 
 use cylindroid::closure::{ContinuationOptions, PathEnd, assemble, track_path};
-use cylindroid::model::Mechanism;
+use cylindroid::model::{Coordinate, CoordinateKind, Mechanism};
 use cylindroid::{Error, Result, State};
 
 use super::messages::Complaint;
-use super::scene::is_adjustable;
-use crate::commands::within_limits;
+use crate::commands::shared::within_limits;
 use crate::output::number;
+
+/// True where one coordinate can be set alone.
+pub(super) fn is_adjustable(mechanism: &Mechanism, c: &Coordinate) -> bool {
+    !mechanism.is_closed() || matches!(c.kind, CoordinateKind::Angle | CoordinateKind::Length)
+}
 
 /// How far a joint got, and what kept it from going on.
 #[derive(Debug)]

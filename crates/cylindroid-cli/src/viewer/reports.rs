@@ -6,14 +6,13 @@ use serde::Serialize;
 use serde_json::Value;
 use serde_json::value::{RawValue, to_raw_value};
 
+use super::json::text;
 use super::messages::Complaint;
+use super::names::REPORTS;
 use super::session::Session;
 use crate::args::{Cli, Command};
 use crate::commands::closed::{Posed, manipulability, mobility};
 use crate::commands::{info, screws};
-
-/// The reports that there are.
-pub(super) const NAMES: [&str; 4] = ["info", "mobility", "manipulability", "screws"];
 
 /// A report to be made; it takes milliseconds, so that others make it than those who serve.
 #[derive(Debug)]
@@ -40,8 +39,8 @@ impl Report {
         name: &str,
         id: Option<&Value>,
     ) -> Result<Self, Complaint> {
-        let Some(name) = NAMES.into_iter().find(|n| *n == name) else {
-            let error = Error::unknown("report", name, NAMES);
+        let Some(name) = REPORTS.into_iter().find(|n| *n == name) else {
+            let error = Error::unknown("report", name, REPORTS);
             return Err(Complaint::of("report.name", &error));
         };
         Ok(Self {
@@ -62,7 +61,7 @@ impl Report {
         });
         told.unwrap_or_else(|error| {
             let complaint = Complaint::new("report.name", name, &format!("{error:#}"), "");
-            super::text(&Complaint { reply_to: self.reply_to.clone(), ..complaint })
+            text(&Complaint { reply_to: self.reply_to.clone(), ..complaint })
         })
     }
 

@@ -1,32 +1,17 @@
 //! What there is to see: links, joints, frames and choices of a session, as the page gets them.
 
-use std::collections::BTreeMap;
-
 use cylindroid::control::NamedInverse;
-use cylindroid::model::{Coordinate, CoordinateKind, Geometry, Link, Mechanism, Visual};
-use cylindroid::{Method, Pose, Servo};
+use cylindroid::model::{Geometry, Link, Mechanism, Visual};
+use cylindroid::{Pose, Servo};
 use serde::Serialize;
 
 use crate::output::MimicJson;
 
-use super::inverting::Chosen;
-use super::overlays::Overlay;
+use super::inverse_parameters::{Chosen, PITCH};
+use super::json::PoseJson;
+use super::names::{Overlay, REPORTS};
+use super::reaching::is_adjustable;
 use super::session::Session;
-
-/// A pose of docs/viewer.md.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct PoseJson {
-    position: [f64; 3],
-    /// w, x, y, z.
-    quaternion: [f64; 4],
-}
-
-impl From<Pose> for PoseJson {
-    fn from(pose: Pose) -> Self {
-        let q = pose.rotation.to_quaternion();
-        Self { position: pose.translation.to_array(), quaternion: [q.w, q.x, q.y, q.z] }
-    }
-}
 
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename = "scene")]
@@ -199,31 +184,6 @@ struct OverlayJson {
     frame: &'static str,
 }
 
-/// The parameters of a method and their values.
-pub(super) fn values(mut method: Method) -> BTreeMap<&'static str, f64> {
-    method.parameters_mut().map(|(parameter, value)| (parameter.name, *value)).collect()
-}
-
-/// The parameters of an inverse of this name but the pitch, with their defaults.
-pub(super) fn damping(name: &str) -> BTreeMap<&'static str, f64> {
-    let inverse = hyperbolic().find(|i| i.name == name);
-    let own = inverse.into_iter().flat_map(|i| i.parameters).filter(|p| p.name != PITCH);
-    own.map(|p| (p.name, p.default)).collect()
-}
-
-/// The parameter that chooses a hyperbolic inverse.
-const PITCH: &str = "h";
-
-/// The hyperbolic inverses: those that a pitch chooses.
-pub(super) fn hyperbolic() -> impl Iterator<Item = NamedInverse> {
-    NamedInverse::all().filter(|i| i.parameters.iter().any(|p| p.name == PITCH))
-}
-
-/// True where one coordinate can be set alone.
-pub(super) fn is_adjustable(mechanism: &Mechanism, c: &Coordinate) -> bool {
-    !mechanism.is_closed() || matches!(c.kind, CoordinateKind::Angle | CoordinateKind::Length)
-}
-
 impl<'a> Scene<'a> {
     pub(super) fn of(session: &'a Session) -> Self {
         let mechanism = session.mechanism();
@@ -296,7 +256,7 @@ impl<'a> Scene<'a> {
             method: session.method(),
             methods: methods(session),
             overlays: Overlay::ALL.into_iter().map(overlay).collect(),
-            reports: super::reports::NAMES,
+            reports: REPORTS,
             home: session.home(),
             ignored: mechanism.report().ignored.len(),
         }

@@ -13,10 +13,10 @@ use axum::routing::get;
 use axum::{Router, middleware};
 use tokio::net::TcpListener;
 
-use super::assets::Page;
+use super::assets::{Page, page_is_built};
 use super::safety::{Names, guard};
-use super::session::Start;
 use super::socket::talk;
+use super::start::Start;
 
 /// Longest frame that is read at all [bytes]: what is longer than a message may be is answered up to
 /// here, beyond the connection ends.
@@ -144,7 +144,7 @@ async fn page(uri: Uri) -> Response {
             let kind = file.metadata.mimetype().to_owned();
             ([(header::CONTENT_TYPE, kind)], file.data).into_response()
         }
-        None if !Page::is_built() => (StatusCode::NOT_FOUND, NOT_BUILT).into_response(),
+        None if !page_is_built() => (StatusCode::NOT_FOUND, NOT_BUILT).into_response(),
         None => (StatusCode::NOT_FOUND, "There is no such page.").into_response(),
     }
 }

@@ -4,48 +4,28 @@
 
 use std::sync::Arc;
 
+use cylindroid::closure::ClosedChain;
 use cylindroid::control::{Stall, Status, Step, Target};
 use cylindroid::ik::Task;
+use cylindroid::kinematics::Chain;
+use cylindroid::model::FrameId;
+use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::spatial::Quaternion;
-use cylindroid::{EndEffector, Error, Mechanism, Pose, Result, Servo, ServoOptions, State, Vec3};
+use cylindroid::{
+    Error, Mechanism, Pose, ReferenceFrame, Result, Servo, ServoOptions, State, Twist, Vec3,
+};
 use serde_json::Value;
 
 use super::assets::Folders;
-use super::compare::compare;
-use super::inverting::{Chosen, invert_by};
-use super::messages::{Complaint, Message, NullSpace, Request, TargetPose};
-use super::overlays::Overlay;
-use super::reaching::{Reached, assembled, reach};
-use super::reports::Report;
+use super::inverse_parameters::Chosen;
+use super::messages::{Complaint, NullSpace, TargetPose};
+use super::names::Overlay;
+use super::start::Start;
 
 /// Steps of the servo in a second of its clock.
 pub(super) const STEPS: u32 = 120;
 /// A servo that is at its target, or stalled, and slower than this is at rest [rad/s or m/s].
 const REST: f64 = 1e-7;
-
-/// What all sessions of a server begin with.
-#[derive(Debug)]
-pub(crate) struct Start {
-    pub(crate) mechanism: Mechanism,
-    pub(crate) q: Vec<f64>,
-    pub(crate) end_effector: EndEffector,
-    pub(super) folders: Folders,
-}
-
-/// What a message is answered with.
-#[derive(Debug)]
-pub(super) enum Reply {
-    /// The next state shows it.
-    Nothing,
-    /// The scene has changed.
-    Scene,
-    /// This text.
-    Text(String),
-    /// What this finds, which takes a while.
-    Report(Report),
-    /// A state has been drawn.
-    Seen(u64),
-}
 
 #[derive(Debug)]
 pub(super) struct Session {
@@ -243,94 +223,56 @@ impl Session {
         Ok(())
     }
 
-    /// Does as a client says; on a complaint nothing has changed, but for `joint`, which goes as
-    /// far as it can.
-    pub(super) fn handle(&mut self, request: Request) -> std::result::Result<Reply, Complaint> {
-        let Request { id, message } = request;
-        if let Message::Seen(seen) = message {
-            return Ok(Reply::Seen(seen.seq));
-        }
-        self.ack.clone_from(&id);
-        self.obey(message, id.as_ref()).map_err(|c| Complaint { reply_to: id, ..c })
+    /// Remembers the mark of a message, for the next state.
+    pub(super) fn acknowledge(&mut self, id: Option<&Value>) {
+        self.ack = id.cloned();
     }
 
-    fn obey(
-        &mut self,
-        message: Message,
-        id: Option<&Value>,
-    ) -> std::result::Result<Reply, Complaint> {
-        let at = |place: &'static str| move |error: Error| Complaint::of(place, &error);
-        match message {
-            Message::Joint(joint) => {
-                let Reached { q, complaint } = reach(&self.state, &joint.name, joint.value)?;
-                self.stand(&q).map_err(at("joint.value"))?;
-                complaint.map_or(Ok(()), Err)?;
-            }
-            Message::Configuration(wanted) => {
-                let q = assembled(&self.mechanism, &wanted.q).map_err(at("configuration.q"))?;
-                self.stand(&q).map_err(at("configuration.q"))?;
-            }
-            Message::Target(target) => self.aim(&target)?,
-            Message::Frame(frame) => {
-                let frame = self.mechanism.frame(&frame.name).map_err(at("frame.name"))?;
-                let options = ServoOptions { end_effector: frame.into(), ..self.options.clone() };
-                self.take(options).map_err(at("frame.name"))?;
-                self.target = self.state.pose(frame);
-                return Ok(Reply::Scene);
-            }
-            Message::Task(task) => {
-                let found = Task::named(&task.name, &self.mechanism).map_err(at("task.name"))?;
-                let options = ServoOptions { task: found, ..self.options.clone() };
-                self.take(options).map_err(at("task.name"))?;
-                self.task = task.name;
-                return Ok(Reply::Scene);
-            }
-            Message::Play(_) => {
-                self.is_playing = true;
-                self.wake();
-            }
-            Message::Pause(_) => {
-                self.is_playing = false;
-                if let Ok(servo) = &mut self.servo {
-                    servo.reset();
-                }
-            }
-            Message::Reset(_) => {
-                let q = self.start.q.clone();
-                self.stand(&q).map_err(at("reset"))?;
-            }
-            Message::NullSpace(wanted) => self.turn(&wanted)?,
-            Message::Actuated(drives) => {
-                self.drive_by(&drives.names)?;
-                return Ok(Reply::Scene);
-            }
-            Message::Method(choice) => {
-                let options = self.options.clone();
-                let best_pitch = || self.best_pitch();
-                let (chosen, options) = invert_by(choice, &self.state, options, best_pitch)?;
-                self.take(options).map_err(at("method"))?;
-                self.method = chosen;
-                return Ok(Reply::Scene);
-            }
-            Message::Overlays(wanted) => {
-                let names = wanted.names.iter().map(|name| Overlay::named(name));
-                let mut all: Vec<Overlay> =
-                    names.collect::<Result<_>>().map_err(at("overlays.names"))?;
-                all.sort_unstable();
-                all.dedup();
-                self.overlays = all;
-            }
-            Message::Compare(wanted) => return compare(self, &wanted, id).map(Reply::Text),
-            Message::Report(wanted) => {
-                return Report::new(self, &wanted.name, id).map(Reply::Report);
-            }
-            Message::Seen(seen) => return Ok(Reply::Seen(seen.seq)),
+    /// Moves this frame, its target where it is now.
+    pub(super) fn choose_frame(&mut self, frame: FrameId) -> Result<()> {
+        let options = ServoOptions { end_effector: frame.into(), ..self.options.clone() };
+        self.take(options)?;
+        self.target = self.state.pose(frame);
+        Ok(())
+    }
+
+    pub(super) fn choose_task(&mut self, name: String) -> Result<()> {
+        let task = Task::named(&name, &self.mechanism)?;
+        self.take(ServoOptions { task, ..self.options.clone() })?;
+        self.task = name;
+        Ok(())
+    }
+
+    pub(super) fn choose_method(&mut self, method: Chosen, options: ServoOptions) -> Result<()> {
+        self.take(options)?;
+        self.method = method;
+        Ok(())
+    }
+
+    pub(super) fn choose_overlays(&mut self, overlays: Vec<Overlay>) {
+        self.overlays = overlays;
+    }
+
+    pub(super) fn play(&mut self) {
+        self.is_playing = true;
+        self.wake();
+    }
+
+    pub(super) fn pause(&mut self) {
+        self.is_playing = false;
+        if let Ok(servo) = &mut self.servo {
+            servo.reset();
         }
-        Ok(Reply::Nothing)
+    }
+
+    /// Back to where the session began.
+    pub(super) fn reset(&mut self) -> Result<()> {
+        let q = self.start.q.clone();
+        self.stand(&q)
     }
 
     /// Stands at `q`, the target at the tool.
-    fn stand(&mut self, q: &[f64]) -> Result<()> {
+    pub(super) fn stand(&mut self, q: &[f64]) -> Result<()> {
         self.state.set(q)?;
         self.target = self.state.pose(self.options.end_effector);
         self.self_motion = None;
@@ -349,7 +291,7 @@ impl Session {
         }
     }
 
-    fn aim(&mut self, wanted: &TargetPose) -> std::result::Result<(), Complaint> {
+    pub(super) fn aim(&mut self, wanted: &TargetPose) -> std::result::Result<(), Complaint> {
         let [w, x, y, z] = wanted.quaternion;
         let rotation = Quaternion { w, x, y, z }
             .rotation()
@@ -376,7 +318,7 @@ impl Session {
         Ok(())
     }
 
-    fn turn(&mut self, wanted: &NullSpace) -> std::result::Result<(), Complaint> {
+    pub(super) fn turn(&mut self, wanted: &NullSpace) -> std::result::Result<(), Complaint> {
         let refuse = |field: &str, value: String, what: &str, way_out: &str| {
             Complaint::new(&format!("null_space.{field}"), &value, what, way_out)
         };
@@ -413,7 +355,7 @@ impl Session {
         Ok(())
     }
 
-    fn drive_by(&mut self, names: &[String]) -> std::result::Result<(), Complaint> {
+    pub(super) fn drive_by(&mut self, names: &[String]) -> std::result::Result<(), Complaint> {
         if !self.mechanism.is_closed() {
             let name = self.mechanism.name();
             let what = format!("'{name}' has no loops or contacts, so all joints are driven");
@@ -430,10 +372,25 @@ impl Session {
         Ok(())
     }
 
+    /// The screw system of what moves the tool: of the joints of a tree, of the motions that a
+    /// closed chain leaves its object.
+    pub(super) fn screw_system(&self) -> Result<ScrewSystem> {
+        let (mechanism, state) = (self.mechanism(), self.state());
+        let of = self.options().end_effector;
+        let twists = if mechanism.is_closed() {
+            ClosedChain::of(state, Some(of.frame), None)?.reference_twists(state)
+        } else {
+            let jacobian = state.jacobian(of, ReferenceFrame::World);
+            let column =
+                |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
+            Chain::new(mechanism, of).coordinates().iter().map(column).collect()
+        };
+        ScrewSystem::of(&twists, &ScrewOptions::with_length(mechanism.reach()))
+    }
+
     /// The pitch whose projector is smallest here; it may be infinite.
     pub(super) fn best_pitch(&self) -> Result<f64> {
-        let system = super::overlays::system(self)?;
-        system.choose_pitch().pitch.ok_or_else(|| Error::InvalidOption {
+        self.screw_system()?.choose_pitch().pitch.ok_or_else(|| Error::InvalidOption {
             option: "h",
             value: "null".to_owned(),
             reason: "the joints have no hyperbolic inverse here, whatever the pitch; take another"

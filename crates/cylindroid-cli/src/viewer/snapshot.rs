@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use cylindroid::closure::LoopClosureError;
-use cylindroid::control::{ConditionReport, Status};
+use cylindroid::control::Status;
 use cylindroid::{Pose, Result};
 use serde::Serialize;
 use serde_json::Value;
 
+use super::json::{PoseJson, text};
+use super::measures::Measures;
 use super::overlays::{Shown, shown};
-use super::scene::PoseJson;
 use super::session::Session;
 use crate::commands::move_to::sentences::cause;
 
@@ -85,17 +86,10 @@ struct ClosureErrorJson {
     closed: bool,
 }
 
-/// What the servo says of the configuration.
-#[derive(Debug)]
-pub(super) struct Measures {
-    pub(super) condition: ConditionReport,
-    length: f64,
-}
-
 /// The message `state`.
 pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
     let servo = servo(session);
-    let measures = measures(session);
+    let measures = Measures::of(session);
     let session = &*session;
     let (mechanism, state, options) = (session.mechanism(), session.state(), session.options());
     let poses: Vec<Pose> = mechanism
@@ -120,7 +114,7 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
     let closure_error =
         if mechanism.is_closed() { Some(LoopClosureError::of(state)?) } else { None };
     let overlays = session.overlays().iter();
-    Ok(super::text(&StateJson {
+    Ok(text(&StateJson {
         seq,
         time: session.time(),
         ack: session.ack(),
@@ -149,13 +143,6 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
         }),
         overlays: overlays.map(|o| (o.name(), shown(*o, session, measures.as_ref()))).collect(),
     }))
-}
-
-fn measures(session: &mut Session) -> Option<Measures> {
-    let q = session.state().q().to_vec();
-    let length = session.options().length;
-    let condition = session.servo_mut()?.condition(&q).ok()?;
-    Some(Measures { condition, length })
 }
 
 fn servo(session: &Session) -> ServoJson {

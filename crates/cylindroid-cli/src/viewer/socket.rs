@@ -15,11 +15,13 @@ use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
 use tokio::time::{Interval, MissedTickBehavior, interval, sleep_until, timeout};
 
+use super::dispatcher::{Reply, handle};
+use super::json::text;
 use super::messages::{Complaint, LARGEST, read};
 use super::scene::Scene;
-use super::session::{Reply, STEPS, Session, Start};
+use super::session::{STEPS, Session};
 use super::snapshot::snapshot;
-use super::text;
+use super::start::Start;
 
 /// States in a second, at most.
 const RATE: u32 = 60;
@@ -175,7 +177,7 @@ impl Client {
             )),
             Frame::Ping(_) | Frame::Pong(_) | Frame::Close(_) => return Ok(()),
         };
-        let reply = said.and_then(|request| self.session.handle(request));
+        let reply = said.and_then(|request| handle(&mut self.session, request));
         if !matches!(reply, Ok(Reply::Seen(_))) {
             self.is_dirty = true;
         }

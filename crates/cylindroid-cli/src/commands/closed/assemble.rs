@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::ClosureErrorJson;
 use crate::args::AssembleArgs;
-use crate::commands::{Style, answer, configuration};
+use crate::commands::shared::{Style, answer, configuration};
 use crate::output::{self, Align, number};
 use crate::values::Joints;
 

@@ -12,7 +12,7 @@ use cylindroid::{Error, FrameId, Result};
 use serde::Serialize;
 
 use crate::args::GraspArgs;
-use crate::commands::{Style, answer, configuration};
+use crate::commands::shared::{Style, answer, configuration};
 use crate::output::{self, Align, number};
 use crate::values::components;
 

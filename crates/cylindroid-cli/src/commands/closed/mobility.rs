@@ -10,7 +10,7 @@ use serde_json::value::{RawValue, to_raw_value};
 use super::singularity::{self, FiniteJson, SingularityJson};
 use super::{HeadJson, Posed, list};
 use crate::args::ClosedArgs;
-use crate::commands::Style;
+use crate::commands::shared::Style;
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]

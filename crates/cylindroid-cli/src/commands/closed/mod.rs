@@ -13,8 +13,8 @@ use cylindroid::model::{FrameId, Mechanism};
 use cylindroid::{Error, Result, State};
 use serde::Serialize;
 
-use super::{configuration, load};
 use crate::args::ClosedArgs;
+use crate::commands::shared::{configuration, load};
 use crate::output::{self, number};
 use crate::values::components;
 

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::{HeadJson, Posed, measured};
 use crate::args::StaticsArgs;
-use crate::commands::Style;
+use crate::commands::shared::Style;
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]

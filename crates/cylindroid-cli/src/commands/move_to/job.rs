@@ -8,9 +8,9 @@ use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
 use super::super::target::{target_pose, task};
-use super::super::{all_driven, configuration, end_effector, load, within_limits};
 use super::{inverse, joints};
 use crate::args::{LawName, MoveArgs, NullSpaceName, PathArgs, ServoArgs};
+use crate::commands::shared::{all_driven, configuration, end_effector, load, within_limits};
 use crate::values::Named;
 
 /// Speeds on a path where none are given [m/s], [rad/s].

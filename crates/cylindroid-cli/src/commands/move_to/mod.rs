@@ -19,8 +19,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::job::{Goal, Job};
 use self::report::{Deviation, Result, Way};
-use super::{Style, answer};
 use crate::args::MoveArgs;
+use crate::commands::shared::{Style, answer};
 use crate::plot;
 use crate::trajectory::{self, Trajectory};
 

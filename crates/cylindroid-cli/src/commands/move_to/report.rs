@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::job::{Goal, Job};
 use super::{inverse, sentences};
-use crate::commands::Style;
 use crate::commands::closed::ClosureErrorJson;
+use crate::commands::shared::Style;
 use crate::commands::target::errors;
 use crate::output::{self, PoseJson};
 

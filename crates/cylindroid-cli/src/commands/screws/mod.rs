@@ -12,8 +12,8 @@ use cylindroid::{EndEffector, Result, State, Vec3};
 use serde_json::value::RawValue;
 
 use self::twists::Twists;
-use super::Style;
 use crate::args::ScrewsArgs;
+use crate::commands::shared::Style;
 use crate::plot;
 
 /// The twists and what was found.

@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
 use super::Found;
-use crate::commands::Style;
+use crate::commands::shared::Style;
 use crate::output::{self, Align, PoseJson, ScrewJson, number};
 
 #[derive(Debug, Serialize)]

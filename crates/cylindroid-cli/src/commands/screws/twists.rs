@@ -7,8 +7,8 @@ use cylindroid::kinematics::Chain;
 use cylindroid::model::Mechanism;
 use cylindroid::{EndEffector, Error, Matrix, ReferenceFrame, Result, State, Twist, Vec3};
 
-use super::super::{configuration, end_effector};
 use crate::args::ScrewsArgs;
+use crate::commands::shared::{configuration, end_effector};
 use crate::number_file::{self, Row};
 
 /// Twists with names, in one frame.

@@ -6,7 +6,6 @@ use cylindroid::{Matrix, Result, Twist, Vec3};
 use serde::Serialize;
 
 use super::super::session::Session;
-use super::{Shown, empty};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ellipsoid {
@@ -34,8 +33,8 @@ struct SemiAxisJson {
 }
 
 /// The ellipsoid of what comes out for an input of length one, in the unit metrics of
-/// `manipulability`.
-pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Shown> {
+/// `manipulability`; `None` where nothing comes out.
+pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Option<EllipsoidJson>> {
     let (mechanism, state) = (session.mechanism(), session.state());
     let of = session.options().end_effector;
     let chain = ClosedChain::of(state, Some(of.frame), None)?;
@@ -81,9 +80,9 @@ pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Shown> {
         .map(Vec3::to_array)
         .collect();
     if axes.is_empty() && infinite.is_empty() {
-        return Ok(empty("The drives do nothing at the tool point here."));
+        return Ok(None);
     }
-    Ok(Shown::Ellipsoid(EllipsoidJson { center: center.to_array(), axes, scale, infinite, unit }))
+    Ok(Some(EllipsoidJson { center: center.to_array(), axes, scale, infinite, unit }))
 }
 
 /// Length of a semi-axis of the usual size, in reaches.

@@ -5,9 +5,8 @@ use cylindroid::screws::Screw;
 use cylindroid::tolerance::DAMPING_ONSET;
 use serde::Serialize;
 
+use super::super::measures::Measures;
 use super::super::session::Session;
-use super::super::snapshot::Measures;
-use super::{Shown, empty};
 use crate::commands::closed::singularity::motion_in_words;
 use crate::output::{ScrewJson, number};
 
@@ -24,17 +23,21 @@ pub(in super::super) struct LostJson {
     sentence: String,
 }
 
-pub(super) fn lost(session: &Session, measures: Option<&Measures>) -> Shown {
+/// The direction, or in a sentence why there is none.
+pub(super) fn lost(
+    session: &Session,
+    measures: Option<&Measures>,
+) -> std::result::Result<LostJson, String> {
     let Some(Measures { condition, .. }) = measures else {
         let why = session.fault().map(ToString::to_string);
-        return empty(why.unwrap_or_else(|| "There is no servo.".to_owned()));
+        return Err(why.unwrap_or_else(|| "There is no servo.".to_owned()));
     };
     let ratio = condition.singular_ratio;
     let Some(weakest) = condition.weakest else {
-        return empty("No motion of the tool is possible here.");
+        return Err("No motion of the tool is possible here.".to_owned());
     };
     if ratio > DAMPING_ONSET {
-        return empty(format!(
+        return Err(format!(
             "No direction is near to being lost: the smallest singular value is {} of the largest.",
             number(ratio)
         ));
@@ -42,14 +45,14 @@ pub(super) fn lost(session: &Session, measures: Option<&Measures>) -> Shown {
     let (mechanism, state) = (session.mechanism(), session.state());
     let tool = state.pose(session.options().end_effector).translation;
     let Some(screw) = Screw::of(weakest.at_point(-tool)) else {
-        return empty("No motion of the tool is possible here.");
+        return Err("No motion of the tool is possible here.".to_owned());
     };
     let lost = condition.inverse.rank < condition.inverse.singular_values.len();
     let planar = mechanism.dimension() == Dimension::Planar;
     let words = motion_in_words(&screw, planar);
     let state = if lost { "is lost here" } else { "is nearly lost" };
     let reach = mechanism.reach();
-    Shown::Lost(LostJson {
+    Ok(LostJson {
         ratio,
         lost,
         linear: (weakest.linear * SHARE).to_array(),

@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::{Job, open_by, q_line};
 use crate::commands::closed::ClosureErrorJson;
 use crate::commands::closed::singularity::motion_in_words;
-use crate::commands::{Style, answer};
+use crate::commands::shared::{Style, answer};
 use crate::output::{self, Align, ScrewJson, number};
 
 #[derive(Debug, Serialize)]

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::{Job, open_by, q_line};
 use crate::commands::closed::ClosureErrorJson;
-use crate::commands::{Style, answer};
+use crate::commands::shared::{Style, answer};
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]

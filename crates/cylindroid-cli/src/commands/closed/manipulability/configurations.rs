@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::super::{Posed, measured};
 use crate::args::{ManipulabilityArgs, MetricName};
-use crate::commands::Style;
+use crate::commands::shared::Style;
 use crate::number_file;
 use crate::output::{self, Align, number};
 

@@ -18,7 +18,7 @@ use serde_json::value::RawValue;
 use super::Posed;
 use super::measured::{self, Quantity, Task};
 use crate::args::{ManipulabilityArgs, MeasureName};
-use crate::commands::Style;
+use crate::commands::shared::Style;
 use crate::plot;
 
 /// What was found.

@@ -9,7 +9,7 @@ use serde_json::value::{RawValue, to_raw_value};
 
 use super::super::HeadJson;
 use super::{Bounded, Found, Reached};
-use crate::commands::Style;
+use crate::commands::shared::Style;
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]

@@ -7,10 +7,29 @@ use cylindroid::{Error, Method, Result, ServoOptions, State};
 use serde::Serialize;
 
 use super::messages::{Complaint, MethodChoice};
-use super::scene::{damping, hyperbolic, values};
 use crate::args::InverseArgs;
 use crate::args::inverses::Parameters;
 use crate::commands::move_to::inverse;
+
+/// The parameters of a method and their values.
+pub(super) fn values(mut method: Method) -> BTreeMap<&'static str, f64> {
+    method.parameters_mut().map(|(parameter, value)| (parameter.name, *value)).collect()
+}
+
+/// The parameters of an inverse of this name but the pitch, with their defaults.
+pub(super) fn damping(name: &str) -> BTreeMap<&'static str, f64> {
+    let inverse = hyperbolic().find(|i| i.name == name);
+    let own = inverse.into_iter().flat_map(|i| i.parameters).filter(|p| p.name != PITCH);
+    own.map(|p| (p.name, p.default)).collect()
+}
+
+/// The parameter that chooses a hyperbolic inverse.
+pub(super) const PITCH: &str = "h";
+
+/// The hyperbolic inverses: those that a pitch chooses.
+pub(super) fn hyperbolic() -> impl Iterator<Item = NamedInverse> {
+    NamedInverse::all().filter(|i| i.parameters.iter().any(|p| p.name == PITCH))
+}
 
 /// The inverse as it was asked for, with the values of its parameters.
 #[derive(Debug, Clone, Serialize)]

@@ -1,0 +1,25 @@
+//! JSON that several messages share: poses, and a message as text.
+
+use cylindroid::Pose;
+use serde::Serialize;
+
+/// A pose of docs/viewer.md.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct PoseJson {
+    position: [f64; 3],
+    /// w, x, y, z.
+    quaternion: [f64; 4],
+}
+
+impl From<Pose> for PoseJson {
+    fn from(pose: Pose) -> Self {
+        let q = pose.rotation.to_quaternion();
+        Self { position: pose.translation.to_array(), quaternion: [q.w, q.x, q.y, q.z] }
+    }
+}
+
+/// A message as text.
+pub(super) fn text(message: &impl Serialize) -> String {
+    // Names, numbers and lists always have one.
+    serde_json::to_string(message).unwrap_or_default()
+}

@@ -1,0 +1,92 @@
+//! Names that a client may ask for: overlays and reports.
+
+use cylindroid::{Error, Result};
+
+/// The reports.
+pub(super) const REPORTS: [&str; 4] = ["info", "mobility", "manipulability", "screws"];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Overlay {
+    Velocity,
+    AngularVelocity,
+    ActiveForce,
+    PassiveForce,
+    JointAxes,
+    PrincipalScrews,
+    Reciprocal,
+    Cylindroid,
+    LostDirection,
+}
+
+impl Overlay {
+    pub(super) const ALL: [Self; 9] = [
+        Self::Velocity,
+        Self::AngularVelocity,
+        Self::ActiveForce,
+        Self::PassiveForce,
+        Self::JointAxes,
+        Self::PrincipalScrews,
+        Self::Reciprocal,
+        Self::Cylindroid,
+        Self::LostDirection,
+    ];
+
+    pub(super) fn named(name: &str) -> Result<Self> {
+        let found = Self::ALL.into_iter().find(|o| o.name() == name);
+        found.ok_or_else(|| Error::unknown("overlay", name, Self::ALL.map(Self::name)))
+    }
+
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Velocity => "velocity-ellipsoid",
+            Self::AngularVelocity => "angular-velocity-ellipsoid",
+            Self::ActiveForce => "active-force-ellipsoid",
+            Self::PassiveForce => "passive-force-ellipsoid",
+            Self::JointAxes => "joint-axes",
+            Self::PrincipalScrews => "principal-screws",
+            Self::Reciprocal => "reciprocal-system",
+            Self::Cylindroid => "cylindroid",
+            Self::LostDirection => "lost-direction",
+        }
+    }
+
+    pub(super) const fn title(self) -> &'static str {
+        match self {
+            Self::Velocity => "Velocity ellipsoid",
+            Self::AngularVelocity => "Angular velocity ellipsoid",
+            Self::ActiveForce => "Force ellipsoid, exerted (active)",
+            Self::PassiveForce => "Force ellipsoid, resisted (passive)",
+            Self::JointAxes => "Joint axes as screws",
+            Self::PrincipalScrews => "Principal screws",
+            Self::Reciprocal => "Reciprocal system",
+            Self::Cylindroid => "Cylindroid of a two-system",
+            Self::LostDirection => "Lost direction",
+        }
+    }
+
+    pub(super) const fn unit(self) -> &'static str {
+        match self {
+            Self::Velocity => "m/s, for rates of the drives of length 1 (rad/s, m/s)",
+            Self::AngularVelocity => "rad/s, for rates of the drives of length 1 (rad/s, m/s)",
+            Self::ActiveForce => "N, for torques of the drives of length 1 (N m, N)",
+            Self::PassiveForce => "N, held with torques of the drives of length 1 (N m, N)",
+            Self::JointAxes | Self::PrincipalScrews | Self::Reciprocal => "pitch in m/rad",
+            Self::Cylindroid => "pitch in m/rad, along each axis",
+            Self::LostDirection => "m and rad, of length 1 with lengths over the reach",
+        }
+    }
+
+    pub(super) const fn frame(self) -> &'static str {
+        match self {
+            Self::Velocity | Self::AngularVelocity | Self::LostDirection => {
+                "at the tool point, world axes"
+            }
+            Self::ActiveForce | Self::PassiveForce => {
+                "forces at the tool point without moment, world axes"
+            }
+            Self::JointAxes | Self::PrincipalScrews | Self::Reciprocal | Self::Cylindroid => {
+                "seen from the world"
+            }
+        }
+    }
+}
