@@ -2,33 +2,22 @@
 //! in the plane x-y, or for mechanisms in space in the three planes of the world.
 
 mod panel;
+mod shapes;
 
 use std::path::Path;
 
-use cylindroid::closure::{ClosedChain, MotionSpace};
-use cylindroid::linalg::Interval;
-use cylindroid::manipulability::{
-    Manipulability, Metrics, Polytope, Spectrum, force_polytope, velocity_polytope,
-};
-use cylindroid::{Matrix, Result, State, Vec3};
+use cylindroid::closure::MotionSpace;
+use cylindroid::manipulability::{Manipulability, Polytope, force_polytope, velocity_polytope};
+use cylindroid::{Matrix, Result, Vec3};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use self::panel::{Panel, panel};
+pub(crate) use self::shapes::Drawing;
+use self::shapes::{Block, Ellipse, View};
 use super::skeleton::Skeleton;
 use super::{COLOURS, Drawn, FONT, save};
 use crate::output::number;
-
-/// What is drawn.
-pub(crate) struct Drawing<'a> {
-    pub(crate) state: &'a State,
-    pub(crate) chain: &'a ClosedChain,
-    /// Of the whole twist.
-    pub(crate) metrics: &'a Metrics,
-    pub(crate) metric: &'a str,
-    pub(crate) velocity_limits: Option<Vec<Interval>>,
-    pub(crate) torque_limits: Option<Vec<Interval>>,
-}
 
 /// Width of the figure, and size of a panel with axes: one in each block, or three [px].
 const WIDTH: u32 = 1000;
@@ -39,55 +28,6 @@ const LINE: u32 = 18;
 /// Width of a character of running text [px].
 const CHARACTER: f64 = 6.4;
 const TEXT: u32 = 13;
-/// Size of the shapes over that of the mechanism.
-const SHARE: f64 = 0.36;
-
-/// A shape in a plane: semi-axes of an ellipse, and directions without end.
-#[derive(Debug, Clone)]
-struct Ellipse {
-    axes: Vec<[f64; 2]>,
-    endless: Vec<[f64; 2]>,
-}
-
-impl Ellipse {
-    fn of(spectrum: &Spectrum) -> Self {
-        let pairs = |m: &Matrix| -> Vec<[f64; 2]> {
-            (0..m.cols()).map(|j| [m[(0, j)], m[(1, j)]]).collect()
-        };
-        // A semi-axis may point either way; the rim starts at the same end whatever the rounding.
-        let forwards = |[x, y]: [f64; 2]| if x + 0.4 * y < 0.0 { [-x, -y] } else { [x, y] };
-        let axes = pairs(&spectrum.semi_axes()).into_iter().map(forwards).collect();
-        let unit = |d: [f64; 2]| {
-            let size = d[0].hypot(d[1]);
-            [d[0] / size, d[1] / size]
-        };
-        let endless = pairs(&spectrum.infinite).into_iter().map(unit).collect();
-        Self { axes, endless }
-    }
-
-    fn size(&self) -> f64 {
-        self.axes.iter().map(|a| a[0].hypot(a[1])).fold(0.0, f64::max)
-    }
-}
-
-/// What is shown of motion or of force in one plane.
-#[derive(Debug, Clone)]
-struct View {
-    plane: [usize; 2],
-    ellipse: Ellipse,
-    polygon: Option<Vec<[f64; 2]>>,
-}
-
-/// Motion or force, in all planes.
-struct Block<'a> {
-    title: &'static str,
-    unit: &'static str,
-    force: bool,
-    colour: RGBColor,
-    views: Vec<View>,
-    drawing: &'a Drawing<'a>,
-}
-
 /// Draws.
 pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
     let planar = drawing.chain.constraint.object() == 3;
@@ -277,30 +217,7 @@ impl Entry {
     }
 }
 
-/// How much of a quantity one metre of the drawing is: for ellipses, and for polygons; `None` for
-/// those of no size.
-#[derive(Debug, Clone, Copy)]
-struct Scales {
-    ellipse: Option<f64>,
-    polygon: Option<f64>,
-}
-
 impl Block<'_> {
-    /// Round numbers that give the shapes their share; one for both where they fit together.
-    fn scales(&self, size: f64) -> Scales {
-        let widest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
-        let ellipse = widest(&mut self.views.iter().map(|v| v.ellipse.size()));
-        let corners = self.views.iter().flat_map(|v| v.polygon.iter().flatten());
-        let polygon = widest(&mut corners.map(|c| c[0].hypot(c[1])));
-        let of = |most: f64| round_up(most / (SHARE * size));
-        let together = ellipse.max(polygon);
-        let own = |most: f64| (most > 0.0).then(|| of(most));
-        if ellipse.min(polygon) > 0.4 * together {
-            return Scales { ellipse: own(together), polygon: own(together) };
-        }
-        Scales { ellipse: own(ellipse), polygon: own(polygon) }
-    }
-
     fn legend(&self, size: f64, room: u32) -> Vec<Entry> {
         let scales = self.scales(size);
         let drawn = |scale: Option<f64>| match scale {
@@ -370,13 +287,6 @@ impl Block<'_> {
             (all, _) => format!("semi-axes of the {what} ellipse {} {unit}", all.join(" and ")),
         }
     }
-}
-
-/// The next number with one digit, or 1.5 times a power of ten.
-fn round_up(x: f64) -> f64 {
-    let power = 10_f64.powf(x.log10().floor());
-    let steps = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0];
-    steps.map(|m| m * power).into_iter().find(|r| *r >= x).unwrap_or(10.0 * power)
 }
 
 fn wrap(text: &str, width: u32) -> Vec<String> {

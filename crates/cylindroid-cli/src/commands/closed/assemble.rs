@@ -2,20 +2,22 @@
 //! moves coordinates while they stay closed.
 
 mod continuation;
+mod job;
 mod modes;
 
 use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Error;
-use cylindroid::closure::{Assembly, LoopClosureError, ModeOptions, assemble};
+use cylindroid::closure::{Assembly, ModeOptions, assemble};
 use cylindroid::model::Mechanism;
 use serde::Serialize;
 
+use self::job::{Job, open_by, q_line};
 use super::ClosureErrorJson;
 use crate::args::AssembleArgs;
 use crate::commands::shared::{Style, answer, configuration};
-use crate::output::{self, Align, number};
+use crate::output::{self, Align};
 use crate::values::Joints;
 
 #[derive(Debug, Serialize)]
@@ -31,20 +33,6 @@ struct AssembleJson<'a> {
     held: Vec<&'a str>,
     /// Coordinates at a position limit, or beyond it where a guess that is closed was kept.
     at_limit: Vec<&'a str>,
-}
-
-/// What is asked for: a mechanism, a guess, the coordinates that keep their values.
-struct Job<'a> {
-    mechanism: &'a Mechanism,
-    names: Vec<&'a str>,
-    guess: Vec<f64>,
-    held: Vec<usize>,
-}
-
-impl Job<'_> {
-    fn names_of(&self, places: &[usize]) -> Vec<&str> {
-        places.iter().map(|&i| self.names[i]).collect()
-    }
 }
 
 pub(crate) fn run(
@@ -135,15 +123,6 @@ fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<continuation::Goal,
         goal.values.push(job.guess[place]);
     }
     Ok(goal)
-}
-
-fn open_by(closure_error: LoopClosureError) -> String {
-    format!("{} m, {} rad", number(closure_error.distance), number(closure_error.angle))
-}
-
-/// An argument for `--q`, in full.
-fn q_line(q: &[f64]) -> String {
-    q.iter().map(|x| output::without_rounding(*x).to_string()).collect::<Vec<_>>().join(",")
 }
 
 fn print(

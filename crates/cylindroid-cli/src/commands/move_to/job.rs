@@ -1,20 +1,18 @@
 //! From the arguments of `move` to a job that can be done: options of the servo, start, target.
 
 use cylindroid::control::{
-    CartesianBounds, CartesianMove, CartesianPath, JointDefaults, JointMove, KinematicBounds,
-    SecondaryNullSpace, SecondaryTask, ServoGains,
+    CartesianMove, CartesianPath, JointDefaults, JointMove, SecondaryNullSpace, SecondaryTask,
+    ServoGains,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
 use super::super::target::{target_pose, task};
-use super::{inverse, joints};
-use crate::args::{LawName, MoveArgs, NullSpaceName, PathArgs, ServoArgs};
+use super::bounds::{joint_defaults, path_bounds};
+use super::inverse;
+use crate::args::{MoveArgs, NullSpaceName, PathArgs, ServoArgs};
 use crate::commands::shared::{all_driven, configuration, end_effector, load, within_limits};
 use crate::values::Named;
-
-/// Speeds on a path where none are given [m/s], [rad/s].
-pub(super) const PATH_SPEED: (f64, f64) = (0.25, 1.0);
 
 /// What is to be done.
 #[derive(Debug)]
@@ -75,7 +73,7 @@ impl Job {
         // Before the target is looked at: a broken option is the clearer message.
         options.check(&robot)?;
 
-        let defaults = joints::defaults(args);
+        let defaults = joint_defaults(args);
         let pose = |q: &[f64]| robot.state(q).map(|s| s.pose(options.end_effector));
         let from = pose(&start)?;
         let (target_pose, goal, driven) = if let Some(q) = &args.path.joint_to {
@@ -176,24 +174,4 @@ fn path(args: &PathArgs, from: Pose, to: Pose) -> Result<Option<CartesianPath>> 
         return CartesianPath::circle(from, Vec3::from_array(via.0), to).map(Some);
     }
     if args.line { CartesianPath::line(from, to).map(Some) } else { Ok(None) }
-}
-
-fn path_bounds(args: &MoveArgs) -> CartesianBounds {
-    let (path, speed) = (&args.path, args.servo.speed);
-    let jerk = |value: f64| match path.law {
-        LawName::Trapezoidal => f64::INFINITY,
-        LawName::JerkLimited => value,
-    };
-    CartesianBounds {
-        linear: KinematicBounds {
-            velocity: speed.map_or(PATH_SPEED.0, |s| s.linear),
-            acceleration: path.acceleration_linear,
-            jerk: jerk(path.jerk_linear),
-        },
-        angular: KinematicBounds {
-            velocity: speed.and_then(|s| s.angular).unwrap_or(PATH_SPEED.1),
-            acceleration: path.acceleration_angular,
-            jerk: jerk(path.jerk_angular),
-        },
-    }
 }

@@ -2,39 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use cylindroid::control::{
-    JointDefaults, JointMove, JointSample, KinematicBounds, LimitKind, MotionResult,
-    TrajectorySample,
-};
+use cylindroid::control::{JointMove, JointSample, LimitKind, MotionResult, TrajectorySample};
 use cylindroid::{Result, Servo};
 
-use super::job::{Job, PATH_SPEED};
-use crate::args::{LawName, MoveArgs};
+use super::job::Job;
 
 /// Share of its limit from which a rate counts as having met it: a law leaves a rounding [-].
 const AT_SPEED: f64 = 1.0 - 1e-9;
-
-/// What joints keep to that have no limits of their own in the model.
-pub(super) fn defaults(args: &MoveArgs) -> JointDefaults {
-    let path = &args.path;
-    let jerk = |value: f64| match path.law {
-        LawName::Trapezoidal => f64::INFINITY,
-        LawName::JerkLimited => value,
-    };
-    let acceleration = |on_path: f64| args.servo.acceleration.unwrap_or(on_path);
-    JointDefaults {
-        angle: KinematicBounds {
-            velocity: PATH_SPEED.1,
-            acceleration: acceleration(path.acceleration_angular),
-            jerk: jerk(path.jerk_angular),
-        },
-        length: KinematicBounds {
-            velocity: PATH_SPEED.0,
-            acceleration: acceleration(path.acceleration_linear),
-            jerk: jerk(path.jerk_linear),
-        },
-    }
-}
 
 /// Runs it, step by step like a servo, until its end or the time limit. The servo only reports
 /// pose, errors and singular values on the way; its rates are not used.

@@ -1,5 +1,6 @@
 //! `move`: drives a frame to a target and says whether and how it got there.
 
+mod bounds;
 pub(crate) mod inverse;
 mod job;
 mod joints;

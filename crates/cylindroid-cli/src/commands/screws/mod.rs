@@ -1,32 +1,20 @@
 //! `screws`: what the joint twists span and what can be done with it.
 
+mod find;
 pub(crate) mod report;
 mod twists;
 
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::inverse::{PointDirection, point_direction};
-use cylindroid::screws::{Involution, Line, Screw, ScrewOptions, ScrewSystem, involution};
-use cylindroid::{EndEffector, Result, State, Vec3};
+use cylindroid::{EndEffector, State};
 use serde_json::value::RawValue;
 
+use self::find::find;
 use self::twists::Twists;
 use crate::args::ScrewsArgs;
 use crate::commands::shared::Style;
 use crate::plot;
-
-/// The twists and what was found.
-#[derive(Debug)]
-struct Found {
-    twists: Twists,
-    system: ScrewSystem,
-    screws: Vec<Option<Screw>>,
-    /// Of the twists that are lines, where at least two are.
-    involution: Option<Involution>,
-    /// The rates that move the point along the direction, where both were given.
-    point: Option<PointDirection>,
-}
 
 pub(crate) fn run(
     args: &ScrewsArgs,
@@ -56,31 +44,4 @@ pub(crate) fn report(
     args: &ScrewsArgs,
 ) -> anyhow::Result<Box<RawValue>> {
     report::raw(&find(Twists::of(state, of), args)?, &args.h)
-}
-
-fn find(twists: Twists, args: &ScrewsArgs) -> Result<Found> {
-    let options = ScrewOptions {
-        length: args.length.unwrap_or(twists.length),
-        center: args.center.map(|c| Vec3::from_array(c.0)),
-        noise: args.noise.unwrap_or(ScrewOptions::default().noise),
-    };
-    let system = ScrewSystem::of(&twists.twists, &options)?;
-    let screws: Vec<Option<Screw>> = twists.twists.iter().map(|t| Screw::of(*t)).collect();
-    let lines = lines(&screws, &system);
-    let involution = if lines.len() < 2 { None } else { Some(involution(&lines, &options)?) };
-    let point = match (args.point, args.direction) {
-        (Some(point), Some(direction)) => Some(point_direction(
-            &twists.matrix(),
-            Vec3::from_array(point.0),
-            Vec3::from_array(direction.0),
-        )?),
-        _ => None,
-    };
-    Ok(Found { twists, system, screws, involution, point })
-}
-
-/// The axes of the screws of pitch zero, to the tolerance of the system.
-fn lines(screws: &[Option<Screw>], system: &ScrewSystem) -> Vec<Line> {
-    let is_line = |s: &&Screw| s.pitch.abs() <= system.tolerance() * system.length();
-    screws.iter().flatten().filter(is_line).map(|s| s.axis).collect()
 }

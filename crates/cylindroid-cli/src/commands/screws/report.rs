@@ -9,7 +9,7 @@ use cylindroid::{Twist, Vec3};
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
-use super::Found;
+use super::find::Found;
 use crate::commands::shared::Style;
 use crate::output::{self, Align, PoseJson, ScrewJson, number};
 

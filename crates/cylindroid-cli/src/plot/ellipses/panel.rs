@@ -10,7 +10,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::super::skeleton::{Mark, Skeleton};
 use super::super::{COLOURS, Drawn, FONT};
-use super::{Block, Ellipse, Scales, View};
+use super::shapes::{Block, Ellipse, Scales, View};
+use crate::output::number;
 
 /// What a panel shows.
 pub(super) struct Panel<'a> {
@@ -52,7 +53,7 @@ pub(super) fn panel(area: &DrawingArea<SVGBackend<'_>, Shift>, shown: &Panel<'_>
         .build_cartesian_2d(x.clone(), y.clone())?;
     let wide = shown.size.0 > 400;
     let width = x.end - x.start;
-    let label = |v: &f64| super::number(if v.abs() < 1e-9 * width { 0.0 } else { *v });
+    let label = |v: &f64| number(if v.abs() < 1e-9 * width { 0.0 } else { *v });
     chart
         .configure_mesh()
         .x_desc(NAMES[i])

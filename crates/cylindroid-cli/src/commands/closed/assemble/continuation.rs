@@ -9,7 +9,7 @@ use cylindroid::closure::{
 use cylindroid::model::Dimension;
 use serde::Serialize;
 
-use super::{Job, open_by, q_line};
+use super::job::{Job, open_by, q_line};
 use crate::commands::closed::ClosureErrorJson;
 use crate::commands::closed::singularity::motion_in_words;
 use crate::commands::shared::{Style, answer};

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use cylindroid::closure::{AssemblyModes, Mode, ModeOptions, assembly_modes};
 use serde::Serialize;
 
-use super::{Job, open_by, q_line};
+use super::job::{Job, open_by, q_line};
 use crate::commands::closed::ClosureErrorJson;
 use crate::commands::shared::{Style, answer};
 use crate::output::{self, Align, number};

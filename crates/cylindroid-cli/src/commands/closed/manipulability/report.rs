@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
 use super::super::HeadJson;
-use super::{Bounded, Found, Reached};
+use super::find::{Bounded, Found, Reached};
 use crate::commands::shared::Style;
 use crate::output::{self, Align, number};
 

@@ -1,0 +1,47 @@
+//! What `screws` computes.
+
+use cylindroid::inverse::{PointDirection, point_direction};
+use cylindroid::screws::{Involution, Line, Screw, ScrewOptions, ScrewSystem, involution};
+use cylindroid::{Result, Vec3};
+
+use super::twists::Twists;
+use crate::args::ScrewsArgs;
+
+/// The twists and what was found.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub(super) twists: Twists,
+    pub(super) system: ScrewSystem,
+    pub(super) screws: Vec<Option<Screw>>,
+    /// Of the twists that are lines, where at least two are.
+    pub(super) involution: Option<Involution>,
+    /// The rates that move the point along the direction, where both were given.
+    pub(super) point: Option<PointDirection>,
+}
+
+pub(super) fn find(twists: Twists, args: &ScrewsArgs) -> Result<Found> {
+    let options = ScrewOptions {
+        length: args.length.unwrap_or(twists.length),
+        center: args.center.map(|c| Vec3::from_array(c.0)),
+        noise: args.noise.unwrap_or(ScrewOptions::default().noise),
+    };
+    let system = ScrewSystem::of(&twists.twists, &options)?;
+    let screws: Vec<Option<Screw>> = twists.twists.iter().map(|t| Screw::of(*t)).collect();
+    let lines = lines(&screws, &system);
+    let involution = if lines.len() < 2 { None } else { Some(involution(&lines, &options)?) };
+    let point = match (args.point, args.direction) {
+        (Some(point), Some(direction)) => Some(point_direction(
+            &twists.matrix(),
+            Vec3::from_array(point.0),
+            Vec3::from_array(direction.0),
+        )?),
+        _ => None,
+    };
+    Ok(Found { twists, system, screws, involution, point })
+}
+
+/// The axes of the screws of pitch zero, to the tolerance of the system.
+fn lines(screws: &[Option<Screw>], system: &ScrewSystem) -> Vec<Line> {
+    let is_line = |s: &&Screw| s.pitch.abs() <= system.tolerance() * system.length();
+    screws.iter().flatten().filter(is_line).map(|s| s.axis).collect()
+}
