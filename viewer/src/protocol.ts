@@ -121,7 +121,7 @@ export type Comparison = {
     method: string; h: number | null; exists: boolean; reason: string | null;
     joint_velocities: number[] | null; joint_velocities_at_point: number[] | null;
     difference: number | null; invariant: boolean;
-    done: number[] | null; done_at_point: number[] | null;
+    achieved: number[] | null; achieved_at_point: number[] | null;
   }[];
 };
 export type ReportName = "info" | "mobility" | "manipulability" | "screws";

@@ -170,7 +170,7 @@ pub const CORRECTION_RANK: f64 = 1e-6;
 /// A motion of which less than this belongs to the driven joints (of a motion of length one in
 /// units scaled by the reach) is no longer steered by them: passive joints move a hundred times as
 /// fast as the drives, whose errors and clearances they multiply as much [-].
-pub const LEAST_STEERED: f64 = 1e-2;
+pub const MIN_ACTUATED_SHARE: f64 = 1e-2;
 
 /// Loops that are open by less than this times the reach, and by less than this in angle (rad),
 /// are closed by the way of a servo: measured postures are; others have to be assembled first.
@@ -178,10 +178,10 @@ pub const NEARLY_CLOSED: f64 = 1e-2;
 
 /// Rates held at bounds that follow from each other, or contradict each other, by this [-]: above
 /// the rounding of the motions that the loops leave.
-pub const HELD_ROWS: f64 = 1e-9;
+pub const CLAMPED_ROWS: f64 = 1e-9;
 
 /// A motion of length one (scaled) that moves the task by less than this does not move it [-].
-pub const UNSTEERED: f64 = 1e-9;
+pub const UNACTUATED: f64 = 1e-9;
 
 /// What rounding leaves open of loops that were closed by Newton's method: rows of lengths over the
 /// reach and of angles, of a hundred roundings and some [-].

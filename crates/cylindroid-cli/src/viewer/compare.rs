@@ -35,8 +35,8 @@ struct ResultJson<'a> {
     joint_velocities_at_point: Option<Vec<f64>>,
     difference: Option<f64>,
     invariant: bool,
-    done: Option<[f64; 6]>,
-    done_at_point: Option<[f64; 6]>,
+    achieved: Option<[f64; 6]>,
+    achieved_at_point: Option<[f64; 6]>,
 }
 
 /// The answer to `compare`.
@@ -77,7 +77,7 @@ pub(super) fn compare(
         let found = choice
             .at_two_points(state, options.end_effector, asked, point)
             .map_err(at("compare"))?;
-        let VelocitiesAtPoint { joint_velocities, done, reason } = found.at_tool;
+        let VelocitiesAtPoint { joint_velocities, achieved, reason } = found.at_tool;
         let reason = reason.or(found.at_point.reason);
         let six = |t: Option<Twist>| t.map(Twist::to_array);
         results.push(ResultJson {
@@ -89,8 +89,8 @@ pub(super) fn compare(
             joint_velocities_at_point: found.at_point.joint_velocities,
             difference: found.difference,
             invariant: found.invariant,
-            done: six(done),
-            done_at_point: six(found.at_point.done),
+            achieved: six(achieved),
+            achieved_at_point: six(found.at_point.achieved),
         });
         coordinates = found.coordinates;
     }

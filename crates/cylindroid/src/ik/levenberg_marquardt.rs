@@ -21,6 +21,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::Chain;
 use crate::linalg::Matrix;
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
+use crate::scalar::clamp;
 
 /// Steps towards the start at most, and their damping, relative to the size of A squared.
 const APPROACH_ITERATIONS: usize = 60;
@@ -205,7 +206,7 @@ impl Problem {
         let cut = if most > MAX_STEP { MAX_STEP / most } else { 1.0 };
         if self.simple {
             for (i, &c) in self.coordinates.iter().enumerate() {
-                q[c] = (q[c] + cut * self.d[i]).clamp(self.lower[i], self.upper[i]);
+                q[c] = clamp(q[c] + cut * self.d[i], self.lower[i], self.upper[i]);
             }
             return;
         }
@@ -220,7 +221,7 @@ impl Problem {
     /// Moves `q` into the limits.
     pub(super) fn clamp(&self, q: &mut [f64]) {
         for (i, &c) in self.coordinates.iter().enumerate() {
-            q[c] = q[c].clamp(self.lower[i], self.upper[i]);
+            q[c] = clamp(q[c], self.lower[i], self.upper[i]);
         }
     }
 

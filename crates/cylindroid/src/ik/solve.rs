@@ -22,7 +22,7 @@ use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, LANES, MAX_COORDINATES, Restart, solve_batched};
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
-use crate::scalar::uniform;
+use crate::scalar::{clamp, uniform};
 
 /// Steps of one attempt at most.
 pub(crate) const ITERATIONS_PER_RESTART: usize = 60;
@@ -391,7 +391,7 @@ impl Solver {
                 if near { (self.start[c], PERTURBATION) } else { (0.0, anywhere) };
             let (lower, upper) = (p.lower[i].max(middle - spread), p.upper[i].min(middle + spread));
             // Limits that exclude what is drawn from leave one end of it.
-            q[c] = (lower + (upper - lower) * uniform(random)).clamp(p.lower[i], p.upper[i]);
+            q[c] = clamp(lower + (upper - lower) * uniform(random), p.lower[i], p.upper[i]);
         }
     }
 

@@ -23,6 +23,19 @@ pub(crate) use simd_float::SimdFloat;
 pub(crate) use splitmix64::uniform;
 pub(crate) use trig::sin_cos;
 
+/// The nearest number to `x` in [lower, upper]. NaN stays NaN; a NaN bound does not bound, where
+/// `f64::clamp` panics.
+#[inline]
+pub(crate) fn clamp(x: f64, lower: f64, upper: f64) -> f64 {
+    if x < lower {
+        lower
+    } else if x > upper {
+        upper
+    } else {
+        x
+    }
+}
+
 /// True if the processor has AVX2 and fused products: what four lanes need.
 #[cfg(target_arch = "x86_64")]
 #[inline]

@@ -17,7 +17,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::error::{Error, Result};
-use crate::scalar::sin_cos;
+use crate::scalar::{clamp, sin_cos};
 use crate::spatial::{Pose, Rotation, Twist, Vec3};
 use crate::tolerance::{COLLINEAR, HALF_TURN, POSITION, ZERO_AXIS};
 
@@ -286,7 +286,7 @@ fn nearest(at: f64, whole: f64, at_end: bool) -> f64 {
 
 /// `s` in [0, 1], 0 for NaN.
 pub(super) fn within(s: f64) -> f64 {
-    if s.is_nan() { 0.0 } else { s.clamp(0.0, 1.0) }
+    if s.is_nan() { 0.0 } else { clamp(s, 0.0, 1.0) }
 }
 
 /// An angle of [-pi, pi] (or of [-2 pi, 2 pi]) in [0, 2 pi].

@@ -19,11 +19,11 @@ pub(super) mod condition;
 mod stages;
 
 use super::coupled::Coupled;
-use super::limits::Clearance;
+use super::limits::BrakingMargin;
 use super::options::ServoOptions;
-use super::projection::{Projecting, TaskFrame};
+use super::projection::{StepProjection, TaskFrame};
 use super::secondary::Gradient;
-use super::stall::{Evidence, Stall, Watch, classify};
+use super::stall::{Stall, StallDetector, StallInputs, classify};
 use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
@@ -38,7 +38,7 @@ use crate::spatial::Pose;
 use crate::tolerance::GENERIC_RANK;
 
 /// Postures that are asked for the rank of the arm.
-const GENERIC_POSTURES: usize = 3;
+const GENERIC_CONFIGURATIONS: usize = 3;
 
 /// A Cartesian controller for one end effector.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ pub struct Servo {
     chain: Chain,
     space: TaskSpace,
     limits: Vec<Limits>,
-    clearances: Vec<Clearance>,
+    braking_margins: Vec<BrakingMargin>,
     /// True if a joint has a limit of its acceleration.
     accelerates: bool,
     /// Length of the chain after its first joint (m).
@@ -65,11 +65,11 @@ pub struct Servo {
     kept: Vec<bool>,
     x: Vec<f64>,
     /// J rates, the part of x that is carried out.
-    done: Vec<f64>,
+    achieved_twist: Vec<f64>,
     error: Vec<f64>,
     /// The error as projected.
-    possible: Vec<f64>,
-    projecting: Projecting,
+    projected_error: Vec<f64>,
+    step_projection: StepProjection,
     primary: Vec<f64>,
     secondary: Vec<f64>,
     /// Bounds of the rates, and the same in scaled coordinates.
@@ -80,12 +80,12 @@ pub struct Servo {
     /// For closed chains.
     coupled: Option<Box<Coupled>>,
     /// True if the last step commanded rest before a motion that the drives do not steer.
-    is_escaping: bool,
+    approaches_type_ii: bool,
 
     rates: Vec<f64>,
     active: Vec<Option<LimitKind>>,
     at_limit: Vec<usize>,
-    watch: Watch,
+    stall_detector: StallDetector,
     last_target: Option<Pose>,
     distance: f64,
 }
@@ -130,9 +130,9 @@ impl Servo {
                 l
             })
             .collect();
-        let space = TaskSpace::new(&options, &chain, &limits);
-        let clearance =
-            |(i, l): (usize, &Limits)| Clearance::new(l, options.dt, space.is_locked(i));
+        let space = TaskSpace::new(options.scaling(), &chain, &limits);
+        let margin =
+            |(i, l): (usize, &Limits)| BrakingMargin::new(l, options.dt, space.is_locked(i));
         let m = space.rows.len();
         let coupled = if mechanism.is_closed() {
             let locked = (0..n).filter(|&i| space.is_locked(i)).collect();
@@ -142,7 +142,7 @@ impl Servo {
         };
         let rates = limits.len();
         // What is decomposed: the rates of the joints, or what the drives can do.
-        let unknowns = coupled.as_ref().map_or(n, |c| c.drives());
+        let unknowns = coupled.as_ref().map_or(n, |c| c.actuated_joints());
         let hessian = if options
             .secondary
             .iter()
@@ -155,7 +155,7 @@ impl Servo {
         let mut servo = Self {
             length: chain.length_after_first_joint(mechanism),
             generic_rank: 0,
-            clearances: limits.iter().enumerate().map(clearance).collect(),
+            braking_margins: limits.iter().enumerate().map(margin).collect(),
             accelerates: limits.iter().any(|l| l.acceleration < f64::INFINITY),
             mechanism: mechanism.clone(),
             method: options.method,
@@ -167,10 +167,10 @@ impl Servo {
             gains: vec![0.0; m.min(unknowns)],
             kept: vec![false; m.min(unknowns)],
             x: vec![0.0; m],
-            done: vec![0.0; m],
+            achieved_twist: vec![0.0; m],
             error: vec![0.0; m],
-            possible: vec![0.0; m],
-            projecting: Projecting::new(),
+            projected_error: vec![0.0; m],
+            step_projection: StepProjection::new(),
             primary: vec![0.0; rates],
             secondary: vec![0.0; rates],
             own_bounds: vec![VelocityBounds::NONE; rates],
@@ -180,15 +180,15 @@ impl Servo {
             rates: vec![0.0; mechanism.n().max(rates)],
             active: vec![None; rates],
             coupled,
-            is_escaping: false,
+            approaches_type_ii: false,
             at_limit: Vec::with_capacity(n),
-            watch: Watch::new(),
+            stall_detector: StallDetector::new(),
             last_target: None,
             distance: 0.0,
             chain,
         };
         servo.generic_rank = if servo.coupled.is_some() {
-            servo.find_steered_rank()?
+            servo.find_actuated_rank()?
         } else {
             servo.find_generic_rank()
         };
@@ -198,7 +198,7 @@ impl Servo {
     /// The largest rank of the task Jacobian in a few postures without pattern.
     fn find_generic_rank(&mut self) -> usize {
         let n = self.mechanism.n();
-        (1..=GENERIC_POSTURES)
+        (1..=GENERIC_CONFIGURATIONS)
             .map(|posture| {
                 // Irrational steps: no posture is aligned with another or with the axes.
                 let mut q: Vec<f64> =
@@ -217,23 +217,23 @@ impl Servo {
     }
 
     /// The same for a closed chain, in postures near its home.
-    fn find_steered_rank(&mut self) -> Result<usize> {
+    fn find_actuated_rank(&mut self) -> Result<usize> {
         let (mut rank, mut closed, mut free) = (0, 0, None);
-        for posture in 0..=GENERIC_POSTURES {
-            let Some(q) = self.nearby_posture(posture)? else { continue };
+        for posture in 0..=GENERIC_CONFIGURATIONS {
+            let Some(q) = self.nearby_configuration(posture)? else { continue };
             closed += 1;
             self.chain.set(&q);
             self.load_jacobian(&q)?;
             rank = rank.max(Svd::of(&self.task).rank(GENERIC_RANK).rank);
-            match self.coupled.as_ref().and_then(|c| c.escape()) {
-                Some(escape) if escape.share == 0.0 => free = Some(escape.clone()),
+            match self.coupled.as_ref().and_then(|c| c.uncontrolled()) {
+                Some(motion) if motion.share == 0.0 => free = Some(motion.clone()),
                 _ => return Ok(rank),
             }
         }
-        let Some(escape) = free.filter(|_| closed > 0) else {
+        let Some(motion) = free.filter(|_| closed > 0) else {
             return Err(super::coupled::not_assembled(&self.mechanism));
         };
-        Err(super::coupled::not_steered(&self.mechanism, &escape, self.options.task))
+        Err(super::coupled::not_actuated(&self.mechanism, &motion, self.options.task))
     }
 
     /// One step: the rates to command from now until the next step are in [`Servo::rates`].
@@ -266,7 +266,11 @@ impl Servo {
             Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         }
         let (axes, length) = (self.options.task.axes, self.options.length);
-        self.projecting.load(&self.options, &self.svd, TaskFrame { pose, axes, length });
+        self.step_projection.load(
+            self.options.projection_choice(),
+            &self.svd,
+            TaskFrame { pose, axes, length },
+        );
         self.load_task(&desired);
         for ((kept, gain), s) in self.kept.iter_mut().zip(&self.gains).zip(self.svd.values()) {
             *kept = is_kept(gain * s);
@@ -274,23 +278,23 @@ impl Servo {
         let rank = self.kept.iter().filter(|kept| **kept).count();
         self.load_secondary(secondary_velocities);
 
-        let (saturation, effort) = match self.store_clear_rates(q) {
-            Some(effort) => (Saturation::NONE, effort),
+        let (saturation, braking) = match self.store_unlimited_rates(q) {
+            Some(braking) => (Saturation::NONE, braking),
             None => {
                 self.load_bounds(q);
                 let saturation = self.saturate(q)?;
                 Error::check_finite("joint rates", &self.primary)?;
-                let effort = self.store_rates();
-                self.load_done();
+                let braking = self.store_rates();
+                self.load_achieved_twist();
                 self.note_limits();
-                (saturation, effort)
+                (saturation, braking)
             }
         };
 
         self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         if self.last_target != Some(target.pose) {
             self.last_target = Some(target.pose);
-            self.watch = Watch::new();
+            self.stall_detector = StallDetector::new();
         }
         let tolerance = self.options.tolerance;
         let (position_error, orientation_error) =
@@ -298,7 +302,7 @@ impl Servo {
         let scaled = position_error / self.options.length + orientation_error;
         let near =
             position_error <= tolerance.position && orientation_error <= tolerance.orientation;
-        let stalled = self.watch.stalled(scaled, effort, self.options.dt);
+        let stalled = self.stall_detector.stalled(scaled, braking, self.options.dt);
         let status = if near && self.settled(desired.feed_forward) {
             Status::Reached
         } else if stalled || self.is_stopped() {
@@ -343,17 +347,17 @@ impl Servo {
     /// Why the last step got no nearer to the target.
     #[must_use]
     pub fn stall(&self) -> Stall {
-        let escape = self.coupled.as_ref().and_then(|c| c.escape());
-        if let Some(escape) = escape.filter(|_| self.is_escaping) {
-            let (share, direction) = (escape.share, escape.direction.clone());
+        let motion = self.coupled.as_ref().and_then(|c| c.uncontrolled());
+        if let Some(motion) = motion.filter(|_| self.approaches_type_ii) {
+            let (share, direction) = (motion.share, motion.direction.clone());
             return Stall::TypeII { share, direction };
         }
-        classify(&Evidence {
+        classify(&StallInputs {
             svd: &self.svd,
             gains: &self.gains,
             error: &self.error,
-            possible: &self.possible,
-            no_inverse: self.projecting.reason().filter(|_| self.projecting.is_stopped()),
+            projected_error: &self.projected_error,
+            no_inverse: self.step_projection.reason().filter(|_| self.step_projection.is_stopped()),
             at_limit: &self.at_limit,
             distance: self.distance,
             length: self.length + self.offset_of_free_position(),
@@ -365,14 +369,14 @@ impl Servo {
     /// the arm was stopped.
     #[must_use]
     pub fn no_inverse(&self) -> Option<NoInverse> {
-        self.projecting.reason()
+        self.step_projection.reason()
     }
 
     /// True if the last step commanded rest because neither the projection nor a fallback exists,
     /// or because a motion of the object is about to escape the drives.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
-        self.projecting.is_stopped() || self.is_escaping
+        self.step_projection.is_stopped() || self.approaches_type_ii
     }
 
     /// The options.
@@ -390,9 +394,9 @@ impl Servo {
     /// Forgets the last rates and target: the joints stand still.
     pub fn reset(&mut self) {
         self.rates.fill(0.0);
-        self.watch = Watch::new();
+        self.stall_detector = StallDetector::new();
         self.last_target = None;
-        self.is_escaping = false;
+        self.approaches_type_ii = false;
     }
 
     /// Moves `q` by the rates of the last step, for simulation; passive joints of a closed chain

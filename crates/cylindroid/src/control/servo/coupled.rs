@@ -2,7 +2,7 @@
 //! with one.
 //!
 //! Formula  rates = M y + s_0 (`closure/mobility/actuation_map.rs`), s_0 the way to closed loops within one step;
-//!          the task is J M y = x, its least y the least weighted effort of the drives; limits
+//!          the task is J M y = x, its least y the least weighted effort of the actuated joints; limits
 //!          hold for all joints (`solver/reduced.rs`)
 //! Shapes   M: (n + e) x a, columns beyond p zero; J: m x n; y: a
 //! Units    rates over the roots of the joint weights inside, as in `task_space.rs`
@@ -13,12 +13,12 @@
 
 use super::task_space::TaskSpace;
 use crate::closure::{ActuationMap, LoopClosureError, assemble};
-use crate::control::solver::reduced::Reduced;
+use crate::control::solver::reduced::ReducedSolver;
 use crate::error::{Error, Result};
 use crate::ik::Task;
 use crate::linalg::{Matrix, norm};
 use crate::model::Mechanism;
-use crate::tolerance::{LEAST_STEERED, NEARLY_CLOSED, UNSTEERED};
+use crate::tolerance::{MIN_ACTUATED_SHARE, NEARLY_CLOSED, UNACTUATED};
 
 /// The coupled joints of a servo.
 #[derive(Debug, Clone)]
@@ -26,18 +26,18 @@ pub(super) struct Coupled {
     mechanism: Mechanism,
     weights: Vec<f64>,
     locked: Vec<usize>,
-    drives: usize,
-    steering: ActuationMap,
+    actuated: usize,
+    actuation_map: ActuationMap,
     /// J in weighted rates, m x n.
     pub(super) task: Matrix,
-    pub(super) reduced: Reduced,
-    /// The motion that is about to escape the drives, and how much of it they still have.
-    escape: Option<Escape>,
+    pub(super) reduced: ReducedSolver,
+    /// The motion that is about to become uncontrolled, with its actuated share.
+    uncontrolled: Option<UncontrolledMotion>,
 }
 
 /// A motion that drives steer weakly.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Escape {
+pub(super) struct UncontrolledMotion {
     pub(super) share: f64,
     /// What it does in the task (scaled), of length one.
     pub(super) direction: Vec<f64>,
@@ -51,29 +51,30 @@ impl Coupled {
         locked: Vec<usize>,
         m: usize,
     ) -> Result<Self> {
-        let steering = ActuationMap::of(&mechanism.state(mechanism.home())?, weights, &locked)?;
+        let actuation_map =
+            ActuationMap::of(&mechanism.state(mechanism.home())?, weights, &locked)?;
         let tree = mechanism.coordinates().iter().filter(|c| c.actuated).count();
-        let drives = tree + steering.correction.len() - mechanism.n();
+        let actuated = tree + actuation_map.correction.len() - mechanism.n();
         Ok(Self {
             mechanism: mechanism.clone(),
             weights: weights.to_vec(),
             locked,
-            drives,
-            reduced: Reduced::new(steering.correction.len(), drives),
-            steering,
+            actuated,
+            reduced: ReducedSolver::new(actuation_map.correction.len(), actuated),
+            actuation_map,
             task: Matrix::zeros(m, mechanism.n()),
-            escape: None,
+            uncontrolled: None,
         })
     }
 
     /// Number of driven joints: the size of y.
-    pub(super) fn drives(&self) -> usize {
-        self.drives
+    pub(super) fn actuated_joints(&self) -> usize {
+        self.actuated
     }
 
     /// Number of independent motions that the drives steer: the columns of M that are not zero.
-    pub(super) fn steered(&self) -> usize {
-        self.steering.motions.cols()
+    pub(super) fn actuated_motions(&self) -> usize {
+        self.actuation_map.motions.cols()
     }
 
     /// Looks at the loops of `q`, with `self.task` as the task there, and writes J M. `space`
@@ -89,8 +90,8 @@ impl Coupled {
         reduced: &mut Matrix,
     ) -> Result<()> {
         let state = self.mechanism.state(q)?;
-        self.steering = ActuationMap::of(&state, &self.weights, &self.locked)?;
-        let LoopClosureError { distance, angle } = self.steering.closure_error;
+        self.actuation_map = ActuationMap::of(&state, &self.weights, &self.locked)?;
+        let LoopClosureError { distance, angle } = self.actuation_map.closure_error;
         if !(distance <= NEARLY_CLOSED * self.mechanism.reach() && angle <= NEARLY_CLOSED) {
             return Err(Error::InvalidOption {
                 option: "q",
@@ -103,76 +104,80 @@ impl Coupled {
             });
         }
         self.reduced.motions.as_mut_slice().fill(0.0);
-        for j in 0..self.steering.motions.cols() {
-            let from = self.steering.motions.column(j);
+        for j in 0..self.actuation_map.motions.cols() {
+            let from = self.actuation_map.motions.column(j);
             for (i, x) in self.reduced.motions.column_mut(j).iter_mut().enumerate() {
                 *x = space.scaled_rate(i, from[i]);
             }
         }
         for (i, x) in self.reduced.correction.iter_mut().enumerate() {
-            *x = space.scaled_rate(i, self.steering.correction[i] / dt);
+            *x = space.scaled_rate(i, self.actuation_map.correction[i] / dt);
         }
         let n = self.mechanism.n();
-        for j in 0..self.drives {
+        for j in 0..self.actuated {
             let rates = &self.reduced.motions.column(j)[..n];
             self.task.mul_vec_into(rates, reduced.column_mut(j));
         }
-        self.escape = self.find_escape(&self.steering, space);
+        self.uncontrolled = self.find_uncontrolled(&self.actuation_map, space);
         Ok(())
     }
 
     /// The motion of the task that the drives have least of where they steer so, and where that is
     /// little.
-    fn find_escape(&self, steering: &ActuationMap, space: &TaskSpace) -> Option<Escape> {
+    fn find_uncontrolled(
+        &self,
+        actuation_map: &ActuationMap,
+        space: &TaskSpace,
+    ) -> Option<UncontrolledMotion> {
         let n = self.mechanism.n();
         let in_task = |motion: &[f64]| self.task.mul_vec(&space.scaled_rates(&motion[..n]));
-        let left = (0..steering.left.cols()).map(|j| (0.0, steering.left.column(j)));
-        let weak = steering.shares.iter().enumerate();
-        let weak = weak.map(|(j, share)| (*share, steering.directions.column(j)));
-        left.chain(weak).take_while(|(share, _)| *share < LEAST_STEERED).find_map(
+        let left = (0..actuation_map.left.cols()).map(|j| (0.0, actuation_map.left.column(j)));
+        let weak = actuation_map.shares.iter().enumerate();
+        let weak = weak.map(|(j, share)| (*share, actuation_map.directions.column(j)));
+        left.chain(weak).take_while(|(share, _)| *share < MIN_ACTUATED_SHARE).find_map(
             |(share, motion)| {
                 let mut direction = in_task(motion);
                 let size = norm(&direction);
                 // A joint that spins alone does not move the object.
-                (size > UNSTEERED).then(|| {
+                (size > UNACTUATED).then(|| {
                     direction.iter_mut().for_each(|x| *x /= size);
-                    Escape { share, direction }
+                    UncontrolledMotion { share, direction }
                 })
             },
         )
     }
 
     /// The motion that is about to escape, if any.
-    pub(super) fn escape(&self) -> Option<&Escape> {
-        self.escape.as_ref()
+    pub(super) fn uncontrolled(&self) -> Option<&UncontrolledMotion> {
+        self.uncontrolled.as_ref()
     }
 
     /// True where the motion that escapes would have less of the drives after a step with these
     /// weighted rates.
-    pub(super) fn is_escaping(
+    pub(super) fn approaches_type_ii(
         &self,
         q: &[f64],
         rates: &[f64],
         space: &TaskSpace,
         dt: f64,
     ) -> Result<bool> {
-        let Some(now) = &self.escape else { return Ok(false) };
+        let Some(now) = &self.uncontrolled else { return Ok(false) };
         let mut next = q.to_vec();
         let rates: Vec<f64> = rates.iter().zip(&space.columns).map(|(r, c)| r * c).collect();
         self.mechanism.integrate_in_place(&mut next, &rates[..q.len()], dt);
         let ahead = ActuationMap::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)?;
-        Ok(self.find_escape(&ahead, space).is_some_and(|then| then.share <= now.share))
+        Ok(self.find_uncontrolled(&ahead, space).is_some_and(|then| then.share <= now.share))
     }
 
     /// Projects joint velocities of the secondary tasks (all joints, not weighted) on the actuated motions.
     pub(super) fn load_secondary(&mut self, velocities: &[f64]) {
-        self.reduced.secondary = self.effort_of(velocities);
+        self.reduced.secondary = self.actuation_of(velocities);
     }
 
     /// The y of rates of all joints (not weighted).
-    pub(super) fn effort_of(&self, rates: &[f64]) -> Vec<f64> {
-        let mut y = self.steering.project(rates);
-        y.resize(self.drives, 0.0);
+    pub(super) fn actuation_of(&self, rates: &[f64]) -> Vec<f64> {
+        let mut y = self.actuation_map.project(rates);
+        y.resize(self.actuated, 0.0);
         y
     }
 
@@ -203,9 +208,13 @@ pub(super) fn not_assembled(mechanism: &Mechanism) -> Error {
 }
 
 /// The error of drives that leave the object a motion in every posture.
-pub(super) fn not_steered(mechanism: &Mechanism, escape: &Escape, task: Task) -> Error {
+pub(super) fn not_actuated(
+    mechanism: &Mechanism,
+    motion: &UncontrolledMotion,
+    task: Task,
+) -> Error {
     let names = Task::COMPONENTS.iter().zip(task.components).filter(|(_, on)| *on);
-    let parts = names.zip(&escape.direction).filter(|(_, share)| share.abs() > 0.1);
+    let parts = names.zip(&motion.direction).filter(|(_, share)| share.abs() > 0.1);
     let parts: Vec<String> = parts.map(|((name, _), share)| format!("{share:.2} {name}")).collect();
     Error::Model {
         model: mechanism.name().to_owned(),
@@ -225,7 +234,7 @@ mod tests {
     use crate::control::ServoOptions;
     use crate::control::solver::bounds::{LimitKind, VelocityBounds};
     use crate::control::solver::direct::{Problem, RELEASE, Saturator, solve};
-    use crate::control::solver::reduced::CoupledProblem;
+    use crate::control::solver::reduced::ReducedProblem;
     use crate::inverse::Method;
     use crate::kinematics::{Chain, ReferenceFrame};
     use crate::linalg::Svd;
@@ -238,10 +247,10 @@ mod tests {
         let mut state = 5_u64;
         let mut next = move || 2.0 * uniform(&mut state) - 1.0;
         let panda = crate::model::catalogue::load("panda").unwrap();
-        let drives = (0..panda.n()).filter(|&i| panda.coordinates()[i].actuated).count();
+        let actuated = (0..panda.n()).filter(|&i| panda.coordinates()[i].actuated).count();
         let limits: Vec<_> = panda.coordinates().iter().map(|c| c.limits).collect();
         let chain = Chain::new(&panda, panda.tool());
-        let space = TaskSpace::new(&ServoOptions::new(&panda), &chain, &limits);
+        let space = TaskSpace::new(ServoOptions::new(&panda).scaling(), &chain, &limits);
         let method = Method::Truncated { eps: 1e-9 };
         let (mut kept, mut bent) = (0, 0);
         for _ in 0..300 {
@@ -249,7 +258,7 @@ mod tests {
             let mut coupled = Coupled::new(&panda, &[], Vec::new(), 6).unwrap();
             coupled.task =
                 panda.state(&q).unwrap().jacobian(panda.tool(), ReferenceFrame::LocalWorldAligned);
-            let mut reduced = Matrix::zeros(6, drives);
+            let mut reduced = Matrix::zeros(6, actuated);
             coupled.load(&q, &space, 1e-3, &mut reduced).unwrap();
             let x: Vec<f64> = (0..6).map(|_| next()).collect();
             let bounds: Vec<VelocityBounds> = (0..panda.n())
@@ -272,10 +281,10 @@ mod tests {
             let mut saturator = Saturator::new(6, panda.n());
             let expected = saturator.apply(problem, &vec![0.0; panda.n()], &mut rates);
 
-            coupled.reduced.primary = solved(&reduced, drives);
+            coupled.reduced.primary = solved(&reduced, actuated);
             let last = vec![0.0; panda.n()];
-            let (j, rates_before, rest) = (&reduced, &last[..], vec![0.0; drives]);
-            let problem = CoupledProblem {
+            let (j, rates_before, rest) = (&reduced, &last[..], vec![0.0; actuated]);
+            let problem = ReducedProblem {
                 j,
                 x: &x,
                 method: &method,

@@ -6,7 +6,7 @@
 //!          the discrete motion v, v - A dt, v - 2 A dt, ...
 //! Stopping with x = v / (A dt), k = floor(x), f = x - k:
 //!          D / (A dt^2) = (k + 1) (k / 2 + f), inverted in closed form below; most rates are
-//!          clear of all limits by a bound of D that has no root in it (`Clearance`)
+//!          clear of all limits by a bound of D that has no root in it (`BrakingMargin`)
 //! Units    rad or m, s
 //! Valid    a joint that obeyed the interval in the last step has an interval that is not empty in
 //!          this one. A measured state that did not (a push, a start outside the limits) gets the
@@ -18,6 +18,7 @@
 
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::model::Limits;
+use crate::scalar::clamp;
 use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
 
 /// A coordinate and the rate it was last given.
@@ -76,7 +77,7 @@ impl VelocityBounds {
 /// What the limits of a joint ask of a rate that meets none of them, without a root: such rates need
 /// no bounds.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Clearance {
+pub(super) struct BrakingMargin {
     lower: f64,
     upper: f64,
     velocity: f64,
@@ -91,7 +92,7 @@ pub(super) struct Clearance {
     pub(super) slowness: f64,
 }
 
-impl Clearance {
+impl BrakingMargin {
     /// For steps of `dt`; of joints that are locked any rate is clear.
     pub(super) fn new(limits: &Limits, dt: f64, is_locked: bool) -> Self {
         let limits = if is_locked { &Limits::NONE } else { limits };
@@ -112,7 +113,7 @@ impl Clearance {
     /// True if [`VelocityBounds::next`] has the rate inside and away from its ends; false also for some
     /// rates near them, and for NaN.
     #[inline]
-    pub(super) fn holds(&self, now: JointState, rate: f64) -> bool {
+    pub(super) fn allows(&self, now: JointState, rate: f64) -> bool {
         const MORE: f64 = 1.0 + 1e3 * LIMIT_MET;
         let speed = MORE * rate.abs();
         let change = (rate - now.velocity).abs() + (MORE - 1.0) * (speed + now.velocity.abs());
@@ -152,7 +153,7 @@ pub(super) fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
     }
     let scaled = room / unit;
     let k = (0.5 * ((1.0 + 8.0 * scaled).sqrt() - 1.0)).floor();
-    let f = ((scaled - 0.5 * k * (k + 1.0)) / (k + 1.0)).clamp(0.0, 1.0);
+    let f = clamp((scaled - 0.5 * k * (k + 1.0)) / (k + 1.0), 0.0, 1.0);
     (k + f) * acceleration * dt
 }
 
@@ -205,7 +206,7 @@ mod tests {
             let bounds = VelocityBounds::next(&limits, now, dt);
             let free = bounds.contains(rate) && bounds.met(rate).is_none();
             inside += usize::from(free);
-            if Clearance::new(&limits, dt, false).holds(now, rate) {
+            if BrakingMargin::new(&limits, dt, false).allows(now, rate) {
                 clear += 1;
                 assert!(free, "{rate} in {bounds:?} at {now:?}, {limits:?}, dt = {dt}");
             }

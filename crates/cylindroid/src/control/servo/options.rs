@@ -1,7 +1,8 @@
 //! What a servo is told: frame, task, gains, limits, inverse.
 
-use super::projection::TaskProjection;
+use super::projection::{ProjectionChoice, TaskProjection};
 use super::secondary::SecondaryTask;
+use super::task_space::TaskScaling;
 use crate::error::{Error, Result};
 use crate::ik::Task;
 use crate::inverse::Method;
@@ -135,7 +136,22 @@ impl ServoOptions {
         Ok(Vec::new())
     }
 
-    /// Refuses numbers that make no controller.
+    /// The scales of the task space.
+    pub(super) fn scaling(&self) -> TaskScaling<'_> {
+        let (task, length) = (self.task, self.length);
+        TaskScaling { task, length, joint_weights: &self.joint_weights }
+    }
+
+    /// The projection and its fallback.
+    pub(super) fn projection_choice(&self) -> ProjectionChoice<'_> {
+        ProjectionChoice {
+            projection: &self.projection,
+            fallback: self.fallback.as_ref(),
+            largest: self.largest_projection,
+        }
+    }
+
+    /// Checks that the options define a controller.
     ///
     /// # Errors
     /// [`Error::InvalidOption`] naming the option and its value, [`Error::NotFinite`].

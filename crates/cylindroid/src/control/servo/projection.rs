@@ -12,7 +12,6 @@
 //!          the treatment of singular poses are the same for every projection
 //! Checked  tests/it/servo/projection.rs
 
-use super::options::ServoOptions;
 use crate::error::{Error, Result};
 use crate::inverse::HyperbolicDamping;
 use crate::kinematics::ReferenceFrame;
@@ -133,28 +132,37 @@ impl TaskFrame {
     }
 }
 
+/// The projection that a servo should use, and its fallback.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ProjectionChoice<'a> {
+    pub(super) projection: &'a TaskProjection,
+    pub(super) fallback: Option<&'a TaskProjection>,
+    /// Largest norm of a projector [-].
+    pub(super) largest: f64,
+}
+
 /// The projector of this step.
 #[derive(Debug, Clone)]
-pub(super) struct Projecting {
+pub(super) struct StepProjection {
     projector: Option<TaskProjector>,
     reason: Option<NoInverse>,
     stopped: bool,
 }
 
-impl Projecting {
+impl StepProjection {
     pub(super) const fn new() -> Self {
         Self { projector: None, reason: None, stopped: false }
     }
 
     /// Finds the projector for the pose of this decomposition, or the fallback's.
-    pub(super) fn load(&mut self, options: &ServoOptions, svd: &Svd, frame: TaskFrame) {
+    pub(super) fn load(&mut self, choice: ProjectionChoice<'_>, svd: &Svd, frame: TaskFrame) {
         *self = Self::new();
-        let largest = options.largest_projection;
-        match projector(&options.projection, largest, svd, frame) {
+        let ProjectionChoice { projection, fallback, largest } = choice;
+        match projector(projection, largest, svd, frame) {
             Ok(found) => self.projector = found,
             Err(reason) => {
                 self.reason = Some(reason);
-                match options.fallback.as_ref().map(|f| projector(f, largest, svd, frame)) {
+                match fallback.map(|f| projector(f, largest, svd, frame)) {
                     Some(Ok(found)) => self.projector = found,
                     Some(Err(_)) | None => self.stopped = true,
                 }

@@ -41,7 +41,7 @@ pub struct VelocitiesAtPoint {
     /// Rates of the joints that move the tool [rad/s or m/s]; `None` where there is no inverse.
     pub joint_velocities: Option<Vec<f64>>,
     /// The twist of the tool that they make, at the tool, world axes.
-    pub done: Option<Twist>,
+    pub achieved: Option<Twist>,
     /// Why there is none.
     pub reason: Option<NoInverse>,
 }
@@ -120,7 +120,7 @@ impl InverseChoice {
         if !inverse.exists {
             return Ok(VelocitiesAtPoint {
                 joint_velocities: None,
-                done: None,
+                achieved: None,
                 reason: inverse.reason,
             });
         }
@@ -128,7 +128,7 @@ impl InverseChoice {
         let done = j.mul_vec(&rates);
         let done = Twist::from_array(std::array::from_fn(|i| done[i]));
         let done = done.at_point(pose.translation - p);
-        Ok(VelocitiesAtPoint { joint_velocities: Some(rates), done: Some(done), reason: None })
+        Ok(VelocitiesAtPoint { joint_velocities: Some(rates), achieved: Some(done), reason: None })
     }
 
     /// The inverse at the reference point `p`, and the twist in the units that it takes.

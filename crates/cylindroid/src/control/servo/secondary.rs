@@ -21,6 +21,7 @@ use crate::kinematics::Chain;
 use crate::linalg::{Matrix, Svd};
 use crate::manipulability::log_volume_slope;
 use crate::model::{CoordinateKind, Mechanism};
+use crate::scalar::clamp;
 use crate::spatial::{Rotation, Vec3};
 
 /// A secondary task, projected onto the null space of the end-effector task.
@@ -135,7 +136,7 @@ impl SecondaryTask {
                         continue;
                     }
                     let q = chain.q()[i];
-                    let push = |room: f64| (1.0 - room / near).clamp(0.0, 1.0);
+                    let push = |distance: f64| clamp(1.0 - distance / near, 0.0, 1.0);
                     *rate += gain * (push(q - l.lower) - push(l.upper - q));
                 }
             }

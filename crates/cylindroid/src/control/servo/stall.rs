@@ -69,7 +69,7 @@ pub enum Stall {
     /// A motion of the object is about to escape the drives of a closed chain (type II
     /// singularity): the servo stops before.
     TypeII {
-        /// How much of that motion still belongs to the drives, of a motion of length one in units
+        /// Actuated share of that motion, which has length one in units
         /// scaled by the reach [-].
         share: f64,
         /// The motion as a unit vector in task space.
@@ -99,7 +99,7 @@ impl Stall {
 
 /// Watches the error.
 #[derive(Debug, Clone)]
-pub(super) struct Watch {
+pub(super) struct StallDetector {
     best: f64,
     since: f64,
     window: f64,
@@ -107,26 +107,26 @@ pub(super) struct Watch {
 
 /// How the joints go about a step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Effort {
+pub(super) struct BrakingState {
     /// True if a joint gains speed as fast as its acceleration limit lets it.
-    pub(super) gaining: bool,
+    pub(super) accelerating: bool,
     /// The largest |rate| / A of the joints (s).
     pub(super) stopping_time: f64,
 }
 
-impl Watch {
+impl StallDetector {
     pub(super) const fn new() -> Self {
         Self { best: f64::INFINITY, since: 0.0, window: WINDOW }
     }
 
     /// Notes the error of a step of `dt` seconds; true if stalled.
-    pub(super) fn stalled(&mut self, error: f64, effort: Effort, dt: f64) -> bool {
+    pub(super) fn stalled(&mut self, error: f64, braking: BrakingState, dt: f64) -> bool {
         if error < self.best * (1.0 - SHARE) {
-            let window = WINDOW + TURN_ROUND * effort.stopping_time;
+            let window = WINDOW + TURN_ROUND * braking.stopping_time;
             *self = Self { best: error, since: 0.0, window };
             return false;
         }
-        if !effort.gaining {
+        if !braking.accelerating {
             self.since += dt;
         }
         self.since > self.window
@@ -135,14 +135,14 @@ impl Watch {
 
 /// What the classification looks at.
 #[derive(Debug)]
-pub(super) struct Evidence<'a> {
+pub(super) struct StallInputs<'a> {
     pub(super) svd: &'a Svd,
     /// Gains of the inverse along each direction.
     pub(super) gains: &'a [f64],
     /// The remaining error in scaled task coordinates.
     pub(super) error: &'a [f64],
     /// The same as projected.
-    pub(super) possible: &'a [f64],
+    pub(super) projected_error: &'a [f64],
     /// Why there is no projector, if the arm was stopped for it.
     pub(super) no_inverse: Option<NoInverse>,
     /// Coordinates that stand at a position limit against the desired motion.
@@ -153,7 +153,7 @@ pub(super) struct Evidence<'a> {
     pub(super) generic_rank: usize,
 }
 
-pub(super) fn classify(e: &Evidence<'_>) -> Stall {
+pub(super) fn classify(e: &StallInputs<'_>) -> Stall {
     if let Some(reason) = e.no_inverse {
         return Stall::NoInverse(reason);
     }
@@ -167,7 +167,7 @@ pub(super) fn classify(e: &Evidence<'_>) -> Stall {
         let along = |i| e.svd.u(i).iter().zip(error).map(|(u, x)| u * x).sum::<f64>();
         (0..e.svd.len()).filter(kept).map(|i| along(i).powi(2)).sum()
     };
-    let possible = realised(e.possible);
+    let possible = realised(e.projected_error);
     if possible > POSSIBLE * total {
         return if e.at_limit.is_empty() {
             Stall::Slow

@@ -6,11 +6,21 @@
 //! Shapes   J: 6 x n, J_task: m x n
 //! Checked  tests/it/servo/limits.rs::joint_weights_keep_joints_still
 
-use super::options::ServoOptions;
+use crate::ik::Task;
 use crate::kinematics::{Chain, ReferenceFrame};
 use crate::linalg::Matrix;
 use crate::model::Limits;
 use crate::spatial::Twist;
+
+/// The task, and the scales of its rows and columns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TaskScaling<'a> {
+    pub(super) task: Task,
+    /// Characteristic length (m).
+    pub(super) length: f64,
+    /// A weight for each coordinate of the mechanism; empty for none.
+    pub(super) joint_weights: &'a [f64],
+}
 
 /// Which rows and columns, scaled how.
 #[derive(Debug, Clone)]
@@ -30,13 +40,14 @@ pub(super) struct TaskSpace {
 
 impl TaskSpace {
     /// For the joints of `chain` with these limits, and driven closing joints with the others.
-    pub(super) fn new(options: &ServoOptions, chain: &Chain, limits: &[Limits]) -> Self {
-        let scale = |i: usize| if i < 3 { 1.0 / options.length } else { 1.0 };
-        let component = |&i: &usize| options.task.components[i];
-        let weight = |c: usize| options.joint_weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt());
+    pub(super) fn new(scaling: TaskScaling<'_>, chain: &Chain, limits: &[Limits]) -> Self {
+        let TaskScaling { task, length, joint_weights } = scaling;
+        let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
+        let component = |&i: &usize| task.components[i];
+        let weight = |c: usize| joint_weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt());
         let column = |(&c, l): (&usize, &Limits)| if is_locked(l) { 0.0 } else { weight(c) };
         Self {
-            axes: options.task.axes,
+            axes: task.axes,
             rows: (0..6).filter(component).map(|i| (i, scale(i))).collect(),
             all_rows: (0..6).all(|i| component(&i)).then(|| std::array::from_fn(scale)),
             turns_and_slides: chain.turns_and_slides(),

@@ -14,9 +14,10 @@
 use super::bounds::{LimitKind, VelocityBounds};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, Svd, dot, norm};
+use crate::scalar::clamp;
 
 /// Below this scale a direction counts as lost and the motion is bent [-].
-pub(in crate::control) const LEAST_SCALE: f64 = 0.05;
+pub(in crate::control) const MIN_SCALE: f64 = 0.05;
 
 /// A held joint is released when its pull is above this share of the largest possible one [-]:
 /// what is left of directions that the inverse cut must not release anything.
@@ -42,8 +43,8 @@ pub(in crate::control) struct Saturator {
     svd: Svd,
     reduced: Matrix,
     gains: Vec<f64>,
-    held: Vec<bool>,
-    held_rates: Vec<f64>,
+    clamped: Vec<bool>,
+    clamped_rates: Vec<f64>,
     particular: Vec<f64>,
     direction: Vec<f64>,
     rest: Vec<f64>,
@@ -65,8 +66,8 @@ impl Saturator {
             svd: Svd::workspace(m, n),
             reduced: Matrix::zeros(m, n),
             gains: vec![0.0; m.min(n)],
-            held: vec![false; n],
-            held_rates: vec![0.0; n],
+            clamped: vec![false; n],
+            clamped_rates: vec![0.0; n],
             particular: vec![0.0; n],
             direction: vec![0.0; n],
             rest: vec![0.0; m],
@@ -103,19 +104,19 @@ impl Saturator {
             return Saturation { scale: span.most, direction_lost: false };
         }
         let (scale, cause) = self.scaled(problem);
-        if scale >= LEAST_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
+        if scale >= MIN_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
             rates.copy_from_slice(&self.best);
             return Saturation { scale, direction_lost: false };
         }
-        self.bend(problem, rates);
+        self.bounded_least_squares(problem, rates);
         Saturation { scale: 0.0, direction_lost: true }
     }
 
     /// The largest feasible scale, with its rates in `best`, and what limits it; 0 if none.
     fn scaled(&mut self, p: Problem<'_>) -> (f64, LimitKind) {
         let n = p.bounds.len();
-        self.held.fill(false);
-        self.held_rates.fill(0.0);
+        self.clamped.fill(false);
+        self.clamped_rates.fill(0.0);
         let mut best = 0.0;
         let mut cause = LimitKind::Position;
         let mut possible = 0;
@@ -128,11 +129,11 @@ impl Saturator {
             }
             // rates(s) = particular + s direction
             self.rest.fill(0.0);
-            p.j.mul_vec_into(&self.held_rates, &mut self.rest);
+            p.j.mul_vec_into(&self.clamped_rates, &mut self.rest);
             self.rest.iter_mut().for_each(|r| *r = -*r);
             solve(&self.svd, p.method, &mut self.gains, &self.rest, &mut self.particular);
             solve(&self.svd, p.method, &mut self.gains, p.x, &mut self.direction);
-            for (a, h) in self.particular.iter_mut().zip(&self.held_rates) {
+            for (a, h) in self.particular.iter_mut().zip(&self.clamped_rates) {
                 *a += h;
             }
             if let Some(span) = interval(&self.particular, &self.direction, p.bounds)
@@ -155,24 +156,24 @@ impl Saturator {
             for i in 0..n {
                 let rate = self.particular[i] + self.direction[i];
                 let excess = (rate - p.bounds[i].clamp(rate)).abs();
-                if !self.held[i] && excess > worst.0 {
+                if !self.clamped[i] && excess > worst.0 {
                     worst = (excess, Some((i, p.bounds[i].clamp(rate))));
                 }
             }
             let Some((i, rate)) = worst.1 else { break };
-            self.held[i] = true;
-            self.held_rates[i] = rate;
+            self.clamped[i] = true;
+            self.clamped_rates[i] = rate;
         }
         (best, cause)
     }
 
     /// Bounded least squares by an active set: hold what reaches a bound, release what would leave
     /// it inwards, until neither happens.
-    fn bend(&mut self, p: Problem<'_>, rates: &mut [f64]) {
+    fn bounded_least_squares(&mut self, p: Problem<'_>, rates: &mut [f64]) {
         let n = p.bounds.len();
         for (i, rate) in rates.iter_mut().enumerate() {
             let clamped = p.bounds[i].clamp(*rate);
-            self.held[i] = clamped != *rate;
+            self.clamped[i] = clamped != *rate;
             *rate = clamped;
         }
         for _ in 0..3 * n {
@@ -193,10 +194,10 @@ impl Saturator {
     }
 
     /// `rest = x - J rates`, of the held joints alone or of all.
-    fn load_residual(&mut self, p: &Problem<'_>, rates: &[f64], held_alone: bool) {
+    fn load_residual(&mut self, p: &Problem<'_>, rates: &[f64], clamped_alone: bool) {
         self.rest.copy_from_slice(p.x);
         for (j, rate) in rates.iter().enumerate() {
-            if self.held[j] || !held_alone {
+            if self.clamped[j] || !clamped_alone {
                 for (r, a) in self.rest.iter_mut().zip(p.j.column(j)) {
                     *r -= a * rate;
                 }
@@ -210,23 +211,23 @@ impl Saturator {
         let mut first = (1.0, None);
         for (i, bound) in bounds.iter().enumerate() {
             let way = self.direction[i] - rates[i];
-            if self.held[i] || bound.contains(self.direction[i]) {
+            if self.clamped[i] || bound.contains(self.direction[i]) {
                 continue;
             }
             let end = if way > 0.0 { bound.upper } else { bound.lower };
-            let share = ((end - rates[i]) / way).clamp(0.0, 1.0);
+            let share = clamp((end - rates[i]) / way, 0.0, 1.0);
             if share < first.0 || first.1.is_none() {
                 first = (share, Some((i, end)));
             }
         }
         for (i, rate) in rates.iter_mut().enumerate() {
-            if !self.held[i] {
+            if !self.clamped[i] {
                 *rate += first.0 * (self.direction[i] - *rate);
             }
         }
         let Some((i, end)) = first.1 else { return false };
         rates[i] = end;
-        self.held[i] = true;
+        self.clamped[i] = true;
         true
     }
 
@@ -236,7 +237,7 @@ impl Saturator {
         let least = RELEASE * self.svd.value(0) * size;
         let mut best = (least, None);
         for (i, bound) in p.bounds.iter().enumerate() {
-            if !self.held[i] || bound.lower == bound.upper {
+            if !self.clamped[i] || bound.lower == bound.upper {
                 continue;
             }
             let pull = dot(p.j.column(i), &self.rest);
@@ -246,14 +247,14 @@ impl Saturator {
             }
         }
         let Some(i) = best.1 else { return false };
-        self.held[i] = false;
+        self.clamped[i] = false;
         true
     }
 
     /// Decomposes J without the columns of held joints; the number of directions it can do.
     fn decompose_free(&mut self, p: &Problem<'_>) -> usize {
         self.reduced.as_mut_slice().copy_from_slice(p.j.as_slice());
-        for (i, held) in self.held.iter().enumerate() {
+        for (i, held) in self.clamped.iter().enumerate() {
             if *held {
                 self.reduced.column_mut(i).fill(0.0);
             }
@@ -345,7 +346,7 @@ mod tests {
             let mut rates = vec![0.0; n];
             solve(&Svd::of(&j), &method, &mut vec![0.0; m.min(n)], &x, &mut rates);
             let problem = Problem { j: &j, x: &x, method: &method, bounds: &bounds };
-            saturator.bend(problem, &mut rates);
+            saturator.bounded_least_squares(problem, &mut rates);
 
             let rest: Vec<f64> = j.mul_vec(&rates).iter().zip(&x).map(|(y, x)| x - y).collect();
             let size = rest.iter().map(|r| r * r).sum::<f64>().sqrt();

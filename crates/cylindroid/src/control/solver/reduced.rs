@@ -1,6 +1,6 @@
 //! Rates of coupled joints inside their bounds: the task is scaled first, then bent.
 //!
-//! Formula  scaled: the largest s in [0, 1] with M y(s) + s_0 in bounds, rates at a bound held one
+//! Formula  scaled: the largest s in [0, 1] with M y(s) + s_0 in bounds, rates at a bound clamped one
 //!          by one while the rest can still do the task;
 //!          bent: from rest (or the last rates, slowed as far as the bounds allow) towards the
 //!          task, along bounds where they are met
@@ -11,14 +11,15 @@
 //! Checked  tests in `servo/coupled.rs` (against `direct.rs`), tests/it/servo/object.rs
 
 use super::bounds::{LimitKind, VelocityBounds};
-use super::direct::{LEAST_SCALE, Saturation, Span, interval, solve};
+use super::direct::{MIN_SCALE, Saturation, Span, interval, solve};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, RowSpace, Svd, norm};
-use crate::tolerance::HELD_ROWS;
+use crate::scalar::clamp;
+use crate::tolerance::CLAMPED_ROWS;
 
 /// The task in y, and what holds for the rates.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::control) struct CoupledProblem<'a> {
+pub(in crate::control) struct ReducedProblem<'a> {
     /// J M
     pub(in crate::control) j: &'a Matrix,
     pub(in crate::control) x: &'a [f64],
@@ -32,7 +33,7 @@ pub(in crate::control) struct CoupledProblem<'a> {
 
 /// Coupled joints as the solver sees them: rates = M y + s_0.
 #[derive(Debug, Clone)]
-pub(in crate::control) struct Reduced {
+pub(in crate::control) struct ReducedSolver {
     /// M in weighted rates, a columns.
     pub(in crate::control) motions: Matrix,
     /// s_0 in weighted rates.
@@ -40,23 +41,23 @@ pub(in crate::control) struct Reduced {
     /// The y of the primary task, of the secondary ones, and of the rates.
     pub(in crate::control) primary: Vec<f64>,
     pub(in crate::control) secondary: Vec<f64>,
-    pub(in crate::control) y: Vec<f64>,
+    pub(in crate::control) actuation: Vec<f64>,
 }
 
-impl Reduced {
-    /// For so many rates and drives, at rest.
-    pub(in crate::control) fn new(rates: usize, drives: usize) -> Self {
+impl ReducedSolver {
+    /// For so many rates and actuated, at rest.
+    pub(in crate::control) fn new(rates: usize, actuated: usize) -> Self {
         Self {
-            motions: Matrix::zeros(rates, drives),
+            motions: Matrix::zeros(rates, actuated),
             correction: vec![0.0; rates],
-            primary: vec![0.0; drives],
-            secondary: vec![0.0; drives],
-            y: vec![0.0; drives],
+            primary: vec![0.0; actuated],
+            secondary: vec![0.0; actuated],
+            actuation: vec![0.0; actuated],
         }
     }
 
     /// `rates = M y`, without the way to closed loops.
-    pub(in crate::control) fn lift(&self, y: &[f64], rates: &mut [f64]) {
+    pub(in crate::control) fn expand(&self, y: &[f64], rates: &mut [f64]) {
         self.motions.mul_vec_into(y, rates);
     }
 
@@ -68,7 +69,7 @@ impl Reduced {
     /// Moves primary and secondary velocities into the bounds: weighted rates into `out`.
     pub(in crate::control) fn saturate(
         &mut self,
-        p: CoupledProblem<'_>,
+        p: ReducedProblem<'_>,
         out: &mut [f64],
     ) -> Saturation {
         let n = out.len();
@@ -78,8 +79,8 @@ impl Reduced {
             }
         };
         let (mut direct, mut secondary) = (vec![0.0; n], vec![0.0; n]);
-        self.lift(&self.primary, &mut direct);
-        self.lift(&self.secondary, &mut secondary);
+        self.expand(&self.primary, &mut direct);
+        self.expand(&self.secondary, &mut secondary);
         // At a limit the way to closed loops ends, too. Bounds of acceleration that leave out rest
         // are met by the motion: a correction that met them would open the loops.
         for (x, bound) in self.correction.iter_mut().zip(p.bounds) {
@@ -89,7 +90,7 @@ impl Reduced {
         let both: Vec<f64> = start.iter().zip(&direct).map(|(a, b)| a + b).collect();
         if let Some(span) = interval(&both, &secondary, p.bounds) {
             clamped(&both, &secondary, span.most, out);
-            self.set_y(span.most, 1.0);
+            self.set_actuation(span.most, 1.0);
             return Saturation { scale: 1.0, direction_lost: false };
         }
         if let Some(span) = interval(&start, &direct, p.bounds)
@@ -97,47 +98,47 @@ impl Reduced {
             && span.cause == LimitKind::Acceleration
         {
             clamped(&start, &direct, span.most, out);
-            self.set_y(0.0, span.most);
+            self.set_actuation(0.0, span.most);
             return Saturation { scale: span.most, direction_lost: false };
         }
         let (scale, cause) = self.scaled(&p, out);
-        if scale >= LEAST_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
+        if scale >= MIN_SCALE || (scale > 0.0 && cause != LimitKind::Position) {
             return Saturation { scale, direction_lost: false };
         }
-        if !self.bend(&p, out) {
+        if !self.descend(&p, out) {
             self.brake(&p, out);
         }
         Saturation { scale: 0.0, direction_lost: true }
     }
 
-    fn set_y(&mut self, secondary: f64, primary: f64) {
-        for ((y, p), w) in self.y.iter_mut().zip(&self.primary).zip(&self.secondary) {
+    fn set_actuation(&mut self, secondary: f64, primary: f64) {
+        for ((y, p), w) in self.actuation.iter_mut().zip(&self.primary).zip(&self.secondary) {
             *y = primary * p + secondary * w;
         }
     }
 
     /// The largest feasible scale, its rates and y, and what limits it.
-    fn scaled(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) -> (f64, LimitKind) {
+    fn scaled(&mut self, p: &ReducedProblem<'_>, out: &mut [f64]) -> (f64, LimitKind) {
         let n = out.len();
-        let mut held = Held::default();
+        let mut clamped = Clamped::default();
         let (mut best, mut cause) = (0.0, LimitKind::Position);
         let mut possible = 0;
         for round in 0..n {
-            let Some(free) = self.hold(&held, p) else { break };
+            let Some(free) = self.solve_free(&clamped, p) else { break };
             if round == 0 {
                 possible = free.rank;
             } else if free.rank < possible {
                 break; // the rest can no longer do the task
             }
-            let done = p.j.mul_vec(&free.y);
+            let done = p.j.mul_vec(&free.actuation);
             let rest: Vec<f64> = done.iter().map(|d| -d).collect();
             let (mut particular, direction) = (free.solve(p, &rest), free.solve(p, p.x));
-            particular.iter_mut().zip(&free.y).for_each(|(a, h)| *a += h);
+            particular.iter_mut().zip(&free.actuation).for_each(|(a, h)| *a += h);
             let (mut a, mut b) = (vec![0.0; n], vec![0.0; n]);
-            self.lift(&particular, &mut a);
+            self.expand(&particular, &mut a);
             a.iter_mut().zip(&self.correction).for_each(|(a, c)| *a += c);
-            self.lift(&direction, &mut b);
-            for &(i, rate) in &held.rows {
+            self.expand(&direction, &mut b);
+            for &(i, rate) in &clamped.rows {
                 (a[i], b[i]) = (rate, 0.0);
             }
             if let Some(span) = interval(&a, &b, p.bounds)
@@ -147,7 +148,7 @@ impl Reduced {
                 for (((o, a), b), bound) in out.iter_mut().zip(&a).zip(&b).zip(p.bounds) {
                     *o = bound.clamp(a + best * b);
                 }
-                for ((y, a), b) in self.y.iter_mut().zip(&particular).zip(&direction) {
+                for ((y, a), b) in self.actuation.iter_mut().zip(&particular).zip(&direction) {
                     *y = a + best * b;
                 }
             }
@@ -158,24 +159,24 @@ impl Reduced {
                 let rate = a[i] + b[i];
                 (rate - p.bounds[i].clamp(rate)).abs()
             };
-            let worst = (0..n).filter(|&i| !held.has(i)).map(|i| (excess(i), i));
+            let worst = (0..n).filter(|&i| !clamped.has(i)).map(|i| (excess(i), i));
             let worst = worst.max_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, i)) = worst.filter(|(e, _)| *e > 0.0) else { break };
-            held.rows.push((i, p.bounds[i].clamp(a[i] + b[i])));
+            clamped.rows.push((i, p.bounds[i].clamp(a[i] + b[i])));
         }
         (best, cause)
     }
 
     /// A bent way: from rest towards the task, along bounds where they are met; from the last rates,
     /// slowed, where rest is too far for a step. False where these are not within bounds either.
-    fn bend(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) -> bool {
+    fn descend(&mut self, p: &ReducedProblem<'_>, out: &mut [f64]) -> bool {
         let n = out.len();
-        let mut held = Held::default();
+        let mut clamped = Clamped::default();
         let mut y = vec![0.0; self.motions.cols()];
         let mut rates = self.correction.clone();
         if !rates.iter().zip(p.bounds).all(|(r, b)| b.contains(*r)) {
             let mut moved = vec![0.0; n];
-            self.lift(p.last, &mut moved);
+            self.expand(p.last, &mut moved);
             rates.iter_mut().zip(&moved).for_each(|(r, m)| *r += m);
             moved.iter_mut().for_each(|m| *m = -*m);
             let Some(Span { most, .. }) = interval(&rates, &moved, p.bounds) else { return false };
@@ -183,20 +184,20 @@ impl Reduced {
             y.iter_mut().zip(p.last).for_each(|(y, l)| *y = (1.0 - most) * l);
         }
         for _ in 0..n {
-            let Some(free) = self.hold(&held, p) else { break };
-            let done = p.j.mul_vec(&free.y);
+            let Some(free) = self.solve_free(&clamped, p) else { break };
+            let done = p.j.mul_vec(&free.actuation);
             let rest: Vec<f64> = p.x.iter().zip(done).map(|(x, d)| x - d).collect();
             let mut goal = free.solve(p, &rest);
-            goal.iter_mut().zip(&free.y).for_each(|(g, h)| *g += h);
+            goal.iter_mut().zip(&free.actuation).for_each(|(g, h)| *g += h);
             let way: Vec<f64> = goal.iter().zip(&y).map(|(g, y)| g - y).collect();
             let mut moved = vec![0.0; n];
-            self.lift(&way, &mut moved);
+            self.expand(&way, &mut moved);
             let mut first = (1.0, None);
-            for i in (0..n).filter(|&i| !held.has(i)) {
+            for i in (0..n).filter(|&i| !clamped.has(i)) {
                 let bound = p.bounds[i];
                 let end = if moved[i] > 0.0 { bound.upper } else { bound.lower };
                 if moved[i] != 0.0 && !bound.contains(rates[i] + moved[i]) {
-                    let share = ((end - rates[i]) / moved[i]).clamp(0.0, 1.0);
+                    let share = clamp((end - rates[i]) / moved[i], 0.0, 1.0);
                     if share < first.0 || first.1.is_none() {
                         first = (share, Some((i, end)));
                     }
@@ -205,39 +206,39 @@ impl Reduced {
             y.iter_mut().zip(&way).for_each(|(y, w)| *y += first.0 * w);
             rates.iter_mut().zip(&moved).for_each(|(r, m)| *r += first.0 * m);
             let Some(row) = first.1 else { break };
-            held.rows.push(row);
+            clamped.rows.push(row);
         }
         for ((o, r), bound) in out.iter_mut().zip(&rates).zip(p.bounds) {
             *o = bound.clamp(*r);
         }
-        self.y.copy_from_slice(&y);
+        self.actuation.copy_from_slice(&y);
         true
     }
 
     /// The last rates, slowed together as far as the bounds allow.
-    pub(in crate::control) fn brake(&mut self, p: &CoupledProblem<'_>, out: &mut [f64]) {
+    pub(in crate::control) fn brake(&mut self, p: &ReducedProblem<'_>, out: &mut [f64]) {
         // rates (1 - s): from the last ones towards rest.
         let slower: Vec<f64> = p.rates.iter().map(|r| -r).collect();
         let share = interval(p.rates, &slower, p.bounds).map_or(1.0, |span| span.most);
         for ((o, r), bound) in out.iter_mut().zip(p.rates).zip(p.bounds) {
             *o = bound.clamp(r * (1.0 - share));
         }
-        self.y.fill(0.0);
+        self.actuation.fill(0.0);
     }
 
-    /// The y that keeps the held rates with the least effort, and the task in what they leave
+    /// The y that keeps the clamped rates with the least effort, and the task in what they leave
     /// free; nothing where they contradict each other.
-    fn hold(&self, held: &Held, p: &CoupledProblem<'_>) -> Option<Free> {
-        let row = |k: usize, j: usize| self.motions[(held.rows[k].0, j)];
-        let rows = Matrix::from_fn(held.rows.len(), self.motions.cols(), row);
+    fn solve_free(&self, clamped: &Clamped, p: &ReducedProblem<'_>) -> Option<FreeMotion> {
+        let row = |k: usize, j: usize| self.motions[(clamped.rows[k].0, j)];
+        let rows = Matrix::from_fn(clamped.rows.len(), self.motions.cols(), row);
         let svd = Svd::of(&rows);
-        let rank = svd.rank(HELD_ROWS).rank;
+        let rank = svd.rank(CLAMPED_ROWS).rank;
         let asked: Vec<f64> =
-            held.rows.iter().map(|&(i, rate)| rate - self.correction[i]).collect();
+            clamped.rows.iter().map(|&(i, rate)| rate - self.correction[i]).collect();
         let y = svd.solve(&asked, rank);
         let kept = rows.mul_vec(&y);
         let off = kept.iter().zip(&asked).map(|(k, a)| (k - a).abs()).fold(0.0, f64::max);
-        if off > HELD_ROWS * (1.0 + norm(&asked)) {
+        if off > CLAMPED_ROWS * (1.0 + norm(&asked)) {
             return None;
         }
         let mut reduced = p.j.transpose();
@@ -245,39 +246,39 @@ impl Reduced {
         for i in 0..reduced.cols() {
             space.project_out(reduced.column_mut(i));
         }
-        if reduced.max_abs() <= HELD_ROWS * p.j.max_abs() {
+        if reduced.max_abs() <= CLAMPED_ROWS * p.j.max_abs() {
             reduced.as_mut_slice().fill(0.0); // rounding is no way to do a task
         }
         let svd = Svd::of(&reduced.transpose());
         let mut gains = vec![0.0; svd.len()];
         p.method.gains(&svd, p.x, &mut gains);
         let rank = gains.iter().zip(svd.values()).filter(|(g, s)| is_kept(**g * s)).count();
-        Some(Free { y, svd, rank })
+        Some(FreeMotion { actuation: y, svd, rank })
     }
 }
 
-/// Rates that are held at a bound.
+/// Rates that are clamped at a bound.
 #[derive(Debug, Clone, Default)]
-struct Held {
+struct Clamped {
     rows: Vec<(usize, f64)>,
 }
 
-impl Held {
+impl Clamped {
     fn has(&self, row: usize) -> bool {
         self.rows.iter().any(|(i, _)| *i == row)
     }
 }
 
-/// What held rates leave of the task.
-struct Free {
-    y: Vec<f64>,
+/// What clamped rates leave of the task.
+struct FreeMotion {
+    actuation: Vec<f64>,
     svd: Svd,
     rank: usize,
 }
 
-impl Free {
-    fn solve(&self, p: &CoupledProblem<'_>, x: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; self.y.len()];
+impl FreeMotion {
+    fn solve(&self, p: &ReducedProblem<'_>, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.actuation.len()];
         solve(&self.svd, p.method, &mut vec![0.0; self.svd.len()], x, &mut out);
         out
     }

@@ -27,7 +27,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, NodeKind};
-use crate::scalar::uniform;
+use crate::scalar::{clamp, uniform};
 use crate::screws::Screw;
 use crate::spatial::{Pose, Rotation, Twist};
 use crate::tolerance::{
@@ -299,7 +299,7 @@ impl Analytic {
             let turned = |q: &[f64; 6], k: usize| {
                 let mut q = *q;
                 // The posture itself may stand at a limit to the last bit.
-                q[i] = (q[i] + TAU * (first + k as f64)).clamp(lower, upper);
+                q[i] = clamp(q[i] + TAU * (first + k as f64), lower, upper);
                 q
             };
             all = all
@@ -371,7 +371,7 @@ impl Analytic {
     /// Of a posture that is moved into the limits (m, rad).
     fn errors(&mut self, q: &mut [f64; 6], target: &Pose) -> (f64, f64) {
         for (i, &c) in self.coordinates.iter().enumerate() {
-            q[i] = q[i].clamp(self.lower[i], self.upper[i]);
+            q[i] = clamp(q[i], self.lower[i], self.upper[i]);
             self.q[c] = q[i];
         }
         let pose = self.chain.set(&self.q);

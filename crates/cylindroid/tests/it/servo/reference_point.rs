@@ -51,7 +51,7 @@ fn only_invariant_inverses_keep_their_rates() {
     ] {
         let found = asked(&choice(&robot, Method::default(), projection.clone()), &robot);
         assert!(found.invariant, "{projection:?}: {found:?}");
-        let done = [&found.at_tool, &found.at_point].map(|at| at.done.unwrap().to_array());
+        let done = [&found.at_tool, &found.at_point].map(|at| at.achieved.unwrap().to_array());
         crate::support::assert_close("done", &done[0], &done[1], 1e-9);
     }
 }
@@ -64,7 +64,7 @@ fn arms_that_can_do_all_keep_their_rates_without_damping() {
         let exact = choice(&robot, Method::Truncated { eps: 1e-9 }, TaskProjection::Orthogonal);
         let found = asked(&exact, &robot);
         assert!(found.invariant, "{name}: {found:?}");
-        let done = found.at_tool.done.unwrap();
+        let done = found.at_tool.achieved.unwrap();
         crate::support::assert_close(name, &done.to_array(), &ASKED.to_array(), 1e-9);
         let damped = Method::Damped { damping: 0.1 };
         assert!(!asked(&choice(&robot, damped, TaskProjection::Orthogonal), &robot).invariant);

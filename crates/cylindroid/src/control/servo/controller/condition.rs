@@ -17,7 +17,7 @@ use crate::inverse::Inverse;
 use crate::kinematics::ReferenceFrame;
 use crate::linalg::{RowSpace, Svd, norm};
 use crate::spatial::Twist;
-use crate::tolerance::UNSTEERED;
+use crate::tolerance::UNACTUATED;
 
 /// A configuration as a servo sees it.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +62,7 @@ impl Servo {
     #[must_use]
     pub fn redundancy(&self) -> usize {
         let unknowns = match &self.coupled {
-            Some(coupled) => coupled.steered(),
+            Some(coupled) => coupled.actuated_motions(),
             None => self.free_coordinates().count(),
         };
         unknowns.saturating_sub(self.generic_rank)
@@ -97,7 +97,7 @@ impl Servo {
         let mut x = if let Some(coupled) = &self.coupled {
             let mut rates = last.to_vec();
             rates.resize(self.limits.len(), 0.0);
-            coupled.effort_of(&rates)
+            coupled.actuation_of(&rates)
         } else {
             let own = self.chain.coordinates().iter().enumerate();
             own.map(|(i, &c)| self.space.scaled_rate(i, last[c])).collect()
@@ -118,12 +118,12 @@ impl Servo {
     /// Rates of all coordinates for the unknowns `x` of the servo, the fastest at its limit; `None`
     /// where nothing moves.
     fn at_full_speed(&self, x: &[f64]) -> Option<Vec<f64>> {
-        if norm(x) <= UNSTEERED {
+        if norm(x) <= UNACTUATED {
             return None;
         }
         let mut own = vec![0.0; self.limits.len()];
         match &self.coupled {
-            Some(coupled) => coupled.reduced.lift(x, &mut own),
+            Some(coupled) => coupled.reduced.expand(x, &mut own),
             None => own.copy_from_slice(x),
         }
         own.iter_mut().zip(&self.space.columns).for_each(|(rate, scale)| *rate *= scale);
@@ -131,7 +131,7 @@ impl Servo {
             rate.abs() / if l.velocity.is_finite() { l.velocity } else { 1.0 }
         };
         let fastest = own.iter().zip(&self.limits).map(share).fold(0.0, f64::max);
-        if !(fastest > UNSTEERED && fastest.is_finite()) {
+        if !(fastest > UNACTUATED && fastest.is_finite()) {
             return None;
         }
         let mut rates = vec![0.0; self.mechanism.n()];

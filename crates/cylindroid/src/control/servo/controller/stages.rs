@@ -3,13 +3,13 @@
 use super::super::approach;
 use super::super::limits::JointState;
 use super::super::options::SecondaryNullSpace;
-use super::super::stall::Effort;
+use super::super::stall::BrakingState;
 use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::direct::{Problem, RELEASE, Saturation, solve};
-use crate::control::solver::reduced::CoupledProblem;
+use crate::control::solver::reduced::ReducedProblem;
 use crate::error::Result;
 use crate::linalg::{RowSpace, dot};
 use crate::spatial::Twist;
@@ -19,8 +19,8 @@ impl Servo {
     /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
     pub(super) fn load_task(&mut self, desired: &DesiredMotion) {
         self.space.scale(desired.error, &mut self.error);
-        self.possible.copy_from_slice(&self.error);
-        self.projecting.apply(&mut self.possible);
+        self.projected_error.copy_from_slice(&self.error);
+        self.step_projection.apply(&mut self.projected_error);
         self.method = self.options.method;
         let mut twist = desired.feedback;
         let mut solved = None;
@@ -34,13 +34,13 @@ impl Servo {
                 self.secondary.iter_mut().zip(&self.primary).for_each(way);
             } else if let Some(coupled) = &mut self.coupled {
                 self.svd.apply_gains_into(
-                    &self.possible,
+                    &self.projected_error,
                     &self.gains,
                     &mut coupled.reduced.secondary,
                 );
-                coupled.reduced.lift(&coupled.reduced.secondary, &mut self.secondary);
+                coupled.reduced.expand(&coupled.reduced.secondary, &mut self.secondary);
             } else {
-                self.svd.apply_gains_into(&self.possible, &self.gains, &mut self.secondary);
+                self.svd.apply_gains_into(&self.projected_error, &self.gains, &mut self.secondary);
             }
             let dt = self.options.dt;
             let share = approach::share(
@@ -70,14 +70,14 @@ impl Servo {
     /// `x = P twist`, scaled.
     pub(super) fn load_twist(&mut self, twist: Twist) {
         self.space.scale(twist, &mut self.x);
-        self.projecting.apply(&mut self.x);
+        self.step_projection.apply(&mut self.x);
     }
 
     /// `primary = J+ x`
     pub(super) fn solve(&mut self) {
         if let Some(coupled) = &mut self.coupled {
             solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut coupled.reduced.primary);
-            coupled.reduced.lift(&coupled.reduced.primary, &mut self.primary);
+            coupled.reduced.expand(&coupled.reduced.primary, &mut self.primary);
         } else {
             solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
         }
@@ -95,7 +95,7 @@ impl Servo {
     }
 
     /// A posture near home in which the loops are closed; the first is the nearest to home.
-    pub(super) fn nearby_posture(&self, posture: usize) -> Result<Option<Vec<f64>>> {
+    pub(super) fn nearby_configuration(&self, posture: usize) -> Result<Option<Vec<f64>>> {
         let spread = if posture == 0 { 0.0 } else { 0.2 };
         let n = self.mechanism.n();
         let guess: Vec<f64> = (0..n)
@@ -117,11 +117,12 @@ impl Servo {
             return Ok(saturation);
         };
         let rates = self.space.scaled_rates(&self.rates);
-        let last = coupled.effort_of(&self.rates);
-        let problem = CoupledProblem { j, x, method, bounds, rates: &rates, last: &last };
+        let last = coupled.actuation_of(&self.rates);
+        let problem = ReducedProblem { j, x, method, bounds, rates: &rates, last: &last };
         let mut saturation = coupled.reduced.saturate(problem, &mut self.primary);
-        self.is_escaping = coupled.is_escaping(q, &self.primary, &self.space, self.options.dt)?;
-        if self.is_escaping {
+        self.approaches_type_ii =
+            coupled.approaches_type_ii(q, &self.primary, &self.space, self.options.dt)?;
+        if self.approaches_type_ii {
             coupled.reduced.brake(&problem, &mut self.primary);
             saturation = Saturation { scale: 0.0, direction_lost: false };
         }
@@ -129,16 +130,17 @@ impl Servo {
     }
 
     /// What the task gets of the rates of this step.
-    pub(super) fn load_done(&mut self) {
-        let rates = self.coupled.as_ref().map_or(&self.primary, |coupled| &coupled.reduced.y);
-        self.task.mul_vec_into(rates, &mut self.done);
+    pub(super) fn load_achieved_twist(&mut self) {
+        let rates =
+            self.coupled.as_ref().map_or(&self.primary, |coupled| &coupled.reduced.actuation);
+        self.task.mul_vec_into(rates, &mut self.achieved_twist);
     }
 
     /// True if the tool, moved by the rates of this step, is so slow against the target that an
     /// error within tolerance stays within it.
     pub(super) fn settled(&mut self, feed_forward: Twist) -> bool {
-        self.load_done();
-        let speed = self.space.twist(&self.done) - feed_forward;
+        self.load_achieved_twist();
+        let speed = self.space.twist(&self.achieved_twist) - feed_forward;
         let (gain, most) = (self.options.gain, self.options.tolerance);
         speed.linear.norm() <= gain.position * most.position
             && speed.angular.norm() <= gain.orientation * most.orientation
@@ -181,34 +183,34 @@ impl Servo {
     }
 
     /// The rates of a step in which no joint meets a limit; `None`, and nothing done, if one may.
-    pub(super) fn store_clear_rates(&mut self, q: &[f64]) -> Option<Effort> {
+    pub(super) fn store_unlimited_rates(&mut self, q: &[f64]) -> Option<BrakingState> {
         if self.coupled.is_some() {
             return None;
         }
         let scaled = self.primary.iter().zip(&self.secondary).zip(&self.space.columns);
-        let places = self.chain.coordinates().iter().zip(&self.clearances);
+        let places = self.chain.coordinates().iter().zip(&self.braking_margins);
         let mut clear = true;
-        for (((primary, secondary), column), (&c, clearance)) in scaled.zip(places) {
+        for (((primary, secondary), column), (&c, margin)) in scaled.zip(places) {
             let now = JointState { position: q[c], velocity: self.rates[c] };
-            clear &= clearance.holds(now, (primary + secondary) * column);
+            clear &= margin.allows(now, (primary + secondary) * column);
         }
         if !clear {
             return None;
         }
         let scaled = self.primary.iter_mut().zip(&self.secondary).zip(&self.space.columns);
-        let places = self.chain.coordinates().iter().zip(&self.clearances);
-        let mut effort = Effort::default();
-        for (((primary, secondary), column), (&c, clearance)) in scaled.zip(places) {
+        let places = self.chain.coordinates().iter().zip(&self.braking_margins);
+        let mut braking = BrakingState::default();
+        for (((primary, secondary), column), (&c, margin)) in scaled.zip(places) {
             *primary += secondary;
             self.rates[c] = *primary * column;
             if self.accelerates {
-                let time = self.rates[c].abs() * clearance.slowness;
-                effort.stopping_time = effort.stopping_time.max(time);
+                let time = self.rates[c].abs() * margin.slowness;
+                braking.stopping_time = braking.stopping_time.max(time);
             }
         }
         self.active.fill(None);
         self.at_limit.clear();
-        Some(effort)
+        Some(braking)
     }
 
     /// The bounds of the next rates, in weighted coordinates.
@@ -230,8 +232,8 @@ impl Servo {
         self.chain.coordinates().get(i).copied().unwrap_or(i)
     }
 
-    pub(super) fn store_rates(&mut self) -> Effort {
-        let mut effort = Effort::default();
+    pub(super) fn store_rates(&mut self) -> BrakingState {
+        let mut braking = BrakingState::default();
         for i in 0..self.primary.len() {
             let c = self.place(i);
             let (rate, bound) = (self.primary[i], self.bounds[i]);
@@ -243,26 +245,28 @@ impl Servo {
             };
             let before = std::mem::replace(&mut self.rates[c], own).abs();
             let speed = own.abs();
-            effort.gaining |= self.active[i] == Some(LimitKind::Acceleration) && speed > before;
+            braking.accelerating |=
+                self.active[i] == Some(LimitKind::Acceleration) && speed > before;
             if speed > 0.0 {
-                effort.stopping_time =
-                    effort.stopping_time.max(speed / self.limits[i].acceleration);
+                braking.stopping_time =
+                    braking.stopping_time.max(speed / self.limits[i].acceleration);
             }
         }
-        effort
+        braking
     }
 
     /// The joints that stand at a position limit, and beyond it would carry out more of the task.
     pub(super) fn note_limits(&mut self) {
         self.at_limit.clear();
         let left = |(x, done): (&f64, &f64)| x - done;
-        let size = self.x.iter().zip(&self.done).map(left).map(|r| r * r).sum::<f64>().sqrt();
+        let size =
+            self.x.iter().zip(&self.achieved_twist).map(left).map(|r| r * r).sum::<f64>().sqrt();
         let least = RELEASE * self.svd.value(0) * size;
         // In y for closed chains: what would lessen the error most.
         let descent: Vec<f64> = match &self.coupled {
             None => Vec::new(),
             Some(_) => {
-                let rest: Vec<f64> = self.x.iter().zip(&self.done).map(left).collect();
+                let rest: Vec<f64> = self.x.iter().zip(&self.achieved_twist).map(left).collect();
                 (0..self.task.cols()).map(|j| dot(self.task.column(j), &rest)).collect()
             }
         };
@@ -272,7 +276,7 @@ impl Servo {
             let pull: f64 = match &self.coupled {
                 Some(coupled) => coupled.reduced.along(i, &descent),
                 None => {
-                    let rest = self.x.iter().zip(&self.done).map(left);
+                    let rest = self.x.iter().zip(&self.achieved_twist).map(left);
                     self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum()
                 }
             };
