@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use cylindroid::kinematics::Batch;
+use cylindroid::kinematics::KinematicsBatch;
 use pyo3::Python;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -23,7 +23,7 @@ pub(crate) fn written<'py>(
     write: impl FnOnce(&mut [f64]) -> cylindroid::Result<()> + Send,
 ) -> Result<Array<'py>> {
     // Short ones stay on the thread that asks.
-    let pool = if count.unwrap_or(1) > Batch::ALONE { Some(pool()?) } else { None };
+    let pool = if count.unwrap_or(1) > KinematicsBatch::CHUNK { Some(pool()?) } else { None };
     let mut result = Ok(());
     let array = arrays::written(py, count, shape, |out| {
         result = match pool {

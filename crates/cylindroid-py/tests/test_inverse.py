@@ -36,7 +36,7 @@ def test_pinv_of_lost_rank_is_numpys(rank):
         for dropped in found.dropped:
             assert abs(np.linalg.norm(dropped.direction) - 1) < 1e-12
             np.testing.assert_allclose(J.T @ dropped.direction, 0, atol=1e-10)
-            assert dropped.realised == 0.0
+            assert dropped.filter_factor == 0.0
     ones = cy.pinv(np.ones((3, 5)))
     np.testing.assert_allclose(ones.matrix, np.full((5, 3), 1 / 15), atol=1e-16)
 

@@ -7,9 +7,9 @@
 
 use cylindroid::closure::{ClosedChain, Mobility};
 use cylindroid::ik::{Goal, IkOptions, Solver};
-use cylindroid::kinematics::{Batch, Chain};
+use cylindroid::kinematics::{Chain, KinematicsBatch};
 use cylindroid::linalg::Svd;
-use cylindroid::manipulability::{Batch as Numbers, BatchOptions};
+use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 use cylindroid::{Matrix, Mechanism, Pose, ReferenceFrame, Servo, ServoOptions, Vec3, catalogue};
 use std::hint::black_box;
 
@@ -72,7 +72,7 @@ fn jacobian(calls: usize) {
 /// Poses and Jacobians of 1000 configurations.
 fn batch(calls: usize) {
     let robot = panda();
-    let batch = Batch::new(&robot, robot.tool());
+    let batch = KinematicsBatch::new(&robot, robot.tool());
     let (mut poses, mut jacobians) = (vec![0.0; 1000 * 16], vec![0.0; 1000 * 6 * robot.n()]);
     let q: Vec<f64> = (0..1000).flat_map(|i| posture(&robot, i)).collect();
     for _ in 0..calls {
@@ -137,9 +137,9 @@ fn inverse_kinematics(calls: usize) {
 /// Mobility and manipulability of 128 postures near home, as numbers.
 fn many(calls: usize) {
     let platform = catalogue::load("stewart").unwrap();
-    let batch = Numbers::new(&platform, &BatchOptions::default()).unwrap();
+    let batch = ManipulabilityBatch::new(&platform, &BatchOptions::default()).unwrap();
     let q: Vec<f64> = (0..128).flat_map(|i| posture(&platform, i)).collect();
-    let mut out = vec![0.0; 128 * Numbers::WIDTH];
+    let mut out = vec![0.0; 128 * ManipulabilityBatch::WIDTH];
     for _ in 0..calls {
         batch.analyse_into(black_box(&q), &mut out).unwrap();
         black_box(&out);

@@ -8,9 +8,9 @@ use cylindroid::closure::{
 };
 use cylindroid::ik::{Analytic, Goal, IkOptions, Solver};
 use cylindroid::inverse::{self, Method};
-use cylindroid::kinematics::{Batch, Chain};
+use cylindroid::kinematics::{Chain, KinematicsBatch};
 use cylindroid::linalg::Svd;
-use cylindroid::manipulability::{Batch as Numbers, BatchOptions, Manipulability, Metrics};
+use cylindroid::manipulability::{BatchOptions, Manipulability, ManipulabilityBatch, Metrics};
 use cylindroid::model::Coordinate;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Matrix, Mechanism, Pose, ReferenceFrame, Servo, ServoOptions, catalogue};
@@ -67,7 +67,7 @@ fn forward_kinematics_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
 fn batch_of_jacobians(bencher: Bencher<'_, '_>, name: &str) {
     const COUNT: usize = 100_000;
     let robot = robot(name);
-    let batch = Batch::new(&robot, robot.tool());
+    let batch = KinematicsBatch::new(&robot, robot.tool());
     let n = robot.n();
     let q: Vec<f64> = (0..COUNT * n).map(|i| (i * 7919 % 6283) as f64 * 1e-3 - 3.1).collect();
     let mut poses = vec![0.0; COUNT * 16];
@@ -312,7 +312,7 @@ fn report(constraint: &Constraint) -> (Mobility, Manipulability) {
 fn batch_of_mobility_and_manipulability(bencher: Bencher<'_, '_>, name: &str) {
     const COUNT: usize = 4096;
     let mechanism = robot(name);
-    let batch = Numbers::new(&mechanism, &BatchOptions::default()).unwrap();
+    let batch = ManipulabilityBatch::new(&mechanism, &BatchOptions::default()).unwrap();
     // As many closed postures as are soon found, again and again.
     let mut closed = Vec::new();
     for i in 0..64 {
@@ -321,7 +321,7 @@ fn batch_of_mobility_and_manipulability(bencher: Bencher<'_, '_>, name: &str) {
         closed.extend(assemble(&mechanism, &guess, &[]).unwrap().q);
     }
     let q = closed.repeat(COUNT / 64);
-    let mut out = vec![0.0; COUNT * Numbers::WIDTH];
+    let mut out = vec![0.0; COUNT * ManipulabilityBatch::WIDTH];
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
         alone.install(|| batch.analyse_into(black_box(&q), &mut out).unwrap());

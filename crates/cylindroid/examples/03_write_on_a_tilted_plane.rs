@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use cylindroid::control::{Admittance, AdmittanceGain, HybridController, HybridInput, Target};
 use cylindroid::kinematics::Chain;
-use cylindroid::screws::{Along, Projector, ScrewOptions};
+use cylindroid::screws::{Complement, Projector, ScrewOptions};
 use cylindroid::{Pose, Rotation, Servo, ServoOptions, Twist, Vec3, Wrench};
 
 const DT: f64 = 1e-3; // s
@@ -32,7 +32,7 @@ fn main() -> cylindroid::Result<()> {
     let motions = [slide(x), slide(y), turn(x), turn(y), turn(normal)];
     // The wrenches that do no work on them are the forces along the normal. What gives way to them
     // is reciprocal to the motions in the limit of an infinite pitch: sliding along the normal.
-    let along = Along::Reciprocal { h: f64::INFINITY };
+    let along = Complement::Reciprocal { h: f64::INFINITY };
     let options = ScrewOptions::with_length(robot.reach());
     let projector = match Projector::of(&motions, along, &options)? {
         Ok(projector) => projector,

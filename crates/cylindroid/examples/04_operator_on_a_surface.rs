@@ -5,7 +5,7 @@ use cylindroid::control::{
     AuthorityTimes, OperatorAuthority, SharedController, SharedInput, Status, Target,
 };
 use cylindroid::kinematics::Chain;
-use cylindroid::screws::{Along, Projector, ScrewOptions};
+use cylindroid::screws::{Complement, Projector, ScrewOptions};
 use cylindroid::{Pose, Rotation, Servo, ServoOptions, Twist, Vec3};
 
 const DT: f64 = 1e-3; // s
@@ -57,7 +57,7 @@ fn main() -> cylindroid::Result<()> {
         let retreat = Twist { linear: out, angular: Vec3::ZERO };
         let free = [about(Vec3::X), about(Vec3::Y), about(Vec3::Z)];
         let kept = [retreat, tilt(across.x_axis()), tilt(across.y_axis())];
-        let projector = match Projector::of(&free, Along::Twists(&kept), &options)? {
+        let projector = match Projector::of(&free, Complement::Twists(&kept), &options)? {
             Ok(projector) => projector,
             Err(reason) => {
                 println!("no shared law: {reason}");

@@ -10,8 +10,8 @@
 /// multiplies a product of size `t^2 |v|`: at most 1e-15 |v| in the result.
 pub const SMALL_ANGLE: f64 = 0.5;
 
-/// Where the square of the tangent of half an angle is below this, the logarithm of a rotation takes
-/// six terms of a series for the arc tangent, for speed alone: the seventh is below 1e-19.
+/// Where the square of the tangent of half an angle is below this, the logarithm of a rotation
+/// takes six terms of a series for the arc tangent, for speed alone: the seventh is below 1e-19.
 pub const SMALL_TANGENT: f64 = 1e-3;
 
 /// A rotation read from numbers must be orthonormal to this (largest entry of `R^T R - 1`).
@@ -112,7 +112,7 @@ pub const AMBIGUOUS: f64 = 1e3;
 
 /// A projector that enlarges motions by more than this is not used by a servo unless asked to [-]:
 /// the error to be realised would be a thousand times the error to be closed.
-pub const LARGEST_PROJECTION: f64 = 1e3;
+pub const MAX_PROJECTION_NORM: f64 = 1e3;
 
 /// Rank of the equilibrated constraint matrix of a closed chain, relative to its largest singular
 /// value: geometry given to ten digits leaves less than this where a rank is lost, and no regular
@@ -137,12 +137,12 @@ pub const DUALITY: f64 = 1e-6;
 
 /// Metrics of motions whose factors spread further than this have used up the digits there are:
 /// their duality is not checked [-].
-pub const LOPSIDED: f64 = 1.0 / f64::EPSILON;
+pub const MAX_METRIC_CONDITION: f64 = 1.0 / f64::EPSILON;
 
 /// A direction whose part along another is below this, relative to both, is across it, when
 /// corners of boxes are looked for: above rounding of products of fourteen numbers, far below
 /// what tells two corners apart [-].
-pub const BOX_PROGRAM: f64 = 1e-12;
+pub const LINEAR_PROGRAM: f64 = 1e-12;
 
 /// Corners of polytopes nearer to a facet than this times the size of the body lie on it: above
 /// the rounding of their images, far below what can be seen [-].
@@ -150,7 +150,7 @@ pub const HULL: f64 = 1e-9;
 
 /// Most facets of a hull: a polytope in three dimensions with ten thousand corners, and a second
 /// of work.
-pub const MOST_FACETS: usize = 20_000;
+pub const MAX_FACETS: usize = 20_000;
 
 /// How near bounds of a grasp's quality come to each other, relative to its largest wrench [-].
 pub const GRASP_QUALITY: f64 = 1e-3;
@@ -164,7 +164,8 @@ pub const PASSIVE: f64 = 1e-9;
 pub const CLOSED: f64 = 1e-10;
 
 /// Directions in which a constraint is weaker than this, relative to its strongest, take no part in
-/// closing loops again: near a singular pose the step there would be the largest, and lead away [-].
+/// closing loops again: near a singular pose the step there would be the largest, and lead away
+/// [-].
 pub const CORRECTION_RANK: f64 = 1e-6;
 
 /// A motion of which less than this belongs to the driven joints (of a motion of length one in
@@ -197,8 +198,8 @@ pub const FINITE_STEP: f64 = 1e-2;
 /// grows in proportion to the distance.
 pub const BRANCH_RANK: f64 = 1e-3;
 
-/// Two branches whose tangents differ by an angle whose sine is below this are one [-]; tangents are
-/// right to 1e-6.
+/// Two branches whose tangents differ by an angle whose sine is below this are one [-]; tangents
+/// are right to 1e-6.
 pub const SAME_BRANCH: f64 = 1e-3;
 
 /// Steps that can be followed span a direction if they spread along it by more than this [-].
@@ -217,7 +218,7 @@ pub const GENERIC_LIMIT: f64 = 1e-6;
 
 /// A joint whose share in motions of length one is below this stands still [-]: above what
 /// [`GENERIC_LIMIT`] makes of none.
-pub const STANDS_STILL: f64 = 1e-5;
+pub const JOINT_AT_REST: f64 = 1e-5;
 
 /// Position error at which inverse kinematics counts a target as reached, by default (m): what
 /// others call exact, a tenth of what arms repeat.
@@ -246,11 +247,11 @@ pub const FREE_TURN: f64 = 1e-7;
 
 /// A condition on a turn that is missed by this share of the square of its largest value may still
 /// be one that rounding, or the departures of [`ALIGNED_AXES`], keep from being met [-].
-pub const MISSED: f64 = 1e-4;
+pub const NEARLY_SATISFIED: f64 = 1e-4;
 
 /// Where a polynomial has an extremum of this size, relative to the sum of its terms, it may touch
 /// zero [-]; forward kinematics decides.
-pub const TOUCHING: f64 = 1e-9;
+pub const TANGENT_ROOT: f64 = 1e-9;
 
 /// An answer of formulas with errors below this needs no Newton step [rad, reaches].
 pub const ANALYTIC_REFINED: f64 = 1e-12;
@@ -294,7 +295,7 @@ pub const LEAST_PATH_SINGULAR: f64 = 1e-5;
 
 /// What falls to zero with the distance d to a singularity is below its root there, what does not
 /// is above it; the root of distances below the square of this is that of rounding [-].
-pub const VANISHES: f64 = 1e-6;
+pub const VANISHING: f64 = 1e-6;
 
 /// Corrections of a step below this are rounding, whatever the step [-].
 pub const CORRECTION_ROUNDING: f64 = 1e-9;
@@ -323,4 +324,4 @@ pub const CLEAR_DISTANCE: f64 = 1e-4;
 
 /// A share of a motion below this is nothing, without a decision: a thousandth of
 /// [`CLOSURE_BLOCK`], and above rounding [-].
-pub const CLEARLY_NOTHING: f64 = 1e-12;
+pub const NEGLIGIBLE_SHARE: f64 = 1e-12;

@@ -10,8 +10,8 @@ use cylindroid::control::{
 };
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
-use cylindroid::kinematics::{Batch, Chain};
-use cylindroid::screws::{Along, Projector, ScrewOptions};
+use cylindroid::kinematics::{Chain, KinematicsBatch};
+use cylindroid::screws::{Complement, Projector, ScrewOptions};
 use cylindroid::{
     Matrix, Mechanism, Pose, ReferenceFrame, Servo, ServoOptions, Twist, Vec3, catalogue,
 };
@@ -119,8 +119,8 @@ fn hot_paths_allocate_nothing() {
 fn batches_allocate_nothing() {
     for name in ["panda", "ur5e", "youbot", "3r"] {
         let robot = catalogue::load(name).unwrap();
-        let (n, batch) = (robot.n(), Batch::new(&robot, robot.tool()));
-        for rows in [8, 16, Batch::ALONE] {
+        let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, robot.tool()));
+        for rows in [8, 16, KinematicsBatch::CHUNK] {
             let q = robot.home().repeat(rows);
             let (mut poses, mut jacobians) = (vec![0.0; rows * 16], vec![0.0; rows * 6 * n]);
             let counted = count(|| {
@@ -193,9 +193,9 @@ fn control_laws_allocate_nothing() {
         (HybridController::new(5.0, admittance).unwrap(), SharedController::new(5.0).unwrap());
     let options = ScrewOptions::with_length(0.5);
     for along in [
-        Along::Twists(&normal),
-        Along::Reciprocal { h: 0.2 },
-        Along::Reciprocal { h: f64::INFINITY },
+        Complement::Twists(&normal),
+        Complement::Reciprocal { h: 0.2 },
+        Complement::Reciprocal { h: f64::INFINITY },
     ] {
         let counted = count(|| {
             for _ in 0..100 {

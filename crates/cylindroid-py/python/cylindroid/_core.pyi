@@ -20,7 +20,7 @@ __all__ = [
     "ContactForces",
     "ContinuationResult",
     "Direction",
-    "Dropped",
+    "TruncatedDirection",
     "Existence",
     "FingerContact",
     "FiniteMobility",
@@ -233,13 +233,13 @@ class Direction:
     def object(self) -> _Array: ...
 
 @final
-class Dropped:
+class TruncatedDirection:
     @property
     def direction(self) -> _Array: ...
     @property
     def singular_value(self) -> float: ...
     @property
-    def realised(self) -> float: ...
+    def filter_factor(self) -> float: ...
 
 @final
 class Existence:

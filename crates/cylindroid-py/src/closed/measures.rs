@@ -1,6 +1,6 @@
 //! Mobility and manipulability of many configurations, as numbers.
 
-use cylindroid::manipulability::{Batch, BatchOptions};
+use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -101,13 +101,14 @@ impl PyMechanism {
             None => mechanism.reference(),
         };
         let about = (reference, home.inner.length());
-        let numbers = threads::run(py, rows.count.unwrap_or(1) > Batch::ALONE, || {
-            let options = BatchOptions { metrics, ..BatchOptions::default() };
-            self.ordinary.batch(mechanism, about, options)?.analyse(rows.values)
-        })??;
+        let numbers =
+            threads::run(py, rows.count.unwrap_or(1) > ManipulabilityBatch::CHUNK, || {
+                let options = BatchOptions { metrics, ..BatchOptions::default() };
+                self.ordinary.batch(mechanism, about, options)?.analyse(rows.values)
+            })??;
         let found = PyDict::new(py);
-        for (i, name) in Batch::COLUMNS.into_iter().enumerate() {
-            let column = || numbers.iter().skip(i).step_by(Batch::WIDTH).copied();
+        for (i, name) in ManipulabilityBatch::COLUMNS.into_iter().enumerate() {
+            let column = || numbers.iter().skip(i).step_by(ManipulabilityBatch::WIDTH).copied();
             // Counts are whole numbers.
             #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
             match (kind(name), rows.count) {

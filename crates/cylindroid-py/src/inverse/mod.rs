@@ -7,7 +7,7 @@ pub(crate) mod pinv;
 pub(crate) mod point_direction;
 mod report;
 
-use cylindroid::inverse::{Batch, Inverse};
+use cylindroid::inverse::{Inverse, InverseBatch};
 use cylindroid::{Matrix, Method};
 use pyo3::prelude::*;
 
@@ -25,9 +25,9 @@ fn by_method(py: Python<'_>, j: &Numbers<'_>, method: Method) -> Result<PyInvers
     if m == 0 || n == 0 {
         return of_each(py, j, |j| method.inverse(j));
     }
-    let batch = Batch::new(method, m, n)?;
+    let batch = InverseBatch::new(method, m, n)?;
     let jacobians = j.values();
-    let is_long = jacobians.len() > Batch::ALONE * m * n;
+    let is_long = jacobians.len() > InverseBatch::CHUNK * m * n;
     let inverses = threads::run(py, is_long, || batch.inverses(jacobians))??;
     Ok(PyInverse::of_stack(method, jacobians.to_vec(), (m, n), inverses))
 }

@@ -24,7 +24,7 @@ use crate::table::{self, Table};
 ///     The singular value below which a direction counts as dropped.
 /// gap : float or ndarray, (N,)
 ///     Smallest singular value kept over the largest dropped: near 1 the rank is a matter of taste.
-/// dropped : list of Dropped, or list of such lists
+/// dropped : list of TruncatedDirection, or list of such lists
 ///     The directions that the inverse gives up.
 /// exists : bool or ndarray of bool, (N,)
 ///     False where the method has no inverse for this Jacobian.
@@ -56,16 +56,16 @@ enum Inner {
 /// singular_value : float
 /// direction : ndarray, (m,)
 ///     Unit vector in the (weighted) task space.
-/// realised : float
+/// filter_factor : float
 ///     The share of a motion along it that is realised, in [0, 1/2).
-#[pyclass(frozen, name = "Dropped", module = "cylindroid")]
+#[pyclass(frozen, name = "TruncatedDirection", module = "cylindroid")]
 #[derive(Debug, Clone)]
 pub(crate) struct PyDropped {
     #[pyo3(get)]
     singular_value: f64,
     direction: Vec<f64>,
     #[pyo3(get)]
-    realised: f64,
+    filter_factor: f64,
 }
 
 #[pymethods]
@@ -77,9 +77,9 @@ impl PyDropped {
 
     fn __repr__(&self) -> String {
         format!(
-            "Dropped(singular_value={}, realised={}, direction={})",
+            "TruncatedDirection(singular_value={}, filter_factor={}, direction={})",
             table::number(self.singular_value),
-            table::number(self.realised),
+            table::number(self.filter_factor),
             table::list(&self.direction)
         )
     }
@@ -100,10 +100,10 @@ fn stacked_dropped(
 }
 
 fn dropped(inverse: &Inverse) -> Vec<PyDropped> {
-    let one = |d: &inverse::Dropped| PyDropped {
+    let one = |d: &inverse::TruncatedDirection| PyDropped {
         singular_value: d.singular_value,
         direction: d.direction.clone(),
-        realised: d.realised,
+        filter_factor: d.filter_factor,
     };
     inverse.dropped.iter().map(one).collect()
 }
@@ -260,6 +260,6 @@ impl PyInverse {
     }
 }
 
-fn d_text(d: &inverse::Dropped) -> String {
-    format!("{} (realised {})", table::list(&d.direction), table::number(d.realised))
+fn d_text(d: &inverse::TruncatedDirection) -> String {
+    format!("{} (filter factor {})", table::list(&d.direction), table::number(d.filter_factor))
 }

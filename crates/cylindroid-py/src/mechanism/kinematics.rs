@@ -1,6 +1,6 @@
 //! Kinematics: poses, Jacobians and their derivatives, of one configuration or many.
 
-use cylindroid::kinematics::{Batch, Chain, OrientationRates};
+use cylindroid::kinematics::{Chain, KinematicsBatch, OrientationRates};
 use cylindroid::{Error, Matrix};
 use pyo3::prelude::*;
 
@@ -19,7 +19,7 @@ fn scatter(local: &Matrix, coordinates: &[usize], n: usize, out: &mut [f64]) {
     }
 }
 
-/// True if there are rows that [`Batch`] can tell apart.
+/// True if there are rows that [`KinematicsBatch`] can tell apart.
 fn is_batch(rows: &Rows<'_>) -> bool {
     rows.count.is_some() && rows.width > 0
 }
@@ -82,7 +82,7 @@ impl PyMechanism {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         if is_batch(&rows) {
-            let batch = Batch::new(&self.inner, of);
+            let batch = KinematicsBatch::new(&self.inner, of);
             return threads::written(py, rows.count, &[4, 4], |out| {
                 batch.poses_into(rows.values, out)
             });
@@ -175,7 +175,7 @@ impl PyMechanism {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         if is_batch(&rows) {
-            let batch = Batch::new(&self.inner, of);
+            let batch = KinematicsBatch::new(&self.inner, of);
             return threads::written(py, rows.count, &[6, n], |out| {
                 batch.jacobians_into(rows.values, reference, out)
             });

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use cylindroid::closure::MobilityCounts;
-use cylindroid::manipulability::{Batch, BatchOptions};
+use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 use cylindroid::model::Dimension;
 use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose, ReferenceFrame};
 use pyo3::prelude::*;
@@ -98,12 +98,15 @@ impl Ordinary {
         mechanism: &Mechanism,
         (reference, length): (FrameId, f64),
         options: BatchOptions,
-    ) -> cylindroid::Result<Batch> {
+    ) -> cylindroid::Result<ManipulabilityBatch> {
         let key: About = (mechanism.actuated().collect(), reference, length.to_bits());
         let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let generic = known().get(&key).copied();
         let (reference, length) = (Some(reference), Some(length));
-        let batch = Batch::new(mechanism, &BatchOptions { reference, length, generic, ..options })?;
+        let batch = ManipulabilityBatch::new(
+            mechanism,
+            &BatchOptions { reference, length, generic, ..options },
+        )?;
         known().insert(key, batch.generic());
         Ok(batch)
     }

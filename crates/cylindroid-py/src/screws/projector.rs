@@ -1,6 +1,6 @@
 //! Projectors for hybrid and shared control, the twist between poses, and the adjoint.
 
-use cylindroid::screws::{Along, Projector};
+use cylindroid::screws::{Complement, Projector};
 use cylindroid::{Error, Pose, Twist};
 use pyo3::prelude::*;
 
@@ -74,8 +74,8 @@ impl PyProjector {
         let motions = columns("motions", &motions)?;
         let twists = if along.shape().is_empty() { vec![] } else { columns("along", &along)? };
         let way = match (along.shape(), along.values()) {
-            ([], [h]) => Along::Reciprocal { h: *h },
-            _ => Along::Twists(&twists),
+            ([], [h]) => Complement::Reciprocal { h: *h },
+            _ => Complement::Twists(&twists),
         };
         match Projector::of(&motions, way, &scale_of(length, center.as_ref(), noise)?)? {
             Ok(inner) => Ok(Self { inner }),

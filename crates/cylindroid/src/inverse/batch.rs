@@ -17,24 +17,25 @@ use crate::linalg::{Matrix, Rank, Svd};
 
 /// One way to invert Jacobians of one shape, many in one call.
 ///
-/// Calls with more than [`Batch::ALONE`] of them use the threads of rayon (`RAYON_NUM_THREADS`, or
+/// Calls with more than [`InverseBatch::CHUNK`] of them use the threads of rayon
+/// (`RAYON_NUM_THREADS`, or
 /// `ThreadPool::install` around the call); results do not depend on how many there are.
 ///
 /// ```
-/// use cylindroid::inverse::Batch;
+/// use cylindroid::inverse::InverseBatch;
 /// use cylindroid::{Method, ReferenceFrame, kinematics};
 ///
 /// let robot = cylindroid::load("panda")?;
 /// let q = [robot.home(), robot.home()].concat();
-/// let jacobians = kinematics::Batch::new(&robot, robot.tool())
+/// let jacobians = kinematics::KinematicsBatch::new(&robot, robot.tool())
 ///     .jacobians(&q, ReferenceFrame::Local)?;
-/// let inverses = Batch::new(Method::default(), 6, robot.n())?.inverses(&jacobians)?;
+/// let inverses = InverseBatch::new(Method::default(), 6, robot.n())?.inverses(&jacobians)?;
 /// assert_eq!(inverses.matrices.len(), 2 * robot.n() * 6);
 /// assert!(inverses.ranks.iter().all(|r| r.rank == 6));
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Batch {
+pub struct InverseBatch {
     method: Method,
     rows: usize,
     cols: usize,
@@ -52,10 +53,10 @@ pub struct Inverses {
     pub ranks: Vec<Rank>,
 }
 
-impl Batch {
+impl InverseBatch {
     /// Jacobians that one thread takes at once, some tenths of a millisecond of work: calls with no
     /// more stay on the thread of the caller.
-    pub const ALONE: usize = 256;
+    pub const CHUNK: usize = 256;
 
     /// For Jacobians of `rows` x `cols`.
     ///
@@ -103,14 +104,14 @@ impl Batch {
             ranks: vec![Rank { rank: 0, threshold: 0.0, gap: 0.0 }; count],
         };
         let Inverses { matrices, singular_values, ranks } = &mut inverses;
-        if count <= Self::ALONE {
+        if count <= Self::CHUNK {
             self.chunk(jacobians, matrices, singular_values, ranks);
         } else {
             jacobians
-                .par_chunks(Self::ALONE * each)
-                .zip(matrices.par_chunks_mut(Self::ALONE * each))
-                .zip(singular_values.par_chunks_mut(Self::ALONE * values))
-                .zip(ranks.par_chunks_mut(Self::ALONE))
+                .par_chunks(Self::CHUNK * each)
+                .zip(matrices.par_chunks_mut(Self::CHUNK * each))
+                .zip(singular_values.par_chunks_mut(Self::CHUNK * values))
+                .zip(ranks.par_chunks_mut(Self::CHUNK))
                 .for_each(|(((j, m), s), r)| self.chunk(j, m, s, r));
         }
         Ok(inverses)

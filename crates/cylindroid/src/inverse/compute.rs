@@ -6,7 +6,7 @@
 //! Checked  tests/it/inverse.rs
 
 use super::method::Method;
-use super::report::{self, Dropped, Inverse};
+use super::report::{self, Inverse, TruncatedDirection};
 use super::weighted::Weights;
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank, Svd};
@@ -46,10 +46,10 @@ pub(super) fn compute(
     let share = |i: usize| gains[i] * svd.value(i);
     let dropped = (0..svd.len())
         .filter(|&i| !report::is_kept(share(i)))
-        .map(|i| Dropped {
+        .map(|i| TruncatedDirection {
             singular_value: svd.value(i),
             direction: svd.u(i).to_vec(),
-            realised: share(i),
+            filter_factor: share(i),
         })
         .collect();
     Ok(Inverse {

@@ -4,9 +4,9 @@
 //!          any rank, joint metric M, J = F C: J+h = C+ (F^T Q_h F)^-1 F^T Q_h,
 //!          C+ = M^-1 C^T (C M^-1 C^T)^-1; P_h = J J+h
 //!          damped: (J^T Q_h J + lambda M)^-1 J^T Q_h
-//!          invariant damped: (G^2 + mu^2)^-1 G J^T Q_h, G = J^T Q_h J, in coordinates of the joints
-//!          in which M = 1; tends to J+h as mu goes to zero where that exists, else to the inverse
-//!          on the other eigenvectors of G
+//!          invariant damped: (G^2 + mu^2)^-1 G J^T Q_h, G = J^T Q_h J, in coordinates of the
+//!          joints in which M = 1; tends to J+h as mu goes to zero where that exists, else to the
+//!          inverse on the other eigenvectors of G
 //! Shapes   J: 6 x m (linear part first) -> m x 6; h, L, c as in `screws`
 //! Units    h in m/rad, lambda and mu in m/rad times the unit of M
 //! Valid    J+h exists iff F^T Q_h F is regular: never for some systems, see `screws::NoInverse`;
@@ -18,14 +18,14 @@
 //!          with the origin and the unit. These do not; they are not optimal in any frame either:
 //!          the twist that is realised, P_h s, makes (s - P_h s)^T Q_h (s - P_h s) stationary
 //! Source   Donelan & Selig, theorems 1, 2 and 5, section 6.2; its example 1 has a wrong entry
-//!          (row 3, column 2: (16 h^2 + 16 h - 1) / 32 h), its damped form the wrong promise that it
-//!          always exists
+//!          (row 3, column 2: (16 h^2 + 16 h - 1) / 32 h), its damped form the wrong promise that
+//!          it always exists
 //! Checked  tests/it/screws/vectors/, laws.rs, invariance.rs
 
-use super::report::{Dropped, Inverse, assemble};
+use super::report::{Inverse, TruncatedDirection, assemble};
 use super::weighted::Weights;
 use crate::error::{Error, Result};
-use crate::linalg::{Eigen, Matrix, Metric, Svd};
+use crate::linalg::{Matrix, Metric, Svd, SymmetricEigen};
 use crate::screws::{NoInverse, Projector, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Wrench};
 use crate::tolerance;
@@ -163,7 +163,7 @@ fn from_projector(
     let dropped = projector
         .kernel()
         .into_iter()
-        .map(|t| Dropped { singular_value: 0.0, direction: unit(t), realised: 0.0 })
+        .map(|t| TruncatedDirection { singular_value: 0.0, direction: unit(t), filter_factor: 0.0 })
         .collect();
     Ok(report(matrix, None, dropped))
 }
@@ -225,7 +225,7 @@ fn damped(
             *x = a.pitch_form(*b, h);
         }
     }
-    let eigen = Eigen::of(gram, k);
+    let eigen = SymmetricEigen::of(gram, k);
     // What rounding leaves of a zero would be divided by the square of a small mu.
     let rounding =
         tolerance::MACHINE_RANK * svd.values().next().unwrap_or(0.0).powi(2) * (1.0 + h.abs());

@@ -1,8 +1,8 @@
 //! The inverse methods (pseudoinverses) as one table: name, parameters and gains of each.
 //!
-//! A new method is a file with its `gains`, a row here and a line in docs/inverses.md: the enum, its
-//! names, defaults and checks, the flags of the command line, the keyword arguments of Python, the
-//! controls of the viewer and the tests over [`Method::ALL`] are made from the row.
+//! A new method is a file with its `gains`, a row here and a line in docs/inverses.md: the enum,
+//! its names, defaults and checks, the flags of the command line, the keyword arguments of Python,
+//! the controls of the viewer and the tests over [`Method::ALL`] are made from the row.
 //!
 //! Why so   a macro, since every row declares the fields of a variant: `Method::Damped { damping }`
 //!          is checked by the compiler, where a list of names and values would be looked up
@@ -10,7 +10,8 @@
 
 use super::parameter::{Domain, Parameter};
 use super::{
-    damped, filtered, numerical_filtering, selectively_damped, truncated, variable_damping,
+    damped, numerical_filtering, selectively_damped, singular_value_filtering, truncated,
+    variable_damping,
 };
 use crate::error::{Error, Result};
 use crate::linalg::Svd;
@@ -80,7 +81,7 @@ macro_rules! inverse_methods {
                 shape: "-" in Positive = 10.0;
                 /// Smallest filtered singular value, in the unit of the (scaled) singular values.
                 floor: "rad" in Positive = tolerance::DAMPING;
-            } => |svd, _task, out| filtered::gains(svd, shape, floor, out),
+            } => |svd, _task, out| singular_value_filtering::gains(svd, shape, floor, out),
         }
     };
 }

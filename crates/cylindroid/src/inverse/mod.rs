@@ -17,28 +17,28 @@
 mod batch;
 mod compute;
 mod damped;
-mod filtered;
 mod hyperbolic;
-mod independent;
+mod hyperbolic_fixed;
 mod method;
 mod numerical_filtering;
 mod parameter;
 mod point_direction;
 mod report;
 mod selectively_damped;
+mod singular_value_filtering;
 pub(crate) mod truncated;
 mod variable_damping;
 mod weighted;
 
-pub use batch::{Batch, Inverses};
+pub use batch::{InverseBatch, Inverses};
 pub(crate) use damped::damp;
 pub use hyperbolic::{HyperbolicDamping, HyperbolicOptions, hyperbolic, hyperbolic_with, oblique};
-pub use independent::hyperbolic_into;
+pub use hyperbolic_fixed::hyperbolic_into;
 pub use method::Method;
 pub use parameter::{Domain, Parameter};
 pub use point_direction::{PointDirection, point_direction};
 pub(crate) use report::is_kept;
-pub use report::{Dropped, Inverse};
+pub use report::{Inverse, TruncatedDirection};
 pub use weighted::Weights;
 
 use crate::error::{Error, Result};
@@ -65,7 +65,8 @@ pub fn damped(j: &Matrix, damping: f64) -> Result<Inverse> {
 /// `matrix * task`, none above `max_joint_velocity`.
 ///
 /// # Errors
-/// A matrix or task with NaN or infinity, a task of the wrong size, a velocity that is not positive.
+/// A matrix or task with NaN or infinity, a task of the wrong size, a velocity that is not
+/// positive.
 pub fn selectively_damped(j: &Matrix, task: &[f64], max_joint_velocity: f64) -> Result<Inverse> {
     Error::check_len("task", j.rows(), task.len())?;
     Error::check_finite("task", task)?;

@@ -59,5 +59,5 @@ pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<Point
         outside.iter_mut().zip(svd.u(i)).for_each(|(o, u)| *o -= component * u);
     }
     let reachable = Vec3::from_array(outside).norm() <= SCREW_CLASS;
-    Ok(PointDirection { along: reachable.then_some(along), still: space.complement_basis() })
+    Ok(PointDirection { along: reachable.then_some(along), still: space.null_space_basis() })
 }

@@ -21,7 +21,7 @@ pub struct Inverse {
     /// that a direction would need, that of the rank at machine precision.
     pub threshold: f64,
     /// The directions that were dropped, with what is left of them.
-    pub dropped: Vec<Dropped>,
+    pub dropped: Vec<TruncatedDirection>,
     /// False where the method has no inverse for this Jacobian; the entries of `matrix` are then
     /// NaN.
     pub exists: bool,
@@ -31,14 +31,14 @@ pub struct Inverse {
 
 /// A task direction that the inverse gives up, wholly or by more than half.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Dropped {
+pub struct TruncatedDirection {
     /// Its singular value.
     pub singular_value: f64,
     /// Unit vector in the (weighted) task space, m entries (zero in a tall matrix where the
     /// singular value is exactly zero: its direction is not determined).
     pub direction: Vec<f64>,
     /// The share of a motion along it that is realised, in [0, 1/2).
-    pub realised: f64,
+    pub filter_factor: f64,
 }
 
 /// How many directions are kept, and how sure that is. Not always the first ones: selectively

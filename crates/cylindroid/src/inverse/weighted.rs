@@ -32,7 +32,7 @@ impl Weights {
         }
         if let Some(metric) = &self.joint {
             Error::check_len("joint weights", j.cols(), metric.len())?;
-            metric.colour_columns(&mut weighted);
+            metric.solve_right(&mut weighted);
         }
         Ok(weighted)
     }
@@ -41,7 +41,7 @@ impl Weights {
     pub(super) fn unapply(&self, mut a: Matrix) -> Matrix {
         if let Some(metric) = &self.joint {
             for j in 0..a.cols() {
-                metric.colour(a.column_mut(j));
+                metric.unwhiten(a.column_mut(j));
             }
         }
         if let Some(metric) = &self.task {

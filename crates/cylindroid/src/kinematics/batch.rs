@@ -27,32 +27,32 @@ const LARGE: usize = 4 << 20;
 
 /// The kinematics of one end effector, for many configurations in one call.
 ///
-/// Calls with more than [`Batch::ALONE`] configurations use the threads of rayon
+/// Calls with more than [`KinematicsBatch::CHUNK`] configurations use the threads of rayon
 /// (`RAYON_NUM_THREADS`, or `ThreadPool::install` around the call); results do not depend on how
 /// many there are. They differ from those of [`Chain`] by rounding: at most 16 units in the last
 /// place of 1 m and 1 rad for arms of that size.
 ///
 /// ```
 /// use cylindroid::ReferenceFrame;
-/// use cylindroid::kinematics::Batch;
+/// use cylindroid::kinematics::KinematicsBatch;
 ///
 /// let robot = cylindroid::load("panda")?;
-/// let batch = Batch::new(&robot, robot.tool());
+/// let batch = KinematicsBatch::new(&robot, robot.tool());
 /// let q = [robot.home(), robot.home()].concat();
 /// let jacobians = batch.jacobians(&q, ReferenceFrame::LocalWorldAligned)?;
 /// assert_eq!(jacobians.len(), 2 * 6 * robot.n());
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Batch {
+pub struct KinematicsBatch {
     mechanism: Mechanism,
     chain: Chain,
 }
 
-impl Batch {
+impl KinematicsBatch {
     /// Configurations that one thread takes at once, some tenths of a millisecond of work: calls
     /// with no more stay on the thread of the caller.
-    pub const ALONE: usize = 4096;
+    pub const CHUNK: usize = 4096;
 
     /// For an end effector.
     #[must_use]
@@ -76,7 +76,7 @@ impl Batch {
         Ok(out)
     }
 
-    /// [`Batch::poses`] into `out`.
+    /// [`KinematicsBatch::poses`] into `out`.
     ///
     /// # Errors
     /// As there; an `out` of another size.
@@ -87,14 +87,14 @@ impl Batch {
     /// The Jacobian of each configuration.
     ///
     /// # Errors
-    /// As [`Batch::poses`].
+    /// As [`KinematicsBatch::poses`].
     pub fn jacobians(&self, q: &[f64], reference: ReferenceFrame) -> Result<Vec<f64>> {
         let mut out = vec![0.0; self.mechanism.count_rows("q", q)? * 6 * self.mechanism.n()];
         self.run(q, None, Some((reference, &mut out)))?;
         Ok(out)
     }
 
-    /// [`Batch::jacobians`] into `out`.
+    /// [`KinematicsBatch::jacobians`] into `out`.
     ///
     /// # Errors
     /// As there; an `out` of another size.
@@ -107,8 +107,8 @@ impl Batch {
         self.run(q, None, Some((reference, out)))
     }
 
-    /// [`Batch::poses_into`] and [`Batch::jacobians_into`] in one go, which costs little more than
-    /// either.
+    /// [`KinematicsBatch::poses_into`] and [`KinematicsBatch::jacobians_into`] in one go, which
+    /// costs little more than either.
     ///
     /// # Errors
     /// As there.
@@ -141,16 +141,16 @@ impl Batch {
         let size =
             poses.as_ref().map_or(0, |p| p.len()) + jacobians.as_ref().map_or(0, |(_, j)| j.len());
         let large = size > LARGE;
-        if count <= Self::ALONE {
+        if count <= Self::CHUNK {
             if count > 0 {
                 self.chunk(q, poses, jacobians, large);
             }
             return Ok(());
         }
-        let mut poses = poses.map(|p| p.chunks_mut(Self::ALONE * POSE));
-        let mut jacobians = jacobians.map(|(r, j)| (r, j.chunks_mut(Self::ALONE * 6 * n)));
+        let mut poses = poses.map(|p| p.chunks_mut(Self::CHUNK * POSE));
+        let mut jacobians = jacobians.map(|(r, j)| (r, j.chunks_mut(Self::CHUNK * 6 * n)));
         let chunks: Vec<_> = q
-            .chunks(Self::ALONE * n)
+            .chunks(Self::CHUNK * n)
             .map(|q| {
                 let poses = poses.as_mut().and_then(Iterator::next);
                 (q, poses, jacobians.as_mut().and_then(|(r, j)| Some((*r, j.next()?))))

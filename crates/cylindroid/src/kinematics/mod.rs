@@ -18,7 +18,7 @@ mod state;
 pub(crate) mod tree_batched;
 
 pub use analytical::{AnalyticalJacobian, OrientationRates};
-pub use batch::Batch;
+pub use batch::KinematicsBatch;
 pub use chain::Chain;
 pub use conversion::velocity_conversion;
 pub use jacobian::ReferenceFrame;

@@ -1,7 +1,8 @@
 //! A chain of joints that turn and slide, in frames of its own that make it cheap to go along.
 //!
-//! Formula  world_from_tool = first * [Rz(turn q + angle) Tz(slide q) T(by) Rx(tilt)]_j ... Rz(last);
-//!          columns [turn z x (p - o) + slide z; turn z], z and o an axis and a point on it
+//! Formula  world_from_tool = first * [Rz(turn q + angle) Tz(slide q) T(by) Rx(tilt)]_j ...
+//!          Rz(last); columns [turn z x (p - o) + slide z; turn z], z and o an axis and a point on
+//!          it
 //! Shapes   one joint for each node but the last, which is the tool
 //! Units    rad, m
 //! Valid    revolute, prismatic and helical joints, any axes: nothing is asked of common normals,

@@ -1,4 +1,4 @@
-//! The kernel of [`super::Batch`]: a serial chain at several configurations side by side.
+//! The kernel of [`super::KinematicsBatch`]: a serial chain at several configurations side by side.
 //!
 //! Formula  axes as in serial.rs, from the first joint to the tool; then back, l the lever from a
 //!          joint to the tool, 0 at the tool: l += way, column [turn z x l + slide z; turn z]
@@ -78,8 +78,8 @@ fn forward_avx512(
     forward(serial, turns, rows)
 }
 
-/// [`forward`] apart from other code: frames fill the registers, and beside other numbers some would
-/// be put aside in every step, which the next one waits for.
+/// [`forward`] apart from other code: frames fill the registers, and beside other numbers some
+/// would be put aside in every step, which the next one waits for.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 #[inline(never)]

@@ -106,8 +106,8 @@ impl State {
     /// All joints at once, into `out` (6 x n): the twist that a unit rate of each coordinate gives
     /// the links behind its joint, in world axes at the world's origin. The Jacobian of any frame
     /// with [`ReferenceFrame::World`] has these columns where the coordinate moves the frame and
-    /// zeros elsewhere; joints that mimic another come on top, each with its own twist, and are not in
-    /// here.
+    /// zeros elsewhere; joints that mimic another come on top, each with its own twist, and are not
+    /// in here.
     ///
     /// # Panics
     /// If `out` is not 6 x n.
@@ -120,8 +120,9 @@ impl State {
         }
     }
 
-    /// Calls `f(coordinate, twist)` for what a unit rate of each coordinate of one joint does to its
-    /// child against its parent, in world axes at the world's origin, the last coordinate first.
+    /// Calls `f(coordinate, twist)` for what a unit rate of each coordinate of one joint does to
+    /// its child against its parent, in world axes at the world's origin, the last coordinate
+    /// first.
     pub(super) fn for_each_twist_of(&self, joint: &Joint, mut f: impl FnMut(usize, Twist)) {
         let slot = |link: usize| self.mechanism.frames()[link].slot; // frames of links come first
         let tip = Tip {

@@ -15,7 +15,8 @@ use crate::scalar::{Lanes4, has_avx2};
 /// Columns of a block.
 const BLOCK: usize = 8;
 
-/// Adds to `y` the columns of `to`, each times its factor and the product of `x` with that of `from`.
+/// Adds to `y` the columns of `to`, each times its factor and the product of `x` with that of
+/// `from`.
 #[inline]
 pub(super) fn add_through(
     from: &AlignedColumns,
@@ -42,7 +43,11 @@ pub(super) fn add_through(
 
 /// Takes the parts along the columns out of `x`, each times its factor. "Twice is enough" (Kahan).
 #[inline]
-pub(super) fn remove_twice(columns: &AlignedColumns, factor: impl Fn(usize) -> f64, x: &mut [f64]) {
+pub(super) fn reorthogonalise(
+    columns: &AlignedColumns,
+    factor: impl Fn(usize) -> f64,
+    x: &mut [f64],
+) {
     for i in 0..columns.cols.div_ceil(BLOCK) {
         let factors: [f64; BLOCK] = std::array::from_fn(|l| factor(i * BLOCK + l));
         #[cfg(target_arch = "x86_64")]
@@ -52,7 +57,7 @@ pub(super) fn remove_twice(columns: &AlignedColumns, factor: impl Fn(usize) -> f
             #[allow(unsafe_code)] // as above
             // SAFETY: the processor has both features, as just asked.
             unsafe {
-                remove_six_twice(columns, &factors, x);
+                reorthogonalise_six(columns, &factors, x);
             }
             return;
         }
@@ -78,7 +83,7 @@ fn add_through_six(from: &[f64; 48], factors: &[f64], to: &[f64; 48], x: &[f64],
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn remove_six_twice(columns: &[f64; 48], factors: &[f64; BLOCK], x: &mut [f64]) {
+fn reorthogonalise_six(columns: &[f64; 48], factors: &[f64; BLOCK], x: &mut [f64]) {
     let block = Block::of_six(columns);
     remove::<Lanes4>(block, factors, x);
     remove::<Lanes4>(block, factors, x);

@@ -39,7 +39,7 @@ pub struct HullOptions {
     /// change it [-].
     pub tolerance: f64,
     /// Most facets held at a time.
-    pub most_facets: usize,
+    pub max_facets: usize,
 }
 
 /// A simplex of the boundary.
@@ -70,15 +70,15 @@ pub struct Hull {
 }
 
 impl Hull {
-    /// Of a body in `dimension` coordinates, of which `farthest(n)` gives a point of largest
+    /// Of a body in `dimension` coordinates, of which `support(n)` gives a point of largest
     /// `n . x`. The directions asked have length one.
     pub fn of(
         dimension: usize,
-        mut farthest: impl FnMut(&[f64]) -> Vec<f64>,
+        mut support: impl FnMut(&[f64]) -> Vec<f64>,
         options: HullOptions,
     ) -> Self {
-        let (points, span, size) = first_points(dimension, &mut farthest, options.tolerance);
-        let mut growth = Growth {
+        let (points, span, size) = first_points(dimension, &mut support, options.tolerance);
+        let mut expansion = Expansion {
             inner: (0..dimension)
                 .map(|i| points.iter().map(|p| p[i]).sum::<f64>() / points.len() as f64)
                 .collect(),
@@ -88,16 +88,20 @@ impl Hull {
             slack: options.tolerance * size,
             flat: options.tolerance.min(HULL) * size,
         };
-        let k = growth.span.cols();
+        let k = expansion.span.cols();
         if k > 0 {
             for left_out in 0..=k {
                 let corners = (0..=k).filter(|&i| i != left_out).collect();
-                growth.add_facet(corners);
+                expansion.add_facet(corners);
             }
         }
-        let complete = growth.grow(&mut farthest, options);
-        let mut hull =
-            Self { vertices: growth.vertices, facets: growth.facets, span: growth.span, complete };
+        let complete = expansion.grow(&mut support, options);
+        let mut hull = Self {
+            vertices: expansion.vertices,
+            facets: expansion.facets,
+            span: expansion.span,
+            complete,
+        };
         hull.drop_unused();
         hull
     }
@@ -160,7 +164,7 @@ impl Hull {
 /// Corners of a simplex of the full dimension of the body, the span of the body, its size.
 fn first_points(
     dimension: usize,
-    farthest: &mut impl FnMut(&[f64]) -> Vec<f64>,
+    support: &mut impl FnMut(&[f64]) -> Vec<f64>,
     tolerance: f64,
 ) -> (Vec<Vec<f64>>, Matrix, f64) {
     let mut points: Vec<Vec<f64>> = Vec::new();
@@ -173,7 +177,7 @@ fn first_points(
         for j in 0..directions.cols() {
             for sign in [1.0, -1.0] {
                 let n: Vec<f64> = directions.column(j).iter().map(|x| sign * x).collect();
-                let x = farthest(&n);
+                let x = support(&n);
                 if points.is_empty() {
                     points.push(x);
                     continue;
@@ -190,13 +194,13 @@ fn first_points(
         }
         let edge: Vec<f64> = best.1.iter().zip(&points[0]).map(|(a, b)| a - b).collect();
         let edge = Matrix::from_fn(dimension, 1, |i, _| edge[i] / best.0);
-        span = Matrix::beside(dimension, &[&span, &edge]);
+        span = Matrix::hstack(dimension, &[&span, &edge]);
         points.push(best.1);
     }
     (points, Qr::plain(span).basis(), size)
 }
 
-struct Growth {
+struct Expansion {
     vertices: Vec<Vec<f64>>,
     facets: Vec<Facet>,
     span: Matrix,
@@ -209,7 +213,7 @@ struct Growth {
     flat: f64,
 }
 
-impl Growth {
+impl Expansion {
     fn add_facet(&mut self, vertices: Vec<usize>) {
         let first = &self.vertices[vertices[0]];
         let k = self.span.cols();
@@ -241,16 +245,12 @@ impl Growth {
     }
 
     /// True when the goal is met.
-    fn grow(
-        &mut self,
-        farthest: &mut impl FnMut(&[f64]) -> Vec<f64>,
-        options: HullOptions,
-    ) -> bool {
+    fn grow(&mut self, support: &mut impl FnMut(&[f64]) -> Vec<f64>, options: HullOptions) -> bool {
         while let Some(i) = self.open(options.goal) {
-            if self.facets.len() > options.most_facets {
+            if self.facets.len() > options.max_facets {
                 return false;
             }
-            let x = farthest(&self.facets[i].normal);
+            let x = support(&self.facets[i].normal);
             let gain = dot(&self.facets[i].normal, &x) - self.facets[i].offset;
             if !(gain > self.slack) {
                 self.facets[i].gap = gain.max(0.0);

@@ -1,7 +1,7 @@
 //! The rotations of the singular value decomposition: columns of B made orthogonal in pairs.
 //!
-//! Formula  one by one: for each pair of columns a, b the angle with tan 2 angle = 2 a.b / (b.b - a.a),
-//!          a' = c a - s b, b' = s a + c b, the same for the columns of W
+//! Formula  one by one: for each pair of columns a, b the angle with tan 2 angle = 2 a.b / (b.b -
+//!          a.a), a' = c a - s b, b' = s a + c b, the same for the columns of W
 //!          together, where all angles are small: G = B^T B = D + F with D diagonal, and skew
 //!          K_ij = F_ij / (D_j - D_i), the same once more for [F, K] / 2, which that K leaves;
 //!          B' = B E, W' = W E with E = 1 + K + K^2 / 2 + K^3 / 8, orthogonal to K^6 / 64; the
@@ -26,21 +26,22 @@ use crate::scalar::{Array, Simd4};
 use crate::scalar::{Lanes4, has_avx2};
 use crate::tolerance::JACOBI_ORTHOGONAL;
 
-/// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost finite.
+/// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost
+/// finite.
 const MAX_SWEEPS: usize = 40;
 
 /// Angles up to this, as the spectral norm of K, are turned together: E then lacks 1e-11 of
 /// orthogonality, which one Newton step squares.
 const TOGETHER: f64 = 1.0 / 32.0;
 
-/// Up to these E with three terms (K^6 / 64), two (K^4 / 4) and one (K^2) is orthogonal to less than
-/// a rounding.
+/// Up to these E with three terms (K^6 / 64), two (K^4 / 4) and one (K^2) is orthogonal to less
+/// than a rounding.
 const THREE_TERMS: f64 = 1.0 / 256.0;
 const TWO_TERMS: f64 = 1e-4;
 const ONE_TERM: f64 = 1e-8;
 
-/// From angles and cosines up to this, and second angles up to four times its square, one step leaves
-/// less than `JACOBI_ORTHOGONAL`: products of the three.
+/// From angles and cosines up to this, and second angles up to four times its square, one step
+/// leaves less than `JACOBI_ORTHOGONAL`: products of the three.
 const LAST: f64 = 4e-6;
 
 /// Steps with all angles together, before rotations one by one take over for good.

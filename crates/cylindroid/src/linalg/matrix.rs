@@ -122,7 +122,7 @@ impl Matrix {
     /// # Panics
     /// If the blocks have not `rows` rows each.
     #[must_use]
-    pub fn beside(rows: usize, blocks: &[&Self]) -> Self {
+    pub fn hstack(rows: usize, blocks: &[&Self]) -> Self {
         let mut data = Vec::with_capacity(rows * blocks.iter().map(|b| b.cols).sum::<usize>());
         for block in blocks {
             assert_eq!(block.rows, rows, "{block:?} beside matrices of {rows} rows");
@@ -136,7 +136,7 @@ impl Matrix {
     /// # Panics
     /// If the blocks have not `cols` columns each.
     #[must_use]
-    pub fn above(cols: usize, blocks: &[&Self]) -> Self {
+    pub fn vstack(cols: usize, blocks: &[&Self]) -> Self {
         let rows = blocks.iter().map(|b| b.rows).sum();
         let mut stack = Self::zeros(rows, cols);
         let mut from = 0;
@@ -232,8 +232,8 @@ impl Matrix {
     #[must_use]
     pub fn max_abs(&self) -> f64 {
         // `f64::max` drops NaN, a comparison that fails keeps it.
-        // Bits of numbers without sign are in the order of the numbers, NaN last; four at a time, as
-        // none waits for the other.
+        // Bits of numbers without sign are in the order of the numbers, NaN last; four at a time,
+        // as none waits for the other.
         let (fours, rest) = self.data.as_chunks::<4>();
         let mut most = [0; 4];
         for four in fours {

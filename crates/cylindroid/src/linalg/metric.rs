@@ -132,7 +132,7 @@ impl Metric {
 
     /// Largest over smallest diagonal entry of the factor: how lopsided the metric is, 1 at least.
     #[must_use]
-    pub fn spread(&self) -> f64 {
+    pub fn diagonal_ratio(&self) -> f64 {
         let diagonal = (0..self.len()).map(|i| self.l[(i, i)]);
         let smallest = diagonal.clone().fold(f64::INFINITY, f64::min);
         (diagonal.fold(0.0, f64::max) / smallest).max(1.0)
@@ -167,7 +167,7 @@ impl Metric {
     }
 
     /// `y <- L^-T y`: back from coordinates in which the metric is the identity.
-    pub fn colour(&self, y: &mut [f64]) {
+    pub fn unwhiten(&self, y: &mut [f64]) {
         let n = self.len();
         for i in (0..n).rev() {
             let sum: f64 = (i + 1..n).map(|k| self.l[(k, i)] * y[k]).sum();
@@ -176,14 +176,14 @@ impl Metric {
     }
 
     /// `y <- L y`: a force in the coordinates that [`Metric::whiten`] gives motions, to its own.
-    pub fn colour_force(&self, y: &mut [f64]) {
+    pub fn unwhiten_dual(&self, y: &mut [f64]) {
         for i in (0..self.len()).rev() {
             y[i] = (0..=i).map(|k| self.l[(i, k)] * y[k]).sum();
         }
     }
 
     /// `a <- A L^-T` : the columns of A measured in whitened joint coordinates.
-    pub fn colour_columns(&self, a: &mut Matrix) {
+    pub fn solve_right(&self, a: &mut Matrix) {
         // Row r of A L^-T solves L z = row^T.
         let n = self.len();
         for r in 0..a.rows() {

@@ -3,30 +3,30 @@
 
 pub(crate) mod batched;
 mod blocks;
-mod box_program;
+mod bounded_linear_program;
 mod column_space;
-mod cs;
+mod cs_decomposition;
 mod hull;
 mod jacobi;
 mod matrix;
 mod metric;
-mod null_space;
 mod qr;
+mod row_space;
 mod singular_values;
 mod small_gemm;
 mod svd;
-mod symmetric;
+mod symmetric_eigen;
 mod vector;
 
-pub use box_program::{BoxProgram, Interval, Pull};
+pub use bounded_linear_program::{BoundedLinearProgram, Interval, Objective};
 pub use column_space::{ColumnSpace, Cut, Threshold};
-pub use cs::{CosineSine, PairKind};
+pub use cs_decomposition::{CsDecomposition, PairKind};
 pub use hull::{Facet, Hull, HullGoal, HullOptions};
 pub use matrix::Matrix;
 pub use metric::Metric;
-pub use null_space::RowSpace;
 pub use qr::Qr;
 pub(crate) use qr::solve_upper;
+pub use row_space::RowSpace;
 pub use svd::{Rank, Svd};
-pub use symmetric::Eigen;
+pub use symmetric_eigen::SymmetricEigen;
 pub(crate) use vector::{dot, norm};

@@ -12,9 +12,9 @@
 //!          regular; with vectors, by Jacobi rotations, that is three times the work. A rank needs
 //!          the two at the ends: a fifth of the QR steps' time, which are products and quotients of
 //!          numbers that wait for one another
-//! Source   Golub & Van Loan, Matrix Computations, 4th ed., sections 5.4.8 and 8.6.3; Wilkinson, The
-//!          Algebraic Eigenvalue Problem, ch. 7 (Laguerre); Dhillon & Parlett 2004 (the pivots of
-//!          B^T B - t without forming it)
+//! Source   Golub & Van Loan, Matrix Computations, 4th ed., sections 5.4.8 and 8.6.3; Wilkinson,
+//!          The Algebraic Eigenvalue Problem, ch. 7 (Laguerre); Dhillon & Parlett 2004 (the pivots
+//!          of B^T B - t without forming it)
 //! Checked  tests/it/subspaces.rs and below (values against the Jacobi decomposition)
 
 use super::matrix::Matrix;
@@ -110,8 +110,8 @@ fn extreme(d: &[f64], e: &[f64], start: f64) -> Option<f64> {
 /// First and second derivative by t of log |det(B^T B - t)|, the second with the other sign; `None`
 /// where t is not on that side of all eigenvalues.
 ///
-/// `B^T B - t = L D L^T` has `D_i = d_i^2 + s_i`, `s_1 = -t`, `s_{i+1} = (e_i^2 / D_i) s_i - t`; the
-/// derivatives are the sums of those of `log |D_i|`.
+/// `B^T B - t = L D L^T` has `D_i = d_i^2 + s_i`, `s_1 = -t`, `s_{i+1} = (e_i^2 / D_i) s_i - t`;
+/// the derivatives are the sums of those of `log |D_i|`.
 fn logarithmic_derivatives(d: &[f64], e: &[f64], t: f64, side: f64) -> Option<(f64, f64)> {
     // s, its first and its second derivative.
     let (mut s, mut s1, mut s2) = (-t, -1.0, 0.0);

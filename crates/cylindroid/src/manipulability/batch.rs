@@ -1,7 +1,8 @@
 //! Mobility and manipulability of a mechanism at many configurations.
 //!
 //! Formula  mobility.rs, singularity.rs, relation.rs and efficiency.rs, as far as numbers go
-//! Shapes   q: N x n, results: N rows of [`Batch::COLUMNS`]; row-major, n of the mechanism
+//! Shapes   q: N x n, results: N rows of [`ManipulabilityBatch::COLUMNS`]; row-major, n of the
+//!          mechanism
 //! Units    gaps m and rad; counts and distances none; indices those of the metrics
 //! Frame    the reference frame's origin, world axes
 //! Valid    any mechanism. Where a distance to a singularity is below [`CLEAR_DISTANCE`], where an
@@ -28,7 +29,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::Matrix;
 use crate::model::{FrameId, Mechanism};
-use crate::tolerance::{CLEAR_DISTANCE, CLEARLY_NOTHING, CLOSED};
+use crate::tolerance::{CLEAR_DISTANCE, CLOSED, NEGLIGIBLE_SHARE};
 
 /// How a batch measures.
 #[derive(Debug, Clone, Default)]
@@ -47,23 +48,23 @@ pub struct BatchOptions {
 
 /// Mobility and manipulability of a mechanism for many configurations in one call.
 ///
-/// Calls with more than [`Batch::ALONE`] configurations use the threads of rayon
+/// Calls with more than [`ManipulabilityBatch::CHUNK`] configurations use the threads of rayon
 /// (`RAYON_NUM_THREADS`, or `ThreadPool::install` around the call); results do not depend on how
 /// many there are.
 ///
 /// ```
-/// use cylindroid::manipulability::{Batch, BatchOptions};
+/// use cylindroid::manipulability::{ManipulabilityBatch, BatchOptions};
 ///
 /// let stewart = cylindroid::load("stewart")?;
-/// let batch = Batch::new(&stewart, &BatchOptions::default())?;
+/// let batch = ManipulabilityBatch::new(&stewart, &BatchOptions::default())?;
 /// let q = [stewart.home(), stewart.home()].concat();
 /// let rows = batch.analyse(&q)?;
-/// let dof = Batch::column("dof").unwrap();
-/// assert_eq!(rows[Batch::WIDTH + dof], 6.0);
+/// let dof = ManipulabilityBatch::column("dof").unwrap();
+/// assert_eq!(rows[ManipulabilityBatch::WIDTH + dof], 6.0);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Batch {
+pub struct ManipulabilityBatch {
     mechanism: Mechanism,
     reference: FrameId,
     length: f64,
@@ -72,13 +73,13 @@ pub struct Batch {
     kernel: Option<Kernel>,
 }
 
-/// Results of one configuration, in the order of [`Batch::COLUMNS`].
-type Row = [f64; Batch::WIDTH];
+/// Results of one configuration, in the order of [`ManipulabilityBatch::COLUMNS`].
+type Row = [f64; ManipulabilityBatch::WIDTH];
 
-impl Batch {
+impl ManipulabilityBatch {
     /// Configurations that one thread takes at once, some tenths of a millisecond of work: calls
     /// with no more stay on the thread of the caller.
-    pub const ALONE: usize = 128;
+    pub const CHUNK: usize = 128;
 
     /// Numbers of a result.
     pub const WIDTH: usize = Self::COLUMNS.len();
@@ -178,7 +179,7 @@ impl Batch {
         self.generic
     }
 
-    /// The numbers of each configuration, N x [`Batch::WIDTH`].
+    /// The numbers of each configuration, N x [`ManipulabilityBatch::WIDTH`].
     ///
     /// # Errors
     /// A `q` that is not a whole number of configurations, or with an entry that is not finite, or
@@ -189,7 +190,7 @@ impl Batch {
         Ok(out)
     }
 
-    /// [`Batch::analyse`] into `out`.
+    /// [`ManipulabilityBatch::analyse`] into `out`.
     ///
     /// # Errors
     /// As there; an `out` of another size.
@@ -203,10 +204,10 @@ impl Batch {
         if n == 0 {
             return Ok(());
         }
-        let q = q.chunks(Self::ALONE * n).enumerate();
-        let chunks: Vec<_> = q.zip(out.chunks_mut(Self::ALONE * Self::WIDTH)).collect();
+        let q = q.chunks(Self::CHUNK * n).enumerate();
+        let chunks: Vec<_> = q.zip(out.chunks_mut(Self::CHUNK * Self::WIDTH)).collect();
         let run =
-            |((i, q), out): ((usize, &[f64]), &mut [f64])| self.chunk(i * Self::ALONE, q, out);
+            |((i, q), out): ((usize, &[f64]), &mut [f64])| self.chunk(i * Self::CHUNK, q, out);
         if chunks.len() > 1 {
             // The first error of all, whoever comes first.
             let results: Vec<Result<()>> = chunks.into_par_iter().map(run).collect();
@@ -291,7 +292,7 @@ impl Batch {
         for &sigma in found.scaled {
             if sine(sigma) > CLEAR_DISTANCE {
                 (coordinate, least, most) = (coordinate + 1, least.min(sigma), most.max(sigma));
-            } else if !(sigma <= CLEARLY_NOTHING) {
+            } else if !(sigma <= NEGLIGIBLE_SHARE) {
                 return None;
             }
         }
@@ -411,7 +412,7 @@ mod tests {
         for name in ["five-bar", "stewart", "two-arm", "four-bar", "3rrr", "delta", "watt", "panda"]
         {
             let mechanism = catalogue::load(name).unwrap();
-            let batch = Batch::new(&mechanism, &BatchOptions::default()).unwrap();
+            let batch = ManipulabilityBatch::new(&mechanism, &BatchOptions::default()).unwrap();
             let kernel = batch.kernel.as_ref().unwrap();
             let mut random = 4;
             let mut q = mechanism.home().to_vec();

@@ -1,5 +1,5 @@
-//! The kernel of [`super::Batch`]: what decides the counts of a closed chain, and its indices, at
-//! several configurations side by side.
+//! The kernel of [`super::ManipulabilityBatch`]: what decides the counts of a closed chain, and its
+//! indices, at several configurations side by side.
 //!
 //! Formula  rows [C; J] of lanes.rs in closure, scaled; C^T = Q [L^T; 0], K the last columns of Q;
 //!          K_a, the driven rows of K, = Q_a R_a; sigma_i the singular values of J K R_a^-1, which

@@ -22,8 +22,8 @@
 use super::metrics::Metrics;
 use crate::closure::{Relation, RelationBases};
 use crate::error::Result;
-use crate::linalg::{CosineSine, Matrix, Metric, Qr, dot};
-use crate::tolerance::{DUALITY, LOPSIDED};
+use crate::linalg::{CsDecomposition, Matrix, Metric, Qr, dot};
+use crate::tolerance::{DUALITY, MAX_METRIC_CONDITION};
 
 /// A point (s : c) of the projective line, `s^2 + c^2 = 1`: what comes out for what goes in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,7 +101,7 @@ impl Spectrum {
 
 /// Principal directions in whitened coordinates.
 struct Principal {
-    cs: CosineSine,
+    cs: CsDecomposition,
     /// A common factor between the two spaces, taken out of the sines.
     balance: f64,
     zeros: Matrix,
@@ -117,8 +117,8 @@ impl Principal {
         // Taken out, the factor changes all efficiencies alike and costs no digits.
         let balance = if u.cols() == 0 { 1.0 } else { u.frobenius_norm() / q.frobenius_norm() };
         u.as_mut_slice().iter_mut().for_each(|x| *x /= balance);
-        let stack = Matrix::above(q.cols(), &[&q, &u]);
-        let cs = CosineSine::of(&orthonormal(stack), q.rows());
+        let stack = Matrix::vstack(q.cols(), &[&q, &u]);
+        let cs = CsDecomposition::of(&orthonormal(stack), q.rows());
         Self { cs, balance, zeros, infinite }
     }
 
@@ -141,10 +141,10 @@ impl Principal {
         let of = |j| {
             let mut direction = self.direction(j, self.pair(j), 1.0);
             if let Some(metric) = joint {
-                metric.colour(&mut direction.joint);
+                metric.unwhiten(&mut direction.joint);
             }
             if let Some(metric) = object {
-                metric.colour(&mut direction.object);
+                metric.unwhiten(&mut direction.object);
             }
             direction
         };
@@ -158,10 +158,10 @@ impl Principal {
             let Pair { output, input } = self.pair(j);
             let mut direction = self.direction(j, Pair { output: input, input: output }, -1.0);
             if let Some(metric) = joint {
-                metric.colour_force(&mut direction.joint);
+                metric.unwhiten_dual(&mut direction.joint);
             }
             if let Some(metric) = object {
-                metric.colour_force(&mut direction.object);
+                metric.unwhiten_dual(&mut direction.object);
             }
             direction
         };
@@ -209,7 +209,7 @@ impl Manipulability {
         let all = Self { kinematic, force };
         debug_assert!(
             !metrics.is_dual()
-                || metrics.spread() > LOPSIDED
+                || metrics.diagonal_ratio() > MAX_METRIC_CONDITION
                 || all.is_dual_to(&Spectrum::of(relation.forces(), torque, wrench)),
             "forces are not dual: {all:?}"
         );
@@ -254,7 +254,7 @@ fn whitened(metric: Option<&Metric>, mut a: Matrix) -> Matrix {
 fn coloured(metric: Option<&Metric>, mut a: Matrix) -> Matrix {
     if let Some(metric) = metric {
         for j in 0..a.cols() {
-            metric.colour(a.column_mut(j));
+            metric.unwhiten(a.column_mut(j));
         }
     }
     a

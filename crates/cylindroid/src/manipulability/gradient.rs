@@ -3,8 +3,8 @@
 //! Formula  an efficiency is the value of |u|^2 / |q_a|^2 at a motion x = (q_a, q_p, u) where it is
 //!          stationary among all motions of M x = 0, so that with M^T t = (-e W_q q_a, 0, W_u u)
 //!          de = -2 t^T dM x / |q_a|^2
-//!          for a serial arm 2 u^T W_u dJ q_a / |q_a|^2; T^T W_u T u in place of W_u u for a task T.
-//!          Volume v = prod sqrt(e_i):
+//!          for a serial arm 2 u^T W_u dJ q_a / |q_a|^2; T^T W_u T u in place of W_u u for a task
+//!          T. Volume v = prod sqrt(e_i):
 //!          dv = v sum de_i / (2 e_i); anisotropy a = e_1 / e_n: da = a (de_1 / e_1 - de_n / e_n)
 //! Shapes   gradient: n entries, one for each coordinate
 //! Units    of the index for each unit of q (of the unit rates of spherical and free joints)
@@ -13,8 +13,8 @@
 //!          among them (orthogonal in units scaled by the characteristic length). A smallest or
 //!          largest efficiency that is repeated has none, which is said; their volume has
 //! Error    of trees: rounding, dM is the Hessian. Of closed chains dM comes from four matrices at
-//!          steps of `tolerance::MATRIX_STEP`, with an error of fourth order; the difference to what
-//!          two of them give, of second order, is an estimate from above, and given
+//!          steps of `tolerance::MATRIX_STEP`, with an error of fourth order; the difference to
+//!          what two of them give, of second order, is an estimate from above, and given
 //! Why so   the motion and the forces t that the duality gives are at hand; differences of the
 //!          index itself would need loops closed again at every step and lose half the digits
 //! Source   the derivative of a stationary value (Lagrange multipliers t); Yoshikawa 1985 for v
@@ -204,7 +204,7 @@ impl<'a> Behind<'a> {
         let (a, n) = (motions.actuated(), basis.rows());
         let twists = basis.rows_between(a + motions.passive(), n);
         let seen = task.map_or_else(|| twists.clone(), |map| map * &twists);
-        let both = Matrix::above(basis.cols(), &[&basis.rows_between(0, a), &seen]);
+        let both = Matrix::vstack(basis.cols(), &[&basis.rows_between(0, a), &seen]);
         let least = truncated(&both, CLOSURE_BLOCK)?.matrix;
         Ok(Self {
             task,

@@ -168,8 +168,8 @@ impl Metrics {
     }
 
     /// How lopsided the metrics of motions are.
-    pub(super) fn spread(&self) -> f64 {
-        [&self.object, &self.joint].into_iter().flatten().map(Metric::spread).product()
+    pub(super) fn diagonal_ratio(&self) -> f64 {
+        [&self.object, &self.joint].into_iter().flatten().map(Metric::diagonal_ratio).product()
     }
 
     /// Refuses metrics of the wrong size.

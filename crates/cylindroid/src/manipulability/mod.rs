@@ -30,7 +30,7 @@ mod inertia;
 mod metrics;
 mod polytope;
 
-pub use batch::{Batch, BatchOptions};
+pub use batch::{BatchOptions, ManipulabilityBatch};
 pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
 pub(crate) use gradient::log_volume_slope;
 pub use gradient::{Goal, Gradient, Measure, gradient};

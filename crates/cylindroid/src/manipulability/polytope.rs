@@ -1,7 +1,7 @@
 //! Polytopes of velocity and force: all that the limits of the driven joints allow.
 //!
-//! Formula  velocity {u: (q, u) in R, lower <= q <= upper}, force {w: (tau, w) in F, lower <= tau <=
-//!          upper}; the range of a component is from its smallest to its largest value on it
+//! Formula  velocity {u: (q, u) in R, lower <= q <= upper}, force {w: (tau, w) in F, lower <= tau
+//!          <= upper}; the range of a component is from its smallest to its largest value on it
 //! Shapes   limits: q_a intervals; vertices: d entries
 //! Units    of the object's twist or wrench
 //! Frame    that of the object's twist
@@ -19,8 +19,10 @@
 
 use crate::closure::{Relation, RelationBases};
 use crate::error::{Error, Result};
-use crate::linalg::{BoxProgram, Hull, HullGoal, HullOptions, Interval, Matrix, Pull};
-use crate::tolerance::{CLOSURE_BLOCK, HULL, MOST_FACETS};
+use crate::linalg::{
+    BoundedLinearProgram, Hull, HullGoal, HullOptions, Interval, Matrix, Objective,
+};
+use crate::tolerance::{CLOSURE_BLOCK, HULL, MAX_FACETS};
 
 /// A polytope of twists or wrenches; zero is in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +72,7 @@ pub fn force_range(relation: &Relation, torque_limits: &[Interval]) -> Result<Ve
 /// q = joint y + zero z, u = object y + infinite x; the limits bind q alone.
 struct Body {
     parts: RelationBases,
-    program: BoxProgram,
+    program: BoundedLinearProgram,
 }
 
 impl Body {
@@ -86,12 +88,12 @@ impl Body {
                     .to_owned(),
             });
         }
-        let all = Matrix::beside(joints, &[&parts.joint, &parts.zero]);
-        Ok(Self { program: BoxProgram::new(&all, limits), parts })
+        let all = Matrix::hstack(joints, &[&parts.joint, &parts.zero]);
+        Ok(Self { program: BoundedLinearProgram::new(&all, limits), parts })
     }
 
     /// What a direction of the object asks of y and z.
-    fn pull(&self, n: &[f64]) -> Vec<f64> {
+    fn objective(&self, n: &[f64]) -> Vec<f64> {
         let c = self.parts.joint.cols();
         let mut goal = vec![0.0; c + self.parts.zero.cols()];
         self.parts.object.tr_mul_vec_into(n, &mut goal[..c]);
@@ -99,8 +101,8 @@ impl Body {
     }
 
     /// A corner farthest along `n`; `second` picks one where a whole face is farthest.
-    fn farthest(&self, n: &[f64], second: &[f64]) -> Vec<f64> {
-        let corner = self.program.farthest(Pull { first: &self.pull(n), second });
+    fn support_point(&self, n: &[f64], second: &[f64]) -> Vec<f64> {
+        let corner = self.program.maximize(Objective { first: &self.objective(n), second });
         self.parts.object.mul_vec(&corner[..self.parts.joint.cols()])
     }
 
@@ -108,11 +110,11 @@ impl Body {
         let d = self.parts.object.rows();
         // A direction of no pattern.
         let odd: Vec<f64> = (0..d).map(|i| ((i + 1) as f64).sqrt().fract() + 0.1).collect();
-        let second = self.pull(&odd);
+        let second = self.objective(&odd);
         let hull = Hull::of(
             d,
-            |n| self.farthest(n, &second),
-            HullOptions { goal: HullGoal::Whole, tolerance: HULL, most_facets: MOST_FACETS },
+            |n| self.support_point(n, &second),
+            HullOptions { goal: HullGoal::Whole, tolerance: HULL, max_facets: MAX_FACETS },
         );
         Polytope { hull, unbounded: self.parts.infinite }
     }
@@ -128,7 +130,7 @@ impl Body {
                 }
                 let end = |sign: f64| {
                     let n: Vec<f64> = (0..d).map(|l| if l == i { sign } else { 0.0 }).collect();
-                    self.farthest(&n, &self.pull(&n))[i]
+                    self.support_point(&n, &self.objective(&n))[i]
                 };
                 Interval { lower: end(-1.0), upper: end(1.0) }
             })

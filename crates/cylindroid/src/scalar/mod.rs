@@ -86,8 +86,8 @@ pub(crate) trait Simd:
     fn all_abs_le(self, limit: f64) -> bool;
     /// [`sin_cos`] of each of `x`: cosines take the place of the angles; `memory` is overwritten.
     ///
-    /// Registers do this in a function of its own: its constants need many of them, which numbers of
-    /// the caller would lose.
+    /// Registers do this in a function of its own: its constants need many of them, which numbers
+    /// of the caller would lose.
     ///
     /// # Panics
     /// If not all have one length.

@@ -14,7 +14,7 @@
 
 use super::class::Class;
 use super::span::{Span, angular, join, linear};
-use crate::linalg::{Eigen, Matrix, Svd};
+use crate::linalg::{Matrix, Svd, SymmetricEigen};
 use crate::spatial::{Mat3, Rotation, Vec3};
 use crate::tolerance::{ORIGIN_DETERMINED, ZERO_AXIS};
 
@@ -139,7 +139,7 @@ fn principal(screws: &[[f64; 6]]) -> ([f64; 3], [Vec3; 3]) {
             a[i][j] = 0.5 * (linear(x).dot(angular(y)) + linear(y).dot(angular(x)));
         }
     }
-    let eigen = Eigen::of(a, screws.len());
+    let eigen = SymmetricEigen::of(a, screws.len());
     let direction = |i: usize| {
         screws.iter().zip(eigen.vectors[i]).fold(Vec3::ZERO, |s, (x, c)| s + angular(x) * c)
     };
@@ -268,7 +268,7 @@ fn origin(split: &Split, verdict: &Verdict) -> Vec3 {
             }
         }
     }
-    let eigen = Eigen::of(a, 3);
+    let eigen = SymmetricEigen::of(a, 3);
     let mut o = Vec3::ZERO;
     for (value, vector) in eigen.values.iter().zip(eigen.vectors) {
         if *value > ORIGIN_DETERMINED {

@@ -11,10 +11,10 @@
 
 use super::screw::Screw;
 use super::span::{dot, lowered};
-use super::spanning::{columns, six};
+use super::span_estimation::{columns, six};
 use super::system::ScrewSystem;
 use crate::error::Result;
-use crate::linalg::{Eigen, Matrix};
+use crate::linalg::{Matrix, SymmetricEigen};
 use crate::spatial::{Twist, Vec3};
 
 /// `J^T Q_h J` for the twists that are the columns of `j` (6 x m): m x m.
@@ -43,7 +43,7 @@ pub fn gram_determinant(j: &Matrix, h: f64) -> Result<f64> {
             *x = dot(&image, &six(j.column(b)));
         }
     }
-    Ok(Eigen::of(g, m).values[..m].iter().product())
+    Ok(SymmetricEigen::of(g, m).values[..m].iter().product())
 }
 
 impl ScrewSystem {

@@ -5,10 +5,10 @@
 //!          the centre with lengths over L
 //! Units    h in m/rad; margin and norms without unit
 //! Valid    every order; order 0 and 6 always exist. The limit of P_h for an infinite pitch is
-//!          taken where the system (order <= 3) or its reciprocal (order >= 3) holds no translation.
-//!          Of the others those of slope 0 have one too (a cylindrical joint, whose P_h does not
-//!          depend on h), but next to each are systems without: it is not taken for what no
-//!          measurement can tell
+//!          taken where the system (order <= 3) or its reciprocal (order >= 3) holds no
+//!          translation. Of the others those of slope 0 have one too (a cylindrical joint, whose
+//!          P_h does not depend on h), but next to each are systems without: it is not taken for
+//!          what no measurement can tell
 //! Source   Donelan & Selig, theorems 2 and 3, corollary 4 (the sign of h flips on the reciprocal
 //!          side); choice of h by |P_h| is ours: the condition of the Gram matrix misleads for
 //!          orders 4 and 5, where it grows with |h| although P_h converges

@@ -13,11 +13,11 @@
 //! Checked  tests/it/screws/vectors/lines.rs
 
 use super::screw::{Line, Screw};
-use super::spanning::ScrewOptions;
+use super::span_estimation::ScrewOptions;
 use super::system::ScrewSystem;
 use super::transversals::{Transversals, transversals_of};
 use crate::error::Result;
-use crate::linalg::Eigen;
+use crate::linalg::SymmetricEigen;
 use crate::spatial::{Twist, Wrench};
 
 /// What a set of lines has in common.
@@ -54,7 +54,7 @@ pub fn involution(lines: &[Line], options: &ScrewOptions) -> Result<Involution> 
     let system = ScrewSystem::of(&twists, options)?;
     let independent = system.order() == lines.len();
     let k = system.order();
-    let gram = Eigen::of(system.span.gram(0.0), k);
+    let gram = SymmetricEigen::of(system.span.gram(0.0), k);
     let threshold = system.tolerance.class;
     let null_twists: Vec<Twist> = (0..k)
         .filter(|&i| gram.values[i].abs() <= threshold)

@@ -21,7 +21,7 @@
 
 use super::span::{Scale, Span, angular, dot, join, linear, lowered};
 use super::system::ScrewSystem;
-use crate::linalg::{Eigen, Matrix, Svd};
+use crate::linalg::{Matrix, Svd, SymmetricEigen};
 use crate::spatial::{Twist, Vec3, Wrench};
 
 /// A projector on a screw system, along another.
@@ -192,7 +192,7 @@ fn has_translations(span: &Span) -> bool {
     }
     let k = span.k();
     // Squares of sines: rounding leaves eps of a zero.
-    k > 0 && Eigen::of(a, k).values[k - 1] <= 16.0 * f64::EPSILON
+    k > 0 && SymmetricEigen::of(a, k).values[k - 1] <= 16.0 * f64::EPSILON
 }
 
 /// `rows <- a^-1 rows` for the leading n x n block, by elimination with pivots; `None` if a pivot

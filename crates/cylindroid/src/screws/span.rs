@@ -8,7 +8,7 @@
 //!          the frame: verdicts then depend neither on the frame nor on the unit
 //! Checked  tests/it/screws/
 
-use crate::linalg::{Eigen, Matrix};
+use crate::linalg::{Matrix, SymmetricEigen};
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::NEARLY_PARALLEL;
 
@@ -202,7 +202,7 @@ impl Span {
         if h.is_nan() {
             return 0.0;
         }
-        let e = Eigen::of(self.gram(h), self.k);
+        let e = SymmetricEigen::of(self.gram(h), self.k);
         e.values[..self.k].iter().fold(1.0, |m: f64, x| m.min(x.abs()))
     }
 
@@ -225,9 +225,9 @@ pub(crate) fn turns(t: &Twist, length: f64, least: f64) -> bool {
     t.angular.norm() * length > least * t.linear.norm()
 }
 
-/// The point that minimises `sum |v_i + w_i x c|^2`, where it is determined; along directions nearly
-/// parallel to all axes it stays at the point of one axis, since the exact minimum runs to their
-/// far intersection and the axes become one there.
+/// The point that minimises `sum |v_i + w_i x c|^2`, where it is determined; along directions
+/// nearly parallel to all axes it stays at the point of one axis, since the exact minimum runs to
+/// their far intersection and the axes become one there.
 /// Twists that turn by no more than `least` at the scale of `length` are translations, and left
 /// out.
 pub(crate) fn least_squares_center(twists: &[Twist], length: f64, least: f64) -> Vec3 {
@@ -251,7 +251,7 @@ pub(crate) fn least_squares_center(twists: &[Twist], length: f64, least: f64) ->
         }
         b += w.cross(v);
     }
-    let eigen = Eigen::of(a, 3);
+    let eigen = SymmetricEigen::of(a, 3);
     let mut c = start;
     for (value, vector) in eigen.values.iter().zip(eigen.vectors) {
         if *value > NEARLY_PARALLEL * eigen.values[0] {

@@ -18,7 +18,7 @@ use super::class::{Class, NormalForm};
 use super::classify::{Classified, Margin, classify, placed};
 use super::screw::{Line, Screw};
 use super::span::{Scale, Span, dot, join, over, power_of_two, size};
-use super::spanning::{ScrewOptions, Tolerances, columns, is_narrow, spanned};
+use super::span_estimation::{ScrewOptions, Tolerances, columns, is_narrow, spanned};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank};
 use crate::spatial::{Pose, Twist, Vec3};
@@ -158,7 +158,8 @@ impl ScrewSystem {
     }
 
     /// The pitches [m/rad] at which the hyperbolic pseudoinverse ceases to exist, largest first
-    /// (of class IA2 the single one first); empty for classes that never have one, and where every pitch will do.
+    /// (of class IA2 the single one first); empty for classes that never have one, and where every
+    /// pitch will do.
     #[must_use]
     pub fn principal_pitches(&self) -> Vec<f64> {
         self.principal.iter().map(|s| s.pitch).collect()

@@ -13,10 +13,10 @@
 
 use super::screw::{Line, Screw};
 use super::span::angular;
-use super::spanning::ScrewOptions;
+use super::span_estimation::ScrewOptions;
 use super::system::ScrewSystem;
 use crate::error::Result;
-use crate::linalg::Eigen;
+use crate::linalg::SymmetricEigen;
 use crate::spatial::Vec3;
 
 /// The common transversals of a set of lines.
@@ -46,7 +46,7 @@ pub fn transversals(lines: &[Line], options: &ScrewOptions) -> Result<Transversa
 pub(super) fn transversals_of(system: &ScrewSystem) -> Transversals {
     let span = system.span.reciprocal();
     let tolerance = system.tolerance.class;
-    let (d, klein) = (span.k(), Eigen::of(span.gram(0.0), span.k()));
+    let (d, klein) = (span.k(), SymmetricEigen::of(span.gram(0.0), span.k()));
     let vector = |coefficients: &[f64; 6]| {
         let mut x = [0.0; 6];
         for (b, c) in span.vectors().iter().zip(coefficients) {

@@ -63,7 +63,8 @@ impl Vec3 {
     #[must_use]
     pub fn norm(self) -> f64 {
         let square = self.dot(self);
-        // Where squares neither overflow nor lose digits, the root of their sum is ten times faster.
+        // Where squares neither overflow nor lose digits, the root of their sum is ten times
+        // faster.
         if (1e-280..1e280).contains(&square) {
             return square.sqrt();
         }

@@ -1,6 +1,6 @@
 //! Many configurations in one call are what single calls give, whatever their number and place.
 
-use cylindroid::kinematics::{Batch, Chain};
+use cylindroid::kinematics::{Chain, KinematicsBatch};
 use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
 use cylindroid::{EndEffector, Error, Matrix, Mechanism, ReferenceFrame, catalogue};
@@ -95,7 +95,7 @@ fn draw(robot: &Mechanism, count: usize, seed: u64) -> Vec<f64> {
 #[test]
 fn agrees_with_single_calls() {
     for (robot, of) in robots() {
-        let (n, batch) = (robot.n(), Batch::new(&robot, of));
+        let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, of));
         let scale = 1e-13 * (1.0 + robot.reach());
         // Whole blocks of lanes, and what is left over.
         for count in [1, 3, 4, 8, 13] {
@@ -161,7 +161,7 @@ fn rounds_as_single_calls() {
     let mut random = Random(13);
     for robot in robots {
         let (n, of) = (robot.n(), robot.tool());
-        let (batch, mut chain) = (Batch::new(&robot, of), Chain::new(&robot, of));
+        let (batch, mut chain) = (KinematicsBatch::new(&robot, of), Chain::new(&robot, of));
         if chain.n() != n {
             continue;
         }
@@ -185,7 +185,7 @@ fn rounds_as_single_calls() {
 #[test]
 fn does_not_depend_on_threads_or_places() {
     let robot = catalogue::load("panda").unwrap();
-    let (n, batch) = (robot.n(), Batch::new(&robot, robot.tool()));
+    let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, robot.tool()));
     let count = 10_001;
     let q = draw(&robot, count, 7);
     let of = |threads: usize| {
@@ -203,7 +203,7 @@ fn does_not_depend_on_threads_or_places() {
 #[test]
 fn refuses_what_does_not_fit() {
     let robot = catalogue::load("panda").unwrap();
-    let batch = Batch::new(&robot, robot.tool());
+    let batch = KinematicsBatch::new(&robot, robot.tool());
     assert!(batch.poses(&[]).unwrap().is_empty());
     let error = batch.poses(&[0.0; 15]).unwrap_err().to_string();
     assert_eq!(error, "q has 15 entries, expected 21 (7 for each configuration)");
@@ -224,7 +224,7 @@ fn nothing_moves() {
     let mut b = Mechanism::builder("table");
     b.joint(JointSpec::new("bolt", JointKind::Fixed, "floor", "table"));
     let table = b.build().unwrap();
-    let batch = Batch::new(&table, table.tool());
+    let batch = KinematicsBatch::new(&table, table.tool());
     assert!(batch.poses(&[]).unwrap().is_empty());
     assert!(batch.poses(&[1.0]).is_err());
 }
@@ -233,7 +233,7 @@ fn nothing_moves() {
 #[test]
 fn the_ground_does_not_move() {
     let robot = catalogue::load("panda").unwrap();
-    let batch = Batch::new(&robot, robot.frame(&robot.links()[0].name).unwrap());
+    let batch = KinematicsBatch::new(&robot, robot.frame(&robot.links()[0].name).unwrap());
     let q = draw(&robot, 3, 8);
     assert!(batch.jacobians(&q, ReferenceFrame::World).unwrap().iter().all(|x| *x == 0.0));
     let identity = Pose::IDENTITY.to_matrix();

@@ -5,13 +5,13 @@ use cylindroid::linalg::{Hull, HullGoal, HullOptions};
 use crate::support::Random;
 
 const WHOLE: HullOptions =
-    HullOptions { goal: HullGoal::Whole, tolerance: 1e-9, most_facets: 10_000 };
+    HullOptions { goal: HullGoal::Whole, tolerance: 1e-9, max_facets: 10_000 };
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-fn farthest(points: &[Vec<f64>]) -> impl FnMut(&[f64]) -> Vec<f64> + '_ {
+fn support(points: &[Vec<f64>]) -> impl FnMut(&[f64]) -> Vec<f64> + '_ {
     |n| points.iter().max_by(|p, q| dot(n, p).total_cmp(&dot(n, q))).unwrap().clone()
 }
 
@@ -26,7 +26,7 @@ fn cube(d: usize) -> Vec<Vec<f64>> {
 fn cubes() {
     for d in 1..=5 {
         let points = cube(d);
-        let hull = Hull::of(d, farthest(&points), WHOLE);
+        let hull = Hull::of(d, support(&points), WHOLE);
         assert!(hull.complete);
         assert_eq!((hull.vertices.len(), hull.span.cols()), (1 << d, d));
         for facet in &hull.facets {
@@ -50,7 +50,7 @@ fn random_points() {
     for d in 1..=5 {
         for count in [d + 1, 2 * d + 3, 40] {
             let points: Vec<Vec<f64>> = (0..count).map(|_| random.vector(d)).collect();
-            let hull = Hull::of(d, farthest(&points), WHOLE);
+            let hull = Hull::of(d, support(&points), WHOLE);
             assert!(hull.complete);
             for facet in &hull.facets {
                 for p in &points {
@@ -69,7 +69,7 @@ fn random_points() {
 #[test]
 fn flat_bodies() {
     let square: Vec<Vec<f64>> = cube(2).iter().map(|p| vec![p[0], p[1], p[0] + 2.0]).collect();
-    let hull = Hull::of(3, farthest(&square), WHOLE);
+    let hull = Hull::of(3, support(&square), WHOLE);
     assert_eq!((hull.span.cols(), hull.vertices.len(), hull.facets.len()), (2, 4, 4));
     let polygon = hull.polygon();
     for i in 0..4 {
@@ -78,7 +78,7 @@ fn flat_bodies() {
         assert!(side < 8.1, "neighbours on the rim: {polygon:?}");
     }
     let segment = vec![vec![0.0, 1.0], vec![2.0, 1.0]];
-    let hull = Hull::of(2, farthest(&segment), WHOLE);
+    let hull = Hull::of(2, support(&segment), WHOLE);
     assert_eq!((hull.span.cols(), hull.vertices.len(), hull.facets.len()), (1, 2, 2));
     let hull = Hull::of(3, |_| vec![1.0, 2.0, 3.0], WHOLE);
     assert_eq!((hull.span.cols(), hull.vertices.len(), hull.facets.len()), (0, 1, 0));
@@ -95,14 +95,13 @@ fn curved_bodies() {
         let norm = dot(&scaled, &scaled).sqrt();
         (0..3).map(|i| scaled[i] * axes[i] / norm + if i == 1 { 0.1 } else { 0.0 }).collect()
     };
-    let options =
-        HullOptions { goal: HullGoal::NearestFacet, tolerance: 1e-3, most_facets: 10_000 };
+    let options = HullOptions { goal: HullGoal::NearestFacet, tolerance: 1e-3, max_facets: 10_000 };
     let hull = Hull::of(3, ellipsoid, options);
     assert!(hull.complete);
     let nearest = hull.nearest_facet().unwrap();
     assert!(nearest.offset < 0.4 && nearest.offset + nearest.gap >= 0.4 - 1e-12, "{nearest:?}");
     assert!(nearest.gap < 2.2e-3 && hull.facets.len() < 200, "{}", hull.facets.len());
     // Too few facets allowed: the answer says so.
-    let few = HullOptions { most_facets: 10, goal: HullGoal::Whole, ..options };
+    let few = HullOptions { max_facets: 10, goal: HullGoal::Whole, ..options };
     assert!(!Hull::of(3, ellipsoid, few).complete);
 }

@@ -77,7 +77,7 @@ fn dropped_directions_are_named() {
     let inverse = inverse::truncated(&j, 1e-3).unwrap();
     assert_eq!(inverse.dropped.len(), 1);
     assert_close("direction", &inverse.dropped[0].direction, &[0.0, 0.0, 1.0], 0.0);
-    assert_eq!(inverse.dropped[0].realised, 0.0);
+    assert_eq!(inverse.dropped[0].filter_factor, 0.0);
     assert!((inverse.gap - 1e6).abs() < 1e-3);
     assert!((inverse.threshold - 2e-3).abs() < 1e-15);
 }
@@ -272,7 +272,7 @@ fn report_of_each_method() {
             let s = values[kept + i];
             let realised = report.matrix[(kept + i, kept + i)] * s;
             assert!((dropped.singular_value / s - 1.0).abs() < 1e-12, "{name}");
-            assert!((dropped.realised - realised).abs() < 1e-15 && realised < 0.5, "{name}");
+            assert!((dropped.filter_factor - realised).abs() < 1e-15 && realised < 0.5, "{name}");
             assert_eq!(dropped.direction[kept + i].abs(), 1.0, "{name}");
         }
         assert_eq!(report.dropped.len(), values.len() - kept, "{name}");
@@ -296,18 +296,18 @@ fn report_where_a_large_direction_is_dropped() {
     assert_eq!((report.rank, report.dropped.len()), (2, 1));
     assert_eq!(report.dropped[0].singular_value, 1.0);
     assert_eq!(report.dropped[0].direction, [1.0, 0.0, 0.0]);
-    assert!((report.dropped[0].realised - 0.1).abs() < 1e-15, "{report:?}");
+    assert!((report.dropped[0].filter_factor - 0.1).abs() < 1e-15, "{report:?}");
     assert_eq!(report.gap, 0.25);
     assert_eq!(report.threshold, Svd::of(&j).machine_rank().threshold);
     for (m, n) in [(3, 3), (4, 3), (3, 5)] {
         let j = Matrix::from_fn(m, n, |a, b| if a == b { [1.0, 0.5, 0.25][a] } else { 0.0 });
         let svd = Svd::of(&j);
-        let space = RowSpace::retained(&svd, &[false, true, true]);
+        let space = RowSpace::from_kept(&svd, &[false, true, true]);
         assert_eq!(space.rank(), 2);
         let mut x = vec![1.0; n];
         space.project_out(&mut x);
         assert_eq!(x[..3], [1.0, 0.0, 0.0]);
-        let basis = space.complement_basis();
+        let basis = space.null_space_basis();
         assert_eq!(basis.cols(), n - 2);
         for c in 0..basis.cols() {
             assert_eq!(basis.column(c)[1..3], [0.0, 0.0], "{basis:?}");

@@ -1,6 +1,6 @@
 //! Inverses of many Jacobians are those of each, to the bit.
 
-use cylindroid::inverse::{Batch, Method};
+use cylindroid::inverse::{InverseBatch, Method};
 use cylindroid::{Error, Matrix};
 use rayon::ThreadPoolBuilder;
 
@@ -23,7 +23,7 @@ fn equal_single_inverses() {
             .collect();
         let stack: Vec<f64> = all.iter().flat_map(row_major).collect();
         for method in Method::ALL {
-            let inverses = Batch::new(method, m, n).unwrap().inverses(&stack).unwrap();
+            let inverses = InverseBatch::new(method, m, n).unwrap().inverses(&stack).unwrap();
             assert_eq!(inverses.ranks.len(), all.len());
             for (i, j) in all.iter().enumerate() {
                 let one = method.inverse(j).unwrap();
@@ -46,9 +46,9 @@ fn equal_single_inverses() {
 #[test]
 fn threads_change_nothing() {
     let mut random = Random(71);
-    let count = 2 * Batch::ALONE + 7;
+    let count = 2 * InverseBatch::CHUNK + 7;
     let stack: Vec<f64> = (0..count).flat_map(|_| row_major(&random.matrix(6, 7))).collect();
-    let batch = Batch::new(Method::default(), 6, 7).unwrap();
+    let batch = InverseBatch::new(Method::default(), 6, 7).unwrap();
     let with = |threads: usize| {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| batch.inverses(&stack).unwrap())
@@ -62,7 +62,7 @@ fn threads_change_nothing() {
 
 #[test]
 fn bad_input_is_refused() {
-    let batch = Batch::new(Method::default(), 2, 3).unwrap();
+    let batch = InverseBatch::new(Method::default(), 2, 3).unwrap();
     assert!(batch.inverses(&[]).unwrap().matrices.is_empty());
     let short = batch.inverses(&[0.0; 7]).unwrap_err();
     assert!(matches!(short, Error::Dimension { expected: 12, got: 7, .. }), "{short}");
@@ -70,6 +70,6 @@ fn bad_input_is_refused() {
     numbers[10] = f64::NAN;
     let message = batch.inverses(&numbers).unwrap_err().to_string();
     assert!(message.contains("entry (1, 1) of J[1]"), "{message}");
-    assert!(Batch::new(Method::Damped { damping: 0.0 }, 2, 3).is_err());
-    assert!(Batch::new(Method::default(), 0, 3).is_err());
+    assert!(InverseBatch::new(Method::Damped { damping: 0.0 }, 2, 3).is_err());
+    assert!(InverseBatch::new(Method::default(), 0, 3).is_err());
 }

@@ -9,7 +9,7 @@
 
 mod analytic;
 mod batch;
-mod box_program;
+mod bounded_linear_program;
 mod closure;
 mod graph;
 mod hull;
@@ -28,4 +28,4 @@ mod spatial;
 mod subspaces;
 mod support;
 mod svd;
-mod symmetric;
+mod symmetric_eigen;

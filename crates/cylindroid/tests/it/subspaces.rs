@@ -1,7 +1,7 @@
 //! QR, spaces of columns and their complements, the CS decomposition.
 
 use cylindroid::Matrix;
-use cylindroid::linalg::{ColumnSpace, CosineSine, Metric, PairKind, Qr, Svd, Threshold};
+use cylindroid::linalg::{ColumnSpace, CsDecomposition, Metric, PairKind, Qr, Svd, Threshold};
 
 use crate::support::{Random, assert_close, assert_matrix};
 
@@ -56,7 +56,7 @@ fn column_space_and_complement_are_orthonormal_and_complete() {
             assert_eq!(space.rank(), rank);
             let (basis, complement) = (space.basis(), space.complement());
             assert_eq!((basis.cols(), complement.cols()), (rank, m - rank));
-            assert_orthonormal("all", &Matrix::beside(m, &[&basis, &complement]), 1e-13);
+            assert_orthonormal("all", &Matrix::hstack(m, &[&basis, &complement]), 1e-13);
             let outside = &complement.transpose() * &a;
             assert!(outside.max_abs() <= 1e-13 * (1.0 + a.frobenius_norm()), "{outside:?}");
             let values: Vec<f64> = Svd::of(&a).values().collect();
@@ -143,11 +143,11 @@ fn column_space_thresholds() {
     }
 }
 
-fn check_cs(basis: &Matrix, split: usize) -> CosineSine {
-    let cs = CosineSine::of(basis, split);
+fn check_cs(basis: &Matrix, split: usize) -> CsDecomposition {
+    let cs = CsDecomposition::of(basis, split);
     let (rows, k) = (basis.rows(), basis.cols());
     let times = |a: &Matrix, scale: &[f64]| a * &Matrix::diagonal(scale);
-    let stack = Matrix::above(k, &[&times(&cs.x, &cs.cosines), &times(&cs.y, &cs.sines)]);
+    let stack = Matrix::vstack(k, &[&times(&cs.x, &cs.cosines), &times(&cs.y, &cs.sines)]);
     assert_matrix("[X C; Y S]", &stack, &(basis * &cs.z), 2e-14);
     assert_orthonormal("Z", &cs.z, 1e-13);
     assert!(cs.sines.windows(2).all(|w| w[0] >= w[1] - 1e-15), "{:?}", cs.sines);
@@ -205,7 +205,7 @@ fn cs_finds_the_angles_it_was_built_from() {
         let c: Vec<f64> = pairs.iter().map(|p| p.0).collect();
         let s: Vec<f64> = pairs.iter().map(|p| p.1).collect();
         let stack =
-            Matrix::above(5, &[&(&x * &Matrix::diagonal(&c)), &(&y * &Matrix::diagonal(&s))]);
+            Matrix::vstack(5, &[&(&x * &Matrix::diagonal(&c)), &(&y * &Matrix::diagonal(&s))]);
         let cs = check_cs(&(&stack * &z.transpose()), a);
         assert_close("cosines", &cs.cosines, &c, 2e-15);
         assert_close("sines", &cs.sines, &s, 2e-15);

@@ -206,7 +206,7 @@ fn null_space_is_the_kernel() {
             let a = random.integer_product(m, n, rank);
             let svd = Svd::of(&a);
             let space = RowSpace::exact(&svd);
-            let basis = space.complement_basis();
+            let basis = space.null_space_basis();
             assert_eq!(basis.cols(), n - space.rank());
             let image = &a * &basis;
             assert!(image.max_abs() <= 1e-13 * a.frobenius_norm(), "A N = {image:?}");

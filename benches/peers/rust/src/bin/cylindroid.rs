@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 
-use cylindroid::control::{ServoGains, SecondaryTask, Target};
+use cylindroid::control::{SecondaryTask, ServoGains, Target};
 use cylindroid::ik::{Budget, Goal, IkOptions, Solver};
 use cylindroid::inverse::Method;
-use cylindroid::kinematics::{Batch, Chain};
+use cylindroid::kinematics::{Chain, KinematicsBatch};
 use cylindroid::spatial::Mat3;
 use cylindroid::{
     FrameId, Matrix, Mechanism, Pose, ReferenceFrame, Rotation, Servo, ServoOptions, State, Twist,
@@ -21,7 +21,7 @@ struct Arm {
     chain: Chain,
     state: State,
     jacobian: Matrix,
-    batch: Batch,
+    batch: KinematicsBatch,
     poses: Vec<f64>,
     jacobians: Vec<f64>,
     /// Solver and its tolerance.
@@ -39,7 +39,7 @@ fn make(robot: &Robot) -> Result<Arm> {
     Ok(Arm {
         state: mechanism.state(&vec![0.0; mechanism.n()])?,
         jacobian: Matrix::zeros(6, mechanism.n()),
-        batch: Batch::new(&mechanism, tip),
+        batch: KinematicsBatch::new(&mechanism, tip),
         poses: Vec::new(),
         jacobians: Vec::new(),
         mechanism,

@@ -22,7 +22,7 @@ use crate::closure::constraint::loop_closure_error::LoopClosureError;
 use crate::closure::constraint::velocity_constraint::{Unit, kernel_tolerance};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::{ColumnSpace, CosineSine, Matrix, Svd, Threshold};
+use crate::linalg::{ColumnSpace, CsDecomposition, Matrix, Svd, Threshold};
 use crate::model::{LoopJoint, Mechanism};
 use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 
@@ -78,7 +78,7 @@ impl ActuationMap {
         let others = (0..size.len()).filter(|i| driven.iter().all(|(d, _)| d != i));
         let order: Vec<usize> = driven.iter().map(|(d, _)| *d).chain(others).collect();
         let sorted = Matrix::from_fn(size.len(), kernel.cols(), |i, j| kernel[(order[i], j)]);
-        let cs = CosineSine::of(&sorted, driven.len());
+        let cs = CsDecomposition::of(&sorted, driven.len());
         let unscaled = (&kernel * &cs.z).scale_rows(size);
         let free = cs.cosines.iter().take_while(|c| **c <= kernel_tolerance(&space)).count();
         let p = kernel.cols() - free;

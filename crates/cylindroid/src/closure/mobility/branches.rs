@@ -114,7 +114,7 @@ impl Here {
                 for _ in 0..4 * k + 4 {
                     let start = times(&direction(k, &mut random), h);
                     if let Some((x, _)) = zero(&at, &start, h)? {
-                        found = Matrix::beside(k, &[&found, &column(&times(&x, 1.0 / h))]);
+                        found = Matrix::hstack(k, &[&found, &column(&times(&x, 1.0 / h))]);
                     }
                 }
                 let space = ColumnSpace::of(&found, Threshold::Absolute(BRANCH_SPREAD));
@@ -214,7 +214,7 @@ fn tangent(
         return Ok(None);
     }
     let dimension = there.motions.cols();
-    let both = Matrix::beside(x.len(), &sides.iter().collect::<Vec<_>>());
+    let both = Matrix::hstack(x.len(), &sides.iter().collect::<Vec<_>>());
     let svd = Svd::of(&both);
     let directions = Matrix::from_fn(x.len(), dimension, |i, j| svd.u(j)[i]);
     Ok(Some(Tangent { dimension, directions, postures }))
@@ -235,7 +235,7 @@ fn merged(mut tangents: Vec<Tangent>, k: usize) -> Vec<Tangent> {
             tangents.into_iter().partition(|t| t.dimension == dimension);
         tangents = others;
         if dimension > 1 && of.len() > MOST_TANGENTS {
-            let all = Matrix::beside(k, &of.iter().map(|t| &t.directions).collect::<Vec<_>>());
+            let all = Matrix::hstack(k, &of.iter().map(|t| &t.directions).collect::<Vec<_>>());
             of.truncate(1);
             of[0].directions = ColumnSpace::of(&all, Threshold::Absolute(SAME_BRANCH)).basis();
         }

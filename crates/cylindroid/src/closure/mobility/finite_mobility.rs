@@ -137,7 +137,7 @@ impl FiniteMobility {
         report.finite = Some(found.tangents.first().map_or(0, |t| t.dimension));
         let mut tangents = Matrix::zeros(k, 0);
         for tangent in found.tangents {
-            tangents = Matrix::beside(k, &[&tangents, &tangent.directions]);
+            tangents = Matrix::hstack(k, &[&tangents, &tangent.directions]);
             report.branches.push(Branch {
                 dimension: tangent.dimension,
                 motions: reduction.unscaled(&(reduction.kernel() * &tangent.directions)),

@@ -17,7 +17,7 @@
 use crate::closure::constraint::velocity_constraint::check_finite;
 use crate::error::{Error, Result};
 use crate::linalg::{
-    ColumnSpace, CosineSine, Cut, Matrix, PairKind, Qr, Threshold, dot, solve_upper,
+    ColumnSpace, CsDecomposition, Cut, Matrix, PairKind, Qr, Threshold, dot, solve_upper,
 };
 use crate::tolerance::CLOSURE_BLOCK;
 
@@ -74,7 +74,7 @@ impl ObjectScale {
 pub struct Relation {
     joint_scale: Vec<f64>,
     scale: ObjectScale,
-    cs: CosineSine,
+    cs: CsDecomposition,
     /// The directions in order: i' infinite, c' finite, r' zero.
     infinite: usize,
     zero: usize,
@@ -93,7 +93,7 @@ impl Relation {
         tolerance: f64,
     ) -> Self {
         let space = ColumnSpace::cut_of(span, Threshold::Absolute(tolerance));
-        let cs = CosineSine::of(&space.basis(), joint_scale.len());
+        let cs = CsDecomposition::of(&space.basis(), joint_scale.len());
         let count = |kind| (0..cs.len()).filter(|&j| cs.kind(j, tolerance) == kind).count();
         Self {
             infinite: count(PairKind::Infinite),
@@ -222,7 +222,7 @@ impl Relation {
         let joint = weighted(&self.cs.x, &self.cs.cosines);
         let object = &reduce.transpose() * &weighted(&self.cs.y, &self.cs.sines);
         Ok(Self::from_scaled(
-            Matrix::above(columns, &[&joint, &object]),
+            Matrix::vstack(columns, &[&joint, &object]),
             self.joint_scale.clone(),
             ObjectScale { wrench, twist: r.transpose() },
             self.tolerance,
@@ -332,9 +332,9 @@ impl RelationBases {
         let (joints, object) = (self.joint.rows(), self.object.rows());
         let (zero, infinite) = (self.zero.cols(), self.infinite.cols());
         let above =
-            Matrix::beside(joints, &[&Matrix::zeros(joints, infinite), &self.joint, &self.zero]);
+            Matrix::hstack(joints, &[&Matrix::zeros(joints, infinite), &self.joint, &self.zero]);
         let below =
-            Matrix::beside(object, &[&self.infinite, &self.object, &Matrix::zeros(object, zero)]);
-        Matrix::above(above.cols(), &[&above, &below])
+            Matrix::hstack(object, &[&self.infinite, &self.object, &Matrix::zeros(object, zero)]);
+        Matrix::vstack(above.cols(), &[&above, &below])
     }
 }

@@ -147,13 +147,13 @@ impl Mobility {
         let both = if mixed == 0 {
             c.saturating_sub(passive + object)
         } else {
-            let all = Matrix::beside(k, &[&joints_only.0, &object_only.0, &indeterminacy.0]);
+            let all = Matrix::hstack(k, &[&joints_only.0, &object_only.0, &indeterminacy.0]);
             k - ColumnSpace::of(&all, tolerance).rank()
         };
         let coordinate = if r + i == 0 {
             Subspace { basis: motions.basis(), cut: motions.cut() }
         } else {
-            let others = Matrix::beside(k, &[&redundancy.0, &indeterminacy.0]);
+            let others = Matrix::hstack(k, &[&redundancy.0, &indeterminacy.0]);
             let others = ColumnSpace::of(&others, tolerance);
             space(&(others.complement(), others.cut()))
         };

@@ -23,7 +23,7 @@ use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::screws::Screw;
 use crate::spatial::Twist;
-use crate::tolerance::{LEAST_PATH_SINGULAR, PATH_SINGULAR, SHARE_FOUND, VANISHES};
+use crate::tolerance::{LEAST_PATH_SINGULAR, PATH_SINGULAR, SHARE_FOUND, VANISHING};
 
 /// Steps at most, tried ones included.
 const MOST_STEPS: usize = 20_000;
@@ -270,7 +270,7 @@ fn in_sight(tracker: &PathTracker<'_>, point: &Point) -> Result<PathSingularity>
         Twist::from_array(std::array::from_fn(|i| of[i]))
     };
     let (here, world) = (twist(ReferenceFrame::LocalWorldAligned), twist(ReferenceFrame::World));
-    let small = distance.sqrt().max(VANISHES);
+    let small = distance.sqrt().max(VANISHING);
     let moves = (here.linear.norm() / mechanism.reach()).hypot(here.angular.norm()) > small;
     let kind = match (taken > small, moves) {
         (false, _) => SingularityKind::ConfigurationSpace,

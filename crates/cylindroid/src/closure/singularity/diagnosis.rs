@@ -36,7 +36,7 @@ use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};
 use crate::model::FrameId;
 use crate::screws::{Line, Screw, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3, Wrench};
-use crate::tolerance::{CLOSURE_BLOCK, GENERIC_LIMIT, STANDS_STILL};
+use crate::tolerance::{CLOSURE_BLOCK, GENERIC_LIMIT, JOINT_AT_REST};
 
 /// The singularities of a posture, named.
 #[derive(Debug, Clone, PartialEq)]
@@ -214,7 +214,7 @@ fn beyond(
     if near.is_empty() {
         return (now.clone(), false);
     }
-    let near = Matrix::beside(now.rows(), &near.iter().collect::<Vec<_>>());
+    let near = Matrix::hstack(now.rows(), &near.iter().collect::<Vec<_>>());
     let limit = Svd::of(&(&now.transpose() * &near));
     let kept = Matrix::from_fn(now.cols(), generic, |i, j| limit.u(j)[i]);
     (now * &Qr::plain(kept).complement(), true)
@@ -275,6 +275,6 @@ fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
 
 /// The names of those that take part.
 fn movers(motions: &Matrix, names: &[String]) -> Vec<String> {
-    let moves = |i: &usize| motions.row_norm(*i) > STANDS_STILL;
+    let moves = |i: &usize| motions.row_norm(*i) > JOINT_AT_REST;
     (0..names.len()).filter(moves).map(|i| names[i].clone()).collect()
 }

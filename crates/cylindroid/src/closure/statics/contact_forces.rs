@@ -73,7 +73,7 @@ impl<'a> ContactForceSolver<'a> {
             for (j, r) in constraint.row_scale().iter().enumerate() {
                 equations.column_mut(j).iter_mut().for_each(|x| *x /= r);
             }
-            metric.colour_columns(&mut equations);
+            metric.solve_right(&mut equations);
         }
         let svd = Svd::of(&equations);
         let rank = motions.cut().rank.rank.min(svd.len());
@@ -103,7 +103,7 @@ impl<'a> ContactForceSolver<'a> {
             left.iter_mut().zip(svd.u(i)).for_each(|(l, u)| *l -= along * u);
         }
         match self.compliance {
-            Some(metric) => metric.colour(&mut forces),
+            Some(metric) => metric.unwhiten(&mut forces),
             None => forces.iter_mut().zip(constraint.row_scale()).for_each(|(f, r)| *f *= r),
         }
         let size = norm(&target);

@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::linalg::{Hull, HullGoal, HullOptions, Matrix, Qr, norm};
 use crate::model::Dimension;
 use crate::spatial::Vec3;
-use crate::tolerance::{GRASP_QUALITY, HULL, MOST_FACETS, ORTHONORMAL};
+use crate::tolerance::{GRASP_QUALITY, HULL, MAX_FACETS, ORTHONORMAL};
 
 /// What a finger transmits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -153,7 +153,7 @@ pub fn grasp_quality(
         HullOptions {
             goal: HullGoal::NearestFacet,
             tolerance: GRASP_QUALITY,
-            most_facets: MOST_FACETS,
+            max_facets: MAX_FACETS,
         },
     );
     let size = hull.vertices.iter().map(|v| norm(v)).fold(0.0, f64::max);

@@ -50,7 +50,7 @@ pub fn joint_torques(
             let along = dot(basis.column(j), &torques);
             torques.iter_mut().zip(basis.column(j)).for_each(|(t, b)| *t -= along * b);
         }
-        metric.colour(&mut torques);
+        metric.unwhiten(&mut torques);
     }
     Ok(JointTorques { torques, structural, unbalanced })
 }

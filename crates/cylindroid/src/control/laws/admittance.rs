@@ -11,7 +11,7 @@
 //! Checked  tests/it/servo/hybrid.rs::admittance_*
 
 use crate::error::{Error, Result};
-use crate::linalg::Eigen;
+use crate::linalg::SymmetricEigen;
 use crate::spatial::{Pose, Twist, Vec3, Wrench};
 use crate::tolerance::PASSIVE;
 
@@ -70,7 +70,7 @@ impl Admittance {
             }
         }
         let smallest = if scaled.as_flattened().iter().all(|s| s.is_finite()) {
-            Eigen::of(scaled, 6).values[5]
+            SymmetricEigen::of(scaled, 6).values[5]
         } else {
             f64::NEG_INFINITY
         };

@@ -102,7 +102,7 @@ impl ServoOptions {
             method: Method::default(),
             projection: TaskProjection::Orthogonal,
             fallback: None,
-            largest_projection: tolerance::LARGEST_PROJECTION,
+            largest_projection: tolerance::MAX_PROJECTION_NORM,
             length: mechanism.reach(),
             joint_weights: Vec::new(),
             speed: SpeedLimit { linear: f64::INFINITY, angular: f64::INFINITY },

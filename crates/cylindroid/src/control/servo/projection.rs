@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::inverse::HyperbolicDamping;
 use crate::kinematics::ReferenceFrame;
 use crate::linalg::Svd;
-use crate::screws::{NoInverse, ScrewOptions, ScrewSystem, TaskProjector};
+use crate::screws::{NoInverse, ScaledProjector, ScrewOptions, ScrewSystem};
 use crate::spatial::{Pose, Rotation, Twist, Vec3};
 use crate::tolerance::GENERIC_RANK;
 
@@ -144,7 +144,7 @@ pub(super) struct ProjectionChoice<'a> {
 /// The projector of this step.
 #[derive(Debug, Clone)]
 pub(super) struct StepProjection {
-    projector: Option<TaskProjector>,
+    projector: Option<ScaledProjector>,
     reason: Option<NoInverse>,
     stopped: bool,
 }
@@ -196,7 +196,7 @@ fn projector(
     largest: f64,
     svd: &Svd,
     frame: TaskFrame,
-) -> std::result::Result<Option<TaskProjector>, NoInverse> {
+) -> std::result::Result<Option<ScaledProjector>, NoInverse> {
     if *projection == TaskProjection::Orthogonal {
         return Ok(None);
     }
@@ -205,7 +205,7 @@ fn projector(
     let found = match projection {
         TaskProjection::Orthogonal => return Ok(None),
         TaskProjection::Hyperbolic { h } => {
-            let found = TaskProjector::hyperbolic(motions, h / frame.length);
+            let found = ScaledProjector::hyperbolic(motions, h / frame.length);
             match found {
                 Some(p) if p.norm() <= largest => p,
                 _ => {
@@ -217,12 +217,12 @@ fn projector(
         TaskProjection::DampedHyperbolic { h, damping } => {
             let twists = (0..k).map(|i| std::array::from_fn(|r| svd.u(i)[r] * svd.value(i)));
             let gain = |g: f64| damping.gain(g, frame.length);
-            TaskProjector::damped(twists, h / frame.length, gain)
+            ScaledProjector::damped(twists, h / frame.length, gain)
                 .map_err(|g| NoInverse::DampingMeetsEigenvalue { eigenvalue: g * frame.length })?
         }
         TaskProjection::Oblique { complement, reference } => {
             let given_up = complement.iter().map(|t| frame.scaled(*t, *reference));
-            TaskProjector::oblique(motions, given_up)?
+            ScaledProjector::oblique(motions, given_up)?
         }
     };
     let norm = found.norm();

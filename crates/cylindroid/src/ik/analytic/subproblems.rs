@@ -19,7 +19,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use crate::scalar::sin_cos;
 use crate::spatial::{Mat3, Vec3};
-use crate::tolerance::{FREE_TURN, MISSED, TOUCHING};
+use crate::tolerance::{FREE_TURN, NEARLY_SATISFIED, TANGENT_ROOT};
 
 /// A free turn is tried at the angle of the start, then so many eighths of a turn from it.
 const EIGHTHS: [f64; 8] = [0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0];
@@ -160,7 +160,7 @@ pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Angles
         turns.free = Some(start);
     }
     let height = square - c * c;
-    if square == 0.0 || !(height >= -MISSED * square) {
+    if square == 0.0 || !(height >= -NEARLY_SATISFIED * square) {
         return turns;
     }
     if height <= 0.0 {
@@ -337,7 +337,7 @@ fn real_roots(a: [f64; 5], mut f: impl FnMut(f64)) {
             roots[..found].iter().for_each(|t| f(*t));
             for t in &knots[..count] {
                 let size = (0..=4).rev().fold(0.0, |v, k| v * t.abs() + a[k].abs());
-                if p(*t).abs() <= TOUCHING * size {
+                if p(*t).abs() <= TANGENT_ROOT * size {
                     f(*t);
                 }
             }

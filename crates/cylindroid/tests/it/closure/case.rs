@@ -361,12 +361,12 @@ impl Case {
                 .filter(|&j| self.joints[j].actuated == driven)
                 .map(joint)
                 .unzip();
-            (Matrix::beside(t, &columns.iter().collect::<Vec<_>>()), units)
+            (Matrix::hstack(t, &columns.iter().collect::<Vec<_>>()), units)
         };
         let (actuated, actuated_units) = side(true);
         let (mut passive, mut passive_units) = side(false);
         for k in (0..self.objects.len()).filter(|&k| k != self.reference) {
-            passive = Matrix::beside(t, &[&passive, &object(k)]);
+            passive = Matrix::hstack(t, &[&passive, &object(k)]);
             passive_units.extend(&object_units);
         }
         let grasp = object(self.reference).transpose();

@@ -54,7 +54,7 @@ fn forces_are_those_of_free_bodies() {
         let bodies = ColumnSpace::of(&projected, Threshold::Absolute(1e-9)).basis();
         let f = MotionSpace::of(&constraint).relation().forces().basis();
         assert_eq!(bodies.cols(), f.cols(), "{}", case.name);
-        let both = Matrix::beside(a + d, &[&bodies, &f]);
+        let both = Matrix::hstack(a + d, &[&bodies, &f]);
         let space = ColumnSpace::of(&both, Threshold::Relative(1e-9));
         assert_eq!(space.rank(), f.cols(), "{}", case.name);
     }
@@ -163,7 +163,7 @@ fn drawings_of_one_mechanism_have_one_relation() {
     ] {
         let basis = |name| MotionSpace::of(&case(name).constraint()).relation().motions().basis();
         let (one, other) = (basis(one), basis(other));
-        let both = Matrix::beside(one.rows(), &[&one, &other]);
+        let both = Matrix::hstack(one.rows(), &[&one, &other]);
         let space = ColumnSpace::of(&both, Threshold::Relative(1e-12));
         assert_eq!((space.rank(), one.cols()), (other.cols(), other.cols()));
     }

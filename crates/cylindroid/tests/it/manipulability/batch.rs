@@ -4,21 +4,26 @@
 use cylindroid::closure::{
     ClosedChain, Mobility, MobilityCounts, MotionSpace, Singularities, assemble,
 };
-use cylindroid::manipulability::{Batch, BatchOptions, Manipulability, Metrics};
+use cylindroid::manipulability::{BatchOptions, Manipulability, ManipulabilityBatch, Metrics};
 use cylindroid::model::{CoordinateKind, JointKind, JointSpec, LoopJointSpec, Mimic};
 use cylindroid::spatial::Vec3;
 use cylindroid::{Error, Matrix, Mechanism, catalogue};
 
 use crate::support::Random;
 
-const WIDTH: usize = Batch::WIDTH;
+const WIDTH: usize = ManipulabilityBatch::WIDTH;
 
 fn file(name: &str) -> Mechanism {
     cylindroid::load(&format!("tests/data/mechanisms/{name}.toml")).unwrap()
 }
 
 /// The reports of one configuration.
-fn single(batch: &Batch, mechanism: &Mechanism, q: &[f64], metrics: &Metrics) -> [f64; WIDTH] {
+fn single(
+    batch: &ManipulabilityBatch,
+    mechanism: &Mechanism,
+    q: &[f64],
+    metrics: &Metrics,
+) -> [f64; WIDTH] {
     let state = mechanism.state(q).unwrap();
     let length = batch.length();
     let chain = ClosedChain::of(&state, Some(batch.reference()), Some(length)).unwrap();
@@ -54,7 +59,7 @@ fn single(batch: &Batch, mechanism: &Mechanism, q: &[f64], metrics: &Metrics) ->
 fn check(what: &str, got: &[f64], expected: &[f64; WIDTH], length: f64) {
     let distances = &expected[11..15];
     let least = distances.iter().filter(|d| **d > 0.0).fold(1.0, |m: f64, d| m.min(*d));
-    for (i, name) in Batch::COLUMNS.into_iter().enumerate() {
+    for (i, name) in ManipulabilityBatch::COLUMNS.into_iter().enumerate() {
         let (g, e) = (got[i], expected[i]);
         let tolerance = match i {
             0 | 1 => 1e-14 * (10.0 + length),
@@ -81,7 +86,7 @@ fn postures(mechanism: &Mechanism, count: usize, spread: f64) -> Vec<f64> {
 }
 
 fn compare(what: &str, mechanism: &Mechanism, options: &BatchOptions, q: &[f64]) {
-    let batch = Batch::new(mechanism, options).unwrap();
+    let batch = ManipulabilityBatch::new(mechanism, options).unwrap();
     let rows = batch.analyse(q).unwrap();
     let n = mechanism.n();
     assert_eq!(rows.len(), q.len() / n * WIDTH);
@@ -149,7 +154,7 @@ fn agrees_in_other_metrics_frames_and_lengths() {
     compare("limits", &two_arm, &options, &postures(&two_arm, 13, 0.2));
     // Generic counts of one's own: every posture is then singular.
     let five_bar = catalogue::load("five-bar").unwrap();
-    let batch = Batch::new(&five_bar, &BatchOptions::default()).unwrap();
+    let batch = ManipulabilityBatch::new(&five_bar, &BatchOptions::default()).unwrap();
     let generic = Some(MobilityCounts { zero_torque: 0, ..batch.generic() });
     let options = BatchOptions { generic, ..BatchOptions::default() };
     compare("generic", &five_bar, &options, &postures(&five_bar, 9, 0.2));
@@ -219,10 +224,10 @@ fn singular_postures_among_others() {
         q.extend(&guess);
         q.extend(assemble(&mechanism, &guess, &[0]).unwrap().q);
     }
-    let batch = Batch::new(&mechanism, &BatchOptions::default()).unwrap();
+    let batch = ManipulabilityBatch::new(&mechanism, &BatchOptions::default()).unwrap();
     compare("dead centre", &mechanism, &BatchOptions::default(), &q);
     let rows = batch.analyse(&q).unwrap();
-    let type_i = Batch::column("type_i").unwrap();
+    let type_i = ManipulabilityBatch::column("type_i").unwrap();
     assert_eq!(rows[type_i], 0.0);
     assert!(rows[rows.len() - WIDTH + type_i] > 1e-3, "{n}");
     // Arms stretched out, with the wrist singular, and at zero.
@@ -242,7 +247,7 @@ fn singular_postures_among_others() {
 fn results_do_not_depend_on_threads_nor_on_neighbours() {
     for name in ["five-bar", "stewart", "two-arm"] {
         let mechanism = catalogue::load(name).unwrap();
-        let batch = Batch::new(&mechanism, &BatchOptions::default()).unwrap();
+        let batch = ManipulabilityBatch::new(&mechanism, &BatchOptions::default()).unwrap();
         let n = mechanism.n();
         let some = postures(&mechanism, 37, 0.3);
         let q = some.repeat(11);
@@ -268,8 +273,8 @@ fn bits(x: &[f64]) -> Vec<u64> {
 #[test]
 fn empty_and_wrong_batches() {
     let mechanism = catalogue::load("five-bar").unwrap();
-    let batch = Batch::new(&mechanism, &BatchOptions::default()).unwrap();
-    assert_eq!((batch.n(), Batch::COLUMNS.len()), (4, WIDTH));
+    let batch = ManipulabilityBatch::new(&mechanism, &BatchOptions::default()).unwrap();
+    assert_eq!((batch.n(), ManipulabilityBatch::COLUMNS.len()), (4, WIDTH));
     assert!(batch.analyse(&[]).unwrap().is_empty());
     let message = |e: Error| e.to_string();
     let e = message(batch.analyse(&[0.0; 5]).unwrap_err());
@@ -281,7 +286,7 @@ fn empty_and_wrong_batches() {
     assert_eq!(e, "results has 20 entries, expected 38 (19 for each configuration)");
     // A box so far out that its constraint overflows: the first of them is named.
     let two_arm = catalogue::load("two-arm").unwrap();
-    let far = Batch::new(&two_arm, &BatchOptions::default()).unwrap();
+    let far = ManipulabilityBatch::new(&two_arm, &BatchOptions::default()).unwrap();
     let mut q = two_arm.home().repeat(400);
     for row in [390, 300, 140] {
         for (i, c) in two_arm.coordinates().iter().enumerate() {
@@ -294,7 +299,10 @@ fn empty_and_wrong_batches() {
     assert!(e.contains("at q[140] is not finite"), "{e}");
     let wrong = Metrics::UNIT.with_object(&Matrix::identity(2)).unwrap();
     let options = BatchOptions { metrics: wrong, ..BatchOptions::default() };
-    assert!(matches!(Batch::new(&mechanism, &options), Err(Error::Dimension { .. })));
+    assert!(matches!(ManipulabilityBatch::new(&mechanism, &options), Err(Error::Dimension { .. })));
     let options = BatchOptions { length: Some(-1.0), ..BatchOptions::default() };
-    assert!(matches!(Batch::new(&mechanism, &options), Err(Error::InvalidOption { .. })));
+    assert!(matches!(
+        ManipulabilityBatch::new(&mechanism, &options),
+        Err(Error::InvalidOption { .. })
+    ));
 }

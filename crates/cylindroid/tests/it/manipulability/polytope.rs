@@ -160,7 +160,7 @@ fn limits_that_differ_both_ways() {
         let relation = serial(&j);
         let velocity = velocity_polytope(&relation, &limits).unwrap();
         assert_eq!(velocity.hull.polygon().len(), 2 * n);
-        let farthest = |normal: &[f64]| -> f64 {
+        let support = |normal: &[f64]| -> f64 {
             let end = |i: usize| {
                 let along = dot(normal, j.column(i));
                 along * if along > 0.0 { limits[i].upper } else { limits[i].lower }
@@ -168,13 +168,13 @@ fn limits_that_differ_both_ways() {
             (0..n).map(end).sum()
         };
         for facet in &velocity.hull.facets {
-            assert!((facet.offset - farthest(&facet.normal)).abs() < 1e-12);
+            assert!((facet.offset - support(&facet.normal)).abs() < 1e-12);
         }
         let range = velocity_range(&relation, &limits).unwrap();
         for (i, r) in range.iter().enumerate() {
             let e: Vec<f64> = (0..2).map(|l| f64::from(u8::from(l == i))).collect();
             let minus: Vec<f64> = e.iter().map(|x| -x).collect();
-            assert_close("range", &[r.lower, r.upper], &[-farthest(&minus), farthest(&e)], 1e-12);
+            assert_close("range", &[r.lower, r.upper], &[-support(&minus), support(&e)], 1e-12);
         }
         // Torques -J^T w within their limits, and two of them at one.
         let force = force_polytope(&relation, &limits).unwrap();

@@ -6,11 +6,11 @@ use cylindroid::control::{
     Admittance, AdmittanceGain, HybridCommand, HybridController, HybridInput,
 };
 use cylindroid::linalg::{Matrix, Svd};
-use cylindroid::screws::{Along, NoInverse, Projector as Split, ScrewOptions, ScrewSystem};
+use cylindroid::screws::{Complement, NoInverse, Projector as Split, ScrewOptions, ScrewSystem};
 use cylindroid::spatial::exp;
 use cylindroid::{Result, Wrench};
 
-pub(super) fn split(motions: &[Twist], along: Along<'_>) -> Split {
+pub(super) fn split(motions: &[Twist], along: Complement<'_>) -> Split {
     Split::of(motions, along, &ScrewOptions::with_length(0.5)).unwrap().unwrap()
 }
 
@@ -80,7 +80,8 @@ impl Problem {
     }
 
     fn split(&self) -> Option<Split> {
-        let along = self.h.map_or(Along::Twists(&self.dropped), |h| Along::Reciprocal { h });
+        let along =
+            self.h.map_or(Complement::Twists(&self.dropped), |h| Complement::Reciprocal { h });
         Split::of(&self.motions, along, &ScrewOptions::with_length(self.length)).unwrap().ok()
     }
 
@@ -262,13 +263,13 @@ fn orthogonal_selection_changes_with_the_origin_and_the_unit() {
     assert!((0.002..0.004).contains(&metres), "{metres}");
     assert!(millimetres > 10.0 * metres, "{millimetres}");
 
-    let along = Along::Reciprocal { h: f64::INFINITY };
+    let along = Complement::Reciprocal { h: f64::INFINITY };
     let (ours, from_aside) = (split(&motions, along), split(&moved, along));
     close_twist("at the tip", ours.motion(error), Twist::ZERO, 1e-15);
     close_twist("from aside", from_aside.motion(g.adjoint(error)), Twist::ZERO, 1e-15);
     // For a pen the limit is what one would choose: give way along the normal, without turning.
     let normal = [slide(normal)];
-    let chosen = split(&motions, Along::Twists(&normal));
+    let chosen = split(&motions, Complement::Twists(&normal));
     let x = Random(6).twist();
     close_twist("limit", ours.motion(x), chosen.motion(x), 1e-14);
 }
@@ -283,7 +284,7 @@ fn a_pen_writes_at_constant_force() {
         Admittance::at(Vec3::ZERO, AdmittanceGain { force: 0.01, moment: 0.0 }).unwrap(),
     )
     .unwrap();
-    let along = Along::Reciprocal { h: f64::INFINITY };
+    let along = Complement::Reciprocal { h: f64::INFINITY };
     let split = split(&pen(normal), along);
     let run = |drag: f64, desired: Vec3| {
         let across = Vec3::Y;
@@ -335,7 +336,9 @@ fn projectors_of_twists() {
             more.push(Twist::ZERO);
             more.push(first * 1e-9);
         }
-        let along = problem.h.map_or(Along::Twists(&problem.dropped), |h| Along::Reciprocal { h });
+        let along = problem
+            .h
+            .map_or(Complement::Twists(&problem.dropped), |h| Complement::Reciprocal { h });
         let again = Split::of(&more, along, &options).unwrap().unwrap();
         close_twist("dependent", again.motion(x), split.motion(x), 1e-8);
     });
@@ -344,23 +347,23 @@ fn projectors_of_twists() {
 #[test]
 fn no_projector_says_why() {
     let options = ScrewOptions::with_length(0.5);
-    let none = |motions: &[Twist], along: Along<'_>| {
+    let none = |motions: &[Twist], along: Complement<'_>| {
         Split::of(motions, along, &options).unwrap().unwrap_err()
     };
     let free = pen(Vec3::Z);
-    let reason = none(&free, Along::Reciprocal { h: 0.0 });
+    let reason = none(&free, Complement::Reciprocal { h: 0.0 });
     assert_eq!(reason, NoInverse::PrincipalPitch { pitch: 0.0 });
     // The plane itself: translations and the turn about its normal have no P_h at all.
     let plane = [slide(Vec3::X), slide(Vec3::Y), turn(Vec3::Z)];
-    let reason = none(&plane, Along::Reciprocal { h: 0.3 });
+    let reason = none(&plane, Complement::Reciprocal { h: 0.3 });
     assert!(matches!(reason, NoInverse::Class { order: 3, .. }), "{reason}");
-    let reason = none(&free, Along::Twists(&[turn(Vec3::Y)]));
+    let reason = none(&free, Complement::Twists(&[turn(Vec3::Y)]));
     assert_eq!(reason, NoInverse::NotComplementary { order: 5, other: 1 });
     assert!(reason.to_string().contains("choose"), "{reason}");
-    let reason = none(&free, Along::Twists(&[]));
+    let reason = none(&free, Complement::Twists(&[]));
     assert!(reason.to_string().contains("together they must have six"), "{reason}");
     let grazing = [Twist { linear: Vec3::new(1.0, 0.0, 1e-5), angular: Vec3::ZERO }];
-    let reason = none(&free, Along::Twists(&grazing));
+    let reason = none(&free, Complement::Twists(&grazing));
     assert!(matches!(reason, NoInverse::TooLarge { norm } if norm > 1e4), "{reason}");
 }
 
@@ -417,7 +420,7 @@ fn bad_input_is_refused() {
         assert!(HybridController::new(gain, soft).unwrap_err().to_string().contains("gain"));
     }
     let law = HybridController::new(5.0, soft).unwrap();
-    let split = split(&pen(Vec3::Z), Along::Reciprocal { h: 0.2 });
+    let split = split(&pen(Vec3::Z), Complement::Reciprocal { h: 0.2 });
     let nan = Vec3::new(0.0, f64::NAN, 0.0);
     let refused = |input: HybridInput| law.command(&split, &input).unwrap_err().to_string();
     let input = HybridInput::default();
@@ -432,16 +435,18 @@ fn bad_input_is_refused() {
 
     let options = ScrewOptions::with_length(0.5);
     let text = |r: Result<std::result::Result<Split, NoInverse>>| r.unwrap_err().to_string();
-    let h = Along::Reciprocal { h: 0.1 };
+    let h = Complement::Reciprocal { h: 0.1 };
     assert!(text(Split::of(&[huge, slide(nan)], h, &options)).contains("motion 2[1]"));
     let along = [slide(nan)];
-    assert!(text(Split::of(&[], Along::Twists(&along), &options)).contains("give up 1[1]"));
-    assert!(text(Split::of(&[], Along::Reciprocal { h: f64::NAN }, &options)).contains("pitch"));
+    assert!(text(Split::of(&[], Complement::Twists(&along), &options)).contains("give up 1[1]"));
+    assert!(
+        text(Split::of(&[], Complement::Reciprocal { h: f64::NAN }, &options)).contains("pitch")
+    );
     assert!(text(Split::of(&[], h, &ScrewOptions::with_length(0.0))).contains("length"));
     // Numbers at the end of the range give no panic.
     for size in [1e-320, 1e-300, 1e300, f64::MAX] {
         let motions = pen(Vec3::Z).map(|t| t * size);
         let _ = Split::of(&motions, h, &options).unwrap();
-        let _ = Split::of(&motions[..2], Along::Twists(&motions[1..]), &options).unwrap();
+        let _ = Split::of(&motions[..2], Complement::Twists(&motions[1..]), &options).unwrap();
     }
 }

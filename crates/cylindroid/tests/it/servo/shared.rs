@@ -6,7 +6,7 @@ use cylindroid::control::{
     AuthorityTimes, OperatorAuthority, Saturation, SharedController, SharedInput,
 };
 use cylindroid::kinematics::Chain;
-use cylindroid::screws::{Along, Projector as Split};
+use cylindroid::screws::{Complement, Projector as Split};
 use cylindroid::spatial::exp;
 
 /// [1/s]
@@ -41,7 +41,7 @@ impl Sphere {
             linear: out * (self.radius - lever.norm()),
             angular: pose.rotation.z_axis().cross(-out),
         };
-        (split(&free, Along::Twists(&kept)), error)
+        (split(&free, Complement::Twists(&kept)), error)
     }
 
     fn off(&self, pose: Pose) -> (f64, f64) {
@@ -94,9 +94,9 @@ fn robot_and_operator_do_not_interfere() {
         let free: Vec<Twist> = (0..order).map(|_| random.twist()).collect();
         let kept: Vec<Twist> = (order..6).map(|_| random.twist()).collect();
         let along = |kept| match round % 3 {
-            0 => Along::Twists(kept),
-            1 => Along::Reciprocal { h: 0.4 },
-            _ => Along::Reciprocal { h: f64::INFINITY },
+            0 => Complement::Twists(kept),
+            1 => Complement::Reciprocal { h: 0.4 },
+            _ => Complement::Reciprocal { h: f64::INFINITY },
         };
         let options = cylindroid::screws::ScrewOptions::with_length(0.5);
         let Ok(p) = Split::of(&free, along(&kept), &options).unwrap() else { continue };
@@ -120,7 +120,7 @@ fn robot_and_operator_do_not_interfere() {
         close(elsewhere.twist, command.twist);
         // The operator's own motions pass unchanged.
         close(with(SharedInput { operator: free[0], ..input }).operator_part, free[0]);
-        if let Along::Reciprocal { h } = along(&kept) {
+        if let Complement::Reciprocal { h } = along(&kept) {
             for s in &free {
                 let form = s.pitch_form(command.robot_part, h);
                 assert!(form.abs() < 1e-9, "{form}");
@@ -234,7 +234,7 @@ fn bad_input_is_refused() {
         assert!(SharedController::new(gain).unwrap_err().to_string().contains("gain"));
     }
     let law = SharedController::new(GAIN).unwrap();
-    let p = split(&[turn(Vec3::X)], Along::Reciprocal { h: 0.2 });
+    let p = split(&[turn(Vec3::X)], Complement::Reciprocal { h: 0.2 });
     let nan = turn(Vec3::Z * f64::NAN);
     let input = SharedInput::default();
     let refused = |input: SharedInput| law.command(&p, &input).unwrap_err().to_string();

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use cylindroid::Error;
-use cylindroid::manipulability::{Batch, BatchOptions};
+use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 use serde::Serialize;
 
 use super::super::{Posed, measured};
@@ -27,7 +27,7 @@ struct ConfigurationsJson<'a> {
     /// Metrics given in place of a part of it.
     own_metrics: Vec<&'static str>,
     /// Names of the numbers of a row.
-    columns: [&'static str; Batch::WIDTH],
+    columns: [&'static str; ManipulabilityBatch::WIDTH],
     /// A row for each configuration; null is infinite, or nothing to measure.
     rows: Vec<&'a [f64]>,
 }
@@ -59,8 +59,8 @@ pub(super) fn run(
         metrics: measured::metrics(&posed, args, None)?,
         generic: None,
     };
-    let numbers = Batch::new(mechanism, &options)?.analyse(&q)?;
-    let rows: Vec<&[f64]> = numbers.chunks(Batch::WIDTH).collect();
+    let numbers = ManipulabilityBatch::new(mechanism, &options)?.analyse(&q)?;
+    let rows: Vec<&[f64]> = numbers.chunks(ManipulabilityBatch::WIDTH).collect();
     if style == Style::Table {
         print(out, &posed, args.metric, &rows)?;
         return Ok(ExitCode::SUCCESS);
@@ -74,7 +74,7 @@ pub(super) fn run(
         length: chain.constraint.length(),
         metric: args.metric.name(),
         own_metrics: own.into_iter().filter(|o| o.1).map(|o| o.0).collect(),
-        columns: Batch::COLUMNS,
+        columns: ManipulabilityBatch::COLUMNS,
         rows,
     };
     output::json(out, &report)?;
@@ -89,10 +89,11 @@ fn print(
     rows: &[&[f64]],
 ) -> anyhow::Result<()> {
     let changes = |i: &usize| rows.iter().any(|row| row[*i].to_bits() != rows[0][*i].to_bits());
-    let (changing, still): (Vec<usize>, Vec<usize>) = (0..Batch::WIDTH).partition(changes);
+    let (changing, still): (Vec<usize>, Vec<usize>) =
+        (0..ManipulabilityBatch::WIDTH).partition(changes);
     let same = still.iter().filter_map(|&i| {
         let first = rows.first()?;
-        Some(format!("{} {}", Batch::COLUMNS[i], number(first[i])))
+        Some(format!("{} {}", ManipulabilityBatch::COLUMNS[i], number(first[i])))
     });
     output::pairs(
         out,
@@ -110,7 +111,7 @@ fn print(
     }
     writeln!(out)?;
     let mut columns = vec![("", Align::Right)];
-    columns.extend(changing.iter().map(|&i| (Batch::COLUMNS[i], Align::Right)));
+    columns.extend(changing.iter().map(|&i| (ManipulabilityBatch::COLUMNS[i], Align::Right)));
     let lines = rows.iter().enumerate().map(|(k, row)| {
         let numbers = changing.iter().map(|&i| number(row[i]));
         std::iter::once((k + 1).to_string()).chain(numbers).collect()

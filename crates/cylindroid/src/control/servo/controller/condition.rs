@@ -75,7 +75,7 @@ impl Servo {
     /// As [`Servo::step`].
     pub fn self_motions(&mut self, q: &[f64]) -> Result<Vec<Vec<f64>>> {
         let svd = self.decomposed(q)?;
-        let basis = RowSpace::exact(&svd).complement_basis();
+        let basis = RowSpace::exact(&svd).null_space_basis();
         let motions = (0..basis.cols()).filter_map(|j| self.at_full_speed(basis.column(j)));
         let upwards = |mut motion: Vec<f64>| {
             let largest =

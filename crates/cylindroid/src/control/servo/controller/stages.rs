@@ -174,7 +174,7 @@ impl Servo {
         }
         let space = match self.options.null_space {
             SecondaryNullSpace::Exact => RowSpace::exact(&self.svd),
-            SecondaryNullSpace::Retained => RowSpace::retained(&self.svd, &self.kept),
+            SecondaryNullSpace::Retained => RowSpace::from_kept(&self.svd, &self.kept),
         };
         space.project_out(match &mut self.coupled {
             Some(coupled) => &mut coupled.reduced.secondary,

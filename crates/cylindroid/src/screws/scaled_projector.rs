@@ -10,16 +10,16 @@
 use super::existence::NoInverse;
 use super::projector::{coordinates, oblique_coordinates};
 use super::span::{Span, dot, lowered};
-use crate::linalg::Eigen;
+use crate::linalg::SymmetricEigen;
 use crate::tolerance::SCREW_CLASS;
 
 /// A 6 x 6 matrix that takes a motion to the part that an arm takes on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TaskProjector {
+pub(crate) struct ScaledProjector {
     rows: [[f64; 6]; 6],
 }
 
-impl TaskProjector {
+impl ScaledProjector {
     /// P_h on the span of orthonormal `motions`; `h` in units of L. `None` where a matrix to be
     /// inverted is exactly singular.
     pub(crate) fn hyperbolic(motions: impl Iterator<Item = [f64; 6]>, h: f64) -> Option<Self> {
@@ -58,7 +58,7 @@ impl TaskProjector {
                 *x = dot(&a, b);
             }
         }
-        let eigen = Eigen::of(gram, k);
+        let eigen = SymmetricEigen::of(gram, k);
         let mut rows = [[0.0; 6]; 6];
         for (&g, vector) in eigen.values.iter().zip(&eigen.vectors).take(k) {
             let gain = gain(g).ok_or(g)?;

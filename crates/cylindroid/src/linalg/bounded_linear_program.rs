@@ -1,4 +1,4 @@
-//! The farthest point of an image of a box cut by a plane: a small linear program.
+//! The maximize point of an image of a box cut by a plane: a small linear program.
 //!
 //! Formula  max c^T z  over  lower <= A z <= upper, with lower <= 0 <= upper
 //! Shapes   A: n x m of rank m <= n, bounds: n entries, c: m entries
@@ -11,12 +11,12 @@
 //!          steps makes the cost finite, and any point returned is within the bounds.
 //! Why so   at most 14 x 14 here, and z = 0 is inside: an active set of 100 lines needs no solver
 //! Source   Nocedal & Wright, Numerical Optimization, 2nd ed., section 16.5, without curvature
-//! Checked  tests/it/box_program.rs
+//! Checked  tests/it/bounded_linear_program.rs
 
 use super::matrix::Matrix;
 use super::qr::{Qr, solve_upper};
 use super::vector::{dot, norm};
-use crate::tolerance::BOX_PROGRAM;
+use crate::tolerance::LINEAR_PROGRAM;
 
 /// What a row may be: from `lower` to `upper`, zero among it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +49,7 @@ impl Interval {
 
 /// `lower <= A z <= upper`.
 #[derive(Debug, Clone)]
-pub struct BoxProgram {
+pub struct BoundedLinearProgram {
     /// A^T with columns divided by the larger bound of each.
     normals: Matrix,
     /// Bounds divided by the same.
@@ -60,14 +60,14 @@ pub struct BoxProgram {
 
 /// What a corner is wanted for.
 #[derive(Debug, Clone, Copy)]
-pub struct Pull<'a> {
+pub struct Objective<'a> {
     /// c.
     pub first: &'a [f64],
     /// Decides among corners that are equally far along `first`.
     pub second: &'a [f64],
 }
 
-impl BoxProgram {
+impl BoundedLinearProgram {
     /// Of A (n x m, rank m) and bounds around zero.
     ///
     /// # Panics
@@ -85,27 +85,27 @@ impl BoxProgram {
 
     /// A corner of largest `first . z`, and among these of largest `second . z`.
     #[must_use]
-    pub fn farthest(&self, pull: Pull<'_>) -> Vec<f64> {
+    pub fn maximize(&self, objective: Objective<'_>) -> Vec<f64> {
         match &self.inverse {
             Some(inverse) => {
                 let n = inverse.cols();
                 let mut corner = vec![0.0; n];
-                let size = norm(pull.first);
+                let size = norm(objective.first);
                 for (j, value) in corner.iter_mut().enumerate() {
                     let column = inverse.column(j);
-                    let first = dot(column, pull.first);
-                    let tie = first.abs() <= BOX_PROGRAM * size * norm(column);
-                    let pulled = if tie { dot(column, pull.second) } else { first };
+                    let first = dot(column, objective.first);
+                    let tie = first.abs() <= LINEAR_PROGRAM * size * norm(column);
+                    let pulled = if tie { dot(column, objective.second) } else { first };
                     let Interval { lower, upper } = self.bounds[j];
                     *value = if pulled < 0.0 { lower } else { upper };
                 }
                 inverse.mul_vec(&corner)
             }
-            None => self.active_set(pull),
+            None => self.active_set(objective),
         }
     }
 
-    fn active_set(&self, pull: Pull<'_>) -> Vec<f64> {
+    fn active_set(&self, objective: Objective<'_>) -> Vec<f64> {
         let (m, n) = (self.normals.rows(), self.normals.cols());
         let mut z = vec![0.0; m];
         let mut active: Vec<(usize, f64)> = Vec::new();
@@ -115,12 +115,12 @@ impl BoxProgram {
                 self.normals[(i, active[j].0)] * active[j].1
             });
             let qr = Qr::plain(columns);
-            let goal = if tie_break { pull.second } else { pull.first };
+            let goal = if tie_break { objective.second } else { objective.first };
             let mut parts = goal.to_vec();
             qr.apply_transposed(&mut parts);
             let rank = active.len();
             let left = norm(&parts[rank..]);
-            if rank < m && left > BOX_PROGRAM * norm(goal) {
+            if rank < m && left > LINEAR_PROGRAM * norm(goal) {
                 parts[..rank].fill(0.0);
                 qr.apply(&mut parts);
                 let Some((step, row, sign)) = self.next_row(&z, &parts, &active) else { break };
@@ -135,7 +135,7 @@ impl BoxProgram {
             let multipliers = solve_upper(&qr.r(), &parts[..rank]);
             let worst = (0..rank).min_by(|&i, &j| multipliers[i].total_cmp(&multipliers[j]));
             match worst {
-                Some(i) if multipliers[i] < -BOX_PROGRAM * norm(&multipliers) => {
+                Some(i) if multipliers[i] < -LINEAR_PROGRAM * norm(&multipliers) => {
                     active.remove(i);
                 }
                 _ => tie_break = true,
@@ -151,7 +151,7 @@ impl BoxProgram {
         for i in (0..self.normals.cols()).filter(|i| active.iter().all(|a| a.0 != *i)) {
             let normal = self.normals.column(i);
             let (now, rate) = (dot(normal, z), dot(normal, d));
-            if rate.abs() <= BOX_PROGRAM * size * norm(normal) {
+            if rate.abs() <= LINEAR_PROGRAM * size * norm(normal) {
                 continue;
             }
             let Interval { lower, upper } = self.bounds[i];

@@ -1,7 +1,7 @@
 //! Corners of boxes cut by a plane.
 
 use cylindroid::Matrix;
-use cylindroid::linalg::{BoxProgram, Interval, Pull};
+use cylindroid::linalg::{BoundedLinearProgram, Interval, Objective};
 
 use crate::support::{Random, assert_close};
 
@@ -38,9 +38,9 @@ fn the_best_corner_is_found() {
                     Interval { lower, upper }
                 })
                 .collect();
-            let program = BoxProgram::new(&a, &bounds);
+            let program = BoundedLinearProgram::new(&a, &bounds);
             let (c, second) = (random.vector(m), random.vector(m));
-            let z = program.farthest(Pull { first: &c, second: &second });
+            let z = program.maximize(Objective { first: &c, second: &second });
             let az = a.mul_vec(&z);
             let room = az.iter().zip(&bounds).map(|(x, b)| (x - b.lower).min(b.upper - x));
             assert!(room.clone().all(|r| r > -1e-9), "{az:?}");
@@ -88,16 +88,16 @@ fn solve(a: &Matrix, b: &[f64]) -> Option<Vec<f64>> {
 fn ties_are_broken() {
     for n in [2, 3] {
         let a = Matrix::from_fn(n, 2, |i, j| f64::from(u8::from(i % 2 == j)));
-        let program = BoxProgram::new(&a, &symmetric(&vec![1.0; n]));
+        let program = BoundedLinearProgram::new(&a, &symmetric(&vec![1.0; n]));
         assert_close(
             "up",
-            &program.farthest(Pull { first: &[1.0, 0.0], second: &[0.3, 0.5] }),
+            &program.maximize(Objective { first: &[1.0, 0.0], second: &[0.3, 0.5] }),
             &[1.0, 1.0],
             1e-15,
         );
         assert_close(
             "down",
-            &program.farthest(Pull { first: &[1.0, 0.0], second: &[0.3, -0.5] }),
+            &program.maximize(Objective { first: &[1.0, 0.0], second: &[0.3, -0.5] }),
             &[1.0, -1.0],
             1e-15,
         );

@@ -5,7 +5,7 @@
 //! Shapes   any number of twists
 //! Units    L, centre and h in m and m/rad
 //! Valid    no allocation where P exists. Where it does not, or enlarges a twist by more than
-//!          `tolerance::LARGEST_PROJECTION` (at the centre, lengths over L), the reason is a value
+//!          `tolerance::MAX_PROJECTION_NORM` (at the centre, lengths over L), the reason is a value
 //! Why so   a [`ScrewSystem`] also finds class, frame and principal screws, and allocates; its rank
 //!          is that of singular values, here it is that of the pivots, which are nowhere smaller
 //! Checked  tests/it/servo/hybrid.rs::projectors_of_twists, tests/allocation.rs
@@ -13,15 +13,15 @@
 use super::existence::NoInverse;
 use super::projector::{Projector, coordinates, oblique_coordinates};
 use super::span::{Scale, Span, dot, least_squares_center, turns};
-use super::spanning::ScrewOptions;
+use super::span_estimation::ScrewOptions;
 use super::system::ScrewSystem;
 use crate::error::{Error, Result};
 use crate::spatial::Twist;
-use crate::tolerance::{LARGEST_PROJECTION, NOISE_RANK, SCREW_CLASS, SCREW_RANK};
+use crate::tolerance::{MAX_PROJECTION_NORM, NOISE_RANK, SCREW_CLASS, SCREW_RANK};
 
 /// What a projector drops: along which twists it projects.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Along<'a> {
+pub enum Complement<'a> {
     /// The twists that are h-reciprocal to the motions, in every frame: P_h.
     Reciprocal {
         /// Pitch of the form [m/rad]; infinite for the limit.
@@ -35,7 +35,7 @@ impl Projector {
     /// The projector on the span of `motions`, or why there is none; all twists in one frame.
     ///
     /// ```
-    /// use cylindroid::screws::{Along, Projector, ScrewOptions};
+    /// use cylindroid::screws::{Complement, Projector, ScrewOptions};
     /// use cylindroid::{Twist, Vec3};
     ///
     /// // A ball on a table, seen from the point of contact: it turns as it likes, and slides.
@@ -43,11 +43,11 @@ impl Projector {
     /// let slide = |linear| Twist { linear, angular: Vec3::ZERO };
     /// let free = [turn(Vec3::X), turn(Vec3::Y), turn(Vec3::Z), slide(Vec3::X), slide(Vec3::Y)];
     /// let options = ScrewOptions::with_length(0.1);
-    /// let along = Along::Reciprocal { h: f64::INFINITY };
+    /// let along = Complement::Reciprocal { h: f64::INFINITY };
     /// let projector = Projector::of(&free, along, &options)?.expect("it exists");
     /// assert!(projector.motion(slide(Vec3::Z)).linear.norm() < 1e-15);
     /// // The rotation about the normal is reciprocal to all of them, itself included.
-    /// let none = Projector::of(&free, Along::Reciprocal { h: 0.0 }, &options)?;
+    /// let none = Projector::of(&free, Complement::Reciprocal { h: 0.0 }, &options)?;
     /// println!("{}", none.unwrap_err());
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
@@ -56,23 +56,23 @@ impl Projector {
     /// Twists or options that are not finite, a pitch that is NaN, a length that is not positive.
     pub fn of(
         motions: &[Twist],
-        along: Along<'_>,
+        along: Complement<'_>,
         options: &ScrewOptions,
     ) -> Result<std::result::Result<Self, NoInverse>> {
         options.check()?;
         check("motion", motions)?;
         match along {
-            Along::Twists(twists) => check("twist to give up", twists)?,
-            Along::Reciprocal { h } if h.is_nan() => {
+            Complement::Twists(twists) => check("twist to give up", twists)?,
+            Complement::Reciprocal { h } if h.is_nan() => {
                 return Err(Error::NotFinite { what: "pitch h".into(), value: h });
             }
-            Along::Reciprocal { .. } => {}
+            Complement::Reciprocal { .. } => {}
         }
         let scale = scale(motions, along, options);
         let span = spanned(motions, scale, options.noise);
         let found = match along {
-            Along::Reciprocal { h } => coordinates(&span, h / scale.length),
-            Along::Twists(twists) => {
+            Complement::Reciprocal { h } => coordinates(&span, h / scale.length),
+            Complement::Twists(twists) => {
                 let other = spanned(twists, scale, options.noise);
                 let Some(found) = oblique_coordinates(&span, &other, SCREW_CLASS) else {
                     let (order, other) = (span.k(), other.k());
@@ -85,15 +85,15 @@ impl Projector {
         let size = |c: &[[f64; 6]; 6]| c[..span.k()].iter().map(|r| dot(r, r)).sum::<f64>().sqrt();
         let norm = found.as_ref().map_or(f64::INFINITY, size);
         Ok(match (found, along) {
-            (Some(coordinates), _) if norm <= LARGEST_PROJECTION => {
+            (Some(coordinates), _) if norm <= MAX_PROJECTION_NORM => {
                 Ok(Self { scale, span, coordinates })
             }
-            (_, Along::Reciprocal { h }) => {
+            (_, Complement::Reciprocal { h }) => {
                 let options = ScrewOptions { center: Some(scale.center), ..*options };
                 let reason = ScrewSystem::of(motions, &options)?.existence(h).reason;
                 Err(reason.unwrap_or(NoInverse::TooLarge { norm }))
             }
-            (_, Along::Twists(_)) => Err(NoInverse::TooLarge { norm }),
+            (_, Complement::Twists(_)) => Err(NoInverse::TooLarge { norm }),
         })
     }
 }
@@ -106,11 +106,11 @@ fn check(what: &str, twists: &[Twist]) -> Result<()> {
 }
 
 /// At the axes of the motions; where these are translations, of the twists that are dropped.
-fn scale(motions: &[Twist], along: Along<'_>, options: &ScrewOptions) -> Scale {
+fn scale(motions: &[Twist], along: Complement<'_>, options: &ScrewOptions) -> Scale {
     let length = options.length;
     let turning = |twists: &[Twist]| twists.iter().any(|t| turns(t, length, SCREW_CLASS));
     let twists = match along {
-        Along::Twists(twists) if !turning(motions) => twists,
+        Complement::Twists(twists) if !turning(motions) => twists,
         _ => motions,
     };
     let center =

@@ -6,7 +6,7 @@
 //!          subtracting twice ("twice is enough", Kahan) makes A (1 - P) x zero to rounding
 //! Checked  tests/it/svd.rs::null_space_*
 
-use super::blocks::remove_twice;
+use super::blocks::reorthogonalise;
 use super::matrix::Matrix;
 use super::svd::Svd;
 use super::vector::{dot, norm};
@@ -41,7 +41,7 @@ impl<'a> RowSpace<'a> {
     /// The span of the directions that an inverse retained: a flag for each, those without one are
     /// not retained. They need not be the first ones.
     #[must_use]
-    pub fn retained(svd: &'a Svd, kept: &'a [bool]) -> Self {
+    pub fn from_kept(svd: &'a Svd, kept: &'a [bool]) -> Self {
         Self { svd, kept: Kept::Flags(&kept[..kept.len().min(svd.len())]) }
     }
 
@@ -64,12 +64,12 @@ impl<'a> RowSpace<'a> {
     /// `x <- (1 - V_r V_r^T) x`, without allocation.
     pub fn project_out(&self, x: &mut [f64]) {
         let factor = |i| if self.keeps(i) { 1.0 } else { 0.0 };
-        remove_twice(self.svd.right(), factor, x);
+        reorthogonalise(self.svd.right(), factor, x);
     }
 
     /// An orthonormal basis of the null space, one column each (n x (n - r)).
     #[must_use]
-    pub fn complement_basis(&self) -> Matrix {
+    pub fn null_space_basis(&self) -> Matrix {
         let n = self.svd.cols();
         let missing = n - self.rank();
         let mut basis = Matrix::zeros(n, missing);

@@ -32,7 +32,7 @@ pub enum PairKind {
 
 /// A CS decomposition.
 #[derive(Debug, Clone)]
-pub struct CosineSine {
+pub struct CsDecomposition {
     /// Share of each direction in the first block, rising.
     pub cosines: Vec<f64>,
     /// Share of each direction in the second block, falling.
@@ -45,7 +45,7 @@ pub struct CosineSine {
     pub z: Matrix,
 }
 
-impl CosineSine {
+impl CsDecomposition {
     /// Of a matrix with orthonormal columns, split after `split` rows.
     ///
     /// # Panics
@@ -134,8 +134,8 @@ impl CosineSine {
     }
 }
 
-/// A decomposition `B = Y diag(values) Z^T` of an m x k matrix with all k right vectors, orthonormal
-/// whatever the rank: those of a wide matrix alone would lack some.
+/// A decomposition `B = Y diag(values) Z^T` of an m x k matrix with all k right vectors,
+/// orthonormal whatever the rank: those of a wide matrix alone would lack some.
 struct Complete {
     /// k of them, largest first.
     values: Vec<f64>,
@@ -153,7 +153,7 @@ impl Complete {
             let svd = if m > k {
                 Svd::of(b)
             } else {
-                Svd::of(&Matrix::above(k, &[b, &Matrix::zeros(1, k)]))
+                Svd::of(&Matrix::vstack(k, &[b, &Matrix::zeros(1, k)]))
             };
             return Self {
                 values: svd.values().collect(),

@@ -9,7 +9,7 @@
 //! Checked  tests/it/screws/laws.rs
 
 use super::span::{Span, angular, join, linear};
-use super::spanning::six;
+use super::span_estimation::six;
 use super::system::ScrewSystem;
 use crate::linalg::{Matrix, Rank, Svd};
 

@@ -1,11 +1,11 @@
 //! Eigenvalues of small symmetric matrices.
 
-use cylindroid::linalg::Eigen;
+use cylindroid::linalg::SymmetricEigen;
 
 use crate::support::Random;
 
-fn check(a: [[f64; 6]; 6], n: usize) -> Eigen<6> {
-    let eigen = Eigen::of(a, n);
+fn check(a: [[f64; 6]; 6], n: usize) -> SymmetricEigen<6> {
+    let eigen = SymmetricEigen::of(a, n);
     let size = a.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     for i in 0..n {
         let v = eigen.vectors[i];
@@ -50,11 +50,11 @@ fn special_matrices() {
     // Only the leading block is read.
     let mut framed = [[f64::NAN; 6]; 6];
     (framed[0][0], framed[0][1], framed[1][1]) = (2.0, 1.0, 2.0);
-    let eigen = Eigen::of(framed, 2);
+    let eigen = SymmetricEigen::of(framed, 2);
     assert!((eigen.values[0] - 3.0).abs() < 1e-15 && (eigen.values[1] - 1.0).abs() < 1e-15);
     // Small eigenvalues beside large ones keep their digits when the matrix is nearly diagonal.
     let mut graded = [[0.0; 6]; 6];
     (graded[0][0], graded[1][1], graded[0][1]) = (1.0, 1e-20, 1e-16);
-    let small = Eigen::of(graded, 2).values[1];
+    let small = SymmetricEigen::of(graded, 2).values[1];
     assert!((small - 1e-20).abs() < 1e-30, "{small:e}");
 }

@@ -7,21 +7,21 @@
 //! Why so   pitch forms are indefinite, so a singular value decomposition loses the signs; no
 //!          allocation, and for n <= 6 faster than a general solver
 //! Source   Golub & Van Loan, Matrix Computations, 4th ed., section 8.5.3 (cyclic by row)
-//! Checked  tests/it/symmetric.rs
+//! Checked  tests/it/symmetric_eigen.rs
 
 /// More sweeps than any matrix needs: the bound that makes the cost finite.
 const MAX_SWEEPS: usize = 30;
 
 /// An eigendecomposition of the leading n x n block.
 #[derive(Debug, Clone, Copy)]
-pub struct Eigen<const N: usize> {
+pub struct SymmetricEigen<const N: usize> {
     /// Eigenvalues, largest first; entries beyond n are zero.
     pub values: [f64; N],
     /// Eigenvector `i` in `vectors[i]`.
     pub vectors: [[f64; N]; N],
 }
 
-impl<const N: usize> Eigen<N> {
+impl<const N: usize> SymmetricEigen<N> {
     /// Of the leading `n x n` block of `a`.
     #[must_use]
     #[allow(clippy::needless_range_loop)] // rows and columns of one matrix by index

@@ -21,8 +21,8 @@ pub(super) fn gains(svd: &Svd, shape: f64, floor: f64, out: &mut [f64]) -> f64 {
     half_realised(shape, floor)
 }
 
-/// The singular value of which half is realised, f(s) = 2 s: the root of s^3 + nu s^2 + 2 s = 2 s_0.
-/// Newton's method from above; the left side is convex, so it falls to the root.
+/// The singular value of which half is realised, f(s) = 2 s: the root of s^3 + nu s^2 + 2 s = 2
+/// s_0. Newton's method from above; the left side is convex, so it falls to the root.
 fn half_realised(shape: f64, floor: f64) -> f64 {
     let mut s = floor;
     for _ in 0..100 {

@@ -1,8 +1,8 @@
-//! The arithmetic of `inverse/independent.rs`, on arrays.
+//! The arithmetic of `inverse/hyperbolic_fixed.rs`, on arrays.
 
 use super::projector::coordinates;
 use super::span::{Scale, Span, angular, dot, join, linear};
-use super::spanning::{ScrewOptions, six};
+use super::span_estimation::{ScrewOptions, six};
 use crate::linalg::Matrix;
 use crate::spatial::{Twist, Vec3};
 
