@@ -205,22 +205,26 @@ impl Joints {
     }
 }
 
-/// `NAME` or `NAME=NUMBER`.
+/// `NAME`, `NAME=GAIN` or either with `,PARAMETER=VALUE,...`: a secondary task.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Named {
     pub(crate) name: String,
-    pub(crate) number: Option<f64>,
+    pub(crate) parameters: Vec<(String, f64)>,
 }
 
 impl FromStr for Named {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text.contains('=') {
-            let (name, number) = assignment(text)?;
-            return Ok(Self { name, number: Some(number) });
-        }
-        Ok(Self { name: text.trim().to_owned(), number: None })
+        let mut parts = text.split(',');
+        let first = parts.next().unwrap_or_default();
+        let (name, gain) = match first.split_once('=') {
+            Some(_) => assignment(first).map(|(name, gain)| (name, Some(gain)))?,
+            None => (first.trim().to_owned(), None),
+        };
+        let gain = gain.map(|gain| Ok(("gain".to_owned(), gain)));
+        let parameters = gain.into_iter().chain(parts.map(assignment));
+        Ok(Self { name, parameters: parameters.collect::<Result<_, String>>()? })
     }
 }
 

@@ -15,6 +15,7 @@ mod inverse;
 mod mechanism;
 mod motion;
 mod options;
+mod parameter_tables;
 mod screws;
 mod servo;
 mod table;
@@ -40,7 +41,7 @@ mod _core {
     #[pymodule_export]
     use crate::ik::PySolution;
     #[pymodule_export]
-    use crate::inverse::by_name::{inverse_by_name, inverse_methods};
+    use crate::inverse::by_name::inverse_by_name;
     #[pymodule_export]
     use crate::inverse::damped::{damped, selectively_damped};
     #[pymodule_export]
@@ -57,6 +58,8 @@ mod _core {
     use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism};
     #[pymodule_export]
     use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw};
+    #[pymodule_export]
+    use crate::parameter_tables::{inverse_methods, secondary_tasks};
     #[pymodule_export]
     use crate::screws::involution::involution;
     #[pymodule_export]

@@ -54,26 +54,32 @@ pub(crate) fn secondary(
     robot: &Mechanism,
     options: &ServoOptions,
 ) -> Result<Vec<SecondaryTask>> {
-    let named = |name: &str, gain: Option<f64>| -> Result<SecondaryTask> {
-        let task = SecondaryTask::named(name, posture)?;
-        Ok(gain.map_or(task.clone(), |gain| task.with_gain(gain)))
-    };
+    let named = |name: &str| SecondaryTask::named(name, posture);
     let Some(wanted) = wanted else {
         return Ok(options.default_secondary(robot)?);
     };
     if let Ok(name) = wanted.cast::<PyString>() {
         let name = name.to_cow()?;
-        return if name == "none" { Ok(Vec::new()) } else { Ok(vec![named(&name, None)?]) };
+        return if name == "none" { Ok(Vec::new()) } else { Ok(vec![named(&name)?]) };
     }
-    if let Ok(gains) = wanted.cast::<PyDict>() {
-        let each = gains
-            .iter()
-            .map(|(name, gain)| named(&name.extract::<String>()?, Some(gain.extract::<f64>()?)));
+    let words = "secondary is a name, a list of names, or a dict: for each name a gain or a dict of \
+                 parameters";
+    if let Ok(by_name) = wanted.cast::<PyDict>() {
+        let each = by_name.iter().map(|(name, value)| {
+            let mut task = named(&name.extract::<String>()?)?;
+            if let Ok(parameters) = value.cast::<PyDict>() {
+                for (parameter, value) in parameters {
+                    task = task.with(&parameter.extract::<String>()?, value.extract()?)?;
+                }
+                return Ok(task);
+            }
+            let gain: f64 = value.extract().map_err(|_| Failure::kind(words))?;
+            Ok(task.with("gain", gain)?)
+        });
         return each.collect();
     }
-    let words = "secondary is a name, a list of names, or a dict of gains by name";
     let names: Vec<String> = wanted.extract().map_err(|_| Failure::kind(words))?;
-    names.iter().map(|name| named(name, None)).collect()
+    names.iter().map(|name| Ok(named(name)?)).collect()
 }
 
 pub(crate) fn null_space(name: &str) -> Result<SecondaryNullSpace> {

@@ -289,3 +289,21 @@ def test_input_is_checked():
         c.simulate(r.home, "there")
     with pytest.raises(TypeError):
         cy.Servo("panda")
+
+
+def test_secondary_tasks_are_documented():
+    """What the table of tasks lists is in the docstring and is taken by name."""
+    robot = cy.load("panda")
+    target = robot.fk(robot.home)
+    for task in cy.secondary_tasks():
+        name, rows = task["name"], task["parameters"]
+        assert task["description"] and f"'{name}'" in cy.Servo.__doc__
+        values = {row["name"]: row["default"] for row in rows}
+        assert all(f"- {row['name']} [{row['unit']}]" in cy.Servo.__doc__ for row in rows)
+        q = robot.home + 0.05
+        steps = [cy.Servo(robot, secondary=s).step(q, target) for s in (name, [name], {name: values})]
+        assert (steps[0] == steps[1]).all() and (steps[0] == steps[2]).all()
+    with pytest.raises(cy.UnknownNameError, match="margin"):
+        cy.Servo(robot, secondary={"limit-avoidance": {"margn": 0.2}})
+    with pytest.raises(TypeError, match="dict of parameters"):
+        cy.Servo(robot, secondary={"limit-avoidance": "fast"})

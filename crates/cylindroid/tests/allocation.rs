@@ -81,12 +81,7 @@ fn hot_paths_allocate_nothing() {
                     task,
                     // So fast that velocity, acceleration and position limits all bite.
                     gain: ServoGains { position: 100.0, orientation: 100.0 },
-                    secondary: vec![
-                        SecondaryTask::Centring { gain: 1.0 },
-                        SecondaryTask::Posture { q: home.clone(), gain: 1.0 },
-                        SecondaryTask::LimitAvoidance { gain: 1.0, margin: 0.1 },
-                        SecondaryTask::Manipulability { gain: 1.0 },
-                    ],
+                    secondary: SecondaryTask::all(&home).to_vec(),
                     ..ServoOptions::new(&robot)
                 };
                 let mut servo = Servo::new(&robot, options).unwrap();

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use cylindroid::control::SecondaryTask;
+use cylindroid::inverse::Parameter;
 
 use super::{ConfigurationArgs, FrameArgs, inverses};
 use crate::values::{Joints, Motion, Named, Numbers, Pair};
@@ -175,16 +177,31 @@ pub(crate) struct ServoArgs {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,
 
-    /// What the joints do where the tool does not care: `posture` (towards the start), `centring`,
-    /// `limit-avoidance`, `manipulability`, each with a gain [1/s]; may be given several times
-    /// [default: limit-avoidance where there are more joints than task components, else none]
-    #[arg(long, value_name = "NAME[=GAIN]|none")]
+    #[arg(long, value_name = "NAME[=GAIN][,PARAMETER=VALUE]|none", help = secondary_help())]
     pub(crate) secondary: Vec<Named>,
 
     /// The null space that they may use: `exact` never disturbs the task, `retained` also lets
     /// them through directions that the inverse cut
     #[arg(long, value_name = "NAME", default_value = "exact")]
     pub(crate) null_space: NullSpaceName,
+}
+
+/// The tasks and their parameters, from the library's table.
+fn secondary_help() -> String {
+    let named = SecondaryTask::all(&[]).map(|task| {
+        let of = |p: &Parameter| match p.unit {
+            "-" => format!("{}={}", p.name, p.default),
+            unit => format!("{}={} {unit}", p.name, p.default),
+        };
+        let parameters: Vec<String> = task.parameters().iter().map(of).collect();
+        format!("{} ({})", task.name(), parameters.join(", "))
+    });
+    format!(
+        "Secondary task in the null space of the primary one: {}; posture is that of the start; \
+         may be given several times [default: limit-avoidance for redundant arms and closed \
+         chains, otherwise none]",
+        named.join(", ")
+    )
 }
 
 #[derive(Debug, Args)]

@@ -11,11 +11,6 @@ use crate::args::InverseArgs;
 use crate::args::inverses::Parameters;
 use crate::commands::move_to::inverse;
 
-/// The parameters of a method and their values.
-pub(super) fn values(mut method: Method) -> BTreeMap<&'static str, f64> {
-    method.parameters_mut().map(|(parameter, value)| (parameter.name, *value)).collect()
-}
-
 /// The parameters of an inverse of this name but the pitch, with their defaults.
 pub(super) fn damping(name: &str) -> BTreeMap<&'static str, f64> {
     let inverse = hyperbolic().find(|i| i.name == name);
@@ -42,7 +37,12 @@ pub(super) struct Chosen {
 
 impl Chosen {
     pub(super) fn plain(method: Method) -> Self {
-        Self { name: method.name().to_owned(), parameters: values(method), h: None, fallback: None }
+        Self {
+            name: method.name().to_owned(),
+            parameters: method.values(),
+            h: None,
+            fallback: None,
+        }
     }
 }
 
@@ -69,7 +69,7 @@ pub(super) fn invert_by(
         let own = damping(&name).into_iter();
         own.map(|(name, x)| (name, all.get(name).copied().unwrap_or(x))).collect()
     } else {
-        values(options.method)
+        options.method.values()
     };
     Ok((Chosen { name, parameters, h, fallback }, options))
 }

@@ -61,7 +61,9 @@ fn every_inverse_and_secondary_task_reaches() {
         let report = json(&["move", "panda", "--to", "0.4,0.1,0.4", "--inverse", inverse], 0);
         assert_eq!(report["inverse"], inverse);
     }
-    for secondary in ["posture", "centring=0.5", "limit-avoidance", "manipulability=2", "none"] {
+    for secondary in
+        ["posture", "centring=0.5", "limit-avoidance,margin=0.2", "manipulability=2", "none"]
+    {
         let report = json(&["move", "panda", "--to", "0.4,0.1,0.4", "--secondary", secondary], 0);
         let count = report["secondary"].as_array().unwrap().len();
         assert_eq!(count, usize::from(secondary != "none"), "{secondary}");

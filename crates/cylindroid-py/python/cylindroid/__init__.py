@@ -80,6 +80,7 @@ from ._core import (
     point_direction,
     projector,
     screw_to,
+    secondary_tasks,
     selectively_damped,
     transversals,
 )
@@ -170,6 +171,7 @@ __all__ = [
     "point_direction",
     "projector",
     "screw_to",
+    "secondary_tasks",
     "selectively_damped",
     "transversals",
 ]

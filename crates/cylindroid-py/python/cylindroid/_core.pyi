@@ -66,6 +66,7 @@ __all__ = [
     "grasp_quality",
     "hyperbolic",
     "inverse",
+    "inverse_methods",
     "involution",
     "load",
     "oblique",
@@ -74,6 +75,7 @@ __all__ = [
     "point_direction",
     "projector",
     "screw_to",
+    "secondary_tasks",
     "selectively_damped",
     "transversals",
 ]
@@ -910,7 +912,7 @@ class Servo:
         acceleration: float | None = None,
         length: float | None = None,
         joint_weights: ArrayLike | None = None,
-        secondary: str | Sequence[str] | dict[str, float] | None = None,
+        secondary: str | Sequence[str] | dict[str, float | dict[str, float]] | None = None,
         posture: ArrayLike | None = None,
         null_space: str = "exact",
         task: str | None = None,
@@ -954,7 +956,7 @@ class Servo:
         self,
         q: ArrayLike,
         target: ArrayLike,
-        secondary: str | Sequence[str] | dict[str, float] | None = None,
+        secondary: ArrayLike | None = None,
         feed_forward: ArrayLike | None = None,
     ) -> _Array: ...
     def advance(self, q: ArrayLike) -> _Array: ...
@@ -1183,6 +1185,7 @@ def projector(
     noise: float | None = None,
 ) -> _Array: ...
 def screw_to(pose: ArrayLike, target: ArrayLike) -> _Array: ...
+def secondary_tasks() -> list[dict[str, Any]]: ...
 def selectively_damped(
     J: ArrayLike, task: ArrayLike, max_joint_velocity: float = 0.7853981633974483
 ) -> Inverse: ...

@@ -47,40 +47,6 @@ pub(crate) fn parameters_of(
     Ok(given)
 }
 
-/// The inverses that `inverse` and `Servo` take by name, and their parameters.
-///
-/// Returns
-/// -------
-/// list of dict
-///     `name`, `description` and `parameters`: for each its `name` (a keyword argument), `unit`,
-///     `default` (None where it must be given), `domain` and `description`.
-///
-/// Examples
-/// --------
-/// >>> import cylindroid as cy
-/// >>> [p["name"] for p in cy.inverse_methods()[2]["parameters"]]
-/// ['onset', 'damping']
-#[pyfunction]
-pub(crate) fn inverse_methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let row = |inverse: NamedInverse| {
-        let parameters = inverse.parameters.iter().map(|p| {
-            let row = PyDict::new(py);
-            row.set_item("name", if p.name == "lambda" { "lam" } else { p.name })?;
-            row.set_item("unit", p.unit)?;
-            row.set_item("default", (!p.required).then_some(p.default))?;
-            row.set_item("domain", p.domain.describe())?;
-            row.set_item("description", p.description)?;
-            Ok(row)
-        });
-        let row = PyDict::new(py);
-        row.set_item("name", inverse.name)?;
-        row.set_item("description", inverse.description)?;
-        row.set_item("parameters", parameters.collect::<PyResult<Vec<_>>>()?)?;
-        Ok(row)
-    };
-    NamedInverse::all().map(row).collect()
-}
-
 /// An inverse by name, in the metrics of joints and task.
 ///
 /// Parameters

@@ -21,6 +21,21 @@ pub(crate) use motion_result::PyMotionResult;
 pub(crate) use stall::PyStall;
 pub(crate) use trajectory::PyTrajectory;
 
+/// The secondary tasks as a list of a docstring.
+macro_rules! documented {
+    ($(
+        $(#[doc = $doc:literal])+
+        $variant:ident = $name:literal ($($(#[doc = $own_doc:literal])+ $own:ident)?) {
+            $($(#[doc = $about:literal])+ $parameter:ident: $unit:literal in $domain:ident = $default:expr;)+
+        } => |$context:ident, $out:ident| $add:expr,
+    )+) => {
+        concat!($(
+            "'", $name, "' :", $($doc,)+ "\n\n",
+            $("    - ", stringify!($parameter), " [", $unit, "]:", $($about,)+ "\n",)+ "\n",
+        )+)
+    };
+}
+
 /// A Cartesian controller of one frame: from joint positions and a target pose to joint rates.
 ///
 /// It never leaves a position, velocity or acceleration limit, stays bounded at singular poses,
@@ -48,10 +63,10 @@ pub(crate) use trajectory::PyTrajectory;
 ///     Characteristic length that scales linear rows (m). Default: the reach.
 /// joint_weights : array_like, (n,), optional
 ///     A large weight keeps a joint still.
-/// secondary : str, list of str or dict of gains by name, optional
-///     What joints do where the tool does not care: 'posture', 'centring', 'limit-avoidance',
-///     'manipulability', or 'none'. Default: limit avoidance where there are more joints than task
-///     components.
+/// secondary : str, list of str or dict, optional
+///     Secondary tasks in the null space of the primary one, by name (see below), or 'none'; a dict
+///     gives for each name a gain or a dict of parameters. Default: limit avoidance for redundant
+///     arms and closed chains, otherwise none.
 /// posture : array_like, (n,), optional
 ///     Where 'posture' goes. Default: home.
 /// null_space : str
@@ -109,6 +124,12 @@ pub(crate) use trajectory::PyTrajectory;
 ///     For options that make no controller.
 /// ModelError
 ///     Where no joint moves the frame, or the drives of a closed chain do not hold it.
+///
+/// Notes
+/// -----
+/// The secondary tasks and their parameters:
+///
+#[doc = cylindroid::secondary_tasks!(documented)]
 ///
 /// Examples
 /// --------

@@ -8,6 +8,8 @@
 //!          is checked by the compiler, where a list of names and values would be looked up
 //! Checked  tests/it/parameters.rs, tests/it/inverse.rs
 
+use std::collections::BTreeMap;
+
 use super::parameter::{Domain, Parameter};
 use super::{
     damped, numerical_filtering, selectively_damped, singular_value_filtering, truncated,
@@ -193,6 +195,13 @@ impl Method {
             .into_iter()
             .find(|m| m.name() == name)
             .ok_or_else(|| Error::unknown("inverse", name, Self::ALL.iter().map(Self::name)))
+    }
+
+    /// The values of its parameters by name.
+    #[must_use]
+    pub fn values(&self) -> BTreeMap<&'static str, f64> {
+        let mut own = *self;
+        own.parameters_mut().map(|(parameter, value)| (parameter.name, *value)).collect()
     }
 
     /// The parameters of the method and their values, to be set.

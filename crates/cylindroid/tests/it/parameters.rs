@@ -1,8 +1,8 @@
 //! The tables of inverses and their parameters: whole, consistent, and the only source.
 
-use cylindroid::control::{InverseSelection, NamedInverse, TaskProjection};
+use cylindroid::control::{InverseSelection, NamedInverse, SecondaryTask, TaskProjection};
 use cylindroid::inverse::Domain;
-use cylindroid::{Method, ServoOptions, catalogue};
+use cylindroid::{Method, Servo, ServoOptions, catalogue};
 
 /// Every row has a name of its own, defaults inside their domains, and a sentence for each entry.
 #[test]
@@ -116,4 +116,68 @@ fn refusal(name: &str, parameters: Vec<(&str, f64)>) -> String {
     let error = selection.apply(&mut options).unwrap_err();
     assert_eq!(options, before, "{name}: a refused selection changed the options");
     error.to_string()
+}
+
+/// Names, rows, values and checks of the secondary tasks are one thing.
+#[test]
+fn secondary_tasks_follow_their_rows() {
+    let robot = catalogue::load("panda").unwrap();
+    let all = SecondaryTask::all(robot.home());
+    assert_eq!(all.clone().map(|task| task.name()), SecondaryTask::NAMES);
+    for task in all {
+        assert_eq!(SecondaryTask::named(task.name(), robot.home()).unwrap(), task);
+        assert!(task.description().ends_with('.') && task.parameters()[0].name == "gain");
+        for parameter in task.parameters() {
+            assert!(!parameter.unit.is_empty() && parameter.description.ends_with('.'));
+            assert_eq!(task.values()[parameter.name], parameter.default);
+            let other = task.clone().with(parameter.name, 0.7).unwrap();
+            assert_eq!(other.values()[parameter.name], 0.7);
+            let message = task.clone().with(parameter.name, f64::NAN).unwrap_err().to_string();
+            assert!(message.contains(parameter.domain.describe()), "{message}");
+            let mut broken = task.clone();
+            broken
+                .parameters_mut()
+                .find(|(p, _)| p.name == parameter.name)
+                .unwrap()
+                .1
+                .clone_from(&f64::NAN);
+            let options = ServoOptions { secondary: vec![broken], ..ServoOptions::new(&robot) };
+            let message = Servo::new(&robot, options).unwrap_err().to_string();
+            assert!(message.contains(parameter.name), "{message}");
+        }
+        let message = task.clone().with("gian", 1.0).unwrap_err().to_string();
+        assert!(message.contains("gain"), "{message}");
+    }
+    let message = SecondaryTask::named("center", &[]).unwrap_err().to_string();
+    assert!(message.contains("centring"), "{message}");
+}
+
+/// Every secondary task on every robot and mechanism of the catalogue, infinite limits and loops
+/// among them: a finite step, or an error that says which task to take instead.
+#[test]
+fn secondary_tasks_work_on_every_mechanism() {
+    for name in catalogue::names() {
+        let robot = catalogue::load(name).unwrap();
+        for task in SecondaryTask::all(robot.home()) {
+            let options = ServoOptions::new(&robot);
+            let Ok(secondary) = options.default_secondary(&robot) else { continue };
+            let options = ServoOptions { secondary: [secondary, vec![task]].concat(), ..options };
+            let mut servo = match Servo::new(&robot, options) {
+                Ok(servo) => servo,
+                Err(error) => {
+                    let message = error.to_string();
+                    assert!(robot.is_closed(), "{name}: {message}");
+                    assert!(message.contains("use posture, centring"), "{name}: {message}");
+                    continue;
+                }
+            };
+            let mut q = robot.home().to_vec();
+            let pose = robot.state(&q).unwrap().pose(servo.options().end_effector);
+            for _ in 0..5 {
+                servo.step(&q, pose).unwrap();
+                servo.advance(&mut q);
+                assert!(q.iter().all(|x| x.is_finite()), "{name}: {q:?}");
+            }
+        }
+    }
 }

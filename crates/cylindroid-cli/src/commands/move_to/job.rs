@@ -157,14 +157,15 @@ fn secondary(
     if named.is_empty() {
         return options.default_secondary(robot);
     }
-    if let [Named { name, number: None }] = named
+    if let [Named { name, parameters }] = named
         && name == "none"
+        && parameters.is_empty()
     {
         return Ok(Vec::new());
     }
     let build = |n: &Named| {
-        let secondary = SecondaryTask::named(&n.name, start)?;
-        Ok(n.number.map_or(secondary.clone(), |gain| secondary.with_gain(gain)))
+        let task = SecondaryTask::named(&n.name, start)?;
+        n.parameters.iter().try_fold(task, |task, (name, value)| task.with(name, *value))
     };
     named.iter().map(build).collect()
 }

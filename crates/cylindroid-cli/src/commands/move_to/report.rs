@@ -1,5 +1,6 @@
 //! What `move` prints: the table and the JSON object.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 
 use cylindroid::closure::LoopClosureError;
@@ -127,7 +128,8 @@ struct LimitJson<'a> {
 #[derive(Debug, Serialize)]
 struct SecondaryJson {
     name: &'static str,
-    gain: f64,
+    #[serde(flatten)]
+    parameters: BTreeMap<&'static str, f64>,
 }
 
 pub(super) fn write(
@@ -183,7 +185,7 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         secondary: options
             .secondary
             .iter()
-            .map(|s| SecondaryJson { name: s.name(), gain: s.gain() })
+            .map(|s| SecondaryJson { name: s.name(), parameters: s.values() })
             .collect(),
         start: &job.start,
         law_duration: law_duration(job),

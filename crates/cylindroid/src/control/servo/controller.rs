@@ -22,7 +22,7 @@ use super::coupled::Coupled;
 use super::limits::BrakingMargin;
 use super::options::ServoOptions;
 use super::projection::{StepProjection, TaskFrame};
-use super::secondary::Gradient;
+use super::secondary::SecondaryTask;
 use super::stall::{Stall, StallDetector, StallInputs, classify};
 use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
@@ -76,7 +76,8 @@ pub struct Servo {
     own_bounds: Vec<VelocityBounds>,
     bounds: Vec<VelocityBounds>,
     saturator: Saturator,
-    gradient: Gradient,
+    /// Derivatives of the Jacobian, where a secondary task needs them.
+    hessian: Vec<Matrix>,
     /// For closed chains.
     coupled: Option<Box<Coupled>>,
     /// True if the last step commanded rest before a motion that the drives do not steer.
@@ -143,11 +144,7 @@ impl Servo {
         let rates = limits.len();
         // What is decomposed: the rates of the joints, or what the drives can do.
         let unknowns = coupled.as_ref().map_or(n, |c| c.actuated_joints());
-        let hessian = if options
-            .secondary
-            .iter()
-            .any(|s| matches!(s, super::secondary::SecondaryTask::Manipulability { .. }))
-        {
+        let hessian = if options.secondary.iter().any(SecondaryTask::needs_hessian) {
             vec![Matrix::zeros(6, n); n]
         } else {
             Vec::new()
@@ -176,7 +173,7 @@ impl Servo {
             own_bounds: vec![VelocityBounds::NONE; rates],
             bounds: vec![VelocityBounds::NONE; rates],
             saturator: Saturator::new(m, unknowns),
-            gradient: Gradient { hessian },
+            hessian,
             rates: vec![0.0; mechanism.n().max(rates)],
             active: vec![None; rates],
             coupled,

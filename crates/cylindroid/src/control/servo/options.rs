@@ -205,23 +205,7 @@ impl ServoOptions {
             }
         }
         for secondary in &self.secondary {
-            Error::check_finite("secondary gain", &[secondary.gain()])?;
-            match secondary {
-                SecondaryTask::Posture { q, .. } => mechanism.check_q("posture", q)?,
-                SecondaryTask::LimitAvoidance { margin, .. } => positive("margin", *margin)?,
-                SecondaryTask::Manipulability { .. } if mechanism.is_closed() => {
-                    return Err(Error::InvalidOption {
-                        option: "secondary",
-                        value: secondary.name().to_owned(),
-                        reason: format!(
-                            "'{}' has loops, in which its gradient would be that of the cut tree; \
-                             use posture, centring or limit-avoidance",
-                            mechanism.name()
-                        ),
-                    });
-                }
-                SecondaryTask::Centring { .. } | SecondaryTask::Manipulability { .. } => {}
-            }
+            secondary.check(mechanism)?;
         }
         for projection in [Some(&self.projection), self.fallback.as_ref()].into_iter().flatten() {
             projection.check()?;

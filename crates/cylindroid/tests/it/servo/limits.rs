@@ -110,10 +110,8 @@ fn limits_hold_for_any_options() {
                 o.joint_weights = weights;
             }
             if round % 3 == 0 {
-                o.secondary = vec![
-                    SecondaryTask::Centring { gain: 5.0 },
-                    SecondaryTask::Manipulability { gain: 5.0 },
-                ];
+                let fast = |task: SecondaryTask| task.with("gain", 5.0).unwrap();
+                o.secondary = SecondaryTask::all(robot.home()).map(fast).to_vec();
             }
             if round % 5 == 0 {
                 o.task = Task::POSITION;

@@ -3,6 +3,7 @@
 use super::super::approach;
 use super::super::limits::JointState;
 use super::super::options::SecondaryNullSpace;
+use super::super::secondary::Context;
 use super::super::stall::BrakingState;
 use super::super::step::DesiredMotion;
 use super::Servo;
@@ -154,15 +155,15 @@ impl Servo {
                 *w = secondary_velocities[c];
             }
         }
+        let mut context = Context {
+            mechanism: &self.mechanism,
+            chain: &self.chain,
+            svd: &self.svd,
+            task: &self.space,
+            hessian: &mut self.hessian,
+        };
         for secondary in &self.options.secondary {
-            secondary.add_rates(
-                &self.mechanism,
-                &self.chain,
-                &self.svd,
-                &self.space,
-                &mut self.gradient,
-                &mut self.secondary[..self.chain.n()],
-            );
+            secondary.add_velocities(&mut context, &mut self.secondary[..self.chain.n()]);
         }
         if let Some(coupled) = &mut self.coupled {
             coupled.load_secondary(&self.secondary);

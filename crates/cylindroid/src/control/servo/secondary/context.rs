@@ -1,0 +1,30 @@
+//! The present step, as a secondary task reads it.
+
+use super::super::task_space::TaskSpace;
+use crate::kinematics::Chain;
+use crate::linalg::{Matrix, Svd};
+use crate::model::{Coordinate, CoordinateKind, Mechanism};
+
+/// Configuration, decomposition and scaling of the present step.
+#[derive(Debug)]
+pub(in super::super) struct Context<'a> {
+    pub(in super::super) mechanism: &'a Mechanism,
+    pub(in super::super) chain: &'a Chain,
+    /// Of the scaled task Jacobian.
+    pub(in super::super) svd: &'a Svd,
+    pub(in super::super) task: &'a TaskSpace,
+    /// Memory for the derivatives of the Jacobian, 6 x n for each coordinate.
+    pub(in super::super) hessian: &'a mut [Matrix],
+}
+
+impl Context<'_> {
+    /// Coordinate `i` of the chain.
+    pub(super) fn coordinate(&self, i: usize) -> &Coordinate {
+        &self.mechanism.coordinates()[self.chain.coordinates()[i]]
+    }
+
+    /// True for an angle or a length: coordinates that may have limits.
+    pub(super) fn is_scalar(&self, i: usize) -> bool {
+        matches!(self.coordinate(i).kind, CoordinateKind::Angle | CoordinateKind::Length)
+    }
+}

@@ -1,0 +1,14 @@
+//! Secondary tasks: joint velocities executed in the null space of the primary task.
+//!
+//! `table` lists the tasks with their parameters; each has a file with its formula, which reads a
+//! `context` (the present step) and adds joint velocities. A new task is such a file and a row.
+
+mod centring;
+mod context;
+mod limit_avoidance;
+mod manipulability;
+mod posture;
+mod table;
+
+pub(super) use context::Context;
+pub use table::SecondaryTask;
