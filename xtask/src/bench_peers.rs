@@ -13,7 +13,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::models;
 use crate::python::{environment, pip};
-use crate::steps::{captured, cargo, root, run};
+use crate::shell::{captured, cargo, root, run};
 
 const SOURCES: &str = "benches/peers";
 /// Every version is pinned: a comparison can be repeated.

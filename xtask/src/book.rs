@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 use crate::python::{environment, pip};
-use crate::steps::{documentation, root, run};
+use crate::shell::{documentation, root, run};
 
 const HERE: &str = "xtask/book";
 const SITE: &str = "target/book";

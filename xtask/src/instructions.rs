@@ -12,7 +12,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use crate::steps::{captured, cargo, root, run};
+use crate::shell::{captured, cargo, root, run};
 
 const FILE: &str = "crates/cylindroid/benches/instructions.toml";
 /// A kernel may grow by this share before it is an error.

@@ -7,6 +7,7 @@ mod instructions;
 mod layers;
 mod models;
 mod python;
+mod shell;
 mod steps;
 mod viewer;
 

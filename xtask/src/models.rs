@@ -9,7 +9,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use crate::steps::{root, run};
+use crate::shell::{root, run};
 
 const REQUIREMENTS: &str = "xtask/requirements-test.txt";
 

@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 use crate::models;
-use crate::steps::{root, run};
+use crate::shell::{root, run};
 
 const REQUIREMENTS: &str = "crates/cylindroid-py/requirements-test.txt";
 const TESTS: &str = "crates/cylindroid-py/tests";

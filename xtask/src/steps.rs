@@ -1,53 +1,12 @@
 //! The steps of the tasks: each a command that a person could type.
 
-use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 
+use crate::shell::{cargo, documentation, root, run};
 use crate::{book, layers, models, python, viewer};
-
-/// The workspace.
-pub(crate) fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf).unwrap_or_default()
-}
-
-/// Runs a command in the workspace, its output shown.
-///
-/// # Errors
-/// A command that cannot be started or fails.
-pub(crate) fn run(command: &mut Command) -> Result<()> {
-    let status = command
-        .current_dir(root())
-        .status()
-        .with_context(|| format!("cannot start {}", command.get_program().to_string_lossy()))?;
-    if !status.success() {
-        bail!("{command:?} failed ({status})");
-    }
-    Ok(())
-}
-
-/// What a command prints.
-///
-/// # Errors
-/// A command that cannot be started or fails.
-pub(crate) fn captured(command: &mut Command) -> Result<String> {
-    let output = command
-        .current_dir(root())
-        .output()
-        .with_context(|| format!("cannot start {}", command.get_program().to_string_lossy()))?;
-    if !output.status.success() {
-        bail!("{command:?}: {}", String::from_utf8_lossy(&output.stderr).trim());
-    }
-    Ok(String::from_utf8(output.stdout)?.trim_end().to_owned())
-}
-
-pub(crate) fn cargo(arguments: &[&str]) -> Command {
-    let mut command = Command::new(std::env::var("CARGO").unwrap_or_else(|_| "cargo".into()));
-    command.args(arguments);
-    command
-}
 
 fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
     println!("== {name}");
@@ -72,12 +31,6 @@ pub(crate) fn quick() -> Result<()> {
             "warnings",
         ]))
     })
-}
-
-/// The library's: the command line documents itself with --help.
-pub(crate) fn documentation() -> Result<()> {
-    let arguments = ["doc", "--quiet", "--package", "cylindroid", "--no-deps"];
-    run(cargo(&arguments).env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 /// Everything: this is the whole CI.

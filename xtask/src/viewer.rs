@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, bail};
 
 use crate::models;
-use crate::steps::{cargo, root, run};
+use crate::shell::{cargo, root, run};
 
 const PAGE: &str = "viewer";
 const CHROMIUM: &str = "/usr/bin/chromium";

@@ -7,7 +7,6 @@ use pyo3::types::{PyDict, PyString};
 
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
-use crate::mechanism::reference_of;
 
 /// What a name means.
 pub(crate) fn named<T: Copy>(what: &'static str, name: &str, known: &[(&str, T)]) -> Result<T> {
@@ -15,6 +14,11 @@ pub(crate) fn named<T: Copy>(what: &'static str, name: &str, known: &[(&str, T)]
         Some((_, meant)) => Ok(*meant),
         None => Err(Error::unknown(what, name, known.iter().map(|(known, _)| known)).into()),
     }
+}
+
+/// The reference frame of this name.
+pub(crate) fn reference_of(name: &str) -> Result<ReferenceFrame> {
+    named("reference", name, &ReferenceFrame::NAMES)
 }
 
 /// A number, or one for translations and one for rotations.

@@ -35,7 +35,7 @@ const SHORT: [&str; 5] = ["crates", "xtask/src", "benches", "viewer/src", "viewe
 /// # Errors
 /// Faults; each names its file.
 pub(crate) fn task(flag: Option<&str>) -> Result<()> {
-    let root = &crate::steps::root();
+    let root = &crate::shell::root();
     let faults = match flag {
         None => return check(),
         Some("--circles") => all_circles(root)?.iter().map(Circle::in_full).collect(),
@@ -50,7 +50,7 @@ pub(crate) fn task(flag: Option<&str>) -> Result<()> {
 /// # Errors
 /// Faults; each names its file.
 pub(crate) fn check() -> Result<()> {
-    let root = &crate::steps::root();
+    let root = &crate::shell::root();
     let mut faults = line::faults(root)?;
     for folder in SHORT {
         faults.extend(length_faults(root, folder)?);

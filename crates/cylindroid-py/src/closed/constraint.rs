@@ -7,7 +7,8 @@ use cylindroid::kinematics::State;
 use cylindroid::{Error, FrameId, Matrix, Mechanism};
 use pyo3::prelude::*;
 
-use super::{PyLoopClosureError, object};
+use super::PyLoopClosureError;
+use super::object::object;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;

@@ -6,7 +6,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 
 use super::metrics::Question;
-use super::{PyConstraint, PySpectrum, object};
+use super::object::object;
+use super::{PyConstraint, PySpectrum};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;

@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 use cylindroid::closure::{Diagnosis, Mobility, Subspace};
 use pyo3::prelude::*;
 
-use super::{PyConstraint, PyFiniteMobility, PyLoopClosureError, PySingularity, object};
+use super::object::object;
+use super::{PyConstraint, PyFiniteMobility, PyLoopClosureError, PySingularity};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;

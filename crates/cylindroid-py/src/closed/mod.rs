@@ -13,14 +13,13 @@ mod manipulability;
 mod measures;
 mod metrics;
 mod mobility;
+mod object;
 mod polytope;
 mod singularity;
 mod spectrum;
 mod statics;
 
 use pyo3::prelude::*;
-use pyo3::types::PyList;
-use pyo3::{PyClass, PyClassInitializer};
 
 use crate::arrays::{Many, Numbers, Rows};
 use crate::error::Result;
@@ -63,21 +62,4 @@ impl PyMechanism {
             }
         })
     }
-}
-
-/// One object of Python, or a list of them.
-fn object<'py, T>(py: Python<'py>, many: Many<T>) -> PyResult<Bound<'py, PyAny>>
-where
-    T: PyClass + Into<PyClassInitializer<T>>,
-{
-    Ok(match many {
-        Many::One(one) => Bound::new(py, one)?.into_any(),
-        Many::All(all) => {
-            let list = PyList::empty(py);
-            for one in all {
-                list.append(Bound::new(py, one)?)?;
-            }
-            list.into_any()
-        }
-    })
 }

@@ -4,10 +4,11 @@ use cylindroid::kinematics::{Chain, KinematicsBatch, OrientationRates};
 use cylindroid::{Error, Matrix};
 use pyo3::prelude::*;
 
-use super::{PyMechanism, reference_of};
+use super::PyMechanism;
 use crate::arrays::{self, Array, Numbers, Rows};
 use crate::error::{Failure, Result};
 use crate::options;
+use crate::options::reference_of;
 use crate::threads;
 
 /// The columns of a Jacobian of a chain, among those of the whole mechanism, row by row.

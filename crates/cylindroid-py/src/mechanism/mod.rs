@@ -12,13 +12,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use cylindroid::closure::MobilityCounts;
 use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 use cylindroid::model::Dimension;
-use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose, ReferenceFrame};
+use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose};
 use pyo3::prelude::*;
 use pyo3::{IntoPyObjectExt, intern};
 
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
-use crate::options;
 use crate::table::{self, Table};
 
 pub(crate) use joint::PyJoint;
@@ -77,10 +76,6 @@ pub(crate) enum Origin {
     Text { text: String, format: String, path: PathBuf },
     /// Another mechanism, with other drives.
     Driven { of: Box<PyMechanism>, names: Vec<String> },
-}
-
-pub(crate) fn reference_of(name: &str) -> Result<ReferenceFrame> {
-    options::named("reference", name, &ReferenceFrame::NAMES)
 }
 
 /// Drives, reference, bits of the length.
