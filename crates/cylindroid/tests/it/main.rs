@@ -29,3 +29,4 @@ mod subspaces;
 mod support;
 mod svd;
 mod symmetric_eigen;
+mod theory;
