@@ -11,6 +11,27 @@ import griffe
 
 SOURCES = pathlib.Path(__file__).parents[2] / "crates/cylindroid-py/src"
 NAME = re.compile(r'name = "(\w+)"')
+# The table of inverse methods, from which a macro makes the end of a docstring.
+METHODS = pathlib.Path(__file__).parents[2] / "crates/cylindroid/src/inverse/method.rs"
+TABLE = "#[doc = cylindroid::inverse_methods!(documented)]"
+
+
+def methods():
+    """A list of the methods and their parameters."""
+    lines, words = [], []
+    for line in METHODS.read_text().split("macro_rules! inverse_methods")[1].split("\n"):
+        text = line.strip()
+        if text.startswith("///"):
+            words.append(text[3:].strip())
+            continue
+        if row := re.match(r'\w+ = "([\w-]+)" \{', text):
+            lines.append(f"- `{row[1]}`: {' '.join(words)}")
+        elif row := re.match(r'(\w+): "([^"]+)" in (\w+) = .*;', text):
+            lines.append(f"    - `{row[1]}` [{row[2]}]: {' '.join(words)}")
+        elif line.startswith("}"):
+            break
+        words = []
+    return lines
 
 
 def read(path, classes, texts):
@@ -23,6 +44,8 @@ def read(path, classes, texts):
             open_brackets += text.count("[") - text.count("]")
         elif text.startswith("///"):
             doc.append(text[3:].removeprefix(" "))
+        elif text == TABLE:
+            doc = doc[: doc.index("Methods")] + ["Notes", "-----", *methods()]
         elif text.startswith("#["):
             attributes += text
             open_brackets = text.count("[") - text.count("]")
@@ -64,7 +87,7 @@ class CompiledDocstrings(griffe.Extension):
         if not obj.docstring and self.texts.get(name):
             # Shapes are words, not types.
             text = re.sub(r"\b(array_like|ndarray), \(", r"\1 of shape (", self.texts[name])
-            obj.docstring = griffe.Docstring(text, parent=obj)
+            obj.docstring = griffe.Docstring(text, parent=obj, parser="numpy")
 
     def on_module(self, *, mod, **kwargs):
         if mod.name != "_core":

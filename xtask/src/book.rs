@@ -7,12 +7,13 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 use crate::python::{environment, pip};
-use crate::shell::{documentation, root, run};
+use crate::shell::{cargo, documentation, root, run};
+use crate::{models, python};
 
 const HERE: &str = "xtask/book";
 const SITE: &str = "target/book";
 
-/// `cargo xtask book [--serve]`.
+/// `cargo xtask book [--outputs | --serve]`.
 pub(crate) fn task(option: Option<&str>) -> Result<()> {
     match option {
         None => {
@@ -20,8 +21,9 @@ pub(crate) fn task(option: Option<&str>) -> Result<()> {
             println!("the book is in {}", root().join(SITE).join("index.html").display());
             Ok(())
         }
+        Some("--outputs") => outputs(),
         Some("--serve") => run(mkdocs()?.arg("serve").args(CONFIGURATION)),
-        Some(other) => bail!("no option '{other}': cargo xtask book [--serve]"),
+        Some(other) => bail!("no option '{other}': cargo xtask book [--outputs | --serve]"),
     }
 }
 
@@ -32,11 +34,20 @@ pub(crate) fn build() -> Result<()> {
     run(mkdocs()?.args(["build", "--strict", "--quiet"]).args(CONFIGURATION))?;
     documentation()?;
     copy(&root().join("target/doc"), &root().join(SITE).join("rust"))?;
-    run(Command::new(python()?).args([&format!("{HERE}/check.py"), SITE]))
+    run(Command::new(interpreter()?).args([&format!("{HERE}/check.py"), SITE]))
+}
+
+/// Writes what commands and Python print into the pages.
+fn outputs() -> Result<()> {
+    let robots = models::fetch()?;
+    let arguments = ["test", "--quiet", "--package", "cylindroid-cli", "--test", "cli", "book::"];
+    let mut test = cargo(&arguments);
+    run(test.env("CYLINDROID_TEST_ROBOTS", robots).env("CYLINDROID_WRITE_BOOK", "1"))?;
+    python::write_outputs()
 }
 
 fn mkdocs() -> Result<Command> {
-    let mut command = Command::new(python()?);
+    let mut command = Command::new(interpreter()?);
     command.args(["-m", "mkdocs"]);
     command.env("CYLINDROID_BOOK_PACKAGES", packages()?.join("node_modules"));
     command.env("NO_MKDOCS_2_WARNING", "1");
@@ -44,7 +55,7 @@ fn mkdocs() -> Result<Command> {
 }
 
 /// A Python that has MkDocs.
-fn python() -> Result<PathBuf> {
+fn interpreter() -> Result<PathBuf> {
     let venv = root().join("target/book-venv");
     let python = environment(&venv)?;
     let requirements = format!("{HERE}/requirements.txt");

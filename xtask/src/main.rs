@@ -26,7 +26,8 @@ cargo xtask <task>
   viewer    builds the viewer's page (needs Node.js with npm); --test drives it in Chromium against
             the server, --picture draws the picture of the README
   book      builds the book into target/book and checks its links (needs Python, Node.js with npm,
-            PyPI and the npm registry); --serve shows it while you write
+            PyPI and the npm registry); --serve shows it while you write, --outputs writes what
+            its commands and its Python print into the pages
   layers    checks that the library's modules import only those before them, and that files are
             short; --circles lists files that import one another, --checked headers that name no
             test
@@ -41,7 +42,7 @@ cargo xtask <task>
   instructions [--write]
             counts instructions of the kernels (valgrind) and compares with the file in
             crates/cylindroid/benches, or writes it
-  figures   draws the figures of the README";
+  figures   draws the figures of the README and the book (needs Python and PyPI)";
 
 fn main() -> ExitCode {
     match run() {

@@ -76,6 +76,21 @@ pub(crate) fn bench() -> Result<()> {
     run(Command::new(python).arg(BENCH))
 }
 
+/// Draws the figures of the book that the command line does not draw.
+pub(crate) fn figures() -> Result<()> {
+    let (python, _) = installed()?;
+    let script = ["xtask/book/figures.py", "docs/figures", "docs/grasp.toml"];
+    run(Command::new(python).args(script))
+}
+
+/// Writes what the Python of the book prints into its pages.
+pub(crate) fn write_outputs() -> Result<()> {
+    let (python, _) = installed()?;
+    let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider"];
+    let book = format!("{TESTS}/test_book.py");
+    run(Command::new(python).args(pytest).arg(book).env("CYLINDROID_WRITE_BOOK", "1"))
+}
+
 /// Builds, installs and tests the package: pytest, the stubs, the tutorials' examples; then the
 /// wheel in an environment that has nothing but numpy.
 pub(crate) fn test() -> Result<()> {

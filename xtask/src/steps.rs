@@ -114,7 +114,7 @@ pub(crate) fn viewer_load(seconds: Option<&str>) -> Result<()> {
     run(cargo(&arguments).env("CYLINDROID_LOAD", seconds.unwrap_or("60")))
 }
 
-/// The figures of the README, by the command line that users have.
+/// The figures of the README and the book, by the command line and the Python package.
 pub(crate) fn figures() -> Result<()> {
     let [to, rpy] = ["0.45,0.15,0.35", "3.1416,0,0.6"];
     for command in [
@@ -136,5 +136,5 @@ pub(crate) fn figures() -> Result<()> {
         let run_it = ["run", "--release", "--quiet", "--package", "cylindroid-cli", "--"];
         run(&mut cargo(&[&run_it, command].concat()))?;
     }
-    Ok(())
+    python::figures()
 }

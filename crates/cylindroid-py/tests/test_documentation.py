@@ -77,14 +77,6 @@ def test_attributes_are_documented():
         assert listed == own, f"{name}: {listed ^ own}"
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
-def test_the_code_of_a_page_runs(page):
-    blocks = re.findall(r"```python\n(.*?)```", (HERE.parents[2] / page).read_text(), re.S)
-    assert blocks
-    for block in blocks:
-        exec(compile(block, page, "exec"), {})
-
-
 def test_the_two_project_files_are_one():
     root, own = HERE.parents[2] / "pyproject.toml", HERE.parent / "pyproject.toml"
     a, b = tomllib.loads(root.read_text()), tomllib.loads(own.read_text())

@@ -44,7 +44,27 @@ pub use model::{FrameId, Mechanism, catalogue, load};
 pub use screws::{Screw, ScrewSystem};
 pub use spatial::{Pose, Rotation, Twist, Vec3, Wrench};
 
-/// The code of the README is compiled and run.
+/// The code of the README and of the book is compiled and run.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
+mod book {
+    macro_rules! pages {
+        ($($name:ident $path:literal)*) => { $(#[doc = include_str!($path)] struct $name;)* };
+    }
+    pages! {
+        Readme "../../../README.md"
+        ConceptsFrames "../../../docs/concepts/frames.md"
+        ConceptsRanks "../../../docs/concepts/ranks.md"
+        GuideAssembly "../../../docs/guide/assembly.md"
+        GuideControl "../../../docs/guide/control.md"
+        GuideGrasps "../../../docs/guide/grasps.md"
+        GuideInverseKinematics "../../../docs/guide/inverse-kinematics.md"
+        GuideInverses "../../../docs/guide/inverses.md"
+        GuideKinematics "../../../docs/guide/kinematics.md"
+        GuideLoading "../../../docs/guide/loading.md"
+        GuideManipulability "../../../docs/guide/manipulability.md"
+        GuideMobility "../../../docs/guide/mobility.md"
+        GuideScrews "../../../docs/guide/screws.md"
+        GuideStatics "../../../docs/guide/statics.md"
+        StartRust "../../../docs/start/rust.md"
+    }
+}

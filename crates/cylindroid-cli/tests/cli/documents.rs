@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::closed::robots;
 use crate::text;
 
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
 /// All commands, as the help lists them.
 fn commands() -> Vec<String> {
@@ -60,7 +60,7 @@ fn examples_run_as_they_stand() {
     let counts: Vec<usize> = found.iter().map(Vec::len).collect();
     // The first four commands speak for themselves.
     let all = counts[6..].iter().all(|n| *n > 1);
-    assert!(commands.len() > 11 && counts[0] > 15 && counts[1] > 3 && all, "{counts:?}");
+    assert!(commands.len() > 11 && counts[0] > 8 && counts[1] > 3 && all, "{counts:?}");
     for example in found.iter().flatten() {
         let mut words = example.replace("path/to/ur5_robot.urdf", &urdf.to_string_lossy());
         // It serves until it is stopped; --check stops it when it could.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bad_input;
+mod book;
 mod closed;
 mod documents;
 mod ik;

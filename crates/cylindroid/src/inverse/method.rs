@@ -1,8 +1,8 @@
 //! The inverse methods (pseudoinverses) as one table: name, parameters and gains of each.
 //!
-//! A new method is a file with its `gains`, a row here and a line in docs/inverses.md: the enum,
-//! its names, defaults and checks, the flags of the command line, the keyword arguments of Python,
-//! the controls of the viewer and the tests over [`Method::ALL`] are made from the row.
+//! A new method is a file with its `gains`, a row here and a line in docs/guide/inverses.md: the
+//! enum, its names, defaults and checks, the flags of the command line, the keyword arguments of
+//! Python, the controls of the viewer and the tests over [`Method::ALL`] are made from the row.
 //!
 //! Why so   a macro, since every row declares the fields of a variant: `Method::Damped { damping }`
 //!          is checked by the compiler, where a list of names and values would be looked up
