@@ -34,7 +34,7 @@ export function capabilityPanel(): Watch {
         numbers("Efficiencies", ["", ...parts.map((part) => part.words)], rows),
         h("h3", {}, "Measures"),
         numbers("Measures", ["", "motion", "force"], MEASURES.map((key) => [key, ...["kinematic", "force"].map((side) => short(numberIn(objectIn(measures, side), key), 4))])),
-        pairs(["driven", listIn(report, "actuated").join(", ") || "all"]),
+        pairs(["actuated", listIn(report, "actuated").join(", ") || "all"]),
         ...parts.map(({ key, finite }) => h("span", { hidden: true, "data-efficiency": key, "data-values": JSON.stringify(finite) })),
       );
     },

@@ -13,7 +13,7 @@ Mobility of a mechanism: how it can move, what is redundant, idle or held twice
 
 Counts come from ranks at this configuration, with their gap; Grubler's formula is given beside \
 them, and so is what remains of the motions when the loops are closed after a step (finite motion). \
-The pose is compared with other closed postures of the mechanism: where it is singular, the wrench \
+The pose is compared with other closed configurations of the mechanism: where it is singular, the wrench \
 that blocks and the motion lost or gained are named as screws, seen from the world. Loops and \
 contacts are taken as closed: the gap by which they are open is printed.";
 
@@ -24,7 +24,7 @@ Examples:
   cylindroid mobility ur5e --q zero";
 
 pub(crate) const MANIPULABILITY: &str = "\
-How well motion and force go from the driven joints to the reference frame
+How well motion and force go from the actuated joints to the reference frame
 
 Efficiencies are squares of output over input along the principal directions: of motion (object \
 speed over joint speed), of force exerted (wrench over torques, the object's free wrenches chosen \
@@ -35,14 +35,14 @@ Examples:
   cylindroid manipulability five-bar --actuated q2,q4 --plot ellipses.svg
   cylindroid manipulability panda --metric limits --task x,y,z --polytope
   cylindroid manipulability stewart --metric length --gradient smallest
-  cylindroid manipulability stewart --configurations postures.csv --json";
+  cylindroid manipulability stewart --configurations configurations.csv --json";
 
 #[derive(Debug, Args)]
 pub(crate) struct ClosedArgs {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArgs,
 
-    /// The driven joints, in place of those of the file
+    /// The actuated joints, in place of those of the file
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
     pub(crate) actuated: Vec<String>,
 
@@ -69,7 +69,7 @@ close loops have no coordinate: they cannot be held, and their limits do not cou
 pub(crate) const ASSEMBLE_EXAMPLES: &str = "\
 Examples:
   cylindroid assemble five-bar --q 0.2,-0.1,0,0 --hold q1
-  cylindroid assemble stewart --hold driven --modes 200
+  cylindroid assemble stewart --hold actuated --modes 200
   cylindroid assemble four-bar --to q1=6.283185307
   cylindroid assemble stewart --to leg1=0.2,leg2=0.2";
 
@@ -78,8 +78,8 @@ pub(crate) struct AssembleArgs {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArgs,
 
-    /// Coordinates that keep the values of --q: names of coordinates or joints, or `driven` for
-    /// all that are driven (the passive ones follow)
+    /// Coordinates that keep the values of --q: names of coordinates or joints, or `actuated` for
+    /// all that are actuated (the passive ones follow)
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
     pub(crate) hold: Vec<String>,
 
@@ -121,7 +121,7 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wu: Option<Weights>,
 
-    /// Metric of the rates of the driven joints, likewise
+    /// Metric of the rates of the actuated joints, likewise
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wq: Option<Weights>,
 
@@ -129,7 +129,7 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) ww: Option<Weights>,
 
-    /// Metric of the torques of the driven joints [default: the inverse of that of rates]
+    /// Metric of the torques of the actuated joints [default: the inverse of that of rates]
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wtau: Option<Weights>,
 
@@ -142,17 +142,17 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "task")]
     pub(crate) task_map: Option<PathBuf>,
 
-    /// Also all velocities and forces within the limits of the drives: corners up to three
+    /// Also all velocities and forces within the limits of the actuators: corners up to three
     /// components, ranges of each component always
     #[arg(long)]
     pub(crate) polytope: bool,
 
-    /// Rate limits of the driven joints in place of the model's [rad/s or m/s]: `2,-1:3,...`, one
+    /// Rate limits of the actuated joints in place of the model's [rad/s or m/s]: `2,-1:3,...`, one
     /// or two numbers for each
     #[arg(long, value_name = "LIMITS", allow_hyphen_values = true)]
     pub(crate) velocity_limits: Option<Intervals>,
 
-    /// Torque limits of the driven joints in place of the model's [N m or N], likewise; a cable
+    /// Torque limits of the actuated joints in place of the model's [N m or N], likewise; a cable
     /// that pulls is `-5:0` or `0:5`
     #[arg(long, value_name = "LIMITS", allow_hyphen_values = true)]
     pub(crate) torque_limits: Option<Intervals>,
@@ -216,7 +216,7 @@ pub(crate) const STATICS: &str = "\
 Joint torques that hold a wrench, what the structure holds, and the forces in loops and contacts
 
 The wrench is what acts on the reference frame from outside, at its origin and in world axes: N, \
-then N m. The torques are what the drives exert so that nothing moves: for every motion, torques \
+then N m. The torques are what the actuators exert so that nothing moves: for every motion, torques \
 times rates plus wrench times twist is zero. They are the least in size; internal torques, which \
 balance each other, may be added. What a joint or contact transmits is the wrench by which its \
 first link acts on its second; a contact that pushes has a positive normal force.";
@@ -236,11 +236,11 @@ pub(crate) struct StaticsArgs {
     #[arg(long, value_name = "WRENCH", allow_hyphen_values = true)]
     pub(crate) wrench: List,
 
-    /// Metric in which torques are the least: weights of the driven joints or a file
+    /// Metric in which torques are the least: weights of the actuated joints or a file
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wtau: Option<Weights>,
 
-    /// Elastic forces where several are possible: how far closing joints and contacts give way to
+    /// Elastic forces where several are possible: how far loop joints and contacts give way to
     /// forces [m/N], a number for all, `name=number` for some; to moments by this over the square
     /// of the characteristic length
     #[arg(long, value_name = "M/N", allow_hyphen_values = true)]

@@ -298,9 +298,10 @@ fn print_closings(out: &mut dyn Write, info: &InfoJson<'_>) -> io::Result<()> {
     };
     if !info.loops.is_empty() {
         writeln!(out)?;
-        let driven = |l: &LoopJson<'_>| if l.actuated { "driven" } else { "passive" }.to_owned();
+        let actuated =
+            |l: &LoopJson<'_>| if l.actuated { "actuated" } else { "passive" }.to_owned();
         let rows = info.loops.iter().map(|l| {
-            vec![l.name.to_owned(), l.kind.to_owned(), format!("{}, {}", l.a, l.b), driven(l)]
+            vec![l.name.to_owned(), l.kind.to_owned(), format!("{}, {}", l.a, l.b), actuated(l)]
         });
         output::table(out, &columns("closing joint"), rows)?;
     }

@@ -27,7 +27,7 @@ fn mobility_counts() {
     // Opened by hand: said, not hidden.
     let open = text(&["mobility", "five-bar", "--q", "0.3,0,0,0"]);
     assert!(open.contains("loops are open by"), "{open}");
-    // So are limits that a posture leaves, in every command that looks at one.
+    // So are limits that a configuration leaves, in every command that looks at one.
     for command in [&["mobility", "panda"][..], &["statics", "panda", "--wrench", "0,0,1,0,0,0"]] {
         let command = [command, &["--q", "zero"]].concat();
         assert_eq!(json(&command, 0)["outside_limits"], serde_json::json!(["panda_joint4"]));
@@ -74,7 +74,7 @@ fn loops_are_closed_from_a_guess() {
     assert_eq!(output.status.code(), Some(2));
 }
 
-/// The object is driven through the drives, loops closed; its pose is that of `fk`.
+/// The object is actuated through the actuators, loops closed; its pose is that of `fk`.
 #[test]
 fn objects_are_moved() {
     let command = ["move", "stewart", "--to", "0.1,0.05,1.1", "--rpy", "0,0,0.1"];
@@ -108,7 +108,7 @@ fn modes_are_listed() {
         (&report["self_motion_dof"], &report["unseen_probability"]),
         (&0.into(), &0.0.into())
     );
-    let command = ["assemble", "stewart", "--hold", "driven", "--modes", "40"];
+    let command = ["assemble", "stewart", "--hold", "actuated", "--modes", "40"];
     let legs = json(&command, 0);
     assert!(legs["modes"].as_array().unwrap().len().is_multiple_of(2) && legs["held"][5] == "leg6");
     // The same seed, the same answer; another, other starts.
@@ -136,7 +136,7 @@ fn coordinates_go_where_they_are_sent() {
     assert!(difference(&numbers(&round["q"]), &[turn, -turn, 0.0]) < 1e-9);
     assert_eq!((&round["end"], &round["share"]), (&"reached".into(), &1.0.into()));
     assert!(round["path"].as_array().unwrap().len() > 20);
-    // The links of q3 and q4 stretch; the reference frame rests with the drives.
+    // The links of q3 and q4 stretch; the reference frame rests with the actuators.
     let stopped = json(&["assemble", "five-bar", "--to", "q1=0.5,q2=-1.2"], 1);
     assert_eq!((&stopped["end"], &stopped["reached"]), (&"singular".into(), &false.into()));
     let sight = &stopped["singularity"];
@@ -147,7 +147,7 @@ fn coordinates_go_where_they_are_sent() {
     let wider = ["assemble", "five-bar", "--to", "q1=0.5,q2=-1.2", "--least-distance", "0.05"];
     assert!(json(&wider, 1)["share"].as_f64().unwrap() < share);
     // A limit of the leg that goes, the others held.
-    let limit = json(&["assemble", "stewart", "--to", "leg1=0.5", "--hold", "driven"], 1);
+    let limit = json(&["assemble", "stewart", "--to", "leg1=0.5", "--hold", "actuated"], 1);
     assert_eq!((&limit["end"], &limit["limit"]), (&"limit".into(), &"leg1".into()));
     assert!((limit["share"].as_f64().unwrap() - 0.8).abs() < 1e-9);
     assert_eq!(limit["goal"].as_array().unwrap().len(), 6);
@@ -253,7 +253,7 @@ fn strange_mechanisms() {
         path.to_str().unwrap().to_owned()
     };
     let pair = std::fs::read_to_string(file("stretched-pair")).unwrap();
-    // Nothing driven.
+    // Nothing actuated.
     let idle = json(&["mobility", &write("idle.toml", &pair.replace("actuated = true", ""))], 0);
     assert_eq!((&idle["actuated"], &idle["finite_dof"]), (&serde_json::json!([]), &0.into()));
     // A contact on a missing link.

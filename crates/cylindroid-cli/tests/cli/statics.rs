@@ -43,7 +43,7 @@ fn statics_of_the_five_bar() {
             + [3.0, -1.0, 0.2].iter().zip(u).map(|(w, u)| w * u).sum::<f64>();
         assert!(power.abs() < 1e-12);
     }
-    // All five driven: three internal torques, each with the forces it brings; the least torques
+    // All five actuated: three internal torques, each with the forces it brings; the least torques
     // follow the metric.
     let all = ["statics", "five-bar", "--actuated", "q1,q2,q3,q4,q5", "--wrench", "3,-1,0.2"];
     let report = json(&all, 0);
@@ -58,7 +58,7 @@ fn statics_of_the_five_bar() {
     assert!((row.trim().parse::<f64>().unwrap() - torques[0]).abs() < 1e-5, "{table}");
 }
 
-/// Driven by nothing the five-bar gives way: the wrench is left over, and that is said.
+/// Actuated by nothing the five-bar gives way: the wrench is left over, and that is said.
 #[test]
 fn wrenches_that_nothing_holds() {
     let command = ["statics", "five-bar", "--actuated", "q1", "--wrench", "0,0,1"];

@@ -21,7 +21,7 @@ use crate::table::{self, Table};
 /// Parameters
 /// ----------
 /// Ja : array_like, (t, a)
-///     Velocities at the contacts by the driven joints.
+///     Velocities at the contacts by the actuated joints.
 /// Jp : array_like, (t, p), optional
 ///     By passive joints, and by objects other than the reference.
 /// G : array_like, (d, t), optional
@@ -30,13 +30,13 @@ use crate::table::{self, Table};
 /// length : float, optional
 ///     Characteristic length of rank decisions, where units are given (m).
 /// units : tuple of four str, optional
-///     Units of rows, driven joints, passive columns and the object: a letter each, 'm' or 'r', as
+///     Units of rows, actuated joints, passive columns and the object: a letter each, 'm' or 'r', as
 ///     in ('mmr', 'rr', 'rr', 'mmr').
 ///
 /// Attributes
 /// ----------
 /// actuated, passive, components : list of str
-///     Names of the driven joints, the passive columns, the components of the object's twist.
+///     Names of the actuated joints, the passive columns, the components of the object's twist.
 /// Ja, Jp, G : ndarray
 /// matrix : ndarray, (t, a + p + d)
 ///     `[Ja Jp -G^T]`.
@@ -68,7 +68,7 @@ pub(crate) struct PyConstraint {
     pub(super) origin: Option<Origin>,
 }
 
-/// The mechanism, its posture and the frame that a constraint is of.
+/// The mechanism, its configuration and the frame that a constraint is of.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     pub(super) state: State,
@@ -130,7 +130,7 @@ impl PyConstraint {
         match &self.origin {
             Some(origin) => format!("'{}'", origin.state.mechanism().name()),
             None => format!(
-                "a constraint of {} driven and {} passive columns",
+                "a constraint of {} actuated and {} passive columns",
                 self.inner.actuated(),
                 self.inner.passive()
             ),
@@ -171,7 +171,7 @@ impl PyConstraint {
         Ok((map, names))
     }
 
-    /// Of the driven joints and the object, or the task that the map makes of its twist.
+    /// Of the actuated joints and the object, or the task that the map makes of its twist.
     pub(crate) fn relation(&self, map: Option<&Matrix>) -> cylindroid::Result<Relation> {
         let relation = MotionSpace::of(&self.inner).relation();
         match map {
@@ -181,7 +181,7 @@ impl PyConstraint {
     }
 
     pub(super) fn head(&self, table: &mut Table) {
-        table.row("driven", table::names(&self.actuated));
+        table.row("actuated", table::names(&self.actuated));
         table.row("passive", table::names(&self.passive));
         if let Some(origin) = &self.origin {
             let frame = origin.state.mechanism().frame_of(origin.reference);
@@ -304,7 +304,7 @@ impl PyMechanism {
     /// q : array_like, (n,) or (N, n), optional
     ///     Default: home.
     /// actuated : list of str, optional
-    ///     The driven joints, in place of those of the file.
+    ///     The actuated joints, in place of those of the file.
     /// reference : str, optional
     ///     The frame whose motion is the goal. Default: that of the file, else the tool.
     /// length : float, optional

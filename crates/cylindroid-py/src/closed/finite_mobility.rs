@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::arrays::{self, Array};
 use crate::error::Result;
 
-/// How a mechanism can move from a posture beyond first order.
+/// How a mechanism can move from a configuration beyond first order.
 ///
 /// Attributes
 /// ----------
@@ -85,7 +85,7 @@ impl PyFiniteMobility {
     }
 }
 
-/// A set of closed postures through the posture in question.
+/// A set of closed configurations through the configuration in question.
 ///
 /// Attributes
 /// ----------

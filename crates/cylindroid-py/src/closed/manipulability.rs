@@ -13,13 +13,13 @@ use crate::error::Result;
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
-/// How well motion and force go from the driven joints to the object.
+/// How well motion and force go from the actuated joints to the object.
 ///
 /// Attributes
 /// ----------
 /// kinematic : Spectrum
-///     Motions of the object for rates of the driven joints: zeros are redundant motions, infinite
-///     ones motions that the drives do not hold.
+///     Motions of the object for rates of the actuated joints: zeros are redundant motions, infinite
+///     ones motions that the actuators do not hold.
 /// active_force : Spectrum
 ///     Forces exerted: wrenches for torques; zeros are internal torques.
 /// passive_force : Spectrum
@@ -113,7 +113,7 @@ impl PyManipulability {
     fn table(&self) -> Table {
         let mut table = Table::new(&format!("Manipulability of {}", self.name));
         table.row("metric", &self.metric);
-        table.row("driven", table::names(&self.actuated));
+        table.row("actuated", table::names(&self.actuated));
         table.row("object", table::names(&self.components));
         for spectrum in [self.kinematic(), self.active_force(), self.passive_force()] {
             table.row(spectrum.what, spectrum.words());
@@ -124,7 +124,7 @@ impl PyManipulability {
 
 #[pymethods]
 impl PyConstraint {
-    /// How well motion and force go from the driven joints to the object.
+    /// How well motion and force go from the actuated joints to the object.
     ///
     /// Parameters
     /// ----------
@@ -156,7 +156,7 @@ impl PyConstraint {
 
 #[pymethods]
 impl PyMechanism {
-    /// How well motion and force go from the driven joints to the reference frame.
+    /// How well motion and force go from the actuated joints to the reference frame.
     ///
     /// Efficiencies are squares of output over input along principal directions. Zero: nothing
     /// comes out; infinite: without any input.

@@ -65,7 +65,7 @@ impl PyMechanism {
     ///
     /// Notes
     /// -----
-    /// A posture is singular where it has more, or less, than ordinary postures of the mechanism.
+    /// A configuration is singular where it has more, or less, than ordinary configurations of the mechanism.
     /// They are looked for around home by the first call: up to tens of milliseconds.
     ///
     /// Examples
@@ -89,8 +89,8 @@ impl PyMechanism {
         metric: &str,
         length: Option<f64>,
     ) -> Result<Bound<'py, PyDict>> {
-        let driven = actuated.map(|names| self.inner.with_actuated(&names)).transpose()?;
-        let mechanism = driven.as_ref().unwrap_or(&self.inner);
+        let actuated = actuated.map(|names| self.inner.with_actuated(&names)).transpose()?;
+        let mechanism = actuated.as_ref().unwrap_or(&self.inner);
         let rows = Rows::of(mechanism, "q", &q)?;
         let home = PyConstraint::of(mechanism, mechanism.home(), reference, length)?;
         let question =

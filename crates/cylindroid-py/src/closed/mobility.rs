@@ -19,13 +19,13 @@ use crate::table::{self, Table};
 /// dof : int
 ///     Degrees of freedom to first order, idle ones included.
 /// redundancy : int
-///     Motions of driven joints that leave the reference frame at rest.
+///     Motions of actuated joints that leave the reference frame at rest.
 /// indeterminacy : int
-///     Motions of the reference frame with driven joints at rest.
+///     Motions of the reference frame with actuated joints at rest.
 /// coordinate : int
-///     Motions of the reference frame that the driven joints set.
+///     Motions of the reference frame that the actuated joints set.
 /// internal : int
-///     Torques of driven joints that balance each other.
+///     Torques of actuated joints that balance each other.
 /// zero_torque : int
 ///     Wrenches on the reference frame held without torque.
 /// hyperstatic : int
@@ -38,7 +38,7 @@ use crate::table::{self, Table};
 ///     Smallest singular value kept over the largest dropped: near 1 the counts are a matter of
 ///     taste.
 /// dof_basis : ndarray, (a + p + d, dof)
-///     Motions: driven joints, passive ones, components of the reference frame.
+///     Motions: actuated joints, passive ones, components of the reference frame.
 /// idle_basis : ndarray, (a + p + d, idle)
 /// internal_basis : ndarray, (a, internal)
 ///     Torques.
@@ -49,7 +49,7 @@ use crate::table::{self, Table};
 /// ambiguous_ranks : list of str
 ///     Counts that hang on little, in words.
 /// singularity : Singularity or None
-///     What is singular about the posture; None for bare matrices. Computed when it is asked for.
+///     What is singular about the configuration; None for bare matrices. Computed when it is asked for.
 /// finite : FiniteMobility or None
 ///     What can be done of the motions beyond first order.
 /// finite_dof : int or None
@@ -77,9 +77,9 @@ pub(crate) struct PyMobility {
 /// share : float
 ///     Its largest share in a motion of unit length (scaled), between 0 and 1.
 /// free : bool
-///     True where it can move with all driven joints at rest.
+///     True where it can move with all actuated joints at rest.
 /// idle : bool
-///     True where it can move with the driven joints and the reference frame at rest.
+///     True where it can move with the actuated joints and the reference frame at rest.
 #[pyclass(frozen, get_all, name = "JointMobility", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyJointMobility {
@@ -102,7 +102,7 @@ impl PyJointMobility {
         match (self.moves, self.idle, self.free) {
             (false, ..) => "locked",
             (true, true, _) => "moves, spins alone",
-            (true, false, true) => "moves, also with the drives at rest",
+            (true, false, true) => "moves, also with the actuators at rest",
             (true, false, false) => "moves",
         }
     }

@@ -49,8 +49,8 @@ impl PyMechanism {
         reference: Option<&str>,
         length: Option<f64>,
     ) -> Result<Many<PyConstraint>> {
-        let driven = actuated.map(|names| self.inner.with_actuated(names)).transpose()?;
-        let mechanism = driven.as_ref().unwrap_or(&self.inner);
+        let actuated = actuated.map(|names| self.inner.with_actuated(names)).transpose()?;
+        let mechanism = actuated.as_ref().unwrap_or(&self.inner);
         let one = |q: &[f64]| PyConstraint::of(mechanism, q, reference, length);
         let Some(q) = q else { return Ok(Many::One(one(mechanism.home())?)) };
         let rows = Rows::of(mechanism, "q", q)?;

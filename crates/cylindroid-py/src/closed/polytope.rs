@@ -1,4 +1,4 @@
-//! The class `Polytope`: all velocities or forces within the limits of the driven joints.
+//! The class `Polytope`: all velocities or forces within the limits of the actuated joints.
 
 use cylindroid::linalg::{Hull, Interval};
 use cylindroid::manipulability::{Polytope, force_polytope, velocity_polytope};
@@ -9,7 +9,7 @@ use super::metrics::limits;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 
-/// All velocities or forces that the limits of the driven joints allow, about zero.
+/// All velocities or forces that the limits of the actuated joints allow, about zero.
 ///
 /// Attributes
 /// ----------
@@ -119,7 +119,7 @@ impl PyPolytope {
 
 #[pymethods]
 impl PyConstraint {
-    /// All twists of the object that the rate limits of the driven joints allow.
+    /// All twists of the object that the rate limits of the actuated joints allow.
     ///
     /// Parameters
     /// ----------
@@ -141,7 +141,7 @@ impl PyConstraint {
         PyPolytope::of(py, self, limits.as_ref(), task.as_ref(), false)
     }
 
-    /// All wrenches on the object that torques of the driven joints within their limits balance.
+    /// All wrenches on the object that torques of the actuated joints within their limits balance.
     ///
     /// Parameters
     /// ----------

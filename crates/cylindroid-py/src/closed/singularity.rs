@@ -1,4 +1,4 @@
-//! The class `Singularity`: what is singular about a posture.
+//! The class `Singularity`: what is singular about a configuration.
 
 use cylindroid::closure::Diagnosis;
 use pyo3::prelude::*;
@@ -7,30 +7,30 @@ use pyo3::types::PyDict;
 use crate::screws::{PyScrew, screw_list};
 use crate::table::{self, Table};
 
-/// What is singular about a posture, with the motions lost and gained as screws (world frame).
+/// What is singular about a configuration, with the motions lost and gained as screws (world frame).
 ///
 /// Attributes
 /// ----------
 /// regular : bool
 /// kinds : list of str
-///     'type-i' (the object loses motion), 'type-ii' (it gains motion that the drives do not
+///     'type-i' (the object loses motion), 'type-ii' (it gains motion that the actuators do not
 ///     hold), 'type-iii' (both), 'configuration-space' (the mechanism gains a motion), 'passive'
 ///     (passive joints gain one of their own).
 /// descriptions : list of str
 ///     The same in words.
 /// distances : dict
-///     How far the posture is from each kind: 0 at a singularity, at most 1 elsewhere, infinite
+///     How far the configuration is from each kind: 0 at a singularity, at most 1 elsewhere, infinite
 ///     where there is nothing to lose. Keys 'type_i', 'type_ii', 'configuration_space', 'passive'.
 /// generic : dict
-///     Counts of the mechanism where nothing is special about its posture.
+///     Counts of the mechanism where nothing is special about its configuration.
 /// compared_with : int
-///     Other closed postures that these come from.
+///     Other closed configurations that these come from.
 /// blocked : list of Screw
 ///     Wrenches held without torque, beyond the generic ones.
 /// lost, gained : list of Screw
 ///     Motions of the reference frame.
 /// redundant : list of str
-///     Driven joints that move with the reference frame at rest, beyond the generic ones.
+///     Actuated joints that move with the reference frame at rest, beyond the generic ones.
 /// idle : list of str
 ///     Passive coordinates that move alone, beyond the generic ones.
 /// separated : bool
@@ -122,7 +122,7 @@ impl PySingularity {
         self.inner.separated
     }
 
-    /// True for a singular posture.
+    /// True for a singular configuration.
     fn __bool__(&self) -> bool {
         !self.regular()
     }
@@ -132,8 +132,11 @@ table::shown!(PySingularity);
 
 impl PySingularity {
     fn table(&self) -> Table {
-        let mut table =
-            Table::new(if self.regular() { "Regular posture" } else { "Singular posture" });
+        let mut table = Table::new(if self.regular() {
+            "Regular configuration"
+        } else {
+            "Singular configuration"
+        });
         for description in self.descriptions() {
             table.row("kind", description);
         }

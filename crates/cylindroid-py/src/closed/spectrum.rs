@@ -103,7 +103,7 @@ impl PySpectrum {
 /// ----------
 /// efficiency : float
 /// joint : ndarray, (a,)
-///     Rates (torques) of the driven joints.
+///     Rates (torques) of the actuated joints.
 /// object : ndarray, (d,)
 ///     The twist (wrench) that goes with them.
 #[pyclass(frozen, name = "Direction", module = "cylindroid")]

@@ -63,7 +63,7 @@ pub(crate) struct PyMechanism {
     pub(crate) inner: Mechanism,
     /// For pickling.
     pub(crate) origin: Origin,
-    /// What `measures` has found of ordinary postures.
+    /// What `measures` has found of ordinary configurations.
     pub(crate) ordinary: Ordinary,
 }
 
@@ -74,14 +74,14 @@ pub(crate) enum Origin {
     Model(String),
     /// Text, its format and its path.
     Text { text: String, format: String, path: PathBuf },
-    /// Another mechanism, with other drives.
-    Driven { of: Box<PyMechanism>, names: Vec<String> },
+    /// Another mechanism, with other actuators.
+    Actuated { of: Box<PyMechanism>, names: Vec<String> },
 }
 
 /// Drives, reference, bits of the length.
 type About = (Vec<usize>, FrameId, u64);
 
-/// Counts of ordinary postures, which take up to tens of milliseconds to find and stay what they
+/// Counts of ordinary configurations, which take up to tens of milliseconds to find and stay what they
 /// are.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Ordinary(Arc<Mutex<HashMap<About, MobilityCounts>>>);
@@ -229,7 +229,7 @@ impl PyMechanism {
         self.inner.reach()
     }
 
-    /// The same mechanism driven by these joints and no others.
+    /// The same mechanism actuated by these joints and no others.
     ///
     /// Parameters
     /// ----------
@@ -249,7 +249,7 @@ impl PyMechanism {
     #[pyo3(signature = (names))]
     fn with_actuated(&self, names: Vec<String>) -> Result<Self> {
         let inner = self.inner.with_actuated(&names)?;
-        Ok(Self::new(inner, Origin::Driven { of: Box::new(self.clone()), names }))
+        Ok(Self::new(inner, Origin::Actuated { of: Box::new(self.clone()), names }))
     }
 
     fn __repr__(&self) -> String {
@@ -291,7 +291,7 @@ impl PyMechanism {
                 package.getattr(intern!(py, "parse"))?,
                 (text, format, path.as_os_str()).into_bound_py_any(py)?,
             ),
-            Origin::Driven { of, names } => (
+            Origin::Actuated { of, names } => (
                 py.get_type::<Self>().getattr(intern!(py, "with_actuated"))?,
                 ((**of).clone(), names).into_bound_py_any(py)?,
             ),

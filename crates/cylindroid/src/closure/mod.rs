@@ -1,7 +1,7 @@
 //! Closed chains, cooperating arms and grasps: how they can move and which forces they hold.
 //!
 //! Everything here starts from one matrix equation, `J_a q_a + J_p q_p = G^T u` ([`Constraint`]),
-//! whatever it was built from. Its solutions are the [`MotionSpace`]; what they leave of the driven
+//! whatever it was built from. Its solutions are the [`MotionSpace`]; what they leave of the actuated
 //! joints and the object is a linear [`Relation`] between `q_a` and `u`, in general neither a map
 //! one way nor the other. The forces that do no work on it are the complement, so statics needs
 //! no equations of its own.

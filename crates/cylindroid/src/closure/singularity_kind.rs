@@ -11,7 +11,7 @@ use std::fmt;
 pub enum SingularityKind {
     /// The object loses a motion (end-effector, serial).
     TypeI,
-    /// The object gains a motion that the driven joints do not control (actuator, parallel).
+    /// The object gains a motion that the actuated joints do not control (actuator, parallel).
     TypeII,
     /// Both at once.
     TypeIII,

@@ -106,7 +106,7 @@ impl Builder {
         self
     }
 
-    /// Names the frame that is driven when none is named.
+    /// Names the frame that is actuated when none is named.
     pub fn tool(&mut self, frame: &str) -> &mut Self {
         self.tool = Some(frame.to_owned());
         self
@@ -137,7 +137,7 @@ impl Builder {
     /// [`Error::Model`] for names given twice or unknown, a link with two parents, a cycle, more
     /// than one root, an axis without direction, limits that contradict each other or that no
     /// joint of the kind can keep (positions of spherical and free joints), a mimic joint
-    /// that follows itself, nothing, or a joint of several coordinates; for a closing joint or a
+    /// that follows itself, nothing, or a joint of several coordinates; for a loop joint or a
     /// contact on a link that does not exist or on one link alone.
     pub fn build(mut self) -> Result<Mechanism> {
         let links = self.index_links()?;
@@ -252,7 +252,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The closing joints and the contacts, their links as indices.
+    /// The loop joints and the contacts, their links as indices.
     fn closings(&self, links: &BTreeMap<String, usize>) -> Result<(Vec<LoopJoint>, Vec<Contact>)> {
         let place = |name: &str| {
             let name = name.to_owned();

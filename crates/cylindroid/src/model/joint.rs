@@ -150,6 +150,6 @@ pub struct Joint {
     pub mimic: Option<Mimic>,
     /// Its entries in `q`; those of the followed joint for a mimic joint.
     pub coordinates: Range<usize>,
-    /// True if a motor drives it. All joints of a serial robot are driven unless the file says no.
+    /// True if a motor actuators it. All joints of a serial robot are actuated unless the file says no.
     pub actuated: bool,
 }

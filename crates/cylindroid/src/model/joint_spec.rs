@@ -26,12 +26,12 @@ pub struct JointSpec {
     pub limits: Limits,
     /// The joint it follows, if it does.
     pub mimic: Option<Mimic>,
-    /// True if a motor drives it.
+    /// True if a motor actuators it.
     pub actuated: bool,
 }
 
 impl JointSpec {
-    /// A driven joint about (or along) z at the origin of the parent, without limits.
+    /// An actuated joint about (or along) z at the origin of the parent, without limits.
     #[must_use]
     pub fn new(name: &str, kind: JointKind, parent: &str, child: &str) -> Self {
         Self {

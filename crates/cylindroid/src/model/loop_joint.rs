@@ -1,6 +1,6 @@
 //! What makes a graph of a tree: joints that close loops, and contacts.
 //!
-//! A closing joint has no coordinate in `q`. It is at zero where its two frames coincide, and
+//! A loop joint has no coordinate in `q`. It is at zero where its two frames coincide, and
 //! holds what its kind holds ([`JointKind::constraint_wrenches`]) wherever the tree goes.
 
 use std::collections::BTreeMap;
@@ -32,11 +32,11 @@ pub struct LoopJoint {
     pub axis: Vec3,
     /// Limits as in the file; those of a joint with several coordinates hold for each.
     pub limits: Limits,
-    /// True if a motor drives it.
+    /// True if a motor actuators it.
     pub actuated: bool,
 }
 
-/// A closing joint as the builder takes it; links by name.
+/// A loop joint as the builder takes it; links by name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopJointSpec {
     /// Its name.
@@ -55,7 +55,7 @@ pub struct LoopJointSpec {
     pub axis: Vec3,
     /// Its limits.
     pub limits: Limits,
-    /// True if a motor drives it.
+    /// True if a motor actuators it.
     pub actuated: bool,
 }
 

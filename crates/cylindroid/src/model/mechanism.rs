@@ -49,7 +49,7 @@ pub struct Coordinate {
     pub kind: CoordinateKind,
     /// Its limits; those of mimic joints that follow it are counted in.
     pub limits: Limits,
-    /// True if a motor drives it.
+    /// True if a motor actuators it.
     pub actuated: bool,
 }
 
@@ -172,13 +172,13 @@ impl Mechanism {
         self.data.reference
     }
 
-    /// The coordinates that motors drive (indices into `q`). A driven joint that closes a loop has
+    /// The coordinates that motors drive (indices into `q`). An actuated joint that closes a loop has
     /// no coordinate; it is found in [`Mechanism::loops`].
     pub fn actuated(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.n()).filter(|&i| self.data.coordinates[i].actuated)
     }
 
-    /// The limits of the coordinate or closing joint of this name.
+    /// The limits of the coordinate or loop joint of this name.
     ///
     /// ```
     /// let five_bar = cylindroid::catalogue::load("five-bar")?;
@@ -194,8 +194,8 @@ impl Mechanism {
         coordinate.map(|c| c.limits).or_else(closing)
     }
 
-    /// The same mechanism driven by these joints and no others: names of joints of the tree, of
-    /// their coordinates, or of closing joints. Coordinates keep their order.
+    /// The same mechanism actuated by these joints and no others: names of joints of the tree, of
+    /// their coordinates, or of loop joints. Coordinates keep their order.
     ///
     /// # Errors
     /// [`Error::UnknownName`] with the nearest names; [`Error::InvalidOption`] for a joint that
@@ -295,7 +295,7 @@ impl Mechanism {
         id.frame_key == self.data.frame_key && id.index < self.data.frames.len()
     }
 
-    /// The frame that is driven when none is named: the file's tool, else the last leaf link.
+    /// The frame that is actuated when none is named: the file's tool, else the last leaf link.
     #[must_use]
     pub fn tool(&self) -> FrameId {
         self.data.tool

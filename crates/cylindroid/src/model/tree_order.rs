@@ -10,7 +10,7 @@ pub(super) struct TreeOrder {
     pub(super) joints: Vec<usize>,
 }
 
-/// The link whose frame is driven when none is named: from the root along the only branch that moves to
+/// The link whose frame is actuated when none is named: from the root along the only branch that moves to
 /// where none or several do (a hand with fingers), then to the last link fixed there. Where the
 /// root itself branches (humanoids, hands), the end of the branch with the most moving joints.
 pub(super) fn default_tool(

@@ -133,7 +133,7 @@ fn anthropomorphic() {
     assert!((tool(&m, &[q1, q2, q3]).translation - expected).norm() < 1e-15);
 }
 
-/// What a mechanism is: joints of the tree, loops, contacts, driven joints, and its dimension.
+/// What a mechanism is: joints of the tree, loops, contacts, actuated joints, and its dimension.
 fn shape(m: &Mechanism) -> (usize, usize, usize, usize, Dimension) {
     (m.n(), m.loops().len(), m.contacts().len(), m.actuated().count(), m.dimension())
 }
@@ -220,7 +220,7 @@ fn delta() {
     }
 }
 
-/// The grasp points of the reference set are the flanges of our panda in the same postures.
+/// The grasp points of the reference set are the flanges of our panda in the same configurations.
 #[test]
 fn two_arm() {
     let m = load("two-arm").unwrap();

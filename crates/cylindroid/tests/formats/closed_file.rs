@@ -10,7 +10,7 @@ use crate::fk::{assert_close, closed_at_home, frame};
 use crate::mechanism_file::{check, joint};
 use crate::{pointed_at, read_toml, refused};
 
-/// Closing joint and contacts coincide at home on both of their links.
+/// Loop joint and contacts coincide at home on both of their links.
 #[track_caller]
 fn read(text: &str) -> Mechanism {
     let m = read_toml(text).unwrap();
@@ -18,17 +18,17 @@ fn read(text: &str) -> Mechanism {
     m
 }
 
-fn bar(name: &str, between: [&str; 2], origin: [f64; 2], driven: bool) -> String {
-    joint(name, "revolute", between, &format!("origin = {origin:?}\nactuated = {driven}"))
+fn bar(name: &str, between: [&str; 2], origin: [f64; 2], actuated: bool) -> String {
+    joint(name, "revolute", between, &format!("origin = {origin:?}\nactuated = {actuated}"))
 }
 
-/// Five bars, driven where `driven` says.
-fn five_bar(driven: [bool; 5]) -> String {
+/// Five bars, actuated where `actuated` says.
+fn five_bar(actuated: [bool; 5]) -> String {
     let links = ["ground", "a", "b", "c", "d", "ground"];
     let origins = [[0.0, 0.0], [0.0, 2.0], [1.0, 2.0], [2.0, 1.0], [2.0, 0.0]];
     let joints = (0..5).map(|i| {
         let name = format!("q{}", i + 1);
-        bar(&name, [links[i], links[i + 1]], origins[i], driven[i])
+        bar(&name, [links[i], links[i + 1]], origins[i], actuated[i])
     });
     format!("dimension = 2\nreference = \"b\"\n{}", joints.collect::<String>())
 }
@@ -71,17 +71,17 @@ fn the_reference_point_is_the_first_joint_that_names_the_link() {
     assert_eq!(frame(&m, m.home(), "reference").translation, Vec3::new(1.0, 2.0, 0.0));
 }
 
-/// As many driven joints as possible are in the tree; the rest goes by the file.
+/// As many actuated joints as possible are in the tree; the rest goes by the file.
 #[test]
 fn spanning_trees_hold_the_driven_joints() {
     for bits in 0..32_u32 {
-        let driven: [bool; 5] = std::array::from_fn(|i| bits >> i & 1 == 1);
-        let m = read(&five_bar(driven));
-        let count = driven.iter().filter(|d| **d).count();
+        let actuated: [bool; 5] = std::array::from_fn(|i| bits >> i & 1 == 1);
+        let m = read(&five_bar(actuated));
+        let count = actuated.iter().filter(|d| **d).count();
         assert_eq!((m.n(), m.loops().len()), (4, 1));
-        assert_eq!(m.actuated().count(), count.min(4), "{driven:?}");
-        let closing = (0..5).rev().find(|&i| !driven[i]).unwrap_or(4);
-        assert_eq!(m.loops()[0].name, format!("q{}", closing + 1), "{driven:?}");
+        assert_eq!(m.actuated().count(), count.min(4), "{actuated:?}");
+        let closing = (0..5).rev().find(|&i| !actuated[i]).unwrap_or(4);
+        assert_eq!(m.loops()[0].name, format!("q{}", closing + 1), "{actuated:?}");
         assert_eq!(m.loops()[0].actuated, count == 5);
     }
 }

@@ -10,7 +10,7 @@ pub(crate) fn frame(m: &Mechanism, q: &[f64], name: &str) -> Pose {
     link(m, q, frame.link) * frame.link_from_frame
 }
 
-/// Closing joints and contacts coincide at home: both links put their frame at the same place.
+/// Loop joints and contacts coincide at home: both links put their frame at the same place.
 #[track_caller]
 pub(crate) fn closed_at_home(m: &Mechanism, tolerance: f64) {
     let on = |l: usize| link(m, m.home(), l);

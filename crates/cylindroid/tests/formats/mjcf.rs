@@ -170,7 +170,7 @@ fn grippers_with_loops() {
         (mimic.joint.as_str(), mimic.multiplier, mimic.offset),
         ("right_driver_joint", 1.0, 0.0)
     );
-    // The actuator pulls a tendon: no joint is driven alone, and the report says so.
+    // The actuator pulls a tendon: no joint is actuated alone, and the report says so.
     assert_eq!(m.actuated().count(), 0);
     assert!(report(&m).contains("<general> at a tendon"), "{}", report(&m));
 }
@@ -249,9 +249,9 @@ fn equality_constraints_are_loops_and_couplings() {
 #[test]
 fn actuators_say_who_is_driven_and_how_hard() {
     let m = read(ZOO);
-    let driven: Vec<&str> = m.actuated().map(|i| m.coordinates()[i].name.as_str()).collect();
-    // A motor at a joint that follows drives the one that leads.
-    assert_eq!(driven, ["lift", "turn"]);
+    let actuated: Vec<&str> = m.actuated().map(|i| m.coordinates()[i].name.as_str()).collect();
+    // A motor at a joint that follows actuators the one that leads.
+    assert_eq!(actuated, ["lift", "turn"]);
     assert_eq!(m.coordinates()[0].limits.effort, 30.0);
     let without = world("<body><joint name='a'/><body><joint name='b' type='ball'/></body></body>");
     assert_eq!(read(&without).actuated().collect::<Vec<_>>(), [0]);

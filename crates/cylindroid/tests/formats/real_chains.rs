@@ -28,7 +28,7 @@ fn at_home(m: &Mechanism) -> ClosedChain {
     ClosedChain::of(&m.state(m.home()).unwrap(), None, Some(1.0)).unwrap()
 }
 
-/// What the links say, taken one by one, the loops say too. Each leg of Cassie has five driven
+/// What the links say, taken one by one, the loops say too. Each leg of Cassie has five actuated
 /// joints (roll, yaw, pitch, knee, foot) and two loops: the Achilles rod with its spring, one motion
 /// beside the knee's, and the linkage of the foot.
 ///
@@ -37,7 +37,7 @@ fn at_home(m: &Mechanism) -> ClosedChain {
 /// - `cassie_reduced` and `cassie_simple` draw the rod of the foot turned by 0.1 rad. Its hinge is
 ///   not parallel to the others, and three hinges and a ball that are not in a plane do not move:
 ///   the feet stand still, 13 - 2.
-/// - `cassie`: the motors of the ten driven joints are links of their own, tied to them by
+/// - `cassie`: the motors of the ten actuated joints are links of their own, tied to them by
 ///   gearboxes, a kind of joint that is not modelled and named in the report: ten motions more. The
 ///   spring of the knee is a slide that closes a loop of two parallel hinges and blocks the shin at
 ///   the knee: 2 x (6 + 5 - 1). Were the slide square to the line between these hinges, the loop would

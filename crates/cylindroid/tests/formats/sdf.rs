@@ -87,8 +87,8 @@ fn joints_close_loops() {
     let limits = find(&m, "turn").limits;
     assert_eq!((limits.lower, limits.upper, limits.effort), (-1.0, 2.0, 30.0));
     assert_eq!(limits.velocity, f64::INFINITY);
-    let driven: Vec<&str> = m.actuated().map(|i| m.coordinates()[i].name.as_str()).collect();
-    assert_eq!(driven, ["turn", "heel"]);
+    let actuated: Vec<&str> = m.actuated().map(|i| m.coordinates()[i].name.as_str()).collect();
+    assert_eq!(actuated, ["turn", "heel"]);
     let said = report(&m);
     for what in [
         "gearbox joint (geared)",

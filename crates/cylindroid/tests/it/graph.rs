@@ -1,4 +1,4 @@
-//! The graph beyond the tree: closing joints, contacts, what they hold, who is driven.
+//! The graph beyond the tree: loop joints, contacts, what they hold, who is actuated.
 
 use cylindroid::model::{
     ContactKind, ContactSpec, Dimension, Inclusion, JointKind, JointSpec, LoopJointSpec, Mimic,

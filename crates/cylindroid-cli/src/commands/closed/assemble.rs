@@ -73,7 +73,7 @@ pub(crate) fn run(
     Ok(answer(found.closed))
 }
 
-/// The places of coordinates by their names, by those of their joints, or `driven`.
+/// The places of coordinates by their names, by those of their joints, or `actuated`.
 fn held(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>, Error> {
     let coordinates = mechanism.coordinates();
     let mut held: Vec<usize> = Vec::new();
@@ -83,10 +83,10 @@ fn held(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>, Error> {
             vec![i]
         } else if let Some(joint) = joint.filter(|j| !j.coordinates.is_empty()) {
             joint.coordinates.clone().collect()
-        } else if name == DRIVEN {
+        } else if name == ACTUATED {
             mechanism.actuated().collect()
         } else {
-            let known = coordinates.iter().map(|c| c.name.as_str()).chain([DRIVEN]);
+            let known = coordinates.iter().map(|c| c.name.as_str()).chain([ACTUATED]);
             return Err(Error::unknown("coordinate", name, known));
         };
         held.extend(places);
@@ -96,8 +96,8 @@ fn held(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>, Error> {
     Ok(held)
 }
 
-/// All that are driven, where a name is expected.
-const DRIVEN: &str = "driven";
+/// All that are actuated, where a name is expected.
+const ACTUATED: &str = "actuated";
 
 /// The way of `--to`: the named coordinates to their values, those of `--hold` at rest.
 fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<continuation::Goal, Error> {

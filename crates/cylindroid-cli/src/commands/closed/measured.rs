@@ -132,7 +132,7 @@ pub(super) fn metrics(
     Ok(metrics)
 }
 
-/// What drives are limited in.
+/// What actuators are limited in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     Rate,
@@ -140,7 +140,7 @@ pub(super) enum Quantity {
 }
 
 impl Quantity {
-    /// The limits of the driven joints: those of the command line, else the model's; in words
+    /// The limits of the actuated joints: those of the command line, else the model's; in words
     /// what is missing.
     pub(super) fn limits(
         self,
@@ -163,7 +163,7 @@ impl Quantity {
     }
 }
 
-/// The limits of the model, or the first driven joint without one.
+/// The limits of the model, or the first actuated joint without one.
 fn of_model(posed: &Posed, quantity: Quantity) -> std::result::Result<Vec<Interval>, String> {
     let most = |l: Limits| match quantity {
         Quantity::Rate => l.velocity,

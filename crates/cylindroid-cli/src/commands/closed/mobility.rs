@@ -22,7 +22,7 @@ struct MobilityJson<'a> {
     finite_dof: Option<usize>,
     finite: FiniteJson,
     singularity: SingularityJson,
-    /// Of the relation between driven joints and reference frame, as the next four.
+    /// Of the relation between actuated joints and reference frame, as the next four.
     redundancy: usize,
     indeterminacy: usize,
     coordinate: usize,
@@ -33,10 +33,10 @@ struct MobilityJson<'a> {
     gruebler_kutzbach: i64,
     /// Smallest singular value kept over the largest dropped; null where nothing was dropped.
     rank_gap: f64,
-    /// A row of each basis is a motion: driven, passive, then components of the reference frame.
+    /// A row of each basis is a motion: actuated, passive, then components of the reference frame.
     dof_basis: Vec<Vec<f64>>,
     idle_basis: Vec<Vec<f64>>,
-    /// Torques of the driven joints in balance.
+    /// Torques of the actuated joints in balance.
     internal_basis: Vec<Vec<f64>>,
     /// Wrenches (force first) held without torques.
     zero_torque_basis: Vec<Vec<f64>>,
@@ -51,9 +51,9 @@ struct JointJson<'a> {
     moves: bool,
     /// Largest share in a motion of unit length [-].
     share: f64,
-    /// Can move with all driven joints at rest.
+    /// Can move with all actuated joints at rest.
     free: bool,
-    /// Can move with the driven joints and the reference frame at rest.
+    /// Can move with the actuated joints and the reference frame at rest.
     idle: bool,
 }
 
@@ -155,7 +155,7 @@ fn print(
     Ok(())
 }
 
-/// What is counted, here and in ordinary postures.
+/// What is counted, here and in ordinary configurations.
 fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow::Result<()> {
     let r = &m.relation;
     let rows: [(&str, usize, Option<usize>, &str); 7] = [
@@ -163,26 +163,26 @@ fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow
             "coordinate",
             r.coordinate,
             None,
-            "motions of the reference frame that the driven joints set",
+            "motions of the reference frame that the actuated joints set",
         ),
         (
             "redundancy",
             r.redundancy,
             Some(generic.redundancy),
-            "motions of driven joints that leave the reference frame at rest",
+            "motions of actuated joints that leave the reference frame at rest",
         ),
         (
             "indeterminacy",
             r.indeterminacy,
             Some(generic.indeterminacy),
-            "motions of the reference frame with driven joints at rest",
+            "motions of the reference frame with actuated joints at rest",
         ),
         ("idle", m.idle.dimension(), Some(generic.idle), "motions of passive joints alone"),
         (
             "internal",
             m.internal.dimension(),
             None,
-            "torques of driven joints that balance each other",
+            "torques of actuated joints that balance each other",
         ),
         (
             "zero_torque",
@@ -210,7 +210,7 @@ fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow
     Ok(output::table(out, &columns, rows)?)
 }
 
-/// Which joints move, in all motions and with the drives at rest.
+/// Which joints move, in all motions and with the actuators at rest.
 fn joints(posed: &Posed, mobility: &[JointMobility]) -> [(&'static str, String); 4] {
     let chain = &posed.chain;
     let names: Vec<&String> = chain.actuated.iter().chain(&chain.passive).collect();
@@ -226,7 +226,7 @@ fn joints(posed: &Posed, mobility: &[JointMobility]) -> [(&'static str, String);
         ("joints that move", if all { format!("all {}", names.len()) } else { list(&moving) }),
         ("locked by geometry", some(those(&|j| !j.moves))),
         (
-            "with drives at rest",
+            "with actuators at rest",
             if with_drives_at_rest.is_empty() {
                 "no joint moves".to_owned()
             } else if with_drives_at_rest.len() == chain.passive.len() {

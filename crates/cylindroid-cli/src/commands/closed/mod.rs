@@ -54,7 +54,7 @@ impl Posed {
         &self.mechanism.frame_of(self.chain.reference).name
     }
 
-    /// Names of the closing joints, then of the contacts.
+    /// Names of the loop joints, then of the contacts.
     fn closings(&self) -> Vec<&str> {
         let loops = self.mechanism.loops().iter().map(|l| l.name.as_str());
         loops.chain(self.mechanism.contacts().iter().map(|c| c.name.as_str())).collect()
@@ -72,9 +72,9 @@ impl Posed {
         vec![
             ("model", self.mechanism.name().to_owned()),
             ("reference frame", self.frame().to_owned()),
-            ("q [rad or m]", posture(&self.q)),
+            ("q [rad or m]", q_in_words(&self.q)),
             ("note", output::outside_note(&output::outside_limits(&self.mechanism, &self.q))),
-            ("driven", list(&self.chain.actuated)),
+            ("actuated", list(&self.chain.actuated)),
             ("passive", list(&self.chain.passive)),
             (
                 "loops are open by",
@@ -93,7 +93,7 @@ impl Posed {
 }
 
 /// In full where there is something to read.
-fn posture(q: &[f64]) -> String {
+fn q_in_words(q: &[f64]) -> String {
     if q.len() > 1 && q.iter().all(|x| *x == 0.0) {
         return format!("all {} at zero", q.len());
     }

@@ -1,4 +1,4 @@
-//! What `mobility` says about singular postures and finite motion.
+//! What `mobility` says about singular configurations and finite motion.
 
 use std::io::Write;
 
@@ -19,14 +19,14 @@ pub(super) struct SingularityJson {
     kinds: Vec<String>,
     distances: DistancesJson,
     generic: CountsJson,
-    /// Other closed postures that the generic counts come from.
+    /// Other closed configurations that the generic counts come from.
     compared_with: usize,
     /// Wrenches held without torque, as screws; those beyond the generic ones.
     blocked: Vec<ScrewJson>,
     /// Motions of the reference frame.
     lost: Vec<ScrewJson>,
     gained: Vec<ScrewJson>,
-    /// Driven joints that move with the reference frame at rest, beyond the generic ones.
+    /// Actuated joints that move with the reference frame at rest, beyond the generic ones.
     redundant: Vec<String>,
     /// Passive coordinates that move alone, beyond the generic ones.
     idle: Vec<String>,
@@ -168,9 +168,9 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
         (
             "compared with",
             match others {
-                0 => "nothing: no other posture closes".to_owned(),
-                1 => "only one other posture of the mechanism".to_owned(),
-                _ => format!("{others} other postures of the mechanism"),
+                0 => "nothing: no other configuration closes".to_owned(),
+                1 => "only one other configuration of the mechanism".to_owned(),
+                _ => format!("{others} other configurations of the mechanism"),
             },
         ),
     ];
@@ -185,7 +185,7 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
     named("gained", &d.gained, &motion_in_words);
     let of = |names: &[String]| if names.is_empty() { String::new() } else { list(names) };
     if found.kinds.contains(&SingularityKind::TypeI) || !d.blocked.is_empty() {
-        lines.push(("drives without effect", of(&d.redundant)));
+        lines.push(("actuators without effect", of(&d.redundant)));
     }
     lines.push(("gaining idle motion", of(&d.idle)));
     if !d.separated {
@@ -217,7 +217,7 @@ fn point(screw: &Screw, planar: bool) -> String {
     coordinates(&[p.x, p.y, p.z], planar)
 }
 
-/// Rounding, and what spaces of postures beside this one are right to, shown as zero.
+/// Rounding, and what spaces of configurations beside this one are right to, shown as zero.
 fn coordinates(all: &[f64; 3], planar: bool) -> String {
     let clean = all.map(|x| if x.abs() < 1e-9 { 0.0 } else { x });
     format!("({})", output::entries(if planar { &clean[..2] } else { &clean }))

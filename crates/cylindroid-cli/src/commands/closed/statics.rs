@@ -22,7 +22,7 @@ struct StaticsJson<'a> {
     /// The components of wrenches.
     components: &'static [&'static str],
     wrench: &'a [f64],
-    /// Of the driven joints, the least in size [N m or N].
+    /// Of the actuated joints, the least in size [N m or N].
     torques: Vec<f64>,
     /// The part of the wrench that the structure holds without torques.
     structural: Vec<f64>,
@@ -48,7 +48,7 @@ struct InternalJson {
 
 #[derive(Debug, Serialize)]
 struct TransmittedWrenchJson {
-    /// Closing joint or contact.
+    /// Loop joint or contact.
     name: String,
     /// Where it is [m].
     point: [f64; 3],
@@ -116,7 +116,7 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
     let compliance = match &args.compliance {
         None => None,
         Some(given) => {
-            given.check("closing joint or contact", &closings)?;
+            given.check("loop joint or contact", &closings)?;
             let of = |name: &&str| {
                 given.of(name).ok_or_else(|| Error::InvalidOption {
                     option: "--compliance",
@@ -182,7 +182,7 @@ fn print(out: &mut dyn Write, posed: &Posed, report: &StaticsJson<'_>) -> anyhow
     rows.extend(report.zero_torque_basis.iter().map(|w| row("zero-torque wrench (basis)", w)));
     output::table(out, &columns, rows)?;
     writeln!(out)?;
-    let mut columns = vec![("driven joint", Align::Left), ("torque [N m or N]", Align::Right)];
+    let mut columns = vec![("actuated joint", Align::Left), ("torque [N m or N]", Align::Right)];
     let names: Vec<String> = (1..=report.internal.len()).map(|i| format!("internal {i}")).collect();
     columns.extend(names.iter().map(|n| (n.as_str(), Align::Right)));
     let joints = posed.chain.actuated.iter().enumerate().map(|(i, name)| {

@@ -1,17 +1,17 @@
 //! The constraint of a mechanism: from its loops, contacts and reference link to the matrices.
 //!
-//! Formula  for every closing joint and contact between links a and b, each held wrench h (a row):
-//!          h . (J_b - J_a) q = 0, both bodies seen from the world; for a closing joint of one
+//! Formula  for every loop joint and contact between links a and b, each held wrench h (a row):
+//!          h . (J_b - J_a) q = 0, both bodies seen from the world; for a loop joint of one
 //!          coordinate s also r . (J_b - J_a) q - s = 0, r the wrench that measures its rate;
 //!          J_ref q - u = 0: the reference link carries the object's twist u
-//! Shapes   t = held + measured + d rows; driven and passive coordinates as columns; d = 3 in the
+//! Shapes   t = held + measured + d rows; actuated and passive coordinates as columns; d = 3 in the
 //!          plane (vx, vy, wz), else 6
 //! Units    lengths over the characteristic length for every rank decision
 //! Frame    u and its wrench: at the reference frame's origin, world axes
 //! Valid    any mechanism; for a tree it is u = J q. The pose is taken as it is: rows are those of
 //!          the two frames of a joint where they should coincide, see [`ClosedChain::closure_error`]
 //! Why so   a spanning tree and rows for what closes it needs no contact forces of tree joints; the
-//!          relation between driven joints and object is the same wherever the loops are cut, and
+//!          relation between actuated joints and object is the same wherever the loops are cut, and
 //!          so is the hyperstatic degree
 //! Source   Bicchi & Prattichizzo 1998, eq. 2, with several objects as passive columns
 //! Checked  tests/it/closure/graph.rs
@@ -29,7 +29,7 @@ use crate::model::{FrameId, LoopJoint, Mechanism};
 pub struct ClosedChain {
     /// The matrices.
     pub constraint: Constraint,
-    /// Names of the driven coordinates, in the order of the columns.
+    /// Names of the actuated coordinates, in the order of the columns.
     pub actuated: Vec<String>,
     /// Names of the passive coordinates.
     pub passive: Vec<String>,
@@ -40,7 +40,7 @@ pub struct ClosedChain {
     /// How far the loops are open: the largest distance (m) and angle (rad) by which what should
     /// be held is not.
     pub closure_error: LoopClosureError,
-    /// Of every coordinate of the tree, then of closing joints: whether it is driven, and its
+    /// Of every coordinate of the tree, then of loop joints: whether it is actuated, and its
     /// column among those of its sort.
     places: Vec<(bool, usize)>,
 }
@@ -50,7 +50,7 @@ impl ClosedChain {
     /// characteristic length or another (m).
     ///
     /// # Errors
-    /// A frame of another mechanism, a length that is not positive, a driven closing joint of
+    /// A frame of another mechanism, a length that is not positive, an actuated loop joint of
     /// several coordinates.
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let mechanism = state.mechanism();
@@ -66,8 +66,8 @@ impl ClosedChain {
             grasp: Matrix::zeros(d, held + d),
         };
         let mut add = |i: usize, coordinate: usize, rate: f64| {
-            let (driven, j) = columns.places[coordinate];
-            let block = if driven { &mut blocks.actuated } else { &mut blocks.passive };
+            let (actuated, j) = columns.places[coordinate];
+            let block = if actuated { &mut blocks.actuated } else { &mut blocks.passive };
             block[(i, j)] += rate;
         };
         for_each_rate(state, &rows, &mut add);
@@ -107,22 +107,22 @@ impl ClosedChain {
         })
     }
 
-    /// The column of a coordinate of the mechanism (place in `q`) among those of driven joints and,
+    /// The column of a coordinate of the mechanism (place in `q`) among those of actuated joints and,
     /// after them, of passive ones.
     pub(crate) fn column(&self, coordinate: usize) -> usize {
-        let (driven, place) = self.places[coordinate];
-        if driven { place } else { self.actuated.len() + place }
+        let (actuated, place) = self.places[coordinate];
+        if actuated { place } else { self.actuated.len() + place }
     }
 }
 
-/// The coordinates of the tree, then those of closing joints, as driven and passive columns.
+/// The coordinates of the tree, then those of loop joints, as actuated and passive columns.
 #[derive(Default)]
 pub(crate) struct Columns {
     pub(crate) actuated: Vec<String>,
     passive: Vec<String>,
     pub(crate) actuated_units: Vec<Unit>,
     pub(crate) passive_units: Vec<Unit>,
-    /// Of every coordinate: whether it is driven, and its column among those of its sort.
+    /// Of every coordinate: whether it is actuated, and its column among those of its sort.
     pub(crate) places: Vec<(bool, usize)>,
 }
 
@@ -130,13 +130,13 @@ impl Columns {
     pub(crate) fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {
         let mut columns = Self::default();
         columns.places.reserve(mechanism.n() + loops.len());
-        let mut add = |name: &String, unit: Unit, driven: bool| {
-            let (names, units) = if driven {
+        let mut add = |name: &String, unit: Unit, actuated: bool| {
+            let (names, units) = if actuated {
                 (&mut columns.actuated, &mut columns.actuated_units)
             } else {
                 (&mut columns.passive, &mut columns.passive_units)
             };
-            columns.places.push((driven, names.len()));
+            columns.places.push((actuated, names.len()));
             names.push(name.clone());
             units.push(unit);
         };

@@ -2,10 +2,10 @@
 //!
 //! Formula  closed_chain.rs, scaled: a row for each held wrench, then one for each component of the
 //!          reference, as `J_ref` without its `-1`
-//! Shapes   q: n numbers of lanes; rows of q_a + q_p columns, driven joints first
+//! Shapes   q: n numbers of lanes; rows of q_a + q_p columns, actuated joints first
 //! Units    none: lengths over the characteristic length. Gaps: m, rad
 //! Frame    u at the reference frame's origin, world axes
-//! Valid    as [`crate::closure::ClosedChain`], but for lanes in which the axes of a closing universal joint
+//! Valid    as [`crate::closure::ClosedChain`], but for lanes in which the axes of a universal loop joint
 //!          nearly line up: their rows are not to be used
 //! Why so   what does not change with the configuration is looked up once: which joints open which
 //!          pair, and in which column they stand
@@ -31,7 +31,7 @@ pub(crate) struct BatchedConstraintPlan {
     columns_of: Vec<JacobianColumn>,
     components: &'static [usize],
     length: f64,
-    /// Of the driven columns, and of the components of the reference.
+    /// Of the actuated columns, and of the components of the reference.
     pub(crate) actuated_scale: Vec<f64>,
     pub(crate) object_scale: Vec<f64>,
     passive: usize,
@@ -57,7 +57,7 @@ struct JacobianColumn {
     rate: f64,
 }
 
-/// A closing joint or contact.
+/// A loop joint or contact.
 #[derive(Debug, Clone)]
 struct BatchedPair {
     ends: [AttachedFrame; 2],
@@ -92,9 +92,10 @@ impl BatchedConstraintPlan {
     /// Of a mechanism, its reference frame and a characteristic length.
     pub(crate) fn of(mechanism: &Mechanism, reference: FrameId, length: f64) -> Result<Self> {
         let columns = Columns::of(mechanism, &constraint_rows::joints_with_rate(mechanism));
-        let driven = columns.actuated.len();
-        let column =
-            |(is_driven, place): (bool, usize)| if is_driven { place } else { driven + place };
+        let actuated = columns.actuated.len();
+        let column = |(is_actuated, place): (bool, usize)| {
+            if is_actuated { place } else { actuated + place }
+        };
         let n = mechanism.n();
         let size = |c: usize| Unit::of(mechanism.coordinates()[c].kind).size(length);
         let places: Vec<(usize, f64)> =
@@ -149,7 +150,7 @@ impl BatchedConstraintPlan {
         self.components.len()
     }
 
-    /// Number of driven columns.
+    /// Number of actuated columns.
     pub(crate) fn actuated(&self) -> usize {
         self.actuated_scale.len()
     }

@@ -1,7 +1,7 @@
-//! The rows of closing joints and contacts: what they hold, where they are at a state.
+//! The rows of loop joints and contacts: what they hold, where they are at a state.
 //!
 //! Formula  closed_chain.rs: h . (J_b - J_a) q for every held wrench h, and its residual
-//! Shapes   a row for each held wrench, and one for the rate of a closing joint of one coordinate
+//! Shapes   a row for each held wrench, and one for the rate of a loop joint of one coordinate
 //! Units    m, rad
 //! Frame    world, wrenches at the world's origin
 //! Checked  tests/it/closure/graph.rs
@@ -17,19 +17,19 @@ use crate::spatial::{Pose, Vec3, Wrench};
 pub(crate) struct ConstraintRow {
     /// What is measured of the motion of `b` relative to `a`.
     pub(crate) wrench: Wrench,
-    /// Place of its joint or contact: closing joints, then contacts.
+    /// Place of its joint or contact: loop joints, then contacts.
     pub(crate) pair: usize,
     a: usize,
     b: usize,
     pub(crate) unit: Unit,
-    /// Place among the coordinates of closing joints where it is their rate.
+    /// Place among the coordinates of loop joints where it is their rate.
     pub(crate) rate_of: Option<usize>,
     /// By how much what should be held is not (m or rad); its rate is `wrench . (J_b - J_a) q`
     /// where it is zero.
     pub(crate) residual: f64,
 }
 
-/// What the rate of a closing joint of one coordinate measures.
+/// What the rate of a loop joint of one coordinate measures.
 pub(crate) fn rate_unit(joint: &LoopJoint) -> Unit {
     if joint.kind == JointKind::Prismatic { Unit::Length } else { Unit::Angle }
 }
@@ -68,7 +68,7 @@ impl ConstraintRow {
     }
 }
 
-/// What a closing joint or contact holds, wherever it is.
+/// What a loop joint or contact holds, wherever it is.
 pub(crate) struct PairConstraints {
     /// Of its two links.
     pub(crate) ends: [usize; 2],
@@ -78,11 +78,11 @@ pub(crate) struct PairConstraints {
     pub(crate) wrenches: Vec<Wrench>,
     /// The axes of a universal joint, on its first and its second link.
     pub(crate) crossed: Option<[Vec3; 2]>,
-    /// What measures the rate of a closing joint of one coordinate.
+    /// What measures the rate of a loop joint of one coordinate.
     pub(crate) measure: Option<Wrench>,
 }
 
-/// What closing joints, then contacts hold.
+/// What loop joints, then contacts hold.
 pub(crate) fn pair_constraints(
     mechanism: &Mechanism,
 ) -> impl Iterator<Item = Result<PairConstraints>> {
@@ -94,7 +94,7 @@ pub(crate) fn pair_constraints(
                 model: mechanism.name().to_owned(),
                 culprit: joint.name.clone(),
                 message: format!(
-                    "joint '{}' closes a loop, is {} and driven; a motor needs a joint of one \
+                    "joint '{}' closes a loop, is {} and actuated; a motor needs a joint of one \
                      coordinate: drive another, or write it as joints in a row",
                     joint.name,
                     joint.kind.name()
@@ -127,7 +127,7 @@ pub(crate) fn pair_constraints(
     loops.chain(contacts)
 }
 
-/// What measures the rate of a closing joint of one coordinate.
+/// What measures the rate of a loop joint of one coordinate.
 fn measure(joint: &LoopJoint) -> Option<Wrench> {
     match joint.kind {
         JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
@@ -138,12 +138,12 @@ fn measure(joint: &LoopJoint) -> Option<Wrench> {
     }
 }
 
-/// The closing joints that have a rate.
+/// The loop joints that have a rate.
 pub(crate) fn joints_with_rate(mechanism: &Mechanism) -> Vec<&LoopJoint> {
     mechanism.loops().iter().filter(|joint| measure(joint).is_some()).collect()
 }
 
-/// RowSelection of all closing joints and contacts, the closing joints that have a rate, and the closure_error.
+/// RowSelection of all loop joints and contacts, the loop joints that have a rate, and the closure_error.
 pub(crate) fn constraint_rows(
     state: &State,
 ) -> Result<(Vec<ConstraintRow>, Vec<&LoopJoint>, LoopClosureError)> {
@@ -169,7 +169,7 @@ pub(crate) fn constraint_rows(
     Ok((rows, joints_with_rate(mechanism), closure_error))
 }
 
-/// The two frames of a closing joint or contact.
+/// The two frames of a loop joint or contact.
 pub(crate) struct KinematicPair {
     place: usize,
     ends: [usize; 2],
@@ -265,7 +265,7 @@ impl LoopClosureError {
     /// Of the loops and contacts of `state`.
     ///
     /// # Errors
-    /// A driven closing joint of several coordinates.
+    /// An actuated loop joint of several coordinates.
     pub fn of(state: &State) -> Result<Self> {
         Ok(constraint_rows(state)?.2)
     }

@@ -46,7 +46,7 @@ impl Unit {
 /// The three matrices of a constraint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstraintBlocks {
-    /// `J_a`, t x q_a: velocities at the contacts by the driven joints.
+    /// `J_a`, t x q_a: velocities at the contacts by the actuated joints.
     pub actuated: Matrix,
     /// `J_p`, t x q_p: by the passive joints and by objects other than the reference.
     pub passive: Matrix,
@@ -59,7 +59,7 @@ pub struct ConstraintBlocks {
 pub struct Units {
     /// Of the t rows.
     pub rows: Vec<Unit>,
-    /// Of the driven joints.
+    /// Of the actuated joints.
     pub actuated: Vec<Unit>,
     /// Of the passive columns.
     pub passive: Vec<Unit>,
@@ -74,7 +74,7 @@ pub struct Constraint {
     length: f64,
     /// D_r.
     row_scale: Vec<f64>,
-    /// D_c of driven joints, passive columns and object.
+    /// D_c of actuated joints, passive columns and object.
     column_scale: Vec<f64>,
 }
 
@@ -128,7 +128,7 @@ impl Constraint {
         Ok(self)
     }
 
-    /// A serial arm: `u = J q`, all joints driven.
+    /// A serial arm: `u = J q`, all joints actuated.
     ///
     /// # Errors
     /// NaN or infinity.
@@ -152,7 +152,7 @@ impl Constraint {
         self.length
     }
 
-    /// Number of driven joints.
+    /// Number of actuated joints.
     #[must_use]
     pub fn actuated(&self) -> usize {
         self.blocks.actuated.cols()
@@ -207,9 +207,9 @@ impl Constraint {
         let mut scaled = Matrix::zeros(self.column_scale.len(), t);
         for (i, r) in self.row_scale.iter().enumerate() {
             let column = scaled.column_mut(i);
-            let (driven, others) = column.split_at_mut(a);
+            let (actuated, others) = column.split_at_mut(a);
             let (passive, object) = others.split_at_mut(p);
-            for (j, x) in driven.iter_mut().enumerate() {
+            for (j, x) in actuated.iter_mut().enumerate() {
                 *x = self.blocks.actuated[(i, j)];
             }
             for (j, x) in passive.iter_mut().enumerate() {

@@ -1,17 +1,17 @@
-//! ActuationMap: what the driven joints of a closed chain can do, and what all other joints do with them.
+//! ActuationMap: what the actuated joints of a closed chain can do, and what all other joints do with them.
 //!
-//! Formula  C s = 0 for the rates s of all joints: held rows of loops and contacts, and for driven
-//!          closing joints the rows that measure their rate; ker C = [X c; Y s] Z^T, driven rows
+//! Formula  C s = 0 for the rates s of all joints: held rows of loops and contacts, and for actuated
+//!          loop joints the rows that measure their rate; ker C = [X c; Y s] Z^T, actuated rows
 //!          above passive ones. Directions with c = 0 are left to themselves, the others are
-//!          steered: s = M y + s_0, driven rates = D y with |D y|_W = |y|;
+//!          steered: s = M y + s_0, actuated rates = D y with |D y|_W = |y|;
 //!          s_0 = -C^+ residual is the way to where the loops are closed
-//! Shapes   C: t x (n + e), n coordinates of the tree, e driven closing joints; M: (n + e) x p;
-//!          D: a x p, orthonormal in the weighted rates of the a driven joints
+//! Shapes   C: t x (n + e), n coordinates of the tree, e actuated loop joints; M: (n + e) x p;
+//!          D: a x p, orthonormal in the weighted rates of the an actuated joints
 //! Units    lengths over the reach for every rank decision; rates in rad/s and m/s outside
 //! Valid    any mechanism; for a tree without passive joints M is W^(-1/2). Of the motions that
-//!          have the same driven rates it is the one in which passive joints move least (scaled)
+//!          have the same actuated rates it is the one in which passive joints move least (scaled)
 //! Why so   in y the loops are kept whatever y is, and the least y is the least weighted effort of
-//!          the drives, passive joints not counted
+//!          the actuators, passive joints not counted
 //! Source   Bicchi & Prattichizzo 1998, eqs. 2 to 4, in coordinates of the spanning tree
 //! Checked  tests/it/closure/actuation_map.rs
 
@@ -26,15 +26,15 @@ use crate::linalg::{ColumnSpace, CsDecomposition, Matrix, Svd, Threshold};
 use crate::model::{LoopJoint, Mechanism};
 use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 
-/// The motions of a closed chain by what its drives do with them.
+/// The motions of a closed chain by what its actuators do with them.
 #[derive(Debug, Clone)]
 pub struct ActuationMap {
-    /// M: what all joints do for each y, the n coordinates and then the driven closing joints.
+    /// M: what all joints do for each y, the n coordinates and then the actuated loop joints.
     pub motions: Matrix,
-    /// Motions with the driven joints at rest, a column each, of length one (scaled).
+    /// Motions with the actuated joints at rest, a column each, of length one (scaled).
     pub left: Matrix,
     /// The steered motions one by one, of length one (scaled): how much of each belongs to the
-    /// driven joints, rising. 0 would be a motion that they do not steer.
+    /// actuated joints, rising. 0 would be a motion that they do not steer.
     pub shares: Vec<f64>,
     /// The motions that the shares belong to, a column each.
     pub directions: Matrix,
@@ -42,17 +42,17 @@ pub struct ActuationMap {
     pub correction: Vec<f64>,
     /// How far the loops are open.
     pub closure_error: LoopClosureError,
-    /// Places of the driven joints among the rows of `motions`, and their weights' roots.
-    drives: Vec<(usize, f64)>,
+    /// Places of the actuated joints among the rows of `motions`, and their weights' roots.
+    actuators: Vec<(usize, f64)>,
 }
 
 impl ActuationMap {
     /// At the configuration of `state`. `weights`: one for each coordinate of the tree, of which
-    /// those of driven joints count, or none; the coordinates `locked` stand still.
+    /// those of actuated joints count, or none; the coordinates `locked` stand still.
     ///
     /// # Errors
-    /// Weights of the wrong number or not positive; a locked place that is no coordinate; a driven
-    /// closing joint of several coordinates.
+    /// Weights of the wrong number or not positive; a locked place that is no coordinate; an actuated
+    /// loop joint of several coordinates.
     pub fn of(state: &State, weights: &[f64], locked: &[usize]) -> Result<Self> {
         let mechanism = state.mechanism();
         let n = mechanism.n();
@@ -74,20 +74,20 @@ impl ActuationMap {
         let space =
             ColumnSpace::cut_of(rates.matrix.transpose(), Threshold::Relative(CLOSURE_RANK));
         let kernel = space.complement();
-        let driven = driven(mechanism, &joints_with_rate, weights);
-        let others = (0..size.len()).filter(|i| driven.iter().all(|(d, _)| d != i));
-        let order: Vec<usize> = driven.iter().map(|(d, _)| *d).chain(others).collect();
+        let actuated = actuated(mechanism, &joints_with_rate, weights);
+        let others = (0..size.len()).filter(|i| actuated.iter().all(|(d, _)| d != i));
+        let order: Vec<usize> = actuated.iter().map(|(d, _)| *d).chain(others).collect();
         let sorted = Matrix::from_fn(size.len(), kernel.cols(), |i, j| kernel[(order[i], j)]);
         let cs = CsDecomposition::of(&sorted, driven.len());
         let unscaled = (&kernel * &cs.z).scale_rows(size);
         let free = cs.cosines.iter().take_while(|c| **c <= kernel_tolerance(&space)).count();
         let p = kernel.cols() - free;
 
-        // D = X' S' Z'^T for the driven rates of unit directions in their weights.
+        // D = X' S' Z'^T for the actuated rates of unit directions in their weights.
         let unit =
             Matrix::from_fn(size.len(), p, |i, j| unscaled[(i, free + j)] / cs.cosines[free + j]);
-        let weighted = Matrix::from_fn(driven.len(), p, |i, j| {
-            let (place, root) = driven[i];
+        let weighted = Matrix::from_fn(actuated.len(), p, |i, j| {
+            let (place, root) = actuated[i];
             root * unit[(place, j)]
         });
         let svd = Svd::of(&weighted);
@@ -99,17 +99,17 @@ impl ActuationMap {
             directions: unscaled.columns_between(free, kernel.cols()),
             correction: rates.correction(),
             closure_error,
-            drives: driven,
+            actuators: actuated,
         })
     }
 
-    /// y for wanted rates of all joints (n + e): the weighted projection of those of the drives on
+    /// y for wanted rates of all joints (n + e): the weighted projection of those of the actuators on
     /// what the loops let them do.
     #[must_use]
     pub fn project(&self, wanted: &[f64]) -> Vec<f64> {
         let along = |j: usize| {
             let column = self.motions.column(j);
-            self.drives.iter().map(|&(i, root)| root * root * column[i] * wanted[i]).sum()
+            self.actuators.iter().map(|&(i, root)| root * root * column[i] * wanted[i]).sum()
         };
         (0..self.motions.cols()).map(along).collect()
     }
@@ -121,8 +121,8 @@ impl ActuationMap {
     }
 }
 
-/// Places among coordinates and driven closing joints, and the roots of the weights.
-fn driven(
+/// Places among coordinates and actuated loop joints, and the roots of the weights.
+fn actuated(
     mechanism: &Mechanism,
     joints_with_rate: &[&LoopJoint],
     weights: &[f64],
@@ -156,7 +156,7 @@ impl RateRows {
         let coordinates = mechanism.coordinates().iter().map(|c| Unit::of(c.kind));
         let units = coordinates.chain(measured.iter().map(|&k| rate_unit(joints_with_rate[k])));
         let scale: Vec<f64> = units.map(|unit| unit.size(length)).collect();
-        // Rates of passive closing joints say nothing.
+        // Rates of passive loop joints say nothing.
         let column = |k: usize| measured.iter().position(|&m| m == k).map(|e| n + e);
         let kept: Vec<ConstraintRow> =
             all.into_iter().filter(|row| row.rate_of.is_none_or(|k| column(k).is_some())).collect();

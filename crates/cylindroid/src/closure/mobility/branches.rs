@@ -1,9 +1,9 @@
-//! The ways out of a posture where not every motion to first order can be followed.
+//! The ways out of a configuration where not every motion to first order can be followed.
 //!
 //! Method   on the sphere |x| = h of motions to first order, zeros of the reduced loops g (see
 //!          `lyapunov_schmidt.rs`) are looked for by damped Gauss-Newton from starts at random. A zero
 //!          whose own motions can be followed lies on a branch; it is carried inwards, to both
-//!          sides of the posture, and the motions there give the branch's tangent
+//!          sides of the configuration, and the motions there give the branch's tangent
 //! Shapes   x: k, a tangent: k x dimension
 //! Units    none (scaled)
 //! Valid    finds what it hits: branches of dimension k - 1 surely, thin ones among many motions
@@ -32,8 +32,8 @@ pub(crate) struct Tangent {
     pub(crate) dimension: usize,
     /// Orthonormal columns; more than the dimension where the branch is a cone.
     pub(crate) directions: Matrix,
-    /// Closed postures on it, on either side.
-    pub(crate) postures: Vec<Vec<f64>>,
+    /// Closed configurations on it, on either side.
+    pub(crate) configurations: Vec<Vec<f64>>,
 }
 
 /// What a search found.
@@ -54,7 +54,7 @@ fn times(x: &[f64], factor: f64) -> Vec<f64> {
     x.iter().map(|x| factor * x).collect()
 }
 
-/// The branches through the posture of `reduction`, looked for at the distance `h`.
+/// The branches through the configuration of `reduction`, looked for at the distance `h`.
 pub(crate) fn branches(
     mechanism: &Mechanism,
     length: f64,
@@ -93,7 +93,7 @@ pub(crate) fn branches(
     Ok(Found { tangents, complete: sound && proved })
 }
 
-/// The motions of a branch at one of its postures, scaled.
+/// The motions of a branch at one of its configurations, scaled.
 struct Here {
     motions: Matrix,
     /// True if they are all those of first order.
@@ -186,7 +186,7 @@ fn zero(
     Ok((now.error() <= reduction.tolerance()).then_some((x, now)))
 }
 
-/// The motions of a branch as it comes to the posture: those of postures on both sides of it.
+/// The motions of a branch as it comes to the configuration: those of configurations on both sides of it.
 fn tangent(
     mechanism: &Mechanism,
     length: f64,
@@ -197,7 +197,7 @@ fn tangent(
     let inwards = if there.clear { INWARDS } else { 0.25 };
     let small = h * inwards;
     let mut sides = Vec::new();
-    let mut postures = Vec::new();
+    let mut configurations = Vec::new();
     for side in [inwards, -inwards] {
         let Some((near_x, near)) = zero(reduction, &times(x, side), small)? else { continue };
         let along = dot(&near_x, x);
@@ -207,7 +207,7 @@ fn tangent(
         let Some(here) = Here::of(mechanism, &near.q, length, small)? else { continue };
         if here.motions.cols() == there.motions.cols() {
             sides.push(&reduction.kernel().transpose() * &here.motions);
-            postures.push(near.q);
+            configurations.push(near.q);
         }
     }
     if sides.is_empty() {
@@ -217,7 +217,7 @@ fn tangent(
     let both = Matrix::hstack(x.len(), &sides.iter().collect::<Vec<_>>());
     let svd = Svd::of(&both);
     let directions = Matrix::from_fn(x.len(), dimension, |i, j| svd.u(j)[i]);
-    Ok(Some(Tangent { dimension, directions, postures }))
+    Ok(Some(Tangent { dimension, directions, configurations }))
 }
 
 fn same(a: &Tangent, b: &Tangent) -> bool {
@@ -260,7 +260,7 @@ fn morse(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<usize>> {
         return Ok(None);
     }
     let along = space.basis();
-    // Both sides of the posture: what is of third order cancels.
+    // Both sides of the configuration: what is of third order cancels.
     let even = |x: &[f64]| -> Result<Option<f64>> {
         let mut sum = 0.0;
         for side in [h, -h] {

@@ -1,12 +1,12 @@
 //! Finite mobility: which of the motions to first order a mechanism can really make.
 //!
-//! Formula  the closed postures near q are the zeros of g(x), x in the motions to first order (see
+//! Formula  the closed configurations near q are the zeros of g(x), x in the motions to first order (see
 //!          `lyapunov_schmidt.rs`). No g: the equations are independent, and every motion exists (implicit
 //!          function theorem). g zero at every step: every motion exists, the other equations are
 //!          superfluous there too. Otherwise the zeros of g are looked for (`branches.rs`)
 //! Shapes   motions: n x dimension, rates of the coordinates of q
 //! Units    rad, m; steps and residuals scaled by the characteristic length
-//! Valid    closed postures; position limits are residual out. Geometry given to less than ten digits
+//! Valid    closed configurations; position limits are residual out. Geometry given to less than ten digits
 //!          makes a superfluous equation an independent one: the rank gap of `Mobility` says so
 //! Why so   a structure may be loose to first order and rigid (shaky), a mechanism may have a
 //!          negative Grubler count and move: neither first order nor counting can tell
@@ -25,7 +25,7 @@ use crate::tolerance::{CLOSURE_RANK, FINITE_STEP, WITHIN_BRANCHES};
 
 /// How often a step that Newton's method does not follow is halved.
 const HALVINGS: usize = 8;
-/// How much nearer than the step the postures beside a posture are: spaces there, the mean of both
+/// How much nearer than the step the configurations beside a configuration are: spaces there, the mean of both
 /// sides, are those here but for 1e-10 times their curvature.
 const BESIDE: f64 = 1e-3;
 
@@ -36,9 +36,9 @@ pub enum MobilityEvidence {
     Independent,
     /// Some equations are superfluous here, and after steps in all directions as well.
     Steps,
-    /// Not every step can be followed; the closed postures around were looked for.
+    /// Not every step can be followed; the closed configurations around were looked for.
     Search,
-    /// The loops are open in this posture, or no step could be followed: nothing is known.
+    /// The loops are open in this configuration, or no step could be followed: nothing is known.
     Unknown,
 }
 
@@ -53,7 +53,7 @@ impl fmt::Display for MobilityEvidence {
     }
 }
 
-/// A set of closed postures through the posture in question.
+/// A set of closed configurations through the configuration in question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
     /// Its finite degrees of freedom.
@@ -63,14 +63,14 @@ pub struct Branch {
     pub motions: Matrix,
 }
 
-/// How a mechanism can move from a posture beyond first order.
+/// How a mechanism can move from a configuration beyond first order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FiniteMobility {
     /// Motions to first order.
     pub infinitesimal: usize,
     /// Degrees of freedom of finite motion: those of the largest branch.
     pub finite: Option<usize>,
-    /// The branches found, largest first; one where the posture is ordinary, none where it is
+    /// The branches found, largest first; one where the configuration is ordinary, none where it is
     /// rigid. Two and more: the mechanism can go different ways from here.
     pub branches: Vec<Branch>,
     /// Motions to first order across all branches, a column each: the mechanism gives there and
@@ -88,7 +88,7 @@ pub struct FiniteMobility {
 }
 
 impl FiniteMobility {
-    /// Of a posture, at the mechanism's reach as characteristic length or another (m).
+    /// Of a configuration, at the mechanism's reach as characteristic length or another (m).
     ///
     /// ```
     /// use cylindroid::closure::FiniteMobility;
@@ -143,7 +143,7 @@ impl FiniteMobility {
                 motions: reduction.unscaled(&(reduction.kernel() * &tangent.directions)),
             });
             if report.beside.is_empty() {
-                report.beside = tangent.postures;
+                report.beside = tangent.configurations;
             }
         }
         let outside = ColumnSpace::of(&tangents, Threshold::Absolute(WITHIN_BRANCHES)).complement();
@@ -157,7 +157,7 @@ impl FiniteMobility {
         self.finite == Some(self.infinitesimal)
     }
 
-    /// Closed postures a little to both sides along a motion in which all degrees of freedom of the
+    /// Closed configurations a little to both sides along a motion in which all degrees of freedom of the
     /// largest branch take part; fewer where they could not be found.
     pub(crate) fn beside(&self) -> &[Vec<f64>] {
         &self.beside

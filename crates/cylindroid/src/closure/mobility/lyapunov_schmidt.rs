@@ -1,9 +1,9 @@
-//! The closed postures near a closed posture, reduced to what decides whether they exist.
+//! The closed configurations near a closed configuration, reduced to what decides whether they exist.
 //!
 //! Formula  loops f(q) = 0 with rates C = df/dq of rank r; K = ker C, N = (ker C)^perp,
 //!          P = ran C, R = (ran C)^perp. For every small x the equation P^T f(q0 + K x + N y) = 0
 //!          has one y(x); what is residual of the loops is g(x) = R^T f, with g(0) = 0, dg(0) = 0.
-//!          Near q0 the closed postures are the zeros of g
+//!          Near q0 the closed configurations are the zeros of g
 //! Shapes   K: n x k, N: n x r, P: t x r, R: t x (t - r); x: k, g: t - r
 //! Units    scaled as in `assembly.rs`: none
 //! Valid    steps x that Newton's method follows; the caller shortens those that fail. Position
@@ -24,7 +24,7 @@ use crate::tolerance::LOOP_ROUNDING;
 /// Newton steps at most: four are the rule.
 const MOST_STEPS: usize = 30;
 
-/// A posture with what its loops allow and hold to first order.
+/// A configuration with what its loops allow and hold to first order.
 pub(crate) struct LyapunovSchmidt<'a> {
     mechanism: &'a Mechanism,
     length: f64,
@@ -41,7 +41,7 @@ pub(crate) struct LyapunovSchmidt<'a> {
     closed: bool,
 }
 
-/// A posture near it in which all loops are closed but for `residual`.
+/// A configuration near it in which all loops are closed but for `residual`.
 pub(crate) struct ReducedPoint {
     pub(crate) q: Vec<f64>,
     /// g.
@@ -57,7 +57,7 @@ impl ReducedPoint {
 }
 
 impl<'a> LyapunovSchmidt<'a> {
-    /// Of the posture `q`, singular values of C at or below `threshold` times the largest being
+    /// Of the configuration `q`, singular values of C at or below `threshold` times the largest being
     /// zero.
     pub(crate) fn of(
         mechanism: &'a Mechanism,
@@ -92,7 +92,7 @@ impl<'a> LyapunovSchmidt<'a> {
         })
     }
 
-    /// True where the loops of the posture are closed.
+    /// True where the loops of the configuration are closed.
     pub(crate) fn is_closed(&self) -> bool {
         self.closed
     }
@@ -129,7 +129,7 @@ impl<'a> LyapunovSchmidt<'a> {
         q
     }
 
-    /// The posture at `x`; none where Newton's method does not find it.
+    /// The configuration at `x`; none where Newton's method does not find it.
     pub(crate) fn step(&self, x: &[f64]) -> Result<Option<ReducedPoint>> {
         let mut q = self.moved(&self.q, &self.kernel.mul_vec(x));
         let mut last = f64::INFINITY;

@@ -20,7 +20,7 @@ use crate::tolerance::{CLEAR_SHARE, CLOSURE_RANK};
 /// Groups of rows of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RowSelection {
-    /// The driven joints.
+    /// The actuated joints.
     pub actuated: bool,
     /// The passive joints and the other objects.
     pub passive: bool,
@@ -119,7 +119,7 @@ impl MotionSpace {
         self.unscaled(&self.kernel)
     }
 
-    /// Relation between driven joints and object: what is left when passive joints are forgotten.
+    /// Relation between actuated joints and object: what is left when passive joints are forgotten.
     #[must_use]
     pub fn relation(&self) -> Relation {
         let a = self.actuated;
@@ -197,7 +197,7 @@ impl MotionSpace {
         motions.clone().scale_rows(&self.scale)
     }
 
-    /// Number of driven joints.
+    /// Number of actuated joints.
     #[must_use]
     pub fn actuated(&self) -> usize {
         self.actuated

@@ -1,7 +1,7 @@
 //! The motions of the reference link, as twists: what its screw system is made of.
 //!
 //! Formula  columns (object) of the coordinate and the indeterminate directions of the relation
-//!          between driven joints and object, their reference point moved from the frame's origin
+//!          between actuated joints and object, their reference point moved from the frame's origin
 //!          to that of the world
 //! Shapes   a twist for each independent motion, at most d (6, in the plane 3)
 //! Units    m, rad

@@ -1,4 +1,4 @@
-//! The linear relation between driven joints and object, and the forces that do no work on it.
+//! The linear relation between actuated joints and object, and the forces that do no work on it.
 //!
 //! Formula  R = {(q_a, u)}: rows q_a and u of the kernel, made orthonormal, [X C; Y S] Z^T;
 //!          F = {(tau, w): tau^T q_a + w^T u = 0 on R} = R^perp, with the columns (-X S, Y C),
@@ -8,7 +8,7 @@
 //! Frame    that of the object's twist; the wrench is taken at the same point
 //! Valid    any constraint, hyperstatic ones too: only the forces at contacts are undetermined
 //!          there, not joint torques and wrenches
-//! Why so   the paper's bases (eqs. 5 and 8) are not unique where a motion of the driven joints
+//! Why so   the paper's bases (eqs. 5 and 8) are not unique where a motion of the actuated joints
 //!          can be taken up by passive joints or by the object, and its equations 15 and 16
 //!          depend on the choice; the relation leaves nothing to choose
 //! Source   Bicchi & Prattichizzo 1998, sections 2 to 4; virtual work for F
@@ -26,11 +26,11 @@ use crate::tolerance::CLOSURE_BLOCK;
 pub struct RelationDimensions {
     /// p: independent pairs of a joint motion and an object motion.
     pub relation: usize,
-    /// c': motions of the object that the driven joints bring about and that need them.
+    /// c': motions of the object that the actuated joints bring about and that need them.
     pub coordinate: usize,
-    /// r': motions of the driven joints with which the object may rest.
+    /// r': motions of the actuated joints with which the object may rest.
     pub redundancy: usize,
-    /// i': motions of the object with the driven joints at rest.
+    /// i': motions of the object with the actuated joints at rest.
     pub indeterminacy: usize,
     /// h: joint torques that balance without a wrench on the object (active internal forces).
     pub internal: usize,
@@ -69,7 +69,7 @@ impl ObjectScale {
     }
 }
 
-/// A linear relation between driven joints and object.
+/// A linear relation between actuated joints and object.
 #[derive(Debug, Clone)]
 pub struct Relation {
     joint_scale: Vec<f64>,
@@ -85,7 +85,7 @@ pub struct Relation {
 }
 
 impl Relation {
-    /// Of the span of the columns of `span` (scaled), driven joints first.
+    /// Of the span of the columns of `span` (scaled), actuated joints first.
     pub(crate) fn from_scaled(
         span: Matrix,
         joint_scale: Vec<f64>,
@@ -108,7 +108,7 @@ impl Relation {
         }
     }
 
-    /// Number of driven joints.
+    /// Number of actuated joints.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.joint_scale.len()
@@ -182,7 +182,7 @@ impl Relation {
         (torques, &self.scale.wrench * &wrenches)
     }
 
-    /// The relation between driven joints and the task `T u`.
+    /// The relation between actuated joints and the task `T u`.
     ///
     /// # Errors
     /// A map that has not a column for each component of u, has more rows than it can have

@@ -1,8 +1,8 @@
 //! Mobility report: every kind of motion and force of a closed chain, counted and with a basis.
 //!
 //! Formula  dof            ker [J_a J_p -G^T]
-//!          redundancy     ker J_a: driven joints move, all else rests
-//!          indeterminacy  ker [J_p -G^T]: driven joints rest
+//!          redundancy     ker J_a: actuated joints move, all else rests
+//!          indeterminacy  ker [J_p -G^T]: actuated joints rest
 //!          coordinate     the rest, orthogonal to both: k - r - i
 //!          idle           ker J_p: passive joints move alone
 //!          uncontrollable_object_motions      ker G^T: the object moves alone
@@ -28,7 +28,7 @@ use super::subspace::Subspace;
 use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
 
-/// Coordinate motions by what takes part beside the driven joints. A motion of the driven joints
+/// Coordinate motions by what takes part beside the actuated joints. A motion of the actuated joints
 /// that either passive joints or the object can take up is counted in `passive` and in `object`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CoordinateKinds {
@@ -49,9 +49,9 @@ pub struct JointMobility {
     pub share: f64,
     /// False where it is locked by the geometry.
     pub moves: bool,
-    /// True where it can move with all driven joints at rest.
+    /// True where it can move with all actuated joints at rest.
     pub free_of_actuators: bool,
-    /// True where it can move with the driven joints and the object at rest (passive joints).
+    /// True where it can move with the actuated joints and the object at rest (passive joints).
     pub idle: bool,
 }
 
@@ -82,9 +82,9 @@ impl fmt::Display for RankWarning {
 pub struct Mobility {
     /// All motions (q_a, q_p, u).
     pub dof: Subspace,
-    /// Motions of driven joints alone.
+    /// Motions of actuated joints alone.
     pub redundancy: Subspace,
-    /// Motions with the driven joints at rest, idle ones included.
+    /// Motions with the actuated joints at rest, idle ones included.
     pub indeterminacy: Subspace,
     /// Motions orthogonal to both (scaled).
     pub coordinate: Subspace,
@@ -102,12 +102,12 @@ pub struct Mobility {
     pub zero_torque: Subspace,
     /// Contact forces that neither joint torques nor the wrench determine.
     pub hyperstatic: Subspace,
-    /// The counts of the relation between driven joints and object alone, where redundancy and
+    /// The counts of the relation between actuated joints and object alone, where redundancy and
     /// indeterminacy take in what passive joints make possible.
     pub relation: RelationDimensions,
     /// Columns less rows, for comparison.
     pub gruebler_kutzbach: i64,
-    /// Driven joints, then passive columns.
+    /// Actuated joints, then passive columns.
     pub joints: Vec<JointMobility>,
     /// Ranks that are a matter of taste.
     pub ambiguous_ranks: Vec<RankWarning>,

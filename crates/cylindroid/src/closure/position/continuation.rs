@@ -6,7 +6,7 @@
 //! Units    fractions of the way from 0 to 1; distances have none: lengths are over the reach
 //! Valid    any mechanism. The distance depends, within a factor, on where the loops are cut; that
 //!          it is zero does not. The largest fraction is found by halving steps to [`SHARE_FOUND`].
-//!          Limits of closing joints do not count: these joints have no coordinate
+//!          Limits of loop joints do not count: these joints have no coordinate
 //! Source   Allgower & Georg 1990; kinds of singularity as in `singularity_types.rs`
 //! Checked  tests/it/closure/continuation.rs
 

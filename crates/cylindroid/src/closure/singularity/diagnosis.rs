@@ -1,8 +1,8 @@
-//! What is singular about a posture of a mechanism, with the motions lost and gained as screws.
+//! What is singular about a configuration of a mechanism, with the motions lost and gained as screws.
 //!
 //! Formula  type I    blocked: zero-torque wrenches (ran R)^perp beyond the generic ones;
 //!                    lost: the twists that do work on them and are orthogonal to ran R (scaled)
-//!          type II   gained: twists of the object with the driven joints at rest, beyond the
+//!          type II   gained: twists of the object with the actuated joints at rest, beyond the
 //!                    generic ones
 //!          passive   idle motions beyond the generic ones
 //!          configuration space: the branches of [`FiniteMobility`]
@@ -11,9 +11,9 @@
 //! Frame    world
 //! Valid    where the generic count is zero, all there is is beyond it, and blocked wrenches and
 //!          gained twists do not depend on point, length or frame. Otherwise the generic part is
-//!          the limit of that of closed postures to both sides, on a motion in which all degrees
+//!          the limit of that of closed configurations to both sides, on a motion in which all degrees
 //!          of freedom take part, and what is beyond it is orthogonal to the limit (scaled, at the
-//!          reference point): right to 1e-6, and dependent on that choice. Where no such postures
+//!          reference point): right to 1e-6, and dependent on that choice. Where no such configurations
 //!          are found all is given, and [`Diagnosis::separated`] is false. Lost twists depend on
 //!          point and length always: only the wrench that blocks them is geometry
 //! Why so   of several, the principal screws of their system are given, which need no basis; where
@@ -38,12 +38,12 @@ use crate::screws::{Line, Screw, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3, Wrench};
 use crate::tolerance::{CLOSURE_BLOCK, GENERIC_LIMIT, JOINT_AT_REST};
 
-/// The singularities of a posture, named.
+/// The singularities of a configuration, named.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
     /// The kinds, and the distances to them.
     pub singularities: Singularities,
-    /// The counts of this posture ...
+    /// The counts of this configuration ...
     pub counts: MobilityCounts,
     /// ... and those that it is measured by.
     pub generic: GenericMobility,
@@ -54,9 +54,9 @@ pub struct Diagnosis {
     pub blocked: Vec<Screw>,
     /// Motions of the reference frame that are lost.
     pub lost: Vec<Screw>,
-    /// Motions of the reference frame that the driven joints do not hold here.
+    /// Motions of the reference frame that the actuated joints do not hold here.
     pub gained: Vec<Screw>,
-    /// Driven joints that move with the reference frame at rest, here and not elsewhere.
+    /// Actuated joints that move with the reference frame at rest, here and not elsewhere.
     pub redundant: Vec<String>,
     /// Passive coordinates that move alone, here and not elsewhere.
     pub idle: Vec<String>,
@@ -65,7 +65,7 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// Of a posture, for the mechanism's reference frame or another, at its reach as
+    /// Of a configuration, for the mechanism's reference frame or another, at its reach as
     /// characteristic length or another (m).
     ///
     /// ```
@@ -83,15 +83,15 @@ impl Diagnosis {
     /// As [`ClosedChain::of`].
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let mechanism = state.mechanism();
-        let here = Posture::of(state, reference, length)?;
+        let here = Configuration::of(state, reference, length)?;
         let length = here.chain.constraint.length();
         let counts = MobilityCounts::of(&here.motions, &here.relation);
         let generic = GenericMobility::around(state, reference, length, counts)?;
         let finite = FiniteMobility::of(state, Some(length))?;
-        let beside: Vec<Posture> = finite
+        let beside: Vec<Configuration> = finite
             .beside()
             .iter()
-            .map(|q| Posture::of(&mechanism.state(q)?, reference, Some(length)))
+            .map(|q| Configuration::of(&mechanism.state(q)?, reference, Some(length)))
             .collect::<Result<_>>()?;
         let mut singularities =
             Singularities::with_counts(&counts, &here.motions, &here.relation, &generic.counts);
@@ -104,16 +104,16 @@ impl Diagnosis {
             singularities.distances.configuration_space = 0.0;
         }
         let mut separated = true;
-        let mut beyond = |space: &dyn Fn(&Posture) -> Matrix, generic: usize| {
+        let mut beyond = |space: &dyn Fn(&Configuration) -> Matrix, generic: usize| {
             let (part, clear) = beyond(&space(&here), &beside, space, generic);
             separated &= clear;
             part
         };
         let s = generic.counts;
-        let blocked = beyond(&Posture::zero_torque, s.zero_torque);
-        let gained = beyond(&Posture::indeterminate, s.indeterminacy);
-        let redundant = beyond(&Posture::redundant, s.redundancy);
-        let idle = beyond(&Posture::idle, s.idle);
+        let blocked = beyond(&Configuration::zero_torque, s.zero_torque);
+        let gained = beyond(&Configuration::indeterminate, s.indeterminacy);
+        let redundant = beyond(&Configuration::redundant, s.redundancy);
+        let idle = beyond(&Configuration::idle, s.idle);
         let point = state.pose(here.chain.reference).translation;
         let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { GENERIC_LIMIT };
         let (of_wrenches, of_gains) = (accuracy(s.zero_torque), accuracy(s.indeterminacy));
@@ -135,14 +135,14 @@ impl Diagnosis {
     }
 }
 
-/// A posture with its spaces, orthonormal in scaled units.
-struct Posture {
+/// A configuration with its spaces, orthonormal in scaled units.
+struct Configuration {
     chain: ClosedChain,
     motions: MotionSpace,
     relation: Relation,
 }
 
-impl Posture {
+impl Configuration {
     fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let chain = ClosedChain::of(state, reference, length)?;
         let motions = MotionSpace::of(&chain.constraint);
@@ -199,8 +199,8 @@ impl Posture {
 /// The part of `now` orthogonal to the limit of the spaces beside it, and whether there was one.
 fn beyond(
     now: &Matrix,
-    beside: &[Posture],
-    space: &dyn Fn(&Posture) -> Matrix,
+    beside: &[Configuration],
+    space: &dyn Fn(&Configuration) -> Matrix,
     generic: usize,
 ) -> (Matrix, bool) {
     let extra = now.cols().saturating_sub(generic);

@@ -1,13 +1,13 @@
-//! The generic counts of a mechanism: what it has where nothing is special about its posture.
+//! The generic counts of a mechanism: what it has where nothing is special about its configuration.
 //!
-//! Method   the counts of the posture in question, of postures near it and of postures anywhere
+//! Method   the counts of the configuration in question, of configurations near it and of configurations anywhere
 //!          within the position limits: guesses at random (the same on every run), closed by
-//!          [`assemble`]; those that do not close, or come back to the posture, are left out. Of
+//!          [`assemble`]; those that do not close, or come back to the configuration, are left out. Of
 //!          all, the largest rank and the smallest of every other count
-//! Valid    postures of other assembly components count too. A mechanism whose components differ
+//! Valid    configurations of other assembly components count too. A mechanism whose components differ
 //!          in mobility (kinematotropic) is measured by the one of least mobility. Where no other
-//!          posture closes, the counts are those of the posture itself: see [`GenericMobility::others`]
-//! Why so   counts below those of a single regular posture would need that posture to be known;
+//!          configuration closes, the counts are those of the configuration itself: see [`GenericMobility::others`]
+//! Why so   counts below those of a single regular configuration would need that configuration to be known;
 //!          Grubler's count is wrong for whatever is overconstrained
 //! Checked  tests/it/closure/diagnosis.rs
 
@@ -22,17 +22,17 @@ use crate::kinematics::State;
 use crate::model::FrameId;
 use crate::tolerance::FINITE_STEP;
 
-/// Guesses near the posture, and anywhere.
+/// Guesses near the configuration, and anywhere.
 const GUESSES: (usize, usize) = (6, 6);
 /// How far guesses near it are [rad, or reaches].
 const NEAR: f64 = 0.3;
 
-/// Generic counts and how many postures stand behind them.
+/// Generic counts and how many configurations stand behind them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GenericMobility {
     /// The counts.
     pub counts: MobilityCounts,
-    /// Closed postures other than the one in question that were counted.
+    /// Closed configurations other than the one in question that were counted.
     pub others: usize,
     /// Guesses that were tried for them.
     pub guesses: usize,
@@ -49,7 +49,7 @@ impl GenericMobility {
         Self::around(state, reference, chain.constraint.length(), counted(&chain))
     }
 
-    /// The same for a posture whose counts are known.
+    /// The same for a configuration whose counts are known.
     pub(crate) fn around(
         state: &State,
         reference: Option<FrameId>,

@@ -2,7 +2,7 @@
 //! lost or gained, and how far the next loss is.
 //!
 //! Formula  type I    zero-torque wrenches s or redundancy r' above generic: the object loses
-//!          type II   indeterminacy i' above generic: the object gains, the drives do not hold it
+//!          type II   indeterminacy i' above generic: the object gains, the actuators do not hold it
 //!          type III  both
 //!          configuration space  rank of [J_a J_p -G^T] below generic, k above
 //!          passive   idle motions above generic
@@ -30,7 +30,7 @@ use crate::linalg::Matrix;
 pub struct SingularityDistances {
     /// To the loss of a motion of the object.
     pub type_i: f64,
-    /// To a motion of the object that the driven joints do not hold.
+    /// To a motion of the object that the actuated joints do not hold.
     pub type_ii: f64,
     /// To the loss of rank of the constraint.
     pub configuration_space: f64,
@@ -46,7 +46,7 @@ pub struct Singularities {
     /// Wrenches held without torque, a column each: those beyond the generic number block the
     /// lost motions.
     pub blocked: Matrix,
-    /// Motions of the object with the driven joints at rest: those beyond the generic number are
+    /// Motions of the object with the actuated joints at rest: those beyond the generic number are
     /// gained.
     pub gained: Matrix,
     /// How far the pose is from each kind.

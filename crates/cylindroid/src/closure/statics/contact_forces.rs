@@ -22,7 +22,7 @@ use crate::tolerance::CLOSURE_RANK;
 /// Joint torques and the wrench on the object at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StaticLoad<'a> {
-    /// An entry for each driven joint.
+    /// An entry for each actuated joint.
     pub torques: &'a [f64],
     /// The wrench on the object.
     pub wrench: &'a [f64],

@@ -1,4 +1,4 @@
-//! What closing joints and contacts transmit, as wrenches: forces of rows put together again.
+//! What loop joints and contacts transmit, as wrenches: forces of rows put together again.
 //!
 //! Formula  wrench of a joint or contact = sum of t_i h_i over its rows h_i, moved to its point
 //! Shapes   t: one force for each row of the [`ClosedChain`] (its last rows are the wrench on the
@@ -22,7 +22,7 @@ use crate::kinematics::State;
 use crate::linalg::Metric;
 use crate::spatial::{Vec3, Wrench};
 
-/// The wrench that a closing joint or a contact transmits.
+/// The wrench that a loop joint or a contact transmits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransmittedWrench {
     /// Name of the joint or contact.
@@ -45,7 +45,7 @@ impl TransmittedWrench {
     }
 }
 
-/// The wrenches of all closing joints, then of all contacts, from the forces of the rows.
+/// The wrenches of all loop joints, then of all contacts, from the forces of the rows.
 ///
 /// # Errors
 /// Forces of the wrong number or not finite.
@@ -84,7 +84,7 @@ pub fn transmitted_wrenches(
     Ok(all)
 }
 
-/// The compliance of the rows where each closing joint and contact, in this order, gives way by
+/// The compliance of the rows where each loop joint and contact, in this order, gives way by
 /// `compliances` (m/N) to forces, and to moments by this over the square of the characteristic
 /// length (rad/(N m)).
 ///

@@ -3,7 +3,7 @@
 //! Formula  Kruskal: joints enter the tree by falling weight, and in the order of the file within
 //!          one; the tree is then walked breadth-first from its roots
 //! Valid    any graph. Links that no root reaches are returned, never dropped
-//! Why so   a tree of largest weight holds as many driven joints as any tree can (matroid), which
+//! Why so   a tree of largest weight holds as many actuated joints as any tree can (matroid), which
 //!          a walk from the root does not: it takes whatever it meets first
 //! Checked  tests/formats/closed_file.rs::spanning_*
 

@@ -1,4 +1,4 @@
-//! What drives of closed chains can do, against the constraint matrices and positions.
+//! What actuators of closed chains can do, against the constraint matrices and positions.
 
 use cylindroid::catalogue;
 use cylindroid::closure::{ActuationMap, ClosedChain, MotionSpace, assemble};
@@ -14,7 +14,7 @@ fn assembled(mechanism: &Mechanism, random: &mut Random) -> Vec<f64> {
 }
 
 /// Counts are those of the constraint with the object: steered and left motions make up its
-/// degrees of freedom. Unit y gives driven rates of weighted length one, and projecting gives y
+/// degrees of freedom. Unit y gives actuated rates of weighted length one, and projecting gives y
 /// back.
 #[test]
 fn steering_agrees_with_the_constraint() {

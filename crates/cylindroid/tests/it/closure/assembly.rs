@@ -115,7 +115,7 @@ fn balls_are_held_as_a_whole() {
     assert_eq!(whole.q[ball..ball + 3], [0.0; 3]);
 }
 
-/// Passive joints for given drives.
+/// Passive joints for given actuators.
 #[test]
 fn passive_joints_follow_the_drives() {
     let four_bar = catalogue::load("four-bar").unwrap();
@@ -125,7 +125,7 @@ fn passive_joints_follow_the_drives() {
     let angle = 70_f64.to_radians() + 0.2;
     let [up, _] = circles([angle.cos(), angle.sin()], 1.8, [2.0, 0.0], 1.3).unwrap();
     assert_close("elbow", &rocker.translation.to_array()[..2], &up, 1e-9);
-    // Three drives on two degrees of freedom: what they leave open is said.
+    // Three actuators on two degrees of freedom: what they leave open is said.
     let over = catalogue::load("five-bar").unwrap().with_actuated(&["q1", "q2", "q3"]).unwrap();
     let torn = recover_passive(&over, &[0.1, 0.0, 0.1, 0.0]).unwrap();
     assert!(!torn.closed && torn.closure_error.distance > 1e-3, "{torn:?}");

@@ -220,13 +220,13 @@ impl Case {
             Some(task) => *task = &*task * &inverse,
             None => moved.wu = &(&inverse.transpose() * &self.wu) * &inverse,
         }
-        let driven: Vec<f64> = self
+        let actuated: Vec<f64> = self
             .joints
             .iter()
             .filter(|j| j.actuated)
             .map(|j| if j.prismatic { 1.0 / factor } else { 1.0 })
             .collect();
-        let scale = Matrix::diagonal(&driven);
+        let scale = Matrix::diagonal(&actuated);
         moved.wq = &(&scale * &self.wq) * &scale;
         moved
     }
@@ -248,13 +248,13 @@ impl Case {
         moved
     }
 
-    /// With these joints driven and no others.
-    pub(crate) fn driven_by(&self, driven: &[usize]) -> Self {
+    /// With these joints actuated and no others.
+    pub(crate) fn actuated_by(&self, actuated: &[usize]) -> Self {
         let mut chosen = self.clone();
         for (j, joint) in chosen.joints.iter_mut().enumerate() {
-            joint.actuated = driven.contains(&j);
+            joint.actuated = actuated.contains(&j);
         }
-        chosen.wq = Matrix::identity(driven.len());
+        chosen.wq = Matrix::identity(actuated.len());
         chosen
     }
 
@@ -356,9 +356,9 @@ impl Case {
         let object = |k: usize| Matrix::from_fn(t, d, |i, j| object_rows[i][k * d + j]);
         let object_units: Vec<Unit> =
             components.iter().map(|&c| if c < 3 { Unit::Length } else { Unit::Angle }).collect();
-        let side = |driven: bool| {
+        let side = |actuated: bool| {
             let (columns, units): (Vec<Matrix>, Vec<Unit>) = (0..self.joints.len())
-                .filter(|&j| self.joints[j].actuated == driven)
+                .filter(|&j| self.joints[j].actuated == actuated)
                 .map(joint)
                 .unzip();
             (Matrix::hstack(t, &columns.iter().collect::<Vec<_>>()), units)
@@ -395,7 +395,7 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    /// Other combinations of the rows, other coordinates of driven joints, passive joints and
+    /// Other combinations of the rows, other coordinates of actuated joints, passive joints and
     /// object; metrics and task go along.
     pub(crate) fn rebased(&self, random: &mut Random) -> Self {
         let mut regular = |n: usize| {
@@ -404,10 +404,10 @@ impl Problem {
         };
         let (c, blocks) = (&self.constraint, self.constraint.blocks());
         let (rows, passive) = (regular(c.rows()), regular(c.passive()));
-        let (driven, object) = (regular(c.actuated()), regular(c.object()));
+        let (actuated, object) = (regular(c.actuated()), regular(c.object()));
         let within = |w: &Matrix, basis: &Matrix| &(&basis.transpose() * w) * basis;
         let constraint = Constraint::new(ConstraintBlocks {
-            actuated: &(&rows * &blocks.actuated) * &driven,
+            actuated: &(&rows * &blocks.actuated) * &actuated,
             passive: &(&rows * &blocks.passive) * &passive,
             grasp: &(&object.transpose() * &blocks.grasp) * &rows.transpose(),
         })
@@ -415,7 +415,7 @@ impl Problem {
         Self {
             constraint,
             wu: if self.task.is_some() { self.wu.clone() } else { within(&self.wu, &object) },
-            wq: within(&self.wq, &driven),
+            wq: within(&self.wq, &actuated),
             task: self.task.as_ref().map(|t| t * &object),
         }
     }

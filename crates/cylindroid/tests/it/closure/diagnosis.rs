@@ -1,4 +1,4 @@
-//! Singular postures told from the mechanism alone, with the motions lost and gained.
+//! Singular configurations told from the mechanism alone, with the motions lost and gained.
 
 use cylindroid::closure::{
     ClosedChain, Diagnosis, FiniteMobility, GenericMobility, Mobility, SingularityKind, assemble,
@@ -121,18 +121,18 @@ fn where_the_mechanism_folds() {
     let folded = at_home(&file("folded-parallelogram"));
     assert!(folded.singularities.kinds.contains(&SingularityKind::ConfigurationSpace));
     assert_eq!((folded.finite.finite, folded.finite.branches.len()), (Some(1), 2));
-    // No other posture closes: told from the motions that do not exist.
+    // No other configuration closes: told from the motions that do not exist.
     let pair = at_home(&file("stretched-pair"));
     assert_eq!(pair.generic.others, 0);
     assert_eq!(pair.singularities.kinds, [SingularityKind::ConfigurationSpace]);
     assert_eq!(pair.finite.finite, Some(0));
-    // Overconstrained in every posture is not singular.
+    // Overconstrained in every configuration is not singular.
     let spatial = at_home(&file("spatial-four-bar"));
     assert!(spatial.singularities.is_regular(), "{spatial:?}");
     assert_eq!(spatial.finite.finite, Some(1));
 }
 
-/// Singularities come and go with the posture, not with the set of postures that were looked at.
+/// Singularities come and go with the configuration, not with the set of configurations that were looked at.
 #[test]
 fn generic_counts_are_those_of_random_postures() {
     let mut random = Random(17);
@@ -153,12 +153,12 @@ fn generic_counts_are_those_of_random_postures() {
 /// Every strange request has an answer or one error.
 #[test]
 fn strange_mechanisms_have_an_answer() {
-    // Nothing driven: the object gains all its motions, in every posture.
+    // Nothing actuated: the object gains all its motions, in every configuration.
     let five_bar = catalogue::load("five-bar").unwrap();
     let idle = five_bar.with_actuated::<&str>(&[]).unwrap();
     let found = at_home(&idle);
     assert!(found.singularities.is_regular() && found.generic.counts.indeterminacy == 2);
-    // Everything driven.
+    // Everything actuated.
     let all = five_bar.with_actuated(&["q1", "q2", "q3", "q4", "q5"]).unwrap();
     assert!(at_home(&all).singularities.is_regular());
     // Open.

@@ -66,7 +66,7 @@ fn a_stretched_pair_of_links_is_shaky() {
     assert_eq!((bent.infinitesimal, bent.finite, bent.certain), (0, Some(0), true));
 }
 
-/// The stretched pair on a turntable: shaky in every posture, and still one finite motion.
+/// The stretched pair on a turntable: shaky in every configuration, and still one finite motion.
 #[test]
 fn a_shaky_part_on_a_turntable() {
     let mut b = Mechanism::builder("turntable");
@@ -110,7 +110,7 @@ fn a_folded_parallelogram_goes_two_ways() {
     assert!(found.certain);
 }
 
-/// Five joints in line: stretched to the last nothing moves; folded the closed postures form a
+/// Five joints in line: stretched to the last nothing moves; folded the closed configurations form a
 /// cone.
 #[test]
 fn quadrics_are_told_by_their_signs() {

@@ -37,20 +37,20 @@ fn counts(chain: &ClosedChain) -> [usize; 7] {
 fn five_bar_exact() {
     let five_bar = catalogue::load("five-bar").unwrap();
     let (a, b, c) = (41_f64.sqrt(), 97_f64.sqrt(), 3_f64.sqrt());
-    for (driven, expected, internal) in [
+    for (actuated, expected, internal) in [
         (&["q1", "q5"][..], [7.0 + a, 7.0 - a], 0),
         (&["q2", "q4"], [(15.0 + b) / 16.0, (15.0 - b) / 16.0], 0),
         (&["q1", "q2", "q3", "q4", "q5"], [0.4 + 2.0 * c / 15.0, 0.4 - 2.0 * c / 15.0], 3),
     ] {
-        let chain = chain(&five_bar.with_actuated(driven).unwrap());
+        let chain = chain(&five_bar.with_actuated(actuated).unwrap());
         assert!(chain.closure_error.distance < 1e-15 && chain.closure_error.angle < 1e-15);
-        assert_eq!(chain.actuated.len(), driven.len());
+        assert_eq!(chain.actuated.len(), actuated.len());
         let got = kinematic(&chain);
         assert_eq!(got.len(), 2);
         for (g, e) in got.iter().zip(expected) {
-            assert!((g - e).abs() < 1e-12 * e, "{driven:?}: {g} instead of {e}");
+            assert!((g - e).abs() < 1e-12 * e, "{actuated:?}: {g} instead of {e}");
         }
-        assert_eq!(counts(&chain), [2, 0, 0, internal, 1, 0, 0], "{driven:?}");
+        assert_eq!(counts(&chain), [2, 0, 0, internal, 1, 0, 0], "{actuated:?}");
     }
 }
 

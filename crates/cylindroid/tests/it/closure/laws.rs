@@ -32,7 +32,7 @@ fn forces_are_those_of_free_bodies() {
         let (a, d, t) = (constraint.actuated(), constraint.object(), constraint.rows());
         let p = constraint.passive();
         let m = constraint.matrix();
-        // RowSelection: object, driven joints, passive joints; unknowns (tau, w, t).
+        // RowSelection: object, actuated joints, passive joints; unknowns (tau, w, t).
         let statics = Matrix::from_fn(d + a + p, a + d + t, |i, j| {
             let unit = |k: usize, l: usize| f64::from(u8::from(k == l));
             if i < d {
@@ -82,16 +82,16 @@ fn bases_are_what_they_say() {
         let zero = |what: &str, m: &Matrix| {
             assert!(m.max_abs() < 1e-12, "{what} of {}: {m:?}", case.name);
         };
-        let (driven, passive, object) = (0..a, a..a + p, a + p..n);
+        let (actuated, passive, object) = (0..a, a..a + p, a + p..n);
         for (what, space, still) in [
             ("dof", &found.dof, vec![]),
             ("redundancy", &found.redundancy, vec![&passive, &object]),
-            ("indeterminacy", &found.indeterminacy, vec![&driven]),
-            ("idle", &found.idle, vec![&driven, &object]),
+            ("indeterminacy", &found.indeterminacy, vec![&actuated]),
+            ("idle", &found.idle, vec![&actuated, &object]),
             (
                 "uncontrollable_object_motions",
                 &found.uncontrollable_object_motions,
-                vec![&driven, &passive],
+                vec![&actuated, &passive],
             ),
             ("coordinate", &found.coordinate, vec![]),
         ] {

@@ -20,7 +20,7 @@ pub(crate) fn linkage(head: &str, joints: &[(&str, [&str; 2], [f64; 2], &str)]) 
     formats::toml::parse(&text, Path::new("linkage.toml")).unwrap()
 }
 
-/// The five-bar of the catalogue, driven at both ground joints, which then are of the tree.
+/// The five-bar of the catalogue, actuated at both ground joints, which then are of the tree.
 pub(crate) fn five_bar(reference: &str) -> Mechanism {
     linkage(
         reference,

@@ -10,7 +10,7 @@ fn rows(rows: &[&[f64]]) -> Matrix {
     Matrix::from_rows(rows).unwrap()
 }
 
-/// A motion of the driven joint that either the passive joint or the object takes up: one motion
+/// A motion of the actuated joint that either the passive joint or the object takes up: one motion
 /// of the paper's equation 5, which after projection leaves nothing (J_a = J_p = (1, 0)^T,
 /// G^T = (1 0)).
 #[test]
@@ -50,7 +50,7 @@ fn rods_on_spheres_spin_idly() {
     let m = Mobility::of(&constraint);
     assert_eq!(m.idle.dimension(), 6);
     let idle: usize = m.joints.iter().filter(|j| j.idle).count();
-    // Only the joints of spheres; the sliding ones are driven.
+    // Only the joints of spheres; the sliding ones are actuated.
     assert!(idle >= 12 && m.joints[..6].iter().all(|j| !j.idle), "{idle}");
     for j in 0..6 {
         let spin = m.idle.basis.column(j);
@@ -59,12 +59,12 @@ fn rods_on_spheres_spin_idly() {
 }
 
 #[test]
-fn nothing_driven_and_everything_driven() {
+fn nothing_actuated_and_everything_actuated() {
     for case in cases() {
-        let none = case.driven_by(&[]).constraint();
+        let none = case.actuated_by(&[]).constraint();
         let m = Mobility::of(&none);
         assert_eq!(none.actuated(), 0);
-        // Without drives every motion is indeterminate, and no wrench is held but by structure.
+        // Without actuators every motion is indeterminate, and no wrench is held but by structure.
         assert_eq!(m.indeterminacy.dimension(), m.dof.dimension(), "{}", case.name);
         assert_eq!((m.relation.coordinate, m.internal.dimension()), (0, 0), "{}", case.name);
         assert_eq!(
@@ -74,10 +74,10 @@ fn nothing_driven_and_everything_driven() {
             case.name
         );
         let all: Vec<usize> = (0..none.passive()).collect();
-        let all = case.driven_by(&all[..all.len() - none.object() * (case.objects() - 1)]);
-        let driven = Mobility::of(&all.constraint());
-        assert_eq!(driven.dof.dimension(), m.dof.dimension(), "{}", case.name);
-        assert_eq!(driven.idle.dimension(), 0, "{}", case.name);
+        let all = case.actuated_by(&all[..all.len() - none.object() * (case.objects() - 1)]);
+        let actuated = Mobility::of(&all.constraint());
+        assert_eq!(actuated.dof.dimension(), m.dof.dimension(), "{}", case.name);
+        assert_eq!(actuated.idle.dimension(), 0, "{}", case.name);
     }
 }
 

@@ -85,12 +85,12 @@ fn five_bar_has_two() {
     }
 }
 
-/// 3-RRR with its drives held: up to six. A scan of one leg's turn, with the circle of the next,
+/// 3-RRR with its actuators held: up to six. A scan of one leg's turn, with the circle of the next,
 /// finds them all by changes of sign.
 #[test]
 fn three_legged_platform_as_a_scan_finds_them() {
     let platform = catalogue::load("3rrr").unwrap();
-    let drives: Vec<usize> = platform.actuated().collect();
+    let actuators: Vec<usize> = platform.actuated().collect();
     let at_home = platform.state(platform.home()).unwrap();
     let origin = |name: &str| at_home.pose(platform.frame(name).unwrap()).translation;
     let base = [[0.0, 1.0], [-0.866_025_403_784_438_6, -0.5], [0.866_025_403_784_438_6, -0.5]];
@@ -112,7 +112,7 @@ fn three_legged_platform_as_a_scan_finds_them() {
     for _ in 0..12 {
         let turns = [0, 1, 2].map(|_| random.within(-1.5, 1.5));
         let mut guess = platform.home().to_vec();
-        for (&i, t) in drives.iter().zip(turns) {
+        for (&i, t) in actuators.iter().zip(turns) {
             guess[i] = t;
         }
         let b = [0, 1, 2].map(|i| turned(elbow[i], base[i], turns[i]));
@@ -143,7 +143,7 @@ fn three_legged_platform_as_a_scan_finds_them() {
                 last[side] = now;
             }
         }
-        let found = search(&platform, &guess, &drives, 400);
+        let found = search(&platform, &guess, &actuators, 400);
         assert_eq!(found.modes.len(), expected, "{turns:?} {found:?}");
         counts[expected] += 1;
     }

@@ -1,11 +1,11 @@
-//! Single loops of revolute joints, given by their axes in one posture.
+//! Single loops of revolute joints, given by their axes in one configuration.
 
 use cylindroid::Mechanism;
 use cylindroid::model::{Dimension, JointKind, JointSpec, LoopJointSpec};
 use cylindroid::screws::Line;
 use cylindroid::spatial::{Pose, Rotation, Vec3};
 
-/// Links between neighbouring axes, the last axis back on the ground; the first joint is driven.
+/// Links between neighbouring axes, the last axis back on the ground; the first joint is actuated.
 pub(crate) fn ring(name: &str, axes: &[Line], dimension: Dimension) -> Mechanism {
     let mut b = Mechanism::builder(name);
     b.dimension(dimension);

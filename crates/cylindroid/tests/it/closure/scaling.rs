@@ -10,12 +10,12 @@ use cylindroid::{Mechanism, catalogue};
 
 use super::rings::ring;
 
-/// Hinges at these points of the plane, all but the last four driven.
+/// Hinges at these points of the plane, all but the last four actuated.
 fn hinges(points: &[(f64, f64)], dimension: Dimension) -> Mechanism {
     let axis = |(x, y): &(f64, f64)| Line { point: Vec3::new(*x, *y, 0.0), direction: Vec3::Z };
     let axes: Vec<Line> = points.iter().map(axis).collect();
-    let driven: Vec<String> = (1..points.len() - 3).map(|i| format!("q{i}")).collect();
-    ring("ring", &axes, dimension).with_actuated(&driven).unwrap()
+    let actuated: Vec<String> = (1..points.len() - 3).map(|i| format!("q{i}")).collect();
+    ring("ring", &axes, dimension).with_actuated(&actuated).unwrap()
 }
 
 /// dof, hyperstatic, redundancy, indeterminacy, internal, zero_torque.

@@ -181,7 +181,7 @@ fn transmitted_wrenches_balance_the_load() {
             let (normal, across) = (t.normal.unwrap(), t.tangential().unwrap());
             assert!((normal.hypot(across) - t.wrench.force.norm()).abs() < 1e-10);
         }
-        // The torques of all drives are given: they decide, whatever gives way.
+        // The torques of all actuators are given: they decide, whatever gives way.
         let plain = through(&m, &load.to_array(), None);
         let difference = found[0].wrench - plain[0].wrench;
         assert_close("same", &difference.to_array(), &[0.0; 6], 1e-9);
@@ -216,7 +216,7 @@ fn stiffer_clamp_takes_more() {
     assert_close("right", &all[1].wrench.to_array(), &[-1.0, 0.0, 0.0, -2.0, 0.0, 0.0], 1e-12);
 }
 
-/// Driven at q1 and q5 the five-bar's rod turns freely at both ends: what goes through the ground
+/// Actuated at q1 and q5 the five-bar's rod turns freely at both ends: what goes through the ground
 /// joint q5 points along it, and its motor's torque goes with it.
 #[test]
 fn transmitted_by_closing_joints() {

@@ -100,7 +100,7 @@ fn print(
         [
             ("model", posed.mechanism.name().to_owned()),
             ("reference frame", posed.frame().to_owned()),
-            ("driven", super::super::list(&posed.chain.actuated)),
+            ("actuated", super::super::list(&posed.chain.actuated)),
             ("configurations", rows.len().to_string()),
             ("metric", metric.name().to_owned()),
             ("the same in all", same.collect::<Vec<_>>().join(", ")),

@@ -29,7 +29,7 @@ pub(super) struct Found {
 /// What limits allow, or in words what is missing.
 pub(super) type Reached = std::result::Result<Bounded, String>;
 
-/// What is reached within limits of the drives.
+/// What is reached within the limits of the actuators.
 pub(super) struct Bounded {
     pub(super) limits: Vec<Interval>,
     pub(super) range: Vec<Interval>,

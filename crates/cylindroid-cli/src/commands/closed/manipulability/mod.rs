@@ -44,7 +44,7 @@ pub(crate) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The object of `--json`; `args` say everything but the posture.
+/// The object of `--json`; `args` say everything but the configuration.
 pub(crate) fn report(posed: Posed, args: &ManipulabilityArgs) -> anyhow::Result<Box<RawValue>> {
     report::raw(&find(posed, args)?)
 }

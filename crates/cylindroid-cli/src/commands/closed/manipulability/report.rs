@@ -78,7 +78,7 @@ struct PolytopesJson {
 
 #[derive(Debug, Serialize)]
 struct BoundedJson {
-    /// Lower and upper limit of each driven joint.
+    /// Lower and upper limit of each actuated joint.
     limits: Vec<[f64; 2]>,
     /// Smallest and largest value of each component; null is infinite.
     range: Vec<[f64; 2]>,
@@ -123,7 +123,7 @@ struct SpectrumJson {
     finite: Vec<f64>,
     zeros: usize,
     infinite: usize,
-    /// Of the finite ones: rates or torques of the driven joints, twist or wrench.
+    /// Of the finite ones: rates or torques of the actuated joints, twist or wrench.
     directions: Vec<DirectionJson>,
     /// Rates or torques that do nothing.
     zero_directions: Vec<Vec<f64>>,

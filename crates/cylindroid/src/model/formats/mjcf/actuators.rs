@@ -1,4 +1,4 @@
-//! Actuators and key frames of MJCF: who is driven, how hard, and where home is.
+//! Actuators and key frames of MJCF: who is actuated, how hard, and where home is.
 
 use roxmltree::Node;
 
@@ -24,7 +24,7 @@ const ACTUATORS: [&str; 10] = [
 
 impl<'d> Mjcf<'d> {
     /// Marks the joints that actuators drive. A file without actuators says nothing of motors:
-    /// there all hinges and slides are driven, as in a URDF.
+    /// there all hinges and slides are actuated, as in a URDF.
     pub(super) fn actuators(&mut self) -> Result<()> {
         let actuators = self.files.section("actuator");
         if actuators.is_empty() {
@@ -37,7 +37,7 @@ impl<'d> Mjcf<'d> {
         for node in actuators {
             self.actuator(node)?;
         }
-        // A motor at a joint that follows another drives that one.
+        // A motor at a joint that follows another actuators that one.
         for i in 0..self.joints.len() {
             let mut at = i;
             for _ in 0..self.joints.len() {
@@ -66,7 +66,7 @@ impl<'d> Mjcf<'d> {
             self.reader.note(
                 node,
                 what,
-                "it drives no joint alone; its joints count as passive",
+                "it actuates no joint alone; its joints count as passive",
                 &name,
             );
             return Ok(());

@@ -6,7 +6,7 @@
 //! Valid    bodies, joints, sites, shapes, default classes, `<frame>`, `<include>` in the model's
 //!          own folder, `<equality>` connect, weld, joint and tendon, actuators at joints. What else
 //!          stands in the file is named in the load report
-//! Why so   equality constraints become closing joints and mimic joints, so that a gripper with
+//! Why so   equality constraints become loop joints and mimic joints, so that a gripper with
 //!          loops is the same kind of thing as a closed chain of a mechanism file
 //! Source   mujoco.readthedocs.io, XML reference
 //! Checked  tests/formats/mjcf.rs, against vectors that MuJoCo made

@@ -6,7 +6,7 @@
 //! Valid    the first model of a file, nested models included (`model::link`). Joints form a graph:
 //!          those that close loops do so. The root is `world` where a joint names it or the model
 //!          is static, else the canonical link
-//! Why so   SDF names no motors, so every joint of one coordinate counts as driven, as in URDF;
+//! Why so   SDF names no motors, so every joint of one coordinate counts as actuated, as in URDF;
 //!          the report says so where there are loops
 //! Source   sdformat.org, specification
 //! Checked  tests/formats/sdf.rs

@@ -85,7 +85,7 @@ impl<'d> Sdf<'d> {
             .iter()
             .map(|j| match () {
                 () if j.mimic.is_some() || followed(&j.name) => 2,
-                () if driven(j.kind) => 1,
+                () if actuated(j.kind) => 1,
                 () => 0,
             })
             .collect();
@@ -125,7 +125,7 @@ impl<'d> Sdf<'d> {
         }
         if let Some(&first) = spanned.loops.first() {
             let node = self.joints[first].node;
-            let why = "SDF names none: every joint of one coordinate counts as driven";
+            let why = "SDF names none: every joint of one coordinate counts as actuated";
             self.reader.note(node, "motors", why, "");
         }
         Ok(())
@@ -145,8 +145,8 @@ impl<'d> Sdf<'d> {
     }
 }
 
-/// True for the kinds that count as driven.
-fn driven(kind: JointKind) -> bool {
+/// True for the kinds that count as actuated.
+fn actuated(kind: JointKind) -> bool {
     kind.dof() == 1
 }
 
@@ -179,7 +179,7 @@ impl Graph<'_> {
             axis,
             limits: joint.limits,
             mimic: joint.mimic.clone(),
-            actuated: driven(joint.kind),
+            actuated: actuated(joint.kind),
         }
     }
 
@@ -194,7 +194,7 @@ impl Graph<'_> {
             link_b_from_joint: self.poses[b].inverse() * world_from_joint,
             axis: joint.axis,
             limits: joint.limits,
-            actuated: driven(joint.kind),
+            actuated: actuated(joint.kind),
         }
     }
 }

@@ -114,11 +114,11 @@ fn set_actuated(table: &Table<'_>, robot: Mechanism) -> Result<Mechanism> {
         (None, None) => Ok(robot),
         (Some(names), None) => robot.with_actuated(&names).map_err(refuse("actuated")),
         (None, Some(names)) => {
-            // Every name must be one that could be driven.
+            // Every name must be one that could be actuated.
             let passive = robot.with_actuated(&names).map_err(refuse("passive"))?;
             let coordinates = robot.actuated().filter(|&i| !passive.coordinates()[i].actuated);
             let closing = robot.loops().iter().zip(passive.loops());
-            let driven: Vec<&str> = coordinates
+            let actuated: Vec<&str> = coordinates
                 .map(|i| robot.coordinates()[i].name.as_str())
                 .chain(
                     closing
@@ -126,7 +126,7 @@ fn set_actuated(table: &Table<'_>, robot: Mechanism) -> Result<Mechanism> {
                         .map(|(l, _)| l.name.as_str()),
                 )
                 .collect();
-            robot.with_actuated(&driven).map_err(refuse("passive"))
+            robot.with_actuated(&actuated).map_err(refuse("passive"))
         }
         (Some(_), Some(_)) => {
             let message = "a robot has actuated or passive joints listed, not both";

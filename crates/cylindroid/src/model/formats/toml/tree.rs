@@ -5,7 +5,7 @@
 //! Why so   a joint written from the far link to the near one keeps its q, the motion of the
 //!          second link relative to the first. Its inverse is the same motion about the opposite
 //!          axis for all kinds of one axis, pitch included; the others must be written near
-//!          link first where they are in the tree. Closing joints keep the order of the file
+//!          link first where they are in the tree. Loop joints keep the order of the file
 //! Checked  tests/formats/mechanism_file.rs, tests/formats/closed_file.rs
 
 use std::collections::BTreeMap;
