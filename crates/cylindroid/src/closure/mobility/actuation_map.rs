@@ -78,7 +78,7 @@ impl ActuationMap {
         let others = (0..size.len()).filter(|i| actuated.iter().all(|(d, _)| d != i));
         let order: Vec<usize> = actuated.iter().map(|(d, _)| *d).chain(others).collect();
         let sorted = Matrix::from_fn(size.len(), kernel.cols(), |i, j| kernel[(order[i], j)]);
-        let cs = CsDecomposition::of(&sorted, driven.len());
+        let cs = CsDecomposition::of(&sorted, actuated.len());
         let unscaled = (&kernel * &cs.z).scale_rows(size);
         let free = cs.cosines.iter().take_while(|c| **c <= kernel_tolerance(&space)).count();
         let p = kernel.cols() - free;
