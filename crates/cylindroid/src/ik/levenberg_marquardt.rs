@@ -417,7 +417,12 @@ mod tests {
                 if round % 4 < 2 {
                     solve_batched(&batched, &mut restarts);
                 } else {
-                    solve_with::<Array<LANES>>(&batched, &mut restarts, serial_batched::forward);
+                    solve_with::<Array<LANES>>(
+                        (),
+                        &batched,
+                        &mut restarts,
+                        serial_batched::forward,
+                    );
                 }
                 assert!(!all || restarts.iter().all(Restart::has_ended));
                 for (mut q, restart) in seeds.into_iter().zip(&restarts) {

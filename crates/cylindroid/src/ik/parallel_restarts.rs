@@ -16,7 +16,7 @@ use crate::kinematics::Serial;
 use crate::kinematics::serial_batched::{self, FrameAtTip, SinCos, tool_offset};
 use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
-use crate::scalar::{Lanes4, has_avx2};
+use crate::scalar::{Avx2, Lanes4};
 use crate::spatial::{AlignedPose, Columns};
 
 /// Attempts side by side.
@@ -88,27 +88,28 @@ impl Restart {
 /// From four postures until one has reached, or each is at an end.
 pub(super) fn solve_batched(batched: &BatchedProblem<'_>, restarts: &mut [Restart; LANES]) {
     #[cfg(target_arch = "x86_64")]
-    if has_avx2() {
+    if let Some(cpu) = Avx2::detect() {
         #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
-        // SAFETY: the processor has both features, as just asked.
+        // SAFETY: the token proves that the processor has both features.
         unsafe {
-            solve_avx2(batched, restarts);
+            solve_avx2(cpu, batched, restarts);
         }
         return;
     }
-    solve_with::<Array<LANES>>(batched, restarts, serial_batched::forward);
+    solve_with::<Array<LANES>>((), batched, restarts, serial_batched::forward);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn solve_avx2(batched: &BatchedProblem<'_>, restarts: &mut [Restart; LANES]) {
-    solve_with::<Lanes4>(batched, restarts, |serial, turns, rows| {
-        serial_batched::forward_avx2(serial, turns, rows)
+fn solve_avx2(cpu: Avx2, batched: &BatchedProblem<'_>, restarts: &mut [Restart; LANES]) {
+    solve_with::<Lanes4>(cpu, batched, restarts, move |serial, turns, rows| {
+        serial_batched::forward_avx2(cpu, serial, turns, rows)
     });
 }
 
 #[inline(always)]
 pub(super) fn solve_with<R: SimdFloat>(
+    _: R::Cpu,
     batched: &BatchedProblem<'_>,
     restarts: &mut [Restart; LANES],
     forward: impl Fn(&Serial, SinCos<'_, R>, &mut [R]) -> FrameAtTip<R>,

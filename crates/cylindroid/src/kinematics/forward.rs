@@ -11,7 +11,7 @@
 
 use crate::model::{Node, NodeKind};
 #[cfg(target_arch = "x86_64")]
-use crate::scalar::has_avx2;
+use crate::scalar::Avx2;
 use crate::scalar::{Simd, sin_cos};
 #[cfg(target_arch = "x86_64")]
 use crate::spatial::PackedVec3;
@@ -36,26 +36,26 @@ pub(super) fn sines<W: Simd>(angle: impl Fn(usize) -> f64) -> ([f64; CHUNK], [f6
 #[inline]
 pub(crate) fn forward(nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
     #[cfg(target_arch = "x86_64")]
-    if has_avx2() {
+    if let Some(cpu) = Avx2::detect() {
         #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
-        // SAFETY: the processor has both features, as just asked.
+        // SAFETY: the token proves that the processor has both features.
         unsafe {
-            forward_avx2(nodes, q, slots);
+            forward_avx2(cpu, nodes, q, slots);
         }
         return;
     }
-    forward_with::<[f64; 3]>(nodes, q, slots);
+    forward_with::<[f64; 3]>((), nodes, q, slots);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn forward_avx2(nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
-    forward_with::<PackedVec3>(nodes, q, slots);
+fn forward_avx2(cpu: Avx2, nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
+    forward_with::<PackedVec3>(cpu, nodes, q, slots);
 }
 
 /// The kernel; with fused products results differ in the last digits.
 #[inline(always)]
-fn forward_with<T: SingleVector3>(nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
+fn forward_with<T: SingleVector3>(_: T::Cpu, nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
     for (chunk, nodes) in nodes.chunks(CHUNK).enumerate() {
         // All angles first: they wait for nothing, and go four to a register.
         let mut x = [0.0; CHUNK];
@@ -132,7 +132,7 @@ mod tests {
         let q: Vec<f64> = (0..13).map(|i| 0.17 * f64::from(i) - 0.9).collect();
         let mut plain = vec![AlignedPose::IDENTITY; 10];
         let mut fused = plain.clone();
-        forward_with::<[f64; 3]>(&nodes, &q, &mut plain);
+        forward_with::<[f64; 3]>((), &nodes, &q, &mut plain);
         forward(&nodes, &q, &mut fused);
         for (a, b) in plain.iter().zip(&fused) {
             let (a, b) = (a.pose().to_matrix(), b.pose().to_matrix());

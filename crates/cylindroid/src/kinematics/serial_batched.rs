@@ -14,7 +14,7 @@ use super::jacobian::ReferenceFrame;
 use super::serial::Serial;
 use crate::scalar::{Array, MAX_LANES, Simd};
 #[cfg(target_arch = "x86_64")]
-use crate::scalar::{Lanes4, Lanes8, has_avx2, has_avx512};
+use crate::scalar::{Avx2, Avx512, Lanes4, Lanes8};
 use crate::spatial::{Columns, Vector3Like};
 
 /// What there is, and what is asked for.
@@ -42,35 +42,40 @@ pub(super) fn run(work: Work<'_>) {
     #[cfg(target_arch = "x86_64")]
     {
         #[allow(unsafe_code)] // the one way to call functions compiled for more than the baseline
-        // SAFETY: the processor has these features, as just asked.
+        // SAFETY: the tokens prove that the processor has these features.
         unsafe {
-            if has_avx512() {
-                return run_avx512(work);
+            if let Some(cpu) = Avx512::detect() {
+                return run_avx512(cpu, work);
             }
-            if has_avx2() {
-                return run_avx2(work);
+            if let Some(cpu) = Avx2::detect() {
+                return run_avx2(cpu, work);
             }
         }
     }
-    run_with::<Array<4>>(work, forward);
+    run_with::<Array<4>>((), work, forward);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx2,fma")]
-fn run_avx512(work: Work<'_>) {
-    run_with::<Lanes8>(work, |serial, turns, rows| forward_avx512(serial, turns, rows));
+fn run_avx512(cpu: Avx512, work: Work<'_>) {
+    run_with::<Lanes8>(cpu, work, move |serial, turns, rows| {
+        forward_avx512(cpu, serial, turns, rows)
+    });
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn run_avx2(work: Work<'_>) {
-    run_with::<Lanes4>(work, |serial, turns, rows| forward_avx2(serial, turns, rows));
+fn run_avx2(cpu: Avx2, work: Work<'_>) {
+    run_with::<Lanes4>(cpu, work, move |serial, turns, rows| {
+        forward_avx2(cpu, serial, turns, rows)
+    });
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx2,fma")]
 #[inline(never)] // as `forward_avx2`
 fn forward_avx512(
+    _: Avx512,
     serial: &Serial,
     turns: SinCos<'_, Lanes8>,
     rows: &mut [Lanes8],
@@ -84,6 +89,7 @@ fn forward_avx512(
 #[target_feature(enable = "avx2,fma")]
 #[inline(never)]
 pub(crate) fn forward_avx2(
+    _: Avx2,
     serial: &Serial,
     turns: SinCos<'_, Lanes4>,
     rows: &mut [Lanes4],
@@ -94,6 +100,7 @@ pub(crate) fn forward_avx2(
 /// `forward` is [`forward`], in whatever form.
 #[inline(always)]
 fn run_with<R: Simd>(
+    _: R::Cpu,
     mut work: Work<'_>,
     forward: impl Fn(&Serial, SinCos<'_, R>, &mut [R]) -> FrameAtTip<R>,
 ) {
@@ -382,21 +389,21 @@ mod tests {
             let q: Vec<f64> =
                 (0..n * 21).map(|i| f64::from(i as u32 * 7919 % 6283) / 1e3 - 3.1).collect();
             let of = |run: &dyn Fn(Work<'_>)| of(&chain, (n, &q), reference, run);
-            let plain = of(&|work| run_with::<f64>(work, forward));
+            let plain = of(&|work| run_with::<f64>((), work, forward));
             let near = |what: &str, other: &[f64]| {
                 for (a, b) in plain.iter().zip(other) {
                     assert!((a - b).abs() <= 16.0 * f64::EPSILON, "{name} {what}: {a} and {b}");
                 }
             };
-            near("array", &of(&|work| run_with::<Array<4>>(work, forward)));
+            near("array", &of(&|work| run_with::<Array<4>>((), work, forward)));
             #[cfg(target_arch = "x86_64")]
-            if has_avx2() {
-                // SAFETY: the processor has these features.
-                let four = of(&|work| unsafe { run_avx2(work) });
+            if let Some(cpu) = Avx2::detect() {
+                // SAFETY: the token proves that the processor has these features.
+                let four = of(&|work| unsafe { run_avx2(cpu, work) });
                 near("four", &four);
-                if has_avx512() {
+                if let Some(cpu) = Avx512::detect() {
                     // SAFETY: as above.
-                    let eight = of(&|work| unsafe { run_avx512(work) });
+                    let eight = of(&|work| unsafe { run_avx512(cpu, work) });
                     assert_eq!(four, eight);
                 }
             }

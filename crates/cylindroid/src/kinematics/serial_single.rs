@@ -12,7 +12,7 @@ use super::forward::{CHUNK, sines};
 use super::serial::Serial;
 use crate::linalg::Matrix;
 #[cfg(target_arch = "x86_64")]
-use crate::scalar::has_avx2;
+use crate::scalar::Avx2;
 #[cfg(target_arch = "x86_64")]
 use crate::spatial::PackedVec3;
 use crate::spatial::{AlignedPose, SingleVector3};
@@ -21,15 +21,15 @@ use crate::spatial::{AlignedPose, SingleVector3};
 #[inline]
 pub(super) fn forward(serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
     #[cfg(target_arch = "x86_64")]
-    if has_avx2() {
+    if let Some(cpu) = Avx2::detect() {
         #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
-        // SAFETY: the processor has both features, as just asked.
+        // SAFETY: the token proves that the processor has both features.
         unsafe {
-            forward_avx2(serial, q, slots);
+            forward_avx2(cpu, serial, q, slots);
         }
         return;
     }
-    forward_with::<[f64; 3]>(serial, q, slots);
+    forward_with::<[f64; 3]>((), serial, q, slots);
 }
 
 /// The columns of the Jacobian in world axes at the point p, from the slots of [`forward`]; two
@@ -37,31 +37,42 @@ pub(super) fn forward(serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
 #[inline]
 pub(super) fn jacobian(serial: &Serial, slots: &[AlignedPose], p: &[f64; 4], out: &mut Matrix) {
     #[cfg(target_arch = "x86_64")]
-    if has_avx2() {
+    if let Some(cpu) = Avx2::detect() {
         #[allow(unsafe_code)] // as above
-        // SAFETY: the processor has both features, as just asked.
+        // SAFETY: the token proves that the processor has both features.
         unsafe {
-            jacobian_avx2(serial, slots, p, out);
+            jacobian_avx2(cpu, serial, slots, p, out);
         }
         return;
     }
-    jacobian_with::<[f64; 3]>(serial, slots, p, out);
+    jacobian_with::<[f64; 3]>((), serial, slots, p, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn forward_avx2(serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
-    forward_with::<PackedVec3>(serial, q, slots);
+fn forward_avx2(cpu: Avx2, serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
+    forward_with::<PackedVec3>(cpu, serial, q, slots);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn jacobian_avx2(serial: &Serial, slots: &[AlignedPose], p: &[f64; 4], out: &mut Matrix) {
-    jacobian_with::<PackedVec3>(serial, slots, p, out);
+fn jacobian_avx2(
+    cpu: Avx2,
+    serial: &Serial,
+    slots: &[AlignedPose],
+    p: &[f64; 4],
+    out: &mut Matrix,
+) {
+    jacobian_with::<PackedVec3>(cpu, serial, slots, p, out);
 }
 
 #[inline(always)]
-fn forward_with<T: SingleVector3>(serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
+fn forward_with<T: SingleVector3>(
+    _: T::Cpu,
+    serial: &Serial,
+    q: &[f64],
+    slots: &mut [AlignedPose],
+) {
     let mut frame = serial.start::<T>();
     for (chunk, (joints, angles)) in serial.chunks().enumerate() {
         // All angles first: they wait for nothing, and go four to a register.
@@ -78,6 +89,7 @@ fn forward_with<T: SingleVector3>(serial: &Serial, q: &[f64], slots: &mut [Align
 
 #[inline(always)]
 fn jacobian_with<T: SingleVector3>(
+    _: T::Cpu,
     serial: &Serial,
     slots: &[AlignedPose],
     p: &[f64; 4],

@@ -10,7 +10,7 @@
 use super::small_gemm::{AlignedColumns, LANES};
 use crate::scalar::{Array, Simd4};
 #[cfg(target_arch = "x86_64")]
-use crate::scalar::{Lanes4, has_avx2};
+use crate::scalar::{Avx2, Lanes4};
 
 /// Columns of a block.
 const BLOCK: usize = 8;
@@ -27,17 +27,17 @@ pub(super) fn add_through(
 ) {
     #[cfg(target_arch = "x86_64")]
     if let (Some(from), Some(to)) = (six(from), six(to))
-        && has_avx2()
+        && let Some(cpu) = Avx2::detect()
     {
         #[allow(unsafe_code)] // the one way to call a function compiled for more than the baseline
-        // SAFETY: the processor has both features, as just asked.
+        // SAFETY: the token proves that the processor has both features.
         unsafe {
-            add_through_six(from, factors, to, x, y);
+            add_through_six(cpu, from, factors, to, x, y);
         }
         return;
     }
     for (i, factors) in factors.chunks(BLOCK).enumerate() {
-        add::<Array<4>>(Block::of(from, i), factors, Block::of(to, i), x, y);
+        add::<Array<4>>((), Block::of(from, i), factors, Block::of(to, i), x, y);
     }
 }
 
@@ -52,17 +52,17 @@ pub(super) fn reorthogonalise(
         let factors: [f64; BLOCK] = std::array::from_fn(|l| factor(i * BLOCK + l));
         #[cfg(target_arch = "x86_64")]
         if let Some(columns) = six(columns)
-            && has_avx2()
+            && let Some(cpu) = Avx2::detect()
         {
             #[allow(unsafe_code)] // as above
-            // SAFETY: the processor has both features, as just asked.
+            // SAFETY: the token proves that the processor has both features.
             unsafe {
-                reorthogonalise_six(columns, &factors, x);
+                reorthogonalise_six(cpu, columns, &factors, x);
             }
             return;
         }
         for _ in 0..2 {
-            remove::<Array<4>>(Block::of(columns, i), &factors, x);
+            remove::<Array<4>>((), Block::of(columns, i), &factors, x);
         }
     }
 }
@@ -76,17 +76,24 @@ fn six(columns: &AlignedColumns) -> Option<&[f64; 48]> {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn add_through_six(from: &[f64; 48], factors: &[f64], to: &[f64; 48], x: &[f64], y: &mut [f64]) {
+fn add_through_six(
+    cpu: Avx2,
+    from: &[f64; 48],
+    factors: &[f64],
+    to: &[f64; 48],
+    x: &[f64],
+    y: &mut [f64],
+) {
     let (from, to) = (Block::of_six(from), Block::of_six(to));
-    add::<Lanes4>(from, factors, to, x, y);
+    add::<Lanes4>(cpu, from, factors, to, x, y);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn reorthogonalise_six(columns: &[f64; 48], factors: &[f64; BLOCK], x: &mut [f64]) {
+fn reorthogonalise_six(cpu: Avx2, columns: &[f64; 48], factors: &[f64; BLOCK], x: &mut [f64]) {
     let block = Block::of_six(columns);
-    remove::<Lanes4>(block, factors, x);
-    remove::<Lanes4>(block, factors, x);
+    remove::<Lanes4>(cpu, block, factors, x);
+    remove::<Lanes4>(cpu, block, factors, x);
 }
 
 /// Some columns.
@@ -114,12 +121,19 @@ impl<'a> Block<'a> {
 }
 
 #[inline(always)]
-fn add<R: Simd4>(from: Block<'_>, factors: &[f64], to: Block<'_>, x: &[f64], y: &mut [f64]) {
+fn add<R: Simd4>(
+    _: R::Cpu,
+    from: Block<'_>,
+    factors: &[f64],
+    to: Block<'_>,
+    x: &[f64],
+    y: &mut [f64],
+) {
     combine::<R>(to, &times(coefficients::<R>(from, x), factors, 1.0), y);
 }
 
 #[inline(always)]
-fn remove<R: Simd4>(columns: Block<'_>, factors: &[f64; BLOCK], x: &mut [f64]) {
+fn remove<R: Simd4>(_: R::Cpu, columns: Block<'_>, factors: &[f64; BLOCK], x: &mut [f64]) {
     combine::<R>(columns, &times(coefficients::<R>(columns, x), factors, -1.0), x);
 }
 

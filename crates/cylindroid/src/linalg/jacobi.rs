@@ -23,7 +23,7 @@ use super::small_gemm::{
 };
 use crate::scalar::{Array, Simd4};
 #[cfg(target_arch = "x86_64")]
-use crate::scalar::{Lanes4, has_avx2};
+use crate::scalar::{Avx2, Lanes4};
 use crate::tolerance::JACOBI_ORTHOGONAL;
 
 /// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost
@@ -112,23 +112,23 @@ impl Rotations {
     /// orthogonal, of length 1 or 0; the number of sweeps.
     pub(super) fn run(&mut self, a: &Matrix, factor: f64, start: Start) -> usize {
         #[cfg(target_arch = "x86_64")]
-        if has_avx2() {
+        if let Some(cpu) = Avx2::detect() {
             #[allow(unsafe_code)] // the one way to call a function compiled for more
-            // SAFETY: the processor has both features, as just asked.
-            return unsafe { self.run_avx2(a, factor, start) };
+            // SAFETY: the token proves that the processor has both features.
+            return unsafe { self.run_avx2(cpu, a, factor, start) };
         }
-        self.run_with::<Array<4>>(a, factor, start, self.size())
+        self.run_with::<Array<4>>((), a, factor, start, self.size())
     }
 
     /// Once more for Jacobians of six and seven joints, whose loops are then known.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn run_avx2(&mut self, a: &Matrix, factor: f64, start: Start) -> usize {
+    fn run_avx2(&mut self, cpu: Avx2, a: &Matrix, factor: f64, start: Start) -> usize {
         const SIX: Size = Size { k: 6, long: 8, short: 8 };
         if self.size() == SIX {
-            self.run_with::<Lanes4>(a, factor, start, SIX)
+            self.run_with::<Lanes4>(cpu, a, factor, start, SIX)
         } else {
-            self.run_with::<Lanes4>(a, factor, start, self.size())
+            self.run_with::<Lanes4>(cpu, a, factor, start, self.size())
         }
     }
 
@@ -137,7 +137,14 @@ impl Rotations {
     }
 
     #[inline(always)]
-    fn run_with<R: Simd4>(&mut self, a: &Matrix, factor: f64, start: Start, size: Size) -> usize {
+    fn run_with<R: Simd4>(
+        &mut self,
+        _: R::Cpu,
+        a: &Matrix,
+        factor: f64,
+        start: Start,
+        size: Size,
+    ) -> usize {
         self.load::<R>(a, factor, size);
         if start == Start::Cold {
             self.reset();
@@ -454,7 +461,7 @@ mod tests {
                 let a =
                     Matrix::from_fn(m, n, |i, j| start[(i, j)] + t * ((i + 2 * j) as f64).sin());
                 fast.run(&a, 0.25, from);
-                plain.run_with::<Array<4>>(&a, 0.25, from, plain.size());
+                plain.run_with::<Array<4>>((), &a, 0.25, from, plain.size());
                 for (x, y) in [(&fast.b, &plain.b), (&fast.w, &plain.w)] {
                     for (x, y) in x.data.iter().zip(&y.data) {
                         assert!((x - y).abs() < 1e-11, "{m} x {n}, step {step}: {x} and {y}");

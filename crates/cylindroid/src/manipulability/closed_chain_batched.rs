@@ -24,7 +24,7 @@ use crate::linalg::batched::{
 };
 use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
-use crate::scalar::{Lanes4, has_avx2};
+use crate::scalar::{Avx2, Lanes4};
 use crate::spatial::AlignedPose;
 
 /// Numbers before the singular values.
@@ -113,25 +113,25 @@ impl Kernel {
     /// `q`.
     pub(super) fn run(&self, q: &[f64], n: usize, out: &mut [f64]) {
         #[cfg(target_arch = "x86_64")]
-        if has_avx2() {
+        if let Some(cpu) = Avx2::detect() {
             #[allow(unsafe_code)] // the one way to call a function compiled for more
-            // SAFETY: the processor has both features, as just asked.
+            // SAFETY: the token proves that the processor has both features.
             unsafe {
-                self.run_avx2(q, n, out);
+                self.run_avx2(cpu, q, n, out);
             }
             return;
         }
-        self.run_with::<Array<4>>(q, n, out);
+        self.run_with::<Array<4>>((), q, n, out);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn run_avx2(&self, q: &[f64], n: usize, out: &mut [f64]) {
-        self.run_with::<Lanes4>(q, n, out);
+    fn run_avx2(&self, cpu: Avx2, q: &[f64], n: usize, out: &mut [f64]) {
+        self.run_with::<Lanes4>(cpu, q, n, out);
     }
 
     #[inline(always)]
-    fn run_with<R: SimdFloat>(&self, q: &[f64], n: usize, out: &mut [f64]) {
+    fn run_with<R: SimdFloat>(&self, _: R::Cpu, q: &[f64], n: usize, out: &mut [f64]) {
         let width = self.width();
         let mut scratch = Scratch::of(self, n);
         let blocks = q.chunks(R::LANES * n).zip(out.chunks_mut(R::LANES * width));
@@ -408,8 +408,8 @@ mod tests {
                 .collect();
             let mut plain = vec![0.0; count * kernel.width()];
             let (mut array, mut best) = (plain.clone(), plain.clone());
-            kernel.run_with::<f64>(&q, n, &mut plain);
-            kernel.run_with::<Array<4>>(&q, n, &mut array);
+            kernel.run_with::<f64>((), &q, n, &mut plain);
+            kernel.run_with::<Array<4>>((), &q, n, &mut array);
             kernel.run(&q, n, &mut best);
             assert_eq!(plain, array, "{name}");
             for (i, (p, b)) in plain.iter().zip(&best).enumerate() {

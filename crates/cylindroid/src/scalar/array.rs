@@ -37,6 +37,8 @@ impl<const N: usize> Neg for Array<N> {
 }
 
 impl<const N: usize> Simd for Array<N> {
+    type Cpu = ();
+
     const LANES: usize = N;
     const FUSED: bool = false;
 
@@ -142,7 +144,7 @@ impl Simd4 for Array<4> {
 
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
-    use super::super::{Lanes4, Lanes8, MAX_LANES, has_avx2, has_avx512};
+    use super::super::{Avx2, Avx512, Lanes4, Lanes8, MAX_LANES};
     use super::*;
 
     fn bits<R: Simd>(of: &[R]) -> Vec<u64> {
@@ -152,7 +154,7 @@ mod tests {
 
     /// Registers do what arrays do, to the bit: rows of any length, and whatever numbers there are.
     #[inline(always)]
-    fn as_arrays<R: Simd, const N: usize>() {
+    fn as_arrays<R: Simd, const N: usize>(_: R::Cpu) {
         for n in 0..=9 {
             for stride in [n, n + 1, n + 5] {
                 let from: Vec<f64> = (0..(N - 1) * stride + n).map(|i| i as f64 * 0.37).collect();
@@ -195,25 +197,25 @@ mod tests {
     }
 
     #[target_feature(enable = "avx2,fma")]
-    fn four() {
-        as_arrays::<Lanes4, 4>();
+    fn four(cpu: Avx2) {
+        as_arrays::<Lanes4, 4>(cpu);
     }
 
     #[target_feature(enable = "avx512f,avx2,fma")]
-    fn eight() {
-        as_arrays::<Lanes8, 8>();
+    fn eight(cpu: Avx512) {
+        as_arrays::<Lanes8, 8>(cpu);
     }
 
     #[test]
     #[allow(unsafe_code)]
     fn registers_agree_with_arrays() {
-        // SAFETY: the processor has the features, as asked before each.
+        // SAFETY: the token of each proves that the processor has its features.
         unsafe {
-            if has_avx2() {
-                four();
+            if let Some(cpu) = Avx2::detect() {
+                four(cpu);
             }
-            if has_avx512() {
-                eight();
+            if let Some(cpu) = Avx512::detect() {
+                eight(cpu);
             }
         }
     }

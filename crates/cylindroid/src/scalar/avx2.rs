@@ -1,14 +1,14 @@
 //! Four lanes in a register of x86-64, with AVX2.
 //!
-//! To be named only inside functions that are compiled for AVX2 and FMA and run only where the
-//! processor has them.
+//! Values of these lanes exist only inside functions that are compiled for AVX2 and FMA and take
+//! [`Avx2`], the proof that the processor has them.
 
 #![allow(unsafe_code)] // intrinsics
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Simd, Simd4, trig};
+use super::{Avx2, Simd, Simd4, trig};
 
 /// Sums, differences and products by intrinsics.
 macro_rules! operators {
@@ -211,6 +211,8 @@ pub(super) unsafe fn store_rest(rest: &[Lanes4], to: *mut f64, stride: usize) {
 }
 
 impl Simd for Lanes4 {
+    type Cpu = Avx2;
+
     const LANES: usize = 4;
     const FUSED: bool = true;
 

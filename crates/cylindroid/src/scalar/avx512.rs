@@ -1,7 +1,7 @@
 //! Eight lanes in a register of x86-64, with AVX-512.
 //!
-//! To be named only inside functions that are compiled for AVX-512F, AVX2 and FMA and run only
-//! where the processor has them.
+//! Values of these lanes exist only inside functions that are compiled for AVX-512F, AVX2 and FMA
+//! and take [`Avx512`], the proof that the processor has them.
 
 #![allow(unsafe_code)] // intrinsics
 
@@ -9,7 +9,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::avx2::{Lanes4, operators, rows_in, rows_of, store_rest, store_rows, transposed_rows};
-use super::{Simd, trig};
+use super::{Avx512, Simd, trig};
 
 /// The bit of the sign.
 const SIGN: i64 = i64::MIN;
@@ -53,6 +53,8 @@ impl Neg for Lanes8 {
 }
 
 impl Simd for Lanes8 {
+    type Cpu = Avx512;
+
     const LANES: usize = 8;
     const FUSED: bool = true;
 

@@ -8,6 +8,8 @@ mod array;
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod cpu;
 mod simd_float;
 mod splitmix64;
 mod trig;
@@ -19,6 +21,8 @@ pub(crate) use array::Array;
 pub(crate) use avx2::Lanes4;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx512::Lanes8;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use cpu::{Avx2, Avx512};
 pub(crate) use simd_float::SimdFloat;
 pub(crate) use splitmix64::uniform;
 pub(crate) use trig::sin_cos;
@@ -36,19 +40,6 @@ pub(crate) fn clamp(x: f64, lower: f64, upper: f64) -> f64 {
     }
 }
 
-/// True if the processor has AVX2 and fused products: what four lanes need.
-#[cfg(target_arch = "x86_64")]
-#[inline]
-pub(crate) fn has_avx2() -> bool {
-    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
-}
-
-/// True if the processor has AVX-512: what eight lanes need.
-#[cfg(target_arch = "x86_64")]
-pub(crate) fn has_avx512() -> bool {
-    std::arch::is_x86_feature_detected!("avx512f") && has_avx2()
-}
-
 /// Lanes at the most.
 pub(crate) const MAX_LANES: usize = 8;
 
@@ -56,6 +47,8 @@ pub(crate) const MAX_LANES: usize = 8;
 pub(crate) trait Simd:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
+    /// Proof that the processor has what these lanes need; `()` where they need nothing.
+    type Cpu: Copy;
     /// How many.
     const LANES: usize;
     /// True if [`Simd::mul_add`] rounds once.
@@ -110,6 +103,8 @@ pub(crate) trait Simd4: SimdFloat {
 }
 
 impl Simd for f64 {
+    type Cpu = ();
+
     const LANES: usize = 1;
     const FUSED: bool = false;
 

@@ -185,7 +185,7 @@ fn beyond<R: Simd>(x: R) -> (R, R) {
 mod tests {
     use super::super::Array;
     #[cfg(target_arch = "x86_64")]
-    use super::super::{Lanes4, Lanes8, MAX_LANES, Simd, has_avx2, has_avx512};
+    use super::super::{Avx2, Avx512, Lanes4, Lanes8, MAX_LANES, Simd};
     use super::sin_cos;
     #[cfg(target_arch = "x86_64")]
     use std::array::from_fn;
@@ -236,9 +236,9 @@ mod tests {
     /// [`Simd::sines_cosines`] of rows of lanes: the sines and then the cosines of each row.
     #[cfg(target_arch = "x86_64")]
     macro_rules! of_lanes {
-        ($name:ident, $lanes:ident, $features:literal) => {
+        ($name:ident, $lanes:ident, $cpu:ident, $features:literal) => {
             #[target_feature(enable = $features)]
-            fn $name(rows: &[[f64; MAX_LANES]]) -> Vec<[[f64; MAX_LANES]; 2]> {
+            fn $name(_: $cpu, rows: &[[f64; MAX_LANES]]) -> Vec<[[f64; MAX_LANES]; 2]> {
                 let mut x: Vec<$lanes> = rows.iter().map(|x| $lanes::load(x)).collect();
                 let (mut sines, mut memory) = (x.clone(), x.clone());
                 $lanes::sines_cosines(&mut x, &mut sines, &mut memory);
@@ -253,9 +253,9 @@ mod tests {
     }
 
     #[cfg(target_arch = "x86_64")]
-    of_lanes!(of_four, Lanes4, "avx2,fma");
+    of_lanes!(of_four, Lanes4, Avx2, "avx2,fma");
     #[cfg(target_arch = "x86_64")]
-    of_lanes!(of_eight, Lanes8, "avx512f,avx2,fma");
+    of_lanes!(of_eight, Lanes8, Avx512, "avx512f,avx2,fma");
 
     #[cfg(target_arch = "x86_64")]
     type Many<'a> = &'a dyn Fn(&[[f64; MAX_LANES]]) -> Vec<[[f64; MAX_LANES]; 2]>;
@@ -264,13 +264,13 @@ mod tests {
     #[cfg(target_arch = "x86_64")]
     #[allow(unsafe_code)]
     fn each_form(check: impl Fn(usize, Many<'_>)) {
-        if has_avx2() {
-            // SAFETY: the processor has both features, as just asked.
-            check(4, &|rows| unsafe { of_four(rows) });
+        if let Some(cpu) = Avx2::detect() {
+            // SAFETY: the token proves that the processor has both features.
+            check(4, &|rows| unsafe { of_four(cpu, rows) });
         }
-        if has_avx512() {
+        if let Some(cpu) = Avx512::detect() {
             // SAFETY: as above.
-            check(8, &|rows| unsafe { of_eight(rows) });
+            check(8, &|rows| unsafe { of_eight(cpu, rows) });
         }
     }
 

@@ -28,6 +28,8 @@ pub(crate) trait Vector3Like: Copy {
 
 /// The vector of one configuration.
 pub(crate) trait SingleVector3: Vector3Like<Scalar = f64> {
+    /// Proof that the processor has what it needs; `()` where it needs nothing.
+    type Cpu: Copy;
     /// What several angles are computed with together.
     type Wide: Simd;
     /// The numbers, the fourth one 0.
@@ -80,6 +82,7 @@ impl<R: Simd> Vector3Like for [R; 3] {
 }
 
 impl SingleVector3 for [f64; 3] {
+    type Cpu = ();
     type Wide = f64;
 
     #[inline(always)]
@@ -102,8 +105,8 @@ mod avx2 {
         _mm256_set1_pd, _mm256_setzero_pd, _mm256_storeu_pd, _mm256_sub_pd,
     };
 
-    /// One register: three numbers and a 0. To be named only inside functions that are compiled for
-    /// AVX2 and FMA and run only where the processor has them.
+    /// One register: three numbers and a 0. Values exist only inside functions that are compiled for
+    /// AVX2 and FMA and take [`Avx2`](crate::scalar::Avx2), the proof that the processor has them.
     #[derive(Debug, Clone, Copy)]
     pub(crate) struct PackedVec3(__m256d);
 
@@ -163,6 +166,7 @@ mod avx2 {
     }
 
     impl super::SingleVector3 for PackedVec3 {
+        type Cpu = crate::scalar::Avx2;
         type Wide = crate::scalar::Lanes4;
 
         #[inline(always)]
