@@ -9,7 +9,6 @@
 //! Checked  tests/it/screws/classes.rs
 
 use super::span::{Scale, Span, dot, least_squares_center, over, power_of_two, size};
-use super::system::ScrewSystem;
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank, Svd};
 use crate::spatial::{Twist, Vec3};
@@ -215,31 +214,5 @@ fn decompose(
         rank: Rank { rank: k, threshold, gap },
         conditioning: if k == 0 { 1.0 } else { svd.value(0) / last },
         narrow: svd.values().any(|s| is_narrow(s, threshold, noise)),
-    }
-}
-
-impl ScrewSystem {
-    /// The columns of a matrix that spans the system, as [v(c) / L; w].
-    pub(crate) fn scaled(&self, jacobian: &Matrix) -> Matrix {
-        let mut scaled = Matrix::zeros(6, jacobian.cols());
-        for j in 0..jacobian.cols() {
-            let x = self.scale.apply(Twist::from_array(six(jacobian.column(j))));
-            scaled.column_mut(j).copy_from_slice(&x);
-        }
-        scaled
-    }
-
-    /// A matrix on scaled twists as a matrix on twists.
-    pub(crate) fn unscaled(&self, a: &Matrix) -> Matrix {
-        self.scale.after_scaling(a)
-    }
-
-    /// The coordinates of the columns in the basis of the system (k x m).
-    pub(crate) fn coordinates(&self, jacobian: &Matrix) -> Matrix {
-        let scaled = self.scaled(jacobian);
-        let basis = self.span.vectors();
-        Matrix::from_fn(basis.len(), jacobian.cols(), |i, j| {
-            basis[i].iter().zip(scaled.column(j)).map(|(b, x)| b * x).sum()
-        })
     }
 }

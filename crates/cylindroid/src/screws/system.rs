@@ -18,7 +18,7 @@ use super::class::{Class, NormalForm};
 use super::classify::{Classified, Margin, classify, placed};
 use super::screw::{Line, Screw};
 use super::span::{Scale, Span, dot, join, over, power_of_two, size};
-use super::span_estimation::{ScrewOptions, Tolerances, columns, is_narrow, spanned};
+use super::span_estimation::{ScrewOptions, Tolerances, columns, is_narrow, six, spanned};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank};
 use crate::spatial::{Pose, Twist, Vec3};
@@ -258,4 +258,30 @@ fn principal_screws(form: &NormalForm, canonical: Pose, order: usize) -> Vec<Scr
         screws.reverse();
     }
     screws
+}
+
+impl ScrewSystem {
+    /// The columns of a matrix that spans the system, as [v(c) / L; w].
+    pub(crate) fn scaled(&self, jacobian: &Matrix) -> Matrix {
+        let mut scaled = Matrix::zeros(6, jacobian.cols());
+        for j in 0..jacobian.cols() {
+            let x = self.scale.apply(Twist::from_array(six(jacobian.column(j))));
+            scaled.column_mut(j).copy_from_slice(&x);
+        }
+        scaled
+    }
+
+    /// A matrix on scaled twists as a matrix on twists.
+    pub(crate) fn unscaled(&self, a: &Matrix) -> Matrix {
+        self.scale.after_scaling(a)
+    }
+
+    /// The coordinates of the columns in the basis of the system (k x m).
+    pub(crate) fn coordinates(&self, jacobian: &Matrix) -> Matrix {
+        let scaled = self.scaled(jacobian);
+        let basis = self.span.vectors();
+        Matrix::from_fn(basis.len(), jacobian.cols(), |i, j| {
+            basis[i].iter().zip(scaled.column(j)).map(|(b, x)| b * x).sum()
+        })
+    }
 }

@@ -1,10 +1,10 @@
-//! Other ways to write a rotation: quaternion, roll-pitch-yaw, ZYZ Euler angles.
+//! Euler angles of a rotation: roll-pitch-yaw and ZYZ.
 //!
 //! Formula  rpy: R = Rz(yaw) Ry(pitch) Rx(roll), the URDF's fixed axes x, y, z
 //!          zyz: R = Rz(alpha) Ry(beta) Rz(gamma)
+//!          The first angle is read from its two entries, the last one from the rows of
+//!          Rz(first)^T R, which cancels the rounding error of the first near gimbal lock.
 //! Units    rad; pitch in [-pi/2, pi/2], beta in [0, pi]
-//!          the first angle from its two entries, the last one from the rows of Rz(first)^T R:
-//!          what rounding takes from the first near gimbal lock the last one gives back
 //! Valid    everywhere; at gimbal lock (|pitch| = pi/2, beta = 0 or pi) only a sum of two angles
 //!          is determined: the last one (roll, gamma) is set to zero where the entries are nothing
 //!          but rounding (`tolerance::GIMBAL_LOCK`)
@@ -13,22 +13,8 @@
 
 use super::rotation::Rotation;
 use super::vec3::{Mat3, Vec3};
-use crate::error::{Error, Result};
 use crate::scalar::sin_cos;
 use crate::tolerance::GIMBAL_LOCK;
-
-/// A unit quaternion `w + x i + y j + z k`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quaternion {
-    /// Real part.
-    pub w: f64,
-    /// First imaginary part.
-    pub x: f64,
-    /// Second imaginary part.
-    pub y: f64,
-    /// Third imaginary part.
-    pub z: f64,
-}
 
 /// Roll, pitch and yaw: about the fixed axes x, y, z in this order (rad).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -50,63 +36,6 @@ pub struct Zyz {
     pub beta: f64,
     /// Third, about the turned z.
     pub gamma: f64,
-}
-
-impl Quaternion {
-    /// The rotation of this quaternion, which may have any length but zero.
-    ///
-    /// # Errors
-    /// A quaternion that is zero or not finite.
-    pub fn rotation(self) -> Result<Rotation> {
-        let Self { w, x, y, z } = self;
-        let norm = w.hypot(x).hypot(y).hypot(z);
-        if !(norm > 0.0 && norm.is_finite()) {
-            return Err(Error::InvalidOption {
-                option: "quaternion",
-                value: format!("({w}, {x}, {y}, {z})"),
-                reason: "it must be finite and not zero".to_owned(),
-            });
-        }
-        let (w, x, y, z) = (w / norm, x / norm, y / norm, z / norm);
-        Ok(Rotation::assume(Mat3::from_rows([
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ])))
-    }
-
-    /// The quaternion of a rotation matrix, `w >= 0`; with `w = 0` the first imaginary part that
-    /// is not zero is positive.
-    pub(crate) fn of_matrix(m: Mat3) -> Self {
-        let Self { w, x, y, z } = Self::multiple_of_matrix(m);
-        // The largest is between 1 and 4: squares neither overflow nor matter where they vanish.
-        let scale = 1.0 / (w * w + x * x + y * y + z * z).sqrt();
-        Self { w: w * scale, x: x * scale, y: y * scale, z: z * scale }
-    }
-
-    /// The same before it has length one: between 1 and 4 times as long.
-    pub(crate) fn multiple_of_matrix(m: Mat3) -> Self {
-        let [a, b, c] = m.cols;
-        // Four times the squared components; the largest is at least 1.
-        let squares = [
-            1.0 + a.x + b.y + c.z,
-            1.0 + a.x - b.y - c.z,
-            1.0 - a.x + b.y - c.z,
-            1.0 - a.x - b.y + c.z,
-        ];
-        let largest = (1..4).fold(0, |l, i| if squares[i] > squares[l] { i } else { l });
-        let (yz, zx, xy) = (b.z - c.y, c.x - a.z, a.y - b.x); // 4 w (x, y, z)
-        let (pyz, pzx, pxy) = (b.z + c.y, c.x + a.z, a.y + b.x); // 4 (yz, zx, xy)
-        let s = squares[largest];
-        let (w, x, y, z) = match largest {
-            0 => (s, yz, zx, xy),
-            1 => (yz, s, pxy, pzx),
-            2 => (zx, pxy, s, pyz),
-            _ => (xy, pzx, pyz, s),
-        };
-        let sign = [w, x, y, z].into_iter().find(|v| *v != 0.0).map_or(1.0, f64::signum);
-        Self { w: w * sign, x: x * sign, y: y * sign, z: z * sign }
-    }
 }
 
 impl Rpy {

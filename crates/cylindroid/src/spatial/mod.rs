@@ -9,6 +9,7 @@ mod angles;
 mod exp;
 mod forms;
 mod pose;
+mod quaternion;
 mod rotation;
 mod series;
 mod twist;
@@ -16,12 +17,13 @@ mod vec3;
 mod vector3_like;
 
 pub(crate) use aligned_pose::AlignedPose;
-pub use angles::{Quaternion, Rpy, Zyz};
+pub use angles::{Rpy, Zyz};
 pub use exp::{
     Derivative6, exp, exp_derivative, log, log_derivative, rotation_exp_derivative,
     rotation_log_derivative,
 };
 pub use pose::Pose;
+pub use quaternion::Quaternion;
 pub use rotation::Rotation;
 pub use twist::{Twist, Wrench};
 pub use vec3::{Mat3, Vec3};

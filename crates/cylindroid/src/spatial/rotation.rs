@@ -12,7 +12,7 @@
 
 use std::ops::Mul;
 
-use super::angles::Quaternion;
+use super::quaternion::Quaternion;
 use super::series::atanc;
 use super::vec3::{Mat3, Vec3};
 use crate::error::{Error, Result};
@@ -208,5 +208,29 @@ impl Mul<Vec3> for Rotation {
     #[inline]
     fn mul(self, v: Vec3) -> Vec3 {
         self.matrix * v
+    }
+}
+
+impl Quaternion {
+    /// The rotation of this quaternion, which may have any length but zero.
+    ///
+    /// # Errors
+    /// A quaternion that is zero or not finite.
+    pub fn rotation(self) -> Result<Rotation> {
+        let Self { w, x, y, z } = self;
+        let norm = w.hypot(x).hypot(y).hypot(z);
+        if !(norm > 0.0 && norm.is_finite()) {
+            return Err(Error::InvalidOption {
+                option: "quaternion",
+                value: format!("({w}, {x}, {y}, {z})"),
+                reason: "it must be finite and not zero".to_owned(),
+            });
+        }
+        let (w, x, y, z) = (w / norm, x / norm, y / norm, z / norm);
+        Ok(Rotation::assume(Mat3::from_rows([
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ])))
     }
 }
