@@ -10,11 +10,13 @@
 
 use std::collections::BTreeMap;
 
+use super::damped::gains as damped;
+use super::numerical_filtering::{Filter, gains as numerical_filtering};
 use super::parameter::{Domain, Parameter};
-use super::{
-    damped, numerical_filtering, selectively_damped, singular_value_filtering, truncated,
-    variable_damping,
-};
+use super::selectively_damped::gains as selectively_damped;
+use super::singular_value_filtering::gains as singular_value_filtering;
+use super::truncated::gains as truncated;
+use super::variable_damping::gains as variable_damping;
 use crate::error::{Error, Result};
 use crate::linalg::Svd;
 use crate::tolerance;
@@ -34,13 +36,13 @@ macro_rules! inverse_methods {
             Truncated = "truncated" {
                 /// Relative threshold at which singular values are cut.
                 eps: "-" in Fraction = tolerance::TRUNCATION;
-            } => |svd, _task, out| truncated::gains(svd, eps, out),
+            } => |svd, _task, out| truncated(svd, eps, out),
 
             /// Damped least squares `J^T (J J^T + damping^2)^-1`: smooth everywhere, exact nowhere.
             Damped = "damped" {
                 /// Damping, in the unit of the (scaled) singular values.
                 damping: "rad" in Positive = tolerance::DAMPING;
-            } => |svd, _task, out| damped::gains(svd, damping, out),
+            } => |svd, _task, out| damped(svd, damping, out),
 
             /// Damped least squares with a damping that rises from zero as the smallest singular
             /// value falls below the onset.
@@ -49,7 +51,7 @@ macro_rules! inverse_methods {
                 onset: "-" in Fraction = tolerance::DAMPING_ONSET;
                 /// Damping at the singularity, in the unit of the (scaled) singular values.
                 damping: "rad" in Positive = tolerance::DAMPING;
-            } => |svd, _task, out| variable_damping::gains(svd, onset, damping, out),
+            } => |svd, _task, out| variable_damping(svd, onset, damping, out),
 
             /// Numerical filtering: a little damping in all directions near a singularity, strong
             /// damping along the weakest one.
@@ -64,8 +66,8 @@ macro_rules! inverse_methods {
                 filter: "rad" in Positive = tolerance::DAMPING;
             } => |svd, _task, out| {
                 let weakest = filter;
-                let filter = numerical_filtering::Filter { onset, damping, weakest };
-                numerical_filtering::gains(svd, filter, out)
+                let filter = Filter { onset, damping, weakest };
+                numerical_filtering(svd, filter, out)
             },
 
             /// Selectively damped least squares: each direction is slowed down as far as its joint
@@ -73,7 +75,7 @@ macro_rules! inverse_methods {
             SelectivelyDamped = "selectively-damped" {
                 /// Largest velocity of any joint.
                 max_joint_velocity: "rad/s or m/s" in Positive = std::f64::consts::FRAC_PI_4;
-            } => |svd, task, out| selectively_damped::gains(svd, max_joint_velocity, task, out),
+            } => |svd, task, out| selectively_damped(svd, max_joint_velocity, task, out),
 
             /// Singular value filtering: a smooth function replaces each singular value and never
             /// falls below the floor.
@@ -83,7 +85,7 @@ macro_rules! inverse_methods {
                 shape: "-" in Positive = 10.0;
                 /// Smallest filtered singular value, in the unit of the (scaled) singular values.
                 floor: "rad" in Positive = tolerance::DAMPING;
-            } => |svd, _task, out| singular_value_filtering::gains(svd, shape, floor, out),
+            } => |svd, _task, out| singular_value_filtering(svd, shape, floor, out),
         }
     };
 }

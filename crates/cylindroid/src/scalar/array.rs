@@ -2,9 +2,10 @@
 //! here, and the form that those are compared with.
 
 use std::array::from_fn;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Simd, Simd4};
+use super::simd::{Simd, Simd4, SimdFloat};
+use super::trig;
 
 /// Several numbers side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,7 @@ macro_rules! lane_by_lane {
 lane_by_lane!(Add, add, +);
 lane_by_lane!(Sub, sub, -);
 lane_by_lane!(Mul, mul, *);
+lane_by_lane!(Div, div, /);
 
 impl<const N: usize> Neg for Array<N> {
     type Output = Self;
@@ -116,6 +118,33 @@ impl<const N: usize> Simd for Array<N> {
     #[inline(always)]
     fn all_abs_le(self, limit: f64) -> bool {
         self.0.iter().all(|x| x.abs() <= limit)
+    }
+
+    #[inline(always)]
+    fn sines_cosines(x: &mut [Self], sines: &mut [Self], memory: &mut [Self]) {
+        trig::sines_cosines(x, sines, memory);
+    }
+}
+
+impl<const N: usize> SimdFloat for Array<N> {
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn copysign(self, other: Self) -> Self {
+        Self(from_fn(|i| self.0[i].copysign(other.0[i])))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(from_fn(|i| SimdFloat::max(self.0[i], other.0[i])))
+    }
+
+    #[inline(always)]
+    fn select_lt(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Self(from_fn(|i| f64::select_lt(a.0[i], b.0[i], then.0[i], otherwise.0[i])))
     }
 }
 

@@ -6,9 +6,11 @@
 #![allow(unsafe_code)] // intrinsics
 
 use std::arch::x86_64::*;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Avx2, Simd, Simd4, trig};
+use super::cpu::Avx2;
+use super::simd::{Simd, Simd4, SimdFloat};
+use super::trig;
 
 /// Sums, differences and products by intrinsics.
 macro_rules! operators {
@@ -342,4 +344,46 @@ impl Simd for Lanes4 {
 #[inline(never)]
 fn sines_cosines(x: &mut [Lanes4], sines: &mut [Lanes4], memory: &mut [Lanes4]) {
     trig::sines_cosines(x, sines, memory);
+}
+
+impl Div for Lanes4 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_div_pd(self.0, other.0) })
+    }
+}
+
+impl SimdFloat for Lanes4 {
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+
+    #[inline(always)]
+    fn copysign(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            Self(_mm256_or_pd(_mm256_andnot_pd(sign, self.0), _mm256_and_pd(sign, other.0)))
+        }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn select_lt(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let less = _mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0);
+            Self(_mm256_blendv_pd(otherwise.0, then.0, less))
+        }
+    }
 }

@@ -9,7 +9,9 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::avx2::{Lanes4, operators, rows_in, rows_of, store_rest, store_rows, transposed_rows};
-use super::{Avx512, Simd, trig};
+use super::cpu::Avx512;
+use super::simd::Simd;
+use super::trig;
 
 /// The bit of the sign.
 const SIGN: i64 = i64::MIN;

@@ -5,7 +5,7 @@
 //!          lanes that the processor lacks.
 //! Why so   a token has no size: it costs no instruction, where a flag passed along would be tested
 //!          again. A check at each call alone leaves the proof to a comment.
-//! Checked  kinematics/serial_batched.rs::lanes_agree_with_plain_numbers
+//! Checked  src/kinematics/serial_batched.rs::lanes_agree_with_plain_numbers
 
 /// Proof of AVX2 and fused multiply-add: what four lanes need.
 #[derive(Debug, Clone, Copy)]

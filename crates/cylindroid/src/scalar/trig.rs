@@ -12,7 +12,7 @@
 //! Checked  `tests::agrees_with_std`, `tests::handles_every_quadrant_and_bad_input`,
 //!          `tests::lanes_agree_with_std`, `tests::many_are_as_each`
 
-use super::{MAX_LANES, Simd};
+use super::simd::{MAX_LANES, Simd};
 
 const LARGE: f64 = 1e5;
 const TWO_OVER_PI: f64 = std::f64::consts::FRAC_2_PI;
