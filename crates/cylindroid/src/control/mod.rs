@@ -4,9 +4,9 @@
 //! fastest law on this path that keeps every bound. A servo follows a move, or goes straight at a
 //! pose.
 //!
-//! [`HybridController`] and [`SharedController`] give a twist from a projector on a screw system: motions and
-//! contact wrenches controlled side by side, a robot and an operator on one tool. A servo carries
-//! it out as the feed-forward of a [`Target`] at the tool's own pose.
+//! [`HybridController`] and [`SharedController`] give a twist from a projector on a screw system:
+//! motions and contact wrenches controlled side by side, a robot and an operator on one tool. A
+//! servo carries it out as the feed-forward of a [`Target`] at the tool's own pose.
 
 mod laws;
 mod motion;

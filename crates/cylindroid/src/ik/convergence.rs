@@ -1,5 +1,5 @@
-//! Convergence of the numerical iteration: the errors of a configuration, the damping and step bound
-//! that single and batched restarts share, and when a restart is abandoned.
+//! Convergence of the numerical iteration: the errors of a configuration, the damping and step
+//! bound that single and batched restarts share, and when a restart is abandoned.
 //!
 //! Units    m, rad; squared errors are scaled as in `levenberg_marquardt.rs` [-]
 //! Checked  tests/it/ik.rs, tests in `levenberg_marquardt.rs` (single against batched restarts)

@@ -2,8 +2,8 @@
 //!
 //! [`solve`] takes any tree, any number of joints and end effectors, whole poses or some components
 //! of them, and keeps all position limits. It answers with a configuration that was checked by
-//! forward kinematics, or with the nearest one that it found and why it stopped. Whole poses of arms
-//! whose axes have a structure are solved by formulas, which [`Analytic`] gives alone.
+//! forward kinematics, or with the nearest one that it found and why it stopped. Whole poses of
+//! arms whose axes have a structure are solved by formulas, which [`Analytic`] gives alone.
 //!
 //! ```
 //! use cylindroid::ik::{Goal, IkOptions, solve};

@@ -26,8 +26,8 @@ pub struct IkOptions {
     pub initial_guess: Option<Vec<f64>>,
     /// Coordinates that keep the values of the start: their places.
     pub fixed: Vec<usize>,
-    /// Prefer the answer that is nearest to the start over the one that is found first. Of answers by
-    /// formulas it is always the nearest.
+    /// Prefer the answer that is nearest to the start over the one that is found first. Of answers
+    /// by formulas it is always the nearest.
     pub nearest: bool,
     /// Of the postures that are drawn where the start leads nowhere: the same seed gives the same
     /// answer.

@@ -1,10 +1,11 @@
 //! Inverse kinematics: attempts from the start and from drawn postures, until one reaches.
 //!
-//! Method   formulas first, where the axes have a structure that they take. Else, or where they leave
-//!          something open, attempts: the first starts at the given posture, the others at postures
-//!          drawn evenly within the limits (in [-pi, pi] where there are none, or where a whole turn
-//!          changes nothing), the same on every run, four at once where race.rs can. What an attempt
-//!          reaches is an answer: within the limits, and within tolerance by forward kinematics
+//! Method   formulas first, where the axes have a structure that they take. Else, or where they
+//!          leave something open, attempts: the first starts at the given posture, the others at
+//!          postures drawn evenly within the limits (in [-pi, pi] where there are none, or where a
+//!          whole turn changes nothing), the same on every run, four at once where race.rs can.
+//!          What an attempt reaches is an answer: within the limits, and within tolerance by
+//!          forward kinematics
 //! Valid    any tree. To find nothing proves nothing, but where the target is farther from the
 //!          first joint than the chain is long
 //! Source   restarts: Beeson & Ames 2015 (TRAC-IK)

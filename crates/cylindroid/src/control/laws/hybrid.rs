@@ -14,7 +14,8 @@
 //! Why so   selecting rows of a task frame, or projecting orthogonally on S and on what is left of
 //!          R^6, mixes metres and radians: another origin commands another motion. Here the two
 //!          parts do not interfere in any frame: the force part gives way along Z alone, for
-//!          wrenches that do no work on S; the position part moves along S, on which they do no work
+//!          wrenches that do no work on S; the position part moves along S, on which they do no
+//!          work
 //! Source   Donelan & Selig, section 6.3; the flaw of the first formulation (Raibert & Craig 1981):
 //!          Lipkin & Duffy 1988
 //! Checked  tests/it/servo/hybrid.rs, examples/03_write_on_a_tilted_plane.rs

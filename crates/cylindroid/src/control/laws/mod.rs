@@ -2,8 +2,9 @@
 //! operator, for a servo to carry out.
 //!
 //! Read `admittance` (a twist from a wrench), `hybrid` (motion and force control in complementary
-//! subspaces), `shared` and `operator_authority` (robot and operator on one tool), then `internal_force`
-//! (the squeeze on a grasped object). No law reads the servo or another wing but the solver's result.
+//! subspaces), `shared` and `operator_authority` (robot and operator on one tool), then
+//! `internal_force` (the squeeze on a grasped object). No law reads the servo or another wing but
+//! the solver's result.
 
 mod admittance;
 mod hybrid;

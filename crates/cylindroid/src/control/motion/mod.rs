@@ -2,7 +2,8 @@
 //!
 //! Read `time_law` (one coordinate over time), `path` (the geometry of a Cartesian motion),
 //! `cartesian_move` and `joint_move` (both together), then `simulation` (a servo simulated until it
-//! arrives or stalls) and `reconfiguration` (a configuration that reaches the target where the servo did not).
+//! arrives or stalls) and `reconfiguration` (a configuration that reaches the target where the
+//! servo did not).
 
 mod cartesian_move;
 mod joint_move;

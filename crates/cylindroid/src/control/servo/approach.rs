@@ -1,50 +1,53 @@
-//! How fast a target is approached: slow enough that joints with weak accelerations stop at it.
+//! Approach to a target: slow enough that joints with small acceleration limits stop at it.
 //!
-//! Formula  x = s K e + feed-forward, s = min(1, min_i v_i(|d_i|) / |r_i|) with d = J+ e the way
-//!          that is left to joint i, r = J+ K e the rates without a bound, v_i(d) the largest rate
-//!          from which `BRAKING` of its acceleration limit stops within d (`limits.rs`)
+//! Formula  x = s K e + feed-forward, s = min(1, min_i v_i(|d_i|) / |r_i|) with d = J+ e the
+//!          remaining displacement of joint i, r = J+ K e the unbounded velocities, v_i(d) the
+//!          largest velocity from which `BRAKING` of its acceleration limit stops within d
+//!          (`limits.rs`)
 //! Shapes   e, x: m; d, r: n          Units  d in rad or m, r in rad/s or m/s, s [-]
-//! Valid    any target; s = 1 for joints without acceleration limits, and near the target for all
-//!          (d < 2 A / K^2). One s for all joints keeps the way straight. J+ e is of first order:
-//!          a joint whose way is curved corrects with the rest of its acceleration
-//! Why so   K e alone falls with e: the deceleration K^2 d that it asks for is beyond a weak joint,
-//!          which then swings past the target and back
+//! Valid    any target; s = 1 for joints without acceleration limits, and for all joints near the
+//!          target (d < 2 A / K^2). One s for all joints keeps the path straight. J+ e is of first
+//!          order: a joint on a curved path corrects with the remaining acceleration
+//! Why so   K e alone falls with e: its deceleration K^2 d exceeds the limit of a weak joint, which
+//!          then overshoots the target and oscillates
 //! Checked  tests/it/servo/steps.rs::weak_joints_arrive
 
-use super::limits::{stopping_distance_bound, stopping_rate};
+use super::limits::{stopping_distance_bound, stopping_velocity};
 use crate::inverse::Method;
 use crate::model::Limits;
 
-/// Share of the acceleration limit that is counted on for braking [-].
+/// Share of the acceleration limit reserved for braking [-].
 const BRAKING: f64 = 0.8;
 
-/// The share s of the feedback that lets every joint stop at the end of its way: `ways` and `rates`
-/// in scaled coordinates, `columns` the scales.
-pub(super) fn share(
-    ways: &[f64],
-    rates: &[f64],
+/// The scale s of the feedback that lets every joint stop at its goal: `displacements` and
+/// `velocities` in scaled coordinates, `columns` the scales.
+pub(super) fn scale(
+    displacements: &[f64],
+    velocities: &[f64],
     columns: &[f64],
     limits: &[Limits],
     dt: f64,
 ) -> f64 {
     let mut share = 1.0_f64;
-    for (((way, rate), scale), limit) in ways.iter().zip(rates).zip(columns).zip(limits) {
+    for (((way, rate), scale), limit) in
+        displacements.iter().zip(velocities).zip(columns).zip(limits)
+    {
         let (way, rate) = ((way * scale).abs(), (rate * scale).abs());
         let a = BRAKING * limit.acceleration;
-        // Most rates stop within their way by a bound of what they need.
+        // For most joints an upper bound of the stopping distance suffices.
         if way > stopping_distance_bound(rate, a, dt) {
             continue;
         }
-        // A joint that cannot be moved at all is left to the saturation.
+        // A joint that cannot move is left to the saturation.
         if a > 0.0 && rate > 0.0 {
-            share = share.min(stopping_rate(way, a, dt) / rate);
+            share = share.min(stopping_velocity(way, a, dt) / rate);
         }
     }
     share
 }
 
-/// The method with its own bound of the rates slowed in the same share: without that, selectively
-/// damped least squares would give back what the twist loses.
+/// The method with its own velocity bound scaled by the same factor: otherwise selectively damped
+/// least squares would restore what the scaling removes.
 pub(super) fn slowed(method: Method, share: f64) -> Method {
     match method {
         Method::SelectivelyDamped { max_joint_velocity } => {

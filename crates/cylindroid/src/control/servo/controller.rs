@@ -1,17 +1,17 @@
-//! The servo: one step from joint positions and a target pose to joint rates.
+//! The servo: one step from joint positions and a target pose to joint velocities.
 //!
 //! Formula  x = s gain * error + feed-forward, s of `approach.rs`, error = [p_d - p; log(R_d R^T)]
-//!          (world axes), saturated to the largest speeds, then projected (`projection.rs`);
-//!          rates = J+ x + P z: J+ the chosen inverse of the task Jacobian with linear rows divided
-//!          by L, z the secondary joint velocities, P the null-space projector; then position, velocity and
-//!          acceleration limits (`limits.rs`, `solver/direct.rs`)
-//! Shapes   task m <= 6 components, n joints that move the end effector; rates for all joints
+//!          (world axes), saturated at the speed limits, then projected (`projection.rs`);
+//!          joint velocities = J+ x + P z: J+ the chosen inverse of the task Jacobian with linear
+//!          rows divided by L, z the velocities of the secondary tasks, P the null-space projector;
+//!          then position, velocity and acceleration limits (`limits.rs`, `solver/direct.rs`)
+//! Shapes   task m <= 6 components, n joints that move the end effector; velocities of all joints
 //! Units    m, rad, s
-//! Loops    of closed chains are kept by `coupled.rs`: there the unknowns are what the drives can do
-//! Valid    gain * dt < 2; any rank. No allocation; at most 4 n + 1 decompositions a step. Closed
+//! Loops    closed chains are constrained by `coupled.rs`: the unknowns are the actuated motions
+//! Valid    gain * dt < 2; any rank. No allocation, at most 4 n + 1 decompositions per step; closed
 //!          chains allocate
-//! Fails    on numbers that are not finite, also where the twist or the rates overflow; rates,
-//!          target and the watch for stalls stay as they were
+//! Fails    on non-finite input, and when the twist or the joint velocities overflow; on error the
+//!          servo's state is unchanged
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
@@ -37,7 +37,7 @@ use crate::screws::NoInverse;
 use crate::spatial::Pose;
 use crate::tolerance::GENERIC_RANK;
 
-/// Postures that are asked for the rank of the arm.
+/// Configurations sampled for the generic rank.
 const GENERIC_CONFIGURATIONS: usize = 3;
 
 /// A Cartesian controller for one end effector.
@@ -45,42 +45,42 @@ const GENERIC_CONFIGURATIONS: usize = 3;
 pub struct Servo {
     mechanism: Mechanism,
     options: ServoOptions,
-    /// The inverse of this step.
+    /// The inverse used in this step.
     method: Method,
     chain: Chain,
     space: TaskSpace,
     limits: Vec<Limits>,
     braking_margins: Vec<BrakingMargin>,
-    /// True if a joint has a limit of its acceleration.
+    /// True if any joint has an acceleration limit.
     accelerates: bool,
     /// Length of the chain after its first joint (m).
     length: f64,
-    /// Rank of the task Jacobian in postures that are not singular.
+    /// Rank of the task Jacobian at non-singular configurations.
     generic_rank: usize,
 
     task: Matrix,
     svd: Svd,
     gains: Vec<f64>,
-    /// Directions realised by at least half.
+    /// Directions with a gain times singular value of at least one half.
     kept: Vec<bool>,
     x: Vec<f64>,
-    /// J rates, the part of x that is carried out.
+    /// J times the joint velocities: the realised part of x.
     achieved_twist: Vec<f64>,
     error: Vec<f64>,
-    /// The error as projected.
+    /// The error after projection.
     projected_error: Vec<f64>,
     step_projection: StepProjection,
     primary: Vec<f64>,
     secondary: Vec<f64>,
-    /// Bounds of the rates, and the same in scaled coordinates.
+    /// Bounds of the joint velocities, and the same in scaled coordinates.
     own_bounds: Vec<VelocityBounds>,
     bounds: Vec<VelocityBounds>,
     saturator: Saturator,
     /// Derivatives of the Jacobian, where a secondary task needs them.
     hessian: Vec<Matrix>,
-    /// For closed chains.
+    /// Closed chains only.
     coupled: Option<Box<Coupled>>,
-    /// True if the last step commanded rest before a motion that the drives do not steer.
+    /// True if the last step stopped before a type II singularity.
     approaches_type_ii: bool,
 
     rates: Vec<f64>,
@@ -95,8 +95,9 @@ impl Servo {
     /// A servo at rest.
     ///
     /// # Errors
-    /// Options that make no controller; see [`ServoOptions::check`]. A closed chain whose loops do
-    /// not close near its home posture, or whose drives leave the end effector a motion of its own.
+    /// Options that do not define a controller, see [`ServoOptions::check`]; a closed chain that
+    /// cannot be assembled near its home configuration, or whose actuated joints do not control
+    /// every motion of the end effector.
     pub fn new(mechanism: &Mechanism, options: ServoOptions) -> Result<Self> {
         options.check(mechanism)?;
         let chain = if mechanism.is_closed() {
@@ -116,7 +117,7 @@ impl Servo {
             });
         }
         let closing = mechanism.loops().iter().filter(|l| l.actuated);
-        // The position of a closing joint is no coordinate.
+        // The position of a loop-closure joint is not a coordinate.
         let closing = closing.map(|l| {
             let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
             Limits { lower, upper, ..l.limits }
@@ -142,7 +143,7 @@ impl Servo {
             None
         };
         let rates = limits.len();
-        // What is decomposed: the rates of the joints, or what the drives can do.
+        // The unknowns: joint velocities, or actuated motions.
         let unknowns = coupled.as_ref().map_or(n, |c| c.actuated_joints());
         let hessian = if options.secondary.iter().any(SecondaryTask::needs_hessian) {
             vec![Matrix::zeros(6, n); n]
@@ -192,17 +193,17 @@ impl Servo {
         Ok(servo)
     }
 
-    /// The largest rank of the task Jacobian in a few postures without pattern.
+    /// The largest rank of the task Jacobian over a few generic configurations.
     fn find_generic_rank(&mut self) -> usize {
         let n = self.mechanism.n();
         (1..=GENERIC_CONFIGURATIONS)
             .map(|posture| {
-                // Irrational steps: no posture is aligned with another or with the axes.
+                // Irrational steps: no configuration is aligned with another or with the axes.
                 let mut q: Vec<f64> =
                     (0..n).map(|i| 0.3 + ((posture * n + i) as f64 * 0.618_034).fract()).collect();
                 for (x, c) in q.iter_mut().zip(self.mechanism.coordinates()) {
                     if c.limits.lower == c.limits.upper {
-                        *x = c.limits.lower; // the one place that it has
+                        *x = c.limits.lower; // its only position
                     }
                 }
                 self.chain.set(&q);
@@ -213,7 +214,7 @@ impl Servo {
             .unwrap_or(0)
     }
 
-    /// The same for a closed chain, in postures near its home.
+    /// The same for a closed chain, at configurations near home.
     fn find_actuated_rank(&mut self) -> Result<usize> {
         let (mut rank, mut closed, mut free) = (0, 0, None);
         for posture in 0..=GENERIC_CONFIGURATIONS {
@@ -233,16 +234,16 @@ impl Servo {
         Err(super::coupled::not_actuated(&self.mechanism, &motion, self.options.task))
     }
 
-    /// One step: the rates to command from now until the next step are in [`Servo::rates`].
+    /// One step: [`Servo::joint_velocities`] are to be commanded until the next step.
     ///
     /// # Errors
-    /// A `q` of the wrong size, or numbers that are not finite; the servo stays as it was.
+    /// A `q` of the wrong size or non-finite input; the servo is unchanged.
     pub fn step(&mut self, q: &[f64], target: impl Into<Target>) -> Result<Step> {
         self.step_with(q, target, &[])
     }
 
-    /// [`Servo::step`] with desired joint rates of the caller (all n of them, or none), projected
-    /// on the null space like the secondary tasks: moving an elbow by hand.
+    /// [`Servo::step`] with additional joint velocities (all n, or empty), projected onto the null
+    /// space like the secondary tasks: to move an elbow by hand, for example.
     ///
     /// # Errors
     /// As [`Servo::step`].
@@ -318,21 +319,21 @@ impl Servo {
         })
     }
 
-    /// The rates of the last step, for all n coordinates [rad/s or m/s]: in a closed chain driven
-    /// and passive ones.
+    /// Joint velocities of the last step, of all n coordinates [rad/s or m/s]: actuated and passive
+    /// ones in a closed chain.
     #[must_use]
     pub fn joint_velocities(&self) -> &[f64] {
         &self.rates[..self.mechanism.n()]
     }
 
-    /// The rates of driven joints that close loops, in the order of `Mechanism::loops`
-    /// [rad/s or m/s].
+    /// Velocities of actuated loop-closure joints, in the order of `Mechanism::loops` [rad/s or
+    /// m/s].
     #[must_use]
     pub fn loop_closure_velocities(&self) -> &[f64] {
         &self.rates[self.mechanism.n()..]
     }
 
-    /// The limits that set a rate in the last step: place in `q` and kind.
+    /// The limits that bounded a joint velocity in the last step: index in `q` and kind.
     pub fn active_limits(&self) -> impl Iterator<Item = (usize, LimitKind)> + '_ {
         self.chain
             .coordinates()
@@ -341,7 +342,7 @@ impl Servo {
             .filter_map(|(&c, kind)| kind.map(|k| (c, k)))
     }
 
-    /// Why the last step got no nearer to the target.
+    /// The reason why the last step made no progress towards the target.
     #[must_use]
     pub fn stall(&self) -> Stall {
         let motion = self.coupled.as_ref().and_then(|c| c.uncontrolled());
@@ -362,15 +363,15 @@ impl Servo {
         })
     }
 
-    /// Why the projection that was asked for was not used in the last step: the fallback was, or
-    /// the arm was stopped.
+    /// The reason why the requested projection was not used in the last step, but its fallback, or
+    /// why the arm was stopped.
     #[must_use]
     pub fn no_inverse(&self) -> Option<NoInverse> {
         self.step_projection.reason()
     }
 
-    /// True if the last step commanded rest because neither the projection nor a fallback exists,
-    /// or because a motion of the object is about to escape the drives.
+    /// True if the last step stopped the arm because neither the projection nor a fallback exists,
+    /// or before a type II singularity, where the object would gain an uncontrolled motion.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.step_projection.is_stopped() || self.approaches_type_ii
@@ -388,7 +389,7 @@ impl Servo {
         &self.mechanism
     }
 
-    /// Forgets the last rates and target: the joints stand still.
+    /// Resets the servo to rest: clears the last joint velocities and the target.
     pub fn reset(&mut self) {
         self.rates.fill(0.0);
         self.stall_detector = StallDetector::new();
@@ -396,11 +397,11 @@ impl Servo {
         self.approaches_type_ii = false;
     }
 
-    /// Moves `q` by the rates of the last step, for simulation; passive joints of a closed chain
-    /// go where the loops are closed.
+    /// Integrates `q` by the joint velocities of the last step, for simulation; the passive joints
+    /// of a closed chain are assembled.
     ///
     /// # Panics
-    /// If `q` is shorter than the mechanism's.
+    /// If `q` is shorter than the mechanism's number of coordinates.
     pub fn advance(&self, q: &mut [f64]) {
         self.mechanism.integrate_in_place(q, self.joint_velocities(), self.options.dt);
         if let Some(coupled) = &self.coupled {
@@ -408,7 +409,7 @@ impl Servo {
         }
     }
 
-    /// The coordinates that move the end effector: places in `q`, ascending.
+    /// The coordinates that move the end effector: indices in `q`, ascending.
     #[must_use]
     pub fn coordinates(&self) -> &[usize] {
         self.chain.coordinates()
@@ -433,7 +434,7 @@ impl Servo {
         if largest == 0.0 { 0.0 } else { self.svd.value(self.svd.len() - 1) / largest }
     }
 
-    /// Distances say nothing where the task has not all of the position.
+    /// Distances prove nothing unless the task constrains the whole position.
     fn offset_of_free_position(&self) -> f64 {
         if self.options.task.components[..3] == [true; 3] { 0.0 } else { f64::INFINITY }
     }

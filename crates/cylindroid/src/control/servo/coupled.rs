@@ -1,14 +1,15 @@
-//! Joints that loops couple: the servo's view of a closed chain, a hand with its object, two arms
-//! with one.
+//! Closed chains in the servo: joints coupled by loops and contacts, hands with an object, two arms
+//! holding one object.
 //!
-//! Formula  rates = M y + s_0 (`closure/mobility/actuation_map.rs`), s_0 the way to closed loops within one step;
-//!          the task is J M y = x, its least y the least weighted effort of the actuated joints; limits
-//!          hold for all joints (`solver/reduced.rs`)
+//! Formula  joint velocities = M y + s_0 (`closure/mobility/actuation_map.rs`), s_0 the correction
+//!          that closes the loops within one step; the task is J M y = x, its minimum-norm solution
+//!          y the least weighted effort of the actuated joints; limits apply to all joints
+//!          (`solver/reduced.rs`)
 //! Shapes   M: (n + e) x a, columns beyond p zero; J: m x n; y: a
-//! Units    rates over the roots of the joint weights inside, as in `task_space.rs`
-//! Valid    any mechanism whose drives steer its object. Allocates: loops are looked at anew in
-//!          every step
-//! Stops    where a motion of the object is about to escape the drives (type II singularity)
+//! Units    velocities over the roots of the joint weights internally, as in `task_space.rs`
+//! Valid    any mechanism whose actuated joints control its object. Allocates: the loops are
+//!          analysed again in every step
+//! Stops    before a type II singularity, where the object would gain an uncontrolled motion
 //! Checked  tests/it/servo/object.rs
 
 use super::task_space::TaskSpace;
@@ -28,18 +29,18 @@ pub(super) struct Coupled {
     locked: Vec<usize>,
     actuated: usize,
     actuation_map: ActuationMap,
-    /// J in weighted rates, m x n.
+    /// J in weighted velocities, m x n.
     pub(super) task: Matrix,
     pub(super) reduced: ReducedSolver,
-    /// The motion that is about to become uncontrolled, with its actuated share.
+    /// The controlled motion with the smallest actuated share, if that share is small.
     uncontrolled: Option<UncontrolledMotion>,
 }
 
-/// A motion that drives steer weakly.
+/// A motion with a small actuated share.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct UncontrolledMotion {
     pub(super) share: f64,
-    /// What it does in the task (scaled), of length one.
+    /// Its twist in the task (scaled), of unit length.
     pub(super) direction: Vec<f64>,
 }
 
@@ -67,21 +68,21 @@ impl Coupled {
         })
     }
 
-    /// Number of driven joints: the size of y.
+    /// Number of actuated joints: the size of y.
     pub(super) fn actuated_joints(&self) -> usize {
         self.actuated
     }
 
-    /// Number of independent motions that the drives steer: the columns of M that are not zero.
+    /// Number of independent actuated motions: the non-zero columns of M.
     pub(super) fn actuated_motions(&self) -> usize {
         self.actuation_map.motions.cols()
     }
 
-    /// Looks at the loops of `q`, with `self.task` as the task there, and writes J M. `space`
-    /// scales the rates.
+    /// Analyses the loops at `q`, with `self.task` the task there, and computes J M. `space` scales
+    /// the velocities.
     ///
     /// # Errors
-    /// Loops that are open by more than `NEARLY_CLOSED`.
+    /// Loops with a closure error above `NEARLY_CLOSED`.
     pub(super) fn load(
         &mut self,
         q: &[f64],
@@ -97,8 +98,7 @@ impl Coupled {
                 option: "q",
                 value: format!("loops open by {distance:.3e} m, {angle:.3e} rad"),
                 reason: format!(
-                    "a servo keeps the loops of '{}' closed, it does not close them; assemble it \
-                     first",
+                    "a servo maintains the loops of '{}' but does not close them; assemble it first",
                     self.mechanism.name()
                 ),
             });
@@ -122,8 +122,7 @@ impl Coupled {
         Ok(())
     }
 
-    /// The motion of the task that the drives have least of where they steer so, and where that is
-    /// little.
+    /// The motion of the task with the smallest actuated share, if that share is small.
     fn find_uncontrolled(
         &self,
         actuation_map: &ActuationMap,
@@ -138,7 +137,7 @@ impl Coupled {
             |(share, motion)| {
                 let mut direction = in_task(motion);
                 let size = norm(&direction);
-                // A joint that spins alone does not move the object.
+                // A joint that rotates alone does not move the object.
                 (size > UNACTUATED).then(|| {
                     direction.iter_mut().for_each(|x| *x /= size);
                     UncontrolledMotion { share, direction }
@@ -147,13 +146,13 @@ impl Coupled {
         )
     }
 
-    /// The motion that is about to escape, if any.
+    /// The motion with a small actuated share, if any.
     pub(super) fn uncontrolled(&self) -> Option<&UncontrolledMotion> {
         self.uncontrolled.as_ref()
     }
 
-    /// True where the motion that escapes would have less of the drives after a step with these
-    /// weighted rates.
+    /// True if the actuated share of that motion decreases in a step with these weighted
+    /// velocities.
     pub(super) fn approaches_type_ii(
         &self,
         q: &[f64],
@@ -169,20 +168,21 @@ impl Coupled {
         Ok(self.find_uncontrolled(&ahead, space).is_some_and(|then| then.share <= now.share))
     }
 
-    /// Projects joint velocities of the secondary tasks (all joints, not weighted) on the actuated motions.
+    /// Projects the velocities of the secondary tasks (all joints, unweighted) onto the actuated
+    /// motions.
     pub(super) fn load_secondary(&mut self, velocities: &[f64]) {
         self.reduced.secondary = self.actuation_of(velocities);
     }
 
-    /// The y of rates of all joints (not weighted).
+    /// The actuation y of velocities of all joints (unweighted).
     pub(super) fn actuation_of(&self, rates: &[f64]) -> Vec<f64> {
         let mut y = self.actuation_map.project(rates);
         y.resize(self.actuated, 0.0);
         y
     }
 
-    /// Moves `q`, which the last rates have moved, to where the loops are closed: the drives where
-    /// they are if the loops let them.
+    /// Assembles the loops of `q` after integration: the actuated joints keep their values if the
+    /// loops permit it.
     pub(super) fn close(&self, q: &mut [f64]) {
         let coordinates = self.mechanism.coordinates();
         let driven: Vec<usize> = (0..q.len()).filter(|&i| coordinates[i].actuated).collect();
@@ -195,19 +195,19 @@ impl Coupled {
     }
 }
 
-/// The error of loops that do not close.
+/// The error for loops that cannot be closed.
 pub(super) fn not_assembled(mechanism: &Mechanism) -> Error {
     Error::Model {
         model: mechanism.name().to_owned(),
         culprit: String::new(),
         message: format!(
-            "the loops of '{}' do not close near its home posture; see `assemble`",
+            "the loops of '{}' cannot be closed near its home configuration; see `assemble`",
             mechanism.name()
         ),
     }
 }
 
-/// The error of drives that leave the object a motion in every posture.
+/// The error for actuated joints that leave the object an uncontrolled motion everywhere.
 pub(super) fn not_actuated(
     mechanism: &Mechanism,
     motion: &UncontrolledMotion,
@@ -220,8 +220,8 @@ pub(super) fn not_actuated(
         model: mechanism.name().to_owned(),
         culprit: String::new(),
         message: format!(
-            "with the driven joints at rest the end effector of '{}' still moves ({}); drive more \
-             joints, or leave these components out of the task",
+            "with the actuated joints at rest the end effector of '{}' can still move ({}); actuate \
+             more joints, or leave these components out of the task",
             mechanism.name(),
             parts.join(", ")
         ),
@@ -240,8 +240,8 @@ mod tests {
     use crate::linalg::Svd;
     use crate::scalar::uniform;
 
-    /// Without loops it is the saturation of a tree: the same scale and rates where the direction
-    /// is kept; where it is bent, rates within the bounds that are no better than the best.
+    /// Without loops it is the solver for trees: the same scale and velocities if the direction is
+    /// kept; otherwise feasible velocities that are no better than the optimum.
     #[test]
     fn without_loops_it_is_the_saturation_of_a_tree() {
         let mut state = 5_u64;
@@ -302,8 +302,8 @@ mod tests {
             };
             if saturation.direction_lost {
                 bent += 1;
-                // The best, but for joints that a pull below `RELEASE` would have released: by
-                // convexity that is worth this much at the most.
+                // The optimum, except for joints whose gradient is below `RELEASE`: by convexity
+                // they are worth at most this much.
                 let apart: f64 = found.iter().zip(&rates).map(|(a, b)| (a - b).abs()).sum();
                 let pull = RELEASE * Svd::of(&task).value(0) * left(&rates).sqrt();
                 assert!(left(&found) >= left(&rates) - 2.0 * pull * apart - 1e-9);

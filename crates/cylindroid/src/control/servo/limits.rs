@@ -1,19 +1,19 @@
-//! The rates that a coordinate may take in the next step: position, velocity and acceleration
-//! limits as one interval.
+//! Velocity bounds of a joint for the next step: position, velocity and acceleration limits as one
+//! interval.
 //!
 //! Formula  |v| <= V;  |v - v_before| <= A dt;  and v small enough that braking with A, step by
-//!          step, still stops before the position limit: room >= D(v), D the stopping distance of
-//!          the discrete motion v, v - A dt, v - 2 A dt, ...
+//!          step, stops before the position limit: d >= D(v), d the distance to the limit, D the
+//!          stopping distance of the discrete motion v, v - A dt, v - 2 A dt, ...
 //! Stopping with x = v / (A dt), k = floor(x), f = x - k:
-//!          D / (A dt^2) = (k + 1) (k / 2 + f), inverted in closed form below; most rates are
-//!          clear of all limits by a bound of D that has no root in it (`BrakingMargin`)
+//!          D / (A dt^2) = (k + 1) (k / 2 + f), inverted in closed form below; most velocities are
+//!          accepted by an upper bound of D without a square root (`BrakingMargin`)
 //! Units    rad or m, s
-//! Valid    a joint that obeyed the interval in the last step has an interval that is not empty in
-//!          this one. A measured state that did not (a push, a start outside the limits) gets the
-//!          rate nearest to its last one that moves it no further out.
+//! Valid    a joint that obeyed the interval in the last step has a non-empty interval in this one.
+//!          A measured state that violates it (a push, a start outside the limits) gets the
+//!          velocity closest to its last one that moves it no further out.
 //! Why so   clamping to (limit - q) / dt alone, as common servo code does, stops a joint at its
-//!          limit with any deceleration; the continuous formula sqrt(2 A room) overshoots by up to
-//!          A dt^2 / 8
+//!          limit with an arbitrary deceleration; the continuous formula sqrt(2 A d) overshoots by
+//!          up to A dt^2 / 8
 //! Checked  tests/it/servo/limits.rs::limits_*, tests in this file
 
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
@@ -21,12 +21,12 @@ use crate::model::Limits;
 use crate::scalar::clamp;
 use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
 
-/// A coordinate and the rate it was last given.
+/// Position of a coordinate and its last commanded velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointState {
     /// Position [rad or m].
     pub position: f64,
-    /// Rate commanded in the last step [rad/s or m/s].
+    /// Velocity commanded in the last step [rad/s or m/s].
     pub velocity: f64,
 }
 
@@ -34,11 +34,11 @@ impl VelocityBounds {
     /// The interval for the next step of `dt` seconds.
     #[must_use]
     pub fn next(limits: &Limits, now: JointState, dt: f64) -> Self {
-        let above = room(limits.upper - now.position, now.position, limits.upper);
-        let below = room(now.position - limits.lower, now.position, limits.lower);
+        let above = distance_to_limit(limits.upper - now.position, now.position, limits.upper);
+        let below = distance_to_limit(now.position - limits.lower, now.position, limits.lower);
         let step = limits.acceleration * dt;
-        let brake_up = stopping_rate(above, limits.acceleration, dt);
-        let brake_down = -stopping_rate(below, limits.acceleration, dt);
+        let brake_up = stopping_velocity(above, limits.acceleration, dt);
+        let brake_down = -stopping_velocity(below, limits.acceleration, dt);
 
         let mut bounds = Self {
             lower: -limits.velocity,
@@ -52,7 +52,7 @@ impl VelocityBounds {
         if now.velocity - step > bounds.lower {
             (bounds.lower, bounds.lower_cause) = (now.velocity - step, LimitKind::Acceleration);
         }
-        // Positions last: they win where a measured state contradicts the other two.
+        // Positions last: they take precedence if a measured state contradicts the other two.
         if brake_up < bounds.upper {
             (bounds.upper, bounds.upper_cause) = (brake_up, LimitKind::Position);
             if bounds.lower > brake_up {
@@ -66,7 +66,7 @@ impl VelocityBounds {
             }
         }
         if bounds.lower > bounds.upper {
-            // Velocity against acceleration after a push: slow down as fast as allowed.
+            // Velocity against acceleration limit after a push: decelerate as fast as permitted.
             let rate = if now.velocity > 0.0 { bounds.lower } else { bounds.upper };
             (bounds.lower, bounds.upper) = (rate, rate);
         }
@@ -74,8 +74,8 @@ impl VelocityBounds {
     }
 }
 
-/// What the limits of a joint ask of a rate that meets none of them, without a root: such rates need
-/// no bounds.
+/// A sufficient condition, free of square roots, for a velocity to meet no limit of a joint; such
+/// velocities need no bounds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BrakingMargin {
     lower: f64,
@@ -83,21 +83,21 @@ pub(super) struct BrakingMargin {
     velocity: f64,
     /// A dt
     step: f64,
-    /// A bound of the stopping distance D(v), (square v + linear) v + constant: with x = v / (A dt)
-    /// D / (A dt^2) <= x (x + 1) / 2 + 1 / 8, and D = v dt without a limit of the acceleration.
+    /// Upper bound of the stopping distance D(v), (square v + linear) v + constant: with x = v / (A
+    /// dt), D / (A dt^2) <= x (x + 1) / 2 + 1 / 8, and D = v dt without an acceleration limit.
     square: f64,
     linear: f64,
     constant: f64,
-    /// 1 / A, 0 for a joint that is locked.
+    /// 1 / A; 0 for a locked joint.
     pub(super) slowness: f64,
 }
 
 impl BrakingMargin {
-    /// For steps of `dt`; of joints that are locked any rate is clear.
+    /// For steps of `dt`; a locked joint accepts any velocity.
     pub(super) fn new(limits: &Limits, dt: f64, is_locked: bool) -> Self {
         let limits = if is_locked { &Limits::NONE } else { limits };
         let Limits { lower, upper, velocity, acceleration: a, .. } = *limits;
-        // Nearer limits for the rounding of `room`; infinite ones stay.
+        // Limits tightened by the rounding of `distance_to_limit`; infinite ones stay.
         let inwards = |limit: f64| {
             if limit.is_finite() { 2.0 * LIMIT_ROUNDING * (1.0 + limit.abs()) } else { 0.0 }
         };
@@ -110,8 +110,8 @@ impl BrakingMargin {
         Self { lower, upper, velocity, step: a * dt, square, linear, constant, slowness: 1.0 / a }
     }
 
-    /// True if [`VelocityBounds::next`] has the rate inside and away from its ends; false also for some
-    /// rates near them, and for NaN.
+    /// True if the velocity lies inside [`VelocityBounds::next`], away from its ends; false also
+    /// for some velocities near them, and for NaN.
     #[inline]
     pub(super) fn allows(&self, now: JointState, rate: f64) -> bool {
         const MORE: f64 = 1.0 + 1e3 * LIMIT_MET;
@@ -124,34 +124,35 @@ impl BrakingMargin {
     }
 }
 
-/// The way to a limit, less the rounding of the position, the limit and their difference.
-fn room(way: f64, position: f64, limit: f64) -> f64 {
+/// The distance to a limit, less the rounding of the position, the limit and their difference.
+fn distance_to_limit(distance: f64, position: f64, limit: f64) -> f64 {
     if limit.is_infinite() {
         return f64::INFINITY;
     }
-    (way - LIMIT_ROUNDING * (1.0 + position.abs() + limit.abs())).max(0.0)
+    (distance - LIMIT_ROUNDING * (1.0 + position.abs() + limit.abs())).max(0.0)
 }
 
-/// A bound of the way in which steps of `dt` with deceleration `acceleration` stop a rate >= 0;
-/// infinite or NaN without a limit, or where it is zero.
+/// Upper bound of the distance in which steps of `dt` with deceleration `acceleration` stop a
+/// velocity >= 0; infinite or NaN if the acceleration is unlimited or zero.
 #[inline]
 pub(super) fn stopping_distance_bound(rate: f64, acceleration: f64, dt: f64) -> f64 {
     (0.5 * rate / acceleration + 0.5 * dt) * rate + 0.125 * acceleration * dt * dt
 }
 
-/// The largest rate from which steps of `dt` with deceleration `acceleration` stop within `room`.
-pub(super) fn stopping_rate(room: f64, acceleration: f64, dt: f64) -> f64 {
-    if room == f64::INFINITY {
+/// The largest velocity from which steps of `dt` with deceleration `acceleration` stop within
+/// `distance`.
+pub(super) fn stopping_velocity(distance: f64, acceleration: f64, dt: f64) -> f64 {
+    if distance == f64::INFINITY {
         return f64::INFINITY;
     }
     if acceleration == f64::INFINITY {
-        return room / dt;
+        return distance / dt;
     }
     let unit = acceleration * dt * dt;
     if unit == 0.0 {
         return 0.0;
     }
-    let scaled = room / unit;
+    let scaled = distance / unit;
     let k = (0.5 * ((1.0 + 8.0 * scaled).sqrt() - 1.0)).floor();
     let f = clamp((scaled - 0.5 * k * (k + 1.0)) / (k + 1.0), 0.0, 1.0);
     (k + f) * acceleration * dt
@@ -165,7 +166,7 @@ mod tests {
         Limits { lower: -1.0, upper: 1.0, velocity: 2.0, acceleration: 10.0, effort: 1.0 }
     }
 
-    /// A joint that always takes the largest rate stops at its limit without leaving any bound.
+    /// A joint at maximum velocity stops at its limit without violating any bound.
     #[test]
     fn full_speed_into_the_limit_stops_there() {
         let (limits, dt) = (limits(), 0.003);
@@ -182,9 +183,9 @@ mod tests {
         assert!(limits.upper - now.position < 1e-9, "stops short: {}", now.position);
     }
 
-    /// What is clear meets no bound, and little that meets none is not clear.
+    /// A velocity accepted by the margin meets no bound, and few that meet none are rejected.
     #[test]
-    fn clear_rates_are_inside_their_bounds() {
+    fn velocities_within_the_margin_meet_no_bound() {
         let mut state = 3;
         let mut next = || 2.0 * crate::scalar::uniform(&mut state) - 1.0;
         let (mut clear, mut inside) = (0, 0);
@@ -201,7 +202,7 @@ mod tests {
             let rate = match round % 3 {
                 0 => 2.5 * next(),
                 1 => now.velocity + 12.0 * dt * next(),
-                _ => stopping_rate(1.0 - now.position, limits.acceleration, dt),
+                _ => stopping_velocity(1.0 - now.position, limits.acceleration, dt),
             };
             let bounds = VelocityBounds::next(&limits, now, dt);
             let free = bounds.contains(rate) && bounds.met(rate).is_none();
@@ -215,20 +216,23 @@ mod tests {
     }
 
     #[test]
-    fn the_stopping_rate_uses_all_the_room() {
-        for room in [1e-9, 1e-5, 0.01, 0.3, 5.0] {
+    fn the_stopping_velocity_uses_the_whole_distance() {
+        for distance in [1e-9, 1e-5, 0.01, 0.3, 5.0] {
             let (a, dt) = (7.0, 0.002);
-            let mut v = stopping_rate(room, a, dt);
+            let mut v = stopping_velocity(distance, a, dt);
             let mut way = 0.0;
             while v > 0.0 {
                 way += v * dt;
                 v -= a * dt;
             }
-            assert!((way - room).abs() < 1e-12 * (1.0 + room / 1e-3), "{way} of {room}");
+            assert!(
+                (way - distance).abs() < 1e-12 * (1.0 + distance / 1e-3),
+                "{way} of {distance}"
+            );
         }
     }
 
-    /// Limits far from zero and wide ranges: the rounding of `q + dt * rate` is theirs.
+    /// Limits far from zero and wide ranges, where the rounding of `q + dt * velocity` is theirs.
     #[test]
     fn wide_ranges_are_not_left() {
         for size in [1e3, 1e6, 1e9] {
@@ -251,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn outside_a_limit_only_the_way_back_is_open() {
+    fn outside_a_limit_only_the_way_back_is_feasible() {
         let now = JointState { position: 1.2, velocity: 0.0 };
         let bounds = VelocityBounds::next(&limits(), now, 0.01);
         assert_eq!(bounds.upper, 0.0);

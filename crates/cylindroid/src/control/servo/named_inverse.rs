@@ -4,8 +4,8 @@
 //! One table for all front ends: the command line makes its flags and help from it, Python its
 //! docstrings, the viewer its controls.
 //!
-//! Fails    unknown names, with the nearest; parameters of another inverse; a parameter that must be
-//!          given and is missing; a fallback for an inverse that always exists
+//! Fails    unknown names, with the nearest; parameters of another inverse; a parameter that must
+//!          be given and is missing; a fallback for an inverse that always exists
 //! Checked  tests/it/parameters.rs
 
 use super::options::ServoOptions;

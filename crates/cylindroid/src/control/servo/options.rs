@@ -119,7 +119,8 @@ impl ServoOptions {
     /// use cylindroid::{ServoOptions, catalogue};
     ///
     /// let (panda, ur5e) = (catalogue::load("panda")?, catalogue::load("ur5e")?);
-    /// assert_eq!(ServoOptions::new(&panda).default_secondary(&panda)?[0].name(), "limit-avoidance");
+    /// let default = ServoOptions::new(&panda).default_secondary(&panda)?;
+    /// assert_eq!(default[0].name(), "limit-avoidance");
     /// assert!(ServoOptions::new(&ur5e).default_secondary(&ur5e)?.is_empty());
     /// # Ok::<(), cylindroid::Error>(())
     /// ```

@@ -28,7 +28,8 @@ pub(super) struct TaskSpace {
     pub(super) axes: ReferenceFrame,
     /// Row of the 6 x n Jacobian and its scale, for each of the m components.
     pub(super) rows: Vec<(usize, f64)>,
-    /// Scale of each of the n columns, and 1 for driven closing joints; 0 for joints that are locked.
+    /// Scale of each of the n columns, and 1 for driven closing joints; 0 for joints that are
+    /// locked.
     pub(super) columns: Vec<f64>,
     /// Scales of the rows where all six matter.
     all_rows: Option<[f64; 6]>,

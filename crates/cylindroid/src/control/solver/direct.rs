@@ -9,7 +9,8 @@
 //!          only when the direction is lost altogether is it better to move on a bent way than not
 //! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
 //!          Parker 1995 (bounded-variable least squares)
-//! Checked  tests/it/servo/limits.rs::saturation_*, tests in this file (bent against the conditions)
+//! Checked  tests/it/servo/limits.rs::saturation_*, tests in this file (bent against the
+//!          conditions)
 
 use super::bounds::{LimitKind, VelocityBounds};
 use crate::inverse::{Method, is_kept};

@@ -1,9 +1,8 @@
 //! Rates of coupled joints inside their bounds: the task is scaled first, then bent.
 //!
-//! Formula  scaled: the largest s in [0, 1] with M y(s) + s_0 in bounds, rates at a bound clamped one
-//!          by one while the rest can still do the task;
-//!          bent: from rest (or the last rates, slowed as far as the bounds allow) towards the
-//!          task, along bounds where they are met
+//! Formula  scaled: the largest s in [0, 1] with M y(s) + s_0 in bounds, rates at a bound clamped
+//!          one by one while the rest can still do the task; bent: from rest (or the last rates,
+//!          slowed as far as the bounds allow) towards the task, along bounds where they are met
 //! Shapes   M: rates x a, y: a, J M: m x a, bounds: one for each rate
 //! Valid    any M. Without loops M is the identity, and what is scaled is what `direct.rs`
 //!          gives; what is bent is a way of descent, not its least squares
@@ -167,8 +166,9 @@ impl ReducedSolver {
         (best, cause)
     }
 
-    /// A bent way: from rest towards the task, along bounds where they are met; from the last rates,
-    /// slowed, where rest is too far for a step. False where these are not within bounds either.
+    /// A bent way: from rest towards the task, along bounds where they are met; from the last
+    /// rates, slowed, where rest is too far for a step. False where these are not within bounds
+    /// either.
     fn descend(&mut self, p: &ReducedProblem<'_>, out: &mut [f64]) -> bool {
         let n = out.len();
         let mut clamped = Clamped::default();

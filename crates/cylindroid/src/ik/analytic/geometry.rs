@@ -6,7 +6,8 @@
 //!          axes holds of the first in the chain that is read from the tool: axes and lengths turn
 //!          their signs, angles do not
 //! Units    m; departures are in reaches and rad
-//! Valid    axes that depart from the pattern by less than `ALIGNED_AXES`, which Newton's method makes good
+//! Valid    axes that depart from the pattern by less than `ALIGNED_AXES`, which Newton's method
+//!          makes good
 //! Source   Pieper 1968; Elias & Wen 2025 (IK-Geo), section on decompositions; Ostermeier, Kuelz &
 //!          Althoff 2025 (EAIK): patterns read from the axes
 //! Checked  tests/it/analytic.rs

@@ -38,8 +38,8 @@ pub use self::geometry::ArmGeometry;
 
 /// Newton steps for one candidate.
 const STEPS: usize = 2;
-/// Damping relative to the size of the squared Jacobian [-]: with a free joint held that is singular,
-/// and steps are right to four digits.
+/// Damping relative to the size of the squared Jacobian [-]: with a free joint held that is
+/// singular, and steps are right to four digits.
 const DAMPING: f64 = 1e-12;
 
 /// Why formulas do not solve a chain.
@@ -284,8 +284,8 @@ impl Analytic {
         Ok(postures)
     }
 
-    /// Every angle of a posture with all whole turns that the limits allow, the posture itself among
-    /// them; of joints without limits that of the posture alone.
+    /// Every angle of a posture with all whole turns that the limits allow, the posture itself
+    /// among them; of joints without limits that of the posture alone.
     #[must_use]
     pub fn with_full_turns(&self, posture: &AnalyticSolution) -> Vec<[f64; 6]> {
         let mut all = vec![posture.q];

@@ -10,11 +10,11 @@
 //!          h2 . R1^T R h6 - h2 . R5 h6 = 0, then the turn 2 + 3 + 4 by one vector, and 2 and 3 as
 //!          the two links of a plane arm
 //! Units    rad, m
-//! Valid    as [`subproblems`](super::subproblems): up to eight candidates for every posture of the wrist or
-//!          elbow, to be confirmed
+//! Valid    as [`subproblems`](super::subproblems): up to eight candidates for every posture of the
+//!          wrist or elbow, to be confirmed
 //! Why so   turns found from a vector nearly along their axis are ill-determined alone; the last
-//!          one is always found from a vector across its axis given all others, so that their sum is
-//!          right where neither is
+//!          one is always found from a vector across its axis given all others, so that their sum
+//!          is right where neither is
 //! Source   Elias & Wen 2025 (IK-Geo); Pieper 1968
 //! Checked  tests/it/analytic.rs
 

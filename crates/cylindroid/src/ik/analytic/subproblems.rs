@@ -7,8 +7,9 @@
 //!          else y = Y^-1 (d - X x), and |y| = 1 is a quartic in the tangent of half of x's angle,
 //!          measured from where the condition fails most, so that no root is near infinity
 //! Valid    any numbers. Where nothing determines a turn it is that of the start, or the first that
-//!          is confirmed of seven others, and is called free; a condition that fails by rounding is met as nearly as it can be: what comes out
-//!          is a candidate, to be confirmed by forward kinematics
+//!          is confirmed of seven others, and is called free; a condition that fails by rounding is
+//!          met as nearly as it can be: what comes out is a candidate, to be confirmed by forward
+//!          kinematics
 //! Why so   sines and cosines are solved for, not angles: an arc tangent for each turn at the end
 //!          is all that is left of the trigonometry. Roots of the quartic are bracketed by those of
 //!          its derivatives, which loses no double ones, where Ferrari's formulas lose digits

@@ -1,14 +1,15 @@
-//! What a configuration is to a servo: singular values of its task, the direction that is lost
-//! next, and the motions that leave the tool at rest.
+//! Condition of a configuration: singular values of the task, its weakest direction, and the
+//! self-motions that leave the tool at rest.
 //!
-//! Formula  J_task = U S V^T (`task_space.rs`, of closed chains `coupled.rs`): the weakest motion is
-//!          the last column of U; self-motions are ker J_task, carried along by projecting the last
-//!          one on the next kernel
+//! Formula  J_task = U S V^T (`task_space.rs`, for closed chains `coupled.rs`): the weakest motion
+//!          is the last column of U; self-motions are ker J_task, continued from step to step by
+//!          projecting the previous one onto the next kernel
 //! Shapes   J_task: m x n; self-motions have the n coordinates of the mechanism
-//! Units    singular values scaled as the servo's; the weakest motion in m and rad
+//! Units    singular values scaled as in the servo; the weakest motion in m and rad
 //! Frame    the weakest motion at the tool, world axes
-//! Valid    any rank. A self-motion is scaled so that the fastest joint moves at its speed limit
-//!          (1 rad/s or m/s where it has none); its sign is open, its largest entry positive
+//! Valid    any rank. A self-motion is scaled such that the fastest joint moves at its velocity
+//!          limit (1 rad/s or m/s if it has none); its sign is arbitrary, the largest entry is
+//!          positive
 //! Checked  tests/it/servo/condition.rs
 
 use super::Servo;
@@ -19,20 +20,21 @@ use crate::linalg::{RowSpace, Svd, norm};
 use crate::spatial::Twist;
 use crate::tolerance::UNACTUATED;
 
-/// A configuration as a servo sees it.
+/// The condition of a configuration for the task of a servo.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConditionReport {
     /// The servo's inverse of the scaled task Jacobian, with its report.
     pub inverse: Inverse,
-    /// Smallest singular value over the largest.
+    /// Ratio of the smallest to the largest singular value.
     pub singular_ratio: f64,
-    /// The motion of the tool that is lost next, of length one in scaled units (m, rad): at the
-    /// tool, world axes, its sign open. `None` where there is no motion at all.
+    /// The tool's motion of the smallest singular value, of unit length in scaled units (m, rad):
+    /// at the tool, world axes, its sign arbitrary. `None` if no motion is possible.
     pub weakest: Option<Twist>,
 }
 
 impl Servo {
-    /// Looks at a configuration as a step would; rates, target and the watch for stalls stay.
+    /// Evaluates a configuration as a step would; the joint velocities, the target and the stall
+    /// detector are unchanged.
     ///
     /// # Errors
     /// As [`Servo::step`].
@@ -58,7 +60,7 @@ impl Servo {
         })
     }
 
-    /// How many independent motions leave the tool at rest in postures that are not singular.
+    /// Number of independent self-motions at non-singular configurations.
     #[must_use]
     pub fn redundancy(&self) -> usize {
         let unknowns = match &self.coupled {
@@ -68,8 +70,8 @@ impl Servo {
         unknowns.saturating_sub(self.generic_rank)
     }
 
-    /// The independent motions of all n coordinates that leave the tool at rest at `q`
-    /// [rad/s or m/s].
+    /// A basis of the self-motions at `q`, which leave the tool at rest: velocities of all n
+    /// coordinates [rad/s or m/s].
     ///
     /// # Errors
     /// As [`Servo::step`].
@@ -86,11 +88,11 @@ impl Servo {
         Ok(motions.map(upwards).collect())
     }
 
-    /// The self-motion at `q` that is nearest to `last`, one of a moment before; `None` where there
-    /// is none left of it.
+    /// The self-motion at `q` closest to `last`, that of the previous step; `None` if none is left
+    /// of it.
     ///
     /// # Errors
-    /// As [`Servo::step`]; a motion of the wrong size or not finite.
+    /// As [`Servo::step`]; a motion of the wrong size or non-finite.
     pub fn next_self_motion(&mut self, q: &[f64], last: &[f64]) -> Result<Option<Vec<f64>>> {
         self.mechanism.check_q("last self-motion", last)?;
         let svd = self.decomposed(q)?;
@@ -106,7 +108,7 @@ impl Servo {
         Ok(self.at_full_speed(&x))
     }
 
-    /// The decomposition of the task Jacobian at `q`.
+    /// Singular value decomposition of the task Jacobian at `q`.
     fn decomposed(&mut self, q: &[f64]) -> Result<Svd> {
         self.mechanism.check_q("q", q)?;
         self.chain.set(q);
@@ -115,8 +117,8 @@ impl Servo {
         Ok(Svd::of(&self.task))
     }
 
-    /// Rates of all coordinates for the unknowns `x` of the servo, the fastest at its limit; `None`
-    /// where nothing moves.
+    /// Velocities of all coordinates for the unknowns `x` of the servo, the fastest joint at its
+    /// limit; `None` if nothing moves.
     fn at_full_speed(&self, x: &[f64]) -> Option<Vec<f64>> {
         if norm(x) <= UNACTUATED {
             return None;

@@ -1,4 +1,6 @@
-//! The stages of a servo step, in their order: task, secondary tasks, bounds, rates.
+//! The stages of a servo step, in order: primary task, secondary tasks, bounds, joint velocities.
+//!
+//! Checked  tests/it/servo/
 
 use super::super::approach;
 use super::super::limits::JointState;
@@ -17,7 +19,8 @@ use crate::spatial::Twist;
 use crate::tolerance::AT_LIMIT;
 
 impl Servo {
-    /// Writes the error and the commanded twist, both scaled, and the rates that realise it.
+    /// Computes the error and the commanded twist, both scaled, and the joint velocities that
+    /// realise it.
     pub(super) fn load_task(&mut self, desired: &DesiredMotion) {
         self.space.scale(desired.error, &mut self.error);
         self.projected_error.copy_from_slice(&self.error);
@@ -44,7 +47,7 @@ impl Servo {
                 self.svd.apply_gains_into(&self.projected_error, &self.gains, &mut self.secondary);
             }
             let dt = self.options.dt;
-            let share = approach::share(
+            let share = approach::scale(
                 &self.secondary,
                 &self.primary,
                 &self.space.columns,
@@ -55,13 +58,13 @@ impl Servo {
             self.method = approach::slowed(self.method, share);
         }
         twist = twist + desired.feed_forward;
-        // Saturated as a whole: the direction of the motion is kept.
+        // Scaled as a whole: the direction of the motion is preserved.
         let speed = self.options.speed;
         let excess = (twist.linear.norm() / speed.linear).max(twist.angular.norm() / speed.angular);
         if excess > 1.0 {
             twist = twist * (1.0 / excess);
         }
-        // Where nothing was changed, the rates are there already.
+        // If nothing was changed, the velocities are already solved for.
         if solved != Some(twist) {
             self.load_twist(twist);
             self.solve();
@@ -84,8 +87,8 @@ impl Servo {
         }
     }
 
-    /// Writes the Jacobian of the task: of the joints, or of what the drives of a closed chain can
-    /// do.
+    /// Computes the task Jacobian with respect to the joints, or to the actuated motions of a
+    /// closed chain.
     pub(super) fn load_jacobian(&mut self, q: &[f64]) -> Result<()> {
         let Some(coupled) = &mut self.coupled else {
             self.space.load(&self.chain, &mut self.task);
@@ -95,7 +98,7 @@ impl Servo {
         coupled.load(q, &self.space, self.options.dt, &mut self.task)
     }
 
-    /// A posture near home in which the loops are closed; the first is the nearest to home.
+    /// A configuration near home in which the loops are closed; the first is the closest to home.
     pub(super) fn nearby_configuration(&self, posture: usize) -> Result<Option<Vec<f64>>> {
         let spread = if posture == 0 { 0.0 } else { 0.2 };
         let n = self.mechanism.n();
@@ -109,7 +112,7 @@ impl Servo {
         Ok(found.closed.then_some(found.q))
     }
 
-    /// Moves primary and secondary velocities into the bounds.
+    /// Bounds the primary and secondary velocities.
     pub(super) fn saturate(&mut self, q: &[f64]) -> Result<Saturation> {
         let (j, x, method, bounds) = (&self.task, &self.x, &self.method, &self.bounds);
         let Some(coupled) = &mut self.coupled else {
@@ -130,15 +133,15 @@ impl Servo {
         Ok(saturation)
     }
 
-    /// What the task gets of the rates of this step.
+    /// The twist realised by the joint velocities of this step.
     pub(super) fn load_achieved_twist(&mut self) {
         let rates =
             self.coupled.as_ref().map_or(&self.primary, |coupled| &coupled.reduced.actuation);
         self.task.mul_vec_into(rates, &mut self.achieved_twist);
     }
 
-    /// True if the tool, moved by the rates of this step, is so slow against the target that an
-    /// error within tolerance stays within it.
+    /// True if the tool moves so slowly relative to the target that an error within tolerance stays
+    /// within it.
     pub(super) fn settled(&mut self, feed_forward: Twist) -> bool {
         self.load_achieved_twist();
         let speed = self.space.twist(&self.achieved_twist) - feed_forward;
@@ -147,7 +150,7 @@ impl Servo {
             && speed.angular.norm() <= gain.orientation * most.orientation
     }
 
-    /// The secondary joint velocities in weighted coordinates, projected on the null space.
+    /// Velocities of the secondary tasks in weighted coordinates, projected onto the null space.
     pub(super) fn load_secondary(&mut self, secondary_velocities: &[f64]) {
         self.secondary.fill(0.0);
         if !secondary_velocities.is_empty() {
@@ -183,7 +186,8 @@ impl Servo {
         });
     }
 
-    /// The rates of a step in which no joint meets a limit; `None`, and nothing done, if one may.
+    /// Stores the joint velocities of a step in which no joint meets a limit; `None`, without any
+    /// effect, if one may.
     pub(super) fn store_unlimited_rates(&mut self, q: &[f64]) -> Option<BrakingState> {
         if self.coupled.is_some() {
             return None;
@@ -214,7 +218,7 @@ impl Servo {
         Some(braking)
     }
 
-    /// The bounds of the next rates, in weighted coordinates.
+    /// The bounds of the next joint velocities, in weighted coordinates.
     pub(super) fn load_bounds(&mut self, q: &[f64]) {
         for i in 0..self.bounds.len() {
             let c = self.place(i);
@@ -228,7 +232,7 @@ impl Servo {
         }
     }
 
-    /// Where the rate of the i-th joint of the servo stands among all of them.
+    /// Index of the velocity of the i-th joint of the servo among those of all joints.
     fn place(&self, i: usize) -> usize {
         self.chain.coordinates().get(i).copied().unwrap_or(i)
     }
@@ -239,7 +243,7 @@ impl Servo {
             let c = self.place(i);
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             self.active[i] = if self.space.is_locked(i) { None } else { bound.met(rate) };
-            // Once more: the scale leaves a rounding.
+            // Again: scaling leaves a rounding error.
             let own = match self.space.is_locked(i) {
                 true => 0.0,
                 false => self.own_bounds[i].clamp(rate * self.space.columns[i]),
@@ -256,14 +260,15 @@ impl Servo {
         braking
     }
 
-    /// The joints that stand at a position limit, and beyond it would carry out more of the task.
+    /// Records the joints at a position limit that would realise more of the task beyond it.
     pub(super) fn note_limits(&mut self) {
         self.at_limit.clear();
         let left = |(x, done): (&f64, &f64)| x - done;
         let size =
             self.x.iter().zip(&self.achieved_twist).map(left).map(|r| r * r).sum::<f64>().sqrt();
         let least = RELEASE * self.svd.value(0) * size;
-        // In y for closed chains: what would lessen the error most.
+        // For closed chains in actuated coordinates: the direction of steepest descent of the
+        // error.
         let descent: Vec<f64> = match &self.coupled {
             None => Vec::new(),
             Some(_) => {
