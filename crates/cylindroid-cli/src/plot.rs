@@ -1,6 +1,7 @@
-//! The motion of `move` as an SVG: joints, errors and singular value ratio over time.
+//! The motion of `move` as an SVG: joints, pose error and singular value ratio over time.
 
 pub(crate) mod ellipses;
+mod fine;
 pub(crate) mod screws;
 mod skeleton;
 
@@ -12,18 +13,22 @@ use plotters::coord::Shift;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use self::fine::{Fine, at, in_pixels, px};
 use crate::trajectory::{Row, Trajectory, cannot_write};
 
-const SIZE: (u32, u32) = (960, 900);
-/// Width of the legend [px].
-const LEGEND: u32 = 190;
-/// Most points of a line: more cannot be seen.
+const SIZE: (u32, u32) = (px(960), px(900));
+/// Width of the legend.
+const LEGEND: u32 = px(190);
+/// Maximum number of points of a line; more are not visible.
 const POINTS: usize = 1200;
-/// Errors below this are drawn here [m, rad].
+/// Smaller errors are drawn at this value [m, rad].
 const SMALLEST_ERROR: f64 = 1e-9;
+/// Length of a tick of an axis.
+const TICK: u32 = px(5);
 const FONT: &str = "sans-serif";
-/// Dark enough on white, told apart also by most colour-blind readers.
+/// Dark enough on white, and distinguishable for most colour-blind readers.
 const COLOURS: [RGBColor; 9] = [
     RGBColor(31, 119, 180),
     RGBColor(214, 95, 0),
@@ -36,7 +41,7 @@ const COLOURS: [RGBColor; 9] = [
     RGBColor(150, 140, 0),
 ];
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Area<'a> = DrawingArea<Fine<'a>, Shift>;
 type Drawn = std::result::Result<(), Box<dyn std::error::Error>>;
 
 /// A line of a panel.
@@ -46,7 +51,7 @@ struct Line {
     points: Vec<(f64, f64)>,
 }
 
-/// Refuses names that do not end in .svg.
+/// Rejects names that do not end in .svg.
 pub(crate) fn check(path: &Path) -> Result<()> {
     if path.extension().is_some_and(|e| e == "svg") {
         return Ok(());
@@ -63,18 +68,18 @@ pub(crate) fn draw(trajectory: &Trajectory, path: &Path) -> Result<()> {
     save(path, |svg| panels(trajectory, svg))
 }
 
-/// Writes what is drawn.
+/// Writes a drawing.
 fn save(path: &Path, draw: impl FnOnce(&mut String) -> Drawn) -> Result<()> {
     let mut svg = String::new();
     draw(&mut svg).map_err(|error| cannot_write(path, &error))?;
-    std::fs::write(path, svg).map_err(|error| cannot_write(path, &error))
+    std::fs::write(path, in_pixels(&svg)).map_err(|error| cannot_write(path, &error))
 }
 
 fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {
-    let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
+    let root = Fine::new(svg, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
     let title = format!("{}: motion of {}", trajectory.model, trajectory.frame);
-    let root = root.titled(&title, (FONT, 20))?;
+    let root = titled(&root, &title, 20)?;
     let areas = root.split_evenly((3, 1));
     let rows = thinned(&trajectory.samples);
     let end = rows.last().map_or(1.0, |row| row.time);
@@ -96,7 +101,7 @@ fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {
     units.dedup();
     linear_panel(&areas[0], &joints, &time, &format!("joints [{}]", units.join(", ")))?;
 
-    // What is not driven has no error at any time.
+    // Components left free have no error.
     let mut errors = Vec::new();
     if rows.iter().any(|row| row.position_error > 0.0) {
         errors.push(line("position [m]", 0, &|row| row.position_error.max(SMALLEST_ERROR)));
@@ -113,6 +118,19 @@ fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {
     Ok(())
 }
 
+/// Writes a centred title of this font size [px]; returns the area below it.
+fn titled<'a>(
+    area: &Area<'a>,
+    title: &str,
+    size: u32,
+) -> std::result::Result<Area<'a>, Box<dyn std::error::Error>> {
+    let (top, rest) = area.split_vertically(px(size + 14));
+    let middle = i32::try_from(top.dim_in_pixel().0 / 2)?;
+    let style = (FONT, size).into_font().color(&BLACK).pos(Pos::new(HPos::Center, VPos::Top));
+    top.draw(&Text::new(title, (middle, at(0, 6).1), style))?;
+    Ok(rest)
+}
+
 /// At most about `POINTS` rows, the last among them.
 fn thinned(rows: &[Row]) -> Vec<&Row> {
     let stride = rows.len().div_ceil(POINTS).max(1);
@@ -126,7 +144,7 @@ fn thinned(rows: &[Row]) -> Vec<&Row> {
 fn linear_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str) -> Drawn {
     let (low, high) = extent(lines);
     let margin = 0.06 * (high - low).max(1e-3);
-    // A quantity that is never negative is drawn from zero.
+    // The axis of a non-negative quantity starts at zero.
     let low = if low >= 0.0 { 0.0 } else { low - margin };
     let (chart_area, legend_area) = area.split_horizontally(SIZE.0 - LEGEND);
     let mut chart = builder(&chart_area).build_cartesian_2d(time.clone(), low..high + margin)?;
@@ -136,7 +154,7 @@ fn linear_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str)
 
 fn log_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str) -> Drawn {
     let (low, high) = extent(lines);
-    // Nothing to draw leaves 0 and 1.
+    // Without values the extent is 0 to 1.
     let low = low.max(SMALLEST_ERROR);
     let (low, high) = (0.5 * low, 2.0 * high.max(10.0 * low));
     let (chart_area, legend_area) = area.split_horizontally(SIZE.0 - LEGEND);
@@ -147,7 +165,7 @@ fn log_panel(area: &Area<'_>, lines: &[Line], time: &Range<f64>, label: &str) ->
     legend(&legend_area, lines)
 }
 
-/// The numbers of the vertical axis: how many at most, and how they are written.
+/// Tick labels of the vertical axis: maximum count and format.
 struct Numbers<'a> {
     most: usize,
     form: Option<&'a dyn Fn(&f64) -> String>,
@@ -155,7 +173,7 @@ struct Numbers<'a> {
 
 /// Draws axes and lines.
 fn finish<Y>(
-    chart: &mut ChartContext<'_, SVGBackend<'_>, Cartesian2d<RangedCoordf64, Y>>,
+    chart: &mut ChartContext<'_, Fine<'_>, Cartesian2d<RangedCoordf64, Y>>,
     lines: &[Line],
     label: &str,
     numbers: Numbers<'_>,
@@ -170,6 +188,7 @@ where
         .bold_line_style(BLACK.mix(0.12))
         .axis_desc_style((FONT, 15))
         .label_style((FONT, 13))
+        .set_all_tick_mark_size(TICK)
         .y_labels(numbers.most);
     if let Some(form) = numbers.form {
         mesh.y_label_formatter(form);
@@ -184,16 +203,16 @@ where
     Ok(())
 }
 
-fn builder<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'b, SVGBackend<'b>> {
+fn builder<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'b, Fine<'b>> {
     let mut builder = ChartBuilder::on(area);
-    builder.margin(8).x_label_area_size(40).y_label_area_size(72);
+    builder.margin(px(8)).x_label_area_size(px(40)).y_label_area_size(px(72));
     builder
 }
 
 fn legend(area: &Area<'_>, lines: &[Line]) -> Drawn {
-    /// Height of a line of the legend where there is room, and of all of it [px].
+    /// Preferred height of an entry, and height of the whole legend [px].
     const HEIGHT: (usize, usize) = (20, 250);
-    /// Most characters of a name.
+    /// Maximum number of characters of a name.
     const NAME: usize = 22;
     let height = HEIGHT.0.min(HEIGHT.1 / lines.len().max(1)).max(4);
     let size = i32::try_from(height.min(14)).unwrap_or(14);
@@ -202,8 +221,9 @@ fn legend(area: &Area<'_>, lines: &[Line]) -> Drawn {
         if name.len() < line.name.len() {
             name.push('…');
         }
-        area.draw(&PathElement::new([(4, y), (26, y)], line.colour.stroke_width(3)))?;
-        area.draw(&Text::new(name, (34, y - size / 2), (FONT, size)))?;
+        let line_ends = [at(4, y), at(26, y)];
+        area.draw(&PathElement::new(line_ends, line.colour.stroke_width(3)))?;
+        area.draw(&Text::new(name, at(34, y - size / 2), (FONT, size)))?;
     }
     Ok(())
 }

@@ -15,6 +15,7 @@ use plotters::prelude::*;
 use self::panel::{Panel, panel};
 pub(crate) use self::shapes::Drawing;
 use self::shapes::{Block, Ellipse, View};
+use super::fine::{Fine, at, px};
 use super::skeleton::Skeleton;
 use super::{COLOURS, Drawn, FONT, save};
 use crate::output::number;
@@ -68,21 +69,21 @@ pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
     let reference = drawing.state.pose(drawing.chain.reference).translation;
     let skeleton = Skeleton::new(drawing.state, (frame.link, reference))?;
     let title = format!(
-        "{}: velocity and force at '{}', driven by {}",
+        "{}: velocity and force at '{}', actuated: {}",
         mechanism.name(),
         frame.name,
-        driven(&drawing.chain.actuated)
+        actuated(&drawing.chain.actuated)
     );
     save(path, |svg| figure(&title, &blocks, &skeleton, reference, svg))
 }
 
-/// Names while there are few.
-fn driven(names: &[String]) -> String {
+/// The names of a few joints, or the number of many.
+fn actuated(names: &[String]) -> String {
     /// Most characters of a list.
     const MOST: usize = 40;
     let list = names.join(", ");
     match names.len() {
-        0 => "no joint".to_owned(),
+        0 => "none".to_owned(),
         _ if list.len() <= MOST => list,
         n => format!("{n} joints"),
     }
@@ -126,20 +127,20 @@ fn figure(
     let foot = 12 + LINE * u32::try_from(deepest).unwrap_or(0);
     let block_height = head + height + foot;
     let total = TITLE + block_height * if alone { 1 } else { 2 } + 34;
-    let root = SVGBackend::with_string(svg, (WIDTH, total)).into_drawing_area();
+    let root = Fine::new(svg, (px(WIDTH), px(total))).into_drawing_area();
     root.fill(&WHITE)?;
-    let (top, rest) = root.split_vertically(TITLE);
-    top.draw(&Text::new(title.to_owned(), (20, 14), (FONT, 20)))?;
-    let (body, bottom) = rest.split_vertically(total - TITLE - 34);
+    let (top, rest) = root.split_vertically(px(TITLE));
+    top.draw(&Text::new(title.to_owned(), at(20, 14), (FONT, 20)))?;
+    let (body, bottom) = rest.split_vertically(px(total - TITLE - 34));
     let areas = if alone { body.split_evenly((1, 2)) } else { body.split_evenly((2, 1)) };
     for (i, (block, area)) in blocks.iter().zip(&areas).enumerate() {
-        let (above, below) = area.split_vertically(head);
-        above.draw(&Text::new(block.title, (20, 2), (FONT, 16)))?;
+        let (above, below) = area.split_vertically(px(head));
+        above.draw(&Text::new(block.title, at(20, 2), (FONT, 16)))?;
         let mut y = 26;
         for entry in &legends[i] {
             entry.draw(&above, &mut y)?;
         }
-        let (charts, notes) = below.split_vertically(height);
+        let (charts, notes) = below.split_vertically(px(height));
         let count = block.views.len();
         let (charts, notes) = (charts.split_evenly((1, count)), notes.split_evenly((1, count)));
         for (j, view) in block.views.iter().enumerate() {
@@ -149,7 +150,7 @@ fn figure(
             panel(&charts[j], &shown)?;
             for (k, line) in captions[i][j].iter().enumerate() {
                 let y = i32::try_from(k).unwrap_or(0) * LINE as i32 + 2;
-                notes[j].draw(&Text::new(line.clone(), (58, y), (FONT, TEXT)))?;
+                notes[j].draw(&Text::new(line.clone(), at(58, y), (FONT, TEXT)))?;
             }
         }
     }
@@ -189,28 +190,28 @@ struct Entry {
 }
 
 impl Entry {
-    fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>, y: &mut i32) -> Drawn {
+    fn draw(&self, area: &DrawingArea<Fine<'_>, Shift>, y: &mut i32) -> Drawn {
         let middle = *y + 8;
         match self.pen {
             Pen::Solid => {
                 let line =
-                    PathElement::new([(20, middle), (50, middle)], self.colour.stroke_width(3));
+                    PathElement::new([at(20, middle), at(50, middle)], self.colour.stroke_width(3));
                 area.draw(&line)?;
             }
             Pen::Dashed => {
                 for x in [20, 32, 44] {
-                    let dash = [(x, middle), (x + 7, middle)];
+                    let dash = [at(x, middle), at(x + 7, middle)];
                     area.draw(&PathElement::new(dash, self.colour.stroke_width(3)))?;
                 }
             }
             Pen::Filled => {
-                let corners = [(20, middle - 6), (50, middle + 6)];
+                let corners = [at(20, middle - 6), at(50, middle + 6)];
                 area.draw(&Rectangle::new(corners, self.colour.mix(0.15).filled()))?;
                 area.draw(&Rectangle::new(corners, self.colour.stroke_width(1)))?;
             }
         }
         for line in &self.lines {
-            area.draw(&Text::new(line.clone(), (60, *y + 1), (FONT, TEXT)))?;
+            area.draw(&Text::new(line.clone(), at(60, *y + 1), (FONT, TEXT)))?;
             *y += LINE as i32;
         }
         Ok(())
@@ -221,13 +222,15 @@ impl Block<'_> {
     fn legend(&self, size: f64, room: u32) -> Vec<Entry> {
         let scales = self.scales(size);
         let drawn = |scale: Option<f64>| match scale {
-            Some(scale) => format!("; scale {} {} to 1 m", number(scale), self.unit),
+            Some(scale) => format!("; scale {} {} per m", number(scale), self.unit),
             None => ": none".to_owned(),
         };
-        let joints = if self.force { "torques" } else { "rates" };
+        let joints = if self.force { "joint torques" } else { "joint velocities" };
         let of_size = match self.drawing.metric {
-            "limits" if !self.force => "rates over their limits of size 1".to_owned(),
-            metric => format!("{joints} of size 1, metric {metric}"),
+            "limits" if !self.force => {
+                "joint velocities of norm 1 relative to their limits".to_owned()
+            }
+            metric => format!("{joints} of norm 1 (metric: {metric})"),
         };
         let entry =
             |pen, colour, text: String| Entry { pen, colour, lines: wrap(&text, room - 40) };
@@ -235,27 +238,27 @@ impl Block<'_> {
         if self.force {
             let text = format!("exerted by {of_size}{}", drawn(scales.ellipse));
             entries.push(entry(Pen::Solid, self.colour, text));
-            let text = "resisted with as much, the structure helping".to_owned();
+            let text = "resisted with the same torques and structural support".to_owned();
             entries.push(entry(Pen::Dashed, COLOURS[2], text));
         } else {
-            let text = format!("by {of_size}{}", drawn(scales.ellipse));
+            let text = format!("for {of_size}{}", drawn(scales.ellipse));
             entries.push(entry(Pen::Solid, self.colour, text));
             if self.views.iter().any(|v| !v.ellipse.endless.is_empty()) {
-                let text = "not controlled by the drives: without end".to_owned();
+                let text = "not controlled by the actuators: unbounded".to_owned();
                 entries.push(entry(Pen::Dashed, COLOURS[3], text));
             }
         }
         if self.views.iter().any(|v| v.polygon.is_some()) {
-            let text = format!("within the limits of {joints}{}", drawn(scales.polygon));
+            let text = format!("within the limits of the {joints}{}", drawn(scales.polygon));
             entries.push(entry(Pen::Filled, self.colour, text));
         }
         entries
     }
 
-    /// What the picture says, in words and numbers.
+    /// The semi-axes and unbounded directions in words.
     fn caption(&self, view: &View) -> String {
         let along = |d: &[f64; 2]| {
-            // One of both signs, the same everywhere.
+            // Of the two signs always the same one.
             let sign = if d[0] < -1e-9 || (d[0] < 1e-9 && d[1] < 0.0) { -1.0 } else { 1.0 };
             let part = |x: f64| number((sign * x * 1000.0).round() / 1000.0 + 0.0);
             format!("({}, {})", part(d[0]), part(d[1]))
@@ -268,21 +271,23 @@ impl Block<'_> {
         let sizes: Vec<String> = axes.iter().map(|a| three(a[0].hypot(a[1]))).collect();
         let (what, unit) = (self.title, self.unit);
         match (sizes.as_slice(), endless.as_slice()) {
-            ([], []) if self.force => "no force is held in this plane".to_owned(),
-            ([], []) => "nothing moves in this plane".to_owned(),
+            ([], []) if self.force => "no force is resisted in this plane".to_owned(),
+            ([], []) => "no motion in this plane".to_owned(),
             ([a], []) if self.force => {
-                format!("a line of {a} {unit} each way: forces across it are not held")
+                format!(
+                    "a line of {a} {unit} in both directions; forces across it are not resisted"
+                )
             }
-            ([a], []) => format!("a line of {a} {unit} each way: no velocity across it"),
+            ([a], []) => format!("a line of {a} {unit} in both directions; no velocity across it"),
             ([], [d]) if self.force => {
-                format!("forces along {} need no torque, others are not held", along(d))
+                format!("forces along {} need no torque; others are not resisted", along(d))
             }
-            ([], [d]) => format!("moves freely along {}, not at all across", along(d)),
+            ([], [d]) => format!("moves freely along {}; no motion across it", along(d)),
             ([a], [d]) if self.force => {
                 format!("{a} {unit} across; forces along {} need no torque", along(d))
             }
-            ([a], [d]) => format!("{a} {unit} across; free along {}", along(d)),
-            ([], _) if self.force => "all forces are held without torque".to_owned(),
+            ([a], [d]) => format!("{a} {unit} across; moves freely along {}", along(d)),
+            ([], _) if self.force => "all forces are resisted without torque".to_owned(),
             ([], _) => "moves freely in this plane".to_owned(),
             (all, _) => format!("semi-axes of the {what} ellipse {} {unit}", all.join(" and ")),
         }

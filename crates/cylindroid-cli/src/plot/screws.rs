@@ -1,5 +1,5 @@
-//! A screw system as an SVG: the Gram determinant and the size of the projector over the pitch,
-//! and the cylindroid of a two-system.
+//! A screw system as an SVG: Gram determinant and projector norm over the pitch, and the cylindroid
+//! of a two-system.
 
 use std::ops::Range;
 use std::path::Path;
@@ -8,19 +8,20 @@ use cylindroid::screws::{Line, Screw, ScrewSystem, gram_determinant};
 use cylindroid::{Matrix, Pose, Result, Vec3};
 use plotters::prelude::*;
 
-use super::{Area, COLOURS, Drawn, FONT, builder, save};
+use super::fine::{Fine, at, px};
+use super::{Area, COLOURS, Drawn, FONT, TICK, builder, save, titled};
 use crate::output::number;
 
-/// Width, and height of a panel [px].
-const WIDTH: u32 = 820;
-const HEIGHT: u32 = 300;
-/// Height of the cylindroid [px].
-const TALL: u32 = 560;
-/// Pitches of a curve.
+/// Width, and height of a panel.
+const WIDTH: u32 = px(820);
+const HEIGHT: u32 = px(300);
+/// Height of the cylindroid.
+const TALL: u32 = px(560);
+/// Number of pitches of a curve.
 const POINTS: i32 = 1200;
-/// Projectors larger than this are drawn here.
+/// Larger projector norms are drawn at this value.
 const LARGEST: f64 = 1e3;
-/// Screws of a cylindroid.
+/// Number of screws of a cylindroid.
 const SCREWS: usize = 72;
 
 /// Draws a system spanned by the columns of `jacobian`.
@@ -36,9 +37,9 @@ pub(crate) fn draw(
 fn panels(title: &str, jacobian: &Matrix, system: &ScrewSystem, svg: &mut String) -> Drawn {
     let pencil = system.pencil(SCREWS);
     let tall = if pencil.is_empty() { 0 } else { TALL };
-    let root = SVGBackend::with_string(svg, (WIDTH, 40 + 2 * HEIGHT + tall)).into_drawing_area();
+    let root = Fine::new(svg, (WIDTH, px(40) + 2 * HEIGHT + tall)).into_drawing_area();
     root.fill(&WHITE)?;
-    let root = root.titled(title, (FONT, 20))?;
+    let root = titled(&root, title, 20)?;
     let (top, bottom) = root.split_vertically(HEIGHT);
     let (middle, rest) = bottom.split_vertically(HEIGHT);
     let range = pitches(system);
@@ -52,14 +53,15 @@ fn panels(title: &str, jacobian: &Matrix, system: &ScrewSystem, svg: &mut String
     Ok(())
 }
 
-/// All principal pitches with room around them; a characteristic length where they are zero.
+/// The range of the principal pitches with a margin; plus or minus the characteristic length if
+/// they vanish.
 fn pitches(system: &ScrewSystem) -> Range<f64> {
     let most = system.principal_pitches().iter().fold(0.0, |m: f64, h| m.max(h.abs()));
     let most = if most > 1e-3 * system.length() { 2.5 * most } else { system.length() };
     -most..most
 }
 
-/// A label of an axis of this width: rounding is zero.
+/// A tick label of an axis of this width; rounding errors are shown as zero.
 fn label(x: f64, width: f64) -> String {
     number(if x.abs() < 1e-9 * width { 0.0 } else { x })
 }
@@ -75,7 +77,7 @@ fn determinant(
     system: &ScrewSystem,
     range: &Range<f64>,
 ) -> Drawn {
-    // Dependent twists have the determinant zero for every pitch: then that of a basis is drawn.
+    // For dependent twists the determinant vanishes at every pitch; that of a basis is drawn.
     let independent = jacobian.cols() == system.order();
     let basis = system.basis();
     let of = if independent {
@@ -100,6 +102,7 @@ fn determinant(
         .bold_line_style(BLACK.mix(0.12))
         .axis_desc_style((FONT, 15))
         .label_style((FONT, 13))
+        .set_all_tick_mark_size(TICK)
         .y_labels(6)
         .x_label_formatter(&|x| label(*x, width))
         .y_label_formatter(&|y| label(*y, height))
@@ -113,8 +116,8 @@ fn determinant(
     chart.draw_series(principal.iter().map(|&h| Circle::new((h, 0.0), 5, COLOURS[1].filled())))?;
     chart.draw_series(principal.iter().map(|&h| {
         let text = format!("h = {}", number(if h.abs() < 1e-12 { 0.0 } else { h }));
-        // Towards the middle, away from where the curve rises.
-        let shift = if h > 0.0 { (-90, -18) } else { (8, -18) };
+        // Towards the middle, where the curve is lower.
+        let shift = if h > 0.0 { at(-90, -18) } else { at(8, -18) };
         EmptyElement::at((h, 0.0)) + Text::new(text, shift, (FONT, 14).into_font())
     }))?;
     Ok(())
@@ -129,18 +132,19 @@ fn size(area: &Area<'_>, system: &ScrewSystem, range: &Range<f64>) -> Drawn {
     chart
         .configure_mesh()
         .x_desc("pitch h [m/rad]")
-        .y_desc("size of the projector |P_h| [-]")
+        .y_desc("projector norm |P_h| [-]")
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.12))
         .axis_desc_style((FONT, 15))
         .label_style((FONT, 13))
+        .set_all_tick_mark_size(TICK)
         .y_labels(4)
         .x_label_formatter(&|x| label(*x, width))
         .y_label_formatter(&|y| number(*y))
         .draw()?;
     if norms.iter().all(|n| n.1 >= LARGEST) {
         let middle = (0.5 * (range.start + range.end), 30.0);
-        let text = "there is no projector for any pitch";
+        let text = "no projector exists for any pitch";
         let style = (FONT, 16).into_font().color(&COLOURS[3]);
         chart.draw_series([Text::new(text, middle, style)])?;
         return Ok(());
@@ -151,7 +155,7 @@ fn size(area: &Area<'_>, system: &ScrewSystem, range: &Range<f64>) -> Drawn {
     chart.draw_series(proposed.map(|h| Circle::new((h, choice.norm), 5, COLOURS[1].filled())))?;
     chart.draw_series(proposed.map(|h| {
         let text = format!("smallest: h = {}", number(h));
-        EmptyElement::at((h, choice.norm)) + Text::new(text, (8, -18), (FONT, 14).into_font())
+        EmptyElement::at((h, choice.norm)) + Text::new(text, at(8, -18), (FONT, 14).into_font())
     }))?;
     Ok(())
 }
@@ -159,7 +163,7 @@ fn size(area: &Area<'_>, system: &ScrewSystem, range: &Range<f64>) -> Drawn {
 /// The axes of the screws of a two-system, in its canonical frame, coloured by pitch.
 fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn {
     let home: Pose = system.canonical_pose().inverse();
-    // In the canonical frame, each axis at its point nearest to the origin there.
+    // In the canonical frame, each axis given by its point closest to the origin.
     let seen = |s: &Screw| {
         let line = Line { point: home * s.axis.point, direction: home.rotation * s.axis.direction };
         Screw { axis: Line { point: line.nearest(Vec3::ZERO), ..line }, ..*s }
@@ -180,10 +184,13 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
         number(low),
         number(high)
     );
-    let area = area.titled(&caption, (FONT, 15))?;
+    let area = titled(area, &caption, 15)?;
     let cube = -half..half;
-    let mut chart =
-        ChartBuilder::on(&area).margin(10).build_cartesian_3d(cube.clone(), cube.clone(), cube)?;
+    let mut chart = ChartBuilder::on(&area).margin(px(10)).build_cartesian_3d(
+        cube.clone(),
+        cube.clone(),
+        cube,
+    )?;
     chart.with_projection(|mut view| {
         view.pitch = 0.45;
         view.yaw = 0.6;
@@ -205,7 +212,7 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
             if high > low { ((screw.pitch - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
         let ends = [p - d * half, p + d * half];
         let inside = |x: f64| x.abs() <= 1.001 * half;
-        // Drawn with the z axis upwards, which is the second of the three here.
+        // The second axis of the chart points up: z.
         let points: Vec<(f64, f64, f64)> = ends
             .iter()
             .map(|e| {

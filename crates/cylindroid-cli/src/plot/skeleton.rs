@@ -20,7 +20,7 @@ pub(crate) struct Spot {
     pub(crate) name: String,
     pub(crate) point: Vec3,
     pub(crate) mark: Mark,
-    pub(crate) driven: bool,
+    pub(crate) actuated: bool,
 }
 
 /// Points of links and joints in world (m).
@@ -90,7 +90,7 @@ impl Skeleton {
                     name: joint.name.clone(),
                     point: a,
                     mark,
-                    driven: joint.actuated,
+                    actuated: joint.actuated,
                 });
             }
         }
@@ -103,7 +103,7 @@ impl Skeleton {
                 name: joint.name.clone(),
                 point: a,
                 mark,
-                driven: joint.actuated,
+                actuated: joint.actuated,
             });
             if ground[joint.a] || ground[joint.b] {
                 skeleton.bases.push(a);
@@ -117,7 +117,7 @@ impl Skeleton {
                 name: contact.name.clone(),
                 point,
                 mark: Mark::Contact,
-                driven: false,
+                actuated: false,
             });
             if ground[contact.a] || ground[contact.b] {
                 skeleton.bases.push(point);

@@ -200,7 +200,7 @@ fn plots() {
     let five = drawn(&["five-bar", "--actuated", "q2,q4"]);
     assert!(five.contains("semi-axes of the velocity ellipse 1.18 and 0.425 m/s"), "{five}");
     assert!(five.contains("q3") && !five.contains("within the limits"));
-    assert!(drawn(&["five-bar"]).contains("within the limits of torques"));
+    assert!(drawn(&["five-bar"]).contains("within the limits of the joint torques"));
     // Stretched out: a line of velocities, and forces that need no torque.
     let line = drawn(&["3r", "--q", "0,0,0"]);
     assert!(line.contains("no velocity"), "{line}");

@@ -8,8 +8,9 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::super::fine::{Fine, at, px};
 use super::super::skeleton::{Mark, Skeleton};
-use super::super::{COLOURS, Drawn, FONT};
+use super::super::{COLOURS, Drawn, FONT, TICK};
 use super::shapes::{Block, Ellipse, Scales, View};
 use crate::output::number;
 
@@ -26,20 +27,20 @@ pub(super) struct Panel<'a> {
     pub(super) metre: f64,
 }
 
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Chart<'a, 'b> = ChartContext<'a, Fine<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Point = (f64, f64);
 
 const MARGIN: u32 = 10;
 const LABELS: (u32, u32) = (50, 38);
 /// Points of an ellipse.
-const POINTS: u32 = 1440;
+const POINTS: u32 = 360;
 const DARK: RGBColor = RGBColor(60, 60, 60);
 const LINK: RGBColor = RGBColor(120, 120, 120);
 /// Most joints whose names are written.
 const NAMED: usize = 10;
 const NAMES: [&str; 3] = ["x [m]", "y [m]", "z [m]"];
 
-pub(super) fn panel(area: &DrawingArea<SVGBackend<'_>, Shift>, shown: &Panel<'_>) -> Drawn {
+pub(super) fn panel(area: &DrawingArea<Fine<'_>, Shift>, shown: &Panel<'_>) -> Drawn {
     let [i, j] = shown.view.plane;
     let flat = |p: Vec3| shown.flat(p);
     let centre = flat(shown.reference);
@@ -47,9 +48,9 @@ pub(super) fn panel(area: &DrawingArea<SVGBackend<'_>, Shift>, shown: &Panel<'_>
     let (x, y) = shown.ranges();
 
     let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
-        .x_label_area_size(LABELS.1)
-        .y_label_area_size(LABELS.0)
+        .margin(px(MARGIN))
+        .x_label_area_size(px(LABELS.1))
+        .y_label_area_size(px(LABELS.0))
         .build_cartesian_2d(x.clone(), y.clone())?;
     let wide = shown.size.0 > 400;
     let width = x.end - x.start;
@@ -62,6 +63,7 @@ pub(super) fn panel(area: &DrawingArea<SVGBackend<'_>, Shift>, shown: &Panel<'_>
         .bold_line_style(BLACK.mix(0.08))
         .axis_desc_style((FONT, 14))
         .label_style((FONT, 12))
+        .set_all_tick_mark_size(TICK)
         .x_labels(if wide { 7 } else { 5 })
         .y_labels(if wide { 7 } else { 5 })
         .x_label_formatter(&label)
@@ -80,7 +82,6 @@ pub(super) fn panel(area: &DrawingArea<SVGBackend<'_>, Shift>, shown: &Panel<'_>
         strip(&mut chart, shown, *d, (&x, &y), other)?;
     }
     mechanism(&mut chart, shown.skeleton, flat)?;
-    let ellipse = smooth(&chart, &x, &y, ellipse);
     if ellipse.len() > 1 {
         chart.draw_series([closed(&ellipse, colour.stroke_width(3))])?;
         if shown.block.force && shown.view.ellipse.endless.is_empty() {
@@ -180,28 +181,6 @@ fn closed(points: &[Point], style: ShapeStyle) -> PathElement<Point> {
     PathElement::new(rim, style)
 }
 
-/// Of a fine rim the points in the middle of pixels: coordinates of the file are whole pixels, and
-/// a rim of any others looks jagged.
-fn smooth(
-    chart: &Chart<'_, '_>,
-    x: &std::ops::Range<f64>,
-    y: &std::ops::Range<f64>,
-    rim: Vec<Point>,
-) -> Vec<Point> {
-    /// Distance from the middle [px], and fewest points that make a rim.
-    const NEAR: f64 = 0.18;
-    const FEWEST: usize = 12;
-    let (w, h) = chart.plotting_area().get_pixel_range();
-    let off = |v: f64, range: &std::ops::Range<f64>, pixels: std::ops::Range<i32>| {
-        let at =
-            f64::from(pixels.end - pixels.start) * (v - range.start) / (range.end - range.start);
-        (at.rem_euclid(1.0) - 0.5).abs()
-    };
-    let middle = |p: &&Point| off(p.0, x, w.clone()) < NEAR && off(p.1, y, h.clone()) < NEAR;
-    let kept: Vec<Point> = rim.iter().filter(middle).copied().collect();
-    if kept.len() < FEWEST { rim } else { kept }
-}
-
 /// Dashes of equal length along a rim.
 fn dashed(chart: &mut Chart<'_, '_>, rim: &[Point], metre: f64, colour: RGBColor) -> Drawn {
     const DASH: f64 = 12.0;
@@ -295,21 +274,21 @@ fn mechanism(
         chart.draw_series([EmptyElement::at(flat(*base)) + ground()])?;
     }
     for spot in &skeleton.spots {
-        let fill = if spot.driven { DARK } else { WHITE };
-        let at = flat(spot.point);
+        let fill = if spot.actuated { DARK } else { WHITE };
+        let here = flat(spot.point);
         match spot.mark {
             Mark::Turning => {
-                chart.draw_series([Circle::new(at, 5, fill.filled())])?;
-                chart.draw_series([Circle::new(at, 5, DARK.stroke_width(2))])?;
+                chart.draw_series([Circle::new(here, 5, fill.filled())])?;
+                chart.draw_series([Circle::new(here, 5, DARK.stroke_width(2))])?;
             }
             Mark::Sliding => {
-                let square = [(-5, -5), (5, 5)];
-                let inside = EmptyElement::at(at) + Rectangle::new(square, fill.filled());
+                let square = [at(-5, -5), at(5, 5)];
+                let inside = EmptyElement::at(here) + Rectangle::new(square, fill.filled());
                 chart.draw_series([inside + Rectangle::new(square, DARK.stroke_width(2))])?;
             }
             Mark::Contact => {
-                let diamond = vec![(0, -6), (6, 0), (0, 6), (-6, 0)];
-                let inside = EmptyElement::at(at) + Polygon::new(diamond.clone(), fill.filled());
+                let diamond = vec![at(0, -6), at(6, 0), at(0, 6), at(-6, 0)];
+                let inside = EmptyElement::at(here) + Polygon::new(diamond.clone(), fill.filled());
                 let rim: Vec<(i32, i32)> = diamond.iter().chain(diamond.first()).copied().collect();
                 chart.draw_series([inside + PathElement::new(rim, DARK.stroke_width(2))])?;
             }
@@ -320,7 +299,7 @@ fn mechanism(
 
 /// A triangle under a joint of the ground.
 fn ground() -> Polygon<(i32, i32)> {
-    Polygon::new(vec![(0, 2), (-9, 15), (9, 15)], LINK.mix(0.8).filled())
+    Polygon::new(vec![at(0, 2), at(-9, 15), at(9, 15)], LINK.mix(0.8).filled())
 }
 
 /// Names beside the joints, away from the middle of the mechanism and from the shapes.
@@ -347,7 +326,7 @@ fn names(chart: &mut Chart<'_, '_>, shown: &Panel<'_>) -> Drawn {
             // A ground symbol stands below.
             (x, y) = (x.signum(), 0.0);
         }
-        let shift = ((x * away).round() as i32, (-y * away).round() as i32);
+        let shift = at((x * away).round() as i32, (-y * away).round() as i32);
         let style = TextStyle::from((FONT, 13).into_font())
             .color(&DARK)
             .pos(Pos::new(HPos::Center, VPos::Center));
@@ -358,20 +337,20 @@ fn names(chart: &mut Chart<'_, '_>, shown: &Panel<'_>) -> Drawn {
 }
 
 /// What the symbols mean, below all panels.
-pub(super) fn symbols(area: &DrawingArea<SVGBackend<'_>, Shift>) -> Drawn {
+pub(super) fn symbols(area: &DrawingArea<Fine<'_>, Shift>) -> Drawn {
     let y = 14;
-    let text = |x: i32, words: &'static str| Text::new(words, (x, y - 6), (FONT, 12));
-    area.draw(&Circle::new((26, y), 5, DARK.filled()))?;
-    area.draw(&text(38, "driven joint"))?;
-    area.draw(&Circle::new((136, y), 5, WHITE.filled()))?;
-    area.draw(&Circle::new((136, y), 5, DARK.stroke_width(2)))?;
-    area.draw(&text(148, "passive joint"))?;
-    area.draw(&Rectangle::new([(249, y - 5), (259, y + 5)], DARK.stroke_width(2)))?;
-    area.draw(&text(267, "sliding joint"))?;
-    let diamond = vec![(366, y - 6), (372, y), (366, y + 6), (360, y), (366, y - 6)];
+    let text = |x: i32, words: &'static str| Text::new(words, at(x, y - 6), (FONT, 12));
+    area.draw(&Circle::new(at(26, y), 5, DARK.filled()))?;
+    area.draw(&text(38, "actuated joint"))?;
+    area.draw(&Circle::new(at(146, y), 5, WHITE.filled()))?;
+    area.draw(&Circle::new(at(146, y), 5, DARK.stroke_width(2)))?;
+    area.draw(&text(158, "passive joint"))?;
+    area.draw(&Rectangle::new([at(249, y - 5), at(259, y + 5)], DARK.stroke_width(2)))?;
+    area.draw(&text(267, "prismatic joint"))?;
+    let diamond = vec![at(366, y - 6), at(372, y), at(366, y + 6), at(360, y), at(366, y - 6)];
     area.draw(&PathElement::new(diamond, DARK.stroke_width(2)))?;
     area.draw(&text(380, "contact"))?;
-    let triangle = vec![(456, y - 6), (447, y + 7), (465, y + 7)];
+    let triangle = vec![at(456, y - 6), at(447, y + 7), at(465, y + 7)];
     area.draw(&Polygon::new(triangle, LINK.mix(0.8).filled()))?;
     area.draw(&text(472, "ground"))?;
     Ok(())
