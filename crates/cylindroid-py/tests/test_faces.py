@@ -58,6 +58,39 @@ def test_the_rest_is_drawn(plot, tmp_path):
     axes[0].figure.savefig(tmp_path / "way.png")
 
 
+def test_labels_of_screws_do_not_overlap(plot):
+    for model in ("panda", "ur5e", "youbot"):
+        r = cy.load(model)
+        ax = plot.screws([cy.Screw(t) for t in r.jacobian(r.home, reference="world").T])
+        ax.figure.canvas.draw()
+        boxes = [text.get_window_extent() for text in ax.texts]
+        assert len(boxes) == r.n
+        for i, a in enumerate(boxes):
+            for b in boxes[:i]:
+                assert not a.overlaps(b), (model, ax.texts[i].get_text())
+        assert not any("e-" in text.get_text() for text in ax.texts)
+
+
+def test_planar_mechanisms_are_drawn_in_the_plane(plot, tmp_path):
+    r = cy.load("five-bar")
+    q = r.home
+    ax = plot.mechanism(r)
+    assert r.dimension == 2 and not hasattr(ax, "plot_surface")
+    J = r.jacobian(q, reference="world")
+    twists = [t for t in J.T if t.any()]
+    plot.screws([cy.Screw(t) for t in twists], ax)
+    points = [line.get_xydata()[0] for line in ax.lines if line.get_marker() == "o"]
+    centres = [np.array([-t[1], t[0]]) / t[5] for t in twists]
+    np.testing.assert_allclose(points, centres, atol=1e-12)
+    plot.screws([cy.Screw([0, 2, 0, 0, 0, 0])], ax, names=["slide"])
+    assert ax.texts[-1].get_text() == "slide: translation"
+    plot.ellipsoid(r.manipulability(q, task="x,y").kinematic, r.fk(q)[:2, 3], ax, scale=0.1)
+    ax.figure.savefig(tmp_path / "plane.png")
+    with pytest.raises(ValueError, match="leaves the plane"):
+        plot.screws([cy.Screw([0, 0, 0, 1, 0, 0])], ax)
+    assert hasattr(plot.mechanism(r, ax=plot.frame(np.eye(4))), "plot_surface")
+
+
 def test_toolbox_names():
     r = cy.load("panda")
     robot = Robot(r)

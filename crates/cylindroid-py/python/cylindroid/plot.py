@@ -1,7 +1,8 @@
-"""Pictures with matplotlib (``pip install .[plot]``).
+"""Plots with matplotlib (``pip install .[plot]``).
 
-Every function draws into the axes that it is given, or makes new ones, and returns them; nothing
-is shown or saved. It computes nothing: what it draws, the library has computed.
+Every function draws into the given axes, or creates new ones, and returns them; nothing is shown or
+saved. All quantities are computed by the library. Planar mechanisms are drawn in their plane: in
+axes without a third dimension, x and y of the world.
 """
 
 from __future__ import annotations
@@ -17,6 +18,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+# Smaller pitches are written as zero (m/rad).
+ROUNDING = 1e-9
+# Larger components leave the plane: of a unit direction, or of a pitch (m/rad).
+PLANAR = 1e-6
+
 __all__ = ["cylindroid", "ellipsoid", "frame", "mechanism", "screws", "trajectory"]
 
 
@@ -30,19 +36,27 @@ def _pyplot() -> Any:
     return pyplot
 
 
+def _is_spatial(ax: Any) -> bool:
+    return hasattr(ax, "plot_surface")
+
+
 def _axes(ax: Any, space: bool) -> Any:
-    """New axes where none are given; of given ones the dimension is checked."""
+    """New axes if none are given; the dimension of given axes is checked."""
     if ax is None:
         figure = _pyplot().figure()
         ax = figure.add_subplot(projection="3d" if space else None)
-    elif space and not hasattr(ax, "plot_surface"):
-        raise ValueError("this picture is spatial: give axes made with projection='3d'")
-    ax.set_aspect("equal", adjustable="datalim") if not space else None
+    elif space and not _is_spatial(ax):
+        raise ValueError("this plot is spatial: pass axes created with projection='3d'")
+    if not _is_spatial(ax):
+        ax.set_aspect("equal", adjustable="datalim")
     return ax
 
 
 def _equal(ax: Any) -> None:
-    """The same scale on all three axes."""
+    """Equal scales on all axes, and their labels."""
+    if not _is_spatial(ax):
+        ax.set(xlabel="x (m)", ylabel="y (m)")
+        return
     limits = np.array([ax.get_xlim(), ax.get_ylim(), ax.get_zlim()])
     middle, half = limits.mean(1), 0.5 * np.ptp(limits, axis=1).max()
     ax.set(
@@ -56,6 +70,48 @@ def _equal(ax: Any) -> None:
     ax.set_box_aspect((1, 1, 1))
 
 
+def _labels(ax: Any, labels: list[tuple[str, list[NDArray[Any]]]]) -> None:
+    """Writes each text at one of its positions so that the texts overlap as little as possible.
+
+    Boxes are estimated from the font size; positions are in order of preference. In a plane, the
+    text stands beside its position, in one of four corners.
+    """
+    from matplotlib import rcParams
+    from matplotlib.font_manager import FontProperties
+
+    points = FontProperties(size=rcParams["font.size"]).get_size_in_points()
+    pixels = points * ax.figure.dpi / 72
+    space = _is_spatial(ax)
+    if space:
+        from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+        ax.apply_aspect()
+        projection = ax.get_proj()
+    taken: list[NDArray[Any]] = []
+    for text, positions in labels:
+        extent = np.array([0.62 * pixels * len(text), 1.3 * pixels])
+        candidates = []
+        for at in positions:
+            corner = ax.transData.transform(proj_transform(*at, projection)[:2] if space else at)
+            if space:
+                candidates.append((corner, at))
+                continue
+            right, left = 0.5 * pixels, -0.5 * pixels - extent[0]
+            above, below = 0.5 * pixels, -0.5 * pixels - extent[1]
+            for offset in ((right, above), (left, above), (right, below), (left, below)):
+                beside = corner + offset
+                candidates.append((beside, ax.transData.inverted().transform(beside)))
+
+        def overlap(candidate: tuple[NDArray[Any], NDArray[Any]]) -> float:
+            low, high = candidate[0], candidate[0] + extent
+            shared = [np.minimum(high, b[1]) - np.maximum(low, b[0]) for b in taken]
+            return sum(float(np.prod(sides)) for sides in shared if (sides > 0).all())
+
+        corner, at = min(candidates, key=overlap)
+        taken.append(np.array([corner, corner + extent]))
+        ax.text(*at, text)
+
+
 def frame(pose: ArrayLike, ax: Any = None, size: float = 0.1, name: str | None = None) -> Any:
     """The axes of a pose: x red, y green, z blue.
 
@@ -63,22 +119,31 @@ def frame(pose: ArrayLike, ax: Any = None, size: float = 0.1, name: str | None =
     ----------
     pose : array_like, (4, 4)
         (m)
-    ax : matplotlib 3-D axes, optional
+    ax : matplotlib axes, optional
+        Default: new 3-D axes. Axes of a plane show x and y.
     size : float
         Length of the arrows (m).
     name : str, optional
-        Written at the origin.
+        Text at the origin.
 
     Returns
     -------
     The axes.
     """
     T = np.asarray(pose, dtype=float)
-    ax = _axes(ax, space=True)
-    for i, colour in enumerate(("tab:red", "tab:green", "tab:blue")):
-        ax.quiver(*T[:3, 3], *(size * T[:3, i]), color=colour)
+    ax = _axes(ax, space=ax is None)
+    d = 3 if _is_spatial(ax) else 2
+    for i, colour in zip(range(d), ("tab:red", "tab:green", "tab:blue")):
+        arrow = size * T[:d, i]
+        if d == 3:
+            ax.quiver(*T[:3, 3], *arrow, color=colour)
+        else:
+            ax.quiver(
+                *T[:2, 3], *arrow, color=colour, angles="xy", scale_units="xy", scale=1, zorder=3
+            )
+            ax.update_datalim([T[:2, 3] + arrow])
     if name is not None:
-        ax.text(*T[:3, 3], name)
+        ax.text(*T[:d, 3], name)
     _equal(ax)
     return ax
 
@@ -91,21 +156,24 @@ def mechanism(robot: Mechanism, q: ArrayLike | None = None, ax: Any = None) -> A
     robot : Mechanism
     q : array_like, (n,), optional
         Default: home.
-    ax : matplotlib 3-D axes, optional
+    ax : matplotlib axes, optional
+        Default: new axes, of the plane x-y for a planar mechanism, otherwise 3-D.
 
     Returns
     -------
     The axes.
     """
-    ax = _axes(ax, space=True)
+    ax = _axes(ax, space=ax is None and robot.dimension == 3)
+    d = 3 if _is_spatial(ax) else 2
     poses = robot.fk_all(robot.home if q is None else q)
-    at = dict(zip(robot.frames, poses[:, :3, 3]))
+    at = dict(zip(robot.frames, poses[:, :d, 3]))
     for joint in robot.joints:
         ends = np.array([at[joint.parent], at[joint.child]])
         ax.plot(*ends.T, color="0.3", lw=3, solid_capstyle="round")
     moving = np.array([at[joint.child] for joint in robot.joints if joint.coordinates])
     if len(moving):
-        ax.scatter(*moving.T, color="tab:orange", depthshade=False)
+        style = {"depthshade": False} if d == 3 else {"zorder": 3}
+        ax.scatter(*moving.T, color="tab:orange", **style)
     return frame(poses[robot.frames.index(robot.tool)], ax, 0.1 * robot.reach)
 
 
@@ -118,26 +186,26 @@ def ellipsoid(
     components: str = "linear",
     **style: Any,
 ) -> Any:
-    """The ellipsoid of what comes out for an input of length one: of velocity, or of force.
+    """The ellipsoid of velocities or forces for inputs of norm one.
 
-    Take the spectrum of a task (``robot.manipulability(q, task="x,y,z").kinematic`` or
+    Pass the spectrum of a task (``robot.manipulability(q, task="x,y,z").kinematic`` or
     ``.active_force``): an ellipse for two components, an ellipsoid for three. The axes are those of
-    the world (the twist is taken at the reference frame's origin). Directions of zero efficiency
-    make it flat; infinite ones are drawn as dashed lines.
+    the world (the twist is taken at the reference frame's origin). The
+    ellipsoid is flat along directions of zero efficiency; infinite ones are drawn as dashed lines.
 
     Parameters
     ----------
     spectrum : Spectrum
     centre : array_like, (2,) or (3,), optional
-        Where it is drawn, mostly ``robot.fk(q)[:3, 3]`` (m).
+        Usually ``robot.fk(q)[:3, 3]`` (m). Default: the origin.
     ax : matplotlib axes, optional
         3-D ones for three components.
     scale : float
-        Metres in the picture for a unit of velocity or force.
+        Metres per unit of velocity or force.
     components : str
-        'linear' or 'angular': which three of a whole twist or wrench are drawn.
+        'linear' or 'angular': the three components of a full twist or wrench to draw.
     **style
-        For matplotlib, as ``color``.
+        Passed to matplotlib, for example ``color``.
 
     Returns
     -------
@@ -150,11 +218,13 @@ def ellipsoid(
         rows = {"linear": slice(0, 3), "angular": slice(3, 6)}.get(components)
         if rows is None:
             raise ValueError(f"components = {components!r}: 'linear' or 'angular'")
-        # The shadow of the ellipsoid in these components has the semi-axes of their block.
+        # The projection of the ellipsoid onto these components: the SVD of their block.
         u, s, _ = np.linalg.svd(axes[rows], full_matrices=False)
         axes, infinite, d = u * s, infinite[rows], 3
     if d not in (2, 3):
-        raise ValueError(f"an ellipsoid of {d} components cannot be drawn: name two or three as task")
+        raise ValueError(
+            f"an ellipsoid of {d} components cannot be drawn: choose a task of two or three"
+        )
     ax = _axes(ax, space=d == 3)
     middle = np.zeros(d) if centre is None else np.asarray(centre, dtype=float)[:d]
     style = {"color": "tab:blue"} | style
@@ -190,11 +260,14 @@ def screws(
 ) -> Any:
     """Screw axes, each with its pitch; translations as arrows at the origin.
 
+    In axes of a plane (those of ``mechanism(robot)`` for a planar mechanism) rotations are points.
+
     Parameters
     ----------
     screws : list of Screw
         Or of twists: ``[cy.Screw(t) for t in J.T]``.
-    ax : matplotlib 3-D axes, optional
+    ax : matplotlib axes, optional
+        Default: new 3-D axes.
     length : float
         Of the lines (m).
     names : list of str, optional
@@ -202,25 +275,55 @@ def screws(
     Returns
     -------
     The axes.
+
+    Raises
+    ------
+    ValueError
+        If the axes are those of a plane and a screw is not a motion in it.
     """
-    ax = _axes(ax, space=True)
+    ax = _axes(ax, space=ax is None)
+    d = 3 if _is_spatial(ax) else 2
+    labels: list[tuple[str, list[NDArray[Any]]]] = []
     for i, screw in enumerate(screws):
         label = names[i] if names else f"{i + 1}"
+        direction = np.asarray(screw.direction)
+        across = np.hypot(*direction[:2])
+        if d == 2:
+            leaving = direction[2] if screw.is_translation else max(across, abs(screw.pitch))
+            if abs(leaving) > PLANAR:
+                raise ValueError(
+                    f"screw {label} leaves the plane x-y: pass axes created with projection='3d'"
+                )
         if screw.is_translation:
-            ax.quiver(0, 0, 0, *(length * screw.direction), color="tab:green")
-            ax.text(*(length * screw.direction), f"{label}: slides")
-            continue
-        ends = screw.point + np.outer([-0.5, 0.5], length * screw.direction)
-        ax.plot(*ends.T, color="tab:blue")
-        ax.text(*ends[1], f"{label}: h = {screw.pitch:.3g}")
+            tip = length * direction[:d]
+            if d == 3:
+                ax.quiver(0, 0, 0, *tip, color="tab:green")
+            else:
+                ax.annotate("", tip, (0, 0), arrowprops={"arrowstyle": "->", "color": "tab:green"})
+                ax.update_datalim([tip, 0 * tip])
+            labels.append((f"{label}: translation", [t * tip for t in (1.0, 0.8, 0.6, 1.2)]))
+        elif d == 3:
+            along = np.linspace(-0.5, 0.5, 2)
+            ax.plot(*(screw.point + np.outer(along, length * direction)).T, color="tab:blue")
+            places = (0.5, -0.5, 0.4, -0.4, 0.6, -0.6, 0.3, -0.3, 0.7, -0.7, 0.2, -0.2, 0.1, 0.0)
+            positions = [np.asarray(screw.point + t * length * direction) for t in places]
+            pitch = 0.0 if abs(screw.pitch) < ROUNDING else screw.pitch
+            labels.append((f"{label}: h = {pitch:.3g}", positions))
+        else:
+            point = np.asarray(screw.point)[:2]
+            ax.plot(*point, "o", color="tab:blue", zorder=4)
+            labels.append((label, [point]))
     _equal(ax)
+    if d == 2:
+        ax.autoscale_view()
+    _labels(ax, labels)
     return ax
 
 
 def cylindroid(
     system: ScrewSystem, ax: Any = None, *, length: float | None = None, count: int = 60
 ) -> Any:
-    """The ruled surface that carries the screws of a two-system, coloured by their pitch.
+    """The ruled surface of the axes of a two-system, coloured by pitch.
 
     Parameters
     ----------
@@ -228,9 +331,9 @@ def cylindroid(
         Of order 2 with two principal screws (class IA).
     ax : matplotlib 3-D axes, optional
     length : float, optional
-        Of the rulings (m). Default: three times the width of the surface.
+        Of the rulings (m). Default: three times the height of the surface.
     count : int
-        Screws drawn.
+        Number of rulings.
 
     Returns
     -------
@@ -238,8 +341,8 @@ def cylindroid(
     """
     if system.gibson_hunt != "IA" or system.rank != 2:
         raise ValueError(
-            f"a cylindroid carries the screws of a two-system of class IA; this one is of order "
-            f"{system.rank} and class {system.gibson_hunt}"
+            f"a cylindroid requires a two-system of class IA; this system has order {system.rank} "
+            f"and class {system.gibson_hunt}"
         )
     ax = _axes(ax, space=True)
     first, second = (np.asarray(s.twist) for s in system.principal_screws)
@@ -263,7 +366,7 @@ def cylindroid(
 def trajectory(
     way: Trajectory, names: list[str] | None = None, figure: Figure | None = None
 ) -> NDArray[Any]:
-    """Joints, errors and singular value ratio over time.
+    """Joints, joint velocities, pose error and singular value ratio over time.
 
     Parameters
     ----------
