@@ -3,6 +3,8 @@
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.transforms import Bbox
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 import cylindroid as cy
 from cylindroid.rtb import Robot
@@ -58,12 +60,20 @@ def test_the_rest_is_drawn(plot, tmp_path):
     axes[0].figure.savefig(tmp_path / "way.png")
 
 
+def box_of(ax, text):
+    """A label of 3-D axes as drawn: its extent, where it is projected to."""
+    extent = text.get_window_extent()
+    x, y, _ = proj_transform(*text.get_position_3d(), ax.get_proj())
+    x, y = ax.transData.transform((x, y))
+    return Bbox.from_bounds(x, y, extent.width, extent.height)
+
+
 def test_labels_of_screws_do_not_overlap(plot):
     for model in ("panda", "ur5e", "youbot"):
         r = cy.load(model)
         ax = plot.screws([cy.Screw(t) for t in r.jacobian(r.home, reference="world").T])
         ax.figure.canvas.draw()
-        boxes = [text.get_window_extent() for text in ax.texts]
+        boxes = [box_of(ax, text) for text in ax.texts]
         assert len(boxes) == r.n
         for i, a in enumerate(boxes):
             for b in boxes[:i]:
