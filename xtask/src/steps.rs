@@ -20,6 +20,10 @@ fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
 pub(crate) fn quick() -> Result<()> {
     step("format", || run(&mut cargo(&["fmt", "--all", "--check"])))?;
     step("layers", layers::check)?;
+    step("library without features", || {
+        let library = ["clippy", "--quiet", "--package", "cylindroid", "--no-default-features"];
+        run(cargo(&library).args(["--", "-D", "warnings"]))
+    })?;
     step("lints", || {
         run(&mut cargo(&[
             "clippy",

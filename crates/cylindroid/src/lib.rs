@@ -40,7 +40,9 @@ pub use error::{Error, FileError, Result};
 pub use inverse::{Inverse, Method};
 pub use kinematics::{EndEffector, ReferenceFrame, State};
 pub use linalg::Matrix;
-pub use model::{FrameId, Mechanism, catalogue, load};
+pub use model::{FrameId, Mechanism};
+#[cfg(feature = "formats")]
+pub use model::{catalogue, load};
 pub use screws::{Screw, ScrewSystem};
 pub use spatial::{Pose, Rotation, Twist, Vec3, Wrench};
 

@@ -209,7 +209,7 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
     for screw in &screws {
         let (p, d) = (screw.axis.point, screw.axis.direction);
         let share =
-            if high > low { ((screw.pitch - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
+            if high > low { ((screw.pitch - low) / (high - low)).max(0.0).min(1.0) } else { 0.5 };
         let ends = [p - d * half, p + d * half];
         let inside = |x: f64| x.abs() <= 1.001 * half;
         // The second axis of the chart points up: z.
@@ -233,6 +233,6 @@ fn blend(share: f64) -> RGBColor {
     let stops = [(31.0, 119.0, 180.0), (150.0, 150.0, 150.0), (214.0, 95.0, 0.0)];
     let (i, t) = if share < 0.5 { (0, 2.0 * share) } else { (1, 2.0 * share - 1.0) };
     let (a, b) = (stops[i], stops[i + 1]);
-    let mix = |x: f64, y: f64| (x + t * (y - x)).round().clamp(0.0, 255.0) as u8;
+    let mix = |x: f64, y: f64| (x + t * (y - x)).round() as u8;
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }

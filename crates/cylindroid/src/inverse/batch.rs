@@ -8,12 +8,10 @@
 //!          is an allocation for each of its parts
 //! Checked  tests/it/inverse_batch.rs
 
-use rayon::prelude::*;
-
 use super::Method;
 use super::report::rank;
 use crate::error::{Error, Result, all_finite};
-use crate::linalg::{Matrix, Rank, Svd};
+use crate::linalg::{Matrix, Rank, Svd, run_all};
 
 /// One way to invert Jacobians of one shape, many in one call.
 ///
@@ -107,12 +105,12 @@ impl InverseBatch {
         if count <= Self::CHUNK {
             self.chunk(jacobians, matrices, singular_values, ranks);
         } else {
-            jacobians
-                .par_chunks(Self::CHUNK * each)
-                .zip(matrices.par_chunks_mut(Self::CHUNK * each))
-                .zip(singular_values.par_chunks_mut(Self::CHUNK * values))
-                .zip(ranks.par_chunks_mut(Self::CHUNK))
-                .for_each(|(((j, m), s), r)| self.chunk(j, m, s, r));
+            let jobs = jacobians
+                .chunks(Self::CHUNK * each)
+                .zip(matrices.chunks_mut(Self::CHUNK * each))
+                .zip(singular_values.chunks_mut(Self::CHUNK * values))
+                .zip(ranks.chunks_mut(Self::CHUNK));
+            run_all(jobs.collect(), |(((j, m), s), r)| self.chunk(j, m, s, r));
         }
         Ok(inverses)
     }

@@ -10,14 +10,12 @@
 //!          number of threads, so results do not depend on them
 //! Checked  tests/it/batch.rs
 
-use rayon::prelude::*;
-
 use super::chain::Chain;
 use super::jacobian::ReferenceFrame;
 use super::serial_batched::{self, Work};
 use super::state::EndEffector;
 use crate::error::{Error, Result};
-use crate::linalg::Matrix;
+use crate::linalg::{Matrix, run_all};
 use crate::model::Mechanism;
 
 /// Numbers of a pose.
@@ -156,7 +154,7 @@ impl KinematicsBatch {
                 (q, poses, jacobians.as_mut().and_then(|(r, j)| Some((*r, j.next()?))))
             })
             .collect();
-        chunks.into_par_iter().for_each(|(q, poses, j)| self.chunk(q, poses, j, large));
+        run_all(chunks, |(q, poses, j)| self.chunk(q, poses, j, large));
         Ok(())
     }
 

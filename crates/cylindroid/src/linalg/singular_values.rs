@@ -19,6 +19,7 @@
 
 use super::matrix::Matrix;
 use super::vector::dot_unrolled as dot;
+use crate::scalar::clamp;
 
 /// QR steps for each value before giving up; two or three are usual.
 const STEPS: usize = 12;
@@ -87,7 +88,7 @@ fn extreme(d: &[f64], e: &[f64], start: f64) -> Option<f64> {
         };
         (before, back) = (t, 0.0);
         let seem = g * g / h;
-        let whole = seem.round().clamp(1.0, n);
+        let whole = clamp(seem.round(), 1.0, n);
         let m = if (seem - whole).abs() < near_whole { whole } else { 1.0 };
         let root = ((n - m) / m * (n * h - g * g)).max(0.0).sqrt();
         let step = n / (g + root.copysign(g));

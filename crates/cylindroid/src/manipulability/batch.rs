@@ -16,8 +16,6 @@
 //!          of threads, so results do not depend on them
 //! Checked  tests/it/manipulability/batch.rs
 
-use rayon::prelude::*;
-
 use super::closed_chain_batched::{Found, Kernel};
 use super::efficiency::Manipulability;
 use super::metrics::Metrics;
@@ -27,7 +25,7 @@ use crate::closure::{
 };
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::Matrix;
+use crate::linalg::{Matrix, run_all};
 use crate::model::{FrameId, Mechanism};
 use crate::tolerance::{CLEAR_DISTANCE, CLOSED, NEGLIGIBLE_SHARE};
 
@@ -210,8 +208,7 @@ impl ManipulabilityBatch {
             |((i, q), out): ((usize, &[f64]), &mut [f64])| self.chunk(i * Self::CHUNK, q, out);
         if chunks.len() > 1 {
             // The first error of all, whoever comes first.
-            let results: Vec<Result<()>> = chunks.into_par_iter().map(run).collect();
-            return results.into_iter().collect();
+            return run_all(chunks, run).into_iter().collect();
         }
         chunks.into_iter().try_for_each(run)
     }

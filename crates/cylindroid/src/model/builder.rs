@@ -17,6 +17,7 @@ use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
 use super::tree_order::{TreeOrder, default_tool};
 use crate::error::{Error, Result};
+use crate::scalar::clamp;
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
@@ -476,7 +477,7 @@ fn rest(limits: &Limits) -> f64 {
     match (lower <= 0.0 && 0.0 <= upper, middle.is_finite()) {
         (true, _) => 0.0,
         (false, true) => middle,
-        (false, false) => 0.0_f64.clamp(lower, upper),
+        (false, false) => clamp(0.0, lower, upper),
     }
 }
 

@@ -3,6 +3,7 @@
 //! Formats are loaders, never classes: whatever the file, the result is one [`Mechanism`].
 
 mod builder;
+#[cfg(feature = "formats")]
 pub mod catalogue;
 mod constraint_wrenches;
 mod contact;
@@ -24,6 +25,7 @@ mod tree_order;
 pub use builder::Builder;
 pub use contact::{Contact, ContactKind, ContactSpec};
 pub use dimension::Dimension;
+#[cfg(feature = "formats")]
 pub use formats::load;
 pub use include::Inclusion;
 pub use joint::{Joint, JointKind, Limits, Mimic};

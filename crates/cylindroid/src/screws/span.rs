@@ -9,6 +9,7 @@
 //! Checked  tests/it/screws/
 
 use crate::linalg::{Matrix, SymmetricEigen};
+use crate::scalar::clamp;
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::NEARLY_PARALLEL;
 
@@ -71,7 +72,7 @@ pub(crate) fn size(t: Twist, length: f64) -> f64 {
 /// The power of two below a size, within the normal numbers.
 pub(crate) fn power_of_two(size: f64) -> f64 {
     let exponent = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
-    exponent.clamp(f64::MIN_POSITIVE, f64::MAX)
+    clamp(exponent, f64::MIN_POSITIVE, f64::MAX)
 }
 
 pub(crate) fn over(t: Twist, a: f64) -> Twist {

@@ -11,6 +11,7 @@
 use super::span::{Scale, Span, dot, least_squares_center, over, power_of_two, size};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank, Svd};
+use crate::scalar::clamp;
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::{
     AMBIGUOUS, CENTER_FOUND, NOISE_CLASS, NOISE_OF_ZERO, NOISE_RANK, SCREW_CLASS, SCREW_RANK,
@@ -110,7 +111,7 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
     let used: Vec<Twist> =
         twists.iter().filter(|t| largest(t) > SCREW_RANK * most).map(|t| over(*t, power)).collect();
     let noise = |factor: f64| NOISE_CLASS * options.noise * factor;
-    let class = |factor: f64| noise(factor).clamp(SCREW_CLASS, 0.1);
+    let class = |factor: f64| clamp(noise(factor), SCREW_CLASS, 0.1);
     let mut scale = Scale {
         center: options
             .center

@@ -73,7 +73,7 @@ fn singular_and_extreme_poses_are_reached() {
     for robot in robots() {
         let zero = vec![0.0; robot.n()];
         let end = |pick: fn(&cylindroid::model::Limits) -> f64| -> Vec<f64> {
-            robot.coordinates().iter().map(|c| pick(&c.limits).clamp(-3.0, 3.0)).collect()
+            robot.coordinates().iter().map(|c| pick(&c.limits).max(-3.0).min(3.0)).collect()
         };
         for q in [zero, end(|l| l.lower), end(|l| l.upper), robot.home().to_vec()] {
             if robot.outside_limits(&q).next().is_some() {
@@ -175,7 +175,7 @@ fn out_of_reach_ends_with_the_nearest_pose() {
             let mut q = found.q.clone();
             q[i] += step;
             let l = panda.coordinates()[i].limits;
-            q[i] = q[i].clamp(l.lower, l.upper);
+            q[i] = q[i].max(l.lower).min(l.upper);
             assert!(far(&q) >= found.position_error - 1e-9, "joint {i}: {}", far(&q));
         }
     }
@@ -208,7 +208,7 @@ fn the_nearest_answer() {
             // The start is moved into the limits first, which brings it nearer to all answers.
             let far = |q: &[f64]| -> f64 {
                 let clamped = start.iter().zip(robot.coordinates());
-                let clamped = clamped.map(|(s, c)| s.clamp(c.limits.lower, c.limits.upper));
+                let clamped = clamped.map(|(s, c)| s.max(c.limits.lower).min(c.limits.upper));
                 q.iter().zip(clamped).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
             };
             assert!(far(&found.q) <= far(&known) * (1.0 + 1e-3) + 1e-4, "{name}: {found:?}");

@@ -8,6 +8,7 @@ use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, NodeKind};
+use crate::scalar::clamp;
 use crate::tolerance::AT_LIMIT;
 
 /// The columns of some coordinates.
@@ -83,7 +84,7 @@ pub(crate) fn moved(
 pub(crate) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
     for &i in places {
         let l = &mechanism.coordinates()[i].limits;
-        q[i] = q[i].clamp(l.lower, l.upper);
+        q[i] = clamp(q[i], l.lower, l.upper);
     }
     q
 }

@@ -6,14 +6,24 @@
 //! [`Builder`]: super::Builder
 
 pub mod dh;
+#[cfg(feature = "formats")]
 mod graph;
+#[cfg(feature = "formats")]
 mod load;
+#[cfg(feature = "formats")]
 mod mesh;
+#[cfg(feature = "formats")]
 pub mod mjcf;
+#[cfg(feature = "formats")]
 pub mod sdf;
+#[cfg(feature = "formats")]
 mod span;
+#[cfg(feature = "formats")]
 pub mod toml;
+#[cfg(feature = "formats")]
 pub mod urdf;
+#[cfg(feature = "formats")]
 mod xml;
 
+#[cfg(feature = "formats")]
 pub use load::{load, load_file};
