@@ -1,8 +1,10 @@
-//! The one error of the library: every message names the culprit, the place and the way out.
+//! The error type of the library: every message names the culprit, the place and a remedy.
 //!
-//! Degeneracy (a lost rank, an inverse that does not exist, a target out of reach) is never an
-//! error; it is a value in a report. Errors are for input that has no answer: a broken file, a
-//! wrong number of joints, a number that is not finite, a name nobody knows.
+//! Degeneracy (a lost rank, an inverse that does not exist, an unreachable target) is never an
+//! error; it is a value in a report. Errors are for invalid input: a malformed file, a wrong number
+//! of joints, a non-finite value, an unknown name.
+//!
+//! Checked  tests in this file, tests/formats/broken.rs
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -10,33 +12,33 @@ use std::path::PathBuf;
 /// Result of every fallible function of the library.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What went wrong, where, and what to do about it.
+/// An error: its cause, its place and a remedy.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A model file cannot be understood.
+    /// A model file that cannot be parsed.
     #[error(transparent)]
     File(Box<FileError>),
 
-    /// A file cannot be read or written.
+    /// A file that cannot be read or written.
     #[error("cannot {action} {}: {message}", path.display())]
     Io {
         /// The path as given.
         path: PathBuf,
-        /// What was tried: "read" or "write".
+        /// The attempted action: "read" or "write".
         action: &'static str,
-        /// The words of the operating system.
+        /// The message of the operating system.
         message: String,
     },
 
-    /// A name that the model or the library does not know.
+    /// A name unknown to the model or the library.
     #[error("no {what} named '{name}'{}", offer(similar))]
     UnknownName {
         /// The kind of thing: "frame", "joint", "catalogue model", ...
         what: &'static str,
         /// The name as given.
         name: String,
-        /// The nearest valid names, best first; all of them where there are few.
+        /// The most similar valid names, best first; all names where there are few.
         similar: Vec<String>,
     },
 
@@ -45,18 +47,18 @@ pub enum Error {
     Dimension {
         /// The argument.
         what: String,
-        /// The size that fits.
+        /// The expected size.
         expected: usize,
-        /// The size that was given.
+        /// The given size.
         got: usize,
-        /// What the entries are (joint names in order), or empty.
+        /// The meaning of the entries (joint names in order), or empty.
         hint: String,
     },
 
-    /// NaN or infinity where a number is needed.
+    /// NaN or infinity where a finite number is required.
     #[error("{what} is not finite: {value}")]
     NotFinite {
-        /// The argument, with the index or joint name where there is one.
+        /// The argument, with its index or joint name if it has one.
         what: String,
         /// The offending value.
         value: f64,
@@ -67,29 +69,29 @@ pub enum Error {
     InvalidOption {
         /// The argument or option.
         option: &'static str,
-        /// Its value, printed.
+        /// Its value as text.
         value: String,
-        /// Why not, and what can be used instead.
+        /// The reason, and an alternative.
         reason: String,
     },
 
-    /// A model that contradicts itself (from the builder; loaders add the place in the file).
+    /// An inconsistent model (from the builder; loaders add the place in the file).
     #[error("model '{model}': {message}")]
     Model {
         /// Name of the mechanism.
         model: String,
-        /// The joint, link or frame at fault (empty when it is the whole).
+        /// The joint, link or frame at fault (empty for the model as a whole).
         culprit: String,
-        /// What is wrong and what would be right.
+        /// The fault and its remedy.
         message: String,
     },
 }
 
-/// A place in a model file that cannot be understood.
+/// A place in a model file that cannot be parsed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}:{line}:{column}: {message}", path.display())]
 pub struct FileError {
-    /// The format the file was read as: "URDF", "mechanism file", ...
+    /// The format of the file: "URDF", "mechanism file", ...
     pub format: &'static str,
     /// The file.
     pub path: PathBuf,
@@ -99,14 +101,14 @@ pub struct FileError {
     pub column: usize,
     /// Byte range of the offending text in the file.
     pub span: Range<usize>,
-    /// What is wrong.
+    /// The fault.
     pub message: String,
-    /// What to do next (may be empty).
+    /// The remedy (may be empty).
     pub help: String,
 }
 
 impl Error {
-    /// An [`Error::UnknownName`] with the nearest of `known` names offered.
+    /// An [`Error::UnknownName`] that suggests the most similar of the `known` names.
     pub fn unknown(
         what: &'static str,
         name: &str,
@@ -115,7 +117,7 @@ impl Error {
         Self::UnknownName { what, name: name.to_owned(), similar: nearest(name, known) }
     }
 
-    /// Refuses the first entry of `values` that is NaN or infinite.
+    /// Returns an error for the first entry of `values` that is NaN or infinite.
     #[inline]
     pub fn check_finite(what: &str, values: &[f64]) -> Result<()> {
         if all_finite(values) { Ok(()) } else { Self::find_not_finite(what, values) }
@@ -129,7 +131,7 @@ impl Error {
         }
     }
 
-    /// Refuses an option that is not positive and finite.
+    /// Returns an error for an option that is not positive and finite.
     pub fn check_positive(option: &'static str, value: f64) -> Result<()> {
         if value > 0.0 && value.is_finite() {
             return Ok(());
@@ -147,7 +149,7 @@ impl Error {
         Self::Dimension { what: what.to_owned(), expected, got, hint }
     }
 
-    /// Refuses a size other than `expected`.
+    /// Returns an error for a size other than `expected`.
     pub fn check_len(what: &str, expected: usize, got: usize) -> Result<()> {
         if expected == got {
             Ok(())
@@ -166,7 +168,7 @@ fn nearest(name: &str, known: impl IntoIterator<Item: AsRef<str>>) -> Vec<String
             let candidate = candidate.as_ref();
             let lower = candidate.to_lowercase();
             let contains = lower.contains(&wanted) || wanted.contains(&lower);
-            // A name of one or two letters stands in half of all words by chance.
+            // One or two letters occur in half of all words by chance.
             let bonus = if contains && lower.len().min(wanted.len()) > 2 { 0.5 } else { 0.0 };
             (strsim::jaro_winkler(&wanted, &lower) + bonus, candidate.to_owned())
         })
@@ -183,8 +185,7 @@ fn hint_text(hint: &str) -> String {
     if hint.is_empty() { String::new() } else { format!(" ({hint})") }
 }
 
-/// True if no number is NaN or infinite: zero times it is zero. Eight sums, none of which waits for
-/// another.
+/// True if no number is NaN or infinite (zero times it is zero). Eight independent sums, for speed.
 #[inline]
 pub(crate) fn all_finite(values: &[f64]) -> bool {
     let (eights, rest) = values.as_chunks::<8>();

@@ -1,11 +1,11 @@
-//! The inverses of many Jacobians in one call.
+//! Inverses of many Jacobians in one call (batched pseudoinverses).
 //!
-//! Formula  those of the single inverses, to the bit
+//! Formula  that of the single inverses, to the bit
 //! Shapes   J: N x m x n, inverses: N x n x m, singular values: N x min(m, n); all row-major
 //! Units    those of the Jacobians
 //! Valid    as the method; selectively damped least squares for unit motions along every direction
-//! Why so   numbers in arrays, without the directions that were dropped: a report for each of many
-//!          is an allocation for each of its parts
+//! Why so   arrays of numbers, without the truncated directions: a report for each of many would
+//!          allocate for each of its parts
 //! Checked  tests/it/inverse_batch.rs
 
 use super::Method;
@@ -75,7 +75,7 @@ impl InverseBatch {
     /// The inverse of each Jacobian.
     ///
     /// # Errors
-    /// Numbers that are not a whole number of Jacobians; an entry that is not finite.
+    /// Numbers that are not a whole number of Jacobians; a non-finite entry.
     pub fn inverses(&self, jacobians: &[f64]) -> Result<Inverses> {
         let (each, values) = (self.rows * self.cols, self.rows.min(self.cols));
         let count = jacobians.len() / each;

@@ -1,26 +1,27 @@
-//! Hyperbolic pseudoinverse: the inverse whose joint rates do not change with the frame.
+//! Hyperbolic pseudoinverse: joint velocities that are independent of the frame and the unit.
 //!
 //! Formula  independent columns: J+h = (J^T Q_h J)^-1 J^T Q_h
 //!          any rank, joint metric M, J = F C: J+h = C+ (F^T Q_h F)^-1 F^T Q_h,
 //!          C+ = M^-1 C^T (C M^-1 C^T)^-1; P_h = J J+h
 //!          damped: (J^T Q_h J + lambda M)^-1 J^T Q_h
 //!          invariant damped: (G^2 + mu^2)^-1 G J^T Q_h, G = J^T Q_h J, in coordinates of the
-//!          joints in which M = 1; tends to J+h as mu goes to zero where that exists, else to the
-//!          inverse on the other eigenvectors of G
+//!          joints in which M = 1; tends to J+h as mu goes to zero where that exists, otherwise to
+//!          the inverse on the other eigenvectors of G
 //! Shapes   J: 6 x m (linear part first) -> m x 6; h, L, c as in `screws`
 //! Units    h in m/rad, lambda and mu in m/rad times the unit of M
 //! Valid    J+h exists iff F^T Q_h F is regular: never for some systems, see `screws::NoInverse`;
 //!          the first damped form is singular where an eigenvalue of G (against M) is -lambda; the
 //!          invariant one always exists. For rank 6 and a finite h it is the pseudoinverse of J
-//! Fails    only on input that is not finite or of the wrong shape. Where there is no inverse,
+//! Fails    only on input that is non-finite or of the wrong shape. Where there is no inverse,
 //!          `exists` is false, `reason` says why, and the entries of the matrix are NaN
-//! Why so   the Moore-Penrose inverse of a twist Jacobian adds metres to radians: its rates change
-//!          with the origin and the unit. These do not; they are not optimal in any frame either:
-//!          the twist that is realised, P_h s, makes (s - P_h s)^T Q_h (s - P_h s) stationary
+//! Why so   the Moore-Penrose inverse of a twist Jacobian adds metres to radians: its joint
+//!          velocities change with the origin and the unit. These do not; they are not optimal in
+//!          any frame either: the realised twist P_h s makes (s - P_h s)^T Q_h (s - P_h s)
+//!          stationary
 //! Source   Donelan & Selig, theorems 1, 2 and 5, section 6.2; its example 1 has a wrong entry
 //!          (row 3, column 2: (16 h^2 + 16 h - 1) / 32 h), its damped form the wrong promise that
 //!          it always exists
-//! Checked  tests/it/screws/vectors/, laws.rs, invariance.rs
+//! Checked  tests/it/screws/vectors/, tests/it/screws/laws.rs, tests/it/screws/invariance.rs
 
 use super::report::{Inverse, TruncatedDirection, assemble};
 use super::weighted::Weights;

@@ -1,4 +1,4 @@
-//! Hyperbolic pseudoinverse of independent twists, in a control loop.
+//! Hyperbolic pseudoinverse of independent twists without allocation, for a control loop.
 //!
 //! Formula  J S = B R (Gram-Schmidt, twice), J+h = R^-1 (B^T Q_h B)^-1 B^T Q_h S, S the scaling to
 //!          [v(c) / L; w]
@@ -6,9 +6,9 @@
 //! Units    h in m/rad
 //! Valid    no allocation where the columns are clearly independent and the inverse clearly
 //!          exists: every pivot above 1e-2, |P_h| below 1e3, which bounds the smallest singular
-//!          value of the Gram matrix by 1 / (|P_h|^2 |Q_h^-1|). Else `hyperbolic_with` decides
+//!          value of the Gram matrix by 1 / (|P_h|^2 |Q_h^-1|). Otherwise `hyperbolic_with` decides
 //! Why so   for independent columns neither singular values nor a joint metric are needed; the
-//!          class is for people, not for loops
+//!          class is for reports, not for loops
 //! Checked  tests/it/hyperbolic.rs::independent_*
 
 use super::hyperbolic::{HyperbolicOptions, hyperbolic_with};

@@ -1,14 +1,15 @@
-//! All joint rates that move a point of the end effector along a given direction.
+//! All joint velocities that move a point of the end effector along a given direction.
 //!
-//! Formula  J_x = v + w x x (columns of J at the point x); rates with J_x rates parallel to q are
-//!          lambda J_x+ q + the null space of J_x, if q is in the range of J_x, else the null space
-//! Shapes   J: 6 x m, x and q: 3
-//! Units    m, rad; the first rates are per 1 m/s along q
+//! Formula  J_x = v + w x x (columns of J at the point x); joint velocities qd with J_x qd parallel
+//!          to d are lambda J_x+ d + the null space of J_x, if d is in the range of J_x, otherwise
+//!          the null space
+//! Shapes   J: 6 x m, x and d: 3
+//! Units    m, rad; the first joint velocities are per 1 m/s along d
 //! Frame    that of J
-//! Valid    any m and rank. The rates need not be the only ones that carry a twist: dependent
-//!          joints add their null space
-//! Source   Donelan & Selig, example 3, corrected: the set is {rates : J rates in S}, S the twists
-//!          that move x along q, not the image of S under a pseudoinverse, which is larger
+//! Valid    any m and rank. They need not be the only ones that produce a twist: dependent joints
+//!          add their null space
+//! Source   Donelan & Selig, example 3, corrected: the set is {qd : J qd in S}, S the twists that
+//!          move x along d, not the image of S under a pseudoinverse, which is larger
 //! Checked  tests/it/screws/vectors/examples.rs::example_3, tests/it/screws/point_direction.rs
 
 use crate::error::{Error, Result};

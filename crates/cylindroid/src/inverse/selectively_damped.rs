@@ -1,17 +1,17 @@
-//! Selectively damped least squares: each direction slowed by as much as its joint rates need.
+//! Selectively damped least squares: each direction is slowed according to its joint velocities.
 //!
-//! Formula  r_i = (u_i . x) / s_i v_i, the rates along direction i; N_i = |u_i| = 1;
+//! Formula  r_i = (u_i . x) / s_i v_i, the joint velocities along direction i; N_i = |u_i| = 1;
 //!          M_i = sum_j |v_ji| |J_j| / s_i; g_i = min(1, N_i / M_i) max_joint_velocity;
 //!          r_i scaled so that its largest entry is at most g_i, then the sum at most
 //!          max_joint_velocity
 //! Shapes   m x n and a task of m entries -> n x m (for this task)
-//! Units    max_joint_velocity in rad/s (m/s for sliding joints)
-//! Valid    any rank; |rates| <= max_joint_velocity always. Continuous in x, and in J where its
-//!          singular values differ and none is zero: where two are equal their directions are not
-//!          determined, each choice has its own clamps, and the rates may jump (for motions so
-//!          small that nothing is clamped they do not)
+//! Units    max_joint_velocity in rad/s (m/s for prismatic joints)
+//! Valid    any rank; |qd| <= max_joint_velocity always. Continuous in x, and in J where its
+//!          singular values differ and none is zero: where two are equal their directions are
+//!          undetermined, each choice has its own clamps, and the joint velocities may jump (for
+//!          motions so small that nothing is clamped they do not)
 //! Why so   the original counts end-effector positions; here the task is one vector in the units
-//!          the caller scaled it to, so orientation counts as well
+//!          of the caller's scaling, so orientation counts as well
 //! Source   Buss & Kim 2005, eq. 13 to 15; rho_lj -> |J_j|
 //! Checked  tests/it/inverse.rs::selectively_damped_*
 

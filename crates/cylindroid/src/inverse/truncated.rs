@@ -1,13 +1,14 @@
-//! Truncated pseudoinverse: singular values at or below a relative threshold are cut.
+//! Truncated pseudoinverse (Moore-Penrose): singular values at or below a relative threshold are
+//! cut.
 //!
 //! Formula  gain_i = 1 / s_i if s_i > eps s_1, else 0
 //! Shapes   m x n -> n x m          Units  eps [-]
 //! Valid    any rank; the gain is at most 1 / (eps s_1). Jumps where a value crosses the threshold.
-//! Why so   what numpy.linalg.pinv(J, eps) does; an absolute cut, as some libraries have, calls
+//! Why so   the rule of numpy.linalg.pinv(J, eps); an absolute cut, as some libraries have, calls
 //!          diag(1e-7, 1e-8) zero
 //! Source   course notes on Cartesian control, 7.3 (every value under the threshold is cut, not
 //!          the smallest alone)
-//! Checked  tests/it/inverse.rs::truncated_*, ::penrose
+//! Checked  tests/it/inverse.rs::truncated_*, ::penrose*
 
 use crate::linalg::{Matrix, Svd};
 

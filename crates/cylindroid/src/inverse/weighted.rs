@@ -1,10 +1,10 @@
-//! Weighted inverses: any method in the metrics of joints and task.
+//! Weighted pseudoinverses: any method in the metrics of joints and task.
 //!
 //! Formula  J_w = L_x^T J L_q^-T with W = L L^T; J+ = L_q^-T J_w+ L_x^T
 //! Shapes   W_q: n x n, W_x: m x m, both positive definite
-//! Units    the whitened rates L_q^T q and task L_x^T x have one unit each
-//! Valid    any rank. For the truncated inverse: of all rates that minimise |J q - x| in W_x, the
-//!          smallest in W_q.
+//! Units    the whitened joint velocities L_q^T qd and task L_x^T x have one unit each
+//! Valid    any rank. For the truncated inverse: of all joint velocities that minimise |J qd - x|
+//!          in W_x, the smallest in W_q.
 //! Source   Whitney 1969; Ben-Israel & Greville 2003, section 3.3
 //! Checked  tests/it/inverse.rs::weighted_*
 

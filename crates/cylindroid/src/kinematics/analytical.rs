@@ -1,10 +1,10 @@
-//! Analytical Jacobians: position and angles instead of position and angular velocity.
+//! Analytical Jacobians: rates of position and Euler angles instead of a twist.
 //!
-//! Formula  [dp/dt; dphi/dt] = [J_v; E(phi)^-1 J_w] rates, omega = E(phi) dphi/dt
+//! Formula  [dp/dt; dphi/dt] = [J_v; E(phi)^-1 J_w] qd, omega = E(phi) dphi/dt
 //! Shapes   6 x n, world axes
 //! Units    m/s and rad/s
 //! Valid    det E: cos(pitch) for rpy, -sin(beta) for zyz, never zero for the rotation vector.
-//!          Where |det E| <= `tolerance::ANGLE_SINGULAR` no angle rates make some angular
+//!          Where |det E| <= `tolerance::ANGLE_SINGULAR` no angle rates produce some angular
 //!          velocities: `exists` is false and the angle rows hold the least-squares rates.
 //! Source   Siciliano et al. 2009, section 3.6
 //! Checked  tests/it/kinematics.rs::analytical_*

@@ -1,13 +1,13 @@
-//! Forward kinematics and Jacobians of one end effector at many configurations.
+//! Forward kinematics and Jacobians of one end effector at many configurations (batched).
 //!
-//! Formula  serial.rs, with several configurations side by side
+//! Formula  serial.rs, with several configurations at once
 //! Shapes   q: N x n, poses: N x 4 x 4, Jacobians: N x 6 x n; row-major, n of the mechanism
-//! Units    rad, m; m/s and rad/s for each unit of rate
+//! Units    rad, m; m/s and rad/s for each unit of joint velocity
 //! Frame    [`ReferenceFrame`]
-//! Why so   the chain is gone along once for four or eight configurations, a register for each
-//!          number (structure of arrays); configurations are taken in at the start and put out as
-//!          rows at the end. Every configuration goes the same way whatever its place and the
-//!          number of threads, so results do not depend on them
+//! Why so   the chain is traversed once for four or eight configurations, with a register for each
+//!          number (structure of arrays); configurations are transposed on input and output. Every
+//!          configuration takes the same path whatever its place and the number of threads, so
+//!          results do not depend on them
 //! Checked  tests/it/batch.rs
 
 use super::chain::Chain;
@@ -67,7 +67,7 @@ impl KinematicsBatch {
     /// `world_from_tool` of each configuration.
     ///
     /// # Errors
-    /// A `q` that is not a whole number of configurations, or with an entry that is not finite.
+    /// A `q` that is not a whole number of configurations, or with a non-finite entry.
     pub fn poses(&self, q: &[f64]) -> Result<Vec<f64>> {
         let mut out = vec![0.0; self.mechanism.count_rows("q", q)? * POSE];
         self.run(q, Some(&mut out), None)?;

@@ -1,13 +1,13 @@
-//! Forward kinematics: the pose of every moving frame, parents first.
+//! Forward kinematics of a tree: the pose of every moving frame, parents first.
 //!
 //! Formula  world_from_node = world_from_parent * placement * motion(multiplier q + offset),
 //!          motion: Rz(x); translation x along z; both (helical); exp of a rotation vector; free
 //! Shapes   `slots` holds the ground and one pose for each node
 //! Units    rad, m
-//! Why so   joints turn about their own z axis, so a turn mixes two columns (12 products) where a
-//!          general rotation would take 27; columns are padded to four numbers, one register of
+//! Why so   joints rotate about their own z axis, so a rotation mixes two columns (12 products)
+//!          where a general one would take 27; columns are padded to four numbers, one register of
 //!          today's processors, and compiled twice: baseline and AVX2 with fused multiplication
-//! Checked  tests/it/pinocchio.rs, tests/it/kinematics.rs
+//! Checked  tests::fused_and_plain_agree, tests/it/pinocchio.rs, tests/it/kinematics.rs
 
 use crate::model::{Node, NodeKind};
 #[cfg(target_arch = "x86_64")]

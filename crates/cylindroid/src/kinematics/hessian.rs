@@ -1,12 +1,12 @@
-//! The kinematic Hessian: the derivative of the Jacobian for each coordinate.
+//! The kinematic Hessian: the derivative of the Jacobian with respect to each coordinate.
 //!
 //! Formula  dJ_i/dq_k = ad(J_k) J_i where joint k carries joint i (or is i), else 0, in world;
-//!          the other references as in `jacobian.rs`
+//!          the other reference frames as in `jacobian.rs`
 //! Shapes   n matrices of 6 x n: `hessian[k]` is dJ/dq_k
 //! Units    those of J for each unit of q_k
 //! Valid    spherical and free joints: derivative along their unit rates (child axes)
 //! Source   Haviland & Corke 2020 (arXiv 2010.08686), in screw form
-//! Checked  tests/it/kinematics.rs::hessian_*; the sum of `hessian[k] * rates[k]` is dJ/dt
+//! Checked  tests/it/kinematics.rs::hessian_* (the sum of `hessian[k] * rates[k]` is dJ/dt)
 
 use super::jacobian::{Moving, ReferenceFrame, Tip, add};
 use crate::linalg::Matrix;

@@ -1,16 +1,17 @@
-//! The Jacobian of a frame, built by velocity conversion, and its derivative in time.
+//! The geometric Jacobian of a frame, assembled by velocity conversion, and its time derivative.
 //!
-//! Formula  twist of the frame = J * rates. Joint j moves its own frame by a constant twist S_j
-//!          (turn about z, slide along z, both); column j is S_j converted to the reference:
-//!          the turn gives [z x (p - t); z], the slide [z; 0], a helix [z x (p - t) + h z; z],
+//! Formula  twist of the frame = J * joint velocities. Joint j moves its own frame by a constant
+//!          twist S_j (rotation about z, translation along z, both); column j is S_j converted to
+//!          the reference frame: [z x (p - t); z] for the rotation, [z; 0] for the translation,
+//!          [z x (p - t) + h z; z] for a helix,
 //!          z and t the joint's axis and origin in world, p the reference point
 //!          dJ/dt: J_i(world) is carried by its body, so dJ_i = ad(V_i) J_i with V_i the twist of
 //!          that body; moving the point p adds w_i x dp/dt; the local frame adds -ad(V_tool) J_i
 //! Shapes   6 x n, linear rows first
-//! Units    m/s and rad/s for each unit of rate
+//! Units    m/s and rad/s for each unit of joint velocity
 //! Frame    [`ReferenceFrame`] names point and axes
 //! Why so   one pass from the tip to the root, only over the joints that move the frame; a mimic
-//!          joint adds its multiplier times its column to the joint it follows
+//!          joint adds its multiplier times its column to the joint that it follows
 //! Source   velocity conversion matrices of Cartesian control (columns 6 and 3 of V_j)
 //! Checked  tests/it/pinocchio.rs, tests/it/kinematics.rs::jacobian_is_assembled_by_conversion,
 //!          ::jacobian_dot_*

@@ -1,13 +1,13 @@
-//! The screws of joints: the motions that a joint leaves its second link against its first.
+//! The screws of joints: the relative motions that a joint permits between its two links.
 //!
-//! Formula  joint of the tree: the columns of the Jacobian of its child that it adds itself;
-//!          closing joint: its axis where it stands on its first link (the second axis of a
-//!          universal joint on its second)
-//! Shapes   a screw for each coordinate; closing joints as many as their kind has
-//! Units    m, rad; amplitude 1 but for mimic joints, which have the size of their multiplier
+//! Formula  tree joint: the columns that it contributes to the Jacobian of its child;
+//!          loop-closure joint: its axis on its first link (the second axis of a universal joint on
+//!          its second link)
+//! Shapes   a screw for each coordinate; for a loop-closure joint as many as its kind has
+//! Units    m, rad; amplitude 1, except for mimic joints, whose amplitude is their multiplier
 //! Frame    world, at the world's origin
-//! Valid    any configuration; the screws of a closing joint are those of the closed loop
-//! Checked  tests/it/kinematics.rs::screws_of_joints, screws_of_closing_joints
+//! Valid    any configuration; the screws of a loop-closure joint are those of the closed loop
+//! Checked  tests/it/kinematics.rs::screws_of_joints, tests/it/kinematics.rs::screws_of_*
 
 use super::state::State;
 use crate::model::JointKind;
@@ -26,8 +26,8 @@ impl State {
         screws.into_iter().filter_map(|(_, screw)| screw).collect()
     }
 
-    /// The screws of a closing joint (place in `Mechanism::loops`); none for a fixed or free joint
-    /// and a place that does not exist.
+    /// The screws of a loop-closure joint (place in `Mechanism::loops`); none for a fixed or free
+    /// joint and a place that does not exist.
     #[must_use]
     pub fn loop_screws(&self, closing: usize) -> Vec<Screw> {
         let mechanism = self.mechanism();

@@ -1,17 +1,18 @@
-//! A chain of joints that turn and slide, in frames of its own that make it cheap to go along.
+//! Serial chains of revolute, prismatic and helical joints, in joint frames chosen for the least
+//! arithmetic.
 //!
 //! Formula  world_from_tool = first * [Rz(turn q + angle) Tz(slide q) T(by) Rx(tilt)]_j ...
 //!          Rz(last); columns [turn z x (p - o) + slide z; turn z], z and o an axis and a point on
 //!          it
 //! Shapes   one joint for each node but the last, which is the tool
 //! Units    rad, m
-//! Valid    revolute, prismatic and helical joints, any axes: nothing is asked of common normals,
-//!          so axes that are nearly parallel are as exact as others; fixed angles are added to
-//!          turning ones, which costs the rounding of the sum: 1e-11 at 1e5 rad
-//! Why so   a joint frame may be turned about its own axis. Each is turned so that the next axis is
-//!          tilted about x alone: 33 products for a joint instead of 48, less where the next axis
-//!          is parallel; what a joint does with its angle waits for nothing
-//! Source   the ZXZ angles of each fixed placement; the outer two belong to the joints beside it
+//! Valid    any axes: common normals are not used, so nearly parallel axes are as accurate as
+//!          others; fixed angles are added to joint angles, which costs the rounding of the sum:
+//!          1e-11 at 1e5 rad
+//! Why so   a joint frame may be rotated about its own axis. Each is rotated so that the next axis
+//!          is tilted about x alone: 33 products for a joint instead of 48, fewer where the next
+//!          axis is parallel; sine and cosine do not depend on the previous joint
+//! Source   the ZXZ angles of each fixed placement; the outer two belong to the adjacent joints
 //! Checked  tests/it/batch.rs::chains_agree_with_trees, tests/it/pinocchio.rs
 
 use std::array::from_fn;

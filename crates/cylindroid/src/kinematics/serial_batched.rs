@@ -1,14 +1,16 @@
-//! The kernel of [`super::KinematicsBatch`]: a serial chain at several configurations side by side.
+//! Batched forward kinematics and Jacobians of a serial chain: the kernel of
+//! [`super::KinematicsBatch`], with one configuration in each SIMD lane.
 //!
 //! Formula  axes as in serial.rs, from the first joint to the tool; then back, l the lever from a
-//!          joint to the tool, 0 at the tool: l += way, column [turn z x l + slide z; turn z]
+//!          joint to the tool, 0 at the tool: l += link offset, column [turn z x l + slide z; turn
+//!          z]
 //! Shapes   q: N x n, poses: N x 4 x 4, Jacobians: N x 6 x n, row-major
-//! Units    rad, m; m/s and rad/s for each unit of rate
+//! Units    rad, m; m/s and rad/s for each unit of joint velocity
 //! Frame    [`ReferenceFrame`]
-//! Why so   one configuration waits for itself, from joint to joint; what is done for several
-//!          joints or configurations waits for nothing
-//! Checked  tests/it/batch.rs: against [`super::Chain`] and [`super::State`]; `tests` below: all
-//!          forms alike
+//! Why so   a single configuration is latency-bound, since each joint depends on the previous one;
+//!          several joints or configurations at once are throughput-bound
+//! Checked  tests/it/batch.rs (against [`super::Chain`] and [`super::State`]),
+//!          tests::lanes_agree_with_plain_numbers
 
 use super::jacobian::ReferenceFrame;
 use super::serial::Serial;

@@ -1,9 +1,9 @@
-//! Forward kinematics and the Jacobian along a serial chain, one configuration at a time.
+//! Forward kinematics and the Jacobian of a serial chain, one configuration at a time.
 //!
 //! Formula  serial.rs
 //! Shapes   `slots[1..]`: of each joint the axis z and the origin (x and y are not written), then
 //!          the tool; the Jacobian 6 x n
-//! Units    rad, m; m/s and rad/s for each unit of rate
+//! Units    rad, m; m/s and rad/s for each unit of joint velocity
 //! Frame    world axes; the point is the tool's origin or any other
 //! Why so   written once over [`SingleVector3`]: three numbers, or one register of them
 //! Checked  tests/it/batch.rs::chains_agree_with_trees, tests/it/pinocchio.rs

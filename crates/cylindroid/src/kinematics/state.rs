@@ -39,7 +39,7 @@ impl Mechanism {
     /// The mechanism at `q`.
     ///
     /// # Errors
-    /// A `q` of the wrong size or with an entry that is not finite.
+    /// A `q` of the wrong size or with a non-finite entry.
     pub fn state(&self, q: &[f64]) -> Result<State> {
         let mut state = State {
             mechanism: self.clone(),
@@ -55,7 +55,7 @@ impl State {
     /// Moves to another `q`, without allocation; on an error the state stays as it was.
     ///
     /// # Errors
-    /// A `q` of the wrong size or with an entry that is not finite.
+    /// A `q` of the wrong size or with a non-finite entry.
     pub fn set(&mut self, q: &[f64]) -> Result<()> {
         self.mechanism.check_q("q", q)?;
         self.q.copy_from_slice(q);
@@ -137,7 +137,7 @@ impl State {
     /// The derivative of the Jacobian in time while the coordinates move with `rates`, 6 x n.
     ///
     /// # Errors
-    /// Rates of the wrong size or not finite.
+    /// Joint velocities of the wrong size or non-finite.
     pub fn jacobian_dot(
         &self,
         rates: &[f64],
@@ -173,7 +173,7 @@ impl State {
     /// The twist of the tool while the coordinates move with `rates`.
     ///
     /// # Errors
-    /// Rates of the wrong size or not finite.
+    /// Joint velocities of the wrong size or non-finite.
     pub fn twist(
         &self,
         rates: &[f64],

@@ -1,4 +1,4 @@
-//! Forward kinematics of a whole tree at several configurations side by side.
+//! Batched forward kinematics of a whole tree, with one configuration in each SIMD lane.
 //!
 //! Formula  forward.rs
 //! Shapes   q: n numbers of lanes; frames: the ground and one for each node

@@ -1,11 +1,12 @@
-//! Vectors through columns: their coefficients along some, and the sum of others with these.
+//! Products `y + C diag(f) B^T x`: coefficients of a vector along columns, and the sum of others
+//! with these coefficients.
 //!
 //! Formula  y' = y + C diag(f) B^T x;  x' = x - C diag(f) C^T x
-//! Shapes   B: m x k, C: n x k, padded; f: k
-//! Why so   what a servo does with a decomposition is nothing else. Eight columns at once, a block,
-//!          wait for each other nowhere; written once over [`Simd4`], compiled for the baseline and
+//! Shapes   B: m x k, C: n x k, aligned; f: k
+//! Why so   a servo uses a decomposition for nothing else. The eight columns of a block are
+//!          independent of each other; written once over [`Simd4`], compiled for the baseline and
 //!          for AVX2
-//! Checked  tests/it/svd.rs::null_space_is_the_kernel, tests/it/inverse.rs
+//! Checked  tests::blocks_are_plain_sums, tests/it/svd.rs::null_space_is_the_kernel
 
 use super::small_gemm::{AlignedColumns, LANES};
 use crate::scalar::{Array, Simd4};

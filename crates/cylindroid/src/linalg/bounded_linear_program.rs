@@ -1,15 +1,16 @@
-//! The maximize point of an image of a box cut by a plane: a small linear program.
+//! A linear program with bounds on linear functions: the support point of a box cut by a subspace.
 //!
-//! Formula  max c^T z  over  lower <= A z <= upper, with lower <= 0 <= upper
+//! Formula  max c^T z  subject to  lower <= A z <= upper, with lower <= 0 <= upper
 //! Shapes   A: n x m of rank m <= n, bounds: n entries, c: m entries
 //! Units    any
-//! Method   from z = 0 go along what the active rows leave of c until the next row stops it; where
-//!          nothing is left, let go a row whose multiplier has the wrong sign; at the optimum go
-//!          on along a second direction, so that the result is a corner. For n = m the corner is
-//!          known at once: the signs of A^-T c.
-//! Valid    as above. Rows of nearly the same direction are taken as they come; a bound on the
-//!          steps makes the cost finite, and any point returned is within the bounds.
-//! Why so   at most 14 x 14 here, and z = 0 is inside: an active set of 100 lines needs no solver
+//! Method   active set. From z = 0, move along the projection of c on the kernel of the active rows
+//!          until the next row becomes active; where the projection vanishes, release a row whose
+//!          multiplier has the wrong sign; at the optimum continue along a second objective, so
+//!          that the result is a vertex. For n = m the vertex is known at once: the signs of A^-T
+//!          c.
+//! Valid    as above. Nearly parallel rows are taken in order; a bound on the number of steps makes
+//!          the cost finite, and any point returned is within the bounds.
+//! Why so   at most 14 x 14 here, and z = 0 is feasible: an active set of 100 lines needs no solver
 //! Source   Nocedal & Wright, Numerical Optimization, 2nd ed., section 16.5, without curvature
 //! Checked  tests/it/bounded_linear_program.rs
 

@@ -1,14 +1,14 @@
-//! The space that the columns of a matrix span, and its orthogonal complement.
+//! Column space and orthogonal complement of a matrix, with its numerical rank.
 //!
 //! Formula  A = Q R P^T, R = U S V^T; the first r columns of Q U span the columns of A, the others
-//!          what is orthogonal to them. Where the pivots end in rounding, U is left out.
+//!          the orthogonal complement. Where the pivots end in rounding, U is left out.
 //! Shapes   A: m x n, basis: m x r, complement: m x (m - r)
-//! Units    those of A; rows and columns of mixed units are to be scaled first
-//! Valid    any matrix of finite numbers; a kernel is the complement of the transpose
-//! Fails    numbers that are not finite give rank 0
-//! Why so   both bases come orthonormal to rounding whatever the rank, where right singular
-//!          vectors of values near zero do not; a third of the time of a Jacobi decomposition
-//!          alone on 24 x 18
+//! Units    those of A; rows and columns of mixed units must be scaled first
+//! Valid    any finite matrix; the null space is the complement of the transpose
+//! Fails    non-finite entries give rank 0
+//! Why so   both bases are orthonormal to rounding whatever the rank, while right singular vectors
+//!          of values near zero are not; a third of the time of a Jacobi decomposition alone on 24
+//!          x 18
 //! Checked  tests/it/subspaces.rs::column_space_*
 
 use super::matrix::Matrix;
@@ -49,8 +49,8 @@ impl Cut {
         Self { rank: Rank { rank, threshold, gap }, kept, dropped }
     }
 
-    /// True where the rank is a matter of taste: a small gap, a kept value near the threshold, or
-    /// nothing kept and a dropped value near it.
+    /// True where the rank is numerically ambiguous: a small gap, a kept value near the threshold,
+    /// or nothing kept and a dropped value near it.
     #[must_use]
     pub fn is_ambiguous(&self) -> bool {
         let nothing_kept = self.rank.rank == 0;

@@ -1,13 +1,14 @@
-//! CS decomposition: the angles between a space and two orthogonal coordinate spaces.
+//! CS decomposition: the principal angles between a space and two orthogonal coordinate spaces.
 //!
-//! Formula  [A; B] = [X diag(c); Y diag(s)] Z^T, c_j^2 + s_j^2 = 1, s falling
+//! Formula  [A; B] = [X diag(c); Y diag(s)] Z^T, c_j^2 + s_j^2 = 1, s descending
 //! Shapes   A: m x k, B: n x k, [A; B] with orthonormal columns; X: m x k, Y: n x k, Z: k x k
-//! Units    none: the rows of both blocks are of one unit
-//! Valid    any such matrix, blocks without rows too. Every c and s is right to rounding times 1;
-//!          a column of X (Y) whose c (s) is exactly zero is zero: nothing determines it.
-//! Why so   one decomposition of B would give c = sqrt(1 - s^2), of which half the digits are
-//!          lost near s = 1; so where s^2 > 1/2 the rows of A are decomposed again, in the space
-//!          of these columns alone. The full bidiagonal method would be ten times this file.
+//! Units    none: the rows of both blocks have one unit
+//! Valid    any such matrix, blocks without rows too. Every c and s has an absolute error of one
+//!          rounding; a column of X (Y) whose c (s) is exactly zero is zero, since it is
+//!          undetermined.
+//! Why so   a single decomposition of B would give c = sqrt(1 - s^2), which loses half the digits
+//!          near s = 1; so where s^2 > 1/2 the rows of A are decomposed again, in the space of
+//!          these columns alone. The full bidiagonal method would be ten times this file.
 //! Source   Van Loan 1985; Golub & Van Loan, Matrix Computations, 4th ed., section 2.5.4
 //! Checked  tests/it/subspaces.rs::cs_*
 

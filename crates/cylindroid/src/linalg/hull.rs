@@ -1,16 +1,16 @@
-//! The hull of a convex body known only by its farthest point in any direction.
+//! Convex hull of a body given by its support function (expanding polytope).
 //!
-//! Formula  start from a simplex; ask for the farthest point along the normal of a facet; where it
-//!          lies beyond, replace all facets that it sees by those from their rim to it
+//! Formula  start from a simplex; query the support point along the normal of a facet; if it lies
+//!          beyond, replace all facets visible from it by those from their horizon to it
 //! Shapes   d from 1 to about 6; a facet has as many vertices as the body has dimensions
 //! Units    of the points; the tolerance is relative to the size of the body
-//! Valid    any bounded convex body, flat ones too (the hull is then that of its span). Exact for
-//!          polytopes up to the tolerance; for curved bodies an inscribed polytope that comes as
-//!          near as the tolerance, the true facet lying between it and the farthest points.
-//! Fails    never: where the bound on facets is met, the hull is marked incomplete
+//! Valid    any bounded convex body, also a flat one (the hull is then that of its span). Exact for
+//!          polytopes up to the tolerance; for curved bodies an inscribed polytope within the
+//!          tolerance: the true facet lies between it and the support points.
+//! Fails    never: where the limit on facets is reached, the hull is marked incomplete
 //! Why so   one algorithm draws polygons of velocity, solids of force and measures grasps in six
-//!          dimensions, for boxes, their images and friction cones alike; listing all vertices
-//!          first would cost 2^n
+//!          dimensions, for boxes, their images and friction cones; enumerating all vertices first
+//!          would cost 2^n
 //! Source   van den Bergen 2001 (expanding polytope); Zheng 2013 for its use on grasps
 //! Checked  tests/it/hull.rs
 

@@ -1,20 +1,21 @@
-//! The rotations of the singular value decomposition: columns of B made orthogonal in pairs.
+//! One-sided Jacobi rotations, the kernel of the singular value decomposition: columns of B are
+//! made orthogonal in pairs.
 //!
 //! Formula  one by one: for each pair of columns a, b the angle with tan 2 angle = 2 a.b / (b.b -
 //!          a.a), a' = c a - s b, b' = s a + c b, the same for the columns of W
 //!          together, where all angles are small: G = B^T B = D + F with D diagonal, and skew
-//!          K_ij = F_ij / (D_j - D_i), the same once more for [F, K] / 2, which that K leaves;
+//!          K_ij = F_ij / (D_j - D_i), once more for the remainder [F, K] / 2;
 //!          B' = B E, W' = W E with E = 1 + K + K^2 / 2 + K^3 / 8, orthogonal to K^6 / 64; the
-//!          angles of a step are the cubes of those of the one before
-//!          warm: from where W is when it turns on as it did last; of an even motion second
-//!          differences are left, and one step ends it
+//!          angles of a step are the cubes of those of the previous one
+//!          warm: from W extrapolated by its last increment; a uniform motion leaves second
+//!          differences only, which one step removes
 //! Shapes   B: long x k, W and K: k x k, columns padded with zeros to a multiple of four numbers
-//! Why so   rotations one by one wait for each other's divisions and square roots; together they
-//!          are matrix products. Both stop by the same test, so the result is as exact. Four
-//!          numbers are one register: written once over [`Simd4`], compiled for the baseline and
-//!          for AVX2
+//! Why so   rotations one by one are latency-bound by divisions and square roots; together they are
+//!          matrix products. Both have the same stopping criterion, so the result is as accurate.
+//!          Four numbers are one register: written once over [`Simd4`], compiled for the baseline
+//!          and for AVX2
 //! Source   Hestenes 1958; de Rijk 1989; Ogita & Aishima 2018 (all angles of a step at once)
-//! Checked  tests/it/svd.rs
+//! Checked  tests in this file, tests/it/svd.rs
 
 use super::matrix::Matrix;
 use super::small_gemm::{

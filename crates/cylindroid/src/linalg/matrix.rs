@@ -1,4 +1,6 @@
-//! A dense matrix of f64, column by column in memory: a column of a Jacobian is a twist.
+//! Dense matrix of f64 in column-major order: a column of a Jacobian is a twist.
+//!
+//! Checked  tests/it/subspaces.rs, tests/it/inverse.rs
 
 use std::fmt;
 use std::ops::{Index, IndexMut, Mul};
@@ -117,7 +119,7 @@ impl Matrix {
         Self { rows: self.rows, cols: to - from, data }
     }
 
-    /// The columns of all blocks side by side.
+    /// The columns of all blocks batched.
     ///
     /// # Panics
     /// If the blocks have not `rows` rows each.

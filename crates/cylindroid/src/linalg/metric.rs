@@ -1,4 +1,4 @@
-//! A positive definite metric and its Cholesky factor.
+//! Positive definite metrics and their Cholesky factor: weighted norms and whitening.
 //!
 //! Formula  |x|^2 = x^T M x = |L^T x|^2 with M = L L^T
 //! Shapes   M: n x n

@@ -1,12 +1,13 @@
-//! QR decomposition by Householder reflections, columns in the order of their size.
+//! QR decomposition by Householder reflections, with or without column pivoting.
 //!
-//! Formula  A P = Q R, Q^T Q = 1, R upper triangular with a falling diagonal
+//! Formula  A P = Q R, Q^T Q = 1, R upper triangular with a descending diagonal
 //! Shapes   A: m x n, Q: m x m (kept as reflections), R: k x n, k = min(m, n)
-//! Valid    any matrix of finite numbers whose squares neither overflow nor vanish
-//! Why so   it makes a matrix of m x n into one of k x n with the same singular values, whose
-//!          Jacobi decomposition needs three or four sweeps instead of eight, and gives a basis
-//!          of what is orthogonal to the columns for nothing. Norms of the remaining columns are
-//!          measured anew at each step: the usual update loses its digits where it matters.
+//! Valid    any finite matrix whose squares neither overflow nor underflow
+//! Why so   it reduces an m x n matrix to k x n with the same singular values, whose Jacobi
+//!          decomposition needs three or four sweeps instead of eight, and gives a basis of the
+//!          orthogonal complement at no cost. Norms of the remaining columns are recomputed at each
+//!          step: the usual update loses its digits where it matters. A library (faer) was slower
+//!          on the sizes used: see ARCHITECTURE.md
 //! Source   Golub & Van Loan, Matrix Computations, 4th ed., sections 5.2 and 5.4.2; as first step
 //!          of a Jacobi decomposition Drmac & Veselic 2008
 //! Checked  tests/it/subspaces.rs::qr_*

@@ -1,4 +1,4 @@
-//! The row space and the null space of a matrix, from its decomposition.
+//! Row space and null space of a matrix, from its singular value decomposition.
 //!
 //! Formula  P = V_r V_r^T projects on the row space, 1 - P on the null space ker A
 //! Shapes   A: m x n, V_r: n x r, vectors of n entries

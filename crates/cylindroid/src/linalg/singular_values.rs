@@ -1,21 +1,21 @@
-//! Singular values alone, without vectors: two-sided reflections to a bidiagonal matrix, then
-//! shifted QR steps; for the largest and the smallest alone Laguerre's steps.
+//! Singular values without vectors, by bidiagonalisation: implicit QR steps for all of them,
+//! Laguerre iteration for the largest and the smallest alone.
 //!
-//! Formula  A = U B V^T with B upper bidiagonal; QR steps on B^T B without forming it; Laguerre's
-//!          steps on det(B^T B - t) from outside all its zeros
+//! Formula  A = U B V^T with B upper bidiagonal; QR steps on B^T B without forming it; Laguerre
+//!          iteration on det(B^T B - t) from outside the spectrum
 //! Shapes   A: m x n, m >= n; n values
-//! Valid    matrices of finite numbers whose squares neither overflow nor vanish. Values are right
-//!          to rounding times the largest.
-//! Fails    `None` where the steps do not come to an end (a zero on the diagonal): the caller has
-//!          the Jacobi decomposition, which never does
-//! Why so   ranks of closed chains need values of 18 x 18 matrices that are nearly always
-//!          regular; with vectors, by Jacobi rotations, that is three times the work. A rank needs
-//!          the two at the ends: a fifth of the QR steps' time, which are products and quotients of
-//!          numbers that wait for one another
+//! Valid    finite matrices whose squares neither overflow nor underflow. Values have an error of
+//!          one rounding of the largest.
+//! Fails    `None` where the iteration does not converge (a zero on the diagonal): the caller has
+//!          the Jacobi decomposition, which always does
+//! Why so   ranks of closed chains need values of 18 x 18 matrices that are nearly always regular;
+//!          with vectors, by Jacobi rotations, that is three times the work. A rank needs the two
+//!          extreme values: a fifth of the time of the QR steps, which are latency-bound. A library
+//!          (faer) was slower on the sizes used: see ARCHITECTURE.md
 //! Source   Golub & Van Loan, Matrix Computations, 4th ed., sections 5.4.8 and 8.6.3; Wilkinson,
 //!          The Algebraic Eigenvalue Problem, ch. 7 (Laguerre); Dhillon & Parlett 2004 (the pivots
 //!          of B^T B - t without forming it)
-//! Checked  tests/it/subspaces.rs and below (values against the Jacobi decomposition)
+//! Checked  tests::extremes_are_those_of_the_decomposition, tests/it/subspaces.rs
 
 use super::matrix::Matrix;
 use super::vector::dot_unrolled as dot;

@@ -1,9 +1,9 @@
-//! Columns padded with zeros to a multiple of four numbers, and products of few of them: loops that
-//! have no rest, four numbers in a register.
+//! Products of small matrices (GEMM) on aligned columns, which are padded with zeros to a multiple
+//! of four numbers: loops without remainder, four numbers in a register.
 //!
 //! Shapes   B: long x k, square matrices k x k; strides are lengths of columns in memory
-//! Why so   written once over [`Simd4`], to be inlined where it is known for what processor
-//! Checked  tests/it/svd.rs
+//! Why so   written once over [`Simd4`], to be inlined where the processor is known
+//! Checked  src/linalg/jacobi.rs, tests/it/svd.rs
 
 use super::matrix::Matrix;
 use crate::scalar::Simd4;

@@ -1,18 +1,19 @@
 //! Singular value decomposition by one-sided Jacobi rotations, warm-startable.
 //!
-//! Formula  A = U diag(s) V^T, s descending and not negative
+//! Formula  A = U diag(s) V^T, s descending and non-negative
 //! Shapes   A: m x n, U: m x k, V: n x k with k = min(m, n)
-//! Method   rotate the columns of B (= A when A is tall, else A^T) in pairs from the right until
-//!          all are orthogonal: B W = Q diag(s). W is always complete: for a Jacobian with
-//!          m <= n it is U, so that lost task directions are known also where s is exactly zero.
-//!          A column of Q whose singular value is exactly zero is zero: A does not determine it.
-//! Valid    any finite A; a singular value that no number holds is given as the largest number
-//! Warm     `decompose_warm` starts from the W of the last call, turned on as it turned last; for a
-//!          slowly changing Jacobian one or two sweeps remain. The result is exact either way.
+//! Method   rotate the columns of B (= A when A is tall, otherwise A^T) in pairs from the right
+//!          until all are orthogonal: B W = Q diag(s). W is always complete: for a Jacobian with m
+//!          <= n it is U, so lost task directions are known also where s is exactly zero. A column
+//!          of Q whose singular value is exactly zero is zero: A does not determine it.
+//! Valid    any finite A; a singular value that overflows is returned as the largest number
+//! Warm     `decompose_warm` starts from the W of the last call, extrapolated by its last
+//!          increment; for a slowly changing Jacobian one or two sweeps remain. The accuracy is the
+//!          same.
 //! Why so   high relative accuracy also of small singular values, no failure on rank-deficient
 //!          input (the bidiagonal method of a well-known crate returns wrong values there), no
-//!          allocation, and 6 x n is where it is fastest. The alternative, a general library
-//!          SVD, took 2.4 to 4.1 us for 6 x 7.
+//!          allocation, and fastest on 6 x n. The alternative, a general library SVD, took 2.4 to
+//!          4.1 us for 6 x 7.
 //! Source   Hestenes 1958; de Rijk 1989 (ordering); Maciejewski & Klein 1989 (warm start)
 //! Checked  tests/it/svd.rs
 
@@ -45,7 +46,8 @@ pub struct Rank {
     /// The absolute threshold used, in the unit of the singular values.
     pub threshold: f64,
     /// Smallest singular value kept over largest one dropped: infinite when nothing was dropped
-    /// or what was dropped is exactly zero; a gap near 1 means that the rank is a matter of taste.
+    /// or what was dropped is exactly zero; a gap near 1 means that the rank is numerically
+    /// ambiguous.
     pub gap: f64,
 }
 

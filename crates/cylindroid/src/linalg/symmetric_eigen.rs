@@ -1,11 +1,11 @@
-//! Eigenvalues and eigenvectors of small symmetric matrices by cyclic Jacobi rotations.
+//! Symmetric eigenproblem of small matrices by cyclic Jacobi rotations.
 //!
 //! Formula  A = V diag(values) V^T, values descending, V orthonormal
 //! Shapes   A: n x n within an N x N array; rows and columns beyond n are ignored
-//! Valid    any symmetric matrix of finite numbers, indefinite ones too; only the upper triangle
-//!          is read
+//! Valid    any finite symmetric matrix, also an indefinite one; only the upper triangle is read
 //! Why so   pitch forms are indefinite, so a singular value decomposition loses the signs; no
-//!          allocation, and for n <= 6 faster than a general solver
+//!          allocation, and for n <= 6 faster than a general solver (ARCHITECTURE.md has the
+//!          figures)
 //! Source   Golub & Van Loan, Matrix Computations, 4th ed., section 8.5.3 (cyclic by row)
 //! Checked  tests/it/symmetric_eigen.rs
 

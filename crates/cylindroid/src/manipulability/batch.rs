@@ -1,19 +1,19 @@
-//! Mobility and manipulability of a mechanism at many configurations.
+//! Mobility and manipulability of a mechanism at many configurations (batched).
 //!
-//! Formula  mobility.rs, singularity.rs, relation.rs and efficiency.rs, as far as numbers go
+//! Formula  mobility.rs, singularity.rs, relation.rs and efficiency.rs, without bases
 //! Shapes   q: N x n, results: N rows of [`ManipulabilityBatch::COLUMNS`]; row-major, n of the
 //!          mechanism
-//! Units    gaps m and rad; counts and distances none; indices those of the metrics
+//! Units    loop-closure errors m and rad; counts and distances none; indices those of the metrics
 //! Frame    the reference frame's origin, world axes
 //! Valid    any mechanism. Where a distance to a singularity is below [`CLEAR_DISTANCE`], where an
-//!          axis or a loop is near to what a verdict hangs on, and where ordinary postures are
-//!          hyperstatic, idle or not held by the drives, the configuration is given to the analysis
-//!          of one: counts are always its own. Distances differ from its by at most 1e-13 over the
-//!          smallest of them, indices by 1e-12 relative over it, times the condition of the metrics
-//! Why so   what a designer plots over a workspace are numbers: without bases there is a tenth of
-//!          the work, and without pivots four configurations go the same way, one for each lane of
-//!          a register. Every configuration goes its way alone, whatever its place and the number
-//!          of threads, so results do not depend on them
+//!          axis or a loop is near the boundary of a verdict, and where regular configurations are
+//!          hyperstatic, idle or not fixed by the actuators, the configuration is passed to the
+//!          analysis of one: counts are always the same as there. Distances differ from it by at
+//!          most 1e-13 over the smallest of them, indices by 1e-12 relative over it, times the
+//!          condition of the metrics
+//! Why so   plots over a workspace need numbers only: without bases there is a tenth of the work,
+//!          and without pivoting four configurations take the same path, one in each lane of a
+//!          register. Every configuration is independent of its place and of the number of threads
 //! Checked  tests/it/manipulability/batch.rs
 
 use super::closed_chain_batched::{Found, Kernel};
@@ -39,7 +39,7 @@ pub struct BatchOptions {
     /// Metrics of twists and joint rates. Those of wrenches and torques are not used: the indices
     /// are those of motion.
     pub metrics: Metrics,
-    /// What ordinary postures have, which tells singular ones: looked for from the home
+    /// What regular configurations have, which tells singular ones: looked for from the home
     /// configuration by default ([`GenericMobility::of`]).
     pub generic: Option<MobilityCounts>,
 }
@@ -171,7 +171,7 @@ impl ManipulabilityBatch {
         self.length
     }
 
-    /// What ordinary postures have.
+    /// What regular configurations have.
     #[must_use]
     pub fn generic(&self) -> MobilityCounts {
         self.generic
@@ -180,7 +180,7 @@ impl ManipulabilityBatch {
     /// The numbers of each configuration, N x [`ManipulabilityBatch::WIDTH`].
     ///
     /// # Errors
-    /// A `q` that is not a whole number of configurations, or with an entry that is not finite, or
+    /// A `q` that is not a whole number of configurations, or with a non-finite entry, or
     /// so large that the constraint is not.
     pub fn analyse(&self, q: &[f64]) -> Result<Vec<f64>> {
         let mut out = vec![0.0; self.mechanism.count_rows("q", q)? * Self::WIDTH];

@@ -1,19 +1,21 @@
-//! The kernel of [`super::ManipulabilityBatch`]: what decides the counts of a closed chain, and its
-//! indices, at several configurations side by side.
+//! Batched mobility counts and indices of a closed chain: the kernel of
+//! [`super::ManipulabilityBatch`], with one configuration in each SIMD lane.
 //!
-//! Formula  rows [C; J] of lanes.rs in closure, scaled; C^T = Q [L^T; 0], K the last columns of Q;
-//!          K_a, the driven rows of K, = Q_a R_a; sigma_i the singular values of J K R_a^-1, which
-//!          takes driven rates of length one to the twist: pairs (s, c) = (sigma, 1) / hypot;
+//! Formula  rows [C; J] of closed_chain_batched.rs in closure, scaled; C^T = Q [L^T; 0], K the last
+//!          columns of Q; K_a, the actuated rows of K, = Q_a R_a; sigma_i the singular values of
+//!          J K R_a^-1, which takes actuated joint velocities of length one to the twist: pairs
+//!          (s, c) = (sigma, 1) / hypot;
 //!          those of M = [C 0; J -1] from the eigenvalues of M M^T = [L 0; J Q -1][..]^T; the least
-//!          share of drives and object in a motion from the pencil of K_a^T K_a + J_K^T J_K and
+//!          share of actuators and object in a motion from the pencil of K_a^T K_a + J_K^T J_K and
 //!          1 + J_K^T J_K
 //! Shapes   C: t x m, J: d x m, K: m x k, k = m - t
 //! Units    none
-//! Valid    rows of C independent, driven rates not dependent on K: what else there is shows as a
-//!          number near zero, or as none, and the batch then asks the single analysis
-//! Why so   a basis K orthonormal to rounding needs no pivots as long as the rows are independent,
-//!          so lanes stay together
-//! Checked  tests/it/manipulability/batch.rs
+//! Valid    independent rows of C, actuated joint velocities that determine the motion: any other
+//!          case shows as a number near zero, or as NaN, and the batch then calls the single
+//!          analysis
+//! Why so   a basis K orthonormal to rounding needs no pivoting as long as the rows are
+//!          independent, so lanes stay together
+//! Checked  tests::lanes_agree_with_plain_numbers, tests/it/manipulability/batch.rs
 
 use crate::closure::BatchedConstraintPlan;
 use crate::kinematics::tree_batched::Frame;
@@ -53,16 +55,17 @@ pub(super) struct Found<'a> {
     pub(super) usable: bool,
     /// Smallest over largest singular value of the constraint.
     pub(super) regularity: f64,
-    /// The least share of drives and object in a motion.
+    /// The least share of actuators and object in a motion.
     pub(super) share: f64,
-    /// Singular values from driven rates to the twist, scaled, and in the metrics; in no order.
+    /// Singular values from actuated joint velocities to the twist, scaled, and in the metrics; in
+    /// no order.
     pub(super) scaled: &'a [f64],
     pub(super) measured: &'a [f64],
 }
 
 impl Kernel {
     /// With the metrics as factors; `None` where motions of the loops leave nothing to decide, or
-    /// are more than the drives could set.
+    /// are more than the actuators could set.
     pub(super) fn new(plan: BatchedConstraintPlan, object: Matrix, joint: Matrix) -> Option<Self> {
         let k = plan.columns().checked_sub(plan.constraint_rows())?;
         if k == 0 || k > plan.actuated() {
@@ -226,7 +229,7 @@ impl Kernel {
         extreme_eigenvalues(spectrum, squares, [End::Smallest, End::Largest])
     }
 
-    /// The square of the least share of drives and object in a motion.
+    /// The square of the least share of actuators and object in a motion.
     #[inline(always)]
     fn least_share<R: SimdFloat>(&self, s: &mut Scratch<R>) -> R {
         let one = R::splat(1.0);
@@ -301,7 +304,7 @@ struct Scratch<R> {
 }
 
 impl<R: SimdFloat> Scratch<R> {
-    /// Ratios over the triangle of the driven rates, which are `a` rows.
+    /// Ratios over the triangle of the actuated joint velocities, which are `a` rows.
     #[inline(always)]
     fn divide_by_driven(&mut self, a: usize) {
         let mut upper = Reflections {
@@ -389,7 +392,7 @@ mod tests {
     use crate::scalar::uniform;
 
     /// Arrays are plain numbers to the bit, registers to rounding over the distances of these
-    /// postures.
+    /// configurations.
     #[test]
     fn lanes_agree_with_plain_numbers() {
         for name in ["five-bar", "stewart", "two-arm", "ur5e"] {

@@ -1,4 +1,4 @@
-//! Efficiencies of motion and of force, as pairs that are never a division by zero.
+//! Manipulability as efficiencies of motion and of force: pairs that never divide by zero.
 //!
 //! Formula  kinematic  R = min over u' of |u|^2 / min over q' of |q|^2, u' and q' moving freely
 //!          force      the same for F, the wrenches and torques that do no work on R
@@ -9,11 +9,11 @@
 //! Units    `|u|^2 / |q|^2`, `|w|^2 / |tau|^2` in the metrics given
 //! Frame    that of the object's twist
 //! Valid    any relation, also where N and D of the paper's eq. 9 are both singular. Which
-//!          directions are zero or infinite is the relation's decision, taken in scaled units, so
-//!          no metric, however lopsided, turns one into the other. With dual metrics the finite
+//!          directions are zero or infinite is decided by the relation, in scaled units, so no
+//!          metric, however ill-conditioned, turns one into the other. With dual metrics the finite
 //!          efficiencies of force are the inverses of the kinematic ones, largest for smallest
 //!          (not equal, as section 4.3 says): debug builds check it against the forces alone.
-//! Why so   eqs. 15 and 16 leave out cross terms and depend on the basis, even on where a contact
+//! Why so   eqs. 15 and 16 omit cross terms and depend on the basis, even on where a contact
 //!          is drawn on its link; eq. 9 loses half the digits by squaring
 //! Source   Bicchi & Prattichizzo 1998, sections 3 and 4, as corrected above
 //! Checked  tests/it/manipulability/reference.rs (31 mechanisms to 1e-9 relative),
@@ -54,7 +54,7 @@ impl Pair {
 pub struct Direction {
     /// Sizes of the parts.
     pub pair: Pair,
-    /// Rates (torques) of the driven joints.
+    /// Rates (torques) of the actuated joints.
     pub joint: Vec<f64>,
     /// The twist (wrench) that goes with them.
     pub object: Vec<f64>,
@@ -172,9 +172,9 @@ impl Principal {
 /// The efficiencies of a mechanism in one pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Manipulability {
-    /// Motions of the object for rates of the driven joints.
+    /// Motions of the object for rates of the actuated joints.
     pub kinematic: Spectrum,
-    /// Wrenches on the object for torques of the driven joints: zeros are internal torques,
+    /// Wrenches on the object for torques of the actuated joints: zeros are internal torques,
     /// infinite ones wrenches that the structure holds.
     pub force: Spectrum,
 }

@@ -1,4 +1,5 @@
-//! How indices change with the configuration, along motions that keep the loops closed.
+//! Gradients of manipulability indices with respect to the configuration, along closed-loop
+//! motions.
 //!
 //! Formula  an efficiency is the value of |u|^2 / |q_a|^2 at a motion x = (q_a, q_p, u) where it is
 //!          stationary among all motions of M x = 0, so that with M^T t = (-e W_q q_a, 0, W_u u)
@@ -8,15 +9,15 @@
 //!          dv = v sum de_i / (2 e_i); anisotropy a = e_1 / e_n: da = a (de_1 / e_1 - de_n / e_n)
 //! Shapes   gradient: n entries, one for each coordinate
 //! Units    of the index for each unit of q (of the unit rates of spherical and free joints)
-//! Valid    where the counts of the relation do not change nearby, in metrics that do not either. A
-//!          closed chain has derivatives along its own motions alone; the gradient is then the one
-//!          among them (orthogonal in units scaled by the characteristic length). A smallest or
-//!          largest efficiency that is repeated has none, which is said; their volume has
+//! Valid    where the counts of the relation are locally constant, and the metrics too. A closed
+//!          chain has derivatives along its own motions alone; the gradient is then the one among
+//!          them (orthogonal in units scaled by the characteristic length). A repeated smallest or
+//!          largest efficiency has no gradient, which is reported; the volume has one
 //! Error    of trees: rounding, dM is the Hessian. Of closed chains dM comes from four matrices at
 //!          steps of `tolerance::MATRIX_STEP`, with an error of fourth order; the difference to
-//!          what two of them give, of second order, is an estimate from above, and given
-//! Why so   the motion and the forces t that the duality gives are at hand; differences of the
-//!          index itself would need loops closed again at every step and lose half the digits
+//!          the result of two of them, of second order, is returned as an upper estimate
+//! Why so   the motion and the dual forces t are available; differences of the index itself would
+//!          need loops closed again at every step and lose half the digits
 //! Source   the derivative of a stationary value (Lagrange multipliers t); Yoshikawa 1985 for v
 //! Checked  tests/it/manipulability/gradient.rs
 
@@ -189,7 +190,7 @@ pub fn gradient(
 struct Behind<'a> {
     task: Option<&'a Matrix>,
     supports: ContactForceSolver<'a>,
-    /// All motions, and their least combination that has given parts of driven joints and object.
+    /// All motions, and their least combination that has given parts of actuated joints and object.
     basis: Matrix,
     least: Matrix,
 }

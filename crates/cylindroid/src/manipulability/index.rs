@@ -1,7 +1,7 @@
-//! The six indices of manipulability, and the usual single numbers.
+//! The six manipulability indices, and the usual scalar measures (Yoshikawa's measure, anisotropy).
 //!
 //! Formula  finite efficiencies e_1 >= ... >= e_n of a spectrum, with zeros and infinite ones where
-//!          the index keeps one side fixed; anisotropy e_1 / e_n, volume prod sqrt(e_i)
+//!          the index fixes one side; anisotropy e_1 / e_n, volume prod sqrt(e_i)
 //! Units    of the efficiencies; the anisotropy has none, the volume their root to the power n
 //! Valid    any spectrum. The volume of a serial arm with full rank is Yoshikawa's
 //!          sqrt(det J J^T), its anisotropy the squared condition number.

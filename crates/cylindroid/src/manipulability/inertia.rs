@@ -1,11 +1,12 @@
-//! The inertia of a body about a point: the metric of twists that is their kinetic energy.
+//! Spatial inertia of a body about a point: the metric of twists that is twice their kinetic
+//! energy.
 //!
 //! Formula  [m 1, -m S(c); m S(c), I_c - m S(c)^2], c from the point to the centre of mass, summed
 //!          over all links that are fixed to each other
-//! Shapes   6 x 6; 3 x 3 in the plane (x, y and the turn about z)
+//! Shapes   6 x 6; 3 x 3 in the plane (x, y and the rotation about z)
 //! Units    kg, kg m, kg m^2: `u^T W u` is twice the kinetic energy [J]
 //! Frame    at the origin of the frame, world axes, as the object's twist
-//! Valid    any mechanism; links of which the file gives no mass count nothing
+//! Valid    any mechanism; links without a mass in the file do not contribute
 //! Source   Featherstone, Rigid Body Dynamics Algorithms, 2008, eq. 2.63 (linear first here)
 //! Checked  tests/it/manipulability/metrics.rs::inertia_*
 

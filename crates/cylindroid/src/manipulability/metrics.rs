@@ -1,10 +1,11 @@
-//! The four metrics that efficiencies are measured in, and presets of them.
+//! The four metrics of efficiencies (twists, joint velocities, wrenches, torques), and presets of
+//! them.
 //!
 //! Formula  |u|^2 = u^T W_u u, |q|^2 = q^T W_q q, |w|^2 = w^T W_w w, |tau|^2 = tau^T W_tau tau;
 //!          by default W_w = W_u^-1, W_tau = W_q^-1
 //! Shapes   W_u, W_w: d x d; W_q, W_tau: q_a x q_a
 //! Units    an efficiency has the unit of `|u|^2 / |q|^2`; with lengths beside angles only metrics
-//!          that make both norms pure numbers (limits, a characteristic length) give efficiencies
+//!          that make both norms dimensionless (limits, a characteristic length) give efficiencies
 //!          that do not change with the unit
 //! Valid    positive definite. To leave components out use [`Relation::task`], not zero weights.
 //! Source   Bicchi & Prattichizzo 1998, section 3; Doty, Melchiorri & Bonivento 1993 on units
@@ -25,11 +26,11 @@ use crate::model::FrameId;
 pub struct Metrics {
     /// W_u, of the object's twist or of the task.
     pub object: Option<Metric>,
-    /// W_q, of the driven joints.
+    /// W_q, of the actuated joints.
     pub joint: Option<Metric>,
     /// W_w, of the wrench.
     pub wrench: Option<Metric>,
-    /// W_tau, of the torques of the driven joints.
+    /// W_tau, of the torques of the actuated joints.
     pub torque: Option<Metric>,
 }
 

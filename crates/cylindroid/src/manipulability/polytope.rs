@@ -1,19 +1,19 @@
-//! Polytopes of velocity and force: all that the limits of the driven joints allow.
+//! Velocity and force polytopes: the twists and wrenches within the limits of the actuated joints.
 //!
 //! Formula  velocity {u: (q, u) in R, lower <= q <= upper}, force {w: (tau, w) in F, lower <= tau
 //!          <= upper}; the range of a component is from its smallest to its largest value on it
 //! Shapes   limits: q_a intervals; vertices: d entries
 //! Units    of the object's twist or wrench
 //! Frame    that of the object's twist
-//! Valid    any relation, limits around zero (a cable pulls: from 0 to its strength). Directions in
-//!          which nothing limits the object (motions that the drives
-//!          do not control, wrenches that the structure holds) are listed apart; the polytope is
-//!          then the cross-section orthogonal to them in scaled units. More than three dimensions
-//!          have many facets: take a task first. The velocity polytope of a task is the shadow of
-//!          the whole one, the force polytope its section by forces that only the task works with.
-//! Why so   only where rates of all driven joints are free of each other is this the image of a
-//!          box; driven joints of closed chains are not, so a small linear program finds each
-//!          corner, and the hull grows from corner to corner
+//! Valid    any relation, limits around zero (a cable pulls: from 0 to its strength). Unlimited
+//!          directions (motions that the actuators do not control, wrenches that the structure
+//!          resists) are listed separately; the polytope is then the cross-section orthogonal to
+//!          them in scaled units. More than three dimensions have many facets: select a task first.
+//!          The velocity polytope of a task is the projection of the whole one, the force polytope
+//!          its section by forces that only the task works with.
+//! Why so   only where the velocities of all actuated joints are independent is this the image of a
+//!          box; in closed chains they are not, so a small linear program finds each vertex, and
+//!          the hull grows from vertex to vertex
 //! Source   Chiacchio, Bouffard-Vercelli & Pierrot 1997; Bicchi & Prattichizzo 2000
 //! Checked  tests/it/manipulability/polytope.rs
 
@@ -37,7 +37,8 @@ pub struct Polytope {
 /// joints.
 ///
 /// # Errors
-/// Limits that are not finite or not around zero, or not one for each driven joint.
+/// Limits that are non-finite or do not contain zero; a number of limits other than that of the
+/// actuated joints.
 pub fn velocity_polytope(relation: &Relation, velocity_limits: &[Interval]) -> Result<Polytope> {
     Ok(Body::new(relation.motions(), "velocity limit", velocity_limits)?.polytope())
 }

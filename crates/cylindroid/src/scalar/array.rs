@@ -1,5 +1,7 @@
-//! Lanes as a plain array: what compilers make of it on processors without registers of their own
-//! here, and the form that those are compared with.
+//! SIMD lanes as a plain array: the fallback for other processors, and the reference that registers
+//! are compared with.
+//!
+//! Checked  tests::registers_agree_with_arrays
 
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -7,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::simd::{Simd, Simd4, SimdFloat};
 use super::trig;
 
-/// Several numbers side by side.
+/// Several numbers batched.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Array<const N: usize>(pub(crate) [f64; N]);
 

@@ -1,7 +1,9 @@
-//! Four lanes in a register of x86-64, with AVX2.
+//! Four SIMD lanes in an AVX2 register of x86-64.
 //!
-//! Values of these lanes exist only inside functions that are compiled for AVX2 and FMA and take
-//! [`Avx2`], the proof that the processor has them.
+//! Valid    values exist only inside functions that are compiled for AVX2 and FMA and take
+//!          [`Avx2`], the proof that the processor has them
+//! Checked  src/scalar/array.rs::registers_agree_with_arrays,
+//!          src/scalar/trig.rs::lanes_agree_with_std
 
 #![allow(unsafe_code)] // intrinsics
 
@@ -184,7 +186,7 @@ pub(super) unsafe fn store_rows(rows: [Lanes4; 4], to: *mut f64, stride: usize) 
     }
 }
 
-/// What is left over, of four rows, `stride` apart: at the most three registers.
+/// What is left over, of four rows, `stride` apart: at most three registers.
 ///
 /// # Safety
 /// The places are there; see the head of this file.

@@ -1,7 +1,9 @@
-//! Eight lanes in a register of x86-64, with AVX-512.
+//! Eight SIMD lanes in an AVX-512 register of x86-64.
 //!
-//! Values of these lanes exist only inside functions that are compiled for AVX-512F, AVX2 and FMA
-//! and take [`Avx512`], the proof that the processor has them.
+//! Valid    values exist only inside functions that are compiled for AVX-512F, AVX2 and FMA and
+//!          take [`Avx512`], the proof that the processor has them
+//! Checked  src/scalar/array.rs::registers_agree_with_arrays,
+//!          src/scalar/trig.rs::lanes_agree_with_std
 
 #![allow(unsafe_code)] // intrinsics
 

@@ -1,4 +1,6 @@
 //! One lane: a plain f64, the specification of every kernel.
+//!
+//! Checked  src/kinematics/serial_batched.rs::lanes_agree_with_plain_numbers
 
 use super::simd::{Simd, SimdFloat};
 use super::trig;

@@ -8,7 +8,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Lanes at the most.
+/// Lanes at most.
 pub(crate) const MAX_LANES: usize = 8;
 
 /// One number, or several that go the same way.
@@ -45,7 +45,8 @@ pub(crate) trait Simd:
     fn negate_if_second_bit(self, bits: Self, more: u64) -> Self;
     /// True if no lane is larger than `limit` or not a number.
     fn all_abs_le(self, limit: f64) -> bool;
-    /// [`super::sin_cos`] of each of `x`: cosines take the place of the angles; `memory` is overwritten.
+    /// [`super::sin_cos`] of each of `x`: cosines take the place of the angles; `memory` is
+    /// overwritten.
     ///
     /// Registers do this in a function of its own: its constants need many of them, which numbers
     /// of the caller would lose.

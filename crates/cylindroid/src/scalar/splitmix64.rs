@@ -1,6 +1,8 @@
-//! A fixed sequence of numbers, for guesses.
+//! SplitMix64, a pseudo-random generator: reproducible samples and initial guesses.
 //!
-//! Source   SplitMix64: Steele, Lea & Flood 2014
+//! Valid    not for cryptography; equal seeds give equal sequences on all platforms
+//! Source   Steele, Lea & Flood 2014
+//! Checked  tests/it/ik.rs, tests/it/closure/modes.rs
 
 /// The next number in [0, 1) of a fixed sequence (SplitMix64); `state` is where it stands.
 pub(crate) fn uniform(state: &mut u64) -> f64 {

@@ -1,16 +1,16 @@
-//! Sine and cosine as a pair, of one number or of lanes: the same on all processors with fused
-//! products, and on all without.
+//! Sine and cosine as a pair, for one number or for SIMD lanes; bit-identical on all processors
+//! with fused multiply-add, and on all without.
 //!
-//! Formula  reduce by multiples of pi/2 (Cody-Waite, of three parts or of two fused ones), then
+//! Formula  reduction by multiples of pi/2 (Cody-Waite, in three parts or in two fused ones), then
 //!          the polynomials of fdlibm
 //! Valid    |x| <= 1e5; beyond it (and for NaN and infinity) the standard library is called
 //! Error    0.8 ulp, with fused products 1.6, or 1e-27 where a sine or cosine is less than 1e-11:
 //!          they agree with the standard library to 1 and 2 units in the last place
-//! Why so   a joint angle costs 18 ns in the standard library and 4 ns here, and forward
-//!          kinematics of seven joints is nothing but seven of these and 400 multiplications
+//! Why so   a joint angle costs 18 ns in the standard library and 4 ns here, and forward kinematics
+//!          of seven joints consists of seven of these and 400 multiplications
 //! Source   FreeBSD msun k_sin.c, k_cos.c, e_rem_pio2.c (the polynomial coefficients)
-//! Checked  `tests::agrees_with_std`, `tests::handles_every_quadrant_and_bad_input`,
-//!          `tests::lanes_agree_with_std`, `tests::many_are_as_each`
+//! Checked  tests::agrees_with_std, tests::handles_every_quadrant_and_bad_input,
+//!          tests::lanes_agree_with_std, tests::many_are_as_each
 
 use super::simd::{MAX_LANES, Simd};
 

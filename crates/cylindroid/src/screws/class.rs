@@ -1,10 +1,10 @@
-//! The classes of Gibson and Hunt and their normal forms.
+//! Gibson-Hunt classes of screw systems and their normal forms.
 //!
 //! Shapes   orders 0 to 6; a system of order 4 or 5 carries the class of its reciprocal system
 //! Units    pitches in m/rad; `slope` (p of the tables) is the tangent of an angle
 //! Source   Gibson & Hunt 1990; Donelan & Selig, tables 1 and 2 (complete and right as printed;
 //!          their table 3 of systems without a pseudoinverse lacks IID)
-//! Checked  tests/it/screws/classes.rs, ::vectors
+//! Checked  tests/it/screws/classes.rs, tests/it/screws/vectors/
 
 use std::fmt;
 

@@ -1,13 +1,13 @@
-//! Which class a system of order one to three is of, and where its frame stands.
+//! Classification of a screw system of order one to three (Gibson-Hunt), with its canonical frame.
 //!
-//! Formula  the 3 x k block of angular parts, decomposed, splits the system into screws with
-//!          orthonormal directions w_i and translations T; then the symmetric part A of w_i . v_j
-//!          has the principal pitches as eigenvalues, and angles between T and the w_i separate
+//! Formula  the decomposition of the 3 x k block of angular parts splits the system into screws
+//!          with orthonormal directions w_i and translations T; then the symmetric part A of w_i .
+//!          v_j has the principal pitches as eigenvalues, and angles between T and the w_i separate
 //!          the rest
 //! Shapes   an orthonormal basis of k <= 3 vectors [v / L; w]
 //! Units    all without unit: lengths are ratios to L
 //! Valid    always gives a class: a quantity at or below its tolerance counts as zero. Every
-//!          quantity that was compared is kept, so that a narrow verdict can be seen as one
+//!          compared quantity is kept, so that a narrow verdict can be recognised
 //! Source   Gibson & Hunt 1990; Donelan & Selig, section 4. The decision by singular values and
 //!          eigenvalues instead of determinants is ours: a determinant has no scale
 //! Checked  tests/it/screws/classes.rs

@@ -1,4 +1,4 @@
-//! Curves to look at: the Gram determinant over the pitch, the screws of a two-system.
+//! Curves for plots: the Gram determinant over the pitch, the screws of a two-system (cylindroid).
 //!
 //! Formula  det(J^T Q_h J), with the 1/2 of Q_h: a polynomial in h whose zeros are the principal
 //!          pitches; screws cos(t) s_1 + sin(t) s_2, whose axes sweep the cylindroid

@@ -1,16 +1,16 @@
-//! Whether a screw system has a hyperbolic pseudoinverse for a pitch, why not, and which pitch to
-//! take.
+//! Existence of the hyperbolic pseudoinverse of a screw system for a pitch, the reason where there
+//! is none, and the choice of a pitch.
 //!
 //! Formula  exists iff B^T Q_h B is regular: margin = its smallest singular value, B orthonormal at
 //!          the centre with lengths over L
 //! Units    h in m/rad; margin and norms without unit
-//! Valid    every order; order 0 and 6 always exist. The limit of P_h for an infinite pitch is
-//!          taken where the system (order <= 3) or its reciprocal (order >= 3) holds no
-//!          translation. Of the others those of slope 0 have one too (a cylindrical joint, whose
-//!          P_h does not depend on h), but next to each are systems without: it is not taken for
-//!          what no measurement can tell
+//! Valid    every order; orders 0 and 6 always have one. The limit of P_h for an infinite pitch is
+//!          used where the system (order <= 3) or its reciprocal (order >= 3) contains no
+//!          translation. Of the others, those of slope 0 have a limit too (a cylindrical joint,
+//!          whose P_h does not depend on h), but systems without one are arbitrarily near: it is
+//!          not used, since no measurement could distinguish them
 //! Source   Donelan & Selig, theorems 2 and 3, corollary 4 (the sign of h flips on the reciprocal
-//!          side); choice of h by |P_h| is ours: the condition of the Gram matrix misleads for
+//!          side); the choice of h by |P_h| is ours: the condition of the Gram matrix misleads for
 //!          orders 4 and 5, where it grows with |h| although P_h converges
 //! Checked  tests/it/screws/vectors/normal_forms.rs, tests/it/screws/classes.rs
 

@@ -1,13 +1,15 @@
-//! Projectors from twists alone, for motions that change with every step of a control loop.
+//! Projectors from twists alone, without allocation, for motions that change at every step of a
+//! control loop.
 //!
 //! Formula  P as in `projector.rs`; S the span of the given twists: orthonormal at the centre, by
-//!          elimination, the twist farthest from those already taken first
+//!          elimination with pivoting (the twist with the largest remainder first)
 //! Shapes   any number of twists
 //! Units    L, centre and h in m and m/rad
 //! Valid    no allocation where P exists. Where it does not, or enlarges a twist by more than
 //!          `tolerance::MAX_PROJECTION_NORM` (at the centre, lengths over L), the reason is a value
-//! Why so   a [`ScrewSystem`] also finds class, frame and principal screws, and allocates; its rank
-//!          is that of singular values, here it is that of the pivots, which are nowhere smaller
+//! Why so   a [`ScrewSystem`] also computes class, frame and principal screws, and allocates; its
+//!          rank is that of singular values, here it is that of the pivots, which are nowhere
+//!          smaller
 //! Checked  tests/it/servo/hybrid.rs::projectors_of_twists, tests/allocation.rs
 
 use super::existence::NoInverse;
@@ -53,7 +55,7 @@ impl Projector {
     /// ```
     ///
     /// # Errors
-    /// Twists or options that are not finite, a pitch that is NaN, a length that is not positive.
+    /// Non-finite twists or options, a pitch that is NaN, a length that is not positive.
     pub fn of(
         motions: &[Twist],
         along: Complement<'_>,

@@ -1,8 +1,8 @@
-//! Lines in involution: joint axes that let a load through without feeling it.
+//! Lines in involution: joint axes that transmit a load without joint torques.
 //!
 //! Formula  lines J = (s_1 ... s_m) are in involution iff det(J^T Q_0 J) = 0: either they are
 //!          dependent, or their span meets its own reciprocal system in a twist z; the wrench
-//!          Q_0 z then does no work on any of the lines, although it is made of forces along them
+//!          Q_0 z then does no work on any of the lines, although it is a sum of forces along them
 //! Shapes   m lines, z a twist, Q_0 z a wrench
 //! Units    m; z is a unit vector at the centre and length of the system
 //! Valid    2 to 6 lines. z may be of infinite pitch, and the wrench then a pure couple

@@ -1,5 +1,4 @@
-//! Projectors of twists on a screw system that no change of frame alters, and what they do to
-//! wrenches.
+//! Frame-invariant projectors of twists onto a screw system, and their action on wrenches.
 //!
 //! Formula  P_h = B (B^T Q_h B)^-1 B^T Q_h, along the h-reciprocal system
 //!          P_inf = lim P_h for |h| -> inf: for systems without translations (order <= 3) the fit
@@ -14,10 +13,10 @@
 //!          reciprocal system, where the matrix to be inverted is 2 x 2 or 1 x 1:
 //!          P_h = 1 - Q_h^-1 N (N^T Q_h^-1 N)^-1 N^T, N the orthogonal complement
 //! Why so   the existence is decided by the smallest singular value of B^T Q_{h/L} B, not by the
-//!          name of the class: that is discontinuous, this is not
+//!          name of the class, which is discontinuous
 //! Source   Donelan & Selig, sections 4 and 6.3, eq. (26); P* of the wrenches is 1 - P^T there,
 //!          so that no second inverse is needed
-//! Checked  tests/it/screws/laws.rs, ::vectors
+//! Checked  tests/it/screws/laws.rs, tests/it/screws/vectors/
 
 use super::span::{Scale, Span, angular, dot, join, linear, lowered};
 use super::system::ScrewSystem;

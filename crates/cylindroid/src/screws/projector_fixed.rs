@@ -1,4 +1,7 @@
-//! The arithmetic of `inverse/hyperbolic_fixed.rs`, on arrays.
+//! Hyperbolic projector coordinates on fixed-size arrays, without allocation: the arithmetic of
+//! `inverse/hyperbolic_fixed.rs`.
+//!
+//! Checked  tests/it/hyperbolic.rs::independent_*
 
 use super::projector::coordinates;
 use super::span::{Scale, Span, angular, dot, join, linear};

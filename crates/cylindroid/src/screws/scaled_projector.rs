@@ -1,4 +1,4 @@
-//! Projectors in coordinates that are scaled already: what a control loop computes in every step.
+//! Projectors in scaled coordinates, without allocation: computed by a control loop at every step.
 //!
 //! Formula  as in `projector.rs` and in `inverse/hyperbolic.rs`, with L = 1 and the centre at the
 //!          origin of the coordinates

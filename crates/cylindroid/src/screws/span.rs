@@ -1,4 +1,4 @@
-//! Subspaces of twists in coordinates without unit: the arithmetic under screw systems.
+//! Spans of twists in dimensionless coordinates: the arithmetic under screw systems.
 //!
 //! Formula  x = [v(c) / L; w], v(c) = v + w x c: velocity of the body at the centre c
 //!          <a, b>_h / L = 1/2 (x_v . y_w + x_w . y_v) - (h / L) x_w . y_w
@@ -221,7 +221,8 @@ impl Span {
     }
 }
 
-/// True if the twist turns by more than `least` at the scale of `length`; else it is a translation.
+/// True if the twist turns by more than `least` at the scale of `length`; otherwise it is a
+/// translation.
 pub(crate) fn turns(t: &Twist, length: f64, least: f64) -> bool {
     t.angular.norm() * length > least * t.linear.norm()
 }

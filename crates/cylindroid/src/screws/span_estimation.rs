@@ -1,11 +1,11 @@
-//! The span of a set of twists: centre, rank and thresholds.
+//! Estimation of the span of a set of twists: centre, rank and thresholds from noise.
 //!
 //! Formula  singular values of the unit columns [v(c) / L; w] / |.|, c the least-squares point of
 //!          the axes of a basis that is orthonormal at c: a fixed point, found by iteration
 //! Units    L, c in m; thresholds without unit
 //! Valid    any twists; the result depends on the frame and on the unit to rounding alone
 //! Why so   a rank needs a scale, and noise on a twist far from the origin is noise on its moment:
-//!          the way to the centre is counted in the thresholds
+//!          the thresholds include the distance to the centre
 //! Checked  tests/it/screws/classes.rs
 
 use super::span::{Scale, Span, dot, least_squares_center, over, power_of_two, size};

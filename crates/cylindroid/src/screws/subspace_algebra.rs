@@ -1,7 +1,7 @@
-//! Systems made from systems: reciprocal, sum, intersection, membership.
+//! Algebra of screw systems: reciprocal, sum, intersection, membership.
 //!
 //! Formula  S^perp = {r : <r, s>_0 = 0}, S^{perp h} = {(w, v + 2 h w) : (w, v) in S^perp};
-//!          S + T by the rank of both bases, S n T by the null vectors of what of S is outside T
+//!          S + T by the rank of both bases, S n T by the null vectors of the part of S outside T
 //! Shapes   orders k and 6 - k; dim (S + T) + dim (S n T) = dim S + dim T
 //! Units    h in m/rad; sines without unit, at the centre and length of the first system
 //! Source   Donelan & Selig, section 4 (the h-reciprocal system from the reciprocal one: corollary

@@ -1,4 +1,4 @@
-//! Screw systems: the subspaces of twists that a set of screws spans.
+//! Screw systems: the subspaces of twists that sets of screws span.
 //!
 //! Formula  span of the columns [v(c) / L; w], rank by singular values of unit columns; class,
 //!          moduli and frame from the system itself (order <= 3) or its reciprocal (order 4, 5)
@@ -9,10 +9,10 @@
 //!          unit of length (as long as L is given in it) or with the twists chosen to span the
 //!          system; near a boundary of classes it is flagged as ambiguous
 //! Why so   se(3) has no invariant length of a twist, so noise and rank need a scale: L, which the
-//!          user knows, and a centre c, which moves with the axes. Deriving L from the twists
-//!          fails for a wrist, which has no length
+//!          user knows, and a centre c, which moves with the axes. Deriving L from the twists fails
+//!          for a wrist, which has no length
 //! Source   Donelan & Selig, section 4; the tolerances: `tolerance.rs`
-//! Checked  tests/it/screws/classes.rs, ::vectors, ::laws
+//! Checked  tests/it/screws/classes.rs, tests/it/screws/vectors/, tests/it/screws/laws.rs
 
 use super::class::{Class, NormalForm};
 use super::classify::{Classified, Margin, classify, placed};
@@ -42,7 +42,7 @@ impl ScrewSystem {
     /// The system that these twists of one frame span.
     ///
     /// # Errors
-    /// Twists or options that are not finite, a length that is not positive.
+    /// Non-finite twists or options, a length that is not positive.
     pub fn of(twists: &[Twist], options: &ScrewOptions) -> Result<Self> {
         options.check()?;
         if let Some(i) = twists.iter().position(|t| !t.is_finite()) {
@@ -151,7 +151,7 @@ impl ScrewSystem {
         &self.margins
     }
 
-    /// True if a quantity lies so near to its threshold that the verdict is a matter of taste.
+    /// True if a quantity lies so near to its threshold that the verdict is numerically ambiguous.
     #[must_use]
     pub fn is_ambiguous(&self) -> bool {
         self.ambiguous

@@ -1,4 +1,4 @@
-//! The lines that meet all of a set of lines.
+//! Transversals: the lines that meet every line of a set.
 //!
 //! Formula  z meets every line iff it is reciprocal to all of them and of pitch zero: the zeros of
 //!          the Klein form on the reciprocal system
@@ -8,7 +8,7 @@
 //!          zeros is a transversal at infinity: a line that is met there by lines parallel to one
 //!          plane
 //! Source   Hilbert & Cohn-Vossen, section 3 (regulus); Donelan & Selig, section 4, whose counts
-//!          for four and five lines forget the transversals at infinity and the double one
+//!          for four and five lines omit the transversals at infinity and the double one
 //! Checked  tests/it/screws/vectors/lines.rs
 
 use super::screw::{Line, Screw};

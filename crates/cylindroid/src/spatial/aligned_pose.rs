@@ -1,7 +1,8 @@
-//! The pose as kernels hold it: four columns of four numbers, one register each.
+//! Aligned pose: the columns of a pose padded to four numbers, one register each, as kernels hold
+//! it.
 //!
 //! Shapes   x, y, z, p: the columns of the rotation and the translation; the fourth number is 0
-//! Checked  kinematics/forward.rs::tests, tests/it/pinocchio.rs
+//! Checked  src/kinematics/forward.rs::fused_and_plain_agree, tests/it/pinocchio.rs
 
 use super::pose::Pose;
 use super::rotation::Rotation;

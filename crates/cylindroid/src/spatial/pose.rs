@@ -41,7 +41,7 @@ impl Pose {
     /// From the rows of the 4 x 4 matrix.
     ///
     /// # Errors
-    /// A matrix that is not finite, whose rotation part is not a rotation, or whose last row is
+    /// A non-finite matrix, whose rotation part is not a rotation, or whose last row is
     /// not 0 0 0 1.
     pub fn from_matrix(m: [[f64; 4]; 4]) -> Result<Self> {
         Error::check_finite("pose matrix", m.as_flattened())?;

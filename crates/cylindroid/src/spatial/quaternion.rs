@@ -1,9 +1,9 @@
-//! Unit quaternions, read from rotation matrices.
+//! Unit quaternions, and the quaternion of a rotation matrix.
 //!
-//! Formula  the component of largest square first, by Shepperd's method; sign: w >= 0
+//! Formula  Shepperd's method: the component of largest square first; sign such that w >= 0
 //! Valid    any rotation matrix, also at half turns, where w = 0
 //! Source   Shepperd 1978
-//! Checked  tests/it/spatial.rs::quaternion_*
+//! Checked  tests/it/spatial.rs::angles_*, tests/it/spatial.rs
 
 use super::vec3::Mat3;
 

@@ -1,12 +1,12 @@
-//! Rotations: orthonormal matrices of determinant 1.
+//! Rotations as orthonormal matrices of determinant 1: exponential map, logarithm, axes.
 //!
 //! Formula  exp(r) = 1 + sin t K + 2 sin^2(t/2) K^2, K = skew(r / t), t = |r|
 //!          log through the quaternion of largest component: r = 2 atan2(|v|, w) v / |v|
 //! Units    r in rad: axis times angle, log's angle in [0, pi]
-//! Valid    everywhere. At angle pi the axis is ambiguous; the one whose first component that is
-//!          not zero is positive is taken. Never NaN for finite input.
-//! Why so   the textbook log, acos of the trace, loses half the digits at 0 and all at pi; the
-//!          quaternion of largest component (Shepperd) loses none; its switch is for speed
+//! Valid    everywhere. At an angle of pi both axes are valid; the one whose first non-zero
+//!          component is positive is returned. Never NaN for finite input.
+//! Why so   the textbook logarithm, acos of the trace, loses half the digits at 0 and all at pi;
+//!          the quaternion of largest component (Shepperd) loses none; its switch is for speed
 //! Source   Shepperd 1978; Sola et al. 2018 (arXiv 1812.01537), eq. 132, 146
 //! Checked  tests/it/spatial.rs
 
@@ -101,7 +101,7 @@ impl Rotation {
     /// The rotation with this matrix, made exactly orthonormal.
     ///
     /// # Errors
-    /// A matrix that is not finite, or farther from a rotation than `tolerance::ORTHONORMAL`.
+    /// A non-finite matrix, or farther from a rotation than `tolerance::ORTHONORMAL`.
     pub fn from_matrix(m: Mat3) -> Result<Self> {
         if !m.is_finite() {
             return Err(Error::NotFinite { what: "rotation matrix".into(), value: f64::NAN });
@@ -215,7 +215,7 @@ impl Quaternion {
     /// The rotation of this quaternion, which may have any length but zero.
     ///
     /// # Errors
-    /// A quaternion that is zero or not finite.
+    /// A zero or non-finite quaternion.
     pub fn rotation(self) -> Result<Rotation> {
         let Self { w, x, y, z } = self;
         let norm = w.hypot(x).hypot(y).hypot(z);

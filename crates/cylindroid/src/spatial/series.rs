@@ -1,8 +1,10 @@
-//! The scalar functions of the angle in exp, log and their derivatives, right down to zero.
+//! Scalar functions of the angle in exp, log and their derivatives, accurate down to zero.
 //!
-//! Each is a Taylor series below `tolerance::SMALL_ANGLE` and a closed form above it; at the
-//! switch both agree to 3e-14 relative, and to 2e-13 in `sinc5`, which cancels twice and is
-//! multiplied by the fourth power of the angle (`tests::both_sides_of_the_switch`).
+//! Each is a Taylor series below `tolerance::SMALL_ANGLE` and a closed form above it; at the switch
+//! both agree to 3e-14 relative, and to 2e-13 in `sinc5`, which cancels twice and is multiplied by
+//! the fourth power of the angle.
+//!
+//! Checked  tests::both_sides_of_the_switch
 
 use crate::tolerance::SMALL_ANGLE;
 

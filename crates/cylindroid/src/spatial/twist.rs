@@ -1,7 +1,9 @@
-//! Twists and wrenches: velocities and forces of a rigid body.
+//! Twists and wrenches: velocities of a rigid body and forces on it.
 //!
-//! As vectors both are linear first: `[v; w]` and `[f; m]`. Only `to_array` and `from_array`
-//! know it. Power is their only product.
+//! As vectors both have the linear part first: `[v; w]` and `[f; m]`. Only `to_array` and
+//! `from_array` depend on it. Power is their only product.
+//!
+//! Checked  tests/it/spatial.rs::power_is_invariant, tests/it/spatial.rs::adjoint_*
 
 use std::ops::{Add, Mul, Neg, Sub};
 

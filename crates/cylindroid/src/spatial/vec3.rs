@@ -1,4 +1,6 @@
-//! Vectors of three numbers and 3 x 3 matrices.
+//! Vectors of three components and 3 x 3 matrices.
+//!
+//! Checked  tests/it/spatial.rs
 
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 

@@ -1,7 +1,10 @@
-//! Vectors of three numbers as kernels hold them, and the frames that they make.
+//! Three-component vectors of kernels, and the frames that they make.
 //!
 //! A kernel is written once over [`Vector3Like`]: for three scalars or three registers of lanes (an
-//! array, the specification), and for one configuration with the three numbers in one register.
+//! array, the specification), and for one configuration with its three components in one register.
+//!
+//! Checked  src/kinematics/forward.rs::fused_and_plain_agree,
+//!          src/kinematics/serial_batched.rs::lanes_agree_with_plain_numbers
 
 use super::aligned_pose::AlignedPose;
 use crate::scalar::Simd;
@@ -105,8 +108,9 @@ mod avx2 {
         _mm256_set1_pd, _mm256_setzero_pd, _mm256_storeu_pd, _mm256_sub_pd,
     };
 
-    /// One register: three numbers and a 0. Values exist only inside functions that are compiled for
-    /// AVX2 and FMA and take [`Avx2`](crate::scalar::Avx2), the proof that the processor has them.
+    /// One register: three numbers and a 0. Values exist only inside functions that are compiled
+    /// for AVX2 and FMA and take [`Avx2`](crate::scalar::Avx2), the proof that the processor has
+    /// them.
     #[derive(Debug, Clone, Copy)]
     pub(crate) struct PackedVec3(__m256d);
 

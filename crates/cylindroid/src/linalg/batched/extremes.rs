@@ -1,27 +1,27 @@
-//! The smallest and the largest eigenvalue of symmetric matrices that are not negative.
+//! Extreme eigenvalues of symmetric positive semidefinite matrices, batched.
 //!
-//! Formula  A to a tridiagonal T by reflections; Laguerre's steps on det(T - t) from outside all
-//!          eigenvalues, its pivots `p_i = d_i - t - e_{i-1}^2 / p_{i-1}`
+//! Formula  A reduced to a tridiagonal T by Householder reflections; Laguerre iteration on det(T -
+//!          t) from outside the spectrum, with pivots `p_i = d_i - t - e_{i-1}^2 / p_{i-1}`
 //! Shapes   A: n x n, the lower triangle is read; d: n, e: n - 1
-//! Valid    eigenvalues are right to a few roundings of the largest: the smallest to fewer digits
-//!          of its own
-//! Fails    not a number where the steps do not settle within [`MOST_STEPS`]
-//! Why so   singular_values.rs has the same steps for one matrix; here the matrix is squared, which
-//!          costs the small values digits and saves half the work. A value that was passed is
-//!          confirmed by the signs of the pivots on both sides of it
+//! Valid    eigenvalues have an error of a few roundings of the largest, so the smallest has fewer
+//!          relative digits
+//! Fails    NaN where the iteration does not converge within [`MAX_STEPS`]
+//! Why so   singular_values.rs has the same iteration for one matrix; here the matrix is squared,
+//!          which costs digits of the small values and saves half the work. An eigenvalue that a
+//!          step passed is confirmed by the signs of the pivots on both sides of it
 //! Source   Wilkinson, The Algebraic Eigenvalue Problem, ch. 5 and 7
 //! Checked  tests::agrees_with_single
 
 use super::{add_times, dot, reflector};
 use crate::scalar::SimdFloat;
 
-/// Laguerre's steps at the most; seven are usual.
+/// Laguerre's steps at most; seven are usual.
 const MOST_STEPS: usize = 40;
 
 /// Half of what an eigenvalue is found to, relative to a bound of the largest.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// By so many of these at the most an eigenvalue is passed by rounding.
+/// By so many of these at most an eigenvalue is passed by rounding.
 const MOST_BACK: f64 = 20.0;
 
 /// Adding and subtracting it rounds to a whole number.

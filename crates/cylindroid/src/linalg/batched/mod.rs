@@ -1,13 +1,13 @@
-//! Decompositions of several small matrices of one shape side by side, a lane for each: the same
-//! steps in the same order whatever the entries.
+//! Batched decompositions: several small matrices of one shape, one in each SIMD lane, with the
+//! same steps in the same order whatever their entries.
 //!
 //! Shapes   columns one after the other, each entry a number of lanes
-//! Valid    finite entries, of a size whose squares neither overflow nor vanish
-//! Fails    lane by lane: entries that are not numbers, or whose steps do not settle, give results
-//!          that are not numbers; other lanes do not see it, and come out the same to the bit
-//! Why so   no pivots: lanes would want different ones. What a pivot would find out, the caller
-//!          has to see in the results, and hand that lane to a decomposition that looks
-//! Checked  below, against the decompositions of single matrices
+//! Valid    finite entries whose squares neither overflow nor underflow
+//! Fails    lane by lane: non-finite entries, or iterations that do not converge, give non-finite
+//!          results; the other lanes are not affected, to the bit
+//! Why so   no pivoting, since lanes would need different pivots. The caller must detect rank loss
+//!          in the results and pass that lane to a decomposition with pivoting
+//! Checked  src/linalg/batched/*.rs::agrees_with_single
 
 mod extremes;
 mod reflections;

@@ -1,7 +1,7 @@
-//! Orthogonal and triangular factors, without pivots.
+//! QR decomposition by Householder reflections, batched and without pivoting.
 //!
 //! Formula  A = Q R by reflections; K the last columns of Q; Y = X R^-1
-//! Shapes   A: n x columns, of which the first `steps` are reduced, the others turned along;
+//! Shapes   A: n x columns, of which the first `steps` are reduced and the others transformed;
 //!          K: n x (n - steps); X, Y: any number of rows of R's size
 //! Checked  tests::agrees_with_single
 

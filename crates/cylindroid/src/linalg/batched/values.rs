@@ -1,18 +1,18 @@
-//! Singular values by one-sided Jacobi rotations.
+//! Singular values by one-sided Jacobi rotations, batched.
 //!
-//! Formula  columns turned in pairs until all are orthogonal; their lengths are the values
-//! Shapes   A: rows x columns, rows >= columns is not asked; a value for each column, in no order
-//! Valid    any rank: values are right to rounding times the largest, and where columns differ in
-//!          size alone to rounding times their own
-//! Why so   as in jacobi.rs. A lane whose columns are orthogonal is turned no further, whatever the
-//!          others still need
+//! Formula  pairs of columns are rotated until all are orthogonal; their norms are the values
+//! Shapes   A: rows x columns, of any proportion; a value for each column, in no order
+//! Valid    any rank: values have an error of one rounding of the largest, or of their own where
+//!          columns differ in scale alone
+//! Why so   as in jacobi.rs. A lane whose columns are orthogonal is not rotated further, whatever
+//!          the others still need
 //! Checked  tests::agrees_with_single
 
 use super::dot;
 use crate::scalar::SimdFloat;
 use crate::tolerance::JACOBI_ORTHOGONAL;
 
-/// Sweeps at the most: six are usual.
+/// Sweeps at most: six are usual.
 const SWEEPS: usize = 30;
 
 /// Columns whose cosines are below the root of this before a sweep are orthogonal to rounding
