@@ -182,7 +182,7 @@ fn bad_requests() {
     let text = refused(&["move", "five-bar", "--joint-to", "0.1,0,0,0"]);
     assert!(text.contains("loops"), "{text}");
     let text = refused(&["move", "five-bar", "--actuated", "q1", "--to", "1,2,0"]);
-    assert!(text.contains("drive more joints"), "{text}");
+    assert!(text.contains("actuate more joints"), "{text}");
     let text = refused(&["move", "five-bar", "--q", "0.4,0,0,0", "--to", "1,2,0"]);
     assert!(text.contains("assemble"), "{text}");
 }

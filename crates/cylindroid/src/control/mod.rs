@@ -1,12 +1,17 @@
-//! Cartesian control: the servo loop, its limits, its secondary tasks, time laws and paths.
+//! Cartesian control: the servo loop, its limits and secondary tasks, time laws and paths.
 //!
-//! A path says where (`s` in 0 to 1), a time law says when (`s` over time), a move is both: the
-//! fastest law on this path that keeps every bound. A servo follows a move, or goes straight at a
+//! Four parts, each reading only from the left: `solver` (joint velocities within bounds), `servo`
+//! (one control step), `laws` (force, shared and internal-force control), `motion` (trajectories
+//! and simulation).
+//!
+//! A path gives the pose over `s` in [0, 1], a time law gives `s` over time, and a move combines
+//! both: the fastest law on this path within every bound. A servo follows a move, or moves straight
+//! towards a pose.
+//!
+//! [`HybridController`] and [`SharedController`] compute a twist from a projector on a screw
+//! system, to control motions and contact wrenches simultaneously, or to share a tool between a
+//! robot and an operator. A servo executes it as the feed-forward of a [`Target`] at the tool's own
 //! pose.
-//!
-//! [`HybridController`] and [`SharedController`] give a twist from a projector on a screw system:
-//! motions and contact wrenches controlled side by side, a robot and an operator on one tool. A
-//! servo carries it out as the feed-forward of a [`Target`] at the tool's own pose.
 
 mod laws;
 mod motion;

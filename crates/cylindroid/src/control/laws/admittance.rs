@@ -1,11 +1,11 @@
-//! Admittance: how a tool gives way to a wrench.
+//! Admittance: the compliance of a tool, a twist in response to a wrench.
 //!
-//! Formula  C wrench = twist; of two gains at a point p: v(p) = c_f f, w = c_m m(p);
-//!          seen from another frame Ad C Ad^T, so that the twist moves by Ad
+//! Formula  twist = C wrench; from two gains at a point p: v(p) = c_f f, w = c_m m(p);
+//!          in another frame Ad C Ad^T, so that the twist transforms with Ad
 //! Shapes   6 x 6, both linear first
 //! Units    c_f m/s/N, c_m rad/s/(N m)
-//! Valid    symmetric part positive semidefinite: the tool gives way, it never pushes back
-//! Why so   judged after dividing by the roots of the diagonal, so that the verdict does not depend
+//! Valid    positive semidefinite symmetric part: the tool yields and never pushes back
+//! Why so   tested after division by the roots of the diagonal, so that the verdict does not depend
 //!          on the unit of length
 //! Source   Hogan 1985 (impedance and admittance)
 //! Checked  tests/it/servo/hybrid.rs::admittance_*
@@ -15,26 +15,26 @@ use crate::linalg::SymmetricEigen;
 use crate::spatial::{Pose, Twist, Vec3, Wrench};
 use crate::tolerance::PASSIVE;
 
-/// A map from wrenches to twists of one frame.
+/// A linear map from wrenches to twists in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Admittance {
     rows: [[f64; 6]; 6],
 }
 
-/// How much a tool gives way.
+/// Compliance gains of a tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdmittanceGain {
-    /// To forces, in all directions [m/s/N].
+    /// For forces, isotropic [m/s/N].
     pub force: f64,
-    /// To moments, about all axes of the point [rad/s/(N m)]; zero for a tool that does not turn.
+    /// For moments about the point, isotropic [rad/s/(N m)]; zero for a tool that does not rotate.
     pub moment: f64,
 }
 
 impl Admittance {
-    /// The same in all directions and about all axes of the point `point` (m).
+    /// Isotropic admittance at the point `point` (m).
     ///
     /// # Errors
-    /// Gains that are negative or not finite, a point that is not finite.
+    /// Negative or non-finite gains, a non-finite point.
     pub fn at(point: Vec3, gain: AdmittanceGain) -> Result<Self> {
         Error::check_finite("point of the admittance", &point.to_array())?;
         for (option, value) in
@@ -56,7 +56,7 @@ impl Admittance {
     /// The map with these rows: twist (linear first) from wrench (force first).
     ///
     /// # Errors
-    /// Entries that are not finite; a map that would push back against some wrench.
+    /// Non-finite entries; a map that would push back against some wrench.
     pub fn from_rows(rows: [[f64; 6]; 6]) -> Result<Self> {
         Error::check_finite("admittance", rows.as_flattened())?;
         let root = |i: usize| rows[i][i].max(0.0).sqrt();
@@ -65,7 +65,7 @@ impl Admittance {
             for (j, s) in row.iter_mut().enumerate() {
                 let symmetric = 0.5 * rows[i][j] + 0.5 * rows[j][i];
                 let size = root(i) * root(j);
-                // Beside a zero of the diagonal nothing but zero is semidefinite.
+                // For a zero diagonal entry, the row and column must be zero to be semidefinite.
                 *s = if symmetric == 0.0 { 0.0 } else { symmetric / size };
             }
         }
@@ -87,7 +87,7 @@ impl Admittance {
         Twist::from_array(self.rows.map(|row| row.iter().zip(w).map(|(c, w)| c * w).sum()))
     }
 
-    /// The same admittance seen from another frame: `self` is in frame b.
+    /// The same admittance in another frame; `self` is in frame b.
     #[must_use]
     pub fn seen_from(&self, a_from_b: Pose) -> Self {
         let b_from_a = a_from_b.inverse();

@@ -6,16 +6,15 @@
 //!          e = log(T_d T^-1) the twist error, f the feed-forward, C the admittance
 //! Shapes   twists and wrenches of one frame; P 6 x 6
 //! Units    gain 1/s; e m and rad; x, f m/s and rad/s; wrenches N and N m
-//! Frame    any; that of the projector, of C, of the twists and of the wrenches. For a servo: the
-//!          world's axes at the tool
+//! Frame    any, common to the projector, C, the twists and the wrenches. For a servo: world axes
+//!          at the tool
 //! Valid    gain * dt < 2, and for a contact of stiffness k (N/m) c_f k dt < 2. No allocation
-//! Fails    on numbers that are not finite. Where P does not exist there is no law: see
+//! Fails    on non-finite values. If P does not exist there is no control law: see
 //!          [`Projector::of`](crate::screws::Projector::of)
-//! Why so   selecting rows of a task frame, or projecting orthogonally on S and on what is left of
+//! Why so   selecting rows of a task frame, or projecting orthogonally on S and its complement in
 //!          R^6, mixes metres and radians: another origin commands another motion. Here the two
-//!          parts do not interfere in any frame: the force part gives way along Z alone, for
-//!          wrenches that do no work on S; the position part moves along S, on which they do no
-//!          work
+//!          parts do not interfere in any frame: the force part yields along Z alone, to wrenches
+//!          that do no work on S; the position part moves along S, on which they do no work
 //! Source   Donelan & Selig, section 6.3; the flaw of the first formulation (Raibert & Craig 1981):
 //!          Lipkin & Duffy 1988
 //! Checked  tests/it/servo/hybrid.rs, examples/03_write_on_a_tilted_plane.rs
@@ -25,27 +24,28 @@ use crate::error::{Error, Result};
 use crate::screws::Projector;
 use crate::spatial::{Pose, Twist, Wrench};
 
-/// The gains of hybrid control.
+/// Hybrid motion and force controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HybridController {
     gain: f64,
     admittance: Admittance,
 }
 
-/// What one step of hybrid control is asked for, all in one frame.
+/// Input of one step of hybrid control, all in one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HybridInput {
     /// From the tool to its target: [`Pose::screw_to`](crate::Pose::screw_to).
     pub error: Twist,
     /// The twist of the target.
     pub feed_forward: Twist,
-    /// What the tool shall exert on its surroundings.
+    /// The desired wrench of the tool on its surroundings.
     pub desired: Wrench,
-    /// What the tool exerts on its surroundings: the negative of what a sensor in the wrist reads.
+    /// The measured wrench of the tool on its surroundings: the negative of the reading of a wrist
+    /// sensor.
     pub measured: Wrench,
 }
 
-/// What to do.
+/// Output of one step of hybrid control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HybridCommand {
     /// The twist of the tool: the sum of the two parts.
@@ -54,12 +54,12 @@ pub struct HybridCommand {
     pub position_part: Twist,
     /// The part along Z, of the wrench error.
     pub force_part: Twist,
-    /// What counts of the wrench error: P* (desired - measured).
+    /// The effective wrench error: P* (desired - measured).
     pub wrench_error: Wrench,
 }
 
 impl HybridController {
-    /// A law with the proportional `gain` [1/s] of the twist error, and an admittance.
+    /// A controller with the proportional `gain` [1/s] of the twist error, and an admittance.
     ///
     /// # Errors
     /// A gain that is not positive and finite.
@@ -68,10 +68,10 @@ impl HybridController {
         Ok(Self { gain, admittance })
     }
 
-    /// The twist of this step; `projector` is that on the motions controlled in position.
+    /// The twist of this step; `projector` projects on the motions controlled in position.
     ///
     /// # Errors
-    /// Input that is not finite, or a twist that overflows.
+    /// Non-finite input, or a twist that overflows.
     pub fn command(&self, projector: &Projector, input: &HybridInput) -> Result<HybridCommand> {
         Error::check_finite("twist error", &input.error.to_array())?;
         Error::check_finite("feed-forward twist", &input.feed_forward.to_array())?;
@@ -85,7 +85,7 @@ impl HybridController {
         Ok(HybridCommand { twist, position_part, force_part, wrench_error })
     }
 
-    /// The same law seen from another frame: `self` is in frame b.
+    /// The same controller in another frame; `self` is in frame b.
     #[must_use]
     pub fn seen_from(&self, a_from_b: Pose) -> Self {
         Self { admittance: self.admittance.seen_from(a_from_b), ..*self }

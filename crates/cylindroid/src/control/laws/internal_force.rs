@@ -1,17 +1,18 @@
-//! Internal forces of cooperating arms, hands and over-actuated mechanisms: how hard an object is
-//! squeezed, apart from how it moves.
+//! Internal forces of cooperating arms, hands and redundantly actuated mechanisms: the squeeze on
+//! an object is regulated independently of its motion.
 //!
-//! Formula  rates = gain C P (desired - measured), C the compliance of the drives, P the projection
-//!          on the internal torques (those that do no work on any motion of the drives),
+//! Formula  joint velocities = gain C P (desired - measured), C the compliance of the actuators, P
+//!          the projection on the internal torques (which do no work on any actuated motion),
 //!          orthogonal in C
-//! Shapes   torques and rates: an entry for each driven joint
-//! Units    gain 1/s; stiffness N m/rad (N/m for slides), torques N m (N)
-//! Valid    drives that follow positions or rates and give way like springs; gain * dt < 2.
-//!          Mechanisms without internal torques get no rates
-//! Why so   rates C P tau are orthogonal, in the stiffness, to every motion that the loops allow:
-//!          the object stays where it is, and the internal torques alone go to their set-point, as
-//!          exp(-gain t). Another metric would move the object, or mix its load into the squeeze
-//! Source   Bicchi & Prattichizzo 1998, eq. 13 (active internal torques); elastic drives as in
+//! Shapes   torques and velocities: an entry for each actuated joint
+//! Units    gain 1/s; stiffness N m/rad (N/m for prismatic joints), torques N m (N)
+//! Valid    actuators controlled in position or velocity that yield like springs; gain * dt < 2.
+//!          Mechanisms without internal torques get zero velocities
+//! Why so   velocities C P tau are orthogonal, in the stiffness, to every motion that the loops
+//!          permit: the object stays at rest, and only the internal torques converge to their
+//!          set-point, as exp(-gain t). Another metric would move the object, or mix its load into
+//!          the squeeze
+//! Source   Bicchi & Prattichizzo 1998, eq. 13 (active internal torques); elastic actuators as in
 //!          their earlier work on stiffness of cooperating limbs
 //! Checked  tests/it/servo/internal_force.rs
 
@@ -19,27 +20,28 @@ use crate::closure::Relation;
 use crate::error::{Error, Result};
 use crate::linalg::Qr;
 
-/// Drives an internal load to a set-point, to be added to the rates of a servo.
+/// Regulates internal torques to a set-point; its output is added to the joint velocities of a
+/// servo.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InternalForceController {
     gain: f64,
-    /// Roots of the compliances.
+    /// Square roots of the compliances.
     roots: Vec<f64>,
 }
 
-/// What to do.
+/// Output of one step of internal-force control.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InternalForceCommand {
-    /// To be added to those of the driven joints [rad/s or m/s].
+    /// Velocities to be added to those of the actuated joints [rad/s or m/s].
     pub joint_velocities: Vec<f64>,
     /// The internal part of the measured torques.
     pub internal: Vec<f64>,
-    /// The internal part of desired less measured torques.
+    /// The internal part of desired minus measured torques.
     pub error: Vec<f64>,
 }
 
 impl InternalForceController {
-    /// With a gain [1/s] and the stiffness of each driven joint [N m/rad or N/m].
+    /// A controller with a gain [1/s] and the stiffness of each actuated joint [N m/rad or N/m].
     ///
     /// # Errors
     /// A gain or a stiffness that is not positive and finite.
@@ -51,12 +53,13 @@ impl InternalForceController {
         Ok(Self { gain, roots: stiffness.iter().map(|k| 1.0 / k.sqrt()).collect() })
     }
 
-    /// The rates that bring the internal part of the `measured` torques to that of the `desired`
-    /// ones; both as the joints exert them. For a squeeze t at the contacts (a column of
+    /// The joint velocities that bring the internal part of the `measured` torques to that of the
+    /// `desired` ones; both as exerted by the joints. For a squeeze t at the contacts (a column of
     /// [`internal_forces`](crate::closure::internal_forces)) the desired torques are -J_a^T t.
     ///
     /// # Errors
-    /// Torques or stiffnesses of another number than driven joints, or not finite.
+    /// Torques or stiffnesses that are non-finite, or whose number is not that of the actuated
+    /// joints.
     pub fn command(
         &self,
         relation: &Relation,

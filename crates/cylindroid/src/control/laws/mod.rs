@@ -1,10 +1,10 @@
-//! Control laws beside the servo: twists and joint velocities from measured forces and from an
-//! operator, for a servo to carry out.
+//! Control laws beside the servo: twists and joint velocities computed from measured forces and
+//! from an operator, for a servo to execute.
 //!
 //! Read `admittance` (a twist from a wrench), `hybrid` (motion and force control in complementary
 //! subspaces), `shared` and `operator_authority` (robot and operator on one tool), then
-//! `internal_force` (the squeeze on a grasped object). No law reads the servo or another wing but
-//! the solver's result.
+//! `internal_force` (the squeeze on a grasped object). The laws do not depend on the servo, only on
+//! the solver's report.
 
 mod admittance;
 mod hybrid;

@@ -1,21 +1,22 @@
-//! How much of an operator's twist an arm near its limits can take without losing what the robot
-//! keeps.
+//! Authority of an operator: the share of the operator's twist that an arm near its limits can
+//! follow without losing the robot's part.
 //!
-//! Formula  s <- s exp(-dt / fall) after a step that limits slowed or bent,
+//! Formula  s <- s exp(-dt / fall) after a step that was scaled or changed by limits,
 //!          min(1, s + dt / rise) after any other; s = 0 at the start
 //! Units    dt, fall, rise s; s [-]
-//! Valid    any outcome of a step
-//! Fails    not at all; but limits are met before s has fallen: while the joints of an arm brake,
-//!          a tool may leave its surface by what `an_arm_keeps_the_surface` prints
-//! Why so   a servo slows a motion as a whole and, where that leaves nothing, bends it: the robot's
-//!          part then suffers for the operator's. Cutting off the operator at once is no better:
-//!          joints that must brake within their accelerations bend the motion as well
-//! Checked  tests/it/servo/shared.rs::an_arm_keeps_the_surface, ::the_share_of_the_operator
+//! Valid    any result of a step
+//! Fails    never; but limits are met before s has fallen: while the joints of an arm brake, a tool
+//!          may leave its surface by the distance that `an_arm_keeps_the_surface` prints
+//! Why so   a servo scales a motion as a whole and, if no scale is feasible, changes its direction:
+//!          the robot's part then suffers from the operator's. Removing the operator at once is no
+//!          better: joints that must brake within their acceleration limits change the direction as
+//!          well
+//! Checked  tests/it/servo/shared.rs::an_arm_keeps_the_surface, ::the_authority_of_the_operator
 
 use crate::control::solver::direct::Saturation;
 use crate::error::{Error, Result};
 
-/// The share of the operator's twist to pass on to [`SharedController`](super::SharedController).
+/// The share of the operator's twist to pass to [`SharedController`](super::SharedController).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OperatorAuthority {
     share: f64,
@@ -23,19 +24,19 @@ pub struct OperatorAuthority {
     gained: f64,
 }
 
-/// How fast an operator's share changes.
+/// Time constants of an operator's authority.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AuthorityTimes {
-    /// Between two steps (s).
+    /// Time between two steps (s).
     pub dt: f64,
-    /// In which the share falls to 1/e at limits (s): what the joints need to brake.
+    /// Time in which the share falls to 1/e at limits (s): the braking time of the joints.
     pub fall: f64,
-    /// In which it rises from nothing to all (s): what they need to gain speed, or more.
+    /// Time in which it rises from 0 to 1 (s): the acceleration time of the joints, or more.
     pub rise: f64,
 }
 
 impl OperatorAuthority {
-    /// Nothing at first, all of it after a while without limits.
+    /// Zero at first, one after `rise` seconds without active limits.
     ///
     /// # Errors
     /// Times that are not positive and finite.
@@ -53,7 +54,7 @@ impl OperatorAuthority {
         self.share
     }
 
-    /// Learns what became of the last step.
+    /// Updates the share with the saturation of the last step.
     pub fn update(&mut self, saturation: Saturation) {
         self.share = if saturation.direction_lost || saturation.scale < 1.0 {
             self.share * self.kept

@@ -1,18 +1,18 @@
-//! Shared control: a robot keeps some motions of its tool, an operator has the others.
+//! Shared control: the robot constrains some motions of its tool, an operator commands the others.
 //!
 //! Formula  x = (1 - P) (gain e + f) + P u, P the projector on the operator's motions S2 along the
 //!          robot's S1; e the twist error, f the feed-forward, u the operator's twist
 //! Shapes   twists of one frame; P 6 x 6
 //! Units    gain 1/s; e m and rad; x, f, u m/s and rad/s
-//! Frame    any; that of the projector and of the twists. For a servo: the world's axes at the tool
+//! Frame    any, common to the projector and the twists. For a servo: world axes at the tool
 //! Valid    gain * dt < 2. S1 and S2 h-reciprocal or merely complementary. No allocation. An arm at
-//!          its limits cannot carry out every twist: see `operator_authority.rs`
-//! Fails    on numbers that are not finite. Where P does not exist there is no law: see
+//!          its limits cannot perform every twist: see `operator_authority.rs`
+//! Fails    on non-finite values. If P does not exist there is no control law: see
 //!          [`Projector::of`](crate::screws::Projector::of)
 //! Why so   the projector on the operator's motions, as in hybrid control that on the motions in
-//!          the contact: for a tool on a surface both laws take the same one. The operator's part
-//!          has no component along S1, whatever the operator does, and e may be any twist to the
-//!          surface: the robot's part drops where on it that leads
+//!          the contact: for a tool on a surface both laws use the same one. The operator's part
+//!          has no component along S1 for any input, and e may be any twist to the surface: the
+//!          robot's part discards the component within it
 //! Source   Donelan & Selig, section 6.3
 //! Checked  tests/it/servo/shared.rs, examples/04_operator_on_a_surface.rs
 
@@ -20,24 +20,24 @@ use crate::error::{Error, Result};
 use crate::screws::Projector;
 use crate::spatial::Twist;
 
-/// The gain of shared control.
+/// Shared controller of a robot and an operator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SharedController {
     gain: f64,
 }
 
-/// What one step of shared control is asked for, all in one frame.
+/// Input of one step of shared control, all in one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SharedInput {
-    /// From the tool to a pose that the robot shall keep; any of them.
+    /// Twist from the tool to any pose that satisfies the constraint of the robot.
     pub error: Twist,
-    /// The twist of what the robot keeps to: zero for a surface at rest.
+    /// The twist of the constraint: zero for a surface at rest.
     pub feed_forward: Twist,
-    /// The twist that the operator wants.
+    /// The twist commanded by the operator.
     pub operator: Twist,
 }
 
-/// What to do.
+/// Output of one step of shared control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SharedCommand {
     /// The twist of the tool: the sum of the two parts.
@@ -49,7 +49,7 @@ pub struct SharedCommand {
 }
 
 impl SharedController {
-    /// A law with the proportional `gain` [1/s] of the twist error.
+    /// A controller with the proportional `gain` [1/s] of the twist error.
     ///
     /// # Errors
     /// A gain that is not positive and finite.
@@ -58,10 +58,10 @@ impl SharedController {
         Ok(Self { gain })
     }
 
-    /// The twist of this step; `projector` is that on the operator's motions, along the robot's.
+    /// The twist of this step; `projector` projects on the operator's motions along the robot's.
     ///
     /// # Errors
-    /// Input that is not finite, or a twist that overflows.
+    /// Non-finite input, or a twist that overflows.
     pub fn command(&self, projector: &Projector, input: &SharedInput) -> Result<SharedCommand> {
         Error::check_finite("twist error", &input.error.to_array())?;
         Error::check_finite("feed-forward twist", &input.feed_forward.to_array())?;

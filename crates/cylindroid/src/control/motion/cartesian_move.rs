@@ -1,22 +1,20 @@
 //! Cartesian moves: a path in space and the fastest time law on it that keeps every bound.
 //!
 //! Formula  the law runs s from 0 to 1. Line of length L: s' <= v/L, s'' <= a/L, s''' <= j/L.
-//!          Rotation by the angle A about one axis: the same with A. The tighter holds for s.
-//!          Arc of radius r and length L, u = L s' the speed, alpha = L s'', eta = L s''':
-//!          |acceleration|^2 = alpha^2 + (u^2/r)^2
-//!          |jerk|^2 = (eta - u^3/r^2)^2 + (3 u alpha/r)^2
-//!          u <= min(v, sqrt(a min(r/sqrt 2, L)), cbrt(j min(r, L)^2 / 4))
-//!          alpha <= min(sqrt(a^2 - (u^2/r)^2), j r / (3 sqrt 2 u))
-//!          eta <= sqrt(j^2 - (3 u alpha/r)^2) - u^3/r^2
+//!          Rotation by the angle A about one axis: the same with A. The tighter bound applies to
+//!          s. Arc of radius r and length L, u = L s' the speed, alpha = L s'', eta = L s''':
+//!          |acceleration|^2 = alpha^2 + (u^2/r)^2 |jerk|^2 = (eta - u^3/r^2)^2 + (3 u alpha/r)^2 u
+//!          <= min(v, sqrt(a min(r/sqrt 2, L)), cbrt(j min(r, L)^2 / 4)) alpha <= min(sqrt(a^2 -
+//!          (u^2/r)^2), j r / (3 sqrt 2 u)) eta <= sqrt(j^2 - (3 u alpha/r)^2) - u^3/r^2
 //! Units    linear bounds m/s, m/s^2, m/s^3; angular rad/s, rad/s^2, rad/s^3
-//! Valid    any path; one of no length and no angle has a law of duration zero. Time-optimal on
-//!          lines and in rotations; on arcs safe: of speed, acceleration and jerk none is
-//!          exceeded, even where all three are largest at once
-//! Fails    on bounds that `TimeLaw` refuses (each is checked, also of a part that rests)
+//! Valid    any path; zero length and angle give duration zero. Time-optimal on
+//!          lines and in rotations; conservative on arcs: speed, acceleration and
+//!          jerk are never exceeded, even where all three are largest at once
+//! Fails    on bounds that `TimeLaw` rejects (all are checked, even those of a part at rest)
 //! Why so   with constants alpha and eta the law stays the closed form of `TimeLaw`; the
 //!          time-optimal arc needs a numeric phase plane and gains, where no jerk is bounded, at
 //!          most 2^(1/4) = 1.19 in the speed and sqrt 2 in the acceleration. The terms with L
-//!          cost nothing, as no law is faster over L, and let a short arc move like a line
+//!          do not slow it down, as no law is faster over L, and treat a short arc like a line
 //! Source   own derivation from the Frenet formulas; Siciliano et al. 2009, section 4.3
 //! Checked  tests/motion/moves.rs::cartesian_*
 
@@ -28,7 +26,7 @@ use crate::control::servo::Target;
 use crate::error::Result;
 use crate::spatial::{Pose, Twist};
 
-/// Bounds of a move in space; the linear ones hold for the norms at the moving origin.
+/// Bounds of a move in space; the linear ones bound the norms at the moving origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CartesianBounds {
     /// Of the origin [m/s, m/s^2, m/s^3].
@@ -116,9 +114,9 @@ impl CartesianMove {
         CartesianSample { pose: self.path.pose(s.position), twist, s }
     }
 
-    /// The target of a servo of period `dt` (s) at time `t` (s): the pose now, and the constant
-    /// twist that leads to the pose of the next step. The twist at `t` itself would leave the
-    /// servo behind by acceleration * dt / (2 gain).
+    /// The target of a servo of period `dt` (s) at time `t` (s): the present pose, and the constant
+    /// twist that leads to the pose of the next step. The twist at `t` itself would leave the servo
+    /// behind by acceleration * dt / (2 gain).
     #[must_use]
     pub fn target(&self, t: f64, dt: f64) -> Target {
         let pose = self.at(t).pose;
@@ -131,14 +129,14 @@ struct Arc {
     length: f64,
 }
 
-/// The bounds of speed, tangential acceleration and its rate on an arc (head of this file).
+/// The bounds of speed, tangential acceleration and its rate on an arc (see the header).
 fn on_arc(bounds: KinematicBounds, arc: Arc) -> KinematicBounds {
     let (KinematicBounds { velocity: v, acceleration: a, jerk: j }, r) = (bounds, arc.radius);
     let reach = arc.length.min(r);
     let u = v
         .min((a * arc.length.min(FRAC_1_SQRT_2 * r)).sqrt())
         .min((0.25 * j).cbrt() * reach.cbrt() * reach.cbrt());
-    // Each ratio is that of one part to the whole bound: 0 where the bound is infinite.
+    // Ratios of one part to the whole bound: 0 if the bound is infinite.
     let centripetal = (u / r) * (u / a);
     let alpha =
         (a * (1.0 - centripetal * centripetal).sqrt()).min(FRAC_1_SQRT_2 / 3.0 * j * (r / u));

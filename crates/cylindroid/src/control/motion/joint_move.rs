@@ -1,14 +1,14 @@
-//! Joint moves: all joints straight to another configuration, starting and stopping together.
+//! Joint moves: all joints move straight to another configuration, starting and stopping together.
 //!
 //! Formula  q_i = from_i + s d_i, s from 0 to 1 by one law: s' <= v_i/|d_i|, s'' <= a_i/|d_i|,
-//!          s''' <= j_i/|d_i|, the tightest joint for each
+//!          s''' <= j_i/|d_i|, each bounded by the most restrictive joint
 //! Shapes   n positions, n velocities, n bounds        Units  rad or m by the kind of the joint
-//! Valid    any displacement; joints that rest bound nothing, and where all rest the law has
-//!          duration zero. Time-optimal along the straight line in the joint space
-//! Fails    on lengths that disagree, numbers that are not finite, bounds that `TimeLaw` refuses
-//! Why so   one law for all keeps the path straight; a law for each joint, stretched to the
-//!          slowest, can be faster where different joints set velocity and acceleration, but it
-//!          bends the path, and a straight path is what collision checks and teachers see
+//! Valid    any displacement; joints at rest impose no bound, and if all rest the law has duration
+//!          zero. Time-optimal along the straight line in joint space
+//! Fails    on inconsistent lengths, non-finite values, bounds that `TimeLaw` rejects
+//! Why so   one law for all joints keeps the path straight; a law for each joint, scaled to the
+//!          slowest, can be faster if different joints limit velocity and acceleration, but it
+//!          curves the path, and collision checks and teaching assume a straight one
 //! Source   Biagiotti & Melchiorri 2008, chapter 3
 //! Checked  tests/motion/moves.rs::joint_*
 
@@ -29,7 +29,7 @@ impl JointPath {
     /// From one configuration to another, n joints each [rad or m].
     ///
     /// # Errors
-    /// Two lengths, or an entry (or a difference of two) that is not finite.
+    /// Different lengths, or a non-finite entry (or difference).
     pub fn new(from: &[f64], to: &[f64]) -> Result<Self> {
         Error::check_len("end of the joint path", from.len(), to.len())?;
         Error::check_finite("start of the joint path", from)?;
@@ -59,7 +59,7 @@ impl JointPath {
         Error::check_len("positions", self.dof(), positions.len())?;
         let s = within(s);
         for (i, position) in positions.iter_mut().enumerate() {
-            // From the nearer end: exact at both, and no overshoot.
+            // From the closer end: exact at both, without overshoot.
             *position = if s > 0.5 {
                 self.to[i] - self.displacement[i] * (1.0 - s)
             } else {
@@ -77,16 +77,16 @@ pub struct JointMove {
     law: TimeLaw,
 }
 
-/// Bounds of the joints that have none of their own in the model, and the jerk of all.
+/// Default bounds of joints without limits in the model, and the jerk of all joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointDefaults {
-    /// For joints that turn (rad).
+    /// For revolute joints (rad).
     pub angle: KinematicBounds,
-    /// For joints that slide (m).
+    /// For prismatic joints (m).
     pub length: KinematicBounds,
 }
 
-/// Where [`JointMove::sample_into`] writes, n entries each.
+/// Output of [`JointMove::sample_into`], n entries each.
 #[derive(Debug)]
 pub struct JointSample<'a> {
     /// Positions [rad or m].
@@ -119,13 +119,13 @@ impl JointMove {
         Ok(Self { path, law: TimeLaw::along(tightest)? })
     }
 
-    /// The fastest straight move from `q` to `to` within the limits of a mechanism's joints: those
-    /// of position form a box, so both ends within it keep the way within it. The limits of joints
-    /// that rest are not looked at, which may be 0.
+    /// The fastest straight move from `q` to `to` within the joint limits of a mechanism: position
+    /// limits form a box, so a path between two points within it stays within it. The limits of
+    /// joints at rest, which may be 0, are ignored.
     ///
     /// # Errors
-    /// Configurations of the wrong size, not finite or outside position limits; a displacement of
-    /// a spherical or free joint, which has no straight way, or of one whose limits allow no
+    /// Configurations of the wrong size, non-finite or outside position limits; a displacement of a
+    /// spherical or free joint, which has no straight path, or of a joint whose limits permit no
     /// motion; default bounds that are not positive.
     pub fn within_limits(
         mechanism: &Mechanism,
@@ -189,11 +189,11 @@ impl JointMove {
         &self.law
     }
 
-    /// Writes the state at time `t` (s), without allocation; at rest at the start before 0 and at
+    /// Computes the state at time `t` (s), without allocation; at rest at the start before 0 and at
     /// the end after the duration. Returns the path coordinate s and its derivatives.
     ///
     /// # Errors
-    /// A slice whose length is not the number of joints; nothing is written then.
+    /// A slice whose length is not the number of joints; the output is then unchanged.
     pub fn sample_into(&self, t: f64, out: JointSample<'_>) -> Result<LawSample> {
         Error::check_len("velocities", self.path.dof(), out.velocities.len())?;
         let s = self.law.at(t);
@@ -205,7 +205,7 @@ impl JointMove {
     }
 }
 
-/// Refuses positions outside the limits, naming the first joint.
+/// Rejects positions outside the limits, naming the first joint.
 fn check_limits(mechanism: &Mechanism, option: &'static str, q: &[f64]) -> Result<()> {
     let Some(i) = mechanism.outside_limits(q).next() else { return Ok(()) };
     let c = &mechanism.coordinates()[i];

@@ -1,9 +1,9 @@
 //! Motions over time: trajectories for a servo to follow, and their simulation.
 //!
 //! Read `time_law` (one coordinate over time), `path` (the geometry of a Cartesian motion),
-//! `cartesian_move` and `joint_move` (both together), then `simulation` (a servo simulated until it
-//! arrives or stalls) and `reconfiguration` (a configuration that reaches the target where the
-//! servo did not).
+//! `cartesian_move` and `joint_move` (both combined), then `simulation` (a servo simulated until it
+//! reaches its target or stalls) and `reconfiguration` (a configuration that reaches a target at
+//! which the servo stalls).
 
 mod cartesian_move;
 mod joint_move;

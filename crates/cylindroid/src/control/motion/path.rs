@@ -1,16 +1,16 @@
-//! Paths of a frame in space: straight lines, arcs and turns over s in [0, 1].
+//! Paths of a frame in space: straight lines, arcs and rotations over s in [0, 1].
 //!
 //! Formula  line: p = p0 + s d;  arc: p = p0 + y sin(phi s) - 2 x sin^2(phi s / 2), x from the
 //!          centre to p0, y = n cross x;  orientation: R = exp(s r) R0, r the rotation vector
 //!          from start to end, in world axes
-//! Units    lengths m, angles rad, s without unit; twists per unit of s
+//! Units    lengths m, angles rad, s dimensionless; twists per unit of s
 //! Valid    any finite poses, lengths and angles down to zero; s outside [0, 1] is clamped, and
-//!          at 0 and 1 the poses are the given ones exactly. At half a turn, within
-//!          `tolerance::HALF_TURN`, the axis whose first component that is not zero is positive
-//! Fails    on input that is not finite, on three points without a circle, on an axis of length 0
-//! Why so   position and orientation run apart, so a straight line stays straight; the screw
-//!          motion exp(s log(...)), shorter to write, bends it. |dp/ds| and |r| are constant, so
-//!          that one scalar time law bounds the whole move
+//!          at 0 and 1 the poses are the given ones exactly. At an angle of pi, within
+//!          `tolerance::HALF_TURN`, the axis whose first non-zero component is positive
+//! Fails    on non-finite input, on three collinear points, on an axis of length 0
+//! Why so   position and orientation are interpolated separately, so a straight line stays
+//!          straight; the screw motion exp(s log(...)) would curve it. |dp/ds| and |r| are
+//!          constant, so that one scalar time law bounds the whole move
 //! Source   Siciliano et al. 2009, section 4.3 (path primitives, angle and axis)
 //! Checked  tests/motion/paths.rs
 
@@ -27,7 +27,7 @@ pub struct CartesianPath {
     start: Pose,
     end: Pose,
     curve: Curve,
-    /// From the start's orientation to the end's, world axes; beyond pi only for turns.
+    /// Rotation from the start to the end, world axes; beyond pi only for `rotation`.
     rotation: Vec3,
 }
 
@@ -35,35 +35,35 @@ pub struct CartesianPath {
 enum Curve {
     /// From start to end (m).
     Line { displacement: Vec3 },
-    /// `x` from the centre to the start, `y` a quarter turn ahead, both as long as the radius (m);
-    /// angle >= 0 (rad).
+    /// `x` from the centre to the start, `y` perpendicular to it in the sense of the motion, both
+    /// of the length of the radius (m); angle >= 0 (rad).
     Arc { x: Vec3, y: Vec3, angle: f64 },
 }
 
-/// A turn about a fixed line.
+/// A rotation about a fixed axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisRotation {
-    /// A point of the line, world axes (m).
+    /// A point on the axis, world axes (m).
     pub centre: Vec3,
-    /// Direction of the line, world axes; any length but zero [-].
+    /// Direction of the axis, world axes; any non-zero length [-].
     pub axis: Vec3,
-    /// How far, right-handed about the axis; more than one turn is allowed (rad).
+    /// Angle, right-handed about the axis; more than one revolution is permitted (rad).
     pub angle: f64,
 }
 
-/// How far a pose is off a path.
+/// Deviation of a pose from a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathDeviation {
     /// Distance to the path (m).
     pub position: f64,
     /// Angle to the path's orientation at `s`, in [0, pi] (rad).
     pub orientation: f64,
-    /// The nearest place on the path, in [0, 1]; the first of several.
+    /// The closest point of the path, in [0, 1]; the first of several.
     pub s: f64,
 }
 
 impl CartesianPath {
-    /// Along the straight line between two poses, turning about the constant axis by at most pi.
+    /// The straight line between two poses, rotating about a constant axis by at most pi.
     ///
     /// # Errors
     /// A pose that is not finite.
@@ -72,12 +72,12 @@ impl CartesianPath {
         Self::between(from, to, curve)
     }
 
-    /// Along the arc from `from` through the point `via` (m) to `to`, turning about the constant
-    /// axis from the first orientation to the last by at most pi.
+    /// The arc from `from` through the point `via` (m) to `to`, rotating about a constant axis from
+    /// the first orientation to the last by at most pi.
     ///
     /// # Errors
-    /// Input that is not finite; three points on one line (the triangle's height is below
-    /// `tolerance::COLLINEAR` of its longest side) or coincident, where a line is meant.
+    /// Non-finite input; three collinear points (the height of the triangle is below
+    /// `tolerance::COLLINEAR` of its longest side) or coincident ones, for which a line is meant.
     pub fn circle(from: Pose, via: Vec3, to: Pose) -> Result<Self> {
         let (a, b) = (via - from.translation, to.translation - from.translation);
         if !(from.is_finite() && to.is_finite() && a.is_finite() && b.is_finite()) {
@@ -93,7 +93,7 @@ impl CartesianPath {
                 option: "via point of a circle",
                 value: format!("({}, {}, {})", via.x, via.y, via.z),
                 reason: "start, via and end lie on one line or coincide, so no circle goes \
-                         through them; use a line, or a turn for a full circle"
+                         through them; use a line, or a rotation for a full circle"
                     .to_owned(),
             });
         };
@@ -105,7 +105,7 @@ impl CartesianPath {
         Self::between(from, to, Curve::Arc { x, y, angle })
     }
 
-    /// Along the arc of a turn about a fixed line, the orientation carried along.
+    /// The arc of a rotation about a fixed axis, with the orientation rotating along.
     ///
     /// ```
     /// use cylindroid::control::{CartesianPath, AxisRotation};
@@ -119,7 +119,7 @@ impl CartesianPath {
     /// ```
     ///
     /// # Errors
-    /// Input that is not finite; an axis shorter than `tolerance::ZERO_AXIS`.
+    /// Non-finite input; an axis shorter than `tolerance::ZERO_AXIS`.
     pub fn rotation(from: Pose, turn: AxisRotation) -> Result<Self> {
         let AxisRotation { centre, axis, angle } = turn;
         if !(axis.is_finite() && angle.is_finite()) {
@@ -127,9 +127,9 @@ impl CartesianPath {
         }
         let Some(n) = axis.unit(ZERO_AXIS) else {
             return Err(Error::InvalidOption {
-                option: "axis of a turn",
+                option: "axis of a rotation",
                 value: format!("({}, {}, {})", axis.x, axis.y, axis.z),
-                reason: "it names no direction; give a vector of length near 1".to_owned(),
+                reason: "it has no direction; give a vector of length near 1".to_owned(),
             });
         };
         let offset = from.translation - centre;
@@ -191,7 +191,7 @@ impl CartesianPath {
             return self.end;
         }
         let translation = match self.curve {
-            // From the nearer end: the way does not overshoot its ends by rounding.
+            // From the closer end: rounding does not overshoot the ends.
             Curve::Line { displacement } if s > 0.5 => {
                 self.end.translation - displacement * (1.0 - s)
             }
@@ -200,8 +200,8 @@ impl CartesianPath {
         Pose { rotation: Rotation::exp(self.rotation * s) * self.start.rotation, translation }
     }
 
-    /// `d pose / ds` at `s` (clamped as in [`Self::pose`]): world axes, linear part that of the
-    /// moving origin (m), angular part (rad), both per unit of s and of constant length.
+    /// `d pose / ds` at `s` (clamped as in [`Self::pose`]): world axes, the linear part at the
+    /// moving origin (m), the angular part (rad), both per unit of s and of constant length.
     #[must_use]
     pub fn derivative(&self, s: f64) -> Twist {
         let linear = match self.curve {
@@ -214,12 +214,11 @@ impl CartesianPath {
         Twist { linear, angular: self.rotation }
     }
 
-    /// How far a measured pose is off this path: the distance to the nearest point of the segment
-    /// or arc, and the angle to the path's orientation there.
+    /// The deviation of a measured pose from this path: the distance to the closest point of the
+    /// segment or arc, and the angle to the path's orientation there.
     ///
-    /// On a path shorter than `tolerance::POSITION`, which is a rotation on the spot, the nearest
-    /// orientation decides instead. For a pose that is not finite, position and orientation are
-    /// NaN.
+    /// On a path shorter than `tolerance::POSITION`, a pure rotation, the closest orientation is
+    /// used instead. For a non-finite pose, position and orientation are NaN.
     #[must_use]
     pub fn deviation(&self, pose: Pose) -> PathDeviation {
         if !pose.is_finite() {
@@ -249,8 +248,8 @@ impl CartesianPath {
         }
     }
 
-    /// With q = (w, v) the measured rotation from the start, |exp(-theta n) q| turns least where
-    /// tan(theta / 2) = v.n / w.
+    /// With q = (w, v) the measured rotation from the start, the angle of exp(-theta n) q is
+    /// smallest for tan(theta / 2) = v.n / w.
     fn nearest_orientation(&self, rotation: Rotation) -> f64 {
         let Some(n) = self.rotation.unit(0.0) else { return 0.0 };
         let q = (rotation * self.start.rotation.inverse()).to_quaternion();
@@ -261,7 +260,7 @@ impl CartesianPath {
 }
 
 impl Curve {
-    /// From the start to the place `s` (m).
+    /// Displacement from the start to `s` (m).
     fn offset(self, s: f64) -> Vec3 {
         match self {
             Self::Line { displacement } => displacement * s,
@@ -273,7 +272,7 @@ impl Curve {
     }
 }
 
-/// `at / whole`, or the nearer end where the angle `at` lies beyond the `whole`.
+/// `at / whole`, or the closer end if the angle `at` exceeds `whole`.
 fn nearest(at: f64, whole: f64, at_end: bool) -> f64 {
     if at <= whole && whole > 0.0 {
         at / whole
@@ -294,8 +293,8 @@ fn positive(angle: f64) -> f64 {
     if angle < 0.0 { angle + TAU } else { angle }
 }
 
-/// The rotation vector from one orientation to another, world axes; near half a turn, where
-/// rounding would choose between the two ways round, the same way always.
+/// The rotation vector from one orientation to another, world axes; near an angle of pi, where
+/// rounding would select one of the two directions, always the same one.
 fn rotation_between(from: Rotation, to: Rotation) -> Vec3 {
     let vector = (to * from.inverse()).log();
     let angle = vector.norm();

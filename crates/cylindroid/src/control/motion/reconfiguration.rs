@@ -1,13 +1,14 @@
-//! A way round: a posture within all limits that reaches a target which the servo, moving straight
-//! at it, does not.
+//! Reconfiguration: a configuration within all limits that reaches a target at which the servo,
+//! moving straight towards it, stalls.
 //!
-//! Method   inverse kinematics from the present posture, of several answers the nearest. Limits of
-//!          position form a box, so the straight way there through joint space keeps them.
+//! Method   inverse kinematics with the present configuration as initial guess; of several
+//!          solutions the closest one. Position limits form a box, so the straight joint-space path
+//!          to it respects them.
 //! Units    rad, m
-//! Valid    any task; trees without spherical and free joints (else `None`). `None` says that no
-//!          attempt of so many reached it: likely, not proved, that no posture does. The attempts
-//!          are the same on every run.
-//! Why so   what stops a servo is nearly always the posture it started from
+//! Valid    any task; trees without spherical and free joints (otherwise `None`). `None` means that
+//!          no restart reached the target: probably, but not provably, no configuration does. The
+//!          restarts are the same in every run.
+//! Why so   a servo nearly always stalls because of its initial configuration
 //! Checked  tests/it/servo/reconfiguration.rs::a_reconfiguration_reaches_what_the_servo_does_not
 
 use crate::control::servo::Servo;
@@ -16,23 +17,23 @@ use crate::ik::{Budget, Goal, ITERATIONS_PER_RESTART, IkOptions, solve};
 use crate::model::CoordinateKind;
 use crate::spatial::Pose;
 
-/// Share of the servo's tolerance within which the posture reaches the target [-].
+/// Share of the servo's tolerance within which the configuration reaches the target [-].
 const WITHIN: f64 = 0.5;
 
-/// A posture that reaches the target.
+/// A configuration that reaches the target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reconfiguration {
-    /// The posture, all n coordinates.
+    /// The configuration, all n coordinates.
     pub q: Vec<f64>,
-    /// Attempts it took to find it, and to look for nearer ones.
+    /// Number of restarts, including those for closer solutions.
     pub restarts: usize,
 }
 
-/// A posture within the limits in which the servo's end effector is at `target`; coordinates
-/// that do not move the end effector, and those that a limit locks, keep their values of `q`.
+/// A configuration within the limits that places the servo's end effector at `target`; coordinates
+/// that do not move the end effector, and those locked by a limit, keep their values of `q`.
 ///
 /// # Errors
-/// A `q` of the wrong size or not finite; a target that is not finite.
+/// A `q` of the wrong size or non-finite; a non-finite target.
 pub fn find_reachable_configuration(
     servo: &Servo,
     q: &[f64],

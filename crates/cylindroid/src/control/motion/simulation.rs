@@ -1,4 +1,7 @@
-//! Driving a servo against an ideal robot that does as it is told: what `move` does.
+//! Simulation of a servo with an ideal robot, until it reaches its target or stalls: the loop of
+//! `move`.
+//!
+//! Checked  tests/it/servo/steps.rs, tests/it/servo/stall.rs
 
 use std::collections::BTreeSet;
 
@@ -14,40 +17,40 @@ pub struct TrajectorySample<'a> {
     pub time: f64,
     /// The configuration before the step.
     pub q: &'a [f64],
-    /// The rates commanded by the step [rad/s or m/s].
+    /// The joint velocities commanded by the step [rad/s or m/s].
     pub joint_velocities: &'a [f64],
-    /// What the step reported.
+    /// The result of the step.
     pub step: &'a Step,
 }
 
-/// How a motion ended.
+/// The result of a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionResult {
     /// True if the target was reached.
     pub reached: bool,
-    /// Why it stalled; `None` if it was reached or the time ran out.
+    /// The reason of a stall; `None` if the target was reached or the time ran out.
     pub stall: Option<Stall>,
     /// The last configuration.
     pub q: Vec<f64>,
-    /// What the last step reported.
+    /// The result of the last step.
     pub last: Step,
-    /// Steps taken.
+    /// Number of steps.
     pub steps: usize,
     /// Duration (s).
     pub time: f64,
-    /// Smallest singular value ratio on the way.
+    /// Smallest ratio of singular values during the motion.
     pub min_singular_ratio: f64,
-    /// Limits that set a rate on the way: place in `q` and kind.
+    /// Limits that bounded a joint velocity during the motion: index in `q` and kind.
     pub limits_hit: BTreeSet<(usize, LimitKind)>,
-    /// Why the projection that was asked for did not exist, where that happened first.
+    /// The reason why the requested projection did not exist, at its first occurrence.
     pub no_inverse: Option<NoInverse>,
-    /// Steps in which it did not: taken by the fallback, if one was named.
+    /// Number of such steps, performed by the fallback if one was given.
     pub steps_without_inverse: usize,
 }
 
-/// Steps `servo` from `q` until it reports the end, or for `duration` seconds (at once after the
-/// first step where it is NaN). `target` gives the
-/// target at a time (s) and whether it is the final one, `observe` sees every step.
+/// Steps `servo` from `q` until the motion ends, or for `duration` seconds (one step if it is NaN).
+/// `target` gives the target at a time (s) and whether it is the final one, `observe` receives
+/// every step.
 ///
 /// # Errors
 /// As [`Servo::step`].
@@ -82,7 +85,7 @@ pub fn simulate(
             no_inverse.get_or_insert(reason);
             steps_without_inverse += 1;
         }
-        // An arm that stands still for want of an inverse does not follow a target any further.
+        // An arm that stopped because no inverse exists does not follow the target any further.
         let stalled = step.status == Status::Stalled && (is_final || servo.is_stopped());
         let in_time = time < duration; // NaN is not
         if reached || stalled || !in_time {

@@ -1,20 +1,20 @@
 //! Time laws: the fastest motion of one coordinate from rest to rest within its bounds.
 //!
-//! Formula  seven segments: jerk +j for `tj`, hold a for `tc`, jerk -j for `tj`, cruise at v for
-//!          `tv`, and the mirror image of the first three; with h the distance
-//!          tj = min(a/j, sqrt(v/j), cbrt(h/2j))
-//!          tc = min(v/a - tj, sqrt(tj^2/4 + h/a) - 3 tj/2) where tj = a/j, else 0
-//!          tv = max(h/v - 2 tj - tc, 0),  T = 4 tj + 2 tc + tv,  h = v_peak (2 tj + tc + tv)
+//! Formula  seven segments: jerk +j for `tj`, constant a for `tc`, jerk -j for `tj`, cruise at v
+//!          for `tv`, and the mirror image of the first three; with h the distance tj = min(a/j,
+//!          sqrt(v/j), cbrt(h/2j)) tc = min(v/a - tj, sqrt(tj^2/4 + h/a) - 3 tj/2) where tj = a/j,
+//!          else 0 tv = max(h/v - 2 tj - tc, 0),  T = 4 tj + 2 tc + tv,  h = v_peak (2 tj + tc +
+//!          tv)
 //! Units    any length unit u for the coordinate (m, rad, or 1); u/s, u/s^2, u/s^3; time in s
 //! Valid    any finite distance, of either sign; bounds positive. An infinite jerk gives the
 //!          trapezoid, an infinite velocity no cruise, an infinite acceleration (with a finite
-//!          jerk) no hold. Distance zero: a law of duration zero
+//!          jerk) no phase of constant acceleration. Distance zero: duration zero
 //! Fails    on bounds that are NaN, zero or negative, on acceleration and jerk both infinite (the
-//!          velocity would jump), on durations that a number cannot hold
-//! Why so   the times are found first and the peaks from them, so the distance is met to rounding
+//!          velocity would jump), on durations that overflow
+//! Why so   the times are found first and the extrema from them, so the distance is met to rounding
 //!          whatever the case, and one formula serves every degenerate case; the usual tree of
 //!          cases, each with its own closed form, disagrees with itself at the borders. The price:
-//!          a peak may exceed its bound by rounding (a few 1e-16 of it)
+//!          an extremum may exceed its bound by rounding (a few 1e-16 of it)
 //! Source   Biagiotti & Melchiorri 2008, sections 3.2 (trapezoid) and 3.4 (double S); their T_j1,
 //!          T_a, T_v are tj, 2 tj + tc, tv
 //! Checked  tests/motion/laws.rs
@@ -82,7 +82,7 @@ impl KinematicBounds {
     pub(crate) const NONE: Self =
         Self { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY };
 
-    /// Refuses bounds that allow no motion or a jump of the velocity; `what` names the coordinate.
+    /// Rejects bounds that permit no motion or a jump of the velocity; `what` names the coordinate.
     pub(crate) fn check(self, what: &str) -> Result<()> {
         for (option, value) in [
             ("velocity bound", self.velocity),
@@ -109,7 +109,7 @@ impl KinematicBounds {
         Ok(())
     }
 
-    /// True if nothing keeps the velocity from jumping.
+    /// True if the velocity may jump.
     pub(crate) fn is_unbounded(self) -> bool {
         self.acceleration == f64::INFINITY && self.jerk == f64::INFINITY
     }
@@ -123,7 +123,7 @@ impl KinematicBounds {
         }
     }
 
-    /// The tighter of two, each by each.
+    /// The tighter of two, component-wise.
     pub(crate) fn tightest(self, other: Self) -> Self {
         Self {
             velocity: self.velocity.min(other.velocity),
@@ -138,7 +138,7 @@ impl Times {
     fn fastest(h: f64, bounds: KinematicBounds) -> Self {
         let KinematicBounds { velocity: v, acceleration: a, jerk: j } = bounds;
         let limit = a / j;
-        // v / j is NaN where both are infinite; `min` then keeps the other, which is right.
+        // v / j is NaN if both are infinite; `min` then keeps the other operand, as it should.
         let jerk = limit.min((v / j).sqrt()).min((0.5 * h / j).cbrt());
         let hold = if jerk < limit {
             0.0
@@ -167,7 +167,7 @@ impl TimeLaw {
     ///
     /// # Errors
     /// A distance that is not finite; bounds that are NaN, zero or negative, or that leave both
-    /// acceleration and jerk infinite; a duration that a number cannot hold.
+    /// acceleration and jerk infinite; a duration that overflows.
     pub fn new(distance: f64, bounds: KinematicBounds) -> Result<Self> {
         bounds.check("the coordinate")?;
         if !distance.is_finite() {
@@ -196,12 +196,13 @@ impl TimeLaw {
         })
     }
 
-    /// A jump over `distance`, for what is too short to be timed.
+    /// A jump over `distance`, for distances too short for a duration.
     fn instant(distance: f64) -> Self {
         Self::from_times(distance, Times::default(), 0.0)
     }
 
-    /// The law of a path coordinate from 0 to 1; what bounds nothing has no length, takes no time.
+    /// The law of a path coordinate from 0 to 1; without any bound the path has no length and takes
+    /// no time.
     pub(crate) fn along(bounds: KinematicBounds) -> Result<Self> {
         if bounds.is_unbounded() { Ok(Self::instant(1.0)) } else { Self::new(1.0, bounds) }
     }
@@ -214,10 +215,10 @@ impl TimeLaw {
         Self { distance, duration, times, peak: KinematicBounds { velocity, acceleration, jerk } }
     }
 
-    /// The same motion slowed down to end at `duration` (s), every bound still kept.
+    /// The same motion slowed down to last `duration` (s), within every bound.
     ///
     /// With k = `duration` / [`Self::duration`], the velocity is divided by k, the acceleration by
-    /// k^2, the jerk by k^3. So several axes end together.
+    /// k^2, the jerk by k^3. This lets several axes end together.
     ///
     /// # Errors
     /// A duration shorter than that of this law, or not finite.
@@ -254,7 +255,7 @@ impl TimeLaw {
         self.distance
     }
 
-    /// The largest absolute values that the law reaches; jerk 0 for a trapezoidal law, whose
+    /// The largest absolute values of the derivatives; jerk 0 for a trapezoidal law, whose
     /// acceleration jumps.
     #[must_use]
     pub fn extrema(&self) -> KinematicBounds {
@@ -266,7 +267,7 @@ impl TimeLaw {
         }
     }
 
-    /// Where the seven segments begin, and the end (s); equal neighbours bound an empty segment.
+    /// Start times of the seven segments, and the end (s); equal neighbours bound an empty segment.
     #[must_use]
     pub fn switches(&self) -> [f64; 8] {
         let (Times { jerk, hold, .. }, ramp, end) = (self.times, self.times.ramp(), self.duration);
@@ -274,7 +275,7 @@ impl TimeLaw {
     }
 
     /// The state at time `t` (s): at rest at 0 before 0 (and for NaN), at rest at the distance
-    /// from the end on. Where the acceleration or the jerk jumps, one of its two values.
+    /// after the end. At a jump of the acceleration or the jerk, one of its two values.
     #[must_use]
     pub fn at(&self, t: f64) -> LawSample {
         if t >= self.duration && t >= 0.0 {
@@ -286,7 +287,7 @@ impl TimeLaw {
         if t <= 0.5 * self.duration {
             return self.rise(t);
         }
-        // The second half is the first, seen from the end.
+        // The second half mirrors the first.
         let left = self.rise(self.duration - t);
         LawSample {
             position: self.distance - left.position,

@@ -3,8 +3,8 @@
 //! Read `options`, `step` (the input and output of a step) and `controller`, which runs the stages
 //! in `controller/stages.rs`. A stage calls `task_space` (scaling), `projection` and `secondary`
 //! (primary and secondary task), `coupled` (closed chains), `approach` and `limits` (braking), then
-//! the solver; `stall` reports why there is no progress. `named_inverse` lists the
-//! inverses for front ends, `reference_point` compares them.
+//! the solver; `stall` reports why there is no progress. `named_inverse` lists the inverses for the
+//! front ends, `reference_point` compares them.
 
 mod approach;
 mod controller;

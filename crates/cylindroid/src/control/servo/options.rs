@@ -1,4 +1,6 @@
-//! What a servo is told: frame, task, gains, limits, inverse.
+//! Options of a servo: frame, task, gains, limits, inverse.
+//!
+//! Checked  tests/it/servo/steps.rs, tests/it/servo/limits.rs
 
 use super::projection::{ProjectionChoice, TaskProjection};
 use super::secondary::SecondaryTask;
@@ -37,54 +39,57 @@ pub struct SpeedLimit {
     pub angular: f64,
 }
 
-/// Which motions the secondary tasks may use.
+/// The null space that secondary tasks may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SecondaryNullSpace {
     /// The null space of the Jacobian at machine precision: the task is never disturbed.
     Exact,
-    /// The complement of the directions that the inverse retained: lets the secondary motion
-    /// through directions that were cut, and disturbs the task there.
+    /// The complement of the directions retained by the inverse: secondary motions may use the
+    /// directions that were cut, and disturb the task there.
     Retained,
 }
 
-/// What a servo is told. Start from [`ServoOptions::new`].
+/// Options of a servo. Start from [`ServoOptions::new`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServoOptions {
-    /// The frame and tool point that is driven.
+    /// The controlled frame and tool point.
     pub end_effector: EndEffector,
-    /// The components of its motion that matter.
+    /// The components of its motion that form the task.
     pub task: Task,
     /// Time between steps (s).
     pub dt: f64,
     /// Proportional gains; `gain * dt` must be below 2.
     pub gain: ServoGains,
-    /// When the target counts as reached.
+    /// Tolerance within which the target counts as reached.
     pub tolerance: PoseTolerance,
-    /// How the Jacobian is inverted; its numbers refer to linear rows divided by `length`.
+    /// The inverse of the Jacobian; its parameters refer to linear rows divided by `length`.
     pub method: Method,
-    /// Which part of a motion is taken on where the arm cannot do all of it.
+    /// The part of a motion to realise if the arm cannot perform all of it.
     pub projection: TaskProjection,
-    /// What takes over where `projection` does not exist; `None`: the arm stops and says why.
+    /// The projection used where `projection` does not exist; `None`: the arm stops and reports the
+    /// reason.
     pub fallback: Option<TaskProjection>,
-    /// A projection that enlarges motions by more than this counts as not existing [-].
+    /// A projection that enlarges motions by more than this factor counts as non-existent [-].
     pub largest_projection: f64,
     /// Characteristic length that scales the linear rows (m).
     pub length: f64,
-    /// A weight for each coordinate of the mechanism (large keeps it still); empty for none.
+    /// A weight for each coordinate of the mechanism (a large weight keeps it still); empty for
+    /// none.
     pub joint_weights: Vec<f64>,
     /// Largest speeds of the end effector.
     pub speed: SpeedLimit,
-    /// Acceleration limit of coordinates that have none of their own [rad/s^2 or m/s^2].
+    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
     pub acceleration: f64,
     /// Secondary tasks: their joint velocities are added and projected onto the null space.
     pub secondary: Vec<SecondaryTask>,
-    /// The null space that is meant.
+    /// The null space available to the secondary tasks.
     pub null_space: SecondaryNullSpace,
 }
 
 impl ServoOptions {
-    /// The defaults for a mechanism: its tool, or the reference of a closed chain, whole poses (x,
-    /// y and rz in the plane), 1 kHz, 5/s, the truncated inverse, the reach as length.
+    /// The defaults for a mechanism: its tool, or the reference of a closed chain; complete poses
+    /// (x, y and rz in the plane); 1 kHz; gains of 5/s; the truncated inverse; the reach as
+    /// characteristic length.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
         let closed = mechanism.is_closed();

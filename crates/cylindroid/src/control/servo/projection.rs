@@ -1,15 +1,15 @@
-//! Which part of a motion an arm takes on when it cannot do all of it.
+//! Projection of the task: the part of a motion to realise if an arm cannot perform all of it.
 //!
-//! Formula  rates = J+ P x with P a projector on the motions of the arm: orthogonal in scaled task
-//!          coordinates (then P changes nothing: J+ P = J+), P_h along the h-reciprocal twists
-//!          (then J+ P = J+h), along twists given by the task (26), or damped
+//! Formula  joint velocities = J+ P x with P a projector on the motions of the arm: orthogonal in
+//!          scaled task coordinates (then P changes nothing: J+ P = J+), P_h along the h-reciprocal
+//!          twists (then J+ P = J+h), along twists given by the task (26), or damped
 //! Shapes   P: 6 x 6 on [v / L; w] at the tool; the motions of the arm are the left singular
-//!          vectors of the task Jacobian, found there already
+//!          vectors of the task Jacobian, which are already available
 //! Units    h, mu, lambda in m/rad (mu and lambda times the unit of the joint weights)
-//! Valid    tasks of all six components. Where P does not exist, or enlarges a twist by more than
-//!          `largest`, the reason is kept and the fallback takes over; without one the arm stops
-//! Why so   the pseudoinverse of the joint space stays what it was, so limits, secondary tasks and
-//!          the treatment of singular poses are the same for every projection
+//! Valid    tasks of all six components. If P does not exist, or enlarges a twist by more than
+//!          `largest`, the reason is kept and the fallback is used; without one the arm stops
+//! Why so   the pseudoinverse in joint space is unchanged, so limits, secondary tasks and the
+//!          treatment of singularities are the same for every projection
 //! Checked  tests/it/servo/projection.rs
 
 use crate::error::{Error, Result};
@@ -20,15 +20,15 @@ use crate::screws::{NoInverse, ScaledProjector, ScrewOptions, ScrewSystem};
 use crate::spatial::{Pose, Rotation, Twist, Vec3};
 use crate::tolerance::GENERIC_RANK;
 
-/// Which part of a motion is taken on.
+/// The part of a motion that is realised; the rest is the discarded component.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum TaskProjection {
-    /// The nearest motion in scaled task coordinates: what [`Method`](crate::Method) alone does.
-    /// It changes with the tool point and the characteristic length.
+    /// The closest motion in scaled task coordinates: the effect of [`Method`](crate::Method)
+    /// alone. It depends on the tool point and the characteristic length.
     #[default]
     Orthogonal,
-    /// The hyperbolic pseudoinverse: what is left out is h-reciprocal to all motions of the arm,
-    /// in any frame and unit. It does not exist at principal pitches and for some systems.
+    /// The hyperbolic pseudoinverse: the discarded component is h-reciprocal to all motions of the
+    /// arm, in any frame and unit. It does not exist at principal pitches and for some systems.
     Hyperbolic {
         /// Pitch of the form [m/rad]; infinite for the limit.
         h: f64,
@@ -40,20 +40,20 @@ pub enum TaskProjection {
         /// The damping.
         damping: HyperbolicDamping,
     },
-    /// What is left out is a sum of these twists, which the task does not mind.
+    /// The discarded component is a combination of these twists, which the task leaves free.
     Oblique {
-        /// As many as the arm lacks to six.
+        /// As many as the arm lacks joints to six.
         complement: Vec<Twist>,
-        /// The frame they are given in: `Local` (the tool's), `LocalWorldAligned` or `World`.
+        /// The frame of these twists: `Local` (the tool), `LocalWorldAligned` or `World`.
         reference: ReferenceFrame,
     },
 }
 
 impl TaskProjection {
-    /// The names of those that choose a part: all but the orthogonal one.
+    /// The names of the non-orthogonal projections.
     pub const NAMES: [&str; 4] = ["hyperbolic", "hyperbolic-damped", "hyperbolic-gram", "oblique"];
 
-    /// Its name in options and reports.
+    /// The name in options and reports.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -67,7 +67,7 @@ impl TaskProjection {
         }
     }
 
-    /// The pitch of the form, where there is one [m/rad].
+    /// The pitch of the form, if there is one [m/rad].
     #[must_use]
     pub const fn pitch(&self) -> Option<f64> {
         match self {
@@ -76,10 +76,10 @@ impl TaskProjection {
         }
     }
 
-    /// Refuses numbers outside the domain.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] with the option and its value; twists that are not finite.
+    /// [`Error::InvalidOption`] with the option and its value; non-finite twists.
     pub fn check(&self) -> Result<()> {
         match self {
             Self::Orthogonal => Ok(()),
@@ -96,7 +96,7 @@ impl TaskProjection {
                     return Err(Error::InvalidOption {
                         option: "complement",
                         value: format!("{} twists", complement.len()),
-                        reason: "at most six twists can be given up".to_owned(),
+                        reason: "the complement can have at most six twists".to_owned(),
                     });
                 }
                 complement.iter().enumerate().try_for_each(|(i, t)| {
@@ -107,7 +107,8 @@ impl TaskProjection {
     }
 }
 
-/// Where the task is looked at: the tool's pose, the axes of the task and the length.
+/// The frame of the task: the tool's pose, the axes of the components and the characteristic
+/// length.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TaskFrame {
     pub(super) pose: Pose,
@@ -116,7 +117,7 @@ pub(super) struct TaskFrame {
 }
 
 impl TaskFrame {
-    /// A twist given in `reference` in scaled task coordinates.
+    /// A twist given in `reference`, in scaled task coordinates.
     fn scaled(&self, twist: Twist, reference: ReferenceFrame) -> [f64; 6] {
         let turn = |t: Twist, r: Rotation| Twist { linear: r * t.linear, angular: r * t.angular };
         let aligned = match reference {
@@ -154,7 +155,7 @@ impl StepProjection {
         Self { projector: None, reason: None, stopped: false }
     }
 
-    /// Finds the projector for the pose of this decomposition, or the fallback's.
+    /// Computes the projector for this decomposition, or that of the fallback.
     pub(super) fn load(&mut self, choice: ProjectionChoice<'_>, svd: &Svd, frame: TaskFrame) {
         *self = Self::new();
         let ProjectionChoice { projection, fallback, largest } = choice;
@@ -170,7 +171,7 @@ impl StepProjection {
         }
     }
 
-    /// `x <- P x`, zero where there is no projector.
+    /// `x <- P x`; zero without a projector.
     pub(super) fn apply(&self, x: &mut [f64]) {
         if self.stopped {
             x.fill(0.0);
@@ -179,18 +180,18 @@ impl StepProjection {
         }
     }
 
-    /// Why the requested projector was not used.
+    /// The reason why the requested projector was not used.
     pub(super) fn reason(&self) -> Option<NoInverse> {
         self.reason
     }
 
-    /// True if the fallback did not exist either, or was not named.
+    /// True if the fallback did not exist either, or was not given.
     pub(super) fn is_stopped(&self) -> bool {
         self.stopped
     }
 }
 
-/// `None` for the projector that changes nothing.
+/// `None` for the identity.
 fn projector(
     projection: &TaskProjection,
     largest: f64,
@@ -229,7 +230,7 @@ fn projector(
     if norm > largest { Err(NoInverse::TooLarge { norm }) } else { Ok(Some(found)) }
 }
 
-/// Why there is no hyperbolic inverse of pitch `h` within the bound of its norm.
+/// The reason why no hyperbolic inverse of pitch `h` exists within the bound of its norm.
 fn why_not(svd: &Svd, k: usize, h: f64, length: f64, norm: f64) -> NoInverse {
     let twist = |i: usize| {
         let [a, b, c, d, e, f] = std::array::from_fn(|r| svd.u(i)[r]);

@@ -1,12 +1,12 @@
-//! Rates of an inverse when the reference point of the twist is moved: the same motion of the same
-//! tool, written at another point.
+//! Dependence of an inverse on the reference point: the same twist of the same tool, inverted with
+//! another point as reference.
 //!
-//! Formula  rates_t = J_t+ s_t and rates_p = J_p+ s_p, s_p = [v + w x (p - t); w], J_p likewise
-//! Shapes   J: 6 x m, m joints that move the tool; rates: m
-//! Units    m, rad, s; linear rows over L where the inverse mixes lengths with angles
-//! Frame    world axes; reference points: the tool's origin t and the point p, carried by the tool
-//! Valid    trees, any rank. Hyperbolic inverses give the same rates at every point, others where
-//!          nothing is given up (rank 6 and no damping)
+//! Formula  q'_t = J_t+ s_t and q'_p = J_p+ s_p, s_p = [v + w x (p - t); w], J_p likewise
+//! Shapes   J: 6 x m, m joints that move the tool; q': m
+//! Units    m, rad, s; linear rows over L if the inverse mixes lengths with angles
+//! Frame    world axes; reference points: the tool's origin t and the point p, fixed to the tool
+//! Valid    trees, any rank. Hyperbolic inverses give the same joint velocities at every point,
+//!          other inverses only if no component is discarded (rank 6 and no damping)
 //! Why so   the Moore-Penrose inverse of an arm with fewer than six joints, and damping of any arm,
 //!          weigh metres against radians, and the metres depend on the point
 //! Source   Donelan & Selig, sections 1 and 5; Doty, Melchiorri & Bonivento 1993
@@ -24,50 +24,51 @@ use crate::screws::{NoInverse, ScrewOptions};
 use crate::spatial::{Pose, Twist, Vec3};
 use crate::tolerance::SAME_RATES;
 
-/// A way to invert: what [`ServoOptions`](super::ServoOptions) has of it.
+/// An inverse as chosen in [`ServoOptions`](super::ServoOptions): method, projection and length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InverseChoice {
-    /// The inverse near singularities.
+    /// The method near singularities.
     pub method: Method,
-    /// Which part of a motion is taken on; the method has no part in it unless it is orthogonal.
+    /// The part of a motion that is realised; the method is used only if it is orthogonal.
     pub projection: TaskProjection,
     /// Characteristic length (m).
     pub length: f64,
 }
 
-/// What an inverse makes of a twist with one reference point.
+/// The inverse of a twist for one reference point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocitiesAtPoint {
-    /// Rates of the joints that move the tool [rad/s or m/s]; `None` where there is no inverse.
+    /// Velocities of the joints that move the tool [rad/s or m/s]; `None` if there is no inverse.
     pub joint_velocities: Option<Vec<f64>>,
-    /// The twist of the tool that they make, at the tool, world axes.
+    /// The realised twist, at the tool, world axes.
     pub achieved: Option<Twist>,
-    /// Why there is none.
+    /// The reason why there is none.
     pub reason: Option<NoInverse>,
 }
 
 /// The same twist inverted at the tool and at another reference point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferencePointComparison {
-    /// Places in `q` of the joints that move the tool.
+    /// Indices in `q` of the joints that move the tool.
     pub coordinates: Vec<usize>,
     /// With the tool's origin as reference point.
     pub at_tool: VelocitiesAtPoint,
-    /// With the other one.
+    /// With the other point as reference point.
     pub at_point: VelocitiesAtPoint,
-    /// Length of the difference of the rates [rad/s or m/s]; `None` where one of them is missing.
+    /// Norm of the difference of the joint velocities [rad/s or m/s]; `None` if one of them does
+    /// not exist.
     pub difference: Option<f64>,
-    /// True where it is rounding (`tolerance::SAME_RATES` of the rates).
+    /// True if the difference is rounding (`tolerance::SAME_RATES` of the velocities).
     pub invariant: bool,
 }
 
 impl InverseChoice {
-    /// Inverts `asked`, the twist of the tool (at the tool, world axes), there and with the
+    /// Inverts `asked`, the twist of the tool (at the tool, world axes), at the tool and with the
     /// reference point moved to `point` (world).
     ///
     /// # Errors
-    /// A closed chain, whose joints do not move one by one; an end effector of another mechanism;
-    /// numbers that are not finite or outside the domain of the method.
+    /// A closed chain, whose joints are not independent; an end effector of another mechanism;
+    /// values that are non-finite or outside the domain of the method.
     pub fn at_two_points(
         &self,
         state: &State,
@@ -81,8 +82,8 @@ impl InverseChoice {
             return Err(Error::Model {
                 model: mechanism.name().to_owned(),
                 culprit: String::new(),
-                message: "inverses of Jacobians are compared on arms without loops; here loops \
-                          choose the rates"
+                message: "inverses can be compared only for arms without loops; loops couple the \
+                          joint velocities"
                     .to_owned(),
             });
         }

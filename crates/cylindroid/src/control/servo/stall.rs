@@ -1,16 +1,16 @@
-//! When a servo gets no nearer to its target, and why.
+//! Stall detection: when a servo makes no progress towards its target, and why.
 //!
 //! Formula  stalled when the error e = |dp| / L + |angle| has not fallen below (1 - share) of its
-//!          best within the window. The window begins when no joint gains speed under an
-//!          acceleration limit, and is longer by the time 4 |rate| / A that the weakest joint takes
-//!          to turn round from its rate at the best (|rate| / A to stop, the way back and its end)
-//! Causes   out of reach: the target is farther from the chain's first joint than the chain is
-//!          long (a proof); limits, slow: the error has a part along directions that are not lost,
-//!          and joints stand at limits against it, or not; singular: the error is along directions
-//!          that are lost here, and the arm can do more in other postures; too few joints: the
-//!          same, and it cannot
-//! Lost     is a direction that the inverse cuts, or whose singular value is below `TRUNCATION` of
-//!          the largest; a gain that is weak because the inverse is damped much is not a lost one
+//!          minimum within the window. The window is suspended while a joint accelerates at its
+//!          limit, and is extended by 4 |v| / A, the time in which the weakest joint reverses from
+//!          its velocity v at the minimum (|v| / A to stop, then the way back)
+//! Causes   `OutOfReach`: the target is farther from the first joint than the length of the chain
+//!          (a proof); `Limits`/`Slow`: the error has a component along controllable directions,
+//!          and joints at their limits do / do not block it; `Singular`: the error lies along
+//!          directions lost at this configuration, but not generically; `TooFewJoints`: lost
+//!          everywhere
+//! Lost     directions are those that the inverse cuts, or with a singular value below `TRUNCATION`
+//!          of the largest; a gain that is small because of strong damping is not a lost direction
 //! Units    m, rad, s
 //! Checked  tests/it/servo/stall.rs::stall_*
 
@@ -21,67 +21,66 @@ use crate::tolerance::TRUNCATION;
 /// Window within which the error must fall (s), and by which share [-].
 const WINDOW: f64 = 1.0;
 const SHARE: f64 = 1e-3;
-/// Times |rate| / A that a joint takes to come back to where it was [-]: 1 + 2 sqrt 2, rounded up.
+/// Times |v| / A that a joint takes to return to its position [-]: 1 + 2 sqrt 2, rounded up.
 const TURN_ROUND: f64 = 4.0;
-/// Share of the squared error that must lie along directions that are not lost for the motion to
-/// count as possible [-].
+/// Share of the squared error along controllable directions above which the motion counts as
+/// possible [-].
 const POSSIBLE: f64 = 1e-4;
 
-/// Why the end effector does not get nearer to its target.
+/// The reason why the end effector makes no progress towards its target.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stall {
-    /// The target cannot be reached by any posture: it is too far away.
+    /// No configuration reaches the target: it is too far away.
     OutOfReach {
         /// Distance from the first joint to the target (m).
         distance: f64,
-        /// Length of the stretched chain (m).
+        /// Length of the fully stretched chain (m).
         length: f64,
     },
-    /// Joints stand at their position limits and the rest cannot do the task without them.
+    /// Joints are at their position limits, and the others cannot perform the task alone.
     Limits {
-        /// Their places in `q`.
+        /// Their indices in `q`.
         coordinates: Vec<usize>,
     },
-    /// The remaining error lies along directions lost in a singular pose.
+    /// The remaining error lies along directions lost in a singular configuration.
     Singular {
-        /// Smallest singular value over the largest.
+        /// Ratio of the smallest to the largest singular value.
         ratio: f64,
         /// The remaining error as a unit vector in task space.
         direction: Vec<f64>,
     },
-    /// The arm has fewer independent motions than the task asks for; the error that remains is
-    /// outside of what it can do here.
+    /// The arm has fewer independent motions than the task has components; the remaining error lies
+    /// outside their span.
     TooFewJoints {
-        /// Independent motions of the arm here.
+        /// Independent motions of the arm at this configuration.
         rank: usize,
         /// Components of the task.
         task: usize,
         /// The remaining error as a unit vector in task space.
         direction: Vec<f64>,
     },
-    /// The inverse that was asked for does not exist here, and no other was named.
+    /// The requested inverse does not exist here, and no fallback was given.
     NoInverse(NoInverse),
-    /// The remaining error is what the projection gives up, although the arm could lessen it.
+    /// The remaining error is the component discarded by the projection, although the arm could
+    /// reduce it.
     Projected {
         /// The remaining error as a unit vector in task space.
         direction: Vec<f64>,
     },
-    /// A motion of the object is about to escape the drives of a closed chain (type II
-    /// singularity): the servo stops before.
+    /// A type II singularity is near, where the object of a closed chain would gain an uncontrolled
+    /// motion: the servo stops before it.
     TypeII {
-        /// Actuated share of that motion, which has length one in units
-        /// scaled by the reach [-].
+        /// Actuated share of that motion, which has unit length in units scaled by the reach [-].
         share: f64,
         /// The motion as a unit vector in task space.
         direction: Vec<f64>,
     },
-    /// None of these: the inverse is damped so much, or the limits so tight, that progress is
-    /// slower than the window.
+    /// None of these: strong damping or tight limits make progress slower than the window.
     Slow,
 }
 
 impl Stall {
-    /// Its name in reports.
+    /// The name in reports.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -97,7 +96,7 @@ impl Stall {
     }
 }
 
-/// Watches the error.
+/// Detects that the error no longer falls.
 #[derive(Debug, Clone)]
 pub(super) struct StallDetector {
     best: f64,
@@ -105,12 +104,12 @@ pub(super) struct StallDetector {
     window: f64,
 }
 
-/// How the joints go about a step.
+/// Acceleration of the joints in a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct BrakingState {
-    /// True if a joint gains speed as fast as its acceleration limit lets it.
+    /// True if a joint accelerates at its acceleration limit.
     pub(super) accelerating: bool,
-    /// The largest |rate| / A of the joints (s).
+    /// The largest |v| / A of the joints (s).
     pub(super) stopping_time: f64,
 }
 
@@ -119,7 +118,7 @@ impl StallDetector {
         Self { best: f64::INFINITY, since: 0.0, window: WINDOW }
     }
 
-    /// Notes the error of a step of `dt` seconds; true if stalled.
+    /// Records the error of a step of `dt` seconds; true if stalled.
     pub(super) fn stalled(&mut self, error: f64, braking: BrakingState, dt: f64) -> bool {
         if error < self.best * (1.0 - SHARE) {
             let window = WINDOW + TURN_ROUND * braking.stopping_time;
@@ -133,7 +132,7 @@ impl StallDetector {
     }
 }
 
-/// What the classification looks at.
+/// Inputs of the classification.
 #[derive(Debug)]
 pub(super) struct StallInputs<'a> {
     pub(super) svd: &'a Svd,
@@ -141,15 +140,15 @@ pub(super) struct StallInputs<'a> {
     pub(super) gains: &'a [f64],
     /// The remaining error in scaled task coordinates.
     pub(super) error: &'a [f64],
-    /// The same as projected.
+    /// The same after projection.
     pub(super) projected_error: &'a [f64],
-    /// Why there is no projector, if the arm was stopped for it.
+    /// The reason why there is no projector, if the arm was stopped for it.
     pub(super) no_inverse: Option<NoInverse>,
-    /// Coordinates that stand at a position limit against the desired motion.
+    /// Coordinates at a position limit that blocks the desired motion.
     pub(super) at_limit: &'a [usize],
     pub(super) distance: f64,
     pub(super) length: f64,
-    /// Rank of the task Jacobian in postures that are not singular.
+    /// Rank of the task Jacobian at non-singular configurations.
     pub(super) generic_rank: usize,
 }
 

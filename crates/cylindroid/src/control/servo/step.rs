@@ -1,4 +1,4 @@
-//! What goes into a step of the servo and what comes out.
+//! Input and output of a servo step: target, status, errors.
 
 use super::options::ServoOptions;
 use crate::control::solver::direct::Saturation;
@@ -8,7 +8,7 @@ use crate::spatial::{Pose, Twist};
 /// A moving target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Target {
-    /// `world_from_tool` as it should be.
+    /// Desired `world_from_tool`.
     pub pose: Pose,
     /// The twist of the target, world axes, at the tool.
     pub feed_forward: Twist,
@@ -21,7 +21,7 @@ impl From<Pose> for Target {
 }
 
 impl Target {
-    /// Refuses numbers that are not finite.
+    /// Checks for non-finite values.
     pub(super) fn check(&self) -> Result<()> {
         Error::check_finite("target position", &self.pose.translation.to_array())?;
         if !self.pose.is_finite() {
@@ -30,7 +30,7 @@ impl Target {
         Error::check_finite("feed-forward twist", &self.feed_forward.to_array())
     }
 
-    /// The motion that is asked for, in the axes of the task, the components that matter alone.
+    /// The desired motion, in the axes of the task, restricted to its components.
     pub(super) fn desired(&self, pose: Pose, options: &ServoOptions) -> Result<DesiredMotion> {
         let error = pose.error_to(self.pose);
         let gain = options.gain;
@@ -50,7 +50,7 @@ impl Target {
     }
 }
 
-/// What a step is asked for, in the axes of the task.
+/// The desired motion of a step, in the axes of the task.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DesiredMotion {
     pub(super) error: Twist,
@@ -59,33 +59,34 @@ pub(super) struct DesiredMotion {
     pub(super) feed_forward: Twist,
 }
 
-/// Where a servo stands after a step.
+/// Status of a servo after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// On its way.
+    /// Moving towards the target.
     Moving,
-    /// Both errors are within tolerance, and so slow is the tool against the target, by the rates
-    /// of this step, that they stay so: speed <= gain * tolerance.
+    /// Both errors are within tolerance, and the tool moves so slowly relative to the target that
+    /// they stay within it: speed <= gain * tolerance.
     Reached,
-    /// The error no longer falls; [`Servo::stall`](super::controller::Servo::stall) says why.
+    /// The error no longer falls; [`Servo::stall`](super::controller::Servo::stall) gives the
+    /// reason.
     Stalled,
 }
 
-/// What one step did.
+/// Result of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// Where the servo stands.
+    /// Status of the servo.
     pub status: Status,
     /// The pose of the tool before the step.
     pub pose: Pose,
-    /// Distance to the target, of the components that matter (m).
+    /// Distance to the target, in the components of the task (m).
     pub position_error: f64,
-    /// Angle to the target, of the components that matter (rad).
+    /// Angle to the target, in the components of the task (rad).
     pub orientation_error: f64,
-    /// Smallest singular value of the scaled task Jacobian over the largest.
+    /// Ratio of the smallest to the largest singular value of the scaled task Jacobian.
     pub singular_ratio: f64,
-    /// Directions realised by at least half.
+    /// Number of directions with a gain times singular value of at least one half.
     pub rank: usize,
-    /// What the limits left of the task.
+    /// The share of the task that the limits permit.
     pub saturation: Saturation,
 }

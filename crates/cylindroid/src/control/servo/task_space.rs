@@ -1,8 +1,8 @@
-//! The coordinates in which a task is inverted: the components that matter, linear ones divided by
-//! the characteristic length, joints by the square root of their weight.
+//! Scaled task coordinates, in which the task Jacobian is inverted: the components of the task,
+//! linear ones divided by the characteristic length, joints by the square root of their weight.
 //!
-//! Formula  J_task = diag(r) S J diag(c), S the rows that matter, r = 1/L or 1, c = 1/sqrt(weight),
-//!          0 for joints that are locked; rates = diag(c) (rates of the scaled problem)
+//! Formula  J_task = diag(r) S J diag(c), S selects rows, r = 1/L or 1, c = 1/sqrt(weight), 0 for
+//!          locked joints; joint velocities = diag(c) (velocities of the scaled problem)
 //! Shapes   J: 6 x n, J_task: m x n
 //! Checked  tests/it/servo/limits.rs::joint_weights_keep_joints_still
 
@@ -22,25 +22,25 @@ pub(super) struct TaskScaling<'a> {
     pub(super) joint_weights: &'a [f64],
 }
 
-/// Which rows and columns, scaled how.
+/// The selected rows and columns, and their scales.
 #[derive(Debug, Clone)]
 pub(super) struct TaskSpace {
     pub(super) axes: ReferenceFrame,
     /// Row of the 6 x n Jacobian and its scale, for each of the m components.
     pub(super) rows: Vec<(usize, f64)>,
-    /// Scale of each of the n columns, and 1 for driven closing joints; 0 for joints that are
-    /// locked.
+    /// Scale of each of the n columns, 1 for actuated loop-closure joints; 0 for locked joints.
     pub(super) columns: Vec<f64>,
-    /// Scales of the rows where all six matter.
+    /// Scales of the rows if the task has all six components.
     all_rows: Option<[f64; 6]>,
-    /// True where all coordinates are angles and lengths.
+    /// True if all coordinates are angles and lengths.
     pub(super) turns_and_slides: bool,
-    /// The Jacobian before it is scaled, 6 x n.
+    /// The unscaled Jacobian, 6 x n.
     jacobian: Matrix,
 }
 
 impl TaskSpace {
-    /// For the joints of `chain` with these limits, and driven closing joints with the others.
+    /// For the joints of `chain` with these limits, and actuated loop-closure joints with the
+    /// remaining ones.
     pub(super) fn new(scaling: TaskScaling<'_>, chain: &Chain, limits: &[Limits]) -> Self {
         let TaskScaling { task, length, joint_weights } = scaling;
         let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
@@ -63,7 +63,7 @@ impl TaskSpace {
         }
     }
 
-    /// Writes J_task.
+    /// Computes J_task.
     pub(super) fn load(&mut self, chain: &Chain, task: &mut Matrix) {
         if let Some(scales) = self.all_rows {
             chain.jacobian_into(self.axes, task);
@@ -84,12 +84,12 @@ impl TaskSpace {
         }
     }
 
-    /// The rate of joint i in scaled coordinates; 0 where it is locked.
+    /// The velocity of joint i in scaled coordinates; 0 if it is locked.
     pub(super) fn scaled_rate(&self, i: usize, rate: f64) -> f64 {
         scaled(rate, self.columns[i])
     }
 
-    /// Brings the rates of the first joints into scaled coordinates.
+    /// Scales the velocities of the first joints.
     pub(super) fn scale_rates(&self, rates: &mut [f64]) {
         rates
             .iter_mut()
@@ -97,12 +97,12 @@ impl TaskSpace {
             .for_each(|(rate, column)| *rate = scaled(*rate, *column));
     }
 
-    /// The rates of the first joints in scaled coordinates.
+    /// The scaled velocities of the first joints.
     pub(super) fn scaled_rates(&self, rates: &[f64]) -> Vec<f64> {
         rates.iter().enumerate().map(|(i, rate)| self.scaled_rate(i, *rate)).collect()
     }
 
-    /// Writes a twist in task coordinates.
+    /// Converts a twist to task coordinates.
     pub(super) fn scale(&self, twist: Twist, x: &mut [f64]) {
         let twist = twist.to_array();
         if let (Some(scales), Ok(x)) = (self.all_rows, <&mut [f64; 6]>::try_from(&mut *x)) {
@@ -123,7 +123,7 @@ impl TaskSpace {
         Twist::from_array(twist)
     }
 
-    /// True for joints that no step can move: they take no part, as if they were fixed.
+    /// True for joints whose limits permit no motion: they are treated as fixed.
     pub(super) fn is_locked(&self, i: usize) -> bool {
         self.columns[i] == 0.0
     }

@@ -1,20 +1,20 @@
-//! Intervals of joint rates, and the limit that sets each end: what the solver keeps.
+//! Velocity bounds: an interval for each joint velocity, and the limit that sets each end.
 //!
 //! Units    rad/s or m/s
-//! Checked  tests/it/servo/limits.rs::limits_*, tests in `servo/limits.rs`
+//! Checked  tests/it/servo/limits.rs::limits_*, src/control/servo/limits.rs
 
 use crate::tolerance::LIMIT_MET;
 
-/// The rates allowed in the next step, and which limit sets each end.
+/// The velocities permitted in the next step, and the limit that sets each end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VelocityBounds {
-    /// Smallest rate [rad/s or m/s].
+    /// Smallest velocity [rad/s or m/s].
     pub lower: f64,
-    /// Largest rate [rad/s or m/s].
+    /// Largest velocity [rad/s or m/s].
     pub upper: f64,
-    /// What sets the smallest rate.
+    /// The limit that sets the smallest velocity.
     pub lower_cause: LimitKind,
-    /// What sets the largest rate.
+    /// The limit that sets the largest velocity.
     pub upper_cause: LimitKind,
 }
 
@@ -30,7 +30,7 @@ pub enum LimitKind {
 }
 
 impl LimitKind {
-    /// Its name in reports.
+    /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl LimitKind {
 }
 
 impl VelocityBounds {
-    /// Any rate.
+    /// No bounds.
     pub(in crate::control) const NONE: Self = Self {
         lower: f64::NEG_INFINITY,
         upper: f64::INFINITY,
@@ -50,33 +50,33 @@ impl VelocityBounds {
         upper_cause: LimitKind::Velocity,
     };
 
-    /// The nearest allowed rate; NaN stays NaN, it is near to none.
+    /// The closest permitted velocity; NaN stays NaN.
     #[must_use]
-    pub fn clamp(&self, rate: f64) -> f64 {
-        if rate < self.lower {
+    pub fn clamp(&self, velocity: f64) -> f64 {
+        if velocity < self.lower {
             self.lower
-        } else if rate > self.upper {
+        } else if velocity > self.upper {
             self.upper
         } else {
-            rate
+            velocity
         }
     }
 
-    /// The limit that a rate has run into, if any.
+    /// The limit met by a velocity, if any.
     #[must_use]
-    pub fn met(&self, rate: f64) -> Option<LimitKind> {
-        if rate >= self.upper - LIMIT_MET * self.upper.abs() {
+    pub fn met(&self, velocity: f64) -> Option<LimitKind> {
+        if velocity >= self.upper - LIMIT_MET * self.upper.abs() {
             Some(self.upper_cause)
-        } else if rate <= self.lower + LIMIT_MET * self.lower.abs() {
+        } else if velocity <= self.lower + LIMIT_MET * self.lower.abs() {
             Some(self.lower_cause)
         } else {
             None
         }
     }
 
-    /// True if the rate is allowed.
+    /// True if the velocity is permitted.
     #[must_use]
-    pub fn contains(&self, rate: f64) -> bool {
-        rate >= self.lower && rate <= self.upper
+    pub fn contains(&self, velocity: f64) -> bool {
+        velocity >= self.lower && velocity <= self.upper
     }
 }

@@ -1,44 +1,44 @@
-//! Rates inside their bounds: the task is scaled first, then bent.
+//! Saturation: enforces joint velocity bounds. The task velocity is scaled down first; if no
+//! scaling is feasible, its direction is changed (bounded least squares, BVLS).
 //!
-//! Formula  scaled: the largest s in [0, 1] with J q' = s x and bounds kept, joints at a bound
-//!          taken out one by one while the rest can still do the task;
-//!          bent: the bounded least-squares solution, min |J q' - x| with bounds kept
+//! Formula  scaled: the largest s in [0, 1] with J q' = s x within the bounds; joints at a bound
+//!          are clamped one by one while the others can still perform the task; direction changed:
+//!          the bounded least-squares solution, min |J q' - x| within the bounds
 //! Shapes   J: m x n, x: m, bounds: n
 //! Cost     at most 4 n decompositions of m x n; none when no bound is met
-//! Why so   scaling keeps the direction of the motion, which users of a straight path count on;
-//!          only when the direction is lost altogether is it better to move on a bent way than not
+//! Why so   scaling preserves the direction, which users of straight-line paths rely on; the
+//!          direction is changed only when no scaled motion is feasible
 //! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
 //!          Parker 1995 (bounded-variable least squares)
-//! Checked  tests/it/servo/limits.rs::saturation_*, tests in this file (bent against the
-//!          conditions)
+//! Checked  tests/it/servo/limits.rs::saturation_*, tests in this file (optimality conditions)
 
 use super::bounds::{LimitKind, VelocityBounds};
 use crate::inverse::{Method, is_kept};
 use crate::linalg::{Matrix, Svd, dot, norm};
 use crate::scalar::clamp;
 
-/// Below this scale a direction counts as lost and the motion is bent [-].
+/// Below this scale the direction counts as infeasible and is changed [-].
 pub(in crate::control) const MIN_SCALE: f64 = 0.05;
 
-/// A held joint is released when its pull is above this share of the largest possible one [-]:
-/// what is left of directions that the inverse cut must not release anything.
+/// A clamped joint is released when its gradient exceeds this share of the largest possible one
+/// [-]: the residual along directions cut by the inverse must not release any joint.
 pub(in crate::control) const RELEASE: f64 = 1e-3;
 
-/// What became of the task.
+/// The share of a task that the limits permit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Saturation {
-    /// The share of the task twist that is carried out; 1 when no limit bites.
+    /// Scale of the realised task twist; 1 when no limit is active.
     pub scale: f64,
-    /// True if the direction could not be kept.
+    /// True if the direction was changed because no scaled motion was feasible.
     pub direction_lost: bool,
 }
 
 impl Saturation {
-    /// No limit bites.
+    /// No limit is active.
     pub(in crate::control) const NONE: Self = Self { scale: 1.0, direction_lost: false };
 }
 
-/// Memory for the decompositions.
+/// Workspace for the decompositions.
 #[derive(Debug, Clone)]
 pub(in crate::control) struct Saturator {
     svd: Svd,
@@ -52,7 +52,7 @@ pub(in crate::control) struct Saturator {
     best: Vec<f64>,
 }
 
-/// The task and how it is inverted.
+/// The task and its inverse.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::control) struct Problem<'a> {
     pub(in crate::control) j: &'a Matrix,
@@ -76,8 +76,8 @@ impl Saturator {
         }
     }
 
-    /// Moves `rates` (primary plus `secondary`) into the bounds. `rates` comes in as the primary
-    /// motion that solves the task, without limits.
+    /// Bounds `rates` (primary plus `secondary`). On input `rates` is the primary motion that
+    /// solves the task without limits.
     pub(in crate::control) fn apply(
         &mut self,
         problem: Problem<'_>,
@@ -85,15 +85,15 @@ impl Saturator {
         rates: &mut [f64],
     ) -> Saturation {
         let bounds = problem.bounds;
-        // The secondary motion yields first.
+        // The secondary motion is reduced first.
         if let Some(span) = interval(rates, secondary, bounds) {
             for ((rate, z), bound) in rates.iter_mut().zip(secondary).zip(bounds) {
                 *rate = bound.clamp(*rate + span.most * z);
             }
             return Saturation::NONE;
         }
-        // While joints gain speed the twist is scaled and grows from step to step; only lasting
-        // limits are worth another distribution of the motion over the joints.
+        // While joints accelerate, the twist is scaled and grows from step to step; only persistent
+        // limits justify another distribution of the motion over the joints.
         self.particular.fill(0.0);
         if let Some(span) = interval(&self.particular, rates, bounds)
             && span.most > 0.0
@@ -113,7 +113,7 @@ impl Saturator {
         Saturation { scale: 0.0, direction_lost: true }
     }
 
-    /// The largest feasible scale, with its rates in `best`, and what limits it; 0 if none.
+    /// The largest feasible scale, with its velocities in `best`, and the limiting kind; 0 if none.
     fn scaled(&mut self, p: Problem<'_>) -> (f64, LimitKind) {
         let n = p.bounds.len();
         self.clamped.fill(false);
@@ -152,7 +152,7 @@ impl Saturator {
             if best >= 1.0 {
                 break;
             }
-            // Hold the joint that leaves its bounds by most at full scale.
+            // Clamp the joint that exceeds its bounds most at full scale.
             let mut worst = (0.0, None);
             for i in 0..n {
                 let rate = self.particular[i] + self.direction[i];
@@ -168,8 +168,8 @@ impl Saturator {
         (best, cause)
     }
 
-    /// Bounded least squares by an active set: hold what reaches a bound, release what would leave
-    /// it inwards, until neither happens.
+    /// Bounded least squares by an active set: clamp joints that reach a bound, release those whose
+    /// gradient points inwards, until neither happens.
     fn bounded_least_squares(&mut self, p: Problem<'_>, rates: &mut [f64]) {
         let n = p.bounds.len();
         for (i, rate) in rates.iter_mut().enumerate() {
@@ -194,7 +194,7 @@ impl Saturator {
         }
     }
 
-    /// `rest = x - J rates`, of the held joints alone or of all.
+    /// `rest = x - J rates`, over the clamped joints or over all.
     fn load_residual(&mut self, p: &Problem<'_>, rates: &[f64], clamped_alone: bool) {
         self.rest.copy_from_slice(p.x);
         for (j, rate) in rates.iter().enumerate() {
@@ -206,8 +206,8 @@ impl Saturator {
         }
     }
 
-    /// Moves the free joints towards `direction` until one reaches a bound and is held (true), or
-    /// all the way (false).
+    /// Moves the free joints towards `direction` until one reaches a bound and is clamped (true),
+    /// or the whole way (false).
     fn move_to_first_bound(&mut self, bounds: &[VelocityBounds], rates: &mut [f64]) -> bool {
         let mut first = (1.0, None);
         for (i, bound) in bounds.iter().enumerate() {
@@ -232,7 +232,7 @@ impl Saturator {
         true
     }
 
-    /// Frees the held joint that would lower the error most by leaving its bound inwards.
+    /// Releases the clamped joint that would reduce the error most by leaving its bound inwards.
     fn release_one(&mut self, p: &Problem<'_>, rates: &[f64]) -> bool {
         let size = norm(&self.rest);
         let least = RELEASE * self.svd.value(0) * size;
@@ -252,7 +252,8 @@ impl Saturator {
         true
     }
 
-    /// Decomposes J without the columns of held joints; the number of directions it can do.
+    /// Decomposes J without the columns of clamped joints; returns the number of feasible
+    /// directions.
     fn decompose_free(&mut self, p: &Problem<'_>) -> usize {
         self.reduced.as_mut_slice().copy_from_slice(p.j.as_slice());
         for (i, held) in self.clamped.iter().enumerate() {
@@ -279,16 +280,16 @@ pub(in crate::control) fn solve(
     svd.apply_gains_into(x, gains, out);
 }
 
-/// Where `a + s b` keeps the bounds.
+/// The range of s in which `a + s b` is within the bounds.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::control) struct Span {
     /// The largest s in [0, 1].
     pub(in crate::control) most: f64,
-    /// The limit that sets it; velocity if none does.
+    /// The limit that sets it; velocity if none.
     pub(in crate::control) cause: LimitKind,
 }
 
-/// The s in [0, 1] for which `a + s b` keeps the bounds; `None` if there are none.
+/// The largest s in [0, 1] for which `a + s b` is within the bounds; `None` if there is none.
 pub(in crate::control) fn interval(
     a: &[f64],
     b: &[f64],
@@ -326,8 +327,9 @@ mod tests {
         2.0 * crate::scalar::uniform(state) - 1.0
     }
 
-    /// What is bent fulfils the conditions of Karush, Kuhn and Tucker for min |J r - x|^2 in a box:
-    /// no pull on joints between their bounds, on the others none inwards (above `RELEASE`).
+    /// The solution satisfies the conditions of Karush, Kuhn and Tucker for min |J r - x|^2 in a
+    /// box: zero gradient for joints between their bounds, none pointing inwards for the others
+    /// (above `RELEASE`).
     #[test]
     fn bent_rates_are_the_bounded_least_squares_solution() {
         let mut state = 7;

@@ -1,13 +1,15 @@
-//! Rates of coupled joints inside their bounds: the task is scaled first, then bent.
+//! Saturation of coupled joints: the task velocity is scaled down first; if no scaling is feasible,
+//! its direction is changed.
 //!
-//! Formula  scaled: the largest s in [0, 1] with M y(s) + s_0 in bounds, rates at a bound clamped
-//!          one by one while the rest can still do the task; bent: from rest (or the last rates,
-//!          slowed as far as the bounds allow) towards the task, along bounds where they are met
-//! Shapes   M: rates x a, y: a, J M: m x a, bounds: one for each rate
-//! Valid    any M. Without loops M is the identity, and what is scaled is what `direct.rs`
-//!          gives; what is bent is a way of descent, not its least squares
-//! Source   Flacco, De Luca & Khatib 2015, algorithm 1, for bounds on combinations of rates
-//! Checked  tests in `servo/coupled.rs` (against `direct.rs`), tests/it/servo/object.rs
+//! Formula  scaled: the largest s in [0, 1] with M y(s) + s_0 within the bounds, velocities at a
+//!          bound clamped one by one while the others can still perform the task; direction
+//!          changed: descent from rest (or from the last velocities, slowed as far as the bounds
+//!          permit) towards the task, along active bounds
+//! Shapes   M: velocities x a, y: a, J M: m x a, bounds: one for each velocity
+//! Valid    any M. Without loops M is the identity, and scaled results equal those of `direct.rs`;
+//!          with a changed direction the result is a descent, not the least-squares optimum
+//! Source   Flacco, De Luca & Khatib 2015, algorithm 1, for bounds on combinations of velocities
+//! Checked  src/control/servo/coupled.rs (against `direct.rs`), tests/it/servo/object.rs
 
 use super::bounds::{LimitKind, VelocityBounds};
 use super::direct::{MIN_SCALE, Saturation, Span, interval, solve};
@@ -16,7 +18,7 @@ use crate::linalg::{Matrix, RowSpace, Svd, norm};
 use crate::scalar::clamp;
 use crate::tolerance::CLAMPED_ROWS;
 
-/// The task in y, and what holds for the rates.
+/// The task in y, and the bounds of the velocities.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::control) struct ReducedProblem<'a> {
     /// J M
@@ -24,27 +26,27 @@ pub(in crate::control) struct ReducedProblem<'a> {
     pub(in crate::control) x: &'a [f64],
     pub(in crate::control) method: &'a Method,
     pub(in crate::control) bounds: &'a [VelocityBounds],
-    /// Of the last step.
+    /// Velocities of the last step.
     pub(in crate::control) rates: &'a [f64],
-    /// Their y.
+    /// Their actuation.
     pub(in crate::control) last: &'a [f64],
 }
 
-/// Coupled joints as the solver sees them: rates = M y + s_0.
+/// The solver for coupled joints: velocities = M y + s_0.
 #[derive(Debug, Clone)]
 pub(in crate::control) struct ReducedSolver {
-    /// M in weighted rates, a columns.
+    /// M in weighted velocities, a columns.
     pub(in crate::control) motions: Matrix,
-    /// s_0 in weighted rates.
+    /// s_0 in weighted velocities.
     pub(in crate::control) correction: Vec<f64>,
-    /// The y of the primary task, of the secondary ones, and of the rates.
+    /// The actuation y of the primary task, of the secondary ones, and of the result.
     pub(in crate::control) primary: Vec<f64>,
     pub(in crate::control) secondary: Vec<f64>,
     pub(in crate::control) actuation: Vec<f64>,
 }
 
 impl ReducedSolver {
-    /// For so many rates and actuated, at rest.
+    /// For this number of velocities and actuated joints, at rest.
     pub(in crate::control) fn new(rates: usize, actuated: usize) -> Self {
         Self {
             motions: Matrix::zeros(rates, actuated),
@@ -55,17 +57,17 @@ impl ReducedSolver {
         }
     }
 
-    /// `rates = M y`, without the way to closed loops.
+    /// `rates = M y`, without the loop-closure correction.
     pub(in crate::control) fn expand(&self, y: &[f64], rates: &mut [f64]) {
         self.motions.mul_vec_into(y, rates);
     }
 
-    /// `M^T pull`, one joint of it.
+    /// Row `joint` of M times `pull`.
     pub(in crate::control) fn along(&self, joint: usize, pull: &[f64]) -> f64 {
         (0..self.motions.cols()).map(|j| self.motions[(joint, j)] * pull[j]).sum()
     }
 
-    /// Moves primary and secondary velocities into the bounds: weighted rates into `out`.
+    /// Bounds the primary and secondary velocities; writes weighted velocities to `out`.
     pub(in crate::control) fn saturate(
         &mut self,
         p: ReducedProblem<'_>,
@@ -80,8 +82,8 @@ impl ReducedSolver {
         let (mut direct, mut secondary) = (vec![0.0; n], vec![0.0; n]);
         self.expand(&self.primary, &mut direct);
         self.expand(&self.secondary, &mut secondary);
-        // At a limit the way to closed loops ends, too. Bounds of acceleration that leave out rest
-        // are met by the motion: a correction that met them would open the loops.
+        // At a limit the loop-closure correction ends, too. Acceleration bounds that exclude rest
+        // are left to the motion: a correction that met them would open the loops.
         for (x, bound) in self.correction.iter_mut().zip(p.bounds) {
             *x = x.max(bound.lower.min(0.0)).min(bound.upper.max(0.0));
         }
@@ -116,7 +118,7 @@ impl ReducedSolver {
         }
     }
 
-    /// The largest feasible scale, its rates and y, and what limits it.
+    /// The largest feasible scale, its velocities and actuation, and the limiting kind.
     fn scaled(&mut self, p: &ReducedProblem<'_>, out: &mut [f64]) -> (f64, LimitKind) {
         let n = out.len();
         let mut clamped = Clamped::default();
@@ -166,9 +168,8 @@ impl ReducedSolver {
         (best, cause)
     }
 
-    /// A bent way: from rest towards the task, along bounds where they are met; from the last
-    /// rates, slowed, where rest is too far for a step. False where these are not within bounds
-    /// either.
+    /// Descent from rest towards the task, along active bounds; from the last velocities, slowed,
+    /// if rest is infeasible within a step. False if these are infeasible, too.
     fn descend(&mut self, p: &ReducedProblem<'_>, out: &mut [f64]) -> bool {
         let n = out.len();
         let mut clamped = Clamped::default();
@@ -215,9 +216,9 @@ impl ReducedSolver {
         true
     }
 
-    /// The last rates, slowed together as far as the bounds allow.
+    /// The last velocities, slowed together as far as the bounds permit.
     pub(in crate::control) fn brake(&mut self, p: &ReducedProblem<'_>, out: &mut [f64]) {
-        // rates (1 - s): from the last ones towards rest.
+        // rates (1 - s): from the last ones to rest.
         let slower: Vec<f64> = p.rates.iter().map(|r| -r).collect();
         let share = interval(p.rates, &slower, p.bounds).map_or(1.0, |span| span.most);
         for ((o, r), bound) in out.iter_mut().zip(p.rates).zip(p.bounds) {
@@ -226,8 +227,8 @@ impl ReducedSolver {
         self.actuation.fill(0.0);
     }
 
-    /// The y that keeps the clamped rates with the least effort, and the task in what they leave
-    /// free; nothing where they contradict each other.
+    /// The least-effort actuation that maintains the clamped velocities, and the task in the
+    /// remaining freedom; `None` if they contradict one another.
     fn solve_free(&self, clamped: &Clamped, p: &ReducedProblem<'_>) -> Option<FreeMotion> {
         let row = |k: usize, j: usize| self.motions[(clamped.rows[k].0, j)];
         let rows = Matrix::from_fn(clamped.rows.len(), self.motions.cols(), row);
@@ -257,7 +258,7 @@ impl ReducedSolver {
     }
 }
 
-/// Rates that are clamped at a bound.
+/// Velocities clamped at a bound.
 #[derive(Debug, Clone, Default)]
 struct Clamped {
     rows: Vec<(usize, f64)>,
@@ -269,7 +270,7 @@ impl Clamped {
     }
 }
 
-/// What clamped rates leave of the task.
+/// The freedom that clamped velocities leave to the task.
 struct FreeMotion {
     actuation: Vec<f64>,
     svd: Svd,

@@ -299,7 +299,7 @@ fn weak_joints_slide_along_limits() {
 fn an_object_must_be_steered() {
     let five_bar = catalogue::load("five-bar").unwrap().with_actuated(&["q1"]).unwrap();
     let error = Servo::new(&five_bar, ServoOptions::new(&five_bar)).unwrap_err().to_string();
-    assert!(error.contains("drive more"), "{error}");
+    assert!(error.contains("actuate more"), "{error}");
     let none = catalogue::load("stewart").unwrap().with_actuated::<&str>(&[]).unwrap();
     assert!(Servo::new(&none, ServoOptions::new(&none)).is_err());
 }

@@ -208,7 +208,7 @@ fn an_arm_keeps_the_surface() {
 }
 
 #[test]
-fn the_share_of_the_operator() {
+fn the_authority_of_the_operator() {
     let free = Saturation { scale: 1.0, direction_lost: false };
     let mut share =
         OperatorAuthority::new(AuthorityTimes { dt: 0.01, fall: 0.02, rise: 0.1 }).unwrap();

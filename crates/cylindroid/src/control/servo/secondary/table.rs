@@ -1,8 +1,8 @@
 //! The secondary tasks as one table: name, parameters and velocities of each.
 //!
-//! A new task is a file with its `add`, a row here and a line in docs/servo.md: the enum, its names,
-//! defaults and checks, `--secondary` of the command line, the argument of Python and the tests over
-//! [`SecondaryTask::all`] are made from the row.
+//! A new task is a file with its `add`, a row here and a line in docs/servo.md: the enum, its
+//! names, defaults and checks, `--secondary` of the command line, the argument of Python and the
+//! tests over [`SecondaryTask::all`] are made from the row.
 //!
 //! Checked  tests/it/parameters.rs, tests/it/servo/secondary.rs
 
@@ -14,8 +14,8 @@ use crate::inverse::{Domain, Parameter};
 use crate::model::Mechanism;
 
 /// Hands the table to a macro. A row: documentation, variant, name, a configuration where the task
-/// has one, parameters (documentation, name, unit, domain, default), and the velocities, which do not
-/// allocate.
+/// has one, parameters (documentation, name, unit, domain, default), and the velocities, which do
+/// not allocate.
 ///
 /// Exported for the docstrings of the Python package, which are literals.
 #[doc(hidden)]
@@ -46,7 +46,8 @@ macro_rules! secondary_tasks {
                 margin: "-" in Positive = 0.1;
             } => |context, out| limit_avoidance::add(context, gain, margin, out),
 
-            /// Towards larger manipulability (Yoshikawa) of the task, in the metric of the joint weights.
+            /// Towards larger manipulability (Yoshikawa) of the task, in the metric of the joint
+            /// weights.
             Manipulability = "manipulability" () {
                 /// Velocity for each unit of the gradient.
                 gain: "rad/s" in Finite = 1.0;
