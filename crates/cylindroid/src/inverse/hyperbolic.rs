@@ -61,31 +61,62 @@ pub enum HyperbolicDamping {
     },
 }
 
-/// The hyperbolic pseudoinverse of pitch `h` of a 6 x m Jacobian (linear part first), at
-/// characteristic length 1. `h` may be infinite: the limit, where it exists.
+/// The hyperbolic pseudoinverse of pitch `h` (h-pseudoinverse) of a 6 x m Jacobian: joint
+/// velocities that depend neither on the frame nor, with `h` converted, on the unit of length.
+///
+/// ```text
+/// Q_h = 1/2 [[0, 1], [1, -2 h 1]]   (linear first),   <s, s>_h = w . v - h w . w
+/// independent columns:  J+h = (J^T Q_h J)^-1 J^T Q_h
+/// any rank, J = F C:    J+h = C^T (C C^T)^-1 (F^T Q_h F)^-1 F^T Q_h
+/// ```
+///
+/// `j` has the linear rows first (the paper writes the angular ones first); the inverse is m x 6.
+/// `h` is in m/rad, in the unit of length of the twists, and may be infinite: the limit, where it
+/// exists. `P_h = J J+h` projects on the span of the columns along the twists that are h-reciprocal
+/// to it. The inverse exists if and only if `J^T Q_h J` has the rank of `j`: not at the principal
+/// pitches of the screw system, and for some systems never. Then `exists` is false, `reason` says
+/// why, and the entries are NaN. For rank 6 and finite `h` it is the Moore-Penrose inverse. Rank
+/// and existence are decided at the characteristic length 1; see [`hyperbolic_with`] for another.
 ///
 /// ```
 /// use cylindroid::{inverse, Matrix};
 ///
-/// // A rotation about z through (1, 0, 0), asked to realise a translation along x.
+/// // A rotation about z through (1, 0, 0), and a motion with w . v = 0.
 /// let j = Matrix::from_rows(&[[0.0], [-1.0], [0.0], [0.0], [0.0], [1.0]]).unwrap();
-/// let rates = inverse::hyperbolic(&j, 0.1)?;
-/// assert!(rates.exists);
-/// // The pitch of the joint itself has no inverse, and says so.
+/// let found = inverse::hyperbolic(&j, 0.1)?;
+/// assert!(found.exists);
+/// assert!((&found.matrix * &j).max_difference(&Matrix::identity(1)) < 1e-15);
+/// // The pitch of the joint itself has no inverse.
 /// assert!(!inverse::hyperbolic(&j, 0.0)?.exists);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 ///
+/// Source: Donelan & Selig, *Hyperbolic pseudoinverses for kinematics in the Euclidean group*, eq.
+/// 16 and theorem 2; the chapter `docs/theory/screws.md` of the book has the theory and its errata.
+///
 /// # Errors
-/// A matrix that has not six rows or is not finite; a pitch that is NaN.
+/// A matrix that has not six rows or has non-finite entries; a pitch that is NaN.
 pub fn hyperbolic(j: &Matrix, h: f64) -> Result<Inverse> {
     hyperbolic_with(j, h, &HyperbolicOptions::default())
 }
 
-/// [`hyperbolic`] with a characteristic length, a joint metric and damping.
+/// [`hyperbolic`] with a characteristic length, a joint metric M and damping.
+///
+/// ```text
+/// J = F C:            J+h = M^-1 C^T (C M^-1 C^T)^-1 (F^T Q_h F)^-1 F^T Q_h
+/// Gram damping:       (J^T Q_h J + lambda M)^-1 J^T Q_h
+/// invariant damping:  (G^2 + mu^2 1)^-1 G J^T Q_h,   G = J^T Q_h J where M = 1
+/// ```
+///
+/// Shapes and frame as for [`hyperbolic`]; M is m x m. `lambda` and `mu` are in m/rad times the
+/// unit of M. M matters for dependent columns and for damping only. Gram damping is singular where
+/// `-lambda` is an eigenvalue of G, for positive `lambda` too; invariant damping always exists and
+/// tends to the h-pseudoinverse as `mu` goes to zero.
+///
+/// Source: Donelan & Selig, sections 2.3 and 6.2 (which promises too much of Gram damping).
 ///
 /// # Errors
-/// As [`hyperbolic`]; a metric of the wrong size; options outside their domain.
+/// As [`hyperbolic`]; a metric of the wrong size; options outside their domains.
 pub fn hyperbolic_with(j: &Matrix, h: f64, options: &HyperbolicOptions) -> Result<Inverse> {
     check_pitch(h)?;
     Error::check_finite("matrix", j.as_slice())?;
@@ -100,12 +131,34 @@ pub fn hyperbolic_with(j: &Matrix, h: f64, options: &HyperbolicOptions) -> Resul
     }
 }
 
-/// The inverse that realises the part of a motion that lies in the span of `j` along the twists of
-/// `complement` (eq. 26): `J (K^T J)^-1 K^T`, whatever frame both are given in. The columns of
-/// `complement` are chosen by the task: twists that may be given up.
+/// The inverse by oblique projection: carries out the part of a motion in the span of `j`, along
+/// the twists of `complement`, which the task may give up.
+///
+/// ```text
+/// J J+ = J (K^T J)^-1 K^T,   K: wrenches that do no work on the columns of `complement`
+/// ```
+///
+/// `j` is 6 x m, `complement` 6 x c, both linear first and in one frame; the inverse is m x 6. It
+/// exists if and only if the two spans together are all of se(3) and meet in zero only, otherwise
+/// `exists` is false. It changes with neither the frame nor the unit.
+///
+/// ```
+/// use cylindroid::inverse::{self, HyperbolicOptions};
+/// use cylindroid::Matrix;
+///
+/// // A prismatic joint along x has no hyperbolic pseudoinverse. Give up everything else.
+/// let all = Matrix::identity(6);
+/// let (j, others) = (all.columns_between(0, 1), all.columns_between(1, 6));
+/// assert!(!inverse::hyperbolic(&j, 0.1)?.exists);
+/// let found = inverse::oblique(&j, &others, &HyperbolicOptions::default())?;
+/// assert!((found.matrix[(0, 0)] - 1.0).abs() < 1e-15);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// Source: Donelan & Selig, eq. 26.
 ///
 /// # Errors
-/// Matrices that have not six rows or are not finite; options outside their domain.
+/// Matrices that have not six rows or have non-finite entries; options outside their domains.
 pub fn oblique(j: &Matrix, complement: &Matrix, options: &HyperbolicOptions) -> Result<Inverse> {
     Error::check_finite("matrix", j.as_slice())?;
     Error::check_finite("complement", complement.as_slice())?;

@@ -47,25 +47,75 @@ use crate::linalg::Matrix;
 /// The truncated pseudoinverse: singular values `s_i <= eps * s_1` are cut, as in
 /// `numpy.linalg.pinv(J, eps)`.
 ///
+/// ```text
+/// J = U diag(s) V^T,   J+ = V diag(g) U^T,   g_i = 1 / s_i if s_i > eps s_1, otherwise 0
+/// ```
+///
+/// `j` is m x n, the inverse n x m; `eps` has no unit. `J J+ = 1` if `j` has full row rank and
+/// nothing is cut. Gains are at most `1 / (eps s_1)`; they jump where a singular value crosses the
+/// threshold.
+///
+/// ```
+/// use cylindroid::{Matrix, inverse};
+///
+/// // Every small value is cut, not the smallest alone.
+/// let found = inverse::truncated(&Matrix::diagonal(&[1.0, 1e-4, 1e-5]), 1e-3)?;
+/// assert_eq!(found.rank, 1);
+/// assert_eq!(found.matrix, Matrix::diagonal(&[1.0, 0.0, 0.0]));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// Source: course notes on Cartesian control, 7.3.2, corrected in the chapter
+/// `docs/theory/control.md` of the book.
+///
 /// # Errors
-/// A matrix with NaN or infinity; `eps` outside [0, 1).
+/// A matrix with non-finite entries; `eps` outside [0, 1).
 pub fn truncated(j: &Matrix, eps: f64) -> Result<Inverse> {
     Method::Truncated { eps }.inverse(j)
 }
 
-/// The damped least-squares inverse `J^T (J J^T + damping^2)^-1`.
+/// The damped least-squares inverse (Levenberg-Marquardt), smooth everywhere and exact nowhere.
+///
+/// ```text
+/// J+ = J^T (J J^T + l^2 1)^-1,   g_i = s_i / (s_i^2 + l^2)
+/// ```
+///
+/// `j` is m x n, the inverse n x m; `damping` l > 0 is in the unit of the singular values. A
+/// direction with `s_i = l` is carried out to one half; joint velocities are at most `|v| / (2 l)`.
+///
+/// ```
+/// use cylindroid::{Matrix, inverse};
+///
+/// let found = inverse::damped(&Matrix::diagonal(&[2.0, 0.0]), 1.0)?;
+/// assert!((found.matrix[(0, 0)] - 0.4).abs() < 1e-15 && found.matrix[(1, 1)] == 0.0);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// Source: Nakamura & Hanafusa 1986; Wampler 1986.
 ///
 /// # Errors
-/// A matrix with NaN or infinity; damping that is not positive.
+/// A matrix with non-finite entries; damping that is not positive.
 pub fn damped(j: &Matrix, damping: f64) -> Result<Inverse> {
     Method::Damped { damping }.inverse(j)
 }
 
-/// The selectively damped inverse for the motion `task` (m entries): joint velocities are
-/// `matrix * task`, none above `max_joint_velocity`.
+/// The selectively damped inverse for the motion `task`: joint velocities are `matrix * task`, none
+/// above `max_joint_velocity`.
+///
+/// ```text
+/// r_i = (u_i . x) / s_i v_i,   M_i = sum_j |v_ji| |J_j| / s_i,   c_i = min(1, 1 / M_i) max
+/// ```
+///
+/// The joint velocities `r_i` of each direction are scaled down until the largest is at most `c_i`,
+/// and their sum until the largest is at most the maximum. `j` is m x n, `task` x has m entries,
+/// `J_j` is a column of `j`; `max_joint_velocity` is in rad/s (m/s for prismatic joints). Valid for
+/// any rank; at equal singular values the clamps depend on the choice of directions, and the
+/// velocities may jump.
+///
+/// Source: Buss & Kim 2005, eqs. 13 to 15, for one task vector instead of several end effectors.
 ///
 /// # Errors
-/// A matrix or task with NaN or infinity, a task of the wrong size, a velocity that is not
+/// A matrix or task with non-finite entries, a task of the wrong size, `max_joint_velocity` not
 /// positive.
 pub fn selectively_damped(j: &Matrix, task: &[f64], max_joint_velocity: f64) -> Result<Inverse> {
     Error::check_len("task", j.rows(), task.len())?;
@@ -73,8 +123,17 @@ pub fn selectively_damped(j: &Matrix, task: &[f64], max_joint_velocity: f64) -> 
     compute::compute(Method::SelectivelyDamped { max_joint_velocity }, j, task, &Weights::NONE)
 }
 
-/// Any method in the metrics of joints and task: minimises the weighted rates among the motions
-/// that make the weighted task error smallest.
+/// Any method in the metrics of joints and task: minimises the weighted joint velocities among the
+/// motions that make the weighted task error smallest.
+///
+/// ```text
+/// W = L L^T,   J_w = L_x^T J L_q^-T,   J+ = L_q^-T J_w+ L_x^T
+/// ```
+///
+/// `j` is m x n, `W_q` n x n and `W_x` m x m, both positive definite; the method's parameters apply
+/// to the singular values of `J_w`.
+///
+/// Source: Whitney 1969; Ben-Israel & Greville 2003, section 3.3.
 ///
 /// # Errors
 /// As [`Method::inverse`]; metrics of the wrong size.

@@ -26,11 +26,22 @@ pub struct PointDirection {
     pub still: Matrix,
 }
 
-/// The joint rates that move `point` along `direction` (any length), both in the frame of the
-/// 6 x m Jacobian `j`, whose linear part is the velocity at that frame's origin.
+/// All joint velocities that move `point` along `direction` (of any length).
+///
+/// ```text
+/// J_x = v + w cross x (columns of J at the point x)
+/// {qd : J_x qd parallel to q} = {a J_x+ q + z : J_x z = 0} if q is in the range of J_x,
+///                               the null space of J_x otherwise
+/// ```
+///
+/// `j` is 6 x m, linear first; its linear rows are the velocity at the origin of the frame in which
+/// `point` (m) and `direction` are given. The first velocities of the result are for 1 m/s.
+///
+/// Source: Donelan & Selig, example 3, corrected: its `J+h(S)`, with S the twists that move the
+/// point along the direction, is larger than this set.
 ///
 /// # Errors
-/// A matrix that has not six rows or is not finite; a direction of no length.
+/// A matrix that has not six rows or has non-finite entries; a direction of no length.
 pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<PointDirection> {
     Error::check_len("rows of the matrix of twists", 6, j.rows())?;
     Error::check_finite("matrix", j.as_slice())?;

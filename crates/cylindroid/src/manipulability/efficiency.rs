@@ -169,7 +169,20 @@ impl Principal {
     }
 }
 
-/// The efficiencies of a mechanism in one pose.
+/// The manipulability of a mechanism in one configuration: efficiencies of motion and force.
+///
+/// ```text
+/// kinematic  min over u' |u|^2 / min over q' |qd_a|^2   over R = {(qd_a, u)}
+/// force      min |w|^2 / min |tau|^2                   over F = {(tau, w)} = R^perp
+/// [L_q Q; L_u U] orthonormal = [X C; Y S] Z^T,   efficiencies s_j^2 / c_j^2
+/// ```
+///
+/// For a serial arm the kinematic efficiencies are the squares of the singular values of the
+/// Jacobian. In dual metrics those of force are the reciprocals of those of motion. Units: of
+/// `|u|^2 / |qd_a|^2` and `|w|^2 / |tau|^2` in the metrics given.
+///
+/// Source: Bicchi & Prattichizzo 1998, eqs. 9 and 14 to 17, corrected in the chapter
+/// `docs/theory/closed-chains.md` of the book.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Manipulability {
     /// Motions of the object for rates of the actuated joints.

@@ -17,7 +17,14 @@ use crate::error::Result;
 use crate::linalg::{Matrix, SymmetricEigen};
 use crate::spatial::{Twist, Vec3};
 
-/// `J^T Q_h J` for the twists that are the columns of `j` (6 x m): m x m.
+/// The Gram matrix `J^T Q_h J` of the pitch form, m x m, for the twists that are the columns of `j`
+/// (6 x m, linear first).
+///
+/// ```text
+/// <a, b>_h = 1/2 (v_a . w_b + w_a . v_b) - h w_a . w_b
+/// ```
+///
+/// `h` in m/rad. Source: Donelan & Selig, section 3.
 ///
 /// # Errors
 /// A matrix that has not six rows.

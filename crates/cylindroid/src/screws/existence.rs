@@ -169,7 +169,15 @@ const PER_DECADE: i32 = 24;
 const DECADES: i32 = 6;
 
 impl ScrewSystem {
-    /// Whether P_h and the pseudoinverses of matrices that span the system exist. `h` in m/rad.
+    /// Whether the projector P_h, and with it the hyperbolic pseudoinverses of all matrices that
+    /// span the system, exist. `h` in m/rad, or infinite for the limit.
+    ///
+    /// ```text
+    /// exists iff the smallest singular value of B^T Q_{h/L} B is above the threshold
+    /// ```
+    ///
+    /// B is an orthonormal basis of the system at its centre, lengths over L. Source: Donelan &
+    /// Selig, theorems 2 and 3.
     #[must_use]
     pub fn existence(&self, h: f64) -> Existence {
         let ratio = h / self.scale.length;

@@ -45,7 +45,38 @@ pub struct Involution {
     pub system: ScrewSystem,
 }
 
-/// Whether `lines` are in involution, and what follows from it.
+/// Whether `lines` are in involution (Sylvester), and what follows from it.
+///
+/// ```text
+/// det(J^T Q_0 J) = 0,   J = (s_1 ... s_m) the lines as twists of pitch zero
+/// ```
+///
+/// Independent lines are in involution if and only if their span contains a twist z that is
+/// reciprocal to all of it. The wrench `Q_0 z` then does no work on any of the lines: an arm with
+/// these revolute axes carries it without torque. z may be a translation, and the wrench a pure
+/// couple. Lines in m.
+///
+/// ```
+/// use cylindroid::screws::{Line, ScrewOptions, involution};
+/// use cylindroid::Vec3;
+///
+/// // Four lines that meet the x axis, itself among them: one common transversal, counted twice.
+/// let through = |x: f64, d: [f64; 3]| {
+///     Line::through(Vec3::new(x, 0.0, 0.0), Vec3::from_array(d)).unwrap()
+/// };
+/// let lines = [
+///     through(0.0, [1.0, 0.0, 0.0]),
+///     through(0.0, [0.0, 0.0, 1.0]),
+///     through(1.0, [0.0, 1.0, 0.0]),
+///     through(2.0, [0.0, 1.0, 1.0]),
+/// ];
+/// let found = involution(&lines, &ScrewOptions::default())?;
+/// assert!(found.independent && found.in_involution && found.transversals.double);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// Source: Donelan & Selig, section 4, corrected for four and five lines in the chapter
+/// `docs/theory/screws.md` of the book.
 ///
 /// # Errors
 /// Options that are no scale.

@@ -225,8 +225,16 @@ pub(crate) fn solve(a: &mut [[f64; 6]; 6], rows: &mut [[f64; 6]; 6], n: usize) -
 }
 
 impl ScrewSystem {
-    /// The projector P_h on this system along its h-reciprocal system; `None` where
-    /// [`ScrewSystem::existence`] says that there is none. `h` in m/rad, infinite for the limit.
+    /// The projector on this system along its h-reciprocal system; `None` where
+    /// [`ScrewSystem::existence`] says that there is none.
+    ///
+    /// ```text
+    /// P_h = J (J^T Q_h J)^-1 J^T Q_h for any basis J,   h_i the principal pitches:
+    /// P_h = sum_i s_i s_i^T Q_h / (h_i - h) for type A and order <= 3, |w_i| = 1
+    /// ```
+    ///
+    /// `h` in m/rad, infinite for the limit. Frame: that of the system. Source: Donelan & Selig,
+    /// section 6.1; the sum is not in the paper.
     #[must_use]
     pub fn projector(&self, h: f64) -> Option<Projector> {
         if !self.existence(h).exists {
@@ -236,8 +244,14 @@ impl ScrewSystem {
         Some(Projector { scale: self.scale, span: self.span, coordinates })
     }
 
-    /// The oblique projector (26) on this system along `complement`; `None` if the two do not
-    /// split the space of twists: their orders do not sum up to six, or they meet.
+    /// The oblique projector on this system along `complement`; `None` if the two do not split the
+    /// space of twists: their orders do not add up to six, or they meet.
+    ///
+    /// ```text
+    /// P = J (K^T J)^-1 K^T,   K: wrenches that do no work on `complement`
+    /// ```
+    ///
+    /// Source: Donelan & Selig, eq. 26.
     #[must_use]
     pub fn projector_along(&self, complement: &Self) -> Option<Projector> {
         let theirs = self.seen(complement);

@@ -20,9 +20,15 @@ impl ScrewSystem {
         self.derived(self.span.reciprocal())
     }
 
-    /// All twists h-reciprocal to these: `<a, s>_h = 0` for every s of the system. They are the
-    /// (w, v + 2 h w) of the reciprocal system; for an infinite pitch, the twists whose angular
-    /// part is across every angular part of the system, of order 6 - dim or more.
+    /// The h-reciprocal system: all twists a with `<a, s>_h = 0` for every s of the system.
+    ///
+    /// ```text
+    /// S^{perp h} = {(v + 2 h w, w) : (v, w) in S^perp}
+    /// ```
+    ///
+    /// `h` in m/rad: every pitch of the reciprocal system rises by 2 h. For an infinite pitch, the
+    /// twists whose angular part is orthogonal to every angular part of the system, of order 6 -
+    /// dim or more. Source: Donelan & Selig, eq. 10.
     #[must_use]
     pub fn h_reciprocal(&self, h: f64) -> Self {
         if h.is_infinite() {

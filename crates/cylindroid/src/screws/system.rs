@@ -23,7 +23,21 @@ use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank};
 use crate::spatial::{Pose, Twist, Vec3};
 
-/// A subspace of twists with its class, its principal screws and its frame.
+/// A screw system: a subspace of twists, with its Gibson-Hunt class, its principal screws and its
+/// canonical frame.
+///
+/// ```text
+/// S = span of the columns of J = (s_1 ... s_m),   order k = rank [v_i(c) / L; w_i]
+/// Gram matrix  J^T Q_h J,   <a, b>_h = 1/2 (v_a . w_b + w_a . v_b) - h w_a . w_b
+/// S^perp = {r : <r, s>_0 = 0 for all s in S},   principal pitches: zeros of det(J^T Q_h J)
+/// ```
+///
+/// Twists are 6-vectors, linear first, in one frame; pitches are in m/rad. The characteristic
+/// length L and the centre c (m) decide ranks and classes only: verdicts change neither with the
+/// frame nor with the unit. Systems of order 4 and 5 have the class of their reciprocal system.
+///
+/// Source: Gibson & Hunt 1990; Donelan & Selig, tables 1 to 3 (corrected in the chapter
+/// `docs/theory/screws.md` of the book).
 #[derive(Debug, Clone)]
 pub struct ScrewSystem {
     pub(super) span: Span,

@@ -69,7 +69,20 @@ impl ObjectScale {
     }
 }
 
-/// A linear relation between actuated joints and object.
+/// The linear relation between actuated joints and object: what the velocity constraint leaves of
+/// them when the passive joints are forgotten.
+///
+/// ```text
+/// R = {(qd_a, u) : J_a qd_a + J_p qd_p = G^T u for some qd_p},   basis [Q; U], dimension p
+/// c' = rk Q + rk U - p,   r' = p - rk U,   i' = p - rk Q
+/// F = {(tau, w) : tau . qd_a + w . u = 0 on R} = R^perp,   h = q_a - rk Q,   s = d - rk U
+/// ```
+///
+/// `qd_a` has q_a entries, `u` d; the wrench `w` is taken at the object's reference point. F is
+/// exact for hyperstatic systems too.
+///
+/// Source: Bicchi & Prattichizzo 1998, sections 2 to 4, without their choice of bases; the chapter
+/// `docs/theory/closed-chains.md` of the book.
 #[derive(Debug, Clone)]
 pub struct Relation {
     joint_scale: Vec<f64>,

@@ -77,7 +77,17 @@ impl fmt::Display for RankWarning {
     }
 }
 
-/// The mobility of a closed chain in one pose.
+/// The mobility of a closed chain in one configuration: motions and forces of every kind, counted
+/// and with a basis.
+///
+/// ```text
+/// k = dim ker [J_a J_p -G^T],   r = dim ker J_a,   i = dim ker [J_p -G^T],   c = k - r - i
+/// ```
+///
+/// Counts come from ranks in scaled units; the Gruebler-Kutzbach count is given for comparison.
+/// They are instantaneous: see [`FiniteMobility`](super::super::FiniteMobility) for finite motions.
+///
+/// Source: Bicchi & Prattichizzo 1998, eqs. 3 to 5.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mobility {
     /// All motions (q_a, q_p, u).

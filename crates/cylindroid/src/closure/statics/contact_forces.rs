@@ -38,11 +38,19 @@ pub struct ContactForces {
     pub unbalanced: f64,
 }
 
-/// The contact forces under a load: the ones of least norm, or with a compliance the elastic ones.
-/// Any combination of the hyperstatic forces of the mobility report may be added.
+/// The contact forces t under a load: the ones of least norm, or with a compliance C the elastic
+/// ones.
+///
+/// ```text
+/// G t = w,   J_a^T t = -tau,   J_p^T t = 0,   min t . C t
+/// ```
+///
+/// An entry for each of the t rows of the constraint (N, N m), acting from the object on the limbs.
+/// Any combination of the hyperstatic forces of the mobility report may be added. Source: Bicchi &
+/// Prattichizzo 1998, eq. 12.
 ///
 /// # Errors
-/// Torques, wrench or compliance of the wrong size, NaN or infinity.
+/// Torques, wrench or compliance of the wrong size, or with non-finite entries.
 pub fn contact_forces(
     constraint: &Constraint,
     motions: &MotionSpace,

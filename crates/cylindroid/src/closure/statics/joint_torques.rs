@@ -27,11 +27,19 @@ pub struct JointTorques {
     pub unbalanced: Vec<f64>,
 }
 
-/// The joint torques of least norm that hold the wrench `wrench` on the object; in `metric`, or
-/// scaled by the characteristic length without one.
+/// The joint torques of least norm that balance the external wrench `wrench` on the object; in
+/// `metric`, or scaled by the characteristic length without one.
+///
+/// ```text
+/// tau . qd_a + w . u = 0 for all (qd_a, u) of the relation,   min |tau|
+/// ```
+///
+/// `wrench` has d entries (N, N m; at the object's reference point, world axes), the torques q_a
+/// entries (N m, N). The part of the wrench that the structure carries, and the part that nothing
+/// balances, are reported beside them. Source: Bicchi & Prattichizzo 1998, eq. 12.
 ///
 /// # Errors
-/// A wrench or metric of the wrong size, NaN or infinity.
+/// A wrench or metric of the wrong size, or with non-finite entries.
 pub fn joint_torques(
     relation: &Relation,
     wrench: &[f64],
