@@ -1,6 +1,6 @@
 //! The inverse methods (pseudoinverses) as one table: name, parameters and gains of each.
 //!
-//! A new method is a file with its `gains`, a row here and a line in docs/guide/inverses.md: the
+//! A new method is a file with its `gains`, a row here and its rows in docs/guide/inverses.md: the
 //! enum, its names, defaults and checks, the flags of the command line, the keyword arguments of
 //! Python, the controls of the viewer and the tests over [`Method::ALL`] are made from the row.
 //!

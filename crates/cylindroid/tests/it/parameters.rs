@@ -182,3 +182,39 @@ fn secondary_tasks_work_on_every_mechanism() {
         }
     }
 }
+
+const INVERSES: &str = include_str!("../../../../docs/guide/inverses.md");
+const CONTROL: &str = include_str!("../../../../docs/guide/control.md");
+
+/// The tables of parameters in the book have every row of the tables of the library.
+#[test]
+fn the_book_lists_every_parameter() {
+    let tables = [
+        ("inverses", INVERSES, NamedInverse::all().map(|i| (i.name, i.parameters)).collect()),
+        (
+            "control",
+            CONTROL,
+            SecondaryTask::all(&[]).iter().map(|t| (t.name(), t.parameters())).collect::<Vec<_>>(),
+        ),
+    ];
+    for (page, text, rows) in tables {
+        let mut table = String::from(
+            "| name | parameter | unit | domain | default | |\n|---|---|---|---|---|---|\n",
+        );
+        for (name, parameters) in rows {
+            for p in parameters {
+                let default = if p.required { "required".to_owned() } else { short(p.default) };
+                let (unit, domain) = (p.unit, p.domain.describe());
+                let row = [p.name, unit, domain, &default, p.description].join(" | ");
+                table += &format!("| `{name}` | {row} |\n");
+            }
+        }
+        assert!(text.contains(&table), "docs/guide/{page}.md should have:\n{table}");
+    }
+}
+
+/// As many digits as the default has.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap();
+    rounded.to_string()
+}

@@ -1,7 +1,7 @@
 //! The secondary tasks as one table: name, parameters and velocities of each.
 //!
-//! A new task is a file with its `add`, a row here and a line in docs/servo.md: the enum, its
-//! names, defaults and checks, `--secondary` of the command line, the argument of Python and the
+//! A new task is a file with its `add`, a row here and its rows in docs/guide/control.md: the
+//! enum, its names, defaults and checks, `--secondary` of the command line, the argument of Python and the
 //! tests over [`SecondaryTask::all`] are made from the row.
 //!
 //! Checked  tests/it/parameters.rs, tests/it/servo/secondary.rs
