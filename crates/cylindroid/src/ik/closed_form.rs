@@ -1,10 +1,12 @@
-//! What the search takes from formulas: all answers for six hinges, and for seven those that one of
-//! them leaves.
+//! Closed-form solutions for the solver: all solutions for six revolute joints, and for seven those
+//! with one joint locked, whose value is sampled over its range.
 //!
-//! Valid    one goal that is a whole pose. Of seven hinges one is held at its start, then at values
-//!          spread over its limits: every value that reaches gives up to eight answers
-//! Why so   a value costs a microsecond or two, an attempt of the search ten times as much
-//! Checked  tests/it/ik.rs, tests/it/analytic.rs
+//! Valid    one goal that is a complete pose. Of seven revolute joints one is locked at its initial
+//!          value, then at values spread over its limits: each feasible value gives up to eight
+//!          solutions
+//! Why so   one sample costs a microsecond or two, a restart of the numerical solver ten times as
+//!          much
+//! Checked  tests/it/ik.rs, tests/it/analytic/
 
 use std::f64::consts::PI;
 
@@ -18,25 +20,25 @@ use crate::model::Mechanism;
 use crate::scalar::uniform;
 use crate::spatial::Pose;
 
-/// Values of the held joint before the search takes over.
+/// Samples of the locked joint before the numerical solver takes over.
 pub(super) const REDUNDANCY_SAMPLES: usize = 16;
-/// Steps of this share of a range spread evenly, however many there are: the golden ratio.
+/// Steps of this share of a range are evenly spread for any number of samples: the golden ratio.
 const SHARE: f64 = 0.618_033_988_749_894_9;
-/// Values whose equations split, in the time of one whose do not, about.
+/// Relative cost of a sample whose equations do not decouple.
 const QUARTIC: f64 = 2.5;
-/// Postures at which self-motions are looked at.
+/// Configurations at which the self-motion is evaluated.
 const LOOKS: usize = 8;
 
-/// Formulas for the goal of a solver.
+/// The closed form for the goal of a solver.
 #[derive(Debug, Clone)]
 pub(super) struct ClosedForm {
     pub(super) analytic: Analytic,
-    /// Of seven joints the one that is held, with the range of its values.
+    /// The locked joint of seven, with the range of its values.
     locked: Option<(usize, [f64; 2])>,
 }
 
 impl ClosedForm {
-    /// `None` where there are none.
+    /// `None` if there is no closed form.
     pub(super) fn of(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Option<Self> {
         let [goal] = goals else { return None };
         if goal.task.components != Task::POSE.components {
@@ -65,12 +67,13 @@ impl ClosedForm {
         best.map(|(_, formulas)| formulas)
     }
 
-    /// True if they give all answers there are.
+    /// True if it gives all solutions.
     pub(super) fn are_all(&self) -> bool {
         self.locked.is_none()
     }
 
-    /// Answers; of seven joints those of the i-th value of the one that is held. `start` gets it.
+    /// Solutions; for seven joints those of the i-th sample of the locked joint, which is written
+    /// to `start`.
     pub(super) fn solve(
         &mut self,
         target: Pose,
@@ -86,9 +89,9 @@ impl ClosedForm {
     }
 }
 
-/// How much each of seven joints takes part in the self-motion that leaves the tool where it is,
-/// the mean over some postures. One that hardly does, as the elbow between two ball joints, has its
-/// value from the target, and to hold it at another leaves nothing.
+/// Mean participation of each of seven joints in the self-motion, over some configurations. A joint
+/// that hardly participates, such as an elbow between two spherical joints, is determined by the
+/// target; with it locked, no solution remains.
 fn self_motion(mechanism: &Mechanism, mut chain: Chain, free: &[usize]) -> [f64; 7] {
     let mut q = mechanism.home().to_vec();
     let mut all = Matrix::zeros(6, chain.n());

@@ -1,28 +1,28 @@
-//! One damped step of a least-squares problem with few rows.
+//! Damped least-squares step (Levenberg-Marquardt) with few rows.
 //!
-//! Formula  d = A^T (A A^T + l I)^-1 e; where A has fewer columns than rows d = (A^T A + l I)^-1
-//!          A^T e, which is the same
-//! Shapes   A: m x n by columns, e: m, d: n; columns that are held count as zero
+//! Formula  d = A^T (A A^T + l I)^-1 e; if A has fewer columns than rows d = (A^T A + l I)^-1 A^T
+//!          e, which is equal
+//! Shapes   A: m x n by columns, e: m, d: n; clamped columns count as zero
 //! Valid    l > 0 relative to A: the matrix is then positive definite to rounding
-//! Why so   a Cholesky decomposition of 6 x 6 costs a tenth of an SVD, and iterations forgive what
-//!          squaring loses
+//! Why so   a Cholesky decomposition of 6 x 6 costs a tenth of an SVD, and the iteration tolerates
+//!          the accuracy lost by squaring
 //! Source   Levenberg 1944; Wampler 1986
 //! Checked  tests in this file (against the SVD)
 
 use crate::linalg::dot;
 use crate::scalar::SimdFloat;
 
-/// What a step shall do; of one configuration, or of several side by side.
+/// The least-squares problem of one configuration, or of a batch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DampedProblem<'a, R = f64> {
     pub(super) a: &'a [R],
     pub(super) e: &'a [R],
     /// Columns that count as zero.
-    pub(super) held: &'a [bool],
+    pub(super) clamped: &'a [bool],
     pub(super) damping: R,
 }
 
-/// Memory for steps.
+/// Workspace for steps.
 #[derive(Debug, Clone)]
 pub(super) struct Damped {
     gram: Vec<f64>,
@@ -35,10 +35,10 @@ impl Damped {
         Self { gram: vec![0.0; size * size], rest: vec![0.0; size] }
     }
 
-    /// Writes the step into `d`; false where the matrix is not positive definite.
+    /// Computes the step `d`; false if the matrix is not positive definite.
     pub(super) fn solve(&mut self, problem: DampedProblem<'_>, d: &mut [f64]) -> bool {
-        // Said once more as a constant, the common size compiles to straight code.
-        match (problem.e.len(), problem.held.len()) {
+        // Repeated as a constant, so that the common size compiles to straight-line code.
+        match (problem.e.len(), problem.clamped.len()) {
             (6, 6..) => self.by_rows(6, problem, d),
             (3, 3..) => self.by_rows(3, problem, d),
             (m, n) if n >= m => self.by_rows(m, problem, d),
@@ -53,16 +53,16 @@ impl Damped {
     }
 
     fn by_columns(&mut self, problem: DampedProblem<'_>, d: &mut [f64]) -> bool {
-        let DampedProblem { a, e, held, damping } = problem;
-        let (m, n) = (e.len(), held.len());
+        let DampedProblem { a, e, clamped, damping } = problem;
+        let (m, n) = (e.len(), clamped.len());
         let column = |j: usize| &a[j * m..(j + 1) * m];
         for i in 0..n {
             for j in 0..=i {
-                let apart = held[i] || held[j];
+                let apart = clamped[i] || clamped[j];
                 self.gram[i * n + j] = if apart { 0.0 } else { dot(column(i), column(j)) };
             }
-            self.gram[i * n + i] += if held[i] { 1.0 } else { damping };
-            self.rest[i] = if held[i] { 0.0 } else { dot(column(i), e) };
+            self.gram[i * n + i] += if clamped[i] { 1.0 } else { damping };
+            self.rest[i] = if clamped[i] { 0.0 } else { dot(column(i), e) };
         }
         if !factor(n, &mut self.gram) {
             return false;
@@ -73,8 +73,8 @@ impl Damped {
     }
 }
 
-/// The step where A has at least as many columns as rows, with memory of m x m and m; false where a
-/// matrix is not positive definite: what it gives there is no step.
+/// The step if A has at least as many columns as rows, with workspace of m x m and m; false if a
+/// matrix is not positive definite, and the step is then invalid.
 #[inline(always)]
 pub(super) fn by_rows<R: SimdFloat>(
     m: usize,
@@ -82,10 +82,10 @@ pub(super) fn by_rows<R: SimdFloat>(
     (gram, rest): (&mut [R], &mut [R]),
     d: &mut [R],
 ) -> bool {
-    let DampedProblem { a, e, held, damping } = problem;
+    let DampedProblem { a, e, clamped, damping } = problem;
     gram.fill(R::splat(0.0));
-    for (column, held) in a.chunks_exact(m).zip(held) {
-        if *held {
+    for (column, clamped) in a.chunks_exact(m).zip(clamped) {
+        if *clamped {
             continue;
         }
         for i in 0..m {
@@ -100,9 +100,9 @@ pub(super) fn by_rows<R: SimdFloat>(
     let is_definite = factor(m, gram);
     rest.copy_from_slice(&e[..m]);
     solve(m, gram, rest);
-    for ((d, column), held) in d.iter_mut().zip(a.chunks_exact(m)).zip(held) {
+    for ((d, column), clamped) in d.iter_mut().zip(a.chunks_exact(m)).zip(clamped) {
         *d = R::splat(0.0);
-        if !*held {
+        if !*clamped {
             for (x, y) in column.iter().zip(&*rest) {
                 *d = x.mul_add(*y, *d);
             }
@@ -111,8 +111,8 @@ pub(super) fn by_rows<R: SimdFloat>(
     is_definite
 }
 
-/// The Cholesky factor in place, lower, rows after each other, its diagonal inverted; false where
-/// the matrix is not positive definite.
+/// The Cholesky factor in place, lower, row-major, with its diagonal inverted; false if the matrix
+/// is not positive definite.
 #[inline(always)]
 fn factor<R: SimdFloat>(n: usize, g: &mut [R]) -> bool {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -160,7 +160,7 @@ mod tests {
     use crate::linalg::{Matrix, Svd};
     use crate::scalar::uniform;
 
-    /// V diag(s / (s^2 + l)) U^T e, whatever the shape, with columns held.
+    /// V diag(s / (s^2 + l)) U^T e for any shape, with clamped columns.
     #[test]
     fn steps_are_those_of_the_svd() {
         let mut random = 3;
@@ -168,12 +168,12 @@ mod tests {
             let (m, n) = [(6, 7), (6, 6), (6, 5), (3, 7), (5, 5), (12, 14), (2, 1)][round % 7];
             let a = Matrix::from_fn(m, n, |_, _| uniform(&mut random) - 0.5);
             let e: Vec<f64> = (0..m).map(|_| uniform(&mut random) - 0.5).collect();
-            let held: Vec<bool> = (0..n).map(|_| uniform(&mut random) < 0.2).collect();
+            let clamped: Vec<bool> = (0..n).map(|_| uniform(&mut random) < 0.2).collect();
             let damping = 0.01;
             let mut d = vec![0.0; n];
-            let problem = DampedProblem { a: a.as_slice(), e: &e, held: &held, damping };
+            let problem = DampedProblem { a: a.as_slice(), e: &e, clamped: &clamped, damping };
             assert!(Damped::new(m, n).solve(problem, &mut d));
-            let free = Matrix::from_fn(m, n, |i, j| if held[j] { 0.0 } else { a[(i, j)] });
+            let free = Matrix::from_fn(m, n, |i, j| if clamped[j] { 0.0 } else { a[(i, j)] });
             let svd = Svd::of(&free);
             let mut expected = vec![0.0; n];
             for i in 0..svd.len() {

@@ -1,11 +1,13 @@
-//! What an end effector shall do: a pose, or the components of it that matter.
+//! Goals of inverse kinematics: a target pose, or a subset of its components.
+//!
+//! Checked  tests/it/ik.rs
 
 use crate::error::{Error, Result};
 use crate::kinematics::{EndEffector, ReferenceFrame};
 use crate::model::{Dimension, Mechanism};
 use crate::spatial::{Pose, Twist};
 
-/// The components of an end effector's motion that matter.
+/// The components of an end effector's motion that form a task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Task {
     /// Translation along x, y, z and rotation about x, y, z.
@@ -39,8 +41,8 @@ impl Task {
     pub const POINTING: Self =
         Self { components: [true, true, true, true, true, false], axes: ReferenceFrame::Local };
 
-    /// The task of this name: `pose`, `position`, `orientation`, `pointing`, or components like
-    /// `x,y,rz`. Of planar mechanisms with loops the first three are those of the plane, as in
+    /// The task of this name: `pose`, `position`, `orientation`, `pointing`, or components such as
+    /// `x,y,rz`. For planar mechanisms with loops the first three refer to the plane, as in
     /// [`ServoOptions::new`](crate::ServoOptions::new).
     ///
     /// ```
@@ -85,7 +87,7 @@ impl Task {
         Ok(Self { components, ..Self::POSE })
     }
 
-    /// Refuses a task without components, and axes at the world's origin.
+    /// Rejects a task without components, and axes at the world origin.
     pub(crate) fn check(self) -> Result<()> {
         if !self.components.contains(&true) {
             return Err(Error::InvalidOption {
@@ -105,14 +107,13 @@ impl Task {
         Ok(())
     }
 
-    /// The error from `pose` to `target` in the axes of the task, zero in components that do not
-    /// matter.
+    /// The error from `pose` to `target` in the axes of the task, zero in the other components.
     #[must_use]
     pub fn error(self, pose: Pose, target: Pose) -> Twist {
         self.seen(pose, pose.error_to(target))
     }
 
-    /// A twist of the tool in world axes as the task sees it.
+    /// A twist of the tool in world axes, in the axes and components of the task.
     pub(crate) fn seen(self, pose: Pose, twist: Twist) -> Twist {
         let r = pose.rotation.matrix();
         let twist = match self.axes {
@@ -129,25 +130,25 @@ impl Task {
     }
 }
 
-/// An end effector, where it shall be, and what of that matters.
+/// An end effector, its target and the components of the task.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
     /// The frame and tool point.
     pub end_effector: EndEffector,
-    /// `world_from_tool` as it should be.
+    /// Desired `world_from_tool`.
     pub target: Pose,
-    /// The components that matter.
+    /// The components of the task.
     pub task: Task,
 }
 
 impl Goal {
-    /// The whole pose.
+    /// The complete pose.
     #[must_use]
     pub fn pose(end_effector: impl Into<EndEffector>, target: Pose) -> Self {
         Self { end_effector: end_effector.into(), target, task: Task::POSE }
     }
 
-    /// Refuses frames of other mechanisms and numbers that are not finite.
+    /// Rejects frames of other mechanisms and non-finite values.
     pub(super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
         mechanism.check_frame(self.end_effector.frame)?;
         if !self.end_effector.frame_from_tool.is_finite() {

@@ -1,16 +1,17 @@
-//! One attempt: from a posture downhill to the goals, within the position limits.
+//! Levenberg-Marquardt iteration: damped least squares from an initial guess to the goals, within
+//! the position limits.
 //!
-//! Formula  d = least |A d - e|^2 + l |d|^2 with q + d within the limits, l = DAMPING |e|^2;
-//!          e the errors of all goals, positions over the characteristic length, A their rates
+//! Formula  d minimises |A d - e|^2 + l |d|^2 with q + d within the limits, l = DAMPING |e|^2;
+//!          e the errors of all goals, positions over the characteristic length, A their Jacobian
 //! Shapes   A: m x n by columns, m components of all goals, n coordinates that move them
-//! Valid    any tree. Joints at a limit that would leave it are held, a step is cut at the others.
-//!          Orientation errors are rotation vectors in the world, whose rate near the goal is the
-//!          angular velocity
-//! Why so   damping that falls with the squared error is Newton's method near the goal and a
-//!          cautious one far from it, with nothing to tune; every step is taken, since attempts
-//!          that lead nowhere cost less to abandon than to rescue
+//! Valid    any tree. Joints at a limit that would leave it are clamped, the step is truncated at
+//!          the others. Orientation errors are rotation vectors in the world, whose rate near the
+//!          goal is the angular velocity
+//! Why so   damping that decreases with the squared error gives Newton's method near the goal and
+//!          small steps far from it, without parameters; every step is accepted, since abandoning
+//!          an unsuccessful restart costs less than rescuing it
 //! Source   Sugihara 2011 (damping by the error); projected Newton steps: Bertsekas 1982
-//! Checked  tests/it/ik.rs
+//! Checked  tests/it/ik.rs, tests in this file
 
 use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
 use super::damped_step::{Damped, DampedProblem};
@@ -23,7 +24,7 @@ use crate::linalg::Matrix;
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
 use crate::scalar::clamp;
 
-/// Steps towards the start at most, and their damping, relative to the size of A squared.
+/// Iterations towards the initial guess, and their damping relative to the squared norm of A.
 const APPROACH_ITERATIONS: usize = 60;
 const APPROACH_DAMPING: f64 = 1e-9;
 /// A goal with its chain.
@@ -32,33 +33,33 @@ struct Part {
     goal: Goal,
     chain: Chain,
     jacobian: Matrix,
-    /// Places of the chain's coordinates among those of the problem.
+    /// Indices of the chain's coordinates among those of the problem.
     places: Vec<usize>,
-    /// Components that matter, and the scale of their rows.
+    /// Components of the task, and the scale of their rows.
     rows: Vec<(usize, f64)>,
 }
 
-/// The goals of a mechanism with memory to work at them.
+/// The goals of a mechanism, with workspace.
 #[derive(Debug, Clone)]
 pub(super) struct Problem {
     pub(super) mechanism: Mechanism,
     parts: Vec<Part>,
-    /// The coordinates that move the end effectors: places in `q`, ascending.
+    /// The coordinates that move the end effectors: indices in `q`, ascending.
     pub(super) coordinates: Vec<usize>,
     /// Limits of these coordinates.
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
-    /// True for those that are back where they were after a whole turn.
+    /// True for those that return to the same pose after a full turn.
     pub(super) turns: Vec<bool>,
-    /// True if all are angles and lengths, whose changes are their rates.
+    /// True if all are angles and lengths.
     simple: bool,
     m: usize,
     a: Vec<f64>,
     e: Vec<f64>,
     d: Vec<f64>,
-    /// Coordinates that keep their values, and those that a step holds at a limit as well.
+    /// Coordinates that keep their values, and those that a step clamps at a limit as well.
     pub(super) fixed: Vec<bool>,
-    held: Vec<bool>,
+    clamped: Vec<bool>,
     rates: Vec<f64>,
     damped: Damped,
 }
@@ -102,7 +103,7 @@ impl Problem {
             e: vec![0.0; m],
             d: vec![0.0; n],
             fixed: coordinates.iter().map(|c| options.fixed.contains(c)).collect(),
-            held: vec![false; n],
+            clamped: vec![false; n],
             rates: vec![0.0; mechanism.n()],
             damped: Damped::new(m, n),
             mechanism: mechanism.clone(),
@@ -112,7 +113,7 @@ impl Problem {
         }
     }
 
-    /// Other targets for the same end effectors.
+    /// Sets other targets for the same end effectors.
     pub(super) fn set_goals(&mut self, goals: &[Goal]) -> Result<()> {
         Error::check_len("goals", self.parts.len(), goals.len())?;
         for (i, (part, goal)) in self.parts.iter_mut().zip(goals).enumerate() {
@@ -129,7 +130,7 @@ impl Problem {
         Ok(())
     }
 
-    /// Forward kinematics at `q`; writes the errors, scaled.
+    /// Forward kinematics at `q`; computes the scaled errors.
     pub(super) fn evaluate(&mut self, q: &[f64]) -> Errors {
         let mut errors = Errors { position: 0.0, orientation: 0.0, squared: 0.0 };
         let mut row = 0;
@@ -148,7 +149,7 @@ impl Problem {
         errors
     }
 
-    /// Writes A at the posture that was looked at last.
+    /// Computes A at the configuration evaluated last.
     fn load_jacobian(&mut self) {
         let m = self.m;
         if self.parts.len() > 1 {
@@ -168,33 +169,33 @@ impl Problem {
         }
     }
 
-    /// One step from `q`, which was looked at with these errors.
+    /// One step from `q`, which was evaluated with these errors.
     pub(super) fn step(&mut self, q: &mut [f64], squared: f64) {
         self.load_jacobian();
         let size = self.a.iter().map(|x| x * x).sum::<f64>();
         let damping = DAMPING * squared + MIN_DAMPING * size;
-        self.held.copy_from_slice(&self.fixed);
+        self.clamped.copy_from_slice(&self.fixed);
         for _ in 0..=self.coordinates.len() {
-            let problem = DampedProblem { a: &self.a, e: &self.e, held: &self.held, damping };
+            let problem = DampedProblem { a: &self.a, e: &self.e, clamped: &self.clamped, damping };
             if !self.damped.solve(problem, &mut self.d) {
                 self.d.fill(0.0);
                 return;
             }
-            if !self.hold(q) {
+            if !self.clamp_at_limits(q) {
                 break;
             }
         }
         self.advance(q);
     }
 
-    /// Holds joints at a limit that the step would leave; true if there were any.
-    fn hold(&mut self, q: &[f64]) -> bool {
+    /// Clamps joints at a limit that the step would leave; true if there were any.
+    fn clamp_at_limits(&mut self, q: &[f64]) -> bool {
         let mut any = false;
         for (i, &c) in self.coordinates.iter().enumerate() {
             let out = (q[c] <= self.lower[i] && self.d[i] < 0.0)
                 || (q[c] >= self.upper[i] && self.d[i] > 0.0);
-            if out && !self.held[i] {
-                self.held[i] = true;
+            if out && !self.clamped[i] {
+                self.clamped[i] = true;
                 any = true;
             }
         }
@@ -218,14 +219,14 @@ impl Problem {
         self.clamp(q);
     }
 
-    /// Moves `q` into the limits.
+    /// Clamps `q` to the limits.
     pub(super) fn clamp(&self, q: &mut [f64]) {
         for (i, &c) in self.coordinates.iter().enumerate() {
             q[c] = clamp(q[c], self.lower[i], self.upper[i]);
         }
     }
 
-    /// From `q` until the goals are reached, no progress is made or `most` steps are taken.
+    /// Iterates from `q` until the goals are reached, progress stagnates or `most` steps are taken.
     pub(super) fn run(
         &mut self,
         q: &mut [f64],
@@ -250,7 +251,7 @@ impl Problem {
         (errors, most)
     }
 
-    /// What a race of attempts needs, where the goals allow one.
+    /// The problem of batched restarts, if the goals permit them.
     pub(super) fn batched<'a>(&'a self, options: &'a IkOptions) -> Option<BatchedProblem<'a>> {
         let ([part], n) = (&self.parts[..], self.coordinates.len()) else { return None };
         let serial = part.chain.serial().filter(|s| s.has_one_for_each(n))?;
@@ -269,7 +270,7 @@ impl Problem {
         )
     }
 
-    /// A goal that is farther from the first joint of its chain than the chain is long: both (m).
+    /// A goal farther from the first joint of its chain than the length of the chain: both (m).
     pub(super) fn out_of_reach(&self) -> Option<(f64, f64)> {
         self.parts.iter().find_map(|part| {
             let whole = part.goal.task.components[..3] == [true; 3];
@@ -279,7 +280,8 @@ impl Problem {
         })
     }
 
-    /// As near as it goes from `q`: steps that lessen the error are taken, the others damped more.
+    /// Refines `q` towards the goals: steps that reduce the error are accepted, otherwise the
+    /// damping is increased.
     pub(super) fn refine(&mut self, q: &mut [f64], most: usize) -> Errors {
         let mut errors = self.evaluate(q);
         let (mut next, mut extra) = (q.to_vec(), 1.0);
@@ -305,7 +307,7 @@ impl Problem {
         self.evaluate(q)
     }
 
-    /// Along the postures that keep the goals, towards `start`, as near as that goes.
+    /// Moves `q` along the solutions of the goals towards `start`, as close as possible.
     pub(super) fn approach_start(&mut self, q: &mut [f64], start: &[f64], options: &IkOptions) {
         let (mut next, mut share) = (q.to_vec(), 0.5);
         let distance = |coordinates: &[usize], q: &[f64]| -> f64 {
@@ -316,22 +318,25 @@ impl Problem {
             self.evaluate(q);
             self.load_jacobian();
             let size = self.a.iter().map(|x| x * x).sum::<f64>();
-            // wish - A+ A wish, with joints at a limit that it would leave held.
-            self.held.copy_from_slice(&self.fixed);
-            let wish: Vec<f64> = self.coordinates.iter().map(|&c| start[c] - q[c]).collect();
+            // Null-space projection d - A+ A d, with joints clamped at a limit that it would leave.
+            self.clamped.copy_from_slice(&self.fixed);
+            let desired: Vec<f64> = self.coordinates.iter().map(|&c| start[c] - q[c]).collect();
             for _ in 0..=self.coordinates.len() {
                 let free = |(w, h): (&f64, &bool)| if *h { 0.0 } else { *w };
-                let wished: Vec<f64> = wish.iter().zip(&self.held).map(free).collect();
+                let free_part: Vec<f64> = desired.iter().zip(&self.clamped).map(free).collect();
                 let done: Vec<f64> = (0..self.m)
-                    .map(|i| (0..wished.len()).map(|j| self.a[j * self.m + i] * wished[j]).sum())
+                    .map(|i| {
+                        (0..free_part.len()).map(|j| self.a[j * self.m + i] * free_part[j]).sum()
+                    })
                     .collect();
                 let damping = APPROACH_DAMPING * size;
-                let problem = DampedProblem { a: &self.a, e: &done, held: &self.held, damping };
+                let problem =
+                    DampedProblem { a: &self.a, e: &done, clamped: &self.clamped, damping };
                 if !self.damped.solve(problem, &mut self.d) {
                     return;
                 }
-                self.d.iter_mut().zip(&wished).for_each(|(d, w)| *d = w - *d);
-                if !self.hold(q) {
+                self.d.iter_mut().zip(&free_part).for_each(|(d, w)| *d = w - *d);
+                if !self.clamp_at_limits(q) {
                     break;
                 }
             }
@@ -358,8 +363,8 @@ impl Problem {
     }
 }
 
-/// True if nothing moves by a whole turn of the coordinate: not so for screws, and for joints that
-/// follow it by other than whole numbers.
+/// True if a full turn of the coordinate changes no pose: false for helical joints, and for joints
+/// coupled to it by a non-integer ratio.
 fn is_back_after_a_turn(mechanism: &Mechanism, coordinate: usize) -> bool {
     let nodes = mechanism.nodes().iter();
     let range = |start: usize, kind: NodeKind| start..start + kind.dof();
@@ -376,8 +381,8 @@ mod tests {
     use crate::model::catalogue;
     use crate::scalar::{Array, uniform};
 
-    /// Each is the attempt that it would be alone, but for rounding, which some feel: what it
-    /// claims to reach is reached within the limits, and nearly all come to the same end.
+    /// Each equals the single restart up to rounding, which some amplify: its solutions are within
+    /// the limits, and nearly all end at the same configuration.
     #[test]
     fn runners_are_single_attempts() {
         let mut random = 5;

@@ -1,9 +1,13 @@
-//! Inverse kinematics: configurations that put end effectors where they shall be.
+//! Inverse kinematics: configurations that place end effectors at target poses.
 //!
-//! [`solve`] takes any tree, any number of joints and end effectors, whole poses or some components
-//! of them, and keeps all position limits. It answers with a configuration that was checked by
-//! forward kinematics, or with the nearest one that it found and why it stopped. Whole poses of
-//! arms whose axes have a structure are solved by formulas, which [`Analytic`] gives alone.
+//! [`solve`] accepts any tree with any number of joints and end effectors, complete poses or some
+//! of their components, and respects all position limits. It returns a configuration verified by
+//! forward kinematics, or the closest one found. Arms of which three axes intersect or are parallel
+//! are solved in closed form for complete poses; [`Analytic`] gives direct access to it.
+//!
+//! Read `goal` and `options`, then `solve`: the closed form (`closed_form`, `analytic`) first, then
+//! random restarts of a damped least-squares iteration (`levenberg_marquardt`), four at once if
+//! possible (`parallel_restarts`).
 //!
 //! ```
 //! use cylindroid::ik::{Goal, IkOptions, solve};

@@ -1,4 +1,6 @@
-//! What a solver is told: tolerance, budget, seeds.
+//! Options of inverse kinematics: tolerances, initial guess, budget, seed.
+//!
+//! Checked  tests/it/ik.rs
 
 use std::time::Duration;
 
@@ -6,35 +8,34 @@ use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::tolerance;
 
-/// When to give up.
+/// Limits of the computation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Budget {
-    /// Steps of all attempts together.
+    /// Iteration limit, over all restarts.
     pub iterations: usize,
-    /// Time; the answer then depends on the machine. `None`: as long as it takes.
+    /// Time limit; the result then depends on the machine. `None`: no limit.
     pub time: Option<Duration>,
 }
 
-/// What a solver is told.
+/// Options of inverse kinematics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IkOptions {
-    /// Largest position error of an answer (m).
+    /// Position tolerance of a solution (m).
     pub position_tolerance: f64,
-    /// Largest orientation error of an answer (rad).
+    /// Orientation tolerance of a solution (rad).
     pub orientation_tolerance: f64,
-    /// Where to start: all n coordinates, moved into the limits; `None`: home.
+    /// Initial guess: all n coordinates, clamped to the limits; `None`: home.
     pub initial_guess: Option<Vec<f64>>,
-    /// Coordinates that keep the values of the start: their places.
+    /// Coordinates that keep the values of the initial guess: their indices.
     pub fixed: Vec<usize>,
-    /// Prefer the answer that is nearest to the start over the one that is found first. Of answers
-    /// by formulas it is always the nearest.
+    /// Prefer the solution closest to the initial guess over the one found first. Closed-form
+    /// solutions are always the closest.
     pub nearest: bool,
-    /// Of the postures that are drawn where the start leads nowhere: the same seed gives the same
-    /// answer.
+    /// Seed of the random restarts: the same seed gives the same solution.
     pub seed: u64,
-    /// When to give up.
+    /// Limits of the computation.
     pub budget: Budget,
-    /// Characteristic length that positions are divided by (m); `None`: the reach.
+    /// Characteristic length that divides positions (m); `None`: the reach.
     pub length: Option<f64>,
 }
 
@@ -54,7 +55,7 @@ impl Default for IkOptions {
 }
 
 impl IkOptions {
-    /// Refuses numbers that make no solver.
+    /// Checks that the options define a solver.
     pub(super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
         Error::check_positive("position tolerance", self.position_tolerance)?;
         Error::check_positive("orientation tolerance", self.orientation_tolerance)?;
@@ -75,8 +76,7 @@ impl IkOptions {
             return Err(Error::InvalidOption {
                 option: "iterations",
                 value: "0".to_owned(),
-                reason: "a budget of one iteration at least is needed to look at the start"
-                    .to_owned(),
+                reason: "at least one iteration is needed to evaluate the initial guess".to_owned(),
             });
         }
         Ok(())

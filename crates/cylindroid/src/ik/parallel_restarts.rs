@@ -1,12 +1,13 @@
-//! Four attempts side by side, one in each lane of a register.
+//! Random restarts in parallel: four restarts at once, one in each lane of a SIMD register.
 //!
-//! Formula  attempt.rs
-//! Shapes   four postures of n coordinates; A: m x n by columns, each entry a number of lanes
-//! Valid    one goal of m components, at the end of a chain of hinges and slides that have a
-//!          coordinate each, m <= n <= [`MAX_COORDINATES`]
-//! Why so   the first of four to reach needs fewer steps than the next one would; four on every
-//!          processor, so that answers depend on it by rounding alone
-//! Checked  tests in this file (against single attempts), tests/it/ik.rs
+//! Formula  levenberg_marquardt.rs
+//! Shapes   four configurations of n coordinates; A: m x n by columns, each entry one number per
+//!          lane
+//! Valid    one goal of m components, at the end of a chain of revolute and prismatic joints with
+//!          one coordinate each, m <= n <= [`MAX_COORDINATES`]
+//! Why so   the fastest of four restarts needs fewer iterations than the next single one; four on
+//!          every processor, so that solutions depend on it only by rounding
+//! Checked  src/ik/levenberg_marquardt.rs (against single restarts), tests/it/ik.rs
 
 use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
 use super::damped_step::{DampedProblem, by_rows};
@@ -19,33 +20,33 @@ use crate::scalar::{Array, SimdFloat};
 use crate::scalar::{Avx2, Lanes4};
 use crate::spatial::{AlignedPose, Columns};
 
-/// Attempts side by side.
+/// Restarts in a batch.
 pub(super) const LANES: usize = 4;
-/// Coordinates at the most.
+/// Largest number of coordinates.
 pub(super) const MAX_COORDINATES: usize = 12;
 
-/// What all of them work at.
+/// The problem shared by the restarts of a batch.
 #[derive(Debug)]
 pub(super) struct BatchedProblem<'a> {
     pub(super) serial: &'a Serial,
     pub(super) goal: &'a Goal,
-    /// Components that matter, and the scale of their rows.
+    /// Components of the task, and the scale of their rows.
     pub(super) rows: &'a [(usize, f64)],
     pub(super) lower: &'a [f64],
     pub(super) upper: &'a [f64],
     /// Coordinates that keep their values.
     pub(super) fixed: &'a [bool],
     pub(super) options: &'a IkOptions,
-    /// Steps of each at the most.
+    /// Iteration limit of each.
     pub(super) max_steps: usize,
-    /// To the end of all, not of the first that reaches.
+    /// Continue until all have ended, not until the first solution.
     pub(super) until_all_end: bool,
 }
 
-/// One of them.
+/// One restart.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Restart {
-    /// Where it starts, then where it came to.
+    /// Initial guess, then the result.
     pub(super) q: [f64; MAX_COORDINATES],
     pub(super) errors: Errors,
     pub(super) steps: usize,
@@ -72,7 +73,7 @@ impl Restart {
         !self.active && self.steps == step
     }
 
-    /// After a step: goes on, or has reached, or makes no progress.
+    /// Updates the state after a step: active, converged, or stagnating.
     fn update(&mut self, errors: Errors, step: usize, batched: &BatchedProblem<'_>) {
         (self.errors, self.steps) = (errors, step);
         if errors.squared < 0.25 * self.best_error {
@@ -85,7 +86,7 @@ impl Restart {
     }
 }
 
-/// From four postures until one has reached, or each is at an end.
+/// Iterates from four initial guesses until one has converged, or all have ended.
 pub(super) fn solve_batched(batched: &BatchedProblem<'_>, restarts: &mut [Restart; LANES]) {
     #[cfg(target_arch = "x86_64")]
     if let Some(cpu) = Avx2::detect() {
@@ -158,7 +159,7 @@ pub(super) fn solve_with<R: SimdFloat>(
     }
 }
 
-/// The errors of each, scaled.
+/// The scaled errors of each restart.
 #[inline(always)]
 fn evaluate<R: SimdFloat>(
     batched: &BatchedProblem<'_>,
@@ -202,7 +203,7 @@ fn evaluate<R: SimdFloat>(
     }
 }
 
-/// The scaled rates of the components that matter, by columns.
+/// The scaled Jacobian of the task components, by columns.
 #[inline(always)]
 fn rates<R: SimdFloat>(
     batched: &BatchedProblem<'_>,
@@ -230,7 +231,8 @@ fn damping<R: SimdFloat>(a: &[R], squared: R) -> R {
     squared.mul_add(R::splat(DAMPING), size * R::splat(MIN_DAMPING))
 }
 
-/// One step of each; what would leave its limits is held, and counts as zero in `a`.
+/// One step of each restart; joints that would leave their limits are clamped: their columns in `a`
+/// become zero.
 #[inline(always)]
 fn step_within<R: SimdFloat>(
     batched: &BatchedProblem<'_>,
@@ -245,14 +247,14 @@ fn step_within<R: SimdFloat>(
     let (m, n) = (e.len(), q.len());
     let (mut gram, mut rest) = ([zero; 36], [zero; 6]);
     for _ in 0..=n {
-        let problem = DampedProblem { a: &*a, e, held: batched.fixed, damping };
+        let problem = DampedProblem { a: &*a, e, clamped: batched.fixed, damping };
         let memory = (&mut gram[..m * m], &mut rest[..m]);
-        // Said once more as a constant, the common size compiles to straight code.
+        // Repeated as a constant, so that the common size compiles to straight-line code.
         match m {
             6 => by_rows(6, problem, memory, d),
             _ => by_rows(m, problem, memory, d),
         };
-        // 1 where the step would lead out, else 0; of a column that is zero it leads nowhere.
+        // 1 if the step would leave the limits, otherwise 0; zero columns never leave.
         let (mut out, mut any) = ([zero; MAX_COORDINATES], zero);
         for c in 0..n {
             let (lower, upper) = (k(batched.lower[c]), k(batched.upper[c]));

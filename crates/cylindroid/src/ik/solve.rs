@@ -1,14 +1,15 @@
-//! Inverse kinematics: attempts from the start and from drawn postures, until one reaches.
+//! Inverse kinematics: closed form where possible, otherwise random restarts from an initial guess.
 //!
-//! Method   formulas first, where the axes have a structure that they take. Else, or where they
-//!          leave something open, attempts: the first starts at the given posture, the others at
-//!          postures drawn evenly within the limits (in [-pi, pi] where there are none, or where a
-//!          whole turn changes nothing), the same on every run, four at once where race.rs can.
-//!          What an attempt reaches is an answer: within the limits, and within tolerance by
-//!          forward kinematics
-//! Valid    any tree. To find nothing proves nothing, but where the target is farther from the
-//!          first joint than the chain is long
-//! Source   restarts: Beeson & Ames 2015 (TRAC-IK)
+//! Method   the closed form first, if the geometry of the arm permits it. Otherwise, or if further
+//!          solutions may exist, a numerical solver with random restarts: the first starts at the
+//!          initial guess, the others at configurations sampled uniformly within the limits (in
+//!          [-pi, pi] without limits, or for joints that return to the same pose after a full
+//!          turn), identical in every run, four at once if possible (`parallel_restarts.rs`). A
+//!          result is a solution if it is within the limits, and within tolerance by forward
+//!          kinematics
+//! Valid    any tree. Failure to find a solution is not a proof that none exists, except when the
+//!          target is farther from the first joint than the length of the chain
+//! Source   random restarts: Beeson & Ames 2015 (TRAC-IK)
 //! Checked  tests/it/ik.rs
 
 use std::f64::consts::PI;
@@ -25,28 +26,28 @@ use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
 
-/// Steps of one attempt at most.
+/// Iteration limit of one restart.
 pub(crate) const ITERATIONS_PER_RESTART: usize = 60;
-/// Steps by which the nearest failure is brought as near as it goes.
+/// Iterations that refine the closest failure.
 const REFINEMENT_ITERATIONS: usize = 200;
-/// Attempts after the first answer where the nearest is asked for.
+/// Restarts after the first solution if the closest one is requested.
 const MAX_RESTARTS_AFTER_FIRST: usize = 48;
-/// How far from the start every other of them begins at most [rad, lengths].
+/// Largest perturbation of the initial guess for every second of them [rad, lengths].
 const PERTURBATION: f64 = 1.0;
-/// Answers whose coordinates differ by less than this, whole turns apart, are one [rad, lengths].
+/// Solutions whose coordinates differ by less than this, up to full turns, are one [rad, lengths].
 const SAME_CONFIGURATION: f64 = 1e-3;
 
-/// How an answer was found.
+/// The method that found a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FoundBy {
-    /// By formulas: see [`Analytic`](super::Analytic).
+    /// Closed form: see [`Analytic`](super::Analytic).
     Analytic,
-    /// By attempts from the start and from drawn postures; also where nothing was found.
+    /// Numerical solver with random restarts; also without success.
     Numerical,
 }
 
 impl FoundBy {
-    /// Its name: "analytic" or "numerical".
+    /// The name: "analytic" or "numerical".
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -56,30 +57,30 @@ impl FoundBy {
     }
 }
 
-/// What came of it.
+/// Result of inverse kinematics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
     /// True if all goals are reached within tolerance.
     pub success: bool,
-    /// The configuration, all n coordinates; without success the nearest that was found.
+    /// The configuration, all n coordinates; without success the closest one found.
     pub q: Vec<f64>,
-    /// Largest position error of all goals, of the components that matter (m).
+    /// Largest position error of all goals, in the components of the task (m).
     pub position_error: f64,
-    /// Largest orientation error of all goals, of the components that matter (rad).
+    /// Largest orientation error of all goals, in the components of the task (rad).
     pub orientation_error: f64,
-    /// How it was found.
+    /// The method that found it.
     pub found_by: FoundBy,
-    /// Steps of all attempts, one for each call of formulas.
+    /// Iterations over all restarts; an evaluation of the closed form counts as one.
     pub iterations: usize,
-    /// Attempts, calls of formulas among them.
+    /// Number of restarts, including evaluations of the closed form.
     pub restarts: usize,
-    /// A proof that nothing can reach: how far the target is from the first joint, and how long
-    /// the chain is from there (m).
+    /// Proof that no solution exists: the distance of the target from the first joint, and the
+    /// length of the chain from there (m).
     pub out_of_reach: Option<(f64, f64)>,
 }
 
-/// A solver for one mechanism and end effectors; a loop keeps it, since attempts allocate nothing:
-/// what is allocated in further calls is the answers and what the search for the nearest needs.
+/// A solver for one mechanism and its end effectors, to be reused in a loop: restarts do not
+/// allocate; further calls allocate only the solutions and the workspace for the closest one.
 #[derive(Debug, Clone)]
 pub struct Solver {
     problem: Problem,
@@ -88,7 +89,7 @@ pub struct Solver {
     start: Vec<f64>,
 }
 
-/// A configuration that reaches, with its distance from the start.
+/// A solution, with its distance from the initial guess.
 #[derive(Debug, Clone)]
 struct Candidate {
     distance: f64,
@@ -97,26 +98,26 @@ struct Candidate {
     found_by: FoundBy,
 }
 
-/// What formulas leave to the search.
+/// Solutions that remain after the closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Remaining {
-    /// There may be answers that they do not give.
+    /// Further solutions may exist.
     Possible,
-    /// None but what tolerances allow: there is nothing, or all there is was found.
+    /// None, up to tolerances: there is no solution, or all were found.
     None,
 }
 
 /// A configuration that reaches all `goals`.
 ///
 /// # Errors
-/// No goals, frames of another mechanism, numbers that are not finite, a mechanism with loops.
+/// No goals, frames of another mechanism, non-finite values, a mechanism with loops.
 pub fn solve(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Solution> {
     Solver::new(mechanism, goals, options)?.solve(goals)
 }
 
-/// Up to `count` distinct configurations that reach all `goals`, the nearest to the start first;
-/// fewer where no more are found within the budget. Of arms with more joints than the goals need
-/// there are infinitely many: these are some.
+/// Up to `count` distinct configurations that reach all `goals`, the closest to the initial guess
+/// first; fewer if no more are found within the budget. A redundant arm has infinitely many
+/// solutions, of which some are returned.
 ///
 /// # Errors
 /// As [`solve`].
@@ -144,17 +145,17 @@ impl Solver {
         Ok(Self { problem, formulas, options: options.clone(), start })
     }
 
-    /// The formulas that answers are taken from, where there are some; of seven joints they hold
-    /// one, at one value after another.
+    /// The closed form used by this solver, if any; of seven joints it locks one, whose value is
+    /// sampled.
     #[must_use]
     pub fn analytic(&self) -> Option<&Analytic> {
         self.formulas.as_ref().map(|f| &f.analytic)
     }
 
-    /// Starts the next call at `q`.
+    /// Sets the initial guess of the next call.
     ///
     /// # Errors
-    /// A `q` of the wrong size or not finite.
+    /// A `q` of the wrong size or non-finite.
     pub fn set_initial_guess(&mut self, q: &[f64]) -> Result<()> {
         self.problem.mechanism.check_q("initial guess", q)?;
         self.start.copy_from_slice(q);
@@ -162,34 +163,34 @@ impl Solver {
         Ok(())
     }
 
-    /// A configuration that reaches `goals`, which name the same end effectors and tasks as those
-    /// of [`Solver::new`].
+    /// A configuration that reaches `goals`, with the same end effectors and tasks as those of
+    /// [`Solver::new`].
     ///
     /// # Errors
-    /// Goals of another number, end effector or task, numbers that are not finite.
+    /// Goals of another number, end effector or task; non-finite values.
     pub fn solve(&mut self, goals: &[Goal]) -> Result<Solution> {
         if self.options.nearest {
-            let mut found = self.search(goals, MAX_RESTARTS_AFTER_FIRST, |answers| {
-                answers >= MAX_RESTARTS_AFTER_FIRST
+            let mut found = self.search(goals, MAX_RESTARTS_AFTER_FIRST, |solutions| {
+                solutions >= MAX_RESTARTS_AFTER_FIRST
             })?;
             return Ok(found.swap_remove(0));
         }
-        let mut found = self.search(goals, usize::MAX, |answers| answers >= 1)?;
+        let mut found = self.search(goals, usize::MAX, |solutions| solutions >= 1)?;
         Ok(found.swap_remove(0))
     }
 
-    /// Several of them: see [`solve_distinct`].
+    /// Several solutions: see [`solve_distinct`].
     ///
     /// # Errors
     /// As [`Solver::solve`].
     pub fn solve_distinct(&mut self, goals: &[Goal], count: usize) -> Result<Vec<Solution>> {
-        let mut found = self.search(goals, usize::MAX, |answers| answers >= count)?;
+        let mut found = self.search(goals, usize::MAX, |solutions| solutions >= count)?;
         found.retain(|s| s.success);
         found.truncate(count);
         Ok(found)
     }
 
-    /// Answers, the nearest to the start first, or one failure.
+    /// Solutions, the closest to the initial guess first, or one failure.
     fn search(
         &mut self,
         goals: &[Goal],
@@ -202,24 +203,24 @@ impl Solver {
         let begin = Instant::now();
         let mut random = self.options.seed;
         let (mut iterations, mut since_first) = (0, 0);
-        let mut answers: Vec<Candidate> = Vec::new();
+        let mut solutions: Vec<Candidate> = Vec::new();
         let mut best: Option<(Vec<f64>, Errors)> = None;
-        let (left, mut attempts) = self.closed_form_candidates(goals, &enough, &mut answers)?;
+        let (left, mut attempts) = self.closed_form_candidates(goals, &enough, &mut solutions)?;
         iterations += attempts;
         let first = attempts;
         let mut q = self.start.clone();
         let budget = self.options.budget;
         let in_time = |begin: Instant| budget.time.is_none_or(|most| begin.elapsed() < most);
-        let found_all = !answers.is_empty() && left == Remaining::None;
-        while !(found_all || enough(answers.len()) && !answers.is_empty()) {
+        let found_all = !solutions.is_empty() && left == Remaining::None;
+        while !(found_all || enough(solutions.len()) && !solutions.is_empty()) {
             let most = budget.iterations.saturating_sub(iterations);
             let begun = attempts - first;
-            let all = !enough(answers.len() + 1);
+            let all = !enough(solutions.len() + 1);
             let mut tell = |solver: &mut Self, q: &mut [f64], errors: Errors| {
                 if is_reached(errors, &solver.options) {
                     solver.wrap_angles(q);
                     solver.approach_start(q);
-                    solver.add(&mut answers, q, FoundBy::Numerical);
+                    solver.add(&mut solutions, q, FoundBy::Numerical);
                 } else if best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared) {
                     best = Some((q.to_vec(), errors));
                 }
@@ -237,7 +238,7 @@ impl Solver {
                         }
                         let mut errors = restart.errors;
                         if restart.has_reached(&self.options) {
-                            // Beside the others it was looked at with other roundings.
+                            // The batch evaluated it with different rounding.
                             (errors, _) =
                                 self.problem.run(&mut q, &self.options, ITERATIONS_PER_RESTART);
                         }
@@ -254,11 +255,11 @@ impl Solver {
             };
             attempts += of_each;
             iterations += steps.max(of_each);
-            since_first += if answers.is_empty() { 0 } else { of_each };
+            since_first += if solutions.is_empty() { 0 } else { of_each };
             let over = iterations >= budget.iterations || !in_time(begin);
             let nowhere = out_of_reach.is_some() || left == Remaining::None;
             let hopeless = nowhere && attempts >= first + MAX_RESTARTS_AFTER_FIRST;
-            if enough(answers.len()) || since_first > after_first || over || hopeless {
+            if enough(solutions.len()) || since_first > after_first || over || hopeless {
                 break;
             }
         }
@@ -270,43 +271,44 @@ impl Solver {
             found_by: answer.found_by,
             iterations,
             restarts: attempts,
-            // Farther by less than the tolerance is reached.
+            // A distance within the tolerance is reached.
             out_of_reach: out_of_reach.filter(|_| !success),
         };
-        if answers.is_empty() {
+        if solutions.is_empty() {
             let (mut q, _) =
                 best.unwrap_or_else(|| (self.start.clone(), self.problem.evaluate(&self.start)));
             let errors = self.problem.refine(&mut q, REFINEMENT_ITERATIONS);
             let nearest = Candidate { distance: 0.0, q, errors, found_by: FoundBy::Numerical };
             return Ok(vec![solution(false, nearest)]);
         }
-        answers.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        Ok(answers.into_iter().map(|answer| solution(true, answer)).collect())
+        solutions.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        Ok(solutions.into_iter().map(|answer| solution(true, answer)).collect())
     }
 
-    /// Adds the answers that formulas give, and tells what is left and in how many calls.
+    /// Adds the closed-form solutions; returns what remains and the number of evaluations.
     fn closed_form_candidates(
         &mut self,
         goals: &[Goal],
         enough: &impl Fn(usize) -> bool,
-        answers: &mut Vec<Candidate>,
+        solutions: &mut Vec<Candidate>,
     ) -> Result<(Remaining, usize)> {
         let (Some(mut formulas), [goal]) = (self.formulas.take(), goals) else {
             return Ok((Remaining::Possible, 0));
         };
         let (mut left, mut calls) = (Remaining::Possible, 0);
-        // Along the answers of a redundant arm the search comes nearer than values of one joint.
+        // For the closest solution of a redundant arm, numerical descent is better than sampling
+        // one joint.
         let most = match (formulas.are_all(), self.options.nearest) {
             (true, _) => 1,
             (false, true) => 0,
             (false, false) => REDUNDANCY_SAMPLES.min(self.options.budget.iterations - 1),
         };
         let mut start = self.start.clone();
-        while calls < most && (calls == 0 || !enough(answers.len())) {
+        while calls < most && (calls == 0 || !enough(solutions.len())) {
             let postures = formulas.solve(goal.target, &mut start, calls)?;
             calls += 1;
             let mut q = start.clone();
-            // The nearest first: often it is enough.
+            // The closest first: often it suffices.
             let places = formulas.analytic.coordinates();
             let far = |i: &usize| -> f64 {
                 postures[*i].q.iter().zip(places).map(|(x, c)| (x - self.start[c]).powi(2)).sum()
@@ -315,7 +317,7 @@ impl Solver {
             let order = &mut order[..postures.len()];
             order.sort_unstable_by(|a, b| far(a).total_cmp(&far(b)));
             for posture in order.iter().map(|&i| postures[i]) {
-                if enough(answers.len()) && !answers.is_empty() {
+                if enough(solutions.len()) && !solutions.is_empty() {
                     break;
                 }
                 q.copy_from_slice(&start);
@@ -325,7 +327,7 @@ impl Solver {
                 if posture.free != [false; 6] {
                     self.approach_start(&mut q);
                 }
-                self.add(answers, &q, FoundBy::Analytic);
+                self.add(solutions, &q, FoundBy::Analytic);
             }
             if formulas.are_all() && formulas.analytic.is_exact() && !postures.is_open() {
                 left = Remaining::None;
@@ -335,8 +337,8 @@ impl Solver {
         Ok((left, calls))
     }
 
-    /// Where to begin after so many attempts: drawn postures for a race, or `q` for one attempt,
-    /// the first of all at the start.
+    /// Initial guesses of the next restarts: random configurations for a batch, or `q` for a single
+    /// restart; the first one at the given initial guess.
     fn next_start(
         &self,
         begun: usize,
@@ -362,7 +364,7 @@ impl Solver {
         Some(restarts)
     }
 
-    /// Several attempts at once, to the end of one that reaches or of all; gives their steps.
+    /// Restarts in a batch, until one converges or all have ended; returns their iterations.
     fn solve_batched(&self, restarts: &mut [Restart; LANES], most: usize, all: bool) -> usize {
         if let Some(batched) = self.problem.batched(&self.options) {
             solve_batched(
@@ -373,16 +375,21 @@ impl Solver {
         restarts.iter().map(|r| r.steps).sum()
     }
 
-    /// Adds an answer that is none of those that are there.
-    fn add(&mut self, answers: &mut Vec<Candidate>, q: &[f64], found_by: FoundBy) {
+    /// Adds a solution unless it is already known.
+    fn add(&mut self, solutions: &mut Vec<Candidate>, q: &[f64], found_by: FoundBy) {
         let errors = self.problem.evaluate(q);
-        let known = answers.iter().any(|other| self.is_same(&other.q, q));
+        let known = solutions.iter().any(|other| self.is_same(&other.q, q));
         if !known && is_reached(errors, &self.options) {
-            answers.push(Candidate { distance: self.distance(q), q: q.to_vec(), errors, found_by });
+            solutions.push(Candidate {
+                distance: self.distance(q),
+                q: q.to_vec(),
+                errors,
+                found_by,
+            });
         }
     }
 
-    /// A posture drawn within the limits, anywhere or near the start.
+    /// A random configuration within the limits, anywhere or near the initial guess.
     fn sample_configuration(&self, q: &mut [f64], near: bool, random: &mut u64) {
         let p = &self.problem;
         for (i, &c) in p.coordinates.iter().enumerate().filter(|(i, _)| !p.fixed[*i]) {
@@ -391,19 +398,20 @@ impl Solver {
             let (middle, spread) =
                 if near { (self.start[c], PERTURBATION) } else { (0.0, anywhere) };
             let (lower, upper) = (p.lower[i].max(middle - spread), p.upper[i].min(middle + spread));
-            // Limits that exclude what is drawn from leave one end of it.
+            // Limits outside the sampling range leave one end of it.
             q[c] = clamp(lower + (upper - lower) * uniform(random), p.lower[i], p.upper[i]);
         }
     }
 
-    /// Where the nearest is asked for: along the answers of one posture towards the start.
+    /// If the closest solution is requested: moves along the self-motion towards the initial guess.
     fn approach_start(&mut self, q: &mut [f64]) {
         if self.options.nearest {
             self.problem.approach_start(q, &self.start, &self.options);
         }
     }
 
-    /// Where the nearest is asked for: whole turns of joints that can make them, towards the start.
+    /// If the closest solution is requested: full turns of joints that permit them, towards the
+    /// initial guess.
     fn wrap_angles(&mut self, q: &mut [f64]) {
         if !self.options.nearest {
             return;

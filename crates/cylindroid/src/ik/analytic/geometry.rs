@@ -1,16 +1,16 @@
-//! What makes the inverse kinematics of six hinges a matter of formulas.
+//! Geometry of six-axis arms with a closed-form inverse kinematics.
 //!
-//! Method   the six axes as lines, at zero: three that meet in a point (the last, or the first) or
-//!          three neighbours that are parallel (2 to 4, or 3 to 5), and beside them two that are
-//!          parallel or meet, which splits the two equations that are left. What holds of the last
-//!          axes holds of the first in the chain that is read from the tool: axes and lengths turn
-//!          their signs, angles do not
-//! Units    m; departures are in reaches and rad
-//! Valid    axes that depart from the pattern by less than `ALIGNED_AXES`, which Newton's method
-//!          makes good
+//! Method   the six axes as lines, at zero: three that intersect in a point (the last, or the
+//!          first) or three neighbours that are parallel (2 to 4, or 3 to 5), and additionally two
+//!          that are parallel or intersect, which decouples the two remaining equations. A property
+//!          of the last axes carries over to the first in the chain read from the tool: axes and
+//!          lengths change sign, angles do not
+//! Units    m; deviations are in reaches and rad
+//! Valid    axes that deviate from the pattern by less than `ALIGNED_AXES`, which Newton's method
+//!          corrects
 //! Source   Pieper 1968; Elias & Wen 2025 (IK-Geo), section on decompositions; Ostermeier, Kuelz &
 //!          Althoff 2025 (EAIK): patterns read from the axes
-//! Checked  tests/it/analytic.rs
+//! Checked  tests/it/analytic/
 
 use std::fmt;
 
@@ -19,8 +19,8 @@ use crate::screws::Line;
 use crate::spatial::{Rotation, Vec3};
 use crate::tolerance::{ALIGNED_AXES, OBLIQUE_AXES};
 
-/// The axes of a chain whose inverse kinematics is solved by formulas. Printed it says which: the
-/// numbers count the joints from the ground, from 1, those that are held left out.
+/// The geometry of an arm with a closed-form inverse kinematics. Its text names the axes, counted
+/// from 1 at the ground without locked joints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArmGeometry {
     pub(super) three: Three,
@@ -32,7 +32,7 @@ pub struct ArmGeometry {
 /// Three of six axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Three {
-    /// 4, 5 and 6 meet.
+    /// 4, 5 and 6 intersect.
     Meet,
     /// 2, 3 and 4 are parallel.
     Parallel,
@@ -47,7 +47,7 @@ pub(super) enum Two {
 }
 
 impl ArmGeometry {
-    /// True if two more axes split the equations that three leave.
+    /// True if two more axes decouple the two equations of the three.
     pub(in crate::ik) fn splits(&self) -> bool {
         self.two != Two::None
     }
@@ -78,25 +78,25 @@ impl fmt::Display for ArmGeometry {
     }
 }
 
-/// The axes of six hinges at zero, and the tool's origin there.
+/// The axes of six revolute joints at zero, and the origin of the tool.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axes {
     pub(super) lines: [Line; 6],
     pub(super) tool: Vec3,
 }
 
-/// What the formulas work with, in the order in which the chain is read: axis i turns about `h[i]`
-/// through `o[i]`.
+/// Parameters of the closed form, in the order in which the chain is read: axis i has direction
+/// `h[i]` and passes through `o[i]`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArmParameters {
     pub(super) h: [Vec3; 6],
     /// From the base to the first axis, from axis to axis, to the tool.
     pub(super) p: [Vec3; 7],
-    /// The angles of the formulas count the other way for axes where this is -1.
+    /// -1 for axes whose angle has the opposite sign in the closed form.
     pub(super) sign: [f64; 6],
-    /// Across the last axis.
+    /// A unit vector perpendicular to the last axis.
     pub(super) side: Vec3,
-    /// Across the second axis.
+    /// A unit vector perpendicular to the second axis.
     pub(super) level: Vec3,
     pub(super) reach: f64,
     pub(super) order: Order,
@@ -112,8 +112,8 @@ impl Axes {
         if reversed { self.reversed() } else { self.lines }
     }
 
-    /// The structure of these axes, `None` if there is none; one that splits the equations before
-    /// one that does not. Beside it how far the axes depart from it (rad, or reaches).
+    /// The geometry of these axes, `None` if there is no closed form; a decoupled one is preferred.
+    /// Also the deviation of the axes from it (rad, or reaches).
     pub(super) fn structure(&self, reach: f64) -> Option<(ArmGeometry, f64)> {
         let mut found: Option<(ArmGeometry, f64)> = None;
         for three in [Three::Meet, Three::Parallel] {
@@ -141,7 +141,7 @@ impl Axes {
         found
     }
 
-    /// The numbers of the formulas.
+    /// The parameters of the closed form.
     pub(super) fn geometry(&self, structure: ArmGeometry, reach: f64) -> ArmParameters {
         let lines = self.read(structure.reversed);
         let mut h = lines.map(|line| line.direction);
@@ -207,7 +207,7 @@ impl Axes {
 }
 
 impl Three {
-    /// How far the axes depart from it; `None` if too far.
+    /// The deviation of the axes from the pattern; `None` if too large.
     fn departure(self, lines: &[Line; 6], reach: f64) -> Option<f64> {
         let departure = match self {
             Self::Meet => {
@@ -219,7 +219,7 @@ impl Three {
                 lines[3..].iter().map(far).fold(0.0, f64::max) / reach
             }
             Self::Parallel => {
-                // The inner axis 2 turns with 1, the outer 4 with 5; 5 and 6 turn the tool.
+                // Axis 1 rotates axis 2, axis 4 rotates axis 5; 5 and 6 rotate the tool.
                 if [0, 3, 4].iter().any(|i| sine(lines, *i) < OBLIQUE_AXES) {
                     return None;
                 }
@@ -248,14 +248,14 @@ fn sine(lines: &[Line; 6], i: usize) -> f64 {
     lines[i].direction.cross(lines[i + 1].direction).norm()
 }
 
-/// Where the last three meet: from the two neighbours that cross at the larger angle.
+/// Intersection of the last three axes: from the two neighbours with the larger angle.
 fn meeting(lines: &[Line; 6]) -> Vec3 {
     let i = if sine(lines, 3) > sine(lines, 4) { 3 } else { 4 };
     let normal = lines[i].common_normal(&lines[i + 1]);
     (normal.from + normal.to) * 0.5
 }
 
-/// A unit vector across a unit vector.
+/// A unit vector perpendicular to a unit vector.
 fn perpendicular(n: Vec3) -> Vec3 {
     Rotation::z_to(n).map_or(Vec3::X, Rotation::x_axis)
 }

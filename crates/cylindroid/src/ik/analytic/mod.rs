@@ -1,15 +1,17 @@
-//! All configurations of six hinges that put a tool at a pose, by formulas.
+//! Analytic inverse kinematics: all configurations of six revolute joints for a tool pose, in
+//! closed form.
 //!
-//! Method   the structure of the axes is found once; its formulas give candidates. Each is turned
-//!          into the limits, confirmed by forward kinematics, and made good by at most two Newton
-//!          steps where the axes depart from the structure by what files round away
-//! Units    rad, m; errors are compared with lengths over the reach
-//! Valid    six revolute joints on the way from the ground to the tool, none following another,
-//!          besides any that are held. Nearer to a singular posture than the root of what the axes
-//!          depart from their structure an answer may be missing
-//! Why so   what is answered is true by forward kinematics, not by the formulas
+//! Method   the geometry of the axes is determined once; its closed form gives candidates. Each is
+//!          wrapped into the joint limits, verified by forward kinematics and, if the geometry
+//!          deviates from the ideal one by rounding in the model file, refined by at most two
+//!          Newton steps
+//! Units    rad, m; position errors are compared relative to the reach
+//! Valid    six revolute joints between the ground and the tool, without coupling, besides any
+//!          locked joints. Closer to a singular configuration than the square root of the deviation
+//!          of the axes, a solution may be missing
+//! Why so   solutions are verified by forward kinematics, not by the closed form
 //! Source   see [`geometry`] and [`pieper`]
-//! Checked  tests/it/analytic.rs
+//! Checked  tests/it/analytic/
 
 mod geometry;
 mod pieper;
@@ -36,48 +38,48 @@ use crate::tolerance::{
 
 pub use self::geometry::ArmGeometry;
 
-/// Newton steps for one candidate.
+/// Newton steps per candidate.
 const STEPS: usize = 2;
-/// Damping relative to the size of the squared Jacobian [-]: with a free joint held that is
-/// singular, and steps are right to four digits.
+/// Damping relative to the squared norm of the Jacobian [-]: with a free joint clamped it is
+/// singular, and steps are accurate to four digits.
 const DAMPING: f64 = 1e-12;
 
-/// Why formulas do not solve a chain.
+/// The reason why a chain has no closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NotSolvable {
-    /// Not six coordinates move the tool, those that are held left out: how many do.
+    /// The number of unlocked coordinates that move the tool is not six, but this.
     Joints(usize),
     /// Loops or contacts couple the joints.
     Loops,
-    /// A joint that is no hinge of its own moves it.
+    /// A joint that moves the tool is not an uncoupled revolute joint.
     Kind,
-    /// No three axes meet or are parallel where the formulas need it.
+    /// No three axes intersect or are parallel as required.
     Axes,
 }
 
 impl fmt::Display for NotSolvable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Joints(n) => write!(f, "{n} joints move the tool, formulas take six"),
+            Self::Joints(n) => write!(f, "{n} joints move the tool, the closed form requires six"),
             Self::Loops => f.write_str("loops or contacts couple the joints"),
-            Self::Kind => f.write_str("a joint on the way to the tool is not a hinge of its own"),
+            Self::Kind => f.write_str("a joint that moves the tool is not an uncoupled revolute joint"),
             Self::Axes => f.write_str(
-                "neither the first nor the last three axes meet in a point, nor are axes 2 to 4 \
+                "neither the first nor the last three axes intersect in a point, nor are axes 2 to 4 \
                  or 3 to 5 parallel",
             ),
         }
     }
 }
 
-/// One answer.
+/// One solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnalyticSolution {
     /// The angles of the six joints, in the order of [`Analytic::coordinates`] (rad).
     pub q: [f64; 6],
-    /// True for joints whose angle the pose leaves free: the posture is singular and one of a
-    /// continuum of answers. The angle is that of the start; where the other joints cannot follow
-    /// that, one that they can.
+    /// True for joints whose angle the pose leaves free: the configuration is singular, one of a
+    /// continuum of solutions. The angle is that of the initial guess, or one that the other joints
+    /// permit.
     pub free: [bool; 6],
     /// (m)
     pub position_error: f64,
@@ -85,7 +87,7 @@ pub struct AnalyticSolution {
     pub orientation_error: f64,
 }
 
-/// The answers for a pose: at most eight.
+/// The solutions for a pose: at most eight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnalyticSolutions {
     list: [AnalyticSolution; 8],
@@ -101,22 +103,22 @@ impl Deref for AnalyticSolutions {
     }
 }
 
-/// Inverse kinematics of one end effector by formulas. [`Analytic::solve`] allocates nothing.
+/// Analytic inverse kinematics of one end effector. [`Analytic::solve`] does not allocate.
 #[derive(Debug, Clone)]
 pub struct Analytic {
     chain: Chain,
     structure: ArmGeometry,
     departure: f64,
     geometry: ArmParameters,
-    /// Of the tool at zero.
+    /// Orientation of the tool at zero.
     zero: Rotation,
-    /// Places of the six in `q`, and those of the chain that are held.
+    /// Indices of the six joints in `q`, and of the locked joints of the chain.
     coordinates: [usize; 6],
     locked: Vec<usize>,
     lower: [f64; 6],
     upper: [f64; 6],
     reach: f64,
-    /// The whole configuration.
+    /// The complete configuration.
     q: Vec<f64>,
     jacobian: Matrix,
     a: [f64; 36],
@@ -140,7 +142,7 @@ impl Analytic {
     /// ```
     ///
     /// # Errors
-    /// The reason why there are no formulas.
+    /// The reason why there is no closed form.
     ///
     /// # Panics
     /// If the frame is of another mechanism.
@@ -151,11 +153,11 @@ impl Analytic {
         Self::with_locked(mechanism, end_effector, &[])
     }
 
-    /// The same with some coordinates held: they keep the values of the start in each call. Of an
-    /// arm with seven joints formulas give the answers for any value of one that is held.
+    /// The same with some coordinates locked: they keep the values of the initial guess in each
+    /// call. An arm with seven joints has a closed form for any value of a suitable locked joint.
     ///
     /// # Errors
-    /// The reason why there are no formulas.
+    /// The reason why there is no closed form.
     ///
     /// # Panics
     /// If the frame is of another mechanism.
@@ -173,11 +175,11 @@ impl Analytic {
             chain.coordinates().iter().partition(|c| held.contains(c));
         let coordinates: [usize; 6] =
             free.as_slice().try_into().map_err(|_| NotSolvable::Joints(free.len()))?;
-        if !are_hinges(mechanism, end_effector, &coordinates) {
+        if !are_revolute(mechanism, end_effector, &coordinates) {
             return Err(NotSolvable::Kind);
         }
         let mut jacobian = Matrix::zeros(6, chain.n());
-        // What holds at drawn values of the held joints holds at all but special ones.
+        // A property at random values of the locked joints holds generically.
         let mut state = 1;
         let mut q = vec![0.0; mechanism.n()];
         held.iter().for_each(|&c| q[c] = 2.0 * uniform(&mut state) - 1.0);
@@ -203,36 +205,36 @@ impl Analytic {
         })
     }
 
-    /// What the formulas rest on.
+    /// The geometry on which the closed form rests.
     #[must_use]
     pub fn geometry(&self) -> ArmGeometry {
         self.structure
     }
 
-    /// True if the axes have the structure to rounding: then no answer is missing.
+    /// True if the axes have this geometry to rounding: then no solution is missing.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         self.departure <= ANALYTIC_EXACT
     }
 
-    /// Places of the six joints in the mechanism's `q`, from the ground.
+    /// Indices of the six joints in `q`, from the ground.
     #[must_use]
     pub fn coordinates(&self) -> [usize; 6] {
         self.coordinates
     }
 
-    /// Places of the joints of the chain that keep the values of the start.
+    /// Indices of the joints of the chain that keep the values of the initial guess.
     #[must_use]
     pub fn locked(&self) -> &[usize] {
         &self.locked
     }
 
-    /// All answers within the limits for `world_from_tool`, confirmed by forward kinematics to
-    /// 1e-10 (rad, and reaches). Of angles that differ by whole turns it is the one nearest to
-    /// `start` (all n coordinates), whose values the held joints keep and the free ones get.
+    /// All solutions within the limits for `world_from_tool`, verified by forward kinematics to
+    /// 1e-10 (rad, and reaches). Angles are wrapped to the value closest to `start` (all n
+    /// coordinates), which also gives the values of locked and free joints.
     ///
     /// # Errors
-    /// A `start` of the wrong size, numbers that are not finite.
+    /// A `start` of the wrong size, non-finite values.
     pub fn solve(&mut self, target: Pose, start: &[f64]) -> Result<AnalyticSolutions> {
         self.check(target, start)?;
         if self.locked.iter().any(|&c| self.q[c] != start[c]) {
@@ -284,8 +286,8 @@ impl Analytic {
         Ok(postures)
     }
 
-    /// Every angle of a posture with all whole turns that the limits allow, the posture itself
-    /// among them; of joints without limits that of the posture alone.
+    /// A solution with all full turns that the limits permit, itself included; joints without
+    /// limits keep their angle.
     #[must_use]
     pub fn with_full_turns(&self, posture: &AnalyticSolution) -> Vec<[f64; 6]> {
         let mut all = vec![posture.q];
@@ -298,7 +300,7 @@ impl Analytic {
             let turns = ((upper - posture.q[i]) / TAU).floor() - first;
             let turned = |q: &[f64; 6], k: usize| {
                 let mut q = *q;
-                // The posture itself may stand at a limit to the last bit.
+                // The solution itself may be at a limit to the last bit.
                 q[i] = clamp(q[i] + TAU * (first + k as f64), lower, upper);
                 q
             };
@@ -320,7 +322,7 @@ impl Analytic {
         Ok(())
     }
 
-    /// The formulas for other values of the held joints.
+    /// The closed form for other values of the locked joints.
     fn hold(&mut self, start: &[f64]) {
         self.q.copy_from_slice(start);
         self.coordinates.iter().for_each(|&c| self.q[c] = 0.0);
@@ -331,7 +333,7 @@ impl Analytic {
         }
     }
 
-    /// The posture, if there is one within the limits that reaches the target.
+    /// The verified solution within the limits, if there is one.
     fn confirmed(
         &mut self,
         mut q: [f64; 6],
@@ -368,7 +370,7 @@ impl Analytic {
         position <= most * self.reach && orientation <= most
     }
 
-    /// Of a posture that is moved into the limits (m, rad).
+    /// Errors of a configuration, which is clamped to the limits (m, rad).
     fn errors(&mut self, q: &mut [f64; 6], target: &Pose) -> (f64, f64) {
         for (i, &c) in self.coordinates.iter().enumerate() {
             q[i] = clamp(q[i], self.lower[i], self.upper[i]);
@@ -383,7 +385,7 @@ impl Analytic {
         ((pose.translation - target.translation).norm(), 2.0 * half)
     }
 
-    /// One Newton step from the posture that was looked at last; free joints stay.
+    /// One Newton step from the configuration evaluated last; free joints are clamped.
     fn refine(&mut self, q: &mut [f64; 6], free: &[bool; 6], target: &Pose) {
         self.chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut self.jacobian);
         let scaled =
@@ -398,7 +400,7 @@ impl Analytic {
         let e = scaled(self.chain.pose().error_to(*target));
         let size: f64 = self.a.iter().map(|x| x * x).sum();
         let mut d = [0.0; 6];
-        let problem = DampedProblem { a: &self.a, e: &e, held: free, damping: DAMPING * size };
+        let problem = DampedProblem { a: &self.a, e: &e, clamped: free, damping: DAMPING * size };
         if self.damped.solve(problem, &mut d) {
             q.iter_mut().zip(d).for_each(|(q, d)| *q += d);
         }
@@ -406,13 +408,13 @@ impl Analytic {
 }
 
 impl AnalyticSolutions {
-    /// True if the pose may leave a joint free: these are then some of many answers.
+    /// True if the pose may leave a joint free: there are then further solutions.
     #[must_use]
     pub fn is_open(&self) -> bool {
         self.open
     }
 
-    /// One that is not there yet, whole turns apart; the truer of two that are one.
+    /// Adds a new solution, up to full turns; of two equal ones the more accurate.
     fn insert(&mut self, posture: AnalyticSolution) {
         let same = |other: &AnalyticSolution| {
             other.q.iter().zip(posture.q).all(|(a, b)| {
@@ -433,8 +435,8 @@ impl AnalyticSolutions {
     }
 }
 
-/// The angle with the whole turns that bring it nearest to `near` within the limits; at a limit
-/// that it misses by rounding. `None` outside.
+/// The angle wrapped by full turns to the value closest to `near` within the limits; clamped if it
+/// exceeds a limit by rounding. `None` outside.
 fn turned(angle: f64, near: f64, lower: f64, upper: f64) -> Option<f64> {
     let apart = near - angle;
     let mut q = if apart.abs() <= PI { angle } else { angle + TAU * (apart / TAU).round() };
@@ -446,24 +448,29 @@ fn turned(angle: f64, near: f64, lower: f64, upper: f64) -> Option<f64> {
     (q >= lower - ANALYTIC_AT_LIMIT && q <= upper + ANALYTIC_AT_LIMIT).then_some(q)
 }
 
-/// True if each of the coordinates turns one hinge on the way to the end effector, and no more.
-fn are_hinges(mechanism: &Mechanism, end_effector: EndEffector, coordinates: &[usize; 6]) -> bool {
+/// True if each coordinate rotates exactly one revolute joint between the ground and the end
+/// effector.
+fn are_revolute(
+    mechanism: &Mechanism,
+    end_effector: EndEffector,
+    coordinates: &[usize; 6],
+) -> bool {
     let mut slot = mechanism.frame_of(end_effector.frame).slot;
-    let mut hinges = 0;
+    let mut revolute = 0;
     while slot > 0 {
         let node = &mechanism.nodes()[slot - 1];
         if coordinates.contains(&node.coordinate) && node.kind.dof() > 0 {
             if node.kind != NodeKind::Revolute || (node.multiplier, node.offset) != (1.0, 0.0) {
                 return false;
             }
-            hinges += 1;
+            revolute += 1;
         }
         slot = node.parent;
     }
-    hinges == 6
+    revolute == 6
 }
 
-/// The axes where the six coordinates are zero and the others those of `q`.
+/// The axes with the six coordinates at zero and the others as in `q`.
 fn axes(
     chain: &mut Chain,
     coordinates: &[usize; 6],

@@ -1,29 +1,30 @@
-//! All turns of six hinges that bring the tool to a pose, for each structure.
+//! Pieper's closed form: all joint angles of six revolute joints for a tool pose, for each
+//! geometry.
 //!
-//! Formula  R = R1 R2 .. R6, p = R1 (p12 + R2 (p23 + R3 (p34 + ..))), p seen from axis 1 to axis 6.
-//!          Axes 4, 5, 6 meet, u = p45 = p56 = 0 (x turn 1, y turn 3):
+//! Formula  R = R1 R2 .. R6, p = R1 (p12 + R2 (p23 + R3 (p34 + ..))), p from axis 1 to axis 6.
+//!          Axes 4, 5, 6 intersect, u = p45 = p56 = 0 (x angle 1, y angle 3):
 //!          h2 . R1^T p - h2 . R3 p34 = h2 . (p12 + p23),
-//!          2 p12 . R1^T p + 2 p23 . R3 p34 = p^2 + p12^2 - p23^2 - p34^2, then turn 2 by one
+//!          2 p12 . R1^T p + 2 p23 . R3 p34 = p^2 + p12^2 - p23^2 - p34^2, then angle 2 from one
 //!          vector, and the wrist: h4 . R5 h6 = h4 . M h6, M = (R1 R2 R3)^T R.
-//!          Axes 2, 3, 4 parallel (x turn 1, y turn 5):
+//!          Axes 2, 3, 4 parallel (x angle 1, y angle 5):
 //!          h2 . R1^T p - h2 . R5 p56 = h2 . (p12 + p23 + p34 + p45),
-//!          h2 . R1^T R h6 - h2 . R5 h6 = 0, then the turn 2 + 3 + 4 by one vector, and 2 and 3 as
-//!          the two links of a plane arm
+//!          h2 . R1^T R h6 - h2 . R5 h6 = 0, then the angle 2 + 3 + 4 from one vector, and 2 and 3
+//!          as the two links of a planar arm
 //! Units    rad, m
-//! Valid    as [`subproblems`](super::subproblems): up to eight candidates for every posture of the
-//!          wrist or elbow, to be confirmed
-//! Why so   turns found from a vector nearly along their axis are ill-determined alone; the last
-//!          one is always found from a vector across its axis given all others, so that their sum
-//!          is right where neither is
+//! Valid    as [`subproblems`](super::subproblems): up to eight candidates, one for each branch of
+//!          shoulder, elbow and wrist, to be verified
+//! Why so   angles from a vector nearly along their axis are individually ill-conditioned; the last
+//!          angle is always computed from a vector perpendicular to its axis given all others, so
+//!          that the sum is accurate even if neither angle is
 //! Source   Elias & Wen 2025 (IK-Geo); Pieper 1968
-//! Checked  tests/it/analytic.rs
+//! Checked  tests/it/analytic/
 
 use super::geometry::ArmParameters;
 use super::subproblems::{Angle, EquationPair, across, coefficients, linear, onto};
 use crate::spatial::{Mat3, Vec3};
 
-/// A pose of the tool, as rotation from zero and position, in the order the chain is read, and the
-/// angles of the start.
+/// A target pose, as rotation from zero and position, in the order in which the chain is read, and
+/// the angles of the initial guess.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
     pub(super) rotation: Mat3,
@@ -31,7 +32,7 @@ pub(super) struct Target {
     pub(super) start: [f64; 6],
 }
 
-/// Calls `found` with the candidates; it says whether one is confirmed.
+/// Calls `found` with the candidates; it returns whether one is verified.
 pub(super) fn meeting(g: &ArmParameters, aim: &Target, mut found: impl FnMut(&[Angle; 6]) -> bool) {
     let ArmParameters { h, p: [p01, p12, p23, p34, _, _, p6t], reach, .. } = *g;
     let start = aim.start;
@@ -111,7 +112,7 @@ pub(super) fn parallel(
             let seen = fifth.back(h[4], whole.back(n, sideways));
             across(h[5], g.side, seen)
         };
-        // The whole of the parallel turns; where only its sum with the last is determined, the
+        // The sum of the parallel angles; if only its sum with the last angle is determined, the
         // last is free.
         let wholes = onto(n, fifth.of(h[4], h[5]), pointing, 1.0, start[5]);
         let any = wholes.any(|turn| {
@@ -124,7 +125,7 @@ pub(super) fn parallel(
             }
         });
         if !any && wholes.is_free() {
-            // The two links are too short or too long for those: amid what they can do.
+            // The two links are too short or too long for those: the middle of their range.
             let level = |v: Vec3| v - n * n.dot(v);
             let (far, hand) = (level(shoulder), level(p45 + fifth.of(h[4], p56)));
             let range = |a: f64, b: f64| ((a - b).abs(), a + b);

@@ -1,20 +1,19 @@
-//! Subproblems: turns that bring vectors where linear conditions want them.
+//! Paden-Kahan-type subproblems: rotation angles that satisfy linear conditions on rotated vectors.
 //!
 //! Formula  a cos q + b sin q = c: (cos, sin) = ((a, b) c +- (-b, a) h) / r^2, r^2 = a^2 + b^2,
 //!          h^2 = r^2 - c^2;
-//!          turn of p about k onto p': q = atan2((k x p) . p', p . p' - (k . p)(k . p'));
-//!          X x + Y y = d, x and y on unit circles: one row first where it holds one of them alone,
-//!          else y = Y^-1 (d - X x), and |y| = 1 is a quartic in the tangent of half of x's angle,
-//!          measured from where the condition fails most, so that no root is near infinity
-//! Valid    any numbers. Where nothing determines a turn it is that of the start, or the first that
-//!          is confirmed of seven others, and is called free; a condition that fails by rounding is
-//!          met as nearly as it can be: what comes out is a candidate, to be confirmed by forward
-//!          kinematics
-//! Why so   sines and cosines are solved for, not angles: an arc tangent for each turn at the end
-//!          is all that is left of the trigonometry. Roots of the quartic are bracketed by those of
-//!          its derivatives, which loses no double ones, where Ferrari's formulas lose digits
+//!          rotation of p about k onto p': q = atan2((k x p) . p', p . p' - (k . p)(k . p'));
+//!          X x + Y y = d, x and y on unit circles: one row first if it contains only one of them,
+//!          otherwise y = Y^-1 (d - X x), and |y| = 1 is a quartic in the tangent of half of x's
+//!          angle, measured from the largest violation, so that no root is near infinity
+//! Valid    any input. An undetermined angle is that of the initial guess, or the first verified of
+//!          seven others, and is called free; a condition violated by rounding is satisfied as well
+//!          as possible: results are candidates, to be verified by forward kinematics
+//! Why so   the unknowns are sines and cosines, not angles: one arc tangent per angle is the only
+//!          trigonometric function. Roots of the quartic are bracketed by those of its derivatives,
+//!          which loses no double roots, whereas Ferrari's formulas lose digits
 //! Source   Paden 1986; Elias & Wen 2025, IK-Geo, subproblems 1, 3, 4, 5, 6
-//! Checked  tests/it/analytic.rs, tests in this file
+//! Checked  tests/it/analytic/, tests in this file
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -22,55 +21,55 @@ use crate::scalar::sin_cos;
 use crate::spatial::{Mat3, Vec3};
 use crate::tolerance::{FREE_TURN, NEARLY_SATISFIED, TANGENT_ROOT};
 
-/// A free turn is tried at the angle of the start, then so many eighths of a turn from it.
+/// A free angle is tried at the initial guess, then at these eighths of a turn from it.
 const EIGHTHS: [f64; 8] = [0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0];
 
-/// A turn by an angle.
+/// A rotation angle with its cosine and sine.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Angle {
     pub(super) cos: f64,
     pub(super) sin: f64,
     /// (rad)
     pub(super) angle: f64,
-    /// True if nothing determines it.
+    /// True if the angle is undetermined.
     pub(super) free: bool,
 }
 
 impl Angle {
     pub(super) const NONE: Self = Self { cos: 1.0, sin: 0.0, angle: 0.0, free: false };
 
-    /// By an angle that the conditions leave free.
+    /// A free angle.
     fn free(angle: f64) -> Self {
         let (sin, cos) = sin_cos(angle);
         Self { cos, sin, angle, free: true }
     }
 
-    /// Along (cos, sin), of any length.
+    /// From (cos, sin) of any length.
     #[inline]
     fn along(cos: f64, sin: f64) -> Self {
         Self::along_known(cos, sin, (cos * cos + sin * sin).sqrt())
     }
 
-    /// The same where the length is known.
+    /// The same for a known length.
     #[inline]
     fn along_known(cos: f64, sin: f64, length: f64) -> Self {
         let one_over = 1.0 / length;
         Self { cos: cos * one_over, sin: sin * one_over, angle: angle(cos, sin), free: false }
     }
 
-    /// `v` turned about the unit vector `k`.
+    /// `v` rotated about the unit vector `k`.
     #[inline]
     pub(super) fn of(self, k: Vec3, v: Vec3) -> Vec3 {
         v * self.cos + k.cross(v) * self.sin + k * (k.dot(v) * (1.0 - self.cos))
     }
 
-    /// `v` turned back.
+    /// `v` rotated back.
     #[inline]
     pub(super) fn back(self, k: Vec3, v: Vec3) -> Vec3 {
         Self { sin: -self.sin, ..self }.of(k, v)
     }
 
-    /// The matrix of the turn about `k`.
+    /// The rotation matrix about `k`.
     #[inline]
     pub(super) fn matrix(self, k: Vec3) -> Mat3 {
         Mat3::from_cols(self.of(k, Vec3::X), self.of(k, Vec3::Y), self.of(k, Vec3::Z))
@@ -79,8 +78,8 @@ impl Angle {
 
 /// The angle of (cos, sin), of any length but zero, in [-pi, pi], to 3 ulp.
 ///
-/// Half the time of the standard library's, of which formulas call thirty for a pose. Source:
-/// Cephes atan.c (the rational function).
+/// Takes half the time of the standard library's; the closed form calls it thirty times per pose.
+/// Source: Cephes atan.c (the rational function).
 #[inline]
 fn angle(cos: f64, sin: f64) -> f64 {
     const P: [f64; 5] = [
@@ -99,7 +98,7 @@ fn angle(cos: f64, sin: f64) -> f64 {
     ];
     let (x, y) = (cos.abs(), sin.abs());
     let (low, high) = if y > x { (x, y) } else { (y, x) };
-    // The tangent, or that of what is missing to an eighth of a turn.
+    // The tangent, or that of the complement to an eighth of a turn.
     let (up, down, base) =
         if low > 0.66 * high { (low - high, low + high, FRAC_PI_4) } else { (low, high, 0.0) };
     let t = up / down;
@@ -111,10 +110,10 @@ fn angle(cos: f64, sin: f64) -> f64 {
     (if cos < 0.0 { PI - upper } else { upper }).copysign(sin)
 }
 
-/// The turns that meet a condition, at most N.
+/// The angles that satisfy a condition, at most N.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Angles<const N: usize> {
-    /// The angle of the start, where nothing determines the turn but rounding.
+    /// The angle of the initial guess, if the condition determines none beyond rounding.
     free: Option<f64>,
     list: [Angle; N],
     len: usize,
@@ -130,13 +129,13 @@ impl<const N: usize> Angles<N> {
         }
     }
 
-    /// True if nothing determines the turn but rounding.
+    /// True if the condition determines no angle beyond rounding.
     pub(super) fn is_free(&self) -> bool {
         self.free.is_some()
     }
 
-    /// Calls `f`, which says whether anything was confirmed, for each turn, and tells whether
-    /// anything was. Of free turns the first that is confirmed is enough.
+    /// Calls `f`, which returns whether a solution was verified, for each angle; returns whether
+    /// any was. Of free angles the first that is verified suffices.
     #[inline]
     pub(super) fn any(&self, mut f: impl FnMut(Angle) -> bool) -> bool {
         if let Some(start) = self.free
@@ -152,7 +151,7 @@ impl<const N: usize> Angles<N> {
     }
 }
 
-/// `a cos q + b sin q = c`, numbers of size `scale`.
+/// `a cos q + b sin q = c`, coefficients of magnitude `scale`.
 pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Angles<2> {
     let mut turns = Angles::NONE;
     let square = a * a + b * b;
@@ -174,7 +173,7 @@ pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Angles
     turns
 }
 
-/// The turn about `k` that brings `p` onto `onto`, vectors of size `scale`.
+/// The rotation about `k` that maps `p` onto `onto`, vectors of magnitude `scale`.
 #[inline]
 pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Angles<2> {
     let mut turns = Angles::NONE;
@@ -190,44 +189,44 @@ pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Angl
     turns
 }
 
-/// The one turn about `k` that brings `p`, which is across it, onto `onto`.
+/// The unique rotation about `k` that maps `p`, perpendicular to `k`, onto `onto`.
 #[inline]
 pub(super) fn across(k: Vec3, p: Vec3, onto: Vec3) -> Angle {
     Angle::along(p.dot(onto), k.cross(p).dot(onto))
 }
 
-/// Coefficients of `w . R v = c[0] cos q + c[1] sin q + rest`, R the turn about `k` by q.
+/// Coefficients of `w . R v = c[0] cos q + c[1] sin q + rest`, R the rotation about `k` by q.
 #[inline]
 pub(super) fn coefficients(w: Vec3, k: Vec3, v: Vec3) -> ([f64; 2], f64) {
     let rest = w.dot(k) * k.dot(v);
     ([w.dot(v) - rest, w.dot(k.cross(v))], rest)
 }
 
-/// Which of two equations holds one of the turns alone.
+/// The equation that contains only one of the angles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Order {
-    /// This row only x.
+    /// This row contains only x.
     FirstX(usize),
-    /// This row only y.
+    /// This row contains only y.
     FirstY(usize),
-    /// None of them.
+    /// None: the equations are coupled.
     Together,
 }
 
-/// Two equations `x[i] . (cos, sin of one turn) + y[i] . (cos, sin of another) = d[i]`.
+/// Two equations `x[i] . (cos, sin of one angle) + y[i] . (cos, sin of another) = d[i]`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EquationPair {
     pub(super) x: [[f64; 2]; 2],
     pub(super) y: [[f64; 2]; 2],
     pub(super) d: [f64; 2],
-    /// Sizes of the numbers of each row.
+    /// Magnitudes of the coefficients of each row.
     pub(super) scale: [f64; 2],
-    /// Angles of the start.
+    /// Angles of the initial guess.
     pub(super) start: [f64; 2],
 }
 
 impl EquationPair {
-    /// Calls `f` for all pairs of turns, as [`Angles::any`].
+    /// Calls `f` for all pairs of angles, as [`Angles::any`].
     pub(super) fn any(&self, order: Order, mut f: impl FnMut(Angle, Angle) -> bool) -> bool {
         let dot = |a: [f64; 2], t: Angle| a[0] * t.cos + a[1] * t.sin;
         let Self { x, y, d, scale, start } = *self;
@@ -267,7 +266,7 @@ struct Ellipse {
 }
 
 impl Ellipse {
-    /// The turns x whose points are at distance 1 from the origin.
+    /// The angles x whose points have distance 1 from the origin.
     fn on_circle(&self, start: f64) -> Angles<7> {
         let Self { p, q, d } = *self;
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
@@ -275,7 +274,7 @@ impl Ellipse {
             let v = [0, 1].map(|i: usize| d[i] - p[i] * c - q[i] * s);
             dot(v, v) - 1.0
         };
-        // Where the condition fails most, of eight places.
+        // The largest violation of the condition over eight points.
         let side = std::f64::consts::FRAC_1_SQRT_2;
         let axes = [(1.0, 0.0), (side, side), (0.0, 1.0), (-side, side)];
         let (mut worst, mut c, mut s) = (0.0, 1.0, 0.0);
@@ -289,7 +288,7 @@ impl Ellipse {
             turns.free = Some(start);
             return turns;
         }
-        // The opposite place is the zero of the angle: x = -(c, s) there.
+        // The opposite point is the zero of the angle: x = -(c, s) there.
         let (p, q) = (
             [0, 1].map(|i: usize| -c * p[i] - s * q[i]),
             [0, 1].map(|i: usize| s * p[i] - c * q[i]),
@@ -311,17 +310,17 @@ impl Ellipse {
     }
 }
 
-/// Calls `f` with the real roots of `a[0] + a[1] t + ... + a[4] t^4`, and with the places where it
-/// touches zero but for rounding. The last coefficient is not zero.
+/// Calls `f` with the real roots of `a[0] + a[1] t + ... + a[4] t^4`, and with extrema that are
+/// zero to rounding. The leading coefficient is non-zero.
 fn real_roots(a: [f64; 5], mut f: impl FnMut(f64)) {
     let bound = 1.0 + a[..4].iter().fold(0.0, |m: f64, x| m.max((x / a[4]).abs()));
     if !bound.is_finite() {
         return;
     }
-    // Between neighbouring roots of its derivative a polynomial has one root or none.
+    // Between neighbouring roots of its derivative a polynomial has at most one root.
     let (mut knots, mut count) = ([0.0; 5], 0);
     for degree in 1..=4 {
-        // The derivative that has this degree, by its coefficients.
+        // Coefficients of the derivative of this degree.
         let falling = |k: usize| (k + 1..=k + 4 - degree).map(|i| i as f64).product::<f64>();
         let p =
             |t: f64| (0..=degree).rev().fold(0.0, |v, k| v * t + falling(k) * a[k + 4 - degree]);
@@ -347,13 +346,13 @@ fn real_roots(a: [f64; 5], mut f: impl FnMut(f64)) {
     }
 }
 
-/// The root of a function that is monotonous between `low` and `high`, if its sign changes there.
+/// The root of a monotonic function between `low` and `high`, if its sign changes there.
 fn between(p: impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
     let (mut a, mut b, mut at_a, mut at_b) = (low, high, p(low), p(high));
     if !(at_a <= 0.0 && at_b >= 0.0 || at_a >= 0.0 && at_b <= 0.0) {
         return None;
     }
-    // Secants whose standing end loses half its weight (Illinois), and halves now and then.
+    // Regula falsi with the Illinois modification, and occasional bisection.
     for i in 0..100 {
         if at_a == 0.0 || at_a == at_b {
             return Some(a);
@@ -399,7 +398,7 @@ mod tests {
 
     #[test]
     fn roots_are_found() {
-        // Roots of (t - a)(t - b)(t - c)(t - d), double ones too.
+        // Roots of (t - a)(t - b)(t - c)(t - d), including double roots.
         let mut worst: f64 = 0.0;
         for [a, b, c, d] in [
             [-2.0, -0.5, 0.25, 3.0],
@@ -432,7 +431,7 @@ mod tests {
         assert_eq!(none, 0);
     }
 
-    /// What is free is said to be, what cannot be is not found.
+    /// Free angles are reported, infeasible ones are not found.
     #[test]
     fn conditions_on_one_turn() {
         let of = |ab: [f64; 2], c: f64| {
@@ -455,7 +454,7 @@ mod tests {
         }
     }
 
-    /// A pair of turns that is known is found again, whichever way.
+    /// A known pair of angles is recovered for every order.
     #[test]
     fn conditions_on_two_turns() {
         let mut state = 5_u64;
