@@ -24,7 +24,7 @@ use crate::error::Result;
 ///     False where branches may have been missed.
 /// step : float
 ///     [rad, or characteristic lengths]
-/// left_open : float
+/// residual : float
 #[pyclass(frozen, name = "FiniteMobility", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyFiniteMobility {
@@ -75,8 +75,8 @@ impl PyFiniteMobility {
     }
 
     #[getter]
-    fn left_open(&self) -> f64 {
-        self.inner.left_open
+    fn residual(&self) -> f64 {
+        self.inner.residual
     }
 
     fn __repr__(&self) -> String {

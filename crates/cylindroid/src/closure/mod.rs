@@ -1,16 +1,18 @@
-//! Closed chains, cooperating arms and grasps: how they can move and which forces they hold.
+//! Closed chains, cooperating arms and grasps: mobility, singularities and statics.
 //!
-//! Everything here starts from one matrix equation, `J_a q_a + J_p q_p = G^T u` ([`Constraint`]),
-//! whatever it was built from. Its solutions are the [`MotionSpace`]; what they leave of the actuated
-//! joints and the object is a linear [`Relation`] between `q_a` and `u`, in general neither a map
-//! one way nor the other. The forces that do no work on it are the complement, so statics needs
-//! no equations of its own.
+//! The starting point is one matrix equation, `J_a q_a + J_p q_p = G^T u` ([`Constraint`]). Its
+//! solutions form the [`MotionSpace`]; its projection on the actuated joints and the object is a
+//! linear [`Relation`] between `q_a` and `u`, in general not a map in either direction. The forces
+//! that do no work on it form the dual relation, so that statics needs no further equations.
+//!
+//! Each module reads only those before it: `constraint`, `position`, `mobility`, then
+//! `singularity` and `statics`.
 //!
 //! ```
 //! use cylindroid::closure::{ConstraintBlocks, Constraint, MotionSpace};
 //! use cylindroid::Matrix;
 //!
-//! // A slider pushed through a lever: q_a turns, the object slides twice as fast.
+//! // A slider pushed by a lever: the object moves twice as fast as q_a rotates.
 //! let blocks = ConstraintBlocks {
 //!     actuated: Matrix::from_rows(&[[2.0]]).unwrap(),
 //!     passive: Matrix::zeros(1, 0),

@@ -6,14 +6,15 @@
 
 use std::fmt;
 
-/// The kinds of singular pose.
+/// The kinds of singularity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SingularityKind {
-    /// The object loses a motion (end-effector, serial).
+    /// Type I (serial, end-effector singularity): the object loses a motion.
     TypeI,
-    /// The object gains a motion that the actuated joints do not control (actuator, parallel).
+    /// Type II (parallel, actuator singularity): the object gains a motion that the actuated joints
+    /// do not control.
     TypeII,
-    /// Both at once.
+    /// Type III: both types I and II.
     TypeIII,
     /// The constraint loses rank: the mechanism gains a degree of freedom.
     ConfigurationSpace,

@@ -57,7 +57,7 @@ pub(super) struct FiniteJson {
     certain: bool,
     /// [rad, or characteristic lengths]
     step: f64,
-    left_open: f64,
+    residual: f64,
     branches: Vec<BranchJson>,
     /// Motions to first order that do not exist: rates of q.
     shaky: Vec<Vec<f64>>,
@@ -107,7 +107,7 @@ impl From<&FiniteMobility> for FiniteJson {
             evidence: f.evidence.to_string(),
             certain: f.certain,
             step: f.step,
-            left_open: f.left_open,
+            residual: f.residual,
             branches: f.branches.iter().map(branch).collect(),
             shaky: output::columns(&f.shaky),
         }

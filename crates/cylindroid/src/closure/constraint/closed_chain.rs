@@ -1,19 +1,20 @@
-//! The constraint of a mechanism: from its loops, contacts and reference link to the matrices.
+//! Closed chains: from loop joints, contacts and the reference link of a mechanism to its
+//! constraint.
 //!
-//! Formula  for every loop joint and contact between links a and b, each held wrench h (a row):
-//!          h . (J_b - J_a) q = 0, both bodies seen from the world; for a loop joint of one
-//!          coordinate s also r . (J_b - J_a) q - s = 0, r the wrench that measures its rate;
-//!          J_ref q - u = 0: the reference link carries the object's twist u
-//! Shapes   t = held + measured + d rows; actuated and passive coordinates as columns; d = 3 in the
-//!          plane (vx, vy, wz), else 6
-//! Units    lengths over the characteristic length for every rank decision
-//! Frame    u and its wrench: at the reference frame's origin, world axes
-//! Valid    any mechanism; for a tree it is u = J q. The pose is taken as it is: rows are those of
-//!          the two frames of a joint where they should coincide, see [`ClosedChain::closure_error`]
-//! Why so   a spanning tree and rows for what closes it needs no contact forces of tree joints; the
-//!          relation between actuated joints and object is the same wherever the loops are cut, and
-//!          so is the hyperstatic degree
-//! Source   Bicchi & Prattichizzo 1998, eq. 2, with several objects as passive columns
+//! Formula  for every loop joint and contact between links a and b, a row for each constraint
+//!          wrench h: h . (J_b - J_a) q = 0, both velocities in the world; for a loop joint of one
+//!          coordinate s also r . (J_b - J_a) q - s = 0, with r the wrench that measures its rate;
+//!          J_ref q - u = 0 for the twist u of the reference link (the object)
+//! Shapes   t = constraint wrenches + rates + d rows; actuated and passive coordinates as columns;
+//!          d = 3 in the plane (vx, vy, wz), 6 in space
+//! Units    lengths are divided by the characteristic length for every rank decision
+//! Frame    u and its wrench: at the origin of the reference frame, world axes
+//! Valid    any mechanism; for a tree it is u = J q. Loops are not closed here: the rows are those
+//!          of the two frames of a joint as they are, see [`ClosedChain::closure_error`]
+//! Why so   a spanning tree with rows for its loop joints needs no contact forces of tree joints;
+//!          the relation between actuated joints and object does not depend on the choice of loop
+//!          joints, nor does the degree of hyperstaticity
+//! Source   Bicchi & Prattichizzo 1998, eq. 2, with further objects as passive columns
 //! Checked  tests/it/closure/graph.rs
 
 use super::constraint_rows::{constraint_rows, for_each_rate, rate_unit};
@@ -24,10 +25,10 @@ use crate::kinematics::State;
 use crate::linalg::Matrix;
 use crate::model::{FrameId, LoopJoint, Mechanism};
 
-/// A mechanism at a configuration as a constraint, with the names of what the columns are.
+/// The velocity constraint of a mechanism at a configuration, with the names of its columns.
 #[derive(Debug, Clone)]
 pub struct ClosedChain {
-    /// The matrices.
+    /// The constraint.
     pub constraint: Constraint,
     /// Names of the actuated coordinates, in the order of the columns.
     pub actuated: Vec<String>,
@@ -35,19 +36,28 @@ pub struct ClosedChain {
     pub passive: Vec<String>,
     /// Units of rows and columns.
     pub units: Units,
-    /// The frame whose motion is the goal.
+    /// The frame whose motion is the goal (the object).
     pub reference: FrameId,
-    /// How far the loops are open: the largest distance (m) and angle (rad) by which what should
-    /// be held is not.
+    /// The loop-closure error of the configuration.
     pub closure_error: LoopClosureError,
-    /// Of every coordinate of the tree, then of loop joints: whether it is actuated, and its
-    /// column among those of its sort.
+    /// For every coordinate of the tree, then for loop joints: whether it is actuated, and its
+    /// column among those of its kind.
     places: Vec<(bool, usize)>,
 }
 
 impl ClosedChain {
-    /// The constraint of `state`, for the mechanism's reference frame or another, at its reach as
+    /// The constraint at `state`, for the mechanism's reference frame or another, with the reach as
     /// characteristic length or another (m).
+    ///
+    /// ```
+    /// use cylindroid::closure::{ClosedChain, MotionSpace};
+    ///
+    /// let stewart = cylindroid::load("stewart")?;
+    /// let chain = ClosedChain::of(&stewart.state(stewart.home())?, None, None)?;
+    /// assert_eq!((chain.actuated.len(), chain.passive.len()), (6, 12));
+    /// assert_eq!(MotionSpace::of(&chain.constraint).dof(), 6);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// A frame of another mechanism, a length that is not positive, an actuated loop joint of
@@ -107,22 +117,21 @@ impl ClosedChain {
         })
     }
 
-    /// The column of a coordinate of the mechanism (place in `q`) among those of actuated joints and,
-    /// after them, of passive ones.
+    /// The column of a coordinate (index into `q`): actuated columns first, then passive ones.
     pub(crate) fn column(&self, coordinate: usize) -> usize {
         let (actuated, place) = self.places[coordinate];
         if actuated { place } else { self.actuated.len() + place }
     }
 }
 
-/// The coordinates of the tree, then those of loop joints, as actuated and passive columns.
+/// The coordinates of the tree, then the rates of loop joints, as actuated and passive columns.
 #[derive(Default)]
 pub(crate) struct Columns {
     pub(crate) actuated: Vec<String>,
     passive: Vec<String>,
     pub(crate) actuated_units: Vec<Unit>,
     pub(crate) passive_units: Vec<Unit>,
-    /// Of every coordinate: whether it is actuated, and its column among those of its sort.
+    /// For every coordinate: whether it is actuated, and its column among those of its kind.
     pub(crate) places: Vec<(bool, usize)>,
 }
 

@@ -1,14 +1,14 @@
-//! The constraint of a mechanism at several configurations side by side.
+//! The constraint of a mechanism, batched: several configurations at once.
 //!
-//! Formula  closed_chain.rs, scaled: a row for each held wrench, then one for each component of the
-//!          reference, as `J_ref` without its `-1`
-//! Shapes   q: n numbers of lanes; rows of q_a + q_p columns, actuated joints first
-//! Units    none: lengths over the characteristic length. Gaps: m, rad
-//! Frame    u at the reference frame's origin, world axes
-//! Valid    as [`crate::closure::ClosedChain`], but for lanes in which the axes of a universal loop joint
-//!          nearly line up: their rows are not to be used
-//! Why so   what does not change with the configuration is looked up once: which joints open which
-//!          pair, and in which column they stand
+//! Formula  `closed_chain.rs`, scaled: a row for each constraint wrench, then one for each
+//!          component of the reference twist, as `J_ref` without its `-1`
+//! Shapes   q: n values, each a vector of lanes; rows of q_a + q_p columns, actuated joints first
+//! Units    none: lengths are divided by the characteristic length. Loop-closure errors: m, rad
+//! Frame    u at the origin of the reference frame, world axes
+//! Valid    as [`crate::closure::ClosedChain`], except lanes in which the axes of a universal loop
+//!          joint are nearly parallel: their rows must not be used
+//! Why so   the joints that move each pair, and their columns, are looked up once for all
+//!          configurations
 //! Checked  tests/it/manipulability/batch.rs
 
 use super::closed_chain::Columns;
@@ -21,7 +21,7 @@ use crate::scalar::{MAX_LANES, SimdFloat};
 use crate::spatial::{AlignedPose, Pose, Vec3, Vector3Like, Wrench, dot};
 use crate::tolerance::CROSSED_AXES;
 
-/// What does not change with the configuration.
+/// The part of the constraint that does not depend on the configuration.
 #[derive(Debug, Clone)]
 pub(crate) struct BatchedConstraintPlan {
     nodes: Vec<Node>,
@@ -31,29 +31,29 @@ pub(crate) struct BatchedConstraintPlan {
     columns_of: Vec<JacobianColumn>,
     components: &'static [usize],
     length: f64,
-    /// Of the actuated columns, and of the components of the reference.
+    /// Scales of the actuated columns, and of the components of the reference.
     pub(crate) actuated_scale: Vec<f64>,
     pub(crate) object_scale: Vec<f64>,
     passive: usize,
     held: usize,
 }
 
-/// A frame on a moving frame.
+/// A frame attached to a moving frame.
 #[derive(Debug, Clone)]
 struct AttachedFrame {
     slot: usize,
     from: AlignedPose,
 }
 
-/// What a coordinate does to what its joint carries: it turns about, or slides along, an axis of the
-/// joint's frame.
+/// A column of a Jacobian: the joint rotates or translates its descendants about or along an axis
+/// of its frame.
 #[derive(Debug, Clone)]
 struct JacobianColumn {
     slot: usize,
     axis: usize,
     turns: bool,
     column: usize,
-    /// For a scaled rate of 1, with the sign of the side on which the joint is.
+    /// Per unit of the scaled rate, with the sign of the side on which the joint lies.
     rate: f64,
 }
 
@@ -61,13 +61,13 @@ struct JacobianColumn {
 #[derive(Debug, Clone)]
 struct BatchedPair {
     ends: [AttachedFrame; 2],
-    /// Wrenches with their residuals, then the one that measures a rate; the rows scaled.
+    /// Wrenches with residuals, then the one that measures a rate; the rows scaled.
     rows: Vec<Wrench>,
     residuals: usize,
-    /// What they are unscaled, where they ask for more than the offset of the frames.
+    /// The unscaled wrenches, if moments are among them.
     turned: Option<Vec<Wrench>>,
     crossed: Option<[Vec3; 2]>,
-    /// The column of the rate.
+    /// The column of the rate of the loop joint.
     rate: Option<usize>,
     columns_of: Vec<JacobianColumn>,
 }
@@ -78,18 +78,18 @@ impl BatchedPair {
     }
 }
 
-/// What was written beside the rows.
+/// The loop-closure error of the batch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BatchedClosureError<R> {
-    /// How far loops are open along (m) and about (rad) what is held.
+    /// Largest violation along (m) and about (rad) constraint wrenches.
     pub(crate) distance: R,
     pub(crate) angle: R,
-    /// 0 where the rows are not to be used.
+    /// 0 in lanes whose rows must not be used.
     pub(crate) usable: R,
 }
 
 impl BatchedConstraintPlan {
-    /// Of a mechanism, its reference frame and a characteristic length.
+    /// For a mechanism, its reference frame and a characteristic length.
     pub(crate) fn of(mechanism: &Mechanism, reference: FrameId, length: f64) -> Result<Self> {
         let columns = Columns::of(mechanism, &constraint_rows::joints_with_rate(mechanism));
         let actuated = columns.actuated.len();
@@ -140,7 +140,7 @@ impl BatchedConstraintPlan {
         })
     }
 
-    /// Number of rows that loops and contacts hold.
+    /// Number of rows of loop joints and contacts.
     pub(crate) fn constraint_rows(&self) -> usize {
         self.held
     }
@@ -165,7 +165,7 @@ impl BatchedConstraintPlan {
         self.nodes.len() + 1
     }
 
-    /// Writes all rows at q, those held first, one after the other.
+    /// Writes all rows at q, those of loop joints and contacts first, row by row.
     #[inline(always)]
     pub(crate) fn write<R: SimdFloat>(
         &self,
@@ -210,14 +210,14 @@ impl BatchedConstraintPlan {
         rows: &mut [R],
         written: &mut BatchedClosureError<R>,
     ) {
-        /// RowSelection of a pair at the most: six held, and the rate.
+        /// Maximum number of rows of a pair: six constraint wrenches and the rate.
         const MOST: usize = 7;
         let k = R::splat;
         let columns = self.columns();
         let a = frames[tie.ends[0].slot].then(&tie.ends[0].from);
         let b = frames[tie.ends[1].slot].then(&tie.ends[1].from);
         let offset = b.p.minus(a.p);
-        // Forces act where the second frame is.
+        // Forces act at the second frame.
         let none = [k(0.0); 3];
         let mut wrenches = [(none, none); MOST];
         for (i, w) in tie.rows.iter().enumerate() {
@@ -253,7 +253,7 @@ impl BatchedConstraintPlan {
             }
         }
         if let Some(rate) = tie.rate {
-            // RowSelection and columns of rates have one scale.
+            // Rows and columns of rates have the same scale.
             let place = (tie.rows.len() - 1) * columns + rate;
             rows[place] = rows[place] - k(1.0);
         }
@@ -270,7 +270,8 @@ impl JacobianColumn {
     }
 }
 
-/// What moves slot `b` against slot `a`; `places` are column and scale of each coordinate.
+/// The columns of the motion of slot `b` relative to slot `a`; `places` are column and scale of
+/// each coordinate.
 fn between(
     nodes: &[Node],
     places: &[(usize, f64)],
@@ -309,7 +310,7 @@ fn between(
     columns_of
 }
 
-/// The closure_error along and about `held`, lane by lane as for one configuration.
+/// The loop-closure error along and about `held`, evaluated lane by lane.
 #[inline(always)]
 fn closure_error<R: SimdFloat>(held: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2] {
     let (mut distance, mut angle) = ([0.0; MAX_LANES], [0.0; MAX_LANES]);
@@ -343,7 +344,7 @@ fn poses<R: SimdFloat>(frame: &Frame<R>) -> [Pose; MAX_LANES] {
     poses
 }
 
-/// A vector of the frame in the axes of the world.
+/// A vector of the frame, in world axes.
 #[inline(always)]
 fn turned<R: SimdFloat>(frame: &Frame<R>, v: Vec3) -> [R; 3] {
     frame.transform_vector([R::splat(v.x), R::splat(v.y), R::splat(v.z)])

@@ -1,9 +1,11 @@
-//! The rows of loop joints and contacts: what they hold, where they are at a state.
+//! Constraint rows: the wrenches constrained by loop joints and contacts, at a configuration.
 //!
-//! Formula  closed_chain.rs: h . (J_b - J_a) q for every held wrench h, and its residual
-//! Shapes   a row for each held wrench, and one for the rate of a loop joint of one coordinate
+//! Formula  h . (J_b - J_a) q for every constraint wrench h between links a and b, and its residual
+//! Shapes   a row for each constraint wrench, and one for the rate of a loop joint of one
+//!          coordinate
 //! Units    m, rad
-//! Frame    world, wrenches at the world's origin
+//! Frame    world axes, wrenches at the world origin
+//! Source   `closed_chain.rs`; the wrenches: `model/constraint_wrenches.rs`
 //! Checked  tests/it/closure/graph.rs
 
 use super::loop_closure_error::LoopClosureError;
@@ -13,38 +15,38 @@ use crate::kinematics::State;
 use crate::model::{Dimension, JointKind, LoopJoint, Mechanism};
 use crate::spatial::{Pose, Vec3, Wrench};
 
-/// A relative motion that is restricted, in world axes at the world's origin.
+/// A row: a constrained relative motion of two links, in world axes at the world origin.
 pub(crate) struct ConstraintRow {
-    /// What is measured of the motion of `b` relative to `a`.
+    /// The wrench whose power with the motion of `b` relative to `a` is measured.
     pub(crate) wrench: Wrench,
-    /// Place of its joint or contact: loop joints, then contacts.
+    /// Index of its joint or contact: loop joints first, then contacts.
     pub(crate) pair: usize,
     a: usize,
     b: usize,
     pub(crate) unit: Unit,
-    /// Place among the coordinates of loop joints where it is their rate.
+    /// Index among the loop joints of one coordinate, if the row measures the rate of one.
     pub(crate) rate_of: Option<usize>,
-    /// By how much what should be held is not (m or rad); its rate is `wrench . (J_b - J_a) q`
-    /// where it is zero.
+    /// Violation of the constraint (m or rad); its derivative is `wrench . (J_b - J_a) q` where it
+    /// vanishes.
     pub(crate) residual: f64,
 }
 
-/// What the rate of a loop joint of one coordinate measures.
+/// The unit of the rate of a loop joint of one coordinate.
 pub(crate) fn rate_unit(joint: &LoopJoint) -> Unit {
     if joint.kind == JointKind::Prismatic { Unit::Length } else { Unit::Angle }
 }
 
-/// Calls `f(row, coordinate, rate)` for every coordinate of the tree that opens a row, the place of
-/// the row among `rows` and its rate by that coordinate. A coordinate may come several times (mimic
-/// joints): its rates add up.
+/// Calls `f(row, coordinate, rate)` for every coordinate of the tree that changes a row, with the
+/// index of the row in `rows` and its rate per unit of the coordinate. A coordinate may occur
+/// several times (mimic joints): its rates add up.
 pub(crate) fn for_each_rate(
     state: &State,
     rows: &[ConstraintRow],
     mut f: impl FnMut(usize, usize, f64),
 ) {
     let mechanism = state.mechanism();
-    // The rows of a pair stand together: its two links are walked once, and up to where they meet,
-    // since what moves both does not open the pair.
+    // The rows of a pair are adjacent. Both links are walked once, up to their common ancestor:
+    // motions of that ancestor do not change the row.
     let mut from = 0;
     for pair in rows.chunk_by(|x, y| (x.a, x.b) == (y.a, y.b)) {
         let tip = |link| state.tip(mechanism.link_frame(link).into());
@@ -62,27 +64,27 @@ pub(crate) fn for_each_rate(
 }
 
 impl ConstraintRow {
-    /// The residual with lengths over `length`.
+    /// The residual, with lengths divided by `length`.
     pub(crate) fn scaled_residual(&self, length: f64) -> f64 {
         self.residual / self.unit.size(length)
     }
 }
 
-/// What a loop joint or contact holds, wherever it is.
+/// The constraints of a loop joint or contact, independent of the configuration.
 pub(crate) struct PairConstraints {
-    /// Of its two links.
+    /// Indices of its two links.
     pub(crate) ends: [usize; 2],
     /// Its frames on them.
     pub(crate) frames: [Pose; 2],
-    /// Wrenches in the first frame, but for the moment across the axes of a universal joint.
+    /// Constraint wrenches in the first frame, except the moment of a universal joint.
     pub(crate) wrenches: Vec<Wrench>,
-    /// The axes of a universal joint, on its first and its second link.
+    /// The axes of a universal joint, in the frames of its first and its second link.
     pub(crate) crossed: Option<[Vec3; 2]>,
-    /// What measures the rate of a loop joint of one coordinate.
+    /// The wrench that measures the rate of a loop joint of one coordinate.
     pub(crate) measure: Option<Wrench>,
 }
 
-/// What loop joints, then contacts hold.
+/// The constraints of all loop joints, then of all contacts.
 pub(crate) fn pair_constraints(
     mechanism: &Mechanism,
 ) -> impl Iterator<Item = Result<PairConstraints>> {
@@ -94,8 +96,8 @@ pub(crate) fn pair_constraints(
                 model: mechanism.name().to_owned(),
                 culprit: joint.name.clone(),
                 message: format!(
-                    "joint '{}' closes a loop, is {} and actuated; a motor needs a joint of one \
-                     coordinate: drive another, or write it as joints in a row",
+                    "loop joint '{}' is {} and actuated; only joints of one coordinate can be \
+                     actuated loop joints: actuate another joint, or model it as joints in series",
                     joint.name,
                     joint.kind.name()
                 ),
@@ -127,7 +129,7 @@ pub(crate) fn pair_constraints(
     loops.chain(contacts)
 }
 
-/// What measures the rate of a loop joint of one coordinate.
+/// The wrench that measures the rate of a loop joint of one coordinate.
 fn measure(joint: &LoopJoint) -> Option<Wrench> {
     match joint.kind {
         JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
@@ -138,12 +140,13 @@ fn measure(joint: &LoopJoint) -> Option<Wrench> {
     }
 }
 
-/// The loop joints that have a rate.
+/// The loop joints of one coordinate.
 pub(crate) fn joints_with_rate(mechanism: &Mechanism) -> Vec<&LoopJoint> {
     mechanism.loops().iter().filter(|joint| measure(joint).is_some()).collect()
 }
 
-/// RowSelection of all loop joints and contacts, the loop joints that have a rate, and the closure_error.
+/// The rows of all loop joints and contacts, the loop joints of one coordinate, and the
+/// loop-closure error.
 pub(crate) fn constraint_rows(
     state: &State,
 ) -> Result<(Vec<ConstraintRow>, Vec<&LoopJoint>, LoopClosureError)> {
@@ -169,13 +172,13 @@ pub(crate) fn constraint_rows(
     Ok((rows, joints_with_rate(mechanism), closure_error))
 }
 
-/// The two frames of a loop joint or contact.
+/// A kinematic pair at a configuration: the two frames of a loop joint or contact.
 pub(crate) struct KinematicPair {
     place: usize,
     ends: [usize; 2],
     world_from_a: Pose,
     world_from_b: Pose,
-    /// Where the second frame is, and how it is turned, seen from the first.
+    /// Position and rotation vector of the second frame, in the first.
     offset: Vec3,
     turn: Vec3,
 }
@@ -191,14 +194,14 @@ impl KinematicPair {
         Self { place, ends, world_from_a, world_from_b, offset, turn }
     }
 
-    /// The rows of all that is held.
+    /// The rows of the constraint wrenches `held`, with residuals.
     pub(crate) fn rows(&self, held: &[Wrench]) -> impl Iterator<Item = ConstraintRow> {
         let tilt = self.tilt(held);
         held.iter()
             .map(move |w| ConstraintRow { residual: self.residual(*w, tilt), ..self.row(*w) })
     }
 
-    /// How far it is open along and about `held`.
+    /// The loop-closure error along and about the constraint wrenches.
     pub(crate) fn closure_error(&self, held: &[Wrench]) -> LoopClosureError {
         let tilt = self.tilt(held);
         let mut closure_error = LoopClosureError::default();
@@ -206,9 +209,9 @@ impl KinematicPair {
         closure_error
     }
 
-    /// Where two moments are held, they hold the direction of the axis across them, and residuals
-    /// about them are those of the shortest turn of that axis: rates of the whole turn would be
-    /// right only where the joint is at zero.
+    /// Two constrained moments constrain the direction of the axis normal to both: their residuals
+    /// are components of the shortest rotation of that axis. Components of the whole rotation
+    /// vector would have the right derivative at the zero of the joint only.
     fn tilt(&self, held: &[Wrench]) -> Option<Vec3> {
         let mut moments = held.iter().filter(|w| unit(**w) == Unit::Angle).map(|w| w.moment);
         let (Some(first), Some(second), None) = (moments.next(), moments.next(), moments.next())
@@ -228,7 +231,8 @@ impl KinematicPair {
         }
     }
 
-    /// What holds `held`, a wrench in the first frame, as if it were closed: forces act where the second one is.
+    /// The row of a wrench given in the first frame, as if the pair were closed: forces act at the
+    /// second frame.
     fn row(&self, held: Wrench) -> ConstraintRow {
         let at = Pose {
             rotation: self.world_from_a.rotation,
@@ -245,8 +249,8 @@ impl KinematicPair {
         }
     }
 
-    /// The moment of a universal joint: normal to an axis of either body, wherever they have
-    /// turned, whose angle is held.
+    /// The moment row of a universal joint: normal to the axis of each body at any rotation; the
+    /// angle between the axes is constrained.
     fn crossed(&self, first: Vec3, second: Vec3) -> Option<ConstraintRow> {
         let turned = self.world_from_a.rotation.inverse() * (self.world_from_b.rotation * second);
         let across = first.cross(turned);
@@ -256,13 +260,22 @@ impl KinematicPair {
     }
 }
 
-/// What a wrench measures: lengths where there is a force.
+/// The unit of the residual of a wrench: length if there is a force.
 pub(crate) fn unit(wrench: Wrench) -> Unit {
     if wrench.force == Vec3::ZERO { Unit::Angle } else { Unit::Length }
 }
 
 impl LoopClosureError {
-    /// Of the loops and contacts of `state`.
+    /// The loop-closure error of the loops and contacts of `state`.
+    ///
+    /// ```
+    /// use cylindroid::closure::LoopClosureError;
+    ///
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let open = LoopClosureError::of(&five_bar.state(&[0.1, 0.0, 0.0, 0.0])?)?;
+    /// assert!(open.distance > 0.01 && !open.is_closed(five_bar.reach()));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// An actuated loop joint of several coordinates.

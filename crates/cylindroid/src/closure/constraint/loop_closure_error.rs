@@ -1,8 +1,8 @@
 //! The loop-closure error: how far the loops and contacts of a configuration are open.
 //!
-//! Formula  the largest residual, in absolute value, over all constraint rows (`constraint_rows.rs`)
+//! Formula  the largest residual, in absolute value, over all rows (`constraint_rows.rs`)
 //! Units    m for forces, rad for moments
-//! Checked  tests/it/closure/graph.rs::rates_are_derivatives_of_the_gap
+//! Checked  tests/it/closure/graph.rs::loops_that_are_open_say_by_how_much
 
 use super::velocity_constraint::Unit;
 use crate::tolerance::CLOSED;
@@ -10,14 +10,14 @@ use crate::tolerance::CLOSED;
 /// How far loops and contacts are from being closed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LoopClosureError {
-    /// Along held directions (m).
+    /// Largest violation along constrained directions (m).
     pub distance: f64,
-    /// About held directions (rad).
+    /// Largest violation about constrained directions (rad).
     pub angle: f64,
 }
 
 impl LoopClosureError {
-    /// Takes in a row of this unit.
+    /// Takes the residual of a row of this unit into account.
     pub(crate) fn widen(&mut self, unit: Unit, residual: f64) {
         let widest = match unit {
             Unit::Length => &mut self.distance,

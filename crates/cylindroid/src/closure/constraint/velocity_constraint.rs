@@ -1,40 +1,40 @@
-//! The velocity constraint of a closed chain, and the scales that make its ranks mean something.
+//! The velocity constraint of a closed chain, scaled by a characteristic length.
 //!
 //! Formula  J_a q_a + J_p q_p - G^T u = 0; scaled M' = D_r [J_a J_p -G^T] D_c
 //! Shapes   J_a: t x q_a, J_p: t x q_p, G: d x t
-//! Units    a row is a velocity (m/s) or an angular velocity (rad/s) at a contact, a column a rate
-//!          of either kind. With the characteristic length l, D_r divides rows of lengths by l and
-//!          D_c multiplies columns of lengths by it: M' has no unit.
+//! Units    rows are velocities (m/s) or angular velocities (rad/s) at a contact, columns are rates
+//!          of either unit. With the characteristic length l, D_r divides rows of lengths by l and
+//!          D_c multiplies columns of lengths by it: M' has no unit
 //! Frame    any: u and its wrench are taken at one point in one frame, each row in a frame of its
 //!          own
-//! Valid    any sizes, zero too. Several objects: the columns -G^T of those that are not the
-//!          reference belong to `passive`.
-//! Why so   scaling rows and columns to equal norms instead would need no length, but blows up a
-//!          row that is zero up to rounding and then counts it
+//! Valid    any sizes, including zero. Several objects: the columns -G^T of those that are not the
+//!          reference belong to `passive`
+//! Why so   equilibrating rows and columns would need no length, but it amplifies a row that is
+//!          zero up to rounding until it counts
 //! Source   Bicchi & Prattichizzo 1998, eq. 2 and appendix A
-//! Checked  tests/it/closure/*.rs (changes of unit), tests/it/closure/bad_input.rs
+//! Checked  tests/it/closure/scaling.rs, tests/it/closure/bad_input.rs
 
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix};
 use crate::model::CoordinateKind;
 use crate::tolerance::{CLOSURE_BLOCK, KERNEL_ROUNDING};
 
-/// What a coordinate or a row of the constraint measures.
+/// The unit of a coordinate or of a row of the constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// Metres: sliding joints, linear velocities.
+    /// Metres: prismatic joints, linear velocities.
     Length,
-    /// Radians: turning joints, angular velocities.
+    /// Radians: revolute joints, angular velocities.
     Angle,
 }
 
 impl Unit {
-    /// Of a coordinate.
+    /// The unit of a coordinate.
     pub(crate) fn of(kind: CoordinateKind) -> Self {
         if kind.is_length() { Self::Length } else { Self::Angle }
     }
 
-    /// What 1 without unit is where lengths are measured in `length` (m or rad).
+    /// The value (m or rad) of a dimensionless 1 for the characteristic length `length`.
     pub(crate) fn size(self, length: f64) -> f64 {
         match self {
             Self::Length => length,
@@ -46,11 +46,11 @@ impl Unit {
 /// The three matrices of a constraint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstraintBlocks {
-    /// `J_a`, t x q_a: velocities at the contacts by the actuated joints.
+    /// `J_a`, t x q_a: contact velocities per rate of the actuated joints.
     pub actuated: Matrix,
-    /// `J_p`, t x q_p: by the passive joints and by objects other than the reference.
+    /// `J_p`, t x q_p: per rate of the passive joints and of objects other than the reference.
     pub passive: Matrix,
-    /// `G`, d x t: wrench on the object by the forces at the contacts.
+    /// `G`, d x t, the grasp matrix: wrench on the object per force at the contacts.
     pub grasp: Matrix,
 }
 
@@ -67,7 +67,7 @@ pub struct Units {
     pub object: Vec<Unit>,
 }
 
-/// A velocity constraint: finite, of fitting shapes, with its scales.
+/// A velocity constraint: finite, of matching shapes, with its scales.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constraint {
     blocks: ConstraintBlocks,
@@ -79,11 +79,11 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// A constraint whose rows and columns all have one unit, or metres and radians side by side
-    /// with the characteristic length 1 m.
+    /// A constraint whose rows and columns all have one unit, or mixed units with the
+    /// characteristic length 1 m.
     ///
     /// # Errors
-    /// ConstraintBlocks of different numbers of rows, NaN or infinity.
+    /// Blocks with different numbers of rows; NaN or infinity.
     pub fn new(blocks: ConstraintBlocks) -> Result<Self> {
         let t = blocks.grasp.cols();
         for (name, block) in
@@ -105,10 +105,10 @@ impl Constraint {
         Ok(Self { blocks, length: 1.0, row_scale: vec![1.0; t], column_scale: vec![1.0; n] })
     }
 
-    /// The same constraint with lengths measured in the characteristic length `length` (m).
+    /// The same constraint with lengths divided by the characteristic length `length` (m).
     ///
     /// # Errors
-    /// Units of the wrong number; a length that is not positive and finite, or so far from one
+    /// The wrong number of units; a length that is not positive and finite, or so large or small
     /// that scaled entries overflow.
     pub fn with_length(mut self, units: &Units, length: f64) -> Result<Self> {
         Error::check_positive("length", length)?;
@@ -140,7 +140,7 @@ impl Constraint {
         })
     }
 
-    /// The matrices it was made of.
+    /// The matrices of the constraint.
     #[must_use]
     pub fn blocks(&self) -> &ConstraintBlocks {
         &self.blocks
@@ -191,8 +191,7 @@ impl Constraint {
         })
     }
 
-    /// True where lengths in the characteristic length do not overflow: no entry does that has the
-    /// largest size and both largest scales.
+    /// True if no scaled entry overflows: the bound is the largest entry times both largest scales.
     fn is_finite_scaled(&self) -> bool {
         let ConstraintBlocks { actuated, passive, grasp } = &self.blocks;
         let size = actuated.max_abs().max(passive.max_abs()).max(grasp.max_abs());
@@ -201,7 +200,7 @@ impl Constraint {
         (row * size * column).is_finite() && (row * size).is_finite()
     }
 
-    /// Its transpose in scaled coordinates, `D_c M^T D_r`.
+    /// The transpose in scaled coordinates, `D_c M^T D_r`.
     pub(crate) fn scaled_transpose(&self) -> Matrix {
         let (t, a, p) = (self.rows(), self.actuated(), self.passive());
         let mut scaled = Matrix::zeros(self.column_scale.len(), t);
@@ -225,18 +224,18 @@ impl Constraint {
         scaled
     }
 
-    /// D_r: a force at a contact is this times its scaled value.
+    /// D_r: a contact force is this factor times its scaled value.
     pub(crate) fn row_scale(&self) -> &[f64] {
         &self.row_scale
     }
 
-    /// D_c: a rate is this times its scaled value, a torque its scaled value over this.
+    /// D_c: a rate is this factor times its scaled value, a torque its scaled value divided by it.
     pub(crate) fn column_scale(&self) -> &[f64] {
         &self.column_scale
     }
 }
 
-/// Refuses the first entry that is NaN or infinite.
+/// Returns an error for the first entry that is NaN or infinite.
 pub(crate) fn check_finite(name: &str, m: &Matrix) -> Result<()> {
     match m.as_slice().iter().position(|x| !x.is_finite()) {
         None => Ok(()),
@@ -247,8 +246,8 @@ pub(crate) fn check_finite(name: &str, m: &Matrix) -> Result<()> {
     }
 }
 
-/// The absolute threshold for blocks of a kernel [-]: the complement of `space`, the column space of
-/// a transposed constraint.
+/// The absolute threshold [-] for blocks of the kernel of a constraint, that is the complement of
+/// `space`, the column space of the transposed constraint.
 pub(crate) fn kernel_tolerance(space: &ColumnSpace) -> f64 {
     let conditioning = if space.rank() == 0 { 1.0 } else { space.largest() / space.cut().kept };
     CLOSURE_BLOCK.max(KERNEL_ROUNDING * conditioning)

@@ -1,17 +1,18 @@
-//! ActuationMap: what the actuated joints of a closed chain can do, and what all other joints do with them.
+//! Actuation map: from the actuated joints of a closed chain to the motion of all joints.
 //!
-//! Formula  C s = 0 for the rates s of all joints: held rows of loops and contacts, and for actuated
-//!          loop joints the rows that measure their rate; ker C = [X c; Y s] Z^T, actuated rows
-//!          above passive ones. Directions with c = 0 are left to themselves, the others are
-//!          steered: s = M y + s_0, actuated rates = D y with |D y|_W = |y|;
-//!          s_0 = -C^+ residual is the way to where the loops are closed
-//! Shapes   C: t x (n + e), n coordinates of the tree, e actuated loop joints; M: (n + e) x p;
-//!          D: a x p, orthonormal in the weighted rates of the an actuated joints
-//! Units    lengths over the reach for every rank decision; rates in rad/s and m/s outside
-//! Valid    any mechanism; for a tree without passive joints M is W^(-1/2). Of the motions that
-//!          have the same actuated rates it is the one in which passive joints move least (scaled)
-//! Why so   in y the loops are kept whatever y is, and the least y is the least weighted effort of
-//!          the actuators, passive joints not counted
+//! Formula  C s = 0 for the rates s of all joints: constraint rows of loops and contacts, and rate
+//!          rows of actuated loop joints; ker C = [X c; Y s] Z^T (CS decomposition), actuated rows
+//!          above passive ones. Directions with c = 0 are uncontrolled, the others controlled: s =
+//!          M y + s_0, actuated rates = D y with |D y|_W = |y|; s_0 = -C^+ residual closes the
+//!          loops to first order
+//! Shapes   C: t x (n + e), n coordinates of the tree, e actuated loop joints; M: (n + e) x p; D: a
+//!          x p, orthonormal in the weighted rates of the a actuated joints
+//! Units    lengths are divided by the reach for every rank decision; rates in rad/s and m/s
+//!          outside
+//! Valid    any mechanism; for a tree without passive joints M is W^(-1/2). Of all motions with the
+//!          same actuated rates, M y is the one with the least (scaled) passive motion
+//! Why so   every y satisfies the loop constraints, and the least |y| is the least weighted
+//!          actuated motion, passive joints not counted
 //! Source   Bicchi & Prattichizzo 1998, eqs. 2 to 4, in coordinates of the spanning tree
 //! Checked  tests/it/closure/actuation_map.rs
 
@@ -26,33 +27,44 @@ use crate::linalg::{ColumnSpace, CsDecomposition, Matrix, Svd, Threshold};
 use crate::model::{LoopJoint, Mechanism};
 use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 
-/// The motions of a closed chain by what its actuators do with them.
+/// The map from actuated motions to the motions of all joints of a closed chain.
 #[derive(Debug, Clone)]
 pub struct ActuationMap {
-    /// M: what all joints do for each y, the n coordinates and then the actuated loop joints.
+    /// M: the rates of all joints per unit of y, the n coordinates, then the actuated loop joints.
     pub motions: Matrix,
-    /// Motions with the actuated joints at rest, a column each, of length one (scaled).
-    pub left: Matrix,
-    /// The steered motions one by one, of length one (scaled): how much of each belongs to the
-    /// actuated joints, rising. 0 would be a motion that they do not steer.
+    /// Uncontrolled motions, with the actuated joints at rest: one column each, of unit norm
+    /// (scaled).
+    pub uncontrolled: Matrix,
+    /// For each controlled motion of unit norm (scaled), the norm of its actuated part, in
+    /// ascending order. 0 would be an uncontrolled motion.
     pub shares: Vec<f64>,
-    /// The motions that the shares belong to, a column each.
+    /// The controlled motions to which `shares` belongs, one column each.
     pub directions: Matrix,
-    /// A change of all joints that closes the loops, to first order (rad or m).
+    /// A change of all joints that closes the loops to first order (rad or m).
     pub correction: Vec<f64>,
-    /// How far the loops are open.
+    /// The loop-closure error of the configuration.
     pub closure_error: LoopClosureError,
-    /// Places of the actuated joints among the rows of `motions`, and their weights' roots.
+    /// Rows of `motions` that belong to actuated joints, with the square roots of their weights.
     actuators: Vec<(usize, f64)>,
 }
 
 impl ActuationMap {
     /// At the configuration of `state`. `weights`: one for each coordinate of the tree, of which
-    /// those of actuated joints count, or none; the coordinates `locked` stand still.
+    /// those of actuated joints count, or none; the coordinates `locked` are fixed.
+    ///
+    /// ```
+    /// use cylindroid::closure::ActuationMap;
+    ///
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let map = ActuationMap::of(&five_bar.state(five_bar.home())?, &[], &[])?;
+    /// // Two actuated joints move four coordinates of the tree.
+    /// assert_eq!((map.motions.rows(), map.motions.cols()), (4, 2));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// Weights of the wrong number or not positive; a locked place that is no coordinate; an actuated
-    /// loop joint of several coordinates.
+    /// The wrong number of weights, or weights that are not positive; a locked index that is no
+    /// coordinate; an actuated loop joint of several coordinates.
     pub fn of(state: &State, weights: &[f64], locked: &[usize]) -> Result<Self> {
         let mechanism = state.mechanism();
         let n = mechanism.n();
@@ -83,7 +95,7 @@ impl ActuationMap {
         let free = cs.cosines.iter().take_while(|c| **c <= kernel_tolerance(&space)).count();
         let p = kernel.cols() - free;
 
-        // D = X' S' Z'^T for the actuated rates of unit directions in their weights.
+        // D = X' S' Z'^T: weighted actuated rates of unit directions.
         let unit =
             Matrix::from_fn(size.len(), p, |i, j| unscaled[(i, free + j)] / cs.cosines[free + j]);
         let weighted = Matrix::from_fn(actuated.len(), p, |i, j| {
@@ -94,7 +106,7 @@ impl ActuationMap {
         let turn = Matrix::from_fn(p, svd.len(), |i, j| svd.v(j)[i] / svd.value(j));
         Ok(Self {
             motions: &unit * &turn,
-            left: unscaled.columns_between(0, free),
+            uncontrolled: unscaled.columns_between(0, free),
             shares: cs.cosines[free..].to_vec(),
             directions: unscaled.columns_between(free, kernel.cols()),
             correction: rates.correction(),
@@ -103,25 +115,25 @@ impl ActuationMap {
         })
     }
 
-    /// y for wanted rates of all joints (n + e): the weighted projection of those of the actuators on
-    /// what the loops let them do.
+    /// y for desired rates of all joints (n + e): the weighted projection of the actuated ones onto
+    /// the motions that the loops allow.
     #[must_use]
-    pub fn project(&self, wanted: &[f64]) -> Vec<f64> {
+    pub fn project(&self, desired: &[f64]) -> Vec<f64> {
         let along = |j: usize| {
             let column = self.motions.column(j);
-            self.actuators.iter().map(|&(i, root)| root * root * column[i] * wanted[i]).sum()
+            self.actuators.iter().map(|&(i, root)| root * root * column[i] * desired[i]).sum()
         };
         (0..self.motions.cols()).map(along).collect()
     }
 
-    /// The rates of all joints for `y`, loops kept.
+    /// The rates of all joints for `y`; they satisfy the loop constraints.
     #[must_use]
     pub fn rates(&self, y: &[f64]) -> Vec<f64> {
         self.motions.mul_vec(y)
     }
 }
 
-/// Places among coordinates and actuated loop joints, and the roots of the weights.
+/// Indices among coordinates and actuated loop joints, and the square roots of the weights.
 fn actuated(
     mechanism: &Mechanism,
     joints_with_rate: &[&LoopJoint],
@@ -134,11 +146,11 @@ fn actuated(
     tree.map(|(i, _)| (i, root(i))).chain((n..n + closing).map(|i| (i, 1.0))).collect()
 }
 
-/// C in scaled units, with what is open.
+/// C in scaled units, with the residuals.
 struct RateRows {
     matrix: Matrix,
     residuals: Vec<f64>,
-    /// Of each column: rate = scale * scaled rate.
+    /// For each column: rate = scale * scaled rate.
     scale: Vec<f64>,
 }
 
@@ -156,7 +168,7 @@ impl RateRows {
         let coordinates = mechanism.coordinates().iter().map(|c| Unit::of(c.kind));
         let units = coordinates.chain(measured.iter().map(|&k| rate_unit(joints_with_rate[k])));
         let scale: Vec<f64> = units.map(|unit| unit.size(length)).collect();
-        // Rates of passive loop joints say nothing.
+        // Rates of passive loop joints add no constraint.
         let column = |k: usize| measured.iter().position(|&m| m == k).map(|e| n + e);
         let kept: Vec<ConstraintRow> =
             all.into_iter().filter(|row| row.rate_of.is_none_or(|k| column(k).is_some())).collect();
@@ -178,7 +190,7 @@ impl RateRows {
         Self { matrix, residuals, scale }
     }
 
-    /// -C^+ residual, without directions in which loops can hardly be closed.
+    /// -C^+ residual, truncated to directions in which the loops can be closed well.
     fn correction(&self) -> Vec<f64> {
         if self.residuals.iter().all(|r| *r == 0.0) {
             return vec![0.0; self.scale.len()];

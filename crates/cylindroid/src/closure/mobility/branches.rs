@@ -1,15 +1,16 @@
-//! The ways out of a configuration where not every motion to first order can be followed.
+//! Branches of closed configurations through a configuration where not every first-order motion is
+//! finite.
 //!
-//! Method   on the sphere |x| = h of motions to first order, zeros of the reduced loops g (see
-//!          `lyapunov_schmidt.rs`) are looked for by damped Gauss-Newton from starts at random. A zero
-//!          whose own motions can be followed lies on a branch; it is carried inwards, to both
-//!          sides of the configuration, and the motions there give the branch's tangent
+//! Method   on the sphere |x| = h of first-order motions, zeros of the reduced equation g (see
+//!          `lyapunov_schmidt.rs`) are searched by damped Gauss-Newton from random starts. A zero
+//!          whose own motions are finite lies on a branch; it is continued inwards, to both sides
+//!          of the configuration, and the motions there yield the tangent of the branch
 //! Shapes   x: k, a tangent: k x dimension
 //! Units    none (scaled)
-//! Valid    finds what it hits: branches of dimension k - 1 surely, thin ones among many motions
-//!          perhaps not; the caller says so. Where g is one function with a Hessian of full rank,
-//!          its zeros are those of the quadric (Morse), and the count is proved
-//! Why so   zeros of the quadratic part alone would name branches that third order destroys
+//! Valid    branches of dimension k - 1 are found reliably, thin ones among many motions perhaps
+//!          not; the caller reports this. If g is one function with a Hessian of full rank, its
+//!          zeros are those of the quadric (Morse lemma), and the count is proved
+//! Why so   zeros of the quadratic part alone would include branches that third-order terms destroy
 //! Checked  tests/it/closure/finite.rs
 
 use super::lyapunov_schmidt::{LyapunovSchmidt, ReducedPoint};
@@ -20,30 +21,30 @@ use crate::model::Mechanism;
 use crate::scalar::uniform;
 use crate::tolerance::{BRANCH_RANK, BRANCH_SPREAD, BRANCH_TURN, SAME_BRANCH};
 
-/// Steps of a search at most.
-const MOST_STEPS: usize = 60;
-/// How much nearer the tangent is taken.
+/// Maximum number of steps of a search.
+const MAX_STEPS: usize = 60;
+/// Distance at which the tangent is taken, relative to the sphere.
 const INWARDS: f64 = 1.0 / 64.0;
-/// More tangents of one dimension than this are those of a cone.
-const MOST_TANGENTS: usize = 3;
+/// More tangents of one dimension than this belong to a cone.
+const MAX_TANGENTS: usize = 3;
 
 /// A branch in coordinates of the motions to first order.
 pub(crate) struct Tangent {
     pub(crate) dimension: usize,
-    /// Orthonormal columns; more than the dimension where the branch is a cone.
+    /// Orthonormal columns; more than the dimension if the branch is a cone.
     pub(crate) directions: Matrix,
-    /// Closed configurations on it, on either side.
+    /// Closed configurations on it, on both sides.
     pub(crate) configurations: Vec<Vec<f64>>,
 }
 
-/// What a search found.
+/// The result of a search.
 pub(crate) struct Found {
     pub(crate) tangents: Vec<Tangent>,
-    /// True if nothing else can be there.
+    /// True if the search is proved to be complete.
     pub(crate) complete: bool,
 }
 
-/// A direction at random, of length one.
+/// A random unit vector.
 pub(crate) fn direction(k: usize, random: &mut u64) -> Vec<f64> {
     let x: Vec<f64> = (0..k).map(|_| uniform(random) - 0.5).collect();
     let size = norm(&x);
@@ -54,7 +55,7 @@ fn times(x: &[f64], factor: f64) -> Vec<f64> {
     x.iter().map(|x| factor * x).collect()
 }
 
-/// The branches through the configuration of `reduction`, looked for at the distance `h`.
+/// The branches through the configuration of `reduction`, searched at the distance `h`.
 pub(crate) fn branches(
     mechanism: &Mechanism,
     length: f64,
@@ -96,19 +97,19 @@ pub(crate) fn branches(
 /// The motions of a branch at one of its configurations, scaled.
 struct Here {
     motions: Matrix,
-    /// True if they are all those of first order.
+    /// True if they are all first-order motions.
     clear: bool,
 }
 
 impl Here {
-    /// At `q`, which is `h` away from where branches meet; none where no step can be followed.
+    /// At `q`, at the distance `h` from the crossing of branches; none if no step converges.
     fn of(mechanism: &Mechanism, q: &[f64], length: f64, h: f64) -> Result<Option<Self>> {
         let at = LyapunovSchmidt::of(mechanism, q, length, BRANCH_RANK * h)?;
         match followed(&at, h * BRANCH_RANK.sqrt())? {
             None => Ok(None),
             Some(true) => Ok(Some(Self { motions: at.kernel().clone(), clear: true })),
             Some(false) => {
-                // Shaky all along the branch: what steps can be followed spans its motions.
+                // Shaky along the whole branch: the steps that converge span its motions.
                 let (k, mut random, h) = (at.motions(), 6, 0.25 * h);
                 let mut found = Matrix::zeros(k, 0);
                 for _ in 0..4 * k + 4 {
@@ -128,7 +129,7 @@ fn column(x: &[f64]) -> Matrix {
     Matrix::from_fn(x.len(), 1, |i, _| x[i])
 }
 
-/// Whether steps along all motions can be followed; none where Newton's method fails.
+/// Whether steps along all motions are finite; none if Newton's method fails.
 fn followed(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<bool>> {
     if reduction.superfluous() == 0 {
         return Ok(Some(true));
@@ -155,8 +156,8 @@ fn zero(
     let mut x = start.to_vec();
     let Some(mut now) = reduction.step(&x)? else { return Ok(None) };
     let mut damping = 1e-3;
-    for _ in 0..MOST_STEPS {
-        // On the sphere: without the part along x.
+    for _ in 0..MAX_STEPS {
+        // On the sphere: without the component along x.
         let k = x.len();
         let outwards = now.rates.mul_vec(&x);
         let rates = Matrix::from_fn(now.rates.rows(), k, |i, j| {
@@ -186,7 +187,7 @@ fn zero(
     Ok((now.error() <= reduction.tolerance()).then_some((x, now)))
 }
 
-/// The motions of a branch as it comes to the configuration: those of configurations on both sides of it.
+/// The tangent of a branch at the configuration, from configurations on both sides of it.
 fn tangent(
     mechanism: &Mechanism,
     length: f64,
@@ -227,14 +228,14 @@ fn same(a: &Tangent, b: &Tangent) -> bool {
     }
 }
 
-/// Largest first; tangents of one dimension that are too many to be branches are those of a cone.
+/// Largest first; too many tangents of one dimension are merged into a cone.
 fn merged(mut tangents: Vec<Tangent>, k: usize) -> Vec<Tangent> {
     let mut merged: Vec<Tangent> = Vec::new();
     for dimension in (1..=k).rev() {
         let (mut of, others): (Vec<_>, Vec<_>) =
             tangents.into_iter().partition(|t| t.dimension == dimension);
         tangents = others;
-        if dimension > 1 && of.len() > MOST_TANGENTS {
+        if dimension > 1 && of.len() > MAX_TANGENTS {
             let all = Matrix::hstack(k, &of.iter().map(|t| &t.directions).collect::<Vec<_>>());
             of.truncate(1);
             of[0].directions = ColumnSpace::of(&all, Threshold::Absolute(SAME_BRANCH)).basis();
@@ -244,7 +245,7 @@ fn merged(mut tangents: Vec<Tangent>, k: usize) -> Vec<Tangent> {
     merged
 }
 
-/// The dimension of the zeros of g where it is one function whose Hessian has full rank.
+/// The dimension of the zeros of g if it is one function with a Hessian of full rank.
 fn morse(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<usize>> {
     let k = reduction.motions();
     let mut random = 3;
@@ -260,7 +261,7 @@ fn morse(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<usize>> {
         return Ok(None);
     }
     let along = space.basis();
-    // Both sides of the configuration: what is of third order cancels.
+    // Both sides of the configuration: third-order terms cancel.
     let even = |x: &[f64]| -> Result<Option<f64>> {
         let mut sum = 0.0;
         for side in [h, -h] {
@@ -270,7 +271,7 @@ fn morse(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<usize>> {
         Ok(Some(sum / (h * h)))
     };
     let mut hessian = Matrix::zeros(k, k);
-    // The diagonal first: the other entries are found from sums.
+    // The diagonal first: the other entries follow from sums.
     let pairs = (0..k).map(|i| (i, i)).chain((0..k).flat_map(|i| (0..i).map(move |j| (i, j))));
     for (i, j) in pairs {
         let mut x = vec![0.0; k];
@@ -282,7 +283,7 @@ fn morse(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<usize>> {
         hessian[(j, i)] = hessian[(i, j)];
     }
     let svd = Svd::of(&hessian);
-    // Right to h^2.
+    // Accurate to h^2.
     if !(svd.value(k - 1) > h * svd.value(0)) {
         return Ok(None);
     }

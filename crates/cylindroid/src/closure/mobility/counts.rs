@@ -1,4 +1,4 @@
-//! The counts of motions and wrenches that distinguish singular from regular configurations.
+//! Mobility counts: those of motions and wrenches that distinguish singular configurations.
 //!
 //! Checked  tests/it/closure/singularity.rs
 
@@ -9,7 +9,7 @@ use super::relation::{Relation, RelationDimensions};
 pub(crate) const ACTUATED_AND_OBJECT: RowSelection =
     RowSelection { actuated: true, passive: false, object: true };
 
-/// The counts that singularities change.
+/// The counts that change at singularities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MobilityCounts {
     /// Rank of the constraint matrix.
@@ -25,22 +25,22 @@ pub struct MobilityCounts {
 }
 
 impl MobilityCounts {
-    /// Of one pose.
+    /// At one configuration.
     #[must_use]
     pub fn of(motions: &MotionSpace, relation: &Relation) -> Self {
         let RelationDimensions { redundancy, indeterminacy, zero_torque, .. } =
             relation.dimensions();
         Self {
             rank: motions.cut().rank.rank,
-            idle: motions.standing(ACTUATED_AND_OBJECT).cols(),
+            idle: motions.vanishing_on(ACTUATED_AND_OBJECT).cols(),
             redundancy,
             indeterminacy,
             zero_torque,
         }
     }
 
-    /// The generic counts of two poses: the largest rank and the smallest of all others. Folded
-    /// over some poses at random it gives those of the mechanism.
+    /// The generic counts of two configurations: the larger rank and the smaller of every other
+    /// count. Folded over random configurations, it yields the generic counts of the mechanism.
     #[must_use]
     pub fn generic(self, other: Self) -> Self {
         Self {

@@ -1,15 +1,16 @@
-//! Finite mobility: which of the motions to first order a mechanism can really make.
+//! Finite mobility: the first-order motions that extend to finite motions of the mechanism.
 //!
-//! Formula  the closed configurations near q are the zeros of g(x), x in the motions to first order (see
-//!          `lyapunov_schmidt.rs`). No g: the equations are independent, and every motion exists (implicit
-//!          function theorem). g zero at every step: every motion exists, the other equations are
-//!          superfluous there too. Otherwise the zeros of g are looked for (`branches.rs`)
+//! Formula  the closed configurations near q are the zeros of the reduced equation g(x), x in the
+//!          first-order motions (see `lyapunov_schmidt.rs`). No g: the equations are independent,
+//!          and every motion is finite (implicit function theorem). g zero at every step: every
+//!          motion is finite, the dependent equations stay dependent. Otherwise the zeros of g are
+//!          searched (`branches.rs`)
 //! Shapes   motions: n x dimension, rates of the coordinates of q
 //! Units    rad, m; steps and residuals scaled by the characteristic length
-//! Valid    closed configurations; position limits are residual out. Geometry given to less than ten digits
-//!          makes a superfluous equation an independent one: the rank gap of `Mobility` says so
-//! Why so   a structure may be loose to first order and rigid (shaky), a mechanism may have a
-//!          negative Grubler count and move: neither first order nor counting can tell
+//! Valid    closed configurations; position limits are ignored. Geometry given to fewer than ten
+//!          digits makes dependent equations independent: the rank gap of `Mobility` shows this
+//! Why so   a structure may move to first order and be rigid (shaky), a mechanism may have a
+//!          negative Gruebler-Kutzbach count and move: neither first order nor counting can decide
 //! Source   Kuznetsov 1991 (infinitesimal and finite mobility); Mueller 2002 (kinematic tangent
 //!          cone)
 //! Checked  tests/it/closure/finite.rs
@@ -23,72 +24,72 @@ use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
 use crate::tolerance::{CLOSURE_RANK, FINITE_STEP, WITHIN_BRANCHES};
 
-/// How often a step that Newton's method does not follow is halved.
+/// Maximum number of halvings of a step that does not converge.
 const HALVINGS: usize = 8;
-/// How much nearer than the step the configurations beside a configuration are: spaces there, the mean of both
-/// sides, are those here but for 1e-10 times their curvature.
-const BESIDE: f64 = 1e-3;
+/// Distance of the neighbours of a configuration, relative to the step: the mean of the spaces on
+/// both sides differs from the space at the configuration by 1e-10 times its curvature.
+const NEIGHBOUR_DISTANCE: f64 = 1e-3;
 
-/// What a count of finite motions rests on.
+/// The evidence for a count of finite motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MobilityEvidence {
-    /// The loops are independent equations, or nothing moves even to first order: proved.
+    /// The loops are independent equations, or there is no first-order motion: proved.
     Independent,
-    /// Some equations are superfluous here, and after steps in all directions as well.
+    /// Some equations are dependent here, and after steps in all directions as well.
     Steps,
-    /// Not every step can be followed; the closed configurations around were looked for.
+    /// Not every step converges; the closed configurations nearby were searched.
     Search,
-    /// The loops are open in this configuration, or no step could be followed: nothing is known.
+    /// The loops are open, or no step converged.
     Unknown,
 }
 
 impl fmt::Display for MobilityEvidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Independent => "the loops are independent",
-            Self::Steps => "loops close after steps in every direction",
-            Self::Search => "from a search around the pose",
+            Self::Independent => "the loop equations are independent",
+            Self::Steps => "the loops close after steps in every direction",
+            Self::Search => "from a search around the configuration",
             Self::Unknown => "not known",
         })
     }
 }
 
-/// A set of closed configurations through the configuration in question.
+/// A branch of closed configurations through the given one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
     /// Its finite degrees of freedom.
     pub dimension: usize,
     /// Motions along it: rates of the coordinates of q, orthonormal when scaled; more than its
-    /// dimension where the branch is a cone with its tip here.
+    /// dimension if the branch is a cone with its apex here.
     pub motions: Matrix,
 }
 
-/// How a mechanism can move from a configuration beyond first order.
+/// The finite mobility of a mechanism at a configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FiniteMobility {
-    /// Motions to first order.
+    /// Number of first-order motions.
     pub infinitesimal: usize,
-    /// Degrees of freedom of finite motion: those of the largest branch.
+    /// Degrees of freedom of finite motion: those of the largest branch; `None` if unknown.
     pub finite: Option<usize>,
-    /// The branches found, largest first; one where the configuration is ordinary, none where it is
-    /// rigid. Two and more: the mechanism can go different ways from here.
+    /// The branches found, largest first; one at an ordinary configuration, none if it is rigid.
+    /// Two or more: a bifurcation.
     pub branches: Vec<Branch>,
-    /// Motions to first order across all branches, a column each: the mechanism gives there and
-    /// does not move (shaky).
+    /// First-order motions orthogonal to all branches, one column each: they do not extend to
+    /// finite motions (shaky).
     pub shaky: Matrix,
-    /// What it rests on.
+    /// The evidence for `finite`.
     pub evidence: MobilityEvidence,
-    /// False where another method should confirm it: branches may have been missed.
+    /// False if branches may have been missed.
     pub certain: bool,
-    /// Size of the steps [rad, or characteristic lengths]; 0 where none was needed.
+    /// Length of the steps [rad, or characteristic lengths]; 0 if none was needed.
     pub step: f64,
-    /// By how much the worst step is residual open (scaled) [-]: rounding where all can be followed.
-    pub left_open: f64,
-    beside: Vec<Vec<f64>>,
+    /// Largest loop residual after a step (scaled) [-]: rounding if all motions are finite.
+    pub residual: f64,
+    neighbours: Vec<Vec<f64>>,
 }
 
 impl FiniteMobility {
-    /// Of a configuration, at the mechanism's reach as characteristic length or another (m).
+    /// At a configuration, with the mechanism's reach as characteristic length or another (m).
     ///
     /// ```
     /// use cylindroid::closure::FiniteMobility;
@@ -115,8 +116,8 @@ impl FiniteMobility {
             evidence: MobilityEvidence::Unknown,
             certain: false,
             step: 0.0,
-            left_open: 0.0,
-            beside: Vec::new(),
+            residual: 0.0,
+            neighbours: Vec::new(),
         };
         if !reduction.is_closed() {
             return Ok(report);
@@ -125,9 +126,9 @@ impl FiniteMobility {
             report.whole(&reduction, MobilityEvidence::Independent)?;
             return Ok(report);
         }
-        let Some((step, left_open)) = open_after_steps(&reduction)? else { return Ok(report) };
-        (report.step, report.left_open) = (step, left_open);
-        if left_open <= reduction.tolerance() {
+        let Some((step, residual)) = open_after_steps(&reduction)? else { return Ok(report) };
+        (report.step, report.residual) = (step, residual);
+        if residual <= reduction.tolerance() {
             report.whole(&reduction, MobilityEvidence::Steps)?;
             return Ok(report);
         }
@@ -142,8 +143,8 @@ impl FiniteMobility {
                 dimension: tangent.dimension,
                 motions: reduction.unscaled(&(reduction.kernel() * &tangent.directions)),
             });
-            if report.beside.is_empty() {
-                report.beside = tangent.configurations;
+            if report.neighbours.is_empty() {
+                report.neighbours = tangent.configurations;
             }
         }
         let outside = ColumnSpace::of(&tangents, Threshold::Absolute(WITHIN_BRANCHES)).complement();
@@ -151,16 +152,16 @@ impl FiniteMobility {
         Ok(report)
     }
 
-    /// True where first order tells all: every motion exists.
+    /// True if every first-order motion is finite.
     #[must_use]
     pub fn is_ordinary(&self) -> bool {
         self.finite == Some(self.infinitesimal)
     }
 
-    /// Closed configurations a little to both sides along a motion in which all degrees of freedom of the
-    /// largest branch take part; fewer where they could not be found.
-    pub(crate) fn beside(&self) -> &[Vec<f64>] {
-        &self.beside
+    /// Closed configurations on both sides, along a motion that involves all degrees of freedom of
+    /// the largest branch; fewer if they were not found.
+    pub(crate) fn neighbours(&self) -> &[Vec<f64>] {
+        &self.neighbours
     }
 
     fn whole(&mut self, reduction: &LyapunovSchmidt<'_>, evidence: MobilityEvidence) -> Result<()> {
@@ -172,15 +173,15 @@ impl FiniteMobility {
         let motions = reduction.unscaled(reduction.kernel());
         self.branches.push(Branch { dimension: k, motions });
         let x = direction(k, &mut 4);
-        for side in [FINITE_STEP * BESIDE, -FINITE_STEP * BESIDE] {
+        for side in [FINITE_STEP * NEIGHBOUR_DISTANCE, -FINITE_STEP * NEIGHBOUR_DISTANCE] {
             let x: Vec<f64> = x.iter().map(|x| side * x).collect();
-            self.beside.extend(reduction.step(&x)?.map(|near| near.q));
+            self.neighbours.extend(reduction.step(&x)?.map(|near| near.q));
         }
         Ok(())
     }
 }
 
-/// The step that Newton's method follows in every direction tried, and the worst error residual.
+/// The step that converges in every direction tried, and the largest residual.
 fn open_after_steps(reduction: &LyapunovSchmidt<'_>) -> Result<Option<(f64, f64)>> {
     let k = reduction.motions();
     let mut step = FINITE_STEP;

@@ -1,17 +1,17 @@
-//! The closed configurations near a closed configuration, reduced to what decides whether they exist.
+//! Lyapunov-Schmidt reduction of the loop-closure equations at a closed configuration.
 //!
-//! Formula  loops f(q) = 0 with rates C = df/dq of rank r; K = ker C, N = (ker C)^perp,
-//!          P = ran C, R = (ran C)^perp. For every small x the equation P^T f(q0 + K x + N y) = 0
-//!          has one y(x); what is residual of the loops is g(x) = R^T f, with g(0) = 0, dg(0) = 0.
-//!          Near q0 the closed configurations are the zeros of g
+//! Formula  loops f(q) = 0 with Jacobian C = df/dq of rank r; K = ker C, N = (ker C)^perp, P = ran
+//!          C, R = (ran C)^perp. For every small x the equation P^T f(q0 + K x + N y) = 0 has one
+//!          solution y(x); the reduced equation is g(x) = R^T f = 0, with g(0) = 0, dg(0) = 0. Near
+//!          q0 the closed configurations are the zeros of g
 //! Shapes   K: n x k, N: n x r, P: t x r, R: t x (t - r); x: k, g: t - r
-//! Units    scaled as in `assembly.rs`: none
-//! Valid    steps x that Newton's method follows; the caller shortens those that fail. Position
-//!          limits are residual out: this is geometry
-//! Why so   the directions N are the only ones in which the loops resist to first order, so a
-//!          step along K is never undone by closing them; least squares over all coordinates would
-//!          slide back to where the loops close and report that as success
-//! Source   Lyapunov-Schmidt reduction; Golubitsky & Schaeffer 1985, chapter VII
+//! Units    none: scaled as in `loop_closure.rs`
+//! Valid    steps x that Newton's method can follow; the caller shortens those that fail. Position
+//!          limits are ignored
+//! Why so   the loops resist to first order only along N, so a step along K is never undone by
+//!          closing them; least squares over all coordinates would slide back to where the loops
+//!          close and report success
+//! Source   Golubitsky & Schaeffer 1985, chapter VII
 //! Checked  tests/it/closure/finite.rs
 
 use crate::closure::position::coordinates::column_scale;
@@ -21,14 +21,14 @@ use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm};
 use crate::model::Mechanism;
 use crate::tolerance::LOOP_ROUNDING;
 
-/// Newton steps at most: four are the rule.
-const MOST_STEPS: usize = 30;
+/// Maximum number of Newton steps: four are usual.
+const MAX_STEPS: usize = 30;
 
-/// A configuration with what its loops allow and hold to first order.
+/// The reduction at a configuration, with the spaces of its first order.
 pub(crate) struct LyapunovSchmidt<'a> {
     mechanism: &'a Mechanism,
     length: f64,
-    /// Of each coordinate: rate = scale * scaled rate.
+    /// For each coordinate: rate = scale * scaled rate.
     scale: Vec<f64>,
     q: Vec<f64>,
     free: Vec<usize>,
@@ -41,7 +41,7 @@ pub(crate) struct LyapunovSchmidt<'a> {
     closed: bool,
 }
 
-/// A configuration near it in which all loops are closed but for `residual`.
+/// A nearby configuration in which all loops are closed except for the residual g.
 pub(crate) struct ReducedPoint {
     pub(crate) q: Vec<f64>,
     /// g.
@@ -57,8 +57,8 @@ impl ReducedPoint {
 }
 
 impl<'a> LyapunovSchmidt<'a> {
-    /// Of the configuration `q`, singular values of C at or below `threshold` times the largest being
-    /// zero.
+    /// At the configuration `q`, with singular values of C at or below `threshold` times the
+    /// largest counted as zero.
     pub(crate) fn of(
         mechanism: &'a Mechanism,
         q: &[f64],
@@ -92,7 +92,7 @@ impl<'a> LyapunovSchmidt<'a> {
         })
     }
 
-    /// True where the loops of the configuration are closed.
+    /// True if the loops of the configuration are closed.
     pub(crate) fn is_closed(&self) -> bool {
         self.closed
     }
@@ -102,7 +102,7 @@ impl<'a> LyapunovSchmidt<'a> {
         self.kernel.cols()
     }
 
-    /// Number t - r of equations that the others make superfluous, to first order.
+    /// Number t - r of equations that depend on the others to first order.
     pub(crate) fn superfluous(&self) -> usize {
         self.cokernel.cols()
     }
@@ -112,7 +112,7 @@ impl<'a> LyapunovSchmidt<'a> {
         &self.kernel
     }
 
-    /// What rounding, and loops that are open a little from the start, make of a zero of g.
+    /// The residual below which g counts as zero: rounding, and the residual of the start.
     pub(crate) fn tolerance(&self) -> f64 {
         self.tolerance
     }
@@ -129,11 +129,11 @@ impl<'a> LyapunovSchmidt<'a> {
         q
     }
 
-    /// The configuration at `x`; none where Newton's method does not find it.
+    /// The configuration at `x`; none if Newton's method does not converge.
     pub(crate) fn step(&self, x: &[f64]) -> Result<Option<ReducedPoint>> {
         let mut q = self.moved(&self.q, &self.kernel.mul_vec(x));
         let mut last = f64::INFINITY;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let now = LoopClosure::at(self.mechanism, &q, &self.free, self.length)?;
             let open = self.range.transpose().mul_vec(&now.residuals);
             let error = norm(&open);

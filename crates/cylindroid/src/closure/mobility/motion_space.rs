@@ -1,23 +1,23 @@
-//! The motions that a constraint allows: the kernel of its matrix.
+//! Motion space: all motions that a constraint allows, the kernel of its matrix.
 //!
-//! Formula  K = ker M', M' = D_r [J_a J_p -G^T] D_c; parts of it: the combinations of columns of K
-//!          whose entries vanish in some rows
+//! Formula  K = ker M', M' = D_r [J_a J_p -G^T] D_c; its subspaces: combinations of columns of K
+//!          that vanish in selected rows
 //! Shapes   K: (q_a + q_p + d) x k, orthonormal; k is the number of degrees of freedom
-//! Units    scaled by the characteristic length inside, as given outside
-//! Valid    any constraint. One relative threshold decides the rank of M'; every part is decided
-//!          by an absolute one, since K has columns of length one: relative to a block that only
-//!          rounding filled, rounding would have full rank.
-//! Why so   of the six groups of rows that the mobility report asks for three are the others of the
-//!          other three: what a motion has at most in one group it has not in the others
+//! Units    scaled by the characteristic length inside, those of the constraint outside
+//! Valid    any constraint. The rank of M' is decided by a relative threshold, all subspaces by an
+//!          absolute one: the columns of K are unit vectors, and relative to a block of rounding
+//!          errors, rounding would have full rank
+//! Why so   the mobility report needs six row groups, which form three complementary pairs: entries
+//!          close to 1 in one group leave nothing for the other
 //! Source   Bicchi & Prattichizzo 1998, eqs. 3 and 4, whose bases these are
-//! Checked  tests/it/closure/reference.rs (31 mechanisms), tests/it/closure/mobility.rs
+//! Checked  tests/it/closure/reference.rs, tests/it/closure/mobility.rs
 
 use super::relation::{ObjectScale, Relation};
 use crate::closure::constraint::velocity_constraint::{Constraint, kernel_tolerance};
 use crate::linalg::{ColumnSpace, Cut, Matrix, Rank, Threshold};
 use crate::tolerance::{CLEAR_SHARE, CLOSURE_RANK};
 
-/// Groups of rows of a motion.
+/// Selected groups of rows of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RowSelection {
     /// The actuated joints.
@@ -28,7 +28,7 @@ pub struct RowSelection {
     pub object: bool,
 }
 
-/// All motions of a constraint.
+/// The space of all motions of a constraint.
 #[derive(Debug, Clone)]
 pub struct MotionSpace {
     actuated: usize,
@@ -50,7 +50,7 @@ impl MotionSpace {
         Self::with_threshold(constraint, CLOSURE_RANK)
     }
 
-    /// With singular values at or below `threshold` times the largest taken as zero.
+    /// With singular values at or below `threshold` times the largest one counted as zero.
     #[must_use]
     pub fn with_threshold(constraint: &Constraint, threshold: f64) -> Self {
         let space =
@@ -69,20 +69,20 @@ impl MotionSpace {
         }
     }
 
-    /// Number k of degrees of freedom, idle ones included.
+    /// Number k of degrees of freedom, idle motions included.
     #[must_use]
     pub fn dof(&self) -> usize {
         self.kernel.cols()
     }
 
-    /// Rank of the constraint matrix and what it was cut between (scaled).
+    /// Rank of the scaled constraint matrix, with the singular values next to the cut.
     #[must_use]
     pub fn cut(&self) -> Cut {
         self.cut
     }
 
-    /// Smallest singular value kept over the largest: the distance to a pose where the constraint
-    /// loses rank [-].
+    /// Smallest singular value kept over the largest: the distance to a configuration where the
+    /// constraint loses rank [-].
     #[must_use]
     pub fn regularity(&self) -> f64 {
         if self.cut.rank.rank == 0 { 0.0 } else { self.cut.kept / self.largest }
@@ -99,27 +99,28 @@ impl MotionSpace {
         self.tolerance
     }
 
-    /// Grubler's count: columns less rows, negative for many mechanisms that move. The degrees of
-    /// freedom exceed it by the hyperstatic degree.
+    /// The Gruebler-Kutzbach count: columns minus rows, negative for many mechanisms that move. The
+    /// degrees of freedom exceed it by the degree of hyperstaticity.
     #[must_use]
     pub fn gruebler_kutzbach(&self) -> i64 {
         self.scale.len() as i64 - self.constraint_rows as i64
     }
 
-    /// Number t - rank of forces at the contacts that nothing determines.
+    /// Degree of hyperstaticity, t - rank: number of independent contact forces that equilibrium
+    /// does not determine.
     #[must_use]
     pub fn hyperstatic(&self) -> usize {
         self.constraint_rows - self.cut.rank.rank
     }
 
-    /// A basis of all motions, a column `(q_a, q_p, u)` each: orthonormal in scaled units, given
-    /// in those of the constraint.
+    /// A basis of all motions, one column `(q_a, q_p, u)` each: orthonormal in scaled units,
+    /// returned in those of the constraint.
     #[must_use]
     pub fn basis(&self) -> Matrix {
         self.unscaled(&self.kernel)
     }
 
-    /// Relation between actuated joints and object: what is left when passive joints are forgotten.
+    /// The relation between actuated joints and object: the projection of the motions on both.
     #[must_use]
     pub fn relation(&self) -> Relation {
         let a = self.actuated;
@@ -137,17 +138,20 @@ impl MotionSpace {
         )
     }
 
-    /// The combinations of kernel columns (k entries each) whose entries in `rows` vanish, and the
-    /// rank of the kernel in these rows.
-    pub(crate) fn still(&self, rows: RowSelection) -> (Matrix, Cut) {
+    /// Coefficients (k entries each) of the combinations of kernel columns that vanish on `rows`,
+    /// and the rank of the kernel in these rows.
+    pub(crate) fn vanishing_coefficients(&self, rows: RowSelection) -> (Matrix, Cut) {
         let space = self.space_of(rows);
         (space.complement(), space.cut())
     }
 
-    /// The same for `rows` and for all others. The columns of the kernel have length one, so that
-    /// what a motion has in `rows` at most leaves it `sqrt(1 - s^2)` at least in the others: where
-    /// that is far from nothing, none of them is still in the others.
-    pub(crate) fn still_and_others(&self, rows: RowSelection) -> [(Matrix, Cut); 2] {
+    /// The same for `rows` and for their complement. The columns of the kernel are unit vectors: if
+    /// s is the largest singular value in `rows`, every motion has a norm of at least `sqrt(1 -
+    /// s^2)` in the complement, so that none vanishes there unless s is close to 1.
+    pub(crate) fn vanishing_on_rows_and_complement(
+        &self,
+        rows: RowSelection,
+    ) -> [(Matrix, Cut); 2] {
         let space = self.space_of(rows);
         let k = self.dof();
         let s = space.largest().min(1.0);
@@ -158,12 +162,16 @@ impl MotionSpace {
             (Matrix::zeros(k, 0), Cut { rank, kept: least, dropped: 0.0 })
         } else {
             let RowSelection { actuated, passive, object } = rows;
-            self.still(RowSelection { actuated: !actuated, passive: !passive, object: !object })
+            self.vanishing_coefficients(RowSelection {
+                actuated: !actuated,
+                passive: !passive,
+                object: !object,
+            })
         };
         [(space.complement(), space.cut()), others]
     }
 
-    /// What the chosen rows of the kernel span, in k dimensions.
+    /// The column space of the selected rows of the kernel, in k dimensions.
     fn space_of(&self, rows: RowSelection) -> ColumnSpace {
         let (a, n) = (self.actuated, self.kernel.rows());
         let ranges = [
@@ -181,10 +189,10 @@ impl MotionSpace {
         ColumnSpace::cut_of(block, Threshold::Absolute(self.tolerance))
     }
 
-    /// The motions in which `rows` stand still: a basis, a column `(q_a, q_p, u)` each.
+    /// The motions that vanish on `rows`: a basis, one column `(q_a, q_p, u)` each.
     #[must_use]
-    pub fn standing(&self, rows: RowSelection) -> Matrix {
-        self.unscaled(&(&self.kernel * &self.still(rows).0))
+    pub fn vanishing_on(&self, rows: RowSelection) -> Matrix {
+        self.unscaled(&(&self.kernel * &self.vanishing_coefficients(rows).0))
     }
 
     /// The kernel in scaled coordinates.

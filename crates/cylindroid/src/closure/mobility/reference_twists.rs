@@ -1,13 +1,13 @@
-//! The motions of the reference link, as twists: what its screw system is made of.
+//! Twists of the reference link: a basis of its motions, from which its screw system is computed.
 //!
-//! Formula  columns (object) of the coordinate and the indeterminate directions of the relation
-//!          between actuated joints and object, their reference point moved from the frame's origin
-//!          to that of the world
+//! Formula  object columns of the coordinate and the indeterminate directions of the relation
+//!          between actuated joints and object, moved from the origin of the frame to that of the
+//!          world
 //! Shapes   a twist for each independent motion, at most d (6, in the plane 3)
 //! Units    m, rad
-//! Frame    world, at the world's origin
+//! Frame    world, at the world origin
 //! Valid    any mechanism; for a tree they span the columns of its Jacobian
-//! Checked  tests/it/closure/closed_chain.rs::motions_of_the_reference
+//! Checked  tests/it/closure/graph.rs::motions_of_the_reference
 
 use super::motion_space::MotionSpace;
 use crate::closure::constraint::closed_chain::ClosedChain;
@@ -17,7 +17,7 @@ use crate::spatial::Twist;
 
 impl ClosedChain {
     /// A basis of the motions of the reference link at `state`, for which this chain was made:
-    /// twists at the world's origin, world axes.
+    /// twists at the world origin, world axes.
     #[must_use]
     pub fn reference_twists(&self, state: &State) -> Vec<Twist> {
         let parts = MotionSpace::of(&self.constraint).relation().motions();
@@ -27,7 +27,7 @@ impl ClosedChain {
         let twist = |column: &[f64]| {
             let mut all = [0.0; 6];
             components.iter().zip(column).for_each(|(&i, x)| all[i] = *x);
-            // The point of the body that is at the world's origin.
+            // The velocity of the body point at the world origin.
             Twist::from_array(all).at_point(-origin)
         };
         let columns = |m: &crate::linalg::Matrix| -> Vec<Twist> {

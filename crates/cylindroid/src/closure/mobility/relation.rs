@@ -1,16 +1,17 @@
-//! The linear relation between actuated joints and object, and the forces that do no work on it.
+//! The linear relation between actuated joints and object, and its dual: the forces that do no work
+//! on it.
 //!
-//! Formula  R = {(q_a, u)}: rows q_a and u of the kernel, made orthonormal, [X C; Y S] Z^T;
-//!          F = {(tau, w): tau^T q_a + w^T u = 0 on R} = R^perp, with the columns (-X S, Y C),
-//!          h = (dom R)^perp and s = (ran R)^perp
+//! Formula  R = {(q_a, u)}: rows q_a and u of the kernel, orthonormalised, CS decomposition [X C; Y
+//!          S] Z^T; F = {(tau, w): tau^T q_a + w^T u = 0 on R} = R^perp, with the columns (-X S, Y
+//!          C), h = (dom R)^perp and s = (ran R)^perp
 //! Shapes   q_a and d rows, p = r' + i' + c' columns; F has q_a + d - p
 //! Units    scaled by the characteristic length inside, those of the constraint outside
 //! Frame    that of the object's twist; the wrench is taken at the same point
-//! Valid    any constraint, hyperstatic ones too: only the forces at contacts are undetermined
-//!          there, not joint torques and wrenches
-//! Why so   the paper's bases (eqs. 5 and 8) are not unique where a motion of the actuated joints
-//!          can be taken up by passive joints or by the object, and its equations 15 and 16
-//!          depend on the choice; the relation leaves nothing to choose
+//! Valid    any constraint, including hyperstatic ones: only contact forces are undetermined there,
+//!          not joint torques and wrenches
+//! Why so   the paper's bases (eqs. 5 and 8) are not unique if passive joints or the object can
+//!          compensate a motion of the actuated joints, and its eqs. 15 and 16 depend on the
+//!          choice; the relation is unique
 //! Source   Bicchi & Prattichizzo 1998, sections 2 to 4; virtual work for F
 //! Checked  tests/it/closure/reference.rs, tests/it/closure/laws.rs
 
@@ -26,33 +27,33 @@ use crate::tolerance::CLOSURE_BLOCK;
 pub struct RelationDimensions {
     /// p: independent pairs of a joint motion and an object motion.
     pub relation: usize,
-    /// c': motions of the object that the actuated joints bring about and that need them.
+    /// c': motions of the object that require the actuated joints.
     pub coordinate: usize,
-    /// r': motions of the actuated joints with which the object may rest.
+    /// r': motions of the actuated joints with the object at rest.
     pub redundancy: usize,
     /// i': motions of the object with the actuated joints at rest.
     pub indeterminacy: usize,
-    /// h: joint torques that balance without a wrench on the object (active internal forces).
+    /// h: joint torques in equilibrium without a wrench on the object (active internal forces).
     pub internal: usize,
-    /// s: wrenches on the object that need no joint torque (structural).
+    /// s: wrenches on the object in equilibrium without joint torques (structural forces).
     pub zero_torque: usize,
 }
 
-/// A relation split by what its directions do, in the units of the constraint. For forces read
-/// torque for rate and wrench for twist.
+/// Bases of a relation by kind, in the units of the constraint. For the dual relation, rates are
+/// torques and twists are wrenches.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RelationBases {
     /// Joint motions without object motion, a column each.
     pub zero: Matrix,
     /// Object motions without joint motion.
     pub infinite: Matrix,
-    /// Joint motions of the coordinate directions ...
+    /// Joint motions of the coordinate directions,
     pub joint: Matrix,
-    /// ... and the object motions that go with them, column by column.
+    /// and the corresponding object motions, column by column.
     pub object: Matrix,
 }
 
-/// Between scaled and given coordinates of the object.
+/// Transforms between scaled and given coordinates of the object.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ObjectScale {
     /// u = twist * u'.
@@ -98,7 +99,7 @@ pub struct Relation {
 }
 
 impl Relation {
-    /// Of the span of the columns of `span` (scaled), actuated joints first.
+    /// From the span of the columns of `span` (scaled), actuated joints first.
     pub(crate) fn from_scaled(
         span: Matrix,
         joint_scale: Vec<f64>,
@@ -147,9 +148,10 @@ impl Relation {
         }
     }
 
-    /// The finite directions as pairs (s, c) in scaled units, s falling: how much of each belongs
-    /// to the object and to the joints. The smallest s is the sine of the angle to a pose where
-    /// the object loses a motion, the smallest c to one where it gains one.
+    /// The finite directions as pairs (s, c) in scaled units, in descending order of s: sine and
+    /// cosine of the angle between the direction and the joint space. The smallest s is the
+    /// distance to a configuration where the object loses a motion, the smallest c to one where it
+    /// gains one.
     #[must_use]
     pub fn finite_pairs(&self) -> Vec<(f64, f64)> {
         self.finite().map(|j| (self.cs.sines[j], self.cs.cosines[j])).collect()
@@ -186,7 +188,7 @@ impl Relation {
         })
     }
 
-    /// Internal torques and zero-torque wrenches, those of [`Relation::forces`] alone.
+    /// Internal torques and zero-torque wrenches only, see [`Relation::forces`].
     pub(crate) fn internal_and_structural(&self) -> (Matrix, Matrix) {
         let (mut torques, wrenches) = (self.internal_scaled(), self.zero_torque_scaled());
         for j in 0..torques.cols() {
@@ -198,13 +200,13 @@ impl Relation {
     /// The relation between actuated joints and the task `T u`.
     ///
     /// # Errors
-    /// A map that has not a column for each component of u, has more rows than it can have
-    /// independent ones, dependent rows, NaN or infinity.
+    /// A map whose number of columns is not the size of u, with linearly dependent rows, NaN or
+    /// infinity.
     pub fn task(&self, map: &Matrix) -> Result<Self> {
         Error::check_len("columns of the task map", self.object(), map.cols())?;
         check_finite("task map", map)?;
         // In scaled coordinates T' = R^T Q^T; Q^T u' are the scaled coordinates of the task, so
-        // that neither its units nor the lengths of its rows matter.
+        // that the result is independent of its units and of the lengths of its rows.
         let m = map.rows();
         let scaled = (map * &self.scale.twist).transpose();
         let rows = Matrix::from_fn(scaled.rows(), m, |i, j| {
@@ -216,7 +218,7 @@ impl Relation {
             return Err(Error::InvalidOption {
                 option: "task",
                 value: format!("{m} x {} map of rank {rank}", map.cols()),
-                reason: "its rows must be independent; leave out those that follow from others"
+                reason: "its rows must be linearly independent; remove the dependent ones"
                     .to_owned(),
             });
         }
@@ -255,19 +257,18 @@ impl Relation {
         Matrix::from_fn(a.rows(), self.finite().len(), |i, j| a[(i, from + j)] * size(from + j))
     }
 
-    /// What is orthogonal to all attainable joint rates.
+    /// The complement of all attainable joint rates.
     fn internal_scaled(&self) -> Matrix {
         complement(self.cs.x.columns_between(self.infinite, self.cs.len()))
     }
 
-    /// What is orthogonal to all attainable twists.
+    /// The complement of all attainable twists.
     fn zero_torque_scaled(&self) -> Matrix {
         complement(self.cs.y.columns_between(0, self.cs.len() - self.zero))
     }
 
-    /// Joint torques that balance the wrench with the least scaled norm, and the parts of the
-    /// wrench that the structure holds and that nothing balances (all in the units of the
-    /// constraint).
+    /// Joint torques of least scaled norm that balance the wrench, and the parts of the wrench that
+    /// are balanced by the structure and not at all (all in the units of the constraint).
     pub(crate) fn balance(&self, wrench: &[f64]) -> DualRelation {
         // w' = A^T w, since w^T u = w'^T u'.
         let scaled = self.scale.twist.transpose().mul_vec(wrench);
@@ -314,14 +315,14 @@ impl Relation {
     }
 }
 
-/// What balances a wrench.
+/// The equilibrium of a wrench.
 pub(crate) struct DualRelation {
     pub(crate) torques: Vec<f64>,
     pub(crate) structural: Vec<f64>,
     pub(crate) unbalanced: Vec<f64>,
 }
 
-/// What is orthogonal to independent columns.
+/// The orthogonal complement of independent columns.
 fn complement(columns: Matrix) -> Matrix {
     if columns.cols() == columns.rows() {
         return Matrix::zeros(columns.rows(), 0);
@@ -329,7 +330,7 @@ fn complement(columns: Matrix) -> Matrix {
     Qr::plain(columns).complement()
 }
 
-/// RelationBases in scaled coordinates.
+/// Bases by kind in scaled coordinates.
 struct Kinds {
     zero: Matrix,
     infinite: Matrix,

@@ -1,23 +1,23 @@
 //! Mobility report: every kind of motion and force of a closed chain, counted and with a basis.
 //!
 //! Formula  dof            ker [J_a J_p -G^T]
-//!          redundancy     ker J_a: actuated joints move, all else rests
-//!          indeterminacy  ker [J_p -G^T]: actuated joints rest
-//!          coordinate     the rest, orthogonal to both: k - r - i
+//!          redundancy     ker J_a: actuated joints move, all else is at rest
+//!          indeterminacy  ker [J_p -G^T]: actuated joints are at rest
+//!          coordinate     orthogonal to both: k - r - i
 //!          idle           ker J_p: passive joints move alone
-//!          uncontrollable_object_motions      ker G^T: the object moves alone
-//!          internal       (dom R)^perp, torques in balance without a wrench
-//!          zero_torque    (ran R)^perp, wrenches held without torques
-//!          hyperstatic    ker G and ker J^T: forces that nothing determines
+//!          uncontrollable object motions  ker G^T: the object moves alone
+//!          internal       (dom R)^perp, torques in equilibrium without a wrench
+//!          zero_torque    (ran R)^perp, wrenches in equilibrium without torques
+//!          hyperstatic    ker G and ker J^T: contact forces that equilibrium does not determine
 //! Shapes   motions: (q_a + q_p + d) x n, torques: q_a x n, wrenches: d x n, contact forces: t x n
 //! Units    of the constraint; bases are orthonormal in units scaled by the characteristic length
-//! Valid    any constraint. Counts come from ranks, never from Grubler's formula, which is given
-//!          beside them. Infinitesimal: a motion counted here may have no finite one behind it, see
-//!          `finite_mobility.rs`.
+//! Valid    any constraint. Counts come from ranks; the Gruebler-Kutzbach count is given for
+//!          comparison. The counts are infinitesimal: a motion may exist to first order only, see
+//!          `finite_mobility.rs`
 //! Why so   every count has its own rank decision; three of the eight follow from the others, see
 //!          [`MotionSpace`]
-//! Source   Bicchi & Prattichizzo 1998, eqs. 3 to 5; the counts of its eq. 5 modulo redundancy and
-//!          indeterminacy, where alone they are unique
+//! Source   Bicchi & Prattichizzo 1998, eqs. 3 to 5; the counts of eq. 5 modulo redundancy and
+//!          indeterminacy, since only these are unique
 //! Checked  tests/it/closure/reference.rs, tests/it/closure/mobility.rs
 
 use std::fmt;
@@ -28,13 +28,13 @@ use super::subspace::Subspace;
 use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
 
-/// Coordinate motions by what takes part beside the actuated joints. A motion of the actuated joints
-/// that either passive joints or the object can take up is counted in `passive` and in `object`.
+/// Coordinate motions by what moves besides the actuated joints. A motion of the actuated joints
+/// that either passive joints or the object can compensate is counted in `passive` and in `object`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CoordinateKinds {
-    /// With passive joints alone; the object may rest.
+    /// With passive joints only; the object may be at rest.
     pub passive: usize,
-    /// With the object alone; passive joints may rest.
+    /// With the object only; passive joints may be at rest.
     pub object: usize,
     /// Only with both.
     pub both: usize,
@@ -42,20 +42,20 @@ pub struct CoordinateKinds {
     pub overlap: usize,
 }
 
-/// How a joint can move.
+/// The mobility of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMobility {
-    /// Its largest share in a motion of unit length (scaled) [-], between 0 and 1.
+    /// Largest norm of its entry in a motion of unit norm (scaled) [-], between 0 and 1.
     pub share: f64,
     /// False where it is locked by the geometry.
     pub moves: bool,
-    /// True where it can move with all actuated joints at rest.
+    /// True if it can move with all actuated joints at rest.
     pub free_of_actuators: bool,
-    /// True where it can move with the actuated joints and the object at rest (passive joints).
+    /// True if it can move with the actuated joints and the object at rest (passive joints).
     pub idle: bool,
 }
 
-/// A rank that hangs on little.
+/// A numerically ambiguous rank decision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankWarning {
     /// The count that depends on it.
@@ -69,9 +69,10 @@ impl fmt::Display for RankWarning {
         let Cut { rank, kept, dropped } = self.cut;
         write!(
             f,
-            "{} hangs on a rank of {}: smallest value kept {kept:.1e}, largest dropped \
-             {dropped:.1e}, threshold {:.1e}; near a singular pose, or geometry with few digits: \
-             change the pose a little or set the threshold",
+            "{} depends on an ambiguous rank of {} (smallest singular value kept {kept:.1e}, \
+             largest dropped {dropped:.1e}, threshold {:.1e}): the configuration may be \
+             near-singular or the geometry imprecise; perturb the configuration or set the \
+             threshold",
             self.count, rank.rank, rank.threshold
         )
     }
@@ -98,33 +99,44 @@ pub struct Mobility {
     pub indeterminacy: Subspace,
     /// Motions orthogonal to both (scaled).
     pub coordinate: Subspace,
-    /// Which of them move what.
+    /// The coordinate motions by what moves.
     pub coordinate_kinds: CoordinateKinds,
     /// Motions of passive joints alone.
     pub idle: Subspace,
-    /// Motions of the object alone.
+    /// Motions of the object alone, which neither actuated nor passive joints can influence.
     pub uncontrollable_object_motions: Subspace,
-    /// Indeterminate motions that need passive joints and object.
+    /// Number of indeterminate motions that involve both passive joints and object.
     pub mixed: usize,
-    /// Joint torques in balance without a wrench on the object (active internal forces).
+    /// Joint torques in equilibrium without a wrench on the object (active internal forces).
     pub internal: Subspace,
-    /// Wrenches that need no joint torque.
+    /// Wrenches in equilibrium without joint torques.
     pub zero_torque: Subspace,
-    /// Contact forces that neither joint torques nor the wrench determine.
+    /// Contact forces that equilibrium with torques and wrench does not determine.
     pub hyperstatic: Subspace,
-    /// The counts of the relation between actuated joints and object alone, where redundancy and
-    /// indeterminacy take in what passive joints make possible.
+    /// The counts of the relation between actuated joints and object, whose redundancy and
+    /// indeterminacy include motions with passive joints.
     pub relation: RelationDimensions,
-    /// Columns less rows, for comparison.
+    /// Gruebler-Kutzbach count (columns minus rows), for comparison.
+    #[doc(alias = "mobility formula")]
     pub gruebler_kutzbach: i64,
     /// Actuated joints, then passive columns.
     pub joints: Vec<JointMobility>,
-    /// Ranks that are a matter of taste.
+    /// Numerically ambiguous rank decisions.
     pub ambiguous_ranks: Vec<RankWarning>,
 }
 
 impl Mobility {
     /// With the default threshold.
+    ///
+    /// ```
+    /// use cylindroid::closure::{ClosedChain, Mobility};
+    ///
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let chain = ClosedChain::of(&five_bar.state(five_bar.home())?, None, None)?;
+    /// let mobility = Mobility::of(&chain.constraint);
+    /// assert_eq!((mobility.dof.dimension(), mobility.gruebler_kutzbach), (2, 2));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn of(constraint: &Constraint) -> Self {
         let motions = MotionSpace::of(constraint);
@@ -132,7 +144,7 @@ impl Mobility {
         Self::from_parts(constraint, &motions, &relation)
     }
 
-    /// From motions and relation of this constraint.
+    /// From the motion space and the relation of this constraint.
     #[must_use]
     pub fn from_parts(constraint: &Constraint, motions: &MotionSpace, relation: &Relation) -> Self {
         const A: RowSelection = RowSelection { actuated: true, passive: false, object: false };
@@ -144,9 +156,10 @@ impl Mobility {
             basis: motions.unscaled(&(motions.kernel() * part)),
             cut: *cut,
         };
-        let [indeterminacy, redundancy] = motions.still_and_others(A);
-        let [object_only, idle] = motions.still_and_others(P);
-        let [joints_only, uncontrollable_object_motions] = motions.still_and_others(U);
+        let [indeterminacy, redundancy] = motions.vanishing_on_rows_and_complement(A);
+        let [object_only, idle] = motions.vanishing_on_rows_and_complement(P);
+        let [joints_only, uncontrollable_object_motions] =
+            motions.vanishing_on_rows_and_complement(U);
         let (r, i) = (redundancy.0.cols(), indeterminacy.0.cols());
         let (i_p, i_u) = (idle.0.cols(), uncontrollable_object_motions.0.cols());
         let c = k.saturating_sub(r + i);
@@ -227,7 +240,7 @@ fn joint_mobility(
         .collect()
 }
 
-/// ker G and ker J^T: contact forces that nothing determines.
+/// ker G and ker J^T: contact forces that equilibrium does not determine.
 fn hyperstatic_forces(constraint: &Constraint, motions: &MotionSpace) -> Subspace {
     let basis = if motions.hyperstatic() == 0 {
         Matrix::zeros(constraint.rows(), 0)

@@ -5,9 +5,9 @@ use crate::linalg::{Cut, Matrix};
 /// A space of motions or forces with the rank decision behind its dimension.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subspace {
-    /// A basis, a column each.
+    /// A basis, one element per column.
     pub basis: Matrix,
-    /// The decision: the dimension is what this rank leaves.
+    /// The rank decision that determines the dimension.
     pub cut: Cut,
 }
 

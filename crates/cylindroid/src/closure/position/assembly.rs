@@ -105,9 +105,9 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], prescribed: &[usize]) -> R
 /// prescribed.
 ///
 /// An actuated loop joint has no coordinate that could be prescribed: a mechanism with such joints
-/// keeps their degrees of freedom, and the nearest assembly is returned. If there are more actuators
-/// than degrees of freedom, their values may contradict each other: the result is then not closed,
-/// its loop-closure error is the remaining one, distributed by least squares, and the actuated
+/// keeps their degrees of freedom, and the nearest assembly is returned. If there are more
+/// actuators than degrees of freedom, their values may contradict each other: the result is then not
+/// closed, its loop-closure error is the remaining one, distributed by least squares, and the actuated
 /// coordinates keep the given values.
 ///
 /// ```

@@ -1,17 +1,18 @@
-//! Assembly modes: the ways in which the loops close, the held coordinates being what they are.
+//! Assembly modes: the isolated configurations in which the loops close for given values of the
+//! prescribed coordinates.
 //!
-//! Formula  assemblies from the guess and from random configurations within limits; two are one
-//!          where all joints and the reference frame stand alike (`configuration_signature.rs`)
-//! Units    none: lengths over the reach
-//! Valid    any mechanism. It may miss modes: each is found by chance, the more rarely the fewer
-//!          starts lead there. The share of finds that were made once only estimates the chance that
-//!          the next start which closes finds a new one ([`AssemblyModes::unseen_probability`]).
-//!          Where the held coordinates leave a motion the assemblies are no points: they are told
-//!          signature_distance by what no such motion moves, and one is listed for all that agree there: of two
-//!          branches of a motion that takes everything along, one
-//! Why so   solving the closure for all its roots by elimination needs a derivation for every kind
-//!          of mechanism and does not know limits; homotopies follow complex roots by the thousand
-//! Source   Good 1953 for the chance; a motion is told from a double root by a step along it
+//! Formula  assemblies from the guess and from random restarts within limits; two are the same mode
+//!          if all joints and the reference frame coincide (`configuration_signature.rs`)
+//! Units    none: lengths are divided by the reach
+//! Valid    any mechanism. Modes may be missed: they are found by random sampling, rarely if their
+//!          basin of attraction is small. The Good-Turing estimate (fraction of modes found exactly
+//!          once) estimates the probability that the next closing start yields a new one
+//!          ([`AssemblyModes::unseen_probability`]). If the prescribed coordinates leave a
+//!          self-motion, assemblies form continua: they are distinguished by the landmarks that no
+//!          self-motion moves, and one is listed for all that agree there
+//! Why so   elimination yields all roots, but needs a derivation for every kind of mechanism and
+//!          ignores limits; polynomial homotopies track complex roots by the thousand
+//! Source   Good 1953 for the estimate; a trial step distinguishes a self-motion from a double root
 //! Checked  tests/it/closure/modes.rs
 
 use std::f64::consts::TAU;
@@ -19,7 +20,7 @@ use std::f64::consts::TAU;
 use super::assembly::{Assembly, assemble};
 use super::configuration_signature::{Landmarks, link_poses, max_displacement, signature_distance};
 use super::coordinates::{at_limit, columns, free_places, moved, within_limits};
-use super::initial_guesses::anywhere;
+use super::initial_guesses::random;
 use super::loop_closure::LoopClosure;
 use crate::closure::constraint::velocity_constraint::kernel_tolerance;
 use crate::error::{Error, Result};
@@ -29,15 +30,15 @@ use crate::scalar::uniform;
 use crate::spatial::Vec3;
 use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY, TRIAL_MOVED};
 
-/// Length of the step by which a motion is tried [rad, or reaches].
+/// Length of the trial step along a self-motion [rad, or reaches].
 const TRIAL: f64 = 0.05;
 
-/// How modes are looked for.
+/// Options of the search for assembly modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModeOptions {
     /// Number of starts, the guess included; at least 1.
     pub starts: usize,
-    /// The same seed gives the same starts, on every machine.
+    /// Seed of the random restarts: the same on every machine.
     pub seed: u64,
 }
 
@@ -47,27 +48,27 @@ impl Default for ModeOptions {
     }
 }
 
-/// One way in which the loops close.
+/// An assembly mode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mode {
-    /// The assembly, angles turned to within pi of the guess where limits let them; where there is
-    /// a continuum the nearest to the guess that was found.
+    /// The assembly, with angles wrapped to within pi of the guess where limits permit; for a
+    /// continuum, the one nearest to the guess that was found.
     pub assembly: Assembly,
-    /// Number of starts that led here.
+    /// Number of starts that led to it.
     pub found: usize,
-    /// How far its joints are from where the guess has them: the largest distance over the reach,
-    /// or the largest chord between unit axes [-].
+    /// Distance from the guess: the largest displacement of a joint over the reach, or the largest
+    /// chord between unit axes [-].
     pub distance: f64,
-    /// Degrees of freedom that the held coordinates leave: zero for an isolated assembly.
+    /// Degrees of freedom that the prescribed coordinates leave: zero for an isolated assembly.
     pub self_motion_dof: usize,
 }
 
-/// What came of a search for assembly modes.
+/// The result of a search for assembly modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AssemblyModes {
-    /// The modes that were found, nearest to the guess first. There may be others.
+    /// The modes found, nearest to the guess first. There may be others.
     pub modes: Vec<Mode>,
-    /// What came of the guess, closed or not.
+    /// The assembly from the guess, closed or not.
     pub first: Assembly,
     /// Number of starts.
     pub starts: usize,
@@ -76,15 +77,17 @@ pub struct AssemblyModes {
 }
 
 impl AssemblyModes {
-    /// The most degrees of freedom that the held coordinates leave at any mode.
+    /// The largest number of degrees of freedom that the prescribed coordinates leave, over all
+    /// modes.
     #[must_use]
     pub fn self_motion_dof(&self) -> usize {
         self.modes.iter().map(|m| m.self_motion_dof).max().unwrap_or(0)
     }
 
-    /// Estimate of the chance that another start which closes finds a new mode: the share of such
-    /// starts whose mode no other start found. 1 where nothing closed.
+    /// Good-Turing estimate of the probability that another closing start finds a new mode: the
+    /// fraction of closing starts whose mode was found only once. 1 if no start closed.
     #[must_use]
+    #[doc(alias = "Good-Turing")]
     pub fn unseen_probability(&self) -> f64 {
         if self.closed == 0 {
             return 1.0;
@@ -94,13 +97,13 @@ impl AssemblyModes {
     }
 }
 
-/// Looks for the ways in which the loops of `mechanism` close with the coordinates in `held` at
-/// their values in `guess`.
+/// Searches for the assembly modes of `mechanism` with the `prescribed` coordinates (indices into
+/// `q`) at their values in `guess`.
 ///
 /// ```
 /// use cylindroid::closure::{ModeOptions, assembly_modes};
 ///
-/// // A four-bar with its crank held: the coupler's end is on one side or on the other.
+/// A four-bar with its crank prescribed: elbow up or elbow down.
 /// let four_bar = cylindroid::load("four-bar")?;
 /// let found = assembly_modes(&four_bar, &[0.3, 0.0, 0.0], &[0], ModeOptions::default())?;
 /// assert_eq!(found.modes.len(), 2);
@@ -108,36 +111,36 @@ impl AssemblyModes {
 /// ```
 ///
 /// # Errors
-/// As [`crate::closure::assemble`]; no starts.
+/// As [`crate::closure::assemble`]; zero starts.
 pub fn assembly_modes(
     mechanism: &Mechanism,
     guess: &[f64],
-    held: &[usize],
+    prescribed: &[usize],
     options: ModeOptions,
 ) -> Result<AssemblyModes> {
     if options.starts == 0 {
         return Err(Error::InvalidOption {
             option: "starts",
             value: "0".to_owned(),
-            reason: "the guess is the first start: at least 1".to_owned(),
+            reason: "the guess is the first start, so at least 1 is needed".to_owned(),
         });
     }
-    let first = assemble(mechanism, guess, held)?;
-    let free = free_places(mechanism, held)?;
-    let mut random = options.seed;
+    let first = assemble(mechanism, guess, prescribed)?;
+    let free = free_places(mechanism, prescribed)?;
+    let mut seed = options.seed;
     let landmarks = Landmarks::of(mechanism);
-    let mut search = Search { mechanism, held, free: &free, landmarks, modes: Vec::new() };
+    let mut search = Search { mechanism, prescribed, free: &free, landmarks, modes: Vec::new() };
     let guessed = search.places(guess)?;
     let mut closed = 0;
     for start in 0..options.starts {
         let found = if start == 0 {
             first.clone()
         } else {
-            assemble(mechanism, &anywhere(mechanism, guess, &free, &mut random), held)?
+            assemble(mechanism, &random(mechanism, guess, &free, &mut seed), prescribed)?
         };
         if found.closed {
             closed += 1;
-            search.add(turned_near(mechanism, guess, &free, found), &guessed)?;
+            search.add(wrapped_near(mechanism, guess, &free, found), &guessed)?;
         }
     }
     let mut modes: Vec<Mode> = search.modes.into_iter().map(|seen| seen.mode).collect();
@@ -147,14 +150,14 @@ pub fn assembly_modes(
 
 struct Search<'a> {
     mechanism: &'a Mechanism,
-    held: &'a [usize],
+    prescribed: &'a [usize],
     free: &'a [usize],
     landmarks: Landmarks,
-    modes: Vec<Seen>,
+    modes: Vec<KnownMode>,
 }
 
-/// A mode, where its landmarks are, and which of them no motion that is left moves.
-struct Seen {
+/// A mode with its signature, and the landmarks that no self-motion moves.
+struct KnownMode {
     mode: Mode,
     places: Vec<Vec3>,
     resting: Vec<bool>,
@@ -168,7 +171,7 @@ impl Search<'_> {
     fn add(&mut self, assembly: Assembly, guessed: &[Vec3]) -> Result<()> {
         let places = self.places(&assembly.q)?;
         let distance = signature_distance(&places, guessed, |_| true);
-        let isolated = |seen: &&mut Seen| {
+        let isolated = |seen: &&mut KnownMode| {
             seen.mode.self_motion_dof == 0
                 && signature_distance(&places, &seen.places, |_| true) <= SAME_ASSEMBLY
         };
@@ -176,8 +179,8 @@ impl Search<'_> {
             known.mode.found += 1;
             return Ok(());
         }
-        let (self_motion_dof, resting) = self.self_motion_dof(&assembly.q)?;
-        let same = |seen: &&mut Seen| {
+        let (self_motion_dof, resting) = self.self_motions(&assembly.q)?;
+        let same = |seen: &&mut KnownMode| {
             let both = |i: usize| seen.resting[i] && resting[i];
             seen.mode.self_motion_dof == self_motion_dof
                 && signature_distance(&places, &seen.places, both) <= SAME_ASSEMBLY
@@ -190,13 +193,13 @@ impl Search<'_> {
             }
         } else {
             let mode = Mode { assembly, found: 1, distance, self_motion_dof };
-            self.modes.push(Seen { mode, places, resting });
+            self.modes.push(KnownMode { mode, places, resting });
         }
         Ok(())
     }
 
     /// Degrees of freedom left at an assembly, and the landmarks that they do not move.
-    fn self_motion_dof(&self, q: &[f64]) -> Result<(usize, Vec<bool>)> {
+    fn self_motions(&self, q: &[f64]) -> Result<(usize, Vec<bool>)> {
         let mechanism = self.mechanism;
         let isolated = (0, vec![true; self.landmarks.len()]);
         let (kernel, _) = self.motions(q)?;
@@ -204,15 +207,15 @@ impl Search<'_> {
             return Ok(isolated);
         }
         let before = link_poses(&mechanism.state(q)?);
-        let mut random = 0;
-        let weights: Vec<f64> = (0..kernel.cols()).map(|_| uniform(&mut random) - 0.5).collect();
+        let mut seed = 0;
+        let weights: Vec<f64> = (0..kernel.cols()).map(|_| uniform(&mut seed) - 0.5).collect();
         let along = kernel.mul_vec(&weights);
         let most = along.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         for step in [TRIAL / most, -TRIAL / most] {
             let change: Vec<f64> = along.iter().map(|x| step * x).collect();
             let guess =
                 within_limits(mechanism, moved(mechanism, q, self.free, &change), self.free);
-            let near = assemble(mechanism, &guess, self.held)?;
+            let near = assemble(mechanism, &guess, self.prescribed)?;
             let state = mechanism.state(&near.q)?;
             if near.closed
                 && max_displacement(&link_poses(&state), &before, mechanism) > TRIAL_MOVED
@@ -225,8 +228,8 @@ impl Search<'_> {
         Ok(isolated) // infinitesimal: a double root, or between limits
     }
 
-    /// The motions of free coordinates that keep the loops closed, a column each (orthonormal,
-    /// without unit), and what counts as zero in them.
+    /// The motions of free coordinates that keep the loops closed, one column each (orthonormal,
+    /// scaled), and the tolerance below which their entries count as zero.
     fn motions(&self, q: &[f64]) -> Result<(Matrix, f64)> {
         let rates = columns(&LoopClosure::of(self.mechanism, q)?.jacobian, self.free);
         let space = ColumnSpace::cut_of(rates.transpose(), Threshold::Relative(CLOSURE_RANK));
@@ -234,9 +237,9 @@ impl Search<'_> {
     }
 }
 
-/// The same assembly with angles whole turns nearer to the guess, where limits allow them and no
-/// other joint reads the number.
-fn turned_near(
+/// The same assembly with angles shifted by full turns towards the guess, where limits permit and
+/// no other joint depends on the value.
+fn wrapped_near(
     mechanism: &Mechanism,
     guess: &[f64],
     free: &[usize],

@@ -1,15 +1,16 @@
-//! Landmarks on the links by which two configurations are told signature_distance: where the joints stand.
+//! Configuration signature: the positions of landmarks on the links, by which assembly modes are
+//! distinguished.
 //!
-//! Formula  a landmark is p / L or d in world axes, its rate (v + w x p) / L or w x d: p the point of a
-//!          joint or contact, d its axis or normal; x and y of the reference frame, of links at the
-//!          end of a branch and of free bodies, which stand as a whole
-//! Shapes   landmarks: 3 numbers each; rates: 3 rows each, a column for each coordinate
-//! Units    none: L is the reach, rates by coordinates without unit
+//! Formula  a landmark is p / L or d in world axes, its rate (v + w x p) / L or w x d: p the point
+//!          of a joint or contact, d its axis or normal; also x and y of the reference frame, of
+//!          end links of branches and of free bodies, whose whole pose counts
+//! Shapes   signature: 3 values for each landmark; rates: 3 rows each, a column for each coordinate
+//! Units    none: L is the reach, rates per scaled coordinate
 //! Valid    any mechanism
-//! Why so   whole poses of all links would tell a rod between a universal and a ball joint from the
-//!          same rod turned half about itself: 64 names for one pose of a Stewart platform. The
-//!          coordinates would tell an angle from one a whole turn on, and a rotation vector from its
-//!          other half
+//! Why so   poses of all links would distinguish a rod between a universal and a spherical joint
+//!          from the same rod rotated about itself: 64 names for one configuration of a Stewart
+//!          platform. Coordinates would distinguish angles that differ by a full turn, and
+//!          equivalent rotation vectors
 //! Checked  tests/it/closure/modes.rs
 
 use super::coordinates::unit_of;
@@ -56,7 +57,7 @@ impl Landmarks {
             touched[joint.parent] += 1;
             touched[joint.child] += 1;
             if joint.kind == JointKind::Free {
-                add(joint.child, Pose::IDENTITY, &WHOLE);
+                add(joint.child, Pose::IDENTITY, &BODY_AXES);
             }
         }
         for joint in mechanism.loops() {
@@ -71,9 +72,9 @@ impl Landmarks {
             touched[contact.b] += 1;
         }
         let reference = mechanism.frame_of(mechanism.reference());
-        add(reference.link, reference.link_from_frame, &WHOLE);
+        add(reference.link, reference.link_from_frame, &BODY_AXES);
         for (link, _) in touched.iter().enumerate().filter(|(_, touched)| **touched == 1) {
-            add(link, Pose::IDENTITY, &WHOLE);
+            add(link, Pose::IDENTITY, &BODY_AXES);
         }
         Self { landmarks, length: mechanism.reach() }
     }
@@ -83,7 +84,7 @@ impl Landmarks {
         self.landmarks.len()
     }
 
-    /// Where they are with the links at `links`.
+    /// Their positions for the link poses `links`.
     pub(crate) fn at(&self, links: &[Pose]) -> Vec<Vec3> {
         self.landmarks.iter().map(|m| self.place(m, links[m.link])).collect()
     }
@@ -95,8 +96,8 @@ impl Landmarks {
         }
     }
 
-    /// True for each landmark that none of `motions` moves by more than `tolerance`: a column each,
-    /// changes of the coordinates `places` without unit.
+    /// For each landmark, true if none of `motions` moves it by more than `tolerance`: columns are
+    /// scaled changes of the coordinates `places`.
     pub(crate) fn resting(
         &self,
         state: &State,
@@ -139,7 +140,8 @@ pub(crate) fn link_poses(state: &State) -> Vec<Pose> {
     (0..mechanism.links().len()).map(|link| state.pose(mechanism.link_frame(link))).collect()
 }
 
-/// The max_displacement that a link is from its other place: distance over the reach, or angle.
+/// The largest displacement of a link between two configurations: distance over the reach, or
+/// angle.
 pub(crate) fn max_displacement(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
     a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
         let distance = (a.translation - b.translation).norm() / mechanism.reach();
@@ -147,10 +149,10 @@ pub(crate) fn max_displacement(a: &[Pose], b: &[Pose], mechanism: &Mechanism) ->
     })
 }
 
-const WHOLE: [Vec3; 2] = [Vec3::X, Vec3::Y];
+const BODY_AXES: [Vec3; 2] = [Vec3::X, Vec3::Y];
 
-/// The axis by which a joint is told signature_distance: none where it leaves the second link more than one
-/// way to turn.
+/// The axis that belongs to the signature of a joint: none if the joint leaves the second link more
+/// than one rotation.
 fn axis_of(kind: JointKind, axis: &Vec3) -> &[Vec3] {
     match kind {
         JointKind::Universal { .. } | JointKind::Spherical | JointKind::Free | JointKind::Fixed => {
@@ -160,7 +162,7 @@ fn axis_of(kind: JointKind, axis: &Vec3) -> &[Vec3] {
     }
 }
 
-/// The max_displacement that any of the chosen landmarks is from its other place [-]; zero without any.
+/// The largest distance of the chosen landmarks between two signatures [-]; zero without any.
 pub(crate) fn signature_distance(a: &[Vec3], b: &[Vec3], chosen: impl Fn(usize) -> bool) -> f64 {
     let pairs = a.iter().zip(b).enumerate().filter(|(i, _)| chosen(*i));
     pairs.fold(0.0, |most: f64, (_, (a, b))| most.max((*a - *b).norm()))

@@ -1,13 +1,15 @@
-//! Continuation: the held coordinates go straight to their goal, the loops stay closed on the branch
-//! where they are, and the way ends before a singularity or at a limit.
+//! Continuation: the prescribed coordinates move straight to their goal while the loops stay closed
+//! on one branch; the path ends before a singularity or at a limit.
 //!
-//! Formula  predictor and corrector of `predictor_corrector.rs`; distance = smallest singular value that counts
-//!          over the largest, of the rates by which the free coordinates open the loops
-//! Units    fractions of the way from 0 to 1; distances have none: lengths are over the reach
-//! Valid    any mechanism. The distance depends, within a factor, on where the loops are cut; that
-//!          it is zero does not. The largest fraction is found by halving steps to [`SHARE_FOUND`].
-//!          Limits of loop joints do not count: these joints have no coordinate
-//! Source   Allgower & Georg 1990; kinds of singularity as in `singularity_types.rs`
+//! Formula  predictor and corrector of `predictor_corrector.rs`; distance = smallest generic
+//!          singular value over the largest, of the Jacobian of the loops with respect to the free
+//!          coordinates
+//! Units    fractions of the path from 0 to 1; distances have none: lengths are divided by the
+//!          reach
+//! Valid    any mechanism. The distance depends, within a factor, on the choice of loop joints; its
+//!          zeros do not. The largest fraction is found by halving steps to [`SHARE_FOUND`]. Limits
+//!          of loop joints are not enforced: these joints have no coordinate
+//! Source   Allgower & Georg 1990; kinds of singularity as in `singularity_kind.rs`
 //! Checked  tests/it/closure/continuation.rs
 
 use std::fmt;
@@ -25,15 +27,15 @@ use crate::screws::Screw;
 use crate::spatial::Twist;
 use crate::tolerance::{LEAST_PATH_SINGULAR, PATH_SINGULAR, SHARE_FOUND, VANISHING};
 
-/// Steps at most, tried ones included.
-const MOST_STEPS: usize = 20_000;
+/// Maximum number of steps, rejected ones included.
+const MAX_STEPS: usize = 20_000;
 
-/// How a way is followed.
+/// Options of path tracking.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContinuationOptions {
-    /// Largest change of any coordinate in a step [rad, or reaches].
+    /// Largest change of any coordinate in one step [rad, or reaches].
     pub step: f64,
-    /// Least distance to a singularity [-], from 1e-5 to below 1.
+    /// Smallest accepted distance to a singularity [-], from 1e-5 to below 1.
     pub least_distance: f64,
 }
 
@@ -43,69 +45,70 @@ impl Default for ContinuationOptions {
     }
 }
 
-/// A configuration on the tracker.
+/// A configuration on the path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathPoint {
-    /// Of the way, 0 to 1.
+    /// Fraction of the path, 0 to 1.
     pub fraction: f64,
     /// The configuration, its loops closed.
     pub q: Vec<f64>,
-    /// Distance to the next singularity: 0 there, at most 1; infinite where nothing can be lost.
+    /// Distance to the nearest singularity: 0 there, at most 1; infinite if there is none to reach.
     pub distance: f64,
 }
 
-/// What came of following a tracker.
+/// The result of tracking a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContinuationResult {
     /// The last configuration, its loops closed unless the start could not be assembled.
     pub q: Vec<f64>,
-    /// How far its loops are open.
+    /// Its loop-closure error.
     pub closure_error: LoopClosureError,
-    /// How far it got, 0 to 1.
+    /// Fraction of the path that was tracked, 0 to 1.
     pub fraction: f64,
-    /// All configurations on the way, start and end included.
+    /// All configurations on the path, start and end included.
     pub path: Vec<PathPoint>,
-    /// Why it ended.
+    /// Why the path ended.
     pub end: PathEnd,
 }
 
-/// Why a way ended.
+/// Why a path ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PathEnd {
-    /// The held coordinates are at their goal.
+    /// The prescribed coordinates are at their goal.
     Reached,
-    /// Beyond, a singularity is nearer than the least distance: the free coordinates would no longer
-    /// follow the held ones.
+    /// Beyond this point, a singularity is nearer than the smallest accepted distance: the free
+    /// coordinates would no longer follow the prescribed ones.
     Singular(Box<PathSingularity>),
-    /// Beyond, this coordinate (place in `q`) leaves its position limits.
+    /// Beyond this point, this coordinate leaves its position limits.
     Limit {
-        /// Place in `q`.
+        /// Index into `q`.
         coordinate: usize,
     },
-    /// The start does not close with the held coordinates where they are.
+    /// The loops cannot be closed at the start with the prescribed coordinates at their values.
     Open,
-    /// The held coordinates contradict each other: there are more of them than degrees of freedom,
-    /// and no motion of the others keeps the loops closed.
+    /// The prescribed coordinates contradict each other: there are more of them than degrees of
+    /// freedom, and no motion of the others keeps the loops closed.
     Contradiction,
-    /// The steps shrank to nothing without a singularity in sight, or were too many.
+    /// The step length fell below its minimum with no singularity nearby, or the number of steps
+    /// was exhausted.
     StepTooSmall,
 }
 
-/// A singularity in sight.
+/// The singularity at the end of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathSingularity {
-    /// Type II where the reference frame gains a motion while the held coordinates rest, passive
-    /// where only other links do; configuration space where the loops lose a constraint, and the
+    /// Type II if the reference frame gains a motion with the prescribed coordinates at rest,
+    /// passive if only other links do; configuration space if the loops lose a constraint, and the
     /// branch meets another.
     pub kind: SingularityKind,
-    /// Distance where the way ended [-].
+    /// Distance to the singularity at the end of the path [-].
     pub distance: f64,
-    /// The motion that is gained, as rates of all coordinates [rad/s or m/s], the held ones at rest;
-    /// of length one with lengths over the reach, its sign open.
+    /// The motion that is gained, as rates of all coordinates [rad/s or m/s], the prescribed ones
+    /// at rest; of unit norm with lengths divided by the reach, its sign arbitrary.
     pub rates: Vec<f64>,
-    /// The twist of the reference frame in it: at the frame's origin, world axes.
+    /// The twist of the reference frame in this motion: at the frame's origin, world axes.
     pub twist: Twist,
-    /// Its screw, in the world; `None` where the reference frame rests.
+    /// Its screw, in the world; `None` if the reference frame is at rest.
     pub screw: Option<Screw>,
 }
 
@@ -122,60 +125,63 @@ impl fmt::Display for PathEnd {
     }
 }
 
-/// Moves the coordinates `held` from their values in `start` straight to `goal`, the others keeping
-/// the loops closed: on the branch where they are, within position limits, and no nearer to a
-/// singularity than the options say (from a start that is nearer, only away from it). Angles go the
-/// way that the numbers say, whole turns too; spherical and free joints, which are held as a whole,
-/// by the screw to their goal.
+/// Moves the `prescribed` coordinates (indices into `q`) from their values in `start` straight to
+/// `goal`, while the others keep the loops closed: on the branch of the start, within position
+/// limits, and no nearer to a singularity than `options` permit (from a start that is nearer, only
+/// away from it). Angles move by the difference of their values, full turns included; spherical and
+/// free joints, which must be prescribed as a whole, along the screw to their goal.
 ///
-/// The start is assembled first, the held coordinates resting. Where they leave motions free, the
-/// others move by the least. The path keeps its branch by steps in which the rates of the loops
-/// change by no more than half their smallest singular value: no singular pose between two points
-/// is passed over.
+/// The start is assembled first, with the prescribed coordinates fixed. If free coordinates remain
+/// undetermined, they move by the least norm. Steps are limited so that the Jacobian of the loops
+/// changes by no more than half its smallest singular value: no singular configuration between two
+/// points is passed over.
 ///
 /// ```
 /// use cylindroid::closure::{ContinuationOptions, PathEnd, track_path};
 ///
-/// // The crank of this four-bar (1, 1.8, 1.3 on a base of 2) goes all the way round, and back to
-/// // the same mode.
+/// The crank of this four-bar (1, 1.8, 1.3 on a base of 2) makes a full turn and returns to the
+/// // same assembly mode.
 /// let four_bar = cylindroid::load("four-bar")?;
 /// let turn = std::f64::consts::TAU;
-/// let way = track_path(&four_bar, &[0.0; 3], &[0], &[turn], ContinuationOptions::default())?;
-/// assert_eq!(tracker.end, PathEnd::Reached);
-/// assert!((tracker.q[2]).abs() < 1e-9);
+/// let path = track_path(&four_bar, &[0.0; 3], &[0], &[turn], ContinuationOptions::default())?;
+/// assert_eq!(path.end, PathEnd::Reached);
+/// assert!((path.q[2]).abs() < 1e-9);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 ///
 /// # Errors
-/// A start or goal of the wrong size or not finite; a held place that is no coordinate, is named
-/// twice, or is one of a spherical or free joint that is not held as a whole; options out of range.
+/// A start or goal of the wrong size or with non-finite values; a prescribed index that is no
+/// coordinate or is repeated, or some but not all coordinates of a spherical or free joint; options
+/// out of range.
+#[doc(alias = "homotopy")]
+#[doc(alias = "continuation")]
 pub fn track_path(
     mechanism: &Mechanism,
     start: &[f64],
-    held: &[usize],
+    prescribed: &[usize],
     goal: &[f64],
     options: ContinuationOptions,
 ) -> Result<ContinuationResult> {
     mechanism.check_q("start", start)?;
-    Error::check_len("goal", held.len(), goal.len())?;
+    Error::check_len("goal", prescribed.len(), goal.len())?;
     Error::check_finite("goal", goal)?;
     Error::check_positive("step", options.step)?;
     if !(LEAST_PATH_SINGULAR..1.0).contains(&options.least_distance) {
         return Err(Error::InvalidOption {
             option: "least_distance",
             value: options.least_distance.to_string(),
-            reason: format!("it is from {LEAST_PATH_SINGULAR:e} to below 1"),
+            reason: format!("it must be from {LEAST_PATH_SINGULAR:e} to below 1"),
         });
     }
-    let free = free_places(mechanism, held)?;
-    if let Some(i) = (1..held.len()).find(|&i| held[..i].contains(&held[i])) {
+    let free = free_places(mechanism, prescribed)?;
+    if let Some(i) = (1..prescribed.len()).find(|&i| prescribed[..i].contains(&prescribed[i])) {
         return Err(Error::InvalidOption {
-            option: "held",
-            value: mechanism.coordinates()[held[i]].name.clone(),
-            reason: "it is named twice".to_owned(),
+            option: "prescribed",
+            value: mechanism.coordinates()[prescribed[i]].name.clone(),
+            reason: "it is prescribed twice".to_owned(),
         });
     }
-    let assembly = assemble(mechanism, start, held)?;
+    let assembly = assemble(mechanism, start, prescribed)?;
     if !assembly.closed {
         return Ok(ContinuationResult {
             q: assembly.q,
@@ -185,7 +191,7 @@ pub fn track_path(
             end: PathEnd::Open,
         });
     }
-    let tracker = PathTracker::from(mechanism, &assembly.q, (held, free), goal)?;
+    let tracker = PathTracker::from(mechanism, &assembly.q, (prescribed, free), goal)?;
     let mut here = tracker.at(&assembly.q)?;
     let mut path = vec![path_point(&tracker, &here, 0.0)];
     let (fraction, end) = walk(&tracker, &mut here, &mut path, options)?;
@@ -202,7 +208,7 @@ fn path_point(tracker: &PathTracker<'_>, point: &Point, fraction: f64) -> PathPo
     PathPoint { fraction, q: point.closure.q.clone(), distance: tracker.distance(point) }
 }
 
-/// Steps along the branch until it ends: the fraction of the way and why.
+/// Steps along the branch until it ends: the fraction of the path and the reason.
 fn walk(
     tracker: &PathTracker<'_>,
     here: &mut Point,
@@ -217,14 +223,14 @@ fn walk(
     }
     let (mut fraction, mut step) = (0.0, 1.0_f64);
     let (mut tangent, mut possible) = tracker.tangent(here);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         if !possible {
             return Ok((fraction, PathEnd::Contradiction));
         }
         step = step.min(options.step / tracker.speed(&tangent)).min(1.0 - fraction);
-        // To the goal itself, without the rounding of a sum.
+        // Exactly to the goal, without the rounding of a sum.
         let to = if step >= 1.0 - fraction { 1.0 } else { fraction + step };
-        // From where it is already nearer, only away.
+        // From a start that is nearer already, only away.
         let least = options.least_distance.min(tracker.distance(here));
         match tracker.step(here, &tangent, TrackerStep { step, to, least })? {
             Ok(next) => {
@@ -255,7 +261,7 @@ fn walk(
     Ok((fraction, PathEnd::StepTooSmall))
 }
 
-/// The motion that is gained where the distance falls to zero.
+/// The motion that is gained at the singularity.
 fn in_sight(tracker: &PathTracker<'_>, point: &Point) -> Result<PathSingularity> {
     let mechanism = tracker.mechanism();
     let distance = tracker.distance(point);

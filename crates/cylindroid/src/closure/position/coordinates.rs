@@ -1,7 +1,7 @@
-//! Lists of coordinates: those that are free, what a change of some of them does, limits.
+//! Subsets of coordinates: the free ones, changes of some of them, position limits.
 //!
-//! Units    changes have none: lengths are over the reach
-//! Valid    any mechanism; numbers of balls and free bodies are not moved one by one
+//! Units    changes have none: lengths are divided by the reach
+//! Valid    any mechanism; rotation vectors and free bodies are changed as a whole
 //! Checked  tests/it/closure/assembly.rs, tests/it/closure/modes.rs
 
 use crate::closure::constraint::velocity_constraint::Unit;
@@ -11,31 +11,33 @@ use crate::model::{Mechanism, NodeKind};
 use crate::scalar::clamp;
 use crate::tolerance::AT_LIMIT;
 
-/// The columns of some coordinates.
+/// Selected columns of a Jacobian.
 pub(crate) fn columns(rates: &Matrix, places: &[usize]) -> Matrix {
     Matrix::from_fn(rates.rows(), places.len(), |i, j| rates[(i, places[j])])
 }
 
-/// What a change of 1 means at coordinate `i` where lengths are over `length` (m or rad).
+/// The change of coordinate `i` (m or rad) per unit of its scaled change, for the characteristic
+/// length `length`.
 pub(crate) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 {
     Unit::of(mechanism.coordinates()[i].kind).size(length)
 }
 
-/// The same with lengths over the reach.
+/// The same with the reach as characteristic length.
 pub(crate) fn unit_of(mechanism: &Mechanism, i: usize) -> f64 {
     column_scale(mechanism, i, mechanism.reach())
 }
 
-/// The coordinates that are not held.
+/// The coordinates that are not prescribed.
 ///
 /// # Errors
-/// A held place that is no coordinate; some coordinates of a spherical or free joint held and
-/// others not: they have no meaning one by one.
-pub(crate) fn free_places(mechanism: &Mechanism, held: &[usize]) -> Result<Vec<usize>> {
+/// A prescribed index that is no coordinate; some but not all coordinates of a spherical or free
+/// joint: they have no meaning one by one.
+pub(crate) fn free_places(mechanism: &Mechanism, prescribed: &[usize]) -> Result<Vec<usize>> {
     let coordinates = mechanism.coordinates();
-    let refuse =
-        |value: String, reason: String| Err(Error::InvalidOption { option: "held", value, reason });
-    if let Some(place) = held.iter().find(|&&i| i >= coordinates.len()) {
+    let refuse = |value: String, reason: String| {
+        Err(Error::InvalidOption { option: "prescribed", value, reason })
+    };
+    if let Some(place) = prescribed.iter().find(|&&i| i >= coordinates.len()) {
         let n = coordinates.len();
         return refuse(place.to_string(), format!("the mechanism has {n} coordinates"));
     }
@@ -44,21 +46,24 @@ pub(crate) fn free_places(mechanism: &Mechanism, held: &[usize]) -> Result<Vec<u
             continue;
         }
         let group = node.coordinate..node.coordinate + node.kind.dof();
-        let kept = group.clone().filter(|i| held.contains(i)).count();
+        let kept = group.clone().filter(|i| prescribed.contains(i)).count();
         if let (Some(place), true) =
-            (group.clone().find(|i| held.contains(i)), kept > 0 && kept < group.len())
+            (group.clone().find(|i| prescribed.contains(i)), kept > 0 && kept < group.len())
         {
             let names: Vec<&str> = group.map(|i| coordinates[i].name.as_str()).collect();
             return refuse(
                 coordinates[place].name.clone(),
-                format!("one joint turns by all of {}; hold all of them or none", names.join(", ")),
+                format!(
+                    "one joint has all of {} as coordinates; prescribe all of them or none",
+                    names.join(", ")
+                ),
             );
         }
     }
-    Ok((0..coordinates.len()).filter(|i| !held.contains(i)).collect())
+    Ok((0..coordinates.len()).filter(|i| !prescribed.contains(i)).collect())
 }
 
-/// `q` moved by a change without unit of the coordinates `places`; the others keep their numbers.
+/// `q` with a scaled change of the coordinates `places`; the others keep their values.
 pub(crate) fn moved(
     mechanism: &Mechanism,
     q: &[f64],
@@ -71,7 +76,7 @@ pub(crate) fn moved(
     }
     let mut next = q.to_vec();
     mechanism.integrate_in_place(&mut next, &rates, 1.0);
-    // A rotation vector that rests may come back rounded or turned once round.
+    // An unchanged rotation vector may come back rounded, or as an equivalent one.
     for (i, x) in next.iter_mut().enumerate() {
         if !places.contains(&i) {
             *x = q[i];
@@ -80,7 +85,7 @@ pub(crate) fn moved(
     next
 }
 
-/// Some coordinates cut to their position limits.
+/// Some coordinates clamped to their position limits.
 pub(crate) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[usize]) -> Vec<f64> {
     for &i in places {
         let l = &mechanism.coordinates()[i].limits;
@@ -89,11 +94,11 @@ pub(crate) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[us
     q
 }
 
-/// Coordinates that stand at a position limit.
+/// Coordinates at a position limit or beyond it.
 pub(crate) fn at_limit(mechanism: &Mechanism, q: &[f64]) -> Vec<usize> {
-    let stands = |i: &usize| {
+    let is_at_limit = |i: &usize| {
         let l = &mechanism.coordinates()[*i].limits;
         q[*i] - l.lower < AT_LIMIT || l.upper - q[*i] < AT_LIMIT
     };
-    (0..mechanism.n()).filter(stands).collect()
+    (0..mechanism.n()).filter(is_at_limit).collect()
 }

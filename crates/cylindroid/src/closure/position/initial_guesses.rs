@@ -1,7 +1,7 @@
-//! Guesses at random for configurations, the same on every run.
+//! Initial guesses: random restarts for assembly, reproducible on every run.
 //!
-//! Units    distances without unit: lengths over the reach
-//! Valid    any mechanism; guesses keep position limits, not loops
+//! Units    distances have none: lengths are divided by the reach
+//! Valid    any mechanism; guesses respect position limits, their loops are open
 //! Source   Shoemake 1992 for rotations
 //! Checked  tests/it/closure/modes.rs, tests/it/closure/diagnosis.rs
 
@@ -12,19 +12,25 @@ use crate::model::{CoordinateKind, Mechanism, NodeKind};
 use crate::scalar::uniform;
 use crate::spatial::Quaternion;
 
-/// Every coordinate of `q` changed by up to `far`.
-pub(crate) fn near(mechanism: &Mechanism, q: &[f64], far: f64, random: &mut u64) -> Vec<f64> {
+/// `q` with a random perturbation of every coordinate by up to `amplitude`.
+pub(crate) fn perturbed(
+    mechanism: &Mechanism,
+    q: &[f64],
+    amplitude: f64,
+    seed: &mut u64,
+) -> Vec<f64> {
     let all: Vec<usize> = (0..mechanism.n()).collect();
-    let change: Vec<f64> = all.iter().map(|_| far * (2.0 * uniform(random) - 1.0)).collect();
+    let change: Vec<f64> = all.iter().map(|_| amplitude * (2.0 * uniform(seed) - 1.0)).collect();
     within_limits(mechanism, moved(mechanism, q, &all, &change), &all)
 }
 
-/// Angles in (-pi, pi], slides in the reach, rotations evenly among all, within the limits.
-pub(crate) fn anywhere(
+/// A random configuration within the limits: angles uniform in (-pi, pi], lengths up to the reach,
+/// rotations uniform.
+pub(crate) fn random(
     mechanism: &Mechanism,
     guess: &[f64],
     free: &[usize],
-    random: &mut u64,
+    seed: &mut u64,
 ) -> Vec<f64> {
     let mut q = guess.to_vec();
     for &i in free {
@@ -34,11 +40,11 @@ pub(crate) fn anywhere(
             CoordinateKind::Length | CoordinateKind::Position => mechanism.reach(),
             CoordinateKind::RotationVector => continue,
         };
-        // Limits beyond one turn are cut to it, wherever they are.
+        // Limits wider than one turn are cut to one turn.
         let l = &coordinate.limits;
         let lower = l.lower.max((-span).min(l.upper - 2.0 * span));
         let upper = l.upper.min(span.max(l.lower + 2.0 * span));
-        q[i] = upper - (upper - lower) * uniform(random);
+        q[i] = upper - (upper - lower) * uniform(seed);
     }
     for node in mechanism.nodes() {
         let at = match node.kind {
@@ -47,15 +53,15 @@ pub(crate) fn anywhere(
             _ => continue,
         };
         if free.contains(&at) {
-            q[at..at + 3].copy_from_slice(&rotation_at_random(random));
+            q[at..at + 3].copy_from_slice(&random_rotation(seed));
         }
     }
     q
 }
 
-/// A rotation vector, all rotations alike (Shoemake 1992).
-fn rotation_at_random(random: &mut u64) -> [f64; 3] {
-    let (share, a, b) = (uniform(random), TAU * uniform(random), TAU * uniform(random));
+/// A uniformly distributed rotation, as a rotation vector (Shoemake 1992).
+fn random_rotation(seed: &mut u64) -> [f64; 3] {
+    let (share, a, b) = (uniform(seed), TAU * uniform(seed), TAU * uniform(seed));
     let (first, second) = ((1.0 - share).sqrt(), share.sqrt());
     let quaternion = Quaternion {
         w: first * a.cos(),

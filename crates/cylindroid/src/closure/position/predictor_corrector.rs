@@ -1,24 +1,25 @@
-//! One branch of the configurations in which the loops are closed, followed in small steps while
-//! the held coordinates move.
+//! Predictor-corrector path tracking on one branch of the closed configurations, while the
+//! prescribed coordinates move.
 //!
-//! Formula  r(h, f) = 0, h(s) = h0 + s d given: predictor J_f f' = -J_h d, corrector J_f df = -r
-//!          with h at s + ds, both of least norm at the rank that the branch has in general
-//! Shapes   J_f: held rows x free coordinates, J_h: the columns of the held ones
-//! Units    none: lengths over the reach (`assembly.rs`)
-//! Valid    a step is taken if |J_f' - J_f| <= (s + s') / 2, s the smallest singular value that
-//!          counts, and the corrector moved less than half as far as the predictor. By Weyl's
-//!          inequality s then stays above a quarter of s + s' between the two points where J_f
-//!          changes evenly: no singular pose is stepped over, and by Newton and Kantorovich the
-//!          solution is the one of this branch
-//! Why so   a sign change of det J_f shows a crossing too, but needs J_f square and misses two at
-//!          once; following by arc length would go round the fold onto the other branch, which no
-//!          drive does
+//! Formula  r(h, f) = 0 with the path h(s) = h0 + s d of the prescribed coordinates: predictor J_f
+//!          f' = -J_h d, corrector (Newton) J_f df = -r at h(s + ds), both of least norm at the
+//!          generic rank of the branch
+//! Shapes   J_f: loop-closure rows x free coordinates, J_h: the columns of the prescribed ones
+//! Units    none: lengths are divided by the reach (`loop_closure.rs`)
+//! Valid    a step is accepted if |J_f' - J_f| <= (s + s') / 2, with s and s' the smallest generic
+//!          singular values at its ends, and if the corrector moved less than half as far as the
+//!          predictor. By Weyl's inequality, s stays above a quarter of s + s' between the two
+//!          points where J_f varies linearly: no singular configuration is stepped over, and by
+//!          Newton-Kantorovich the solution lies on the same branch
+//! Why so   a sign change of det J_f detects a crossing too, but needs a square J_f and misses
+//!          double crossings; arc-length continuation would follow the fold onto the other branch,
+//!          which no actuator can do
 //! Source   Allgower & Georg 1990, chapters 3 and 6
 //! Checked  tests/it/closure/continuation.rs
 
 use super::assembly::assemble;
 use super::coordinates::{columns, moved, unit_of, within_limits};
-use super::initial_guesses::near;
+use super::initial_guesses::perturbed;
 use super::loop_closure::LoopClosure;
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd, norm};
@@ -28,11 +29,11 @@ use crate::tolerance::{
     CLOSURE_RANK, CONTRADICTION, CORRECTION_ROUNDING, LIMIT_MET, LOOP_ROUNDING,
 };
 
-/// Corrections at most: three are usual.
-const MOST_CORRECTIONS: usize = 12;
-/// Neighbours that are asked for their rank, and how far away they are [rad, or reaches].
+/// Maximum number of corrector steps: three are usual.
+const MAX_CORRECTIONS: usize = 12;
+/// Neighbours whose rank is computed, and their distance [rad, or reaches].
 const NEIGHBOURS: usize = 3;
-const NEAR: f64 = 0.05;
+const NEIGHBOUR_DISTANCE: f64 = 0.05;
 
 /// A configuration with closed loops.
 #[derive(Debug)]
@@ -43,53 +44,53 @@ pub(crate) struct Point {
     svd: Svd,
 }
 
-/// The coordinates, and where the held ones go.
+/// Tracks a path of the prescribed coordinates.
 #[derive(Debug, Clone)]
 pub(crate) struct PathTracker<'a> {
     mechanism: &'a Mechanism,
-    held: &'a [usize],
+    prescribed: &'a [usize],
     free: Vec<usize>,
     from: Vec<f64>,
     goal: &'a [f64],
-    /// d, of the held coordinates.
+    /// d, of the prescribed coordinates.
     direction: Vec<f64>,
-    /// Rank of J_f where nothing is singular.
+    /// Generic rank of J_f.
     rank: usize,
 }
 
-/// A step direction the tracker.
+/// A step of the tracker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TrackerStep {
-    /// Its length, as a fraction of the tracker.
+    /// Its length, as a fraction of the path.
     pub(crate) step: f64,
-    /// Where it ends, 0 to 1.
+    /// The path parameter at its end, 0 to 1.
     pub(crate) to: f64,
-    /// Distance to singularities that it keeps.
+    /// Smallest accepted distance to singularities.
     pub(crate) least: f64,
 }
 
-/// Why a step was not taken.
+/// The reason why a step was rejected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StepRejected {
-    /// The point is nearer to a singularity than allowed.
+    /// The end is nearer to a singularity than allowed.
     Singular,
     /// A coordinate would leave its limits.
     Limit(usize),
-    /// Too far for the corrector, or for its result to be certain.
+    /// The step is too long for the corrector, or for a certified result.
     Far,
 }
 
 impl<'a> PathTracker<'a> {
-    /// From an assembly, whose held coordinates go to `goal`.
+    /// From an assembly, with the prescribed coordinates on a straight path to `goal`.
     pub(crate) fn from(
         mechanism: &'a Mechanism,
         q: &[f64],
-        (held, free): (&'a [usize], Vec<usize>),
+        (prescribed, free): (&'a [usize], Vec<usize>),
         goal: &'a [f64],
     ) -> Result<Self> {
-        let direction = displacement(mechanism, q, held, goal);
+        let direction = displacement(mechanism, q, prescribed, goal);
         let mut tracker =
-            Self { mechanism, held, free, from: q.to_vec(), goal, direction, rank: 0 };
+            Self { mechanism, prescribed, free, from: q.to_vec(), goal, direction, rank: 0 };
         tracker.rank = tracker.generic_rank()?;
         Ok(tracker)
     }
@@ -98,13 +99,13 @@ impl<'a> PathTracker<'a> {
         self.mechanism
     }
 
-    /// The largest rank of J_f here and nearby.
+    /// The largest rank of J_f at the start and nearby.
     fn generic_rank(&self) -> Result<usize> {
         let rank = |q: &[f64]| -> Result<usize> { Ok(self.at(q)?.svd.rank(CLOSURE_RANK).rank) };
         let mut most = rank(&self.from)?;
-        let mut random = 0;
+        let mut seed = 0;
         for _ in 0..NEIGHBOURS {
-            let guess = near(self.mechanism, &self.from, NEAR, &mut random);
+            let guess = perturbed(self.mechanism, &self.from, NEIGHBOUR_DISTANCE, &mut seed);
             let near = assemble(self.mechanism, &guess, &[])?;
             if near.closed {
                 most = most.max(rank(&near.q)?);
@@ -120,12 +121,12 @@ impl<'a> PathTracker<'a> {
         Ok(Point { closure, by_free, svd })
     }
 
-    /// Smallest singular value that counts over the largest: zero at a singularity, infinite where
-    /// nothing can be lost.
+    /// Smallest generic singular value over the largest: zero at a singularity, infinite if the
+    /// generic rank is zero.
     pub(crate) fn distance(&self, point: &Point) -> f64 {
         match self.rank {
             0 => f64::INFINITY,
-            // All zero: as singular as can be.
+            // All singular values zero: distance zero.
             _ => (self.smallest(point) / point.svd.value(0).max(f64::MIN_POSITIVE)).min(1.0),
         }
     }
@@ -134,23 +135,23 @@ impl<'a> PathTracker<'a> {
         if self.rank == 0 { f64::INFINITY } else { point.svd.value(self.rank - 1) }
     }
 
-    /// The motion, of all coordinates and without unit, that is nearest to leaving the loops closed
-    /// with the held ones at rest, and how much of what it would break the held ones could take up,
-    /// relative to the largest singular value. `None` where nothing can be lost.
+    /// The motion (all coordinates, scaled) that violates the loops least with the prescribed
+    /// coordinates at rest, and the part of its violation that the prescribed coordinates could
+    /// compensate, relative to the largest singular value. `None` if the generic rank is zero.
     pub(crate) fn nearly_free(&self, point: &Point) -> Option<(Vec<f64>, f64)> {
         let last = self.rank.checked_sub(1)?;
         let mut motion = vec![0.0; self.mechanism.n()];
         for (&i, v) in self.free.iter().zip(point.svd.v(last)) {
             motion[i] = *v;
         }
-        let by_held = columns(&point.closure.jacobian, self.held);
-        let taken = by_held.transpose().mul_vec(point.svd.u(last));
+        let by_prescribed = columns(&point.closure.jacobian, self.prescribed);
+        let taken = by_prescribed.transpose().mul_vec(point.svd.u(last));
         Some((motion, norm(&taken) / point.svd.value(0).max(f64::MIN_POSITIVE)))
     }
 
-    /// f', and true if the free coordinates can follow the held ones at all.
+    /// f', and true if the free coordinates can follow the prescribed ones.
     pub(crate) fn tangent(&self, point: &Point) -> (Vec<f64>, bool) {
-        let opened = columns(&point.closure.jacobian, self.held).mul_vec(&self.direction);
+        let opened = columns(&point.closure.jacobian, self.prescribed).mul_vec(&self.direction);
         let follow = self.back(point, &opened);
         let left: Vec<f64> =
             point.by_free.mul_vec(&follow).iter().zip(&opened).map(|(a, b)| a + b).collect();
@@ -158,12 +159,12 @@ impl<'a> PathTracker<'a> {
         (follow, possible)
     }
 
-    /// The largest change of any coordinate, for the whole way at this rate.
+    /// The largest change of any coordinate over the whole path, at this tangent.
     pub(crate) fn speed(&self, tangent: &[f64]) -> f64 {
         self.direction.iter().chain(tangent).fold(0.0, |m: f64, x| m.max(x.abs()))
     }
 
-    /// The point at the end of a stride.
+    /// The point at the end of a step.
     pub(crate) fn step(
         &self,
         here: &Point,
@@ -172,7 +173,7 @@ impl<'a> PathTracker<'a> {
     ) -> Result<std::result::Result<Point, StepRejected>> {
         let change: Vec<f64> = tangent.iter().map(|x| step * x).collect();
         let mut guess = moved(self.mechanism, &here.closure.q, &self.free, &change);
-        self.put_held(&mut guess, to);
+        self.set_prescribed(&mut guess, to);
         let Some((there, corrected)) = self.corrected(guess)? else {
             return Ok(Err(StepRejected::Far));
         };
@@ -193,7 +194,7 @@ impl<'a> PathTracker<'a> {
         if let Some(i) = self.outside(&there.closure.q) {
             return Ok(Err(StepRejected::Limit(i)));
         }
-        // Beyond a limit by rounding is at it.
+        // Within rounding of a limit counts as at the limit.
         let beyond: Vec<usize> = self.mechanism.outside_limits(&there.closure.q).collect();
         if beyond.is_empty() {
             return Ok(Ok(there));
@@ -209,20 +210,21 @@ impl<'a> PathTracker<'a> {
         })
     }
 
-    /// The held coordinates as they are at a fraction of the way, the goal itself at the end.
-    fn put_held(&self, q: &mut [f64], fraction: f64) {
+    /// Sets the prescribed coordinates at a fraction of the path; at its end exactly to the goal.
+    fn set_prescribed(&self, q: &mut [f64], fraction: f64) {
         let change: Vec<f64> = self.direction.iter().map(|x| fraction * x).collect();
-        let there = moved(self.mechanism, &self.from, self.held, &change);
-        for (&i, goal) in self.held.iter().zip(self.goal) {
+        let there = moved(self.mechanism, &self.from, self.prescribed, &change);
+        for (&i, goal) in self.prescribed.iter().zip(self.goal) {
             q[i] = if fraction >= 1.0 { *goal } else { there[i] };
         }
     }
 
-    /// Newton with the held coordinates at rest: the point and how far it is from the guess.
+    /// Newton corrector with the prescribed coordinates fixed: the point and its distance from the
+    /// guess.
     fn corrected(&self, guess: Vec<f64>) -> Result<Option<(Point, f64)>> {
         let mut now = self.at(&guess)?;
         let mut moved_by = 0.0;
-        for _ in 0..MOST_CORRECTIONS {
+        for _ in 0..MAX_CORRECTIONS {
             if now.closure.residual_norm <= LOOP_ROUNDING {
                 break;
             }
@@ -241,17 +243,17 @@ impl<'a> PathTracker<'a> {
         Ok(now.closure.is_closed(self.mechanism.reach()).then_some((now, moved_by)))
     }
 
-    /// The least change of the free coordinates that takes `opened` back.
+    /// The least-norm change of the free coordinates that compensates the violation `opened`.
     fn back(&self, point: &Point, opened: &[f64]) -> Vec<f64> {
         point.svd.solve(opened, self.rank).iter().map(|change| -change).collect()
     }
 }
 
-/// What moves the held coordinates from `q` to `goal`, without unit: differences, for balls and
-/// free bodies the screw in axes of the child.
-fn displacement(mechanism: &Mechanism, q: &[f64], held: &[usize], goal: &[f64]) -> Vec<f64> {
+/// The scaled displacement of the prescribed coordinates from `q` to `goal`: differences, for
+/// spherical and free joints the screw displacement in child axes.
+fn displacement(mechanism: &Mechanism, q: &[f64], prescribed: &[usize], goal: &[f64]) -> Vec<f64> {
     let mut target = q.to_vec();
-    held.iter().zip(goal).for_each(|(&i, x)| target[i] = *x);
+    prescribed.iter().zip(goal).for_each(|(&i, x)| target[i] = *x);
     let mut rates: Vec<f64> = target.iter().zip(q).map(|(a, b)| a - b).collect();
     let vector = |x: &[f64], i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
     for node in mechanism.nodes() {
@@ -265,9 +267,9 @@ fn displacement(mechanism: &Mechanism, q: &[f64], held: &[usize], goal: &[f64]) 
         };
         if let (Some(here), Some(there)) = (pose(q), pose(&target)) {
             let twist = log(here.inverse() * there).to_array();
-            let skip = 6 - node.kind.dof(); // balls only turn
+            let skip = 6 - node.kind.dof(); // spherical joints only rotate
             rates[c..c + node.kind.dof()].copy_from_slice(&twist[skip..]);
         }
     }
-    held.iter().map(|&i| rates[i] / unit_of(mechanism, i)).collect()
+    prescribed.iter().map(|&i| rates[i] / unit_of(mechanism, i)).collect()
 }

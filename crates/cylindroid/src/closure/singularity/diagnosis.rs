@@ -1,23 +1,24 @@
-//! What is singular about a configuration of a mechanism, with the motions lost and gained as screws.
+//! Diagnosis of a configuration: its singularities, with the motions lost and gained as screws.
 //!
 //! Formula  type I    blocked: zero-torque wrenches (ran R)^perp beyond the generic ones;
 //!                    lost: the twists that do work on them and are orthogonal to ran R (scaled)
 //!          type II   gained: twists of the object with the actuated joints at rest, beyond the
-//!                    generic ones
+//!          generic ones
 //!          passive   idle motions beyond the generic ones
 //!          configuration space: the branches of [`FiniteMobility`]
 //! Shapes   screws of amplitude one, as many as the count exceeds the generic one
 //! Units    points m, pitches m/rad
 //! Frame    world
-//! Valid    where the generic count is zero, all there is is beyond it, and blocked wrenches and
+//! Valid    if the generic count is zero, the whole space exceeds it, and blocked wrenches and
 //!          gained twists do not depend on point, length or frame. Otherwise the generic part is
-//!          the limit of that of closed configurations to both sides, on a motion in which all degrees
-//!          of freedom take part, and what is beyond it is orthogonal to the limit (scaled, at the
-//!          reference point): right to 1e-6, and dependent on that choice. Where no such configurations
-//!          are found all is given, and [`Diagnosis::separated`] is false. Lost twists depend on
-//!          point and length always: only the wrench that blocks them is geometry
-//! Why so   of several, the principal screws of their system are given, which need no basis; where
-//!          a system has none, twists that span it
+//!          the limit of that of closed configurations on both sides, along a motion that involves
+//!          all degrees of freedom, and the excess is orthogonal to the limit (scaled, at the
+//!          reference point): accurate to 1e-6, and dependent on that choice. If no such
+//!          configurations are found, the whole space is returned, and [`Diagnosis::separated`] is
+//!          false. Lost twists always depend on point and length: only the wrench that blocks them
+//!          is geometric
+//! Why so   several screws are returned as the principal screws of their system, which do not
+//!          depend on a basis; a system without principal screws, by twists that span it
 //! Source   Gosselin & Angeles 1990; Zlatanov et al. 1995; Ball 1900 for the principal screws
 //! Checked  tests/it/closure/diagnosis.rs
 
@@ -38,34 +39,35 @@ use crate::screws::{Line, Screw, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3, Wrench};
 use crate::tolerance::{CLOSURE_BLOCK, GENERIC_LIMIT, JOINT_AT_REST};
 
-/// The singularities of a configuration, named.
+/// The singularities of a configuration, with the screws lost and gained.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
     /// The kinds, and the distances to them.
     pub singularities: Singularities,
-    /// The counts of this configuration ...
+    /// The counts of this configuration.
     pub counts: MobilityCounts,
-    /// ... and those that it is measured by.
+    /// The generic counts.
     pub generic: GenericMobility,
-    /// What can be done of the motions to first order.
+    /// The finite mobility.
     pub finite: FiniteMobility,
-    /// Wrenches that are held without torque here and not elsewhere, each as the screw of its
-    /// axis (pitch: moment over force; infinite for a couple).
+    /// Wrenches in equilibrium without torque at this configuration but not generically, as the
+    /// screws of their axes (pitch: moment over force; infinite for a couple).
     pub blocked: Vec<Screw>,
-    /// Motions of the reference frame that are lost.
+    /// Lost motions of the reference frame.
     pub lost: Vec<Screw>,
-    /// Motions of the reference frame that the actuated joints do not hold here.
+    /// Gained motions of the reference frame, which the actuated joints do not control.
     pub gained: Vec<Screw>,
-    /// Actuated joints that move with the reference frame at rest, here and not elsewhere.
+    /// Actuated joints that move with the reference frame at rest, at this configuration but not
+    /// generically.
     pub redundant: Vec<String>,
-    /// Passive coordinates that move alone, here and not elsewhere.
+    /// Passive coordinates that move alone, at this configuration but not generically.
     pub idle: Vec<String>,
-    /// False where what is generic could not be told from what is not.
+    /// False if the generic part could not be separated from the excess.
     pub separated: bool,
 }
 
 impl Diagnosis {
-    /// Of a configuration, for the mechanism's reference frame or another, at its reach as
+    /// At a configuration, for the mechanism's reference frame or another, with its reach as
     /// characteristic length or another (m).
     ///
     /// ```
@@ -89,14 +91,15 @@ impl Diagnosis {
         let generic = GenericMobility::around(state, reference, length, counts)?;
         let finite = FiniteMobility::of(state, Some(length))?;
         let beside: Vec<Configuration> = finite
-            .beside()
+            .neighbours()
             .iter()
             .map(|q| Configuration::of(&mechanism.state(q)?, reference, Some(length)))
             .collect::<Result<_>>()?;
         let mut singularities =
             Singularities::with_counts(&counts, &here.motions, &here.relation, &generic.counts);
         let fold = SingularityKind::ConfigurationSpace;
-        // Nothing to compare with, but motions that do not exist: the rank is lost here.
+        // No other configuration to compare with, but motions that are not finite: the rank is lost
+        // here.
         let shaky = finite.finite.is_some_and(|f| f < finite.infinitesimal);
         if generic.others == 0 && shaky && !singularities.kinds.contains(&fold) {
             singularities.kinds.push(fold);
@@ -154,7 +157,7 @@ impl Configuration {
         unit.size(self.chain.constraint.length())
     }
 
-    /// Columns of twists (of wrenches, where `dual`) or rates, scaled and made orthonormal.
+    /// Orthonormal scaled columns of twists (wrenches if `dual`) or rates.
     fn scaled(&self, columns: &Matrix, units: &[Unit], dual: bool) -> Matrix {
         let scaled = Matrix::from_fn(columns.rows(), columns.cols(), |i, j| {
             let size = self.size(units[i]);
@@ -177,13 +180,13 @@ impl Configuration {
 
     fn idle(&self) -> Matrix {
         let still = RowSelection { actuated: true, passive: false, object: true };
-        let all = self.motions.standing(still);
+        let all = self.motions.vanishing_on(still);
         let a = self.motions.actuated();
         let passive = all.rows_between(a, a + self.motions.passive());
         self.scaled(&passive, &self.chain.units.passive, false)
     }
 
-    /// The columns with every entry and the size of its unit put together.
+    /// The columns with every entry multiplied by its scale.
     fn columns<'a>(
         &'a self,
         space: &'a Matrix,
@@ -196,7 +199,8 @@ impl Configuration {
     }
 }
 
-/// The part of `now` orthogonal to the limit of the spaces beside it, and whether there was one.
+/// The part of `now` orthogonal to the limit of the neighbouring spaces, and true if the limit was
+/// found.
 fn beyond(
     now: &Matrix,
     beside: &[Configuration],
@@ -220,7 +224,7 @@ fn beyond(
     (now * &Qr::plain(kept).complement(), true)
 }
 
-/// Entries of the object, in the plane (x, y, turn), as six.
+/// The entries of a planar object (x, y, rotation) as six.
 fn six(x: &[f64]) -> [f64; 6] {
     match x {
         [x, y, turn] => [*x, *y, 0.0, 0.0, 0.0, *turn],
@@ -228,7 +232,7 @@ fn six(x: &[f64]) -> [f64; 6] {
     }
 }
 
-/// At the world's origin, where `x` is at `point`.
+/// At the world origin, for `x` at `point`.
 fn twist(x: &[f64], point: Vec3) -> Twist {
     Twist::from_array(six(x)).at_point(-point)
 }
@@ -237,16 +241,16 @@ fn wrench(x: &[f64], point: Vec3) -> Wrench {
     Wrench::from_array(six(x)).at_point(-point)
 }
 
-/// A wrench as the twist of the same screw: the force turns, the moment moves.
+/// A wrench as the twist of the same screw: force becomes angular, moment linear velocity.
 fn ray(wrench: Wrench) -> Twist {
     Twist { linear: wrench.moment, angular: wrench.force }
 }
 
-/// One screw as it is, several as the principal screws of their system; all of amplitude one,
+/// A single twist as its screw, several as the principal screws of their system; of amplitude one,
 /// along the direction whose largest component is positive.
 fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
     let of = |twist: Twist| {
-        // A turn that is no more than the error of the twist is none.
+        // An angular velocity within the error of the twist counts as zero.
         let turns = twist.angular.norm() * length > accuracy * twist.linear.norm();
         let twist = if turns { twist } else { Twist { angular: Vec3::ZERO, ..twist } };
         let screw = Screw::of(twist)?;
@@ -273,7 +277,7 @@ fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
     Ok(twists.into_iter().filter_map(of).collect())
 }
 
-/// The names of those that take part.
+/// The names of the coordinates that move.
 fn movers(motions: &Matrix, names: &[String]) -> Vec<String> {
     let moves = |i: &usize| motions.row_norm(*i) > JOINT_AT_REST;
     (0..names.len()).filter(moves).map(|i| names[i].clone()).collect()

@@ -1,14 +1,16 @@
-//! The generic counts of a mechanism: what it has where nothing is special about its configuration.
+//! Generic mobility: the counts of a mechanism at regular configurations.
 //!
-//! Method   the counts of the configuration in question, of configurations near it and of configurations anywhere
-//!          within the position limits: guesses at random (the same on every run), closed by
-//!          [`assemble`]; those that do not close, or come back to the configuration, are left out. Of
-//!          all, the largest rank and the smallest of every other count
-//! Valid    configurations of other assembly components count too. A mechanism whose components differ
-//!          in mobility (kinematotropic) is measured by the one of least mobility. Where no other
-//!          configuration closes, the counts are those of the configuration itself: see [`GenericMobility::others`]
-//! Why so   counts below those of a single regular configuration would need that configuration to be known;
-//!          Grubler's count is wrong for whatever is overconstrained
+//! Method   the counts of the given configuration, of configurations near it and of random
+//!          configurations within the position limits: random initial guesses (the same on every
+//!          run), closed by [`assemble`]; those that do not close, or return to the given
+//!          configuration, are left out. Of all, the largest rank and the smallest of every other
+//!          count
+//! Valid    configurations of other assembly modes count too. A mechanism whose components differ
+//!          in mobility (kinematotropic) is compared with the one of least mobility. If no other
+//!          configuration closes, the counts are those of the given one: see
+//!          [`GenericMobility::others`]
+//! Why so   counts of a single regular configuration would require it to be known; the
+//!          Gruebler-Kutzbach count is wrong for overconstrained mechanisms
 //! Checked  tests/it/closure/diagnosis.rs
 
 use crate::closure::constraint::closed_chain::ClosedChain;
@@ -16,30 +18,30 @@ use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::motion_space::MotionSpace;
 use crate::closure::position::assembly::assemble;
 use crate::closure::position::configuration_signature::{link_poses, max_displacement};
-use crate::closure::position::initial_guesses::{anywhere, near};
+use crate::closure::position::initial_guesses::{perturbed, random};
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::model::FrameId;
 use crate::tolerance::FINITE_STEP;
 
-/// Guesses near the configuration, and anywhere.
+/// Number of guesses near the configuration, and of random ones.
 const GUESSES: (usize, usize) = (6, 6);
-/// How far guesses near it are [rad, or reaches].
+/// Perturbation of the guesses near it [rad, or reaches].
 const NEAR: f64 = 0.3;
 
-/// Generic counts and how many configurations stand behind them.
+/// Generic counts, and the number of configurations they come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GenericMobility {
     /// The counts.
     pub counts: MobilityCounts,
-    /// Closed configurations other than the one in question that were counted.
+    /// Number of other closed configurations that were counted.
     pub others: usize,
-    /// Guesses that were tried for them.
+    /// Number of initial guesses tried.
     pub guesses: usize,
 }
 
 impl GenericMobility {
-    /// Of the mechanism of `state`, for its reference frame or another, at its reach as
+    /// For the mechanism of `state`, its reference frame or another, with its reach as
     /// characteristic length or another (m).
     ///
     /// # Errors
@@ -59,13 +61,13 @@ impl GenericMobility {
         let mechanism = state.mechanism();
         let all: Vec<usize> = (0..mechanism.n()).collect();
         let here = link_poses(state);
-        let mut random = 7;
+        let mut seed = 7;
         let mut generic = Self { counts, others: 0, guesses: GUESSES.0 + GUESSES.1 };
         for guess in 0..generic.guesses {
             let guess = if guess < GUESSES.0 {
-                near(mechanism, state.q(), NEAR, &mut random)
+                perturbed(mechanism, state.q(), NEAR, &mut seed)
             } else {
-                anywhere(mechanism, state.q(), &all, &mut random)
+                random(mechanism, state.q(), &all, &mut seed)
             };
             let closed = assemble(mechanism, &guess, &[])?;
             let there = mechanism.state(&closed.q)?;

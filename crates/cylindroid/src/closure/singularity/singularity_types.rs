@@ -1,19 +1,22 @@
-//! Singular poses of closed chains: which counts differ from their generic values, what motion is
-//! lost or gained, and how far the next loss is.
+//! Singularity types of closed chains: counts that differ from their generic values, and distances
+//! to singularities.
 //!
-//! Formula  type I    zero-torque wrenches s or redundancy r' above generic: the object loses
-//!          type II   indeterminacy i' above generic: the object gains, the actuators do not hold it
+//! Formula  type I    zero-torque wrenches s or redundancy r' above generic: the object loses a
+//!          motion
+//!          type II   indeterminacy i' above generic: the object gains an uncontrolled motion
 //!          type III  both
 //!          configuration space  rank of [J_a J_p -G^T] below generic, k above
 //!          passive   idle motions above generic
-//! Units    distances have none: the smallest s and c among the finite pairs of the relation
-//!          (sines of angles in units scaled by the characteristic length, at the object's
-//!          reference point), the smallest value of the kernel without passive joints, and the
+//! Units    distances have none: the smallest s and c among the finite pairs of the relation (sines
+//!          of angles in units scaled by the characteristic length, at the reference point of the
+//!          object), the smallest singular value of the kernel without passive joints, and the
 //!          smallest singular value kept of the scaled constraint over the largest. The last
-//!          depends on where contacts are drawn; that each is zero does not depend on anything.
-//! Valid    relative to generic counts, which [`MobilityCounts::generic`] takes from several poses
-//!          (`GenericMobility` finds them for a mechanism, `Diagnosis` names what is lost and gained): a
-//!          mechanism may hold wrenches by its structure, or spin idly, in every pose
+//!          depends on the choice of contact frames; that each is zero does not depend on any
+//!          choice
+//! Valid    relative to generic counts, which [`MobilityCounts::generic`] takes from several
+//!          configurations (`GenericMobility` finds them for a mechanism, `Diagnosis` names the
+//!          motions lost and gained): a mechanism may have zero-torque wrenches or idle motions at
+//!          every configuration
 //! Source   Gosselin & Angeles 1990 (I, II, III); Park & Kim 1999 and Zlatanov et al. 1995
 //!          (configuration space, passive)
 //! Checked  tests/it/closure/singularity.rs
@@ -24,13 +27,13 @@ use crate::closure::mobility::relation::Relation;
 use crate::closure::singularity_kind::SingularityKind;
 use crate::linalg::Matrix;
 
-/// How far a pose is from losing what it has: 0 at a singularity, at most 1 elsewhere [-].
-/// Infinite where there is nothing to lose.
+/// Distances of a configuration to singularities: 0 at a singularity, at most 1 elsewhere [-].
+/// Infinite if there is no motion or rank to lose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SingularityDistances {
-    /// To the loss of a motion of the object.
+    /// To type I, the loss of a motion of the object.
     pub type_i: f64,
-    /// To a motion of the object that the actuated joints do not hold.
+    /// To type II, an uncontrolled motion of the object.
     pub type_ii: f64,
     /// To the loss of rank of the constraint.
     pub configuration_space: f64,
@@ -38,22 +41,22 @@ pub struct SingularityDistances {
     pub passive: f64,
 }
 
-/// What is singular about a pose.
+/// The singularities of a configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Singularities {
-    /// The kinds, in the order of [`SingularityKind`]; empty for a regular pose.
+    /// The kinds, in the order of [`SingularityKind`]; empty for a regular configuration.
     pub kinds: Vec<SingularityKind>,
-    /// Wrenches held without torque, a column each: those beyond the generic number block the
-    /// lost motions.
+    /// Zero-torque wrenches, one column each: those beyond the generic number block the lost
+    /// motions.
     pub blocked: Matrix,
     /// Motions of the object with the actuated joints at rest: those beyond the generic number are
     /// gained.
     pub gained: Matrix,
-    /// How far the pose is from each kind.
+    /// The distance to each kind.
     pub distances: SingularityDistances,
 }
 
-/// What a pose has that is not generic.
+/// The counts that differ from their generic values.
 struct Beyond {
     loses: bool,
     gains: bool,
@@ -85,7 +88,7 @@ impl Beyond {
 }
 
 impl SingularityDistances {
-    /// Those of a pose with these counts: 0 to each kind that it is.
+    /// The distances for these counts: 0 to each kind that the configuration has.
     pub(crate) fn against(self, now: &MobilityCounts, generic: &MobilityCounts) -> Self {
         let Beyond { loses, gains, folds, idles } = Beyond::of(now, generic);
         let or_zero = |singular: bool, x: f64| if singular { 0.0 } else { x };
@@ -99,13 +102,13 @@ impl SingularityDistances {
 }
 
 impl Singularities {
-    /// Of a pose, against the generic counts of its mechanism.
+    /// At a configuration, against the generic counts of its mechanism.
     #[must_use]
     pub fn of(motions: &MotionSpace, relation: &Relation, generic: &MobilityCounts) -> Self {
         Self::with_counts(&MobilityCounts::of(motions, relation), motions, relation, generic)
     }
 
-    /// The same for a pose whose own counts are known.
+    /// The same for a configuration whose counts are known.
     pub(crate) fn with_counts(
         now: &MobilityCounts,
         motions: &MotionSpace,
@@ -118,7 +121,7 @@ impl Singularities {
             type_i: pairs.last().map_or(none, |p| p.0),
             type_ii: pairs.first().map_or(none, |p| p.1),
             configuration_space: if now.rank > 0 { motions.regularity() } else { none },
-            passive: motions.still(ACTUATED_AND_OBJECT).1.kept,
+            passive: motions.vanishing_coefficients(ACTUATED_AND_OBJECT).1.kept,
         };
         Self {
             kinds: Beyond::of(now, generic).kinds(),
@@ -128,7 +131,7 @@ impl Singularities {
         }
     }
 
-    /// True for a pose that is regular in all respects.
+    /// True for a regular configuration.
     #[must_use]
     pub fn is_regular(&self) -> bool {
         self.kinds.is_empty()

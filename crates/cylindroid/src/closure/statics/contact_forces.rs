@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Metric, Svd, Threshold, dot, norm};
 use crate::tolerance::CLOSURE_RANK;
 
-/// Joint torques and the wrench on the object at one time.
+/// A static load: joint torques and a wrench on the object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StaticLoad<'a> {
     /// An entry for each actuated joint.
@@ -33,8 +33,8 @@ pub struct StaticLoad<'a> {
 pub struct ContactForces {
     /// An entry for each row of the constraint.
     pub forces: Vec<f64>,
-    /// What the load leaves unbalanced over the load (scaled) [-]: rounding, unless torques and
-    /// wrench contradict each other.
+    /// Norm of the unbalanced part of the load over that of the load (scaled) [-]: rounding, unless
+    /// torques and wrench contradict each other.
     pub unbalanced: f64,
 }
 
@@ -119,16 +119,19 @@ impl<'a> ContactForceSolver<'a> {
     }
 }
 
-/// ker G: contact forces without a wrench on the object. They need torques at the joints unless
-/// nothing determines them.
+/// ker G: contact forces without a wrench on the object (internal forces). They require joint
+/// torques unless they are hyperstatic.
 #[must_use]
+#[doc(alias = "squeeze forces")]
 pub fn internal_forces(constraint: &Constraint) -> Subspace {
     let joints = constraint.actuated() + constraint.passive();
     kernel_of_columns(constraint, joints, joints + constraint.object())
 }
 
-/// ker J^T: contact forces without torques at any joint.
+/// ker J^T: contact forces without torques at any joint (structural forces, reactions).
 #[must_use]
+#[doc(alias = "constraint forces")]
+#[doc(alias = "reactions")]
 pub fn structural_forces(constraint: &Constraint) -> Subspace {
     kernel_of_columns(constraint, 0, constraint.actuated() + constraint.passive())
 }

@@ -1,17 +1,17 @@
-//! Force closure of a grasp: which wrenches contacts with friction hold, and the least of them.
+//! Force closure of a grasp: the wrenches that contacts with friction can resist, and the quality
+//! epsilon.
 //!
 //! Formula  w = sum G_i f_i, f_i in the cone |f_t / mu|^2 + |m_n / (mu_t)|^2 <= f_n^2, f_n >= 0;
-//!          epsilon = min over unit n of h(n), the farthest such w along n, with
-//!          f_n of all contacts together at most 1 (`Shared`) or of each at most its strength
-//!          (`Each`)
+//!          epsilon = min over unit n of h(n), the support function of these w, with the sum of all
+//!          f_n at most 1 (`L1`, Q1) or each f_n at most its strength (`LInf`, Q-infinity)
 //! Shapes   G_i: d x k, columns normal, tangents, and the moment about the normal for soft fingers
 //! Units    mu has none, the torsional coefficient is a length (m); moments are divided by the
-//!          characteristic length, so that epsilon is a force (per unit of f_n for `Shared`)
+//!          characteristic length, so that epsilon is a force (per unit of f_n for `L1`)
 //! Frame    the wrench acts on the object, at the point and in the axes of its twist
-//! Valid    any contacts. epsilon > 0 is force closure. It comes between two bounds: the round
-//!          cones are taken as they are, not as pyramids, so the true value lies within the gap.
-//! Why so   pyramids of eight edges miss up to 8 % and depend on where they start; a hull of all
-//!          their edges in six dimensions has thousands of facets, of which one is asked for
+//! Valid    any contacts. epsilon > 0 is force closure. It is returned between two certified
+//!          bounds: the friction cones are round, not approximated by pyramids
+//! Why so   pyramids of eight edges err by up to 8 % and depend on their orientation; the hull of
+//!          all their edges in six dimensions has thousands of facets, of which only one is needed
 //! Source   Ferrari & Canny 1992; Zheng 2013; cones of soft fingers Howe & Cutkosky 1996
 //! Checked  tests/it/closure/grasp.rs
 
@@ -21,17 +21,18 @@ use crate::model::Dimension;
 use crate::spatial::Vec3;
 use crate::tolerance::{GRASP_QUALITY, HULL, MAX_FACETS, ORTHONORMAL};
 
-/// What a finger transmits.
+/// The friction model of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction {
-    /// A force along the normal.
+    /// Frictionless: a force along the normal.
     None,
-    /// A hard finger: a force within the cone of the coefficient `mu`.
+    /// A hard finger: a force within the friction cone of the coefficient `mu`.
     Hard {
         /// Coefficient of friction [-].
         mu: f64,
     },
-    /// A soft finger: a moment about the normal too, within an ellipse with the tangential force.
+    /// A soft finger: also a moment about the normal, within an ellipsoid with the tangential
+    /// force.
     Soft {
         /// Coefficient of friction [-].
         mu: f64,
@@ -43,11 +44,11 @@ pub enum Friction {
 /// A finger on the object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FingerContact {
-    /// Where it touches (m).
+    /// Contact point (m).
     pub point: Vec3,
     /// Unit normal into the object: the direction in which the finger pushes.
     pub normal: Vec3,
-    /// What it transmits.
+    /// The friction model.
     pub friction: Friction,
     /// Largest normal force (N), used by [`GraspMetric::LInf`].
     pub strength: f64,
@@ -73,7 +74,7 @@ impl GraspMetric {
     }
 }
 
-/// Where wrenches are taken, and how they are measured.
+/// The point, length and dimension of the wrenches of a grasp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WrenchSpace {
     /// The point that moments are about (m).
@@ -101,23 +102,40 @@ pub struct EpsilonQuality {
     pub upper: f64,
 }
 
-/// How well a grasp holds.
+/// The quality of a grasp.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraspQuality {
-    /// True if every wrench can be held with enough effort.
+    /// True for force closure: every wrench can be resisted with large enough forces.
     pub closed: bool,
     /// The quality epsilon, with certified bounds.
     pub epsilon: EpsilonQuality,
-    /// The direction in which least is held, moments over the length: for an open grasp a
-    /// direction in which nothing is.
+    /// The worst direction, moments divided by the length: for an open grasp a direction in which
+    /// no wrench can be resisted.
     pub weakest: Vec<f64>,
 }
 
-/// The quality of a grasp by these contacts.
+/// The quality of a grasp with these contacts.
+///
+/// ```
+/// use cylindroid::closure::{FingerContact, Friction, GraspMetric, WrenchSpace, grasp_quality};
+/// use cylindroid::Vec3;
+///
+/// // Two hard fingers press a disc between them.
+/// let finger = |x: f64| FingerContact {
+///     point: Vec3::new(x, 0.0, 0.0),
+///     normal: Vec3::new(-x, 0.0, 0.0),
+///     friction: Friction::Hard { mu: 0.5 },
+///     strength: 1.0,
+/// };
+/// let space = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar: true };
+/// let quality = grasp_quality(&[finger(-1.0), finger(1.0)], space, GraspMetric::L1)?;
+/// assert!(quality.closed && quality.epsilon.lower > 0.0);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 ///
 /// # Errors
-/// A contact whose normal is no unit vector, with a negative coefficient, without strength, with
-/// numbers that are not finite; a length that is not positive.
+/// A contact normal that is no unit vector, a negative coefficient, a strength that is not
+/// positive, non-finite values; a length that is not positive.
 pub fn grasp_quality(
     contacts: &[FingerContact],
     space: WrenchSpace,
@@ -127,20 +145,20 @@ pub fn grasp_quality(
     let fingers: Vec<Finger> =
         contacts.iter().map(|c| Finger::new(c, space, metric)).collect::<Result<_>>()?;
     let d = space.components().len();
-    let farthest = |n: &[f64]| -> Vec<f64> {
+    let support = |n: &[f64]| -> Vec<f64> {
         let mut wrench = vec![0.0; d];
         let reach = fingers.iter().map(|f| f.reach(n));
         match metric {
             GraspMetric::L1 => {
                 let best = reach.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
                 if let Some((i, _)) = best {
-                    fingers[i].add_farthest(n, &mut wrench);
+                    fingers[i].add_support_point(n, &mut wrench);
                 }
             }
             GraspMetric::LInf => {
                 for (finger, reach) in fingers.iter().zip(reach) {
                     if reach > 0.0 {
-                        finger.add_farthest(n, &mut wrench);
+                        finger.add_support_point(n, &mut wrench);
                     }
                 }
             }
@@ -149,7 +167,7 @@ pub fn grasp_quality(
     };
     let hull = Hull::of(
         d,
-        farthest,
+        support,
         HullOptions {
             goal: HullGoal::NearestFacet,
             tolerance: GRASP_QUALITY,
@@ -175,8 +193,8 @@ pub fn grasp_quality(
     })
 }
 
-/// A flat set of wrenches holds nothing across it; where it does not go through zero, nothing even
-/// pushes to the other side.
+/// A flat set of wrenches resists nothing normal to it; if it does not contain zero, it even pushes
+/// to one side only.
 fn flat(hull: &Hull, size: f64) -> GraspQuality {
     let across = Qr::plain(hull.span.clone()).complement();
     let apart = across.transpose().mul_vec(&hull.vertices[0]);
@@ -194,8 +212,8 @@ fn flat(hull: &Hull, size: f64) -> GraspQuality {
     }
 }
 
-/// A contact with its columns scaled: strength and friction are taken into them, so that the cone
-/// is `|rest| <= first`.
+/// A contact with scaled columns: strength and friction are absorbed, so that the cone is `|rest|
+/// <= first`.
 struct Finger {
     columns: Matrix,
 }
@@ -207,10 +225,14 @@ impl Finger {
             Error::check_finite(name, &[value.x, value.y, value.z])?;
         }
         if (normal.norm() - 1.0).abs() > ORTHONORMAL {
-            return Err(refuse("normal", normal.norm(), "its length must be 1; divide by it"));
+            return Err(refuse(
+                "normal",
+                normal.norm(),
+                "it must be a unit vector; divide it by its length",
+            ));
         }
         if space.planar && (normal.z.abs() > ORTHONORMAL || point.z.abs() > ORTHONORMAL) {
-            return Err(refuse("normal", normal.z, "a planar contact lies in the plane z = 0"));
+            return Err(refuse("normal", normal.z, "a planar contact must lie in the plane z = 0"));
         }
         if metric == GraspMetric::LInf {
             Error::check_positive("strength", strength)?;
@@ -222,7 +244,11 @@ impl Finger {
         };
         for (name, value) in [("mu", mu), ("torsion", torsion)] {
             if !(value >= 0.0 && value.is_finite()) {
-                return Err(refuse(name, value, "coefficients of friction are not negative"));
+                return Err(refuse(
+                    name,
+                    value,
+                    "coefficients of friction must be finite and not negative",
+                ));
             }
         }
         let arm = point - space.point;
@@ -246,13 +272,13 @@ impl Finger {
         Ok(Self { columns: Matrix::from_fn(columns[0].len(), columns.len(), |i, j| columns[j][i]) })
     }
 
-    /// Farthest along `n` with a normal force of one.
+    /// Support function along `n` for a normal force of one.
     fn reach(&self, n: &[f64]) -> f64 {
         let g = self.along(n);
         g[0] + norm(&g[1..])
     }
 
-    fn add_farthest(&self, n: &[f64], wrench: &mut [f64]) {
+    fn add_support_point(&self, n: &[f64], wrench: &mut [f64]) {
         let mut force = self.along(n);
         let slip = norm(&force[1..]);
         force[0] = 1.0;
@@ -269,7 +295,7 @@ impl Finger {
     }
 }
 
-/// A unit vector across `n`.
+/// A unit vector normal to `n`.
 fn across(n: Vec3) -> Vec3 {
     let axis = if n.x.abs() < 0.6 { Vec3::X } else { Vec3::new(0.0, 1.0, 0.0) };
     let t = n.cross(axis);

@@ -1,12 +1,14 @@
-//! The contacts of a mechanism on an object, as the fingers of a grasp.
+//! Grasp contacts: the contacts of a mechanism on an object, as the fingers of a grasp.
 //!
-//! Formula  point and normal from the contact frame on the object at the pose of the state; where
-//!          the file names the object first, the normal is turned into it
+//! Formula  point and normal of the contact frame on the object, at the configuration of the state;
+//!          if the file names the object first, the normal is reversed so that it points into the
+//!          object
 //! Units    mu has none, torsion is a length (m): largest moment about the normal over the normal
 //!          force
 //! Frame    world
-//! Valid    contacts at points: `point_frictionless`, `hard_finger`, `soft_finger` (in the plane a
-//!          hard one). Lines, faces and firm grasps press at places that the model does not give
+//! Valid    point contacts: `point_frictionless`, `hard_finger`, `soft_finger` (in the plane a hard
+//!          finger). The model does not give the pressure distribution of line, plane and complete
+//!          contacts
 //! Source   Bicchi & Prattichizzo 1998, table 1, for the kinds
 //! Checked  tests/it/closure/grasp.rs::fingers_*
 
@@ -17,27 +19,27 @@ use crate::model::{Contact, ContactKind, Dimension, FrameId};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::CLOSED;
 
-/// What is known of a contact beside its kind.
+/// Properties of a contact besides its kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactProperties {
-    /// Coefficient of friction in place of the file's [-].
+    /// Coefficient of friction that replaces the one of the file [-].
     pub mu: Option<f64>,
-    /// Largest moment about the normal over the normal force (m), of soft fingers.
+    /// Largest moment about the normal over the normal force (m), for soft fingers.
     pub torsion: Option<f64>,
     /// Largest normal force (N).
     pub strength: f64,
 }
 
-/// The contacts on the link that carries `object`, with their places in the mechanism's list;
-/// `touch` says what is known of each.
+/// The contacts on the link that carries `object`, with their indices in the mechanism;
+/// `properties` gives the properties of each.
 ///
 /// # Errors
-/// A frame of another mechanism; a contact on it that is no point, or whose coefficients nobody
-/// gives.
+/// A frame of another mechanism; a contact on it that is no point contact, or whose coefficients
+/// are unknown.
 pub fn grasp_contacts(
     state: &State,
     object: FrameId,
-    touch: impl Fn(&Contact) -> ContactProperties,
+    properties: impl Fn(&Contact) -> ContactProperties,
 ) -> Result<Vec<(usize, FingerContact)>> {
     let mechanism = state.mechanism();
     mechanism.check_frame(object)?;
@@ -53,7 +55,7 @@ pub fn grasp_contacts(
             continue;
         };
         let at = world_from_link * link_from_contact;
-        let known = touch(contact);
+        let known = properties(contact);
         let normal: Vec3 = at.rotation.z_axis() * sign;
         let friction =
             friction(contact, known, mechanism.dimension()).map_err(|message| Error::Model {
@@ -76,9 +78,7 @@ fn friction(
     let name = &contact.name;
     let mu = || {
         known.mu.or(contact.friction).ok_or_else(|| {
-            format!(
-                "contact '{name}' has no coefficient of friction; write friction = ... or give mu"
-            )
+            format!("contact '{name}' has no coefficient of friction; set friction, or give mu")
         })
     };
     match contact.kind {
@@ -97,16 +97,16 @@ fn friction(
             Ok(Friction::Soft { mu: mu()?, torsion })
         }
         other => Err(format!(
-            "contact '{name}' is {}: force closure is of points; write it as several hard or soft \
-             fingers at its corners",
+            "contact '{name}' is {}: force closure needs point contacts; model it as several hard \
+             or soft fingers at its corners",
             other.name()
         )),
     }
 }
 
 impl WrenchSpace {
-    /// At the origin of `object` in world axes, moments over the distance to the farthest of
-    /// these fingers (the reach of the mechanism where all are at the origin).
+    /// At the origin of `object` in world axes, with moments divided by the distance to the
+    /// farthest of these fingers (by the reach of the mechanism if all are at the origin).
     ///
     /// # Errors
     /// A frame of another mechanism.

@@ -13,17 +13,18 @@ use crate::closure::mobility::relation::{DualRelation, Relation};
 use crate::error::{Error, Result};
 use crate::linalg::{Metric, Qr, dot};
 
-/// Joint torques that balance a wrench.
+/// Joint torques in equilibrium with a wrench.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointTorques {
-    /// The torques of least norm, an entry for each actuated joint. Any combination of the internal
+    /// The torques of least norm, one for each actuated joint. Any combination of the internal
     /// torques of the mobility report may be added.
     pub torques: Vec<f64>,
-    /// The part of the wrench that the structure holds without torques: along the zero-torque
-    /// wrenches, orthogonal to all others in units scaled by the characteristic length.
+    /// The part of the wrench that is balanced by the structure without torques: along the
+    /// zero-torque wrenches, orthogonal to all others in units scaled by the characteristic length.
     pub structural: Vec<f64>,
-    /// The part of the wrench that no torque and no structure balances: zero, or along motions of
-    /// the object that the actuated joints do not hold. The torques balance what both parts leave.
+    /// The part of the wrench that neither torques nor the structure can balance: zero, or along
+    /// motions of the object that the actuated joints do not control. The torques balance the
+    /// remaining part.
     pub unbalanced: Vec<f64>,
 }
 

@@ -1,15 +1,15 @@
-//! What loop joints and contacts transmit, as wrenches: forces of rows put together again.
+//! Transmitted wrenches of loop joints and contacts, from the forces of their rows.
 //!
 //! Formula  wrench of a joint or contact = sum of t_i h_i over its rows h_i, moved to its point
-//! Shapes   t: one force for each row of the [`ClosedChain`] (its last rows are the wrench on the
+//! Shapes   t: one force for each row of the [`ClosedChain`] (the last rows are the wrench on the
 //!          object itself and belong to no joint)
-//! Units    N and N m; compliances m/N, of moments those of forces over the square of the
-//!          characteristic length
-//! Frame    at the origin of the joint (contact) on the second link, world axes; the wrench by
-//!          which the first link acts on the second. The normal of a contact points into the
-//!          second link, so that pushing is positive
-//! Valid    forces of [`contact_forces`] in the same pose. Joints of the spanning tree are not
-//!          among them: the constraint is written without their forces
+//! Units    N and N m; compliances m/N, for moments divided by the square of the characteristic
+//!          length
+//! Frame    at the origin of the joint (contact) on the second link, world axes; the wrench exerted
+//!          by the first link on the second. The normal of a contact points into the second link,
+//!          so that pushing is positive
+//! Valid    forces of [`contact_forces`] at the same configuration. Joints of the spanning tree are
+//!          not among them: the constraint is written without their forces
 //! Checked  tests/it/closure/statics.rs::transmitted_*
 //!
 //! [`contact_forces`]: crate::closure::contact_forces
@@ -22,21 +22,21 @@ use crate::kinematics::State;
 use crate::linalg::Metric;
 use crate::spatial::{Vec3, Wrench};
 
-/// The wrench that a loop joint or a contact transmits.
+/// The wrench transmitted by a loop joint or a contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransmittedWrench {
     /// Name of the joint or contact.
     pub name: String,
-    /// Where it is (m).
+    /// Its position (m).
     pub point: Vec3,
-    /// By which the first link acts on the second, at the point.
+    /// Exerted by the first link on the second, at the point.
     pub wrench: Wrench,
-    /// Of a contact: the force along the normal (N), positive where it pushes.
+    /// For contacts: the force along the normal (N), positive for pushing.
     pub normal: Option<f64>,
 }
 
 impl TransmittedWrench {
-    /// Size of the force across the normal (N), of contacts.
+    /// Norm of the tangential force (N), for contacts.
     #[must_use]
     pub fn tangential(&self) -> Option<f64> {
         let normal = self.normal?;
@@ -48,7 +48,7 @@ impl TransmittedWrench {
 /// The wrenches of all loop joints, then of all contacts, from the forces of the rows.
 ///
 /// # Errors
-/// Forces of the wrong number or not finite.
+/// The wrong number of forces, or non-finite values.
 pub fn transmitted_wrenches(
     state: &State,
     chain: &ClosedChain,
@@ -84,12 +84,11 @@ pub fn transmitted_wrenches(
     Ok(all)
 }
 
-/// The compliance of the rows where each loop joint and contact, in this order, gives way by
-/// `compliances` (m/N) to forces, and to moments by this over the square of the characteristic
-/// length (rad/(N m)).
+/// The compliance of the rows: `compliances` (m/N) of all loop joints, then of all contacts, to
+/// forces, and divided by the square of the characteristic length to moments (rad/(N m)).
 ///
 /// # Errors
-/// Compliances of the wrong number, or not positive and finite.
+/// The wrong number of compliances, or values that are not positive and finite.
 pub fn row_compliance(state: &State, chain: &ClosedChain, compliances: &[f64]) -> Result<Metric> {
     let mechanism = state.mechanism();
     let pairs_there = mechanism.loops().len() + mechanism.contacts().len();
@@ -103,15 +102,15 @@ pub fn row_compliance(state: &State, chain: &ClosedChain, compliances: &[f64]) -
             Unit::Angle => compliances[row.pair] / (length * length),
         })
         .collect();
-    // The wrench on the object is given: how stiff its rows are changes nothing.
+    // The wrench on the object is given: the compliance of its rows has no influence.
     weights.resize(chain.constraint.rows(), 1.0);
     Metric::diagonal("compliance", &weights)
 }
 
-/// The rows of joints and contacts.
+/// The rows of loop joints and contacts.
 fn pairs(state: &State, chain: &ClosedChain) -> Result<Vec<ConstraintRow>> {
     let (rows, ..) = constraint_rows(state)?;
     let expected = chain.constraint.rows() - chain.constraint.object();
-    Error::check_len("closed chain (its rows; of another state?)", rows.len(), expected)?;
+    Error::check_len("rows of the closed chain (is it of another state?)", rows.len(), expected)?;
     Ok(rows)
 }

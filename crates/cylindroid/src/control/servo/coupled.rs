@@ -130,7 +130,8 @@ impl Coupled {
     ) -> Option<UncontrolledMotion> {
         let n = self.mechanism.n();
         let in_task = |motion: &[f64]| self.task.mul_vec(&space.scaled_rates(&motion[..n]));
-        let left = (0..actuation_map.left.cols()).map(|j| (0.0, actuation_map.left.column(j)));
+        let left = (0..actuation_map.uncontrolled.cols())
+            .map(|j| (0.0, actuation_map.uncontrolled.column(j)));
         let weak = actuation_map.shares.iter().enumerate();
         let weak = weak.map(|(j, share)| (*share, actuation_map.directions.column(j)));
         left.chain(weak).take_while(|(share, _)| *share < MIN_ACTUATED_SHARE).find_map(

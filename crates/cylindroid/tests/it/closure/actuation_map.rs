@@ -30,7 +30,7 @@ fn steering_agrees_with_the_constraint() {
         let weights: Vec<f64> = (0..mechanism.n()).map(|_| random.within(0.2, 3.0)).collect();
         let steering = ActuationMap::of(&state, &weights, &[]).unwrap();
         let motions = MotionSpace::of(&ClosedChain::of(&state, None, None).unwrap().constraint);
-        let (steered, left) = (steering.motions.cols(), steering.left.cols());
+        let (steered, left) = (steering.motions.cols(), steering.uncontrolled.cols());
         assert_eq!(steered + left, motions.dof(), "{name}");
         assert_eq!(steering.shares.len(), steered);
         let dimensions = motions.relation().dimensions();
@@ -60,7 +60,7 @@ fn motions_keep_loops_and_corrections_close_them() {
             gap.distance / mechanism.reach() + gap.angle
         };
         let steering = ActuationMap::of(&mechanism.state(&q).unwrap(), &[], &[]).unwrap();
-        for m in [&steering.motions, &steering.left] {
+        for m in [&steering.motions, &steering.uncontrolled] {
             for j in 0..m.cols() {
                 let size = m.column(j).iter().map(|x| x * x).sum::<f64>().sqrt();
                 let h = 1e-5 / size;
@@ -81,7 +81,7 @@ fn locks_and_bad_input() {
     let five_bar = catalogue::load("five-bar").unwrap();
     let state = five_bar.state(five_bar.home()).unwrap();
     let locked = ActuationMap::of(&state, &[], &[0]).unwrap();
-    assert_eq!((locked.motions.cols(), locked.left.cols()), (1, 0));
+    assert_eq!((locked.motions.cols(), locked.uncontrolled.cols()), (1, 0));
     assert!(locked.motions.column(0)[0].abs() < 1e-12);
     assert!(ActuationMap::of(&state, &[], &[4]).is_err());
     assert!(ActuationMap::of(&state, &[1.0], &[]).is_err());

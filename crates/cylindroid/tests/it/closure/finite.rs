@@ -54,7 +54,7 @@ fn a_stretched_pair_of_links_is_shaky() {
     );
     // The middle joint moves across: the second link turns back twice as fast.
     assert_close("shaky", &by_the_first(&found.shaky), &[1.0, -2.0], 1e-12);
-    assert!(found.left_open > 1e-6, "{found:?}");
+    assert!(found.residual > 1e-6, "{found:?}");
     // Folded back, it turns about the pins as one.
     let folded = at_home(&ring("folded", &flat(&[0.0, 1.0, 0.0]), Dimension::Planar));
     assert_eq!((folded.infinitesimal, folded.finite), (1, Some(1)));
@@ -133,7 +133,7 @@ fn overconstrained_loops_move() {
     assert_eq!(gruebler_kutzbach(&four_bar), -2);
     assert_eq!((spatial.infinitesimal, spatial.finite), (1, Some(1)));
     assert_eq!(spatial.evidence, MobilityEvidence::Steps);
-    assert!(spatial.certain && spatial.left_open < 1e-13, "{spatial:?}");
+    assert!(spatial.certain && spatial.residual < 1e-13, "{spatial:?}");
     // With one axis out of line it is a structure.
     axes[2].direction = Vec3::new(0.0, 0.01, 1.0).unit(0.0).unwrap();
     let tilted = at_home(&ring("tilted", &axes, Dimension::Spatial));

@@ -104,10 +104,10 @@ fn folded_four_bar_has_a_second_motion() {
 #[test]
 fn motions_that_let_rows_stand() {
     let motions = MotionSpace::of(&case("two3R_hardfinger_passive").constraint());
-    let held = motions.standing(RowSelection { actuated: true, ..RowSelection::default() });
+    let held = motions.vanishing_on(RowSelection { actuated: true, ..RowSelection::default() });
     assert_eq!(held.cols(), 2);
     assert!(held.rows_between(0, 3).max_abs() < 1e-14);
-    assert_eq!(motions.standing(RowSelection::default()).cols(), motions.dof());
+    assert_eq!(motions.vanishing_on(RowSelection::default()).cols(), motions.dof());
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn drives_move_with_the_least_weighted_effort() {
 
         let chain = ClosedChain::of(&two_arm.state(&q).unwrap(), None, None).unwrap();
         let object = RowSelection { actuated: false, passive: false, object: true };
-        let at_rest = MotionSpace::of(&chain.constraint).standing(object);
+        let at_rest = MotionSpace::of(&chain.constraint).vanishing_on(object);
         assert_eq!(at_rest.cols(), 2);
         let rates = servo.joint_velocities();
         let size = rates.iter().map(|r| r * r).sum::<f64>().sqrt();
