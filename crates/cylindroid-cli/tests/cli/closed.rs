@@ -175,7 +175,7 @@ fn bad_requests() {
     assert!(refused(&["assemble", "five-bar", "--to", "1,2,3,4"]).contains("name the coordinates"));
     assert!(refused(&["assemble", "five-bar", "--to", "q9=1"]).contains("q1, q2"));
     assert!(refused(&["assemble", "five-bar", "--to", "q1=1,q1=2"]).contains("twice"));
-    assert!(refused(&["assemble", "stewart", "--hold", "s1.rx"]).contains("hold all"));
+    assert!(refused(&["assemble", "stewart", "--hold", "s1.rx"]).contains("prescribe all"));
     assert!(refused(&["assemble", "stewart", "--hold", "nobody"]).contains("coordinate"));
     let far = ["assemble", "five-bar", "--to", "q1=1", "--least-distance", "2"];
     assert!(refused(&far).contains("least_distance"));

@@ -109,7 +109,7 @@ fn balls_are_held_as_a_whole() {
     let stewart = catalogue::load("stewart").unwrap();
     let ball = stewart.coordinates().iter().position(|c| c.name.starts_with("s1")).unwrap();
     let refused = assemble(&stewart, stewart.home(), &[ball]).unwrap_err().to_string();
-    assert!(refused.contains("hold all"), "{refused}");
+    assert!(refused.contains("prescribe all"), "{refused}");
     let whole = assemble(&stewart, stewart.home(), &[ball, ball + 1, ball + 2]).unwrap();
     assert_close("platform at home", &whole.q, stewart.home(), 1e-12);
     assert_eq!(whole.q[ball..ball + 3], [0.0; 3]);
