@@ -1,7 +1,9 @@
-//! Every threshold of the library, named, with its unit and where it comes from.
+//! Tolerances: every threshold of the library, named, with its unit and derivation.
 //!
-//! Users meet thresholds as options with these values as defaults. Code never compares with a
-//! number of its own.
+//! Users see them as options with these values as defaults. Code never compares with a literal
+//! number.
+//!
+//! Checked  tests/it/ (by the tests of the code that uses them)
 
 /// Below this angle (rad) the coefficients of exp, log and their derivatives use Taylor series.
 ///
@@ -10,15 +12,15 @@
 /// multiplies a product of size `t^2 |v|`: at most 1e-15 |v| in the result.
 pub const SMALL_ANGLE: f64 = 0.5;
 
-/// Where the square of the tangent of half an angle is below this, the logarithm of a rotation
-/// takes six terms of a series for the arc tangent, for speed alone: the seventh is below 1e-19.
+/// Where the square of the tangent of half the angle is below this, the logarithm of a rotation
+/// uses six terms of a series for the arc tangent, for speed alone: the seventh is below 1e-19.
 pub const SMALL_TANGENT: f64 = 1e-3;
 
-/// A rotation read from numbers must be orthonormal to this (largest entry of `R^T R - 1`).
-/// Files print six digits.
+/// A rotation given as numbers must be orthonormal to this (largest entry of `R^T R - 1`). Files
+/// print six digits.
 pub const ORTHONORMAL: f64 = 1e-5;
 
-/// A vector shorter than this [-] names no direction (axes in files are near unit length).
+/// A vector shorter than this [-] has no direction (axes in files are near unit length).
 pub const ZERO_AXIS: f64 = 1e-9;
 
 /// Rank at machine precision: singular values below `MACHINE_RANK * max(rows, cols) * s_1` are
@@ -37,12 +39,12 @@ pub const DAMPING: f64 = 0.02;
 /// Default onset of variable damping, relative to the largest singular value [-].
 pub const DAMPING_ONSET: f64 = 0.05;
 
-/// An analytical Jacobian is said not to exist when the sine that its rate map divides by is
-/// below this [-]: rates would be a million times the angular velocity.
+/// An analytical Jacobian does not exist when the sine that its rate map divides by is below this
+/// [-]: angle rates would be a million times the angular velocity.
 pub const ANGLE_SINGULAR: f64 = 1e-6;
 
-/// Angles are read from a rotation as at gimbal lock where the two entries that tell the first and
-/// the last angle apart are below this [-]: a few roundings of entries of size 1.
+/// Gimbal lock is assumed where the two entries that distinguish the first and the last angle are
+/// below this [-]: a few roundings of entries of size 1.
 pub const GIMBAL_LOCK: f64 = 8.0 * f64::EPSILON;
 
 /// Default position tolerance of a Cartesian move (m).
@@ -51,121 +53,121 @@ pub const POSITION: f64 = 1e-6;
 /// Default orientation tolerance of a Cartesian move (rad).
 pub const ORIENTATION: f64 = 1e-6;
 
-/// Share of 1 and the sizes of position and limit that is kept free at a position limit against
-/// rounding in the caller's `q + dt * rate` [-].
+/// Fraction of 1 plus the sizes of position and limit that is kept free at a position limit,
+/// against rounding in the caller's `q + dt * velocity` [-].
 pub const LIMIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// A joint nearer to its limit than this [rad or m] counts as standing at it in reports.
+/// A joint nearer to its limit than this [rad or m] is reported as being at it.
 pub const AT_LIMIT: f64 = 1e-6;
 
-/// A rate this near to its bound, relative to the bound, has met it: scaling a motion to a bound
-/// leaves a rounding [-].
+/// A joint velocity this near to its bound, relative to the bound, has reached it: scaling a motion
+/// to a bound leaves a rounding [-].
 pub const LIMIT_MET: f64 = 1e-12;
 
-/// A rotation nearer to a half turn than this (rad) goes about the axis whose first component
-/// that is not zero is positive, so that rounding does not choose the way round.
+/// A rotation nearer to a half turn than this (rad) is about the axis whose first non-zero
+/// component is positive, so that rounding does not choose the direction.
 pub const HALF_TURN: f64 = 1e-9;
 
-/// Three points name no circle when the height of their triangle is below this times its longest
+/// Three points define no circle when the height of their triangle is below this times its longest
 /// side [-]: a radius beyond 1e5 such sides.
 pub const COLLINEAR: f64 = 1e-6;
 
-/// Rank of a task Jacobian in postures without pattern, relative to the largest singular value:
-/// far below any regular posture, far above rounding [-].
+/// Rank of a task Jacobian at generic configurations, relative to the largest singular value: far
+/// below any regular configuration, far above rounding [-].
 pub const GENERIC_RANK: f64 = 1e-9;
 
 /// Directions whose normal matrix is this small relative to the largest are those along nearly
-/// parallel axes (within 1e-3 rad): the point nearest to the axes is not looked for there [-].
+/// parallel axes (within 1e-3 rad): the point nearest to the axes is undetermined along them [-].
 pub const NEARLY_PARALLEL: f64 = 1e-6;
 
-/// The centre of a screw system is found when a step to it is below this part of the
-/// characteristic length [-]: margins then depend on the twists given by less than a factor of two.
+/// The centre of a screw system has converged when a step is below this fraction of the
+/// characteristic length [-]: margins then depend on the given twists by less than a factor of two.
 pub const CENTER_FOUND: f64 = 0.1;
 
-/// Coordinates of a canonical origin whose weight is below this are not determined [-].
+/// Coordinates of a canonical origin whose weight is below this are undetermined [-].
 pub const ORIGIN_DETERMINED: f64 = 1e-13;
 
 /// Parallel lines nearer than this times the size of their points coincide up to rounding [-].
 pub const COINCIDENT: f64 = 16.0 * f64::EPSILON;
 
-/// Least threshold for the rank of a screw system: singular values of unit twists [-].
+/// Minimum threshold for the rank of a screw system: singular values of unit twists [-].
 pub const SCREW_RANK: f64 = 1e-12;
 
-/// Least threshold for what a class hangs on: ratios of lengths to the characteristic length,
-/// sines of angles [-].
+/// Minimum threshold for the quantities that decide a class: ratios of lengths to the
+/// characteristic length, sines of angles [-].
 pub const SCREW_CLASS: f64 = 1e-8;
 
-/// Noise of the twists, at the centre, raises the threshold of the rank to this many times its
-/// size [-]. This factor and the next were found by trial over all classes in random frames.
+/// Noise of the twists, at the centre, raises the threshold of the rank to this multiple of its
+/// size [-]. This factor and the next were found by experiment over all classes in random frames.
 pub const NOISE_RANK: f64 = 30.0;
 
 /// Noise of the twists, at the centre and times the conditioning of the twists, raises the
-/// threshold of the class to this many times its size [-].
+/// threshold of the class to this multiple of its size [-].
 pub const NOISE_CLASS: f64 = 100.0;
 
-/// What noise makes of a zero stays below this part of the threshold that it raises [-]: in 6e5
-/// random systems the largest was 0.31.
+/// A zero perturbed by noise stays below this fraction of the threshold that the noise raises [-]:
+/// in 6e5 random systems the largest was 0.31.
 pub const NOISE_OF_ZERO: f64 = 0.5;
 
 /// A verdict is flagged when a quantity lies within this factor of its threshold [-].
 pub const AMBIGUOUS: f64 = 1e3;
 
-/// A projector that enlarges motions by more than this is not used by a servo unless asked to [-]:
-/// the error to be realised would be a thousand times the error to be closed.
+/// A projector that enlarges motions by more than this is not used by a servo unless requested [-]:
+/// the realised error would be a thousand times the error to be closed.
 pub const MAX_PROJECTION_NORM: f64 = 1e3;
 
 /// Rank of the equilibrated constraint matrix of a closed chain, relative to its largest singular
 /// value: geometry given to ten digits leaves less than this where a rank is lost, and no regular
-/// pose of the reference set falls below 1e-3 [-].
+/// configuration of the reference set falls below 1e-3 [-].
 pub const CLOSURE_RANK: f64 = 1e-9;
 
-/// Rank of a block of an orthonormal basis of motions, absolute: the columns have length one, so
-/// a block that rounding alone filled holds 1e-15 [-].
+/// Rank of a block of an orthonormal basis of motions, absolute: the columns have length one, so a
+/// block of rounding errors has size 1e-15 [-].
 pub const CLOSURE_BLOCK: f64 = 1e-9;
 
-/// A kernel is right to this times the conditioning of its matrix (largest over smallest singular
-/// value kept): blocks of it are not read more finely [-].
+/// A kernel is accurate to this times the conditioning of its matrix (largest over smallest kept
+/// singular value): smaller entries of its blocks are not significant [-].
 pub const KERNEL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A share of a motion of length one above this [-] is certain without a decomposition of its own:
-/// `sqrt(1 - s^2)` is right to 1e-13 from here on.
+/// A share of a motion of length one above this [-] is certain without a separate decomposition:
+/// `sqrt(1 - s^2)` is accurate to 1e-13 from here on.
 pub const CLEAR_SHARE: f64 = 1e-2;
 
-/// Pairs of motion and of force, computed apart from each other, agree to this in debug builds:
-/// each comes from a basis that is right to 1e-7 at the worst conditioning that counts [-].
+/// Pairs of motion and of force, computed separately, agree to this in debug builds: each comes
+/// from a basis that is accurate to 1e-7 at the worst conditioning considered [-].
 pub const DUALITY: f64 = 1e-6;
 
-/// Metrics of motions whose factors spread further than this have used up the digits there are:
-/// their duality is not checked [-].
+/// Metrics of motions whose factors have a larger diagonal ratio than this exhaust double
+/// precision: their duality is not checked [-].
 pub const MAX_METRIC_CONDITION: f64 = 1.0 / f64::EPSILON;
 
-/// A direction whose part along another is below this, relative to both, is across it, when
-/// corners of boxes are looked for: above rounding of products of fourteen numbers, far below
-/// what tells two corners apart [-].
+/// A direction whose component along another is below this, relative to both, is orthogonal to it
+/// in the search for vertices of boxes: above the rounding of products of fourteen numbers, far
+/// below the difference between two vertices [-].
 pub const LINEAR_PROGRAM: f64 = 1e-12;
 
-/// Corners of polytopes nearer to a facet than this times the size of the body lie on it: above
-/// the rounding of their images, far below what can be seen [-].
+/// Vertices of polytopes nearer to a facet than this times the size of the body lie on it: above
+/// the rounding of their images, far below the resolution of a plot [-].
 pub const HULL: f64 = 1e-9;
 
-/// Most facets of a hull: a polytope in three dimensions with ten thousand corners, and a second
-/// of work.
+/// Maximum number of facets of a hull: a polytope in three dimensions with ten thousand vertices,
+/// and a second of computation.
 pub const MAX_FACETS: usize = 20_000;
 
-/// How near bounds of a grasp's quality come to each other, relative to its largest wrench [-].
+/// Final distance of the bounds of a grasp's quality, relative to its largest wrench [-].
 pub const GRASP_QUALITY: f64 = 1e-3;
 
 /// An eigenvalue of an admittance, divided by the roots of its diagonal, may be this much below
 /// zero [-]: the rounding of a map that was moved between frames.
 pub const PASSIVE: f64 = 1e-9;
 
-/// Loops that are open by less than this times the reach, and by less than this in angle (rad),
-/// are closed: far above rounding, far below what a machine is built to [-].
+/// Loops whose closure error is less than this times the reach, and less than this in angle (rad),
+/// are closed: far above rounding, far below manufacturing tolerances [-].
 pub const CLOSED: f64 = 1e-10;
 
-/// Directions in which a constraint is weaker than this, relative to its strongest, take no part in
-/// closing loops again: near a singular pose the step there would be the largest, and lead away
-/// [-].
+/// Directions in which a constraint is weaker than this, relative to its strongest, are excluded
+/// from loop closure: near a singular configuration the step there would be the largest, and
+/// diverge [-].
 pub const CORRECTION_RANK: f64 = 1e-6;
 
 /// A motion of which less than this belongs to the driven joints (of a motion of length one in
@@ -216,8 +218,8 @@ pub const WITHIN_BRANCHES: f64 = 1e-3;
 /// What the limit of generic spaces, taken from postures beside it, is right to [-].
 pub const GENERIC_LIMIT: f64 = 1e-6;
 
-/// A joint whose share in motions of length one is below this stands still [-]: above what
-/// [`GENERIC_LIMIT`] makes of none.
+/// A joint whose share in motions of length one is below this is at rest [-]: above the error of
+/// [`GENERIC_LIMIT`] on zero.
 pub const JOINT_AT_REST: f64 = 1e-5;
 
 /// Position error at which inverse kinematics counts a target as reached, by default (m): what
@@ -245,12 +247,13 @@ pub const ANALYTIC_EXACT: f64 = 1e-12;
 /// ratios of lengths.
 pub const FREE_TURN: f64 = 1e-7;
 
-/// A condition on a turn that is missed by this share of the square of its largest value may still
-/// be one that rounding, or the departures of [`ALIGNED_AXES`], keep from being met [-].
+/// A condition on a rotation angle that is violated by less than this fraction of the square of its
+/// largest value may be one that rounding, or the deviations of [`ALIGNED_AXES`], keep from being
+/// satisfied [-].
 pub const NEARLY_SATISFIED: f64 = 1e-4;
 
-/// Where a polynomial has an extremum of this size, relative to the sum of its terms, it may touch
-/// zero [-]; forward kinematics decides.
+/// Where a polynomial has an extremum of this size, relative to the sum of its terms, it may have a
+/// double root [-]; forward kinematics decides.
 pub const TANGENT_ROOT: f64 = 1e-9;
 
 /// An answer of formulas with errors below this needs no Newton step [rad, reaches].
@@ -268,12 +271,12 @@ pub const ANALYTIC_SAME: f64 = 1e-6;
 pub const ANALYTIC_AT_LIMIT: f64 = 1e-7;
 
 /// Efficiencies that differ by less than this, relative to each other, count as equal where a
-/// derivative is asked for: nearer ones turn their directions by rounding alone [-].
+/// derivative is requested: closer ones rotate their directions by rounding alone [-].
 pub const REPEATED: f64 = 1e-7;
 
 /// Step in scaled coordinates (rad) at which matrices of constraints are compared for their
 /// derivative: the fourth-order error of four of them and the rounding of their entries are then
-/// alike, about 1e-12.
+/// similar, about 1e-12.
 pub const MATRIX_STEP: f64 = 1e-3;
 
 /// Two assemblies whose joints stand nearer than this, in lengths over the reach and in angle, are
@@ -317,11 +320,11 @@ pub const SAME_RATES: f64 = 1e-9;
 /// what it holds is then for the analysis of one configuration to say.
 pub const CROSSED_AXES: f64 = 1e-6;
 
-/// A distance to a singularity above this is clear without a decision about rank: a hundred
-/// thousand times [`CLOSURE_RANK`] and [`CLOSURE_BLOCK`], and far above what rounding at that
-/// distance does to it, 1e-11 [-].
+/// A distance to a singularity above this is clear without a rank decision: a hundred thousand
+/// times [`CLOSURE_RANK`] and [`CLOSURE_BLOCK`], and far above the effect of rounding at that
+/// distance, 1e-11 [-].
 pub const CLEAR_DISTANCE: f64 = 1e-4;
 
-/// A share of a motion below this is nothing, without a decision: a thousandth of
+/// A share of a motion below this is zero, without a rank decision: a thousandth of
 /// [`CLOSURE_BLOCK`], and above rounding [-].
 pub const NEGLIGIBLE_SHARE: f64 = 1e-12;
