@@ -16,8 +16,20 @@ impl Method {
     /// depend on the motion: here they hold for unit motions along every direction, see
     /// [`selectively_damped`](super::selectively_damped) for a given one.
     ///
+    /// ```
+    /// use cylindroid::{Matrix, Method};
+    ///
+    /// let j = Matrix::from_rows(&[[2.0, 0.0], [0.0, 0.0]]).unwrap();
+    /// let inverse = Method::Damped { damping: 0.1 }.inverse(&j)?;
+    /// assert!((inverse.matrix[(0, 0)] - 2.0 / 4.01).abs() < 1e-15);
+    /// assert_eq!(inverse.dropped.len(), 1); // the second row is lost
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A matrix with non-finite entries; parameters outside their domains.
+    #[doc(alias = "pseudoinverse")]
+    #[doc(alias = "Moore-Penrose")]
     pub fn inverse(&self, j: &Matrix) -> Result<Inverse> {
         compute(*self, j, &[], &Weights::NONE)
     }

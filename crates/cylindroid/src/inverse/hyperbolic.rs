@@ -45,6 +45,7 @@ pub struct HyperbolicOptions {
 
 /// Damping of the hyperbolic pseudoinverse.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum HyperbolicDamping {
     /// None: the inverse itself.
     #[default]

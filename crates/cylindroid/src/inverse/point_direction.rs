@@ -40,6 +40,17 @@ pub struct PointDirection {
 /// Source: Donelan & Selig, example 3, corrected: its `J+h(S)`, with S the twists that move the
 /// point along the direction, is larger than this set.
 ///
+/// ```
+/// use cylindroid::{Matrix, Vec3, inverse};
+///
+/// // A rotation about z moves a point on the x axis along y, and never along z.
+/// let j = Matrix::from_rows(&[[0.0], [0.0], [0.0], [0.0], [0.0], [1.0]]).unwrap();
+/// let along_y = inverse::point_direction(&j, Vec3::X * 2.0, Vec3::Y)?;
+/// assert!((along_y.along.unwrap()[0] - 0.5).abs() < 1e-15); // rad/s for 1 m/s
+/// assert!(inverse::point_direction(&j, Vec3::X, Vec3::Z)?.along.is_none());
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// A matrix that has not six rows or has non-finite entries; a direction of no length.
 pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<PointDirection> {

@@ -30,6 +30,8 @@ pub struct Inverse {
 }
 
 /// A task direction that the inverse gives up, wholly or by more than half.
+#[doc(alias = "lost direction")]
+#[doc(alias = "dropped")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct TruncatedDirection {
     /// Its singular value.

@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Metric};
 
 /// Metrics of joint rates and of task motions; `None` is the identity.
+#[doc(alias = "weighted pseudoinverse")]
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Weights {
     /// n x n: a large weight keeps a joint still.

@@ -16,6 +16,7 @@ use crate::tolerance::ANGLE_SINGULAR;
 
 /// The numbers whose rates describe the change of orientation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum OrientationRates {
     /// Roll, pitch, yaw about fixed x, y, z.
     Rpy,
@@ -26,6 +27,8 @@ pub enum OrientationRates {
 }
 
 /// A Jacobian of position and angles, and whether it exists here.
+#[doc(alias = "analytical Jacobian")]
+#[doc(alias = "Euler rates")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnalyticalJacobian {
     /// Rows: x, y, z of the position, then the three angles; n columns.

@@ -15,6 +15,7 @@ use crate::model::{Mechanism, Node, NodeKind};
 use crate::spatial::{AlignedPose, Pose, Vec3};
 
 /// The moving part of a mechanism from the ground to one end effector.
+#[doc(alias = "forward kinematics")]
 #[derive(Debug, Clone)]
 pub struct Chain {
     nodes: Vec<Node>,
@@ -29,6 +30,20 @@ pub struct Chain {
 
 impl Chain {
     /// The chain to an end effector, at q = 0 of its coordinates.
+    ///
+    /// ```
+    /// use cylindroid::kinematics::Chain;
+    /// use cylindroid::{Matrix, ReferenceFrame};
+    ///
+    /// let robot = cylindroid::load("panda")?;
+    /// let mut chain = Chain::new(&robot, robot.tool());
+    /// let mut jacobian = Matrix::zeros(6, chain.n());
+    /// // In a control loop, without allocation:
+    /// let world_from_tool = chain.set(robot.home());
+    /// chain.jacobian_into(ReferenceFrame::Local, &mut jacobian);
+    /// # let _ = world_from_tool;
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
         let (path, slot_from_tool) = path(mechanism, of.into());

@@ -10,6 +10,14 @@ use crate::linalg::Matrix;
 use crate::spatial::{Pose, Twist};
 
 /// The matrix that turns a body's twist in frame a into its twist in frame b.
+///
+/// ```
+/// use cylindroid::kinematics::velocity_conversion;
+/// use cylindroid::{Pose, Vec3};
+///
+/// let v = velocity_conversion(Pose::from_translation(Vec3::X));
+/// assert_eq!(v.column(5), [0.0, -1.0, 0.0, 0.0, 0.0, 1.0]); // a rotation about z
+/// ```
 #[must_use]
 pub fn velocity_conversion(b_from_a: Pose) -> Matrix {
     let mut v = Matrix::zeros(6, 6);

@@ -17,6 +17,14 @@ use crate::spatial::{Pose, Twist, Vec3};
 impl State {
     /// The screws of a joint of the tree (place in `Mechanism::joints`), one for each coordinate
     /// that moves it; none for a fixed joint and a place that does not exist.
+    ///
+    /// ```
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let state = robot.state(robot.home())?;
+    /// let moving = (0..robot.joints().len()).flat_map(|joint| state.joint_screws(joint));
+    /// assert!(moving.clone().count() == 6 && moving.into_iter().all(|screw| screw.pitch == 0.0));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn joint_screws(&self, joint: usize) -> Vec<Screw> {
         let Some(joint) = self.mechanism().joints().get(joint) else { return Vec::new() };

@@ -28,6 +28,8 @@ impl From<FrameId> for EndEffector {
 }
 
 /// All frames of a mechanism at one `q`: that it exists proves that forward kinematics ran.
+#[doc(alias = "forward kinematics")]
+#[doc(alias = "fk")]
 #[derive(Debug, Clone)]
 pub struct State {
     mechanism: Mechanism,
@@ -37,6 +39,14 @@ pub struct State {
 
 impl Mechanism {
     /// The mechanism at `q`.
+    ///
+    /// ```
+    /// let robot = cylindroid::load("panda")?;
+    /// let state = robot.state(robot.home())?;
+    /// println!("{:?}", state.pose(robot.tool()).translation);
+    /// assert!(robot.state(&[0.0]).is_err()); // one entry for seven joints
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// A `q` of the wrong size or with a non-finite entry.
@@ -76,12 +86,42 @@ impl State {
     }
 
     /// `world_from_tool`.
+    ///
+    /// ```
+    /// use cylindroid::{EndEffector, Pose, Vec3};
+    ///
+    /// let robot = cylindroid::load("panda")?;
+    /// let state = robot.state(robot.home())?;
+    /// let flange = state.pose(robot.tool());
+    /// // A tool tip 0.1 m beyond the frame, along its z axis.
+    /// let tip = EndEffector {
+    ///     frame: robot.tool(),
+    ///     frame_from_tool: Pose::from_translation(Vec3::new(0.0, 0.0, 0.1)),
+    /// };
+    /// assert!((state.pose(tip).translation - flange.translation).norm() - 0.1 < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    #[doc(alias = "forward kinematics")]
     #[must_use]
     pub fn pose(&self, of: impl Into<EndEffector>) -> Pose {
         self.tip(of.into()).world_from_tip
     }
 
     /// The Jacobian, 6 x n: twist of the tool = J * rates.
+    ///
+    /// ```
+    /// use cylindroid::ReferenceFrame;
+    ///
+    /// let robot = cylindroid::load("panda")?;
+    /// let state = robot.state(robot.home())?;
+    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+    /// let velocities = [0.1; 7];
+    /// let twist = state.twist(&velocities, robot.tool(), ReferenceFrame::LocalWorldAligned)?;
+    /// let product = jacobian.mul_vec(&velocities);
+    /// assert!(product.iter().zip(twist.to_array()).all(|(a, b)| (a - b).abs() < 1e-14));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    #[doc(alias = "geometric Jacobian")]
     #[must_use]
     pub fn jacobian(&self, of: impl Into<EndEffector>, reference: ReferenceFrame) -> Matrix {
         let mut out = Matrix::zeros(6, self.mechanism.n());
@@ -136,6 +176,16 @@ impl State {
 
     /// The derivative of the Jacobian in time while the coordinates move with `rates`, 6 x n.
     ///
+    /// ```
+    /// use cylindroid::ReferenceFrame;
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let state = robot.state(robot.home())?;
+    /// let rate = state.jacobian_dot(&[0.2; 6], robot.tool(), ReferenceFrame::World)?;
+    /// assert_eq!((rate.rows(), rate.cols()), (6, 6));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Joint velocities of the wrong size or non-finite.
     pub fn jacobian_dot(
@@ -151,6 +201,15 @@ impl State {
     }
 
     /// The Hessian: entry k is the derivative of the Jacobian by coordinate k (6 x n each).
+    ///
+    /// ```
+    /// use cylindroid::ReferenceFrame;
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let hessian = robot.state(robot.home())?.hessian(robot.tool(), ReferenceFrame::World);
+    /// assert_eq!(hessian.len(), robot.n()); // dJ/dq_k for each coordinate k
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn hessian(&self, of: impl Into<EndEffector>, reference: ReferenceFrame) -> Vec<Matrix> {
         let n = self.mechanism.n();
@@ -160,6 +219,16 @@ impl State {
     }
 
     /// The Jacobian of position and of angles that describe the orientation.
+    ///
+    /// ```
+    /// use cylindroid::kinematics::OrientationRates;
+    ///
+    /// let robot = cylindroid::load("panda")?;
+    /// let state = robot.state(robot.home())?;
+    /// let analytical = state.analytical_jacobian(robot.tool(), OrientationRates::RotationVector);
+    /// assert!(analytical.exists);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn analytical_jacobian(
         &self,

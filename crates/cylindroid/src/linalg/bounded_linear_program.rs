@@ -49,6 +49,8 @@ impl Interval {
 }
 
 /// `lower <= A z <= upper`.
+#[doc(alias = "LP")]
+#[doc(alias = "linear programming")]
 #[derive(Debug, Clone)]
 pub struct BoundedLinearProgram {
     /// A^T with columns divided by the larger bound of each.
@@ -85,6 +87,15 @@ impl BoundedLinearProgram {
     }
 
     /// A corner of largest `first . z`, and among these of largest `second . z`.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::{BoundedLinearProgram, Interval, Objective};
+    ///
+    /// let program = BoundedLinearProgram::new(&Matrix::identity(2), &[Interval::symmetric(1.0); 2]);
+    /// let vertex = program.maximize(Objective { first: &[1.0, -1.0], second: &[0.0, 0.0] });
+    /// assert_eq!(vertex, [1.0, -1.0]);
+    /// ```
     #[must_use]
     pub fn maximize(&self, objective: Objective<'_>) -> Vec<f64> {
         match &self.inverse {

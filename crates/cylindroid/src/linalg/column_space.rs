@@ -73,6 +73,15 @@ pub struct ColumnSpace {
 
 impl ColumnSpace {
     /// Of the columns of `a`, singular values at or below the threshold counting as zero.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::{ColumnSpace, Threshold};
+    ///
+    /// let a = Matrix::from_rows(&[[1.0, 2.0], [1.0, 2.0], [0.0, 0.0]]).unwrap();
+    /// let space = ColumnSpace::of(&a, Threshold::Relative(1e-9));
+    /// assert_eq!((space.rank(), space.complement().cols()), (1, 2));
+    /// ```
     #[must_use]
     pub fn of(a: &Matrix, threshold: Threshold) -> Self {
         Self::decompose(a.clone(), threshold, true)

@@ -49,6 +49,16 @@ pub struct CsDecomposition {
 impl CsDecomposition {
     /// Of a matrix with orthonormal columns, split after `split` rows.
     ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::CsDecomposition;
+    ///
+    /// // A line at 30 degrees to the first axis.
+    /// let (c, s) = (0.75_f64.sqrt(), 0.5);
+    /// let cs = CsDecomposition::of(&Matrix::from_rows(&[[c], [s]]).unwrap(), 1);
+    /// assert!((cs.cosines[0] - c).abs() < 1e-15 && (cs.sines[0] - s).abs() < 1e-15);
+    /// ```
+    ///
     /// # Panics
     /// If the matrix has fewer rows than `split`; in debug builds if its columns are not
     /// orthonormal.

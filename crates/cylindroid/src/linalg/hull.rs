@@ -31,6 +31,8 @@ pub enum HullGoal {
 }
 
 /// When to stop.
+#[doc(alias = "convex hull")]
+#[doc(alias = "expanding polytope")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullOptions {
     /// What is wanted.
@@ -72,6 +74,15 @@ pub struct Hull {
 impl Hull {
     /// Of a body in `dimension` coordinates, of which `support(n)` gives a point of largest
     /// `n . x`. The directions asked have length one.
+    ///
+    /// ```
+    /// use cylindroid::linalg::{Hull, HullGoal, HullOptions};
+    ///
+    /// // The unit square by its support function.
+    /// let options = HullOptions { goal: HullGoal::Whole, tolerance: 1e-9, max_facets: 100 };
+    /// let square = Hull::of(2, |n| n.iter().map(|x| x.signum()).collect(), options);
+    /// assert_eq!((square.vertices.len(), square.complete), (4, true));
+    /// ```
     pub fn of(
         dimension: usize,
         mut support: impl FnMut(&[f64]) -> Vec<f64>,

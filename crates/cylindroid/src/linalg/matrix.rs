@@ -41,6 +41,14 @@ impl Matrix {
     }
 
     /// The matrix with these rows; `None` when they are of different lengths.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    ///
+    /// let a = Matrix::from_rows(&[[1.0, 2.0], [3.0, 4.0]]).unwrap();
+    /// assert_eq!(a.column(1), [2.0, 4.0]);
+    /// assert!(Matrix::from_rows(&[vec![1.0], vec![2.0, 3.0]]).is_none());
+    /// ```
     #[must_use]
     pub fn from_rows<R: AsRef<[f64]>>(rows: &[R]) -> Option<Self> {
         let cols = rows.first().map_or(0, |r| r.as_ref().len());
@@ -121,6 +129,14 @@ impl Matrix {
 
     /// The columns of all blocks batched.
     ///
+    /// ```
+    /// use cylindroid::Matrix;
+    ///
+    /// let (a, b) = (Matrix::identity(2), Matrix::zeros(2, 1));
+    /// assert_eq!(Matrix::hstack(2, &[&a, &b]).cols(), 3);
+    /// assert_eq!(Matrix::vstack(2, &[&a, &a]).rows(), 4);
+    /// ```
+    ///
     /// # Panics
     /// If the blocks have not `rows` rows each.
     #[must_use]
@@ -137,6 +153,7 @@ impl Matrix {
     ///
     /// # Panics
     /// If the blocks have not `cols` columns each.
+    #[doc(alias = "concatenate")]
     #[must_use]
     pub fn vstack(cols: usize, blocks: &[&Self]) -> Self {
         let rows = blocks.iter().map(|b| b.rows).sum();

@@ -11,6 +11,7 @@ use super::qr::Qr;
 use crate::error::{Error, Result};
 
 /// A positive definite quadratic form, held by its lower Cholesky factor L.
+#[doc(alias = "Cholesky")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metric {
     l: Matrix,
@@ -36,6 +37,18 @@ impl Metric {
     }
 
     /// The metric of the symmetric positive definite matrix `m`.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::Metric;
+    ///
+    /// let metric = Metric::new("M", &Matrix::diagonal(&[4.0, 1.0]))?;
+    /// let mut x = [1.0, 2.0];
+    /// metric.whiten(&mut x);
+    /// assert_eq!(x, [2.0, 2.0]); // |x|^2 = 4 + 4
+    /// assert!(Metric::new("M", &Matrix::diagonal(&[1.0, 0.0])).is_err());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// A matrix that is not square, finite, symmetric and positive definite.

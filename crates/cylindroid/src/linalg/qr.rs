@@ -26,6 +26,16 @@ pub struct Qr {
 
 impl Qr {
     /// Columns taken largest first.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::Qr;
+    ///
+    /// let a = Matrix::from_rows(&[[1.0, 3.0], [0.0, 4.0]]).unwrap();
+    /// let qr = Qr::pivoted(a);
+    /// assert_eq!(qr.order(), [1, 0]); // the longest column first
+    /// assert!((qr.first_pivot() - 5.0).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn pivoted(a: Matrix) -> Self {
         Self::decompose(a, true)

@@ -27,6 +27,16 @@ enum Kept<'a> {
 
 impl<'a> RowSpace<'a> {
     /// The row space at machine precision: its complement is exactly ker A.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::{RowSpace, Svd};
+    ///
+    /// let svd = Svd::of(&Matrix::from_rows(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap());
+    /// let mut x = [1.0, 2.0, 3.0];
+    /// RowSpace::exact(&svd).project_out(&mut x); // onto the null space
+    /// assert!(x[0].abs() < 1e-15 && x[1].abs() < 1e-15 && (x[2] - 3.0).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn exact(svd: &'a Svd) -> Self {
         Self { svd, kept: Kept::First(svd.machine_rank().rank) }
@@ -68,6 +78,7 @@ impl<'a> RowSpace<'a> {
     }
 
     /// An orthonormal basis of the null space, one column each (n x (n - r)).
+    #[doc(alias = "kernel")]
     #[must_use]
     pub fn null_space_basis(&self) -> Matrix {
         let n = self.svd.cols();

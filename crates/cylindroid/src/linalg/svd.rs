@@ -27,6 +27,8 @@ use crate::tolerance::MACHINE_RANK;
 const WARM_STARTS: usize = 4;
 
 /// A singular value decomposition and the memory to compute the next one without allocation.
+#[doc(alias = "Jacobi SVD")]
+#[doc(alias = "singular value decomposition")]
 #[derive(Debug, Clone)]
 pub struct Svd {
     rows: usize,
@@ -60,6 +62,15 @@ impl Svd {
     }
 
     /// The decomposition of `a`.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::Svd;
+    ///
+    /// let svd = Svd::of(&Matrix::diagonal(&[1.0, 3.0, 0.0]));
+    /// assert_eq!(svd.values().collect::<Vec<_>>(), [3.0, 1.0, 0.0]);
+    /// assert_eq!(svd.rank(1e-3).rank, 2);
+    /// ```
     #[must_use]
     pub fn of(a: &Matrix) -> Self {
         let mut svd = Self::workspace(a.rows(), a.cols());
@@ -199,6 +210,15 @@ impl Svd {
 
     /// Rank at the relative threshold `eps` (values `s_i <= eps * s_1` do not count), never below
     /// machine precision nor the smallest normal number, which has the largest inverse.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::Svd;
+    ///
+    /// let rank = Svd::of(&Matrix::diagonal(&[1.0, 0.5, 1e-6])).rank(1e-3);
+    /// assert_eq!(rank.rank, 2);
+    /// assert!(rank.gap > 1e5); // a clear decision
+    /// ```
     #[must_use]
     pub fn rank(&self, eps: f64) -> Rank {
         let k = self.len();

@@ -13,6 +13,7 @@
 const MAX_SWEEPS: usize = 30;
 
 /// An eigendecomposition of the leading n x n block.
+#[doc(alias = "eigenvalues")]
 #[derive(Debug, Clone, Copy)]
 pub struct SymmetricEigen<const N: usize> {
     /// Eigenvalues, largest first; entries beyond n are zero.
@@ -23,6 +24,13 @@ pub struct SymmetricEigen<const N: usize> {
 
 impl<const N: usize> SymmetricEigen<N> {
     /// Of the leading `n x n` block of `a`.
+    ///
+    /// ```
+    /// use cylindroid::linalg::SymmetricEigen;
+    ///
+    /// let eigen = SymmetricEigen::of([[0.0, 2.0], [2.0, 0.0]], 2);
+    /// assert!((eigen.values[0] - 2.0).abs() < 1e-15 && (eigen.values[1] + 2.0).abs() < 1e-15);
+    /// ```
     #[must_use]
     #[allow(clippy::needless_range_loop)] // rows and columns of one matrix by index
     pub fn of(mut a: [[f64; N]; N], n: usize) -> Self {

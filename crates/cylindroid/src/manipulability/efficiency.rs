@@ -195,6 +195,18 @@ pub struct Manipulability {
 impl Manipulability {
     /// Of a relation (of a task too, see [`Relation::task`]) in the given metrics.
     ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::closure::{Constraint, MotionSpace};
+    /// use cylindroid::manipulability::{Manipulability, Metrics};
+    ///
+    /// let jacobian = Matrix::from_rows(&[[2.0, 0.0], [0.0, 1.0]]).unwrap();
+    /// let relation = MotionSpace::of(&Constraint::serial(&jacobian)?).relation();
+    /// let m = Manipulability::of(&relation, &Metrics::UNIT)?;
+    /// assert!((m.kinematic.values()[0] - 4.0).abs() < 1e-12); // squared singular values
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Metrics of the wrong size.
     pub fn of(relation: &Relation, metrics: &Metrics) -> Result<Self> {

@@ -32,7 +32,9 @@ use crate::model::FrameId;
 use crate::tolerance::{CLOSURE_BLOCK, MATRIX_STEP, REPEATED};
 
 /// A single number of a spectrum of motion.
+#[doc(alias = "Yoshikawa")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Measure {
     /// Product of the roots of all finite efficiencies: Yoshikawa's measure of a serial arm.
     Volume,

@@ -84,6 +84,7 @@ impl Spectrum {
     }
 
     /// Largest over smallest finite efficiency, 1 for an isotropic pose.
+    #[doc(alias = "condition number")]
     #[must_use]
     pub fn anisotropy(&self) -> Option<f64> {
         Some(self.largest()? / self.smallest()?)
@@ -91,6 +92,20 @@ impl Spectrum {
 
     /// Product of the roots of the finite efficiencies: the volume of the ellipsoid up to a
     /// constant (1 for none).
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::closure::{Constraint, MotionSpace};
+    /// use cylindroid::manipulability::{Manipulability, Metrics};
+    ///
+    /// let jacobian = Matrix::from_rows(&[[2.0, 0.0], [0.0, 1.0]]).unwrap();
+    /// let relation = MotionSpace::of(&Constraint::serial(&jacobian)?).relation();
+    /// let m = Manipulability::of(&relation, &Metrics::UNIT)?;
+    /// assert!((m.kinematic.volume() - 2.0).abs() < 1e-12); // sqrt(det J J^T)
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    #[doc(alias = "Yoshikawa")]
+    #[doc(alias = "manipulability measure")]
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.finite.iter().map(|d| d.pair.output / d.pair.input).product()

@@ -100,6 +100,16 @@ impl Metrics {
 
     /// Rates measured by their limits: `|q| <= 1` is an ellipsoid within all of them.
     ///
+    /// ```
+    /// use cylindroid::manipulability::Metrics;
+    ///
+    /// let robot = cylindroid::load("panda")?;
+    /// let limits: Vec<f64> = robot.coordinates().iter().map(|c| c.velocity_limit).collect();
+    /// let metrics = Metrics::UNIT.with_velocity_limits(&limits)?;
+    /// assert!(metrics.joint.is_some());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A limit that is not positive and finite.
     pub fn with_velocity_limits(mut self, limits: &[f64]) -> Result<Self> {

@@ -36,9 +36,25 @@ pub struct Polytope {
 /// All twists of the object (or velocities of the task) within the rate limits of the driven
 /// joints.
 ///
+/// ```
+/// use cylindroid::Matrix;
+/// use cylindroid::closure::{Constraint, MotionSpace};
+/// use cylindroid::linalg::Interval;
+/// use cylindroid::manipulability::{velocity_polytope, velocity_range};
+///
+/// let jacobian = Matrix::from_rows(&[[1.0, 1.0], [0.0, 1.0]]).unwrap();
+/// let relation = MotionSpace::of(&Constraint::serial(&jacobian)?).relation();
+/// let limits = [Interval::symmetric(1.0); 2];
+/// assert_eq!(velocity_polytope(&relation, &limits)?.hull.vertices.len(), 4);
+/// assert!((velocity_range(&relation, &limits)?[0].upper - 2.0).abs() < 1e-12);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// Limits that are non-finite or do not contain zero; a number of limits other than that of the
 /// actuated joints.
+#[doc(alias = "zonotope")]
+#[doc(alias = "manipulability polytope")]
 pub fn velocity_polytope(relation: &Relation, velocity_limits: &[Interval]) -> Result<Polytope> {
     Ok(Body::new(relation.motions(), "velocity limit", velocity_limits)?.polytope())
 }

@@ -35,6 +35,16 @@ pub fn gram(j: &Matrix, h: f64) -> Result<Matrix> {
 
 /// `det(J^T Q_h J)`: zero for more than six twists, which are dependent.
 ///
+/// ```
+/// use cylindroid::Matrix;
+/// use cylindroid::screws::gram_determinant;
+///
+/// // A rotation about z: its Gram determinant -h vanishes at its pitch, zero.
+/// let j = Matrix::from_rows(&[[0.0], [0.0], [0.0], [0.0], [0.0], [1.0]]).unwrap();
+/// assert_eq!(gram_determinant(&j, 0.5)?, -0.5);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// A matrix that has not six rows.
 pub fn gram_determinant(j: &Matrix, h: f64) -> Result<f64> {

@@ -178,6 +178,18 @@ impl ScrewSystem {
     ///
     /// B is an orthonormal basis of the system at its centre, lengths over L. Source: Donelan &
     /// Selig, theorems 2 and 3.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// let hinge = Line { point: Vec3::ZERO, direction: Vec3::Z };
+    /// let system = ScrewSystem::of(&[hinge.twist()], &ScrewOptions::default())?;
+    /// assert!(system.existence(0.1).exists);
+    /// // The pitch of a rotation is zero, its principal pitch.
+    /// println!("{}", system.existence(0.0).reason.unwrap());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn existence(&self, h: f64) -> Existence {
         let ratio = h / self.scale.length;

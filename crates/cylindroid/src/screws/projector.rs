@@ -235,6 +235,18 @@ impl ScrewSystem {
     ///
     /// `h` in m/rad, infinite for the limit. Frame: that of the system. Source: Donelan & Selig,
     /// section 6.1; the sum is not in the paper.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// let hinge = Line { point: Vec3::ZERO, direction: Vec3::Z };
+    /// let system = ScrewSystem::of(&[hinge.twist()], &ScrewOptions::default())?;
+    /// let projector = system.projector(0.1).unwrap();
+    /// let kept = projector.motion(hinge.twist());
+    /// assert!((kept.angular - Vec3::Z).norm() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn projector(&self, h: f64) -> Option<Projector> {
         if !self.existence(h).exists {

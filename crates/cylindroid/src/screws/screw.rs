@@ -42,6 +42,16 @@ impl Line {
     }
 
     /// The shortest connection from this line to another.
+    ///
+    /// ```
+    /// use cylindroid::Vec3;
+    /// use cylindroid::screws::Line;
+    ///
+    /// let a = Line { point: Vec3::ZERO, direction: Vec3::X };
+    /// let b = Line { point: Vec3::new(0.0, 0.0, 0.3), direction: Vec3::Y };
+    /// let normal = a.common_normal(&b);
+    /// assert!((normal.distance - 0.3).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn common_normal(&self, other: &Self) -> CommonNormal {
         let (a, b) = (self.direction, other.direction);
@@ -123,6 +133,16 @@ pub struct Screw {
 impl Screw {
     /// The screw of a twist; `None` for the zero twist, which has no axis, and for numbers that
     /// are not finite.
+    ///
+    /// ```
+    /// use cylindroid::{Screw, Twist, Vec3};
+    ///
+    /// // A rotation about the vertical axis through (1, 0, 0), which also advances 0.1 m per radian.
+    /// let twist = Twist { linear: Vec3::new(0.0, -1.0, 0.1), angular: Vec3::Z };
+    /// let screw = Screw::of(twist).unwrap();
+    /// assert!((screw.pitch - 0.1).abs() < 1e-15);
+    /// assert!((screw.axis.point - Vec3::X).norm() < 1e-15);
+    /// ```
     #[must_use]
     pub fn of(twist: Twist) -> Option<Self> {
         if !twist.linear.norm().is_finite() || !twist.angular.norm().is_finite() {

@@ -15,6 +15,18 @@ use crate::linalg::{Matrix, Rank, Svd};
 
 impl ScrewSystem {
     /// All twists reciprocal to these, of order 6 - k: wrenches on their screws do no work.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// let hinge = Line { point: Vec3::ZERO, direction: Vec3::Z };
+    /// let system = ScrewSystem::of(&[hinge.twist()], &ScrewOptions::default())?;
+    /// // Five independent wrenches do no work on a single rotation.
+    /// assert_eq!(system.reciprocal().order(), 5);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    #[doc(alias = "constraint wrenches")]
     #[must_use]
     pub fn reciprocal(&self) -> Self {
         self.derived(self.span.reciprocal())
@@ -68,6 +80,18 @@ impl ScrewSystem {
     }
 
     /// All twists that are in both.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// let options = ScrewOptions::default();
+    /// let axis = |direction| Line { point: Vec3::ZERO, direction }.twist();
+    /// let a = ScrewSystem::of(&[axis(Vec3::X), axis(Vec3::Y)], &options)?;
+    /// let b = ScrewSystem::of(&[axis(Vec3::Y), axis(Vec3::Z)], &options)?;
+    /// assert_eq!((a.sum(&b).order(), a.intersection(&b).order()), (3, 1));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         let theirs = self.seen(other);

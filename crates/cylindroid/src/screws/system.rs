@@ -68,6 +68,18 @@ impl ScrewSystem {
 
     /// The system spanned by the columns of a Jacobian (6 rows, linear first).
     ///
+    /// ```
+    /// use cylindroid::screws::{ScrewOptions, ScrewSystem};
+    /// use cylindroid::{ReferenceFrame, load};
+    ///
+    /// let robot = load("youbot")?;
+    /// let state = robot.state(robot.home())?;
+    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+    /// let system = ScrewSystem::of_columns(&jacobian, &ScrewOptions::with_length(robot.reach()))?;
+    /// println!("order {}, class {}", system.order(), system.class());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`ScrewSystem::of`]; a matrix that has not six rows.
     pub fn of_columns(jacobian: &Matrix, options: &ScrewOptions) -> Result<Self> {
@@ -224,6 +236,17 @@ impl ScrewSystem {
     }
 
     /// True if the twist belongs to the system, to the tolerance of its class.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// let axis = |direction| Line { point: Vec3::ZERO, direction }.twist();
+    /// let plane = ScrewSystem::of(&[axis(Vec3::X), axis(Vec3::Y)], &ScrewOptions::default())?;
+    /// assert!(plane.contains(axis(Vec3::new(1.0, 1.0, 0.0))));
+    /// assert!(!plane.contains(axis(Vec3::Z)));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn contains(&self, twist: Twist) -> bool {
         self.sine_to(twist) <= self.tolerance.class

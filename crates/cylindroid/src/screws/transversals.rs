@@ -35,6 +35,17 @@ pub struct Transversals {
 
 /// The common transversals of `lines`.
 ///
+/// ```
+/// use cylindroid::screws::{Line, ScrewOptions, transversals};
+/// use cylindroid::Vec3;
+///
+/// // Infinitely many lines meet two given lines.
+/// let a = Line { point: Vec3::ZERO, direction: Vec3::X };
+/// let b = Line { point: Vec3::Z, direction: Vec3::Y };
+/// assert!(transversals(&[a, b], &ScrewOptions::default())?.infinitely_many);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// Options that are no scale.
 pub fn transversals(lines: &[Line], options: &ScrewOptions) -> Result<Transversals> {

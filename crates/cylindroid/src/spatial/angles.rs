@@ -52,6 +52,14 @@ impl Rpy {
     }
 
     /// The angles of a rotation, pitch in [-pi/2, pi/2].
+    ///
+    /// ```
+    /// use cylindroid::spatial::Rpy;
+    ///
+    /// let angles = Rpy { roll: 0.1, pitch: -0.2, yaw: 1.3 };
+    /// let again = Rpy::of(angles.rotation());
+    /// assert!((again.yaw - 1.3).abs() < 1e-15 && (again.pitch + 0.2).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn of(rotation: Rotation) -> Self {
         let m = rotation.matrix().to_rows();

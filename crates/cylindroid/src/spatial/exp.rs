@@ -36,6 +36,17 @@ impl Derivative6 {
 }
 
 /// The displacement of the constant twist `x` held for one second.
+///
+/// ```
+/// use cylindroid::spatial::{exp, log};
+/// use cylindroid::{Twist, Vec3};
+///
+/// // A screw motion about z: the point moves on a helix.
+/// let twist = Twist { linear: Vec3::Z, angular: Vec3::new(0.0, 0.0, 0.5) };
+/// let pose = exp(twist);
+/// assert!((pose.translation - Vec3::Z).norm() < 1e-15);
+/// assert!((log(pose).angular - twist.angular).norm() < 1e-15);
+/// ```
 #[must_use]
 pub fn exp(x: Twist) -> Pose {
     Pose {

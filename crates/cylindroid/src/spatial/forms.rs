@@ -18,6 +18,14 @@ use super::vec3::Vec3;
 impl Twist {
     /// The form of pitch `h` (m/rad) of two twists in one frame [m rad/s^2; rad^2/s^2 for an
     /// infinite pitch].
+    ///
+    /// ```
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// // A screw of pitch 0.2 m/rad is isotropic in the form of its pitch.
+    /// let screw = Twist { linear: Vec3::Z * 0.2, angular: Vec3::Z };
+    /// assert!(screw.pitch_form(screw, 0.2).abs() < 1e-15);
+    /// ```
     #[must_use]
     #[inline]
     pub fn pitch_form(self, other: Self, h: f64) -> f64 {
@@ -29,6 +37,15 @@ impl Twist {
 
     /// The Klein form: the form of pitch zero. Two twists are reciprocal when it vanishes: a
     /// wrench on the one screw does no work on the other.
+    ///
+    /// ```
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// // Two rotations about axes that intersect are reciprocal.
+    /// let a = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
+    /// let b = Twist { linear: Vec3::ZERO, angular: Vec3::X };
+    /// assert_eq!(a.klein(b), 0.0);
+    /// ```
     #[must_use]
     #[inline]
     pub fn klein(self, other: Self) -> f64 {

@@ -40,6 +40,16 @@ impl Pose {
 
     /// From the rows of the 4 x 4 matrix.
     ///
+    /// ```
+    /// use cylindroid::{Pose, Vec3};
+    ///
+    /// let rows = [[1.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.2], [0.0, 0.0, 0.0, 1.0]];
+    /// let world_from_tool = Pose::from_matrix(rows)?;
+    /// assert_eq!(world_from_tool.translation, Vec3::new(0.5, 0.0, 0.2));
+    /// assert_eq!(world_from_tool.to_matrix(), rows);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A non-finite matrix, whose rotation part is not a rotation, or whose last row is
     /// not 0 0 0 1.
@@ -69,6 +79,14 @@ impl Pose {
     }
 
     /// `b_from_a`.
+    ///
+    /// ```
+    /// use cylindroid::{Pose, Rotation, Vec3};
+    ///
+    /// let a_from_b = Pose { rotation: Rotation::about_z(0.3), translation: Vec3::X };
+    /// let point = Vec3::new(0.1, 0.2, 0.3);
+    /// assert!((a_from_b.inverse() * (a_from_b * point) - point).norm() < 1e-15);
+    /// ```
     #[must_use]
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.inverse();
@@ -76,6 +94,16 @@ impl Pose {
     }
 
     /// The adjoint: a twist in frame b, seen from frame a.
+    ///
+    /// ```
+    /// use cylindroid::{Pose, Twist, Vec3};
+    ///
+    /// // A rotation about the z axis of b, whose origin is 2 m along x.
+    /// let a_from_b = Pose::from_translation(Vec3::new(2.0, 0.0, 0.0));
+    /// let in_a = a_from_b.adjoint(Twist { linear: Vec3::ZERO, angular: Vec3::Z });
+    /// assert_eq!(in_a, Twist { linear: Vec3::new(0.0, -2.0, 0.0), angular: Vec3::Z });
+    /// ```
+    #[doc(alias = "twist transformation")]
     #[must_use]
     #[inline]
     pub fn adjoint(self, twist: Twist) -> Twist {
@@ -84,6 +112,18 @@ impl Pose {
     }
 
     /// The coadjoint: a wrench in frame b, seen from frame a.
+    ///
+    /// ```
+    /// use cylindroid::{Pose, Twist, Vec3, Wrench};
+    ///
+    /// let a_from_b = Pose::from_translation(Vec3::new(2.0, 0.0, 0.0));
+    /// let wrench = Wrench { force: Vec3::Y, moment: Vec3::ZERO };
+    /// let twist = Twist { linear: Vec3::Y, angular: Vec3::Z };
+    /// assert_eq!(a_from_b.coadjoint(wrench).moment, Vec3::new(0.0, 0.0, 2.0));
+    /// // Power is the same in both frames.
+    /// let power = a_from_b.adjoint(twist).power(a_from_b.coadjoint(wrench));
+    /// assert!((power - twist.power(wrench)).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn coadjoint(self, wrench: Wrench) -> Wrench {
         let force = self.rotation * wrench.force;
@@ -92,6 +132,15 @@ impl Pose {
 
     /// The error that a controller closes, in the axes of frame a: the translation from this pose
     /// to `target` (m) and the rotation vector from this orientation to the target's (rad).
+    ///
+    /// ```
+    /// use cylindroid::{Pose, Rotation, Vec3};
+    ///
+    /// let target = Pose { rotation: Rotation::about_z(0.2), translation: Vec3::new(0.1, 0.0, 0.0) };
+    /// let error = Pose::IDENTITY.error_to(target);
+    /// assert_eq!(error.linear, Vec3::new(0.1, 0.0, 0.0));
+    /// assert!((error.angular - Vec3::new(0.0, 0.0, 0.2)).norm() < 1e-15);
+    /// ```
     #[must_use]
     pub fn error_to(self, target: Self) -> Twist {
         Twist {

@@ -30,6 +30,14 @@ impl Rotation {
     pub const IDENTITY: Self = Self { matrix: Mat3::IDENTITY };
 
     /// The rotation by the vector `r`: about `r`, by `|r|` rad.
+    ///
+    /// ```
+    /// use cylindroid::{Rotation, Vec3};
+    ///
+    /// let quarter_turn = Rotation::exp(Vec3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
+    /// assert!((quarter_turn * Vec3::X - Vec3::Y).norm() < 1e-15);
+    /// ```
+    #[doc(alias = "Rodrigues")]
     #[must_use]
     pub fn exp(r: Vec3) -> Self {
         let t = r.norm();
@@ -42,6 +50,13 @@ impl Rotation {
     }
 
     /// The rotation vector: axis times angle, angle in [0, pi] (rad).
+    ///
+    /// ```
+    /// use cylindroid::{Rotation, Vec3};
+    ///
+    /// let r = Vec3::new(0.1, -0.4, 0.2);
+    /// assert!((Rotation::exp(r).log() - r).norm() < 1e-15);
+    /// ```
     #[must_use]
     pub fn log(self) -> Vec3 {
         let q = Quaternion::multiple_of_matrix(self.matrix);
@@ -59,6 +74,14 @@ impl Rotation {
     }
 
     /// The rotation about `axis` (any length) by `angle` rad; `None` if the axis has no direction.
+    ///
+    /// ```
+    /// use cylindroid::{Rotation, Vec3};
+    ///
+    /// let half_turn = Rotation::about(Vec3::new(0.0, 0.0, 3.0), std::f64::consts::PI).unwrap();
+    /// assert!((half_turn * Vec3::X + Vec3::X).norm() < 1e-15);
+    /// assert!(Rotation::about(Vec3::ZERO, 1.0).is_none());
+    /// ```
     #[must_use]
     pub fn about(axis: Vec3, angle: f64) -> Option<Self> {
         Some(Self::about_unit(axis.unit(ZERO_AXIS)?, angle))
@@ -165,6 +188,13 @@ impl Rotation {
     }
 
     /// The angle between two rotations, in [0, pi] rad.
+    ///
+    /// ```
+    /// use cylindroid::Rotation;
+    ///
+    /// let angle = Rotation::about_z(0.1).angle_to(Rotation::about_z(0.4));
+    /// assert!((angle - 0.3).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn angle_to(self, other: Self) -> f64 {
         (self.inverse() * other).log().norm()

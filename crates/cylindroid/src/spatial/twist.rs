@@ -90,6 +90,14 @@ linear_space!(Wrench, force, moment);
 
 impl Twist {
     /// Power of a wrench on a body that moves with this twist, both in one frame (W).
+    ///
+    /// ```
+    /// use cylindroid::{Twist, Vec3, Wrench};
+    ///
+    /// let twist = Twist { linear: Vec3::X * 0.5, angular: Vec3::Z };
+    /// let wrench = Wrench { force: Vec3::X * 10.0, moment: Vec3::Z * 2.0 };
+    /// assert_eq!(twist.power(wrench), 7.0); // W
+    /// ```
     #[must_use]
     pub fn power(self, wrench: Wrench) -> f64 {
         self.linear.dot(wrench.force) + self.angular.dot(wrench.moment)
@@ -97,6 +105,7 @@ impl Twist {
 
     /// The Lie bracket `ad(self) other`: the rate of `other`, fixed in a body that moves with
     /// `self`, both in one frame.
+    #[doc(alias = "Lie bracket")]
     #[must_use]
     #[inline]
     pub fn bracket(self, other: Self) -> Self {
@@ -107,6 +116,13 @@ impl Twist {
     }
 
     /// The same motion with the linear part taken at the point `p` (same axes) (m).
+    ///
+    /// ```
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// let spin = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
+    /// assert_eq!(spin.at_point(Vec3::X).linear, Vec3::Y);
+    /// ```
     #[must_use]
     #[inline]
     pub fn at_point(self, p: Vec3) -> Self {

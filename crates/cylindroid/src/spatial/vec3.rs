@@ -193,6 +193,8 @@ impl Mat3 {
     }
 
     /// The matrix of the vector product: `skew(a) b = a x b`.
+    #[doc(alias = "cross product matrix")]
+    #[doc(alias = "hat")]
     #[must_use]
     pub fn skew(a: Vec3) -> Self {
         Self::from_cols(

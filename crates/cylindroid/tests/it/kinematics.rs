@@ -227,6 +227,7 @@ fn analytical_jacobians_by_finite_differences() {
                         [a.alpha, a.beta, a.gamma]
                     }
                     OrientationRates::RotationVector => pose.rotation.log().to_array(),
+                    other => panic!("{other:?} has no angles here"),
                 };
                 let p = pose.translation;
                 [p.x, p.y, p.z, angles[0], angles[1], angles[2]]

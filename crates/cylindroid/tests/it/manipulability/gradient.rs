@@ -20,6 +20,7 @@ fn value(m: &Mechanism, q: &[f64], goal: Goal<'_>, metrics: &Metrics, measure: M
         Measure::Smallest => s.smallest().unwrap(),
         Measure::Largest => s.largest().unwrap(),
         Measure::Anisotropy => s.anisotropy().unwrap(),
+        other => panic!("{other:?} has no value here"),
     }
 }
 

@@ -313,7 +313,7 @@ fn indices(found: &Found, out: &mut dyn Write) -> anyhow::Result<()> {
     });
     let columns = [
         ("of the finite ones", Align::Left),
-        ("volume", Align::Right),
+        ("volume (Yoshikawa)", Align::Right),
         ("smallest", Align::Right),
         ("largest", Align::Right),
         ("anisotropy", Align::Right),
