@@ -31,7 +31,7 @@ use crate::screws::{NoInverse, Projector, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Wrench};
 use crate::tolerance;
 
-/// What a hyperbolic pseudoinverse is told besides the pitch.
+/// Options of a hyperbolic pseudoinverse besides the pitch.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HyperbolicOptions {
     /// Characteristic length, centre and noise, for the rank and the verdict on existence: the
@@ -182,7 +182,7 @@ fn unit(t: Twist) -> Vec<f64> {
     t.to_array().map(|x| x / norm).to_vec()
 }
 
-/// Entries of an inverse that does not exist: nobody computes with them unnoticed.
+/// NaN entries of an inverse that does not exist, so that it cannot be used unnoticed.
 fn nan(rows: usize, cols: usize) -> Matrix {
     Matrix::from_fn(rows, cols, |_, _| f64::NAN)
 }

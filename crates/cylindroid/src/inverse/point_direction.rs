@@ -65,7 +65,7 @@ pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<Point
         });
     };
     let mut velocity = Matrix::zeros(3, j.cols());
-    // Of the terms: where they cancel, what is left is their rounding.
+    // Size of the terms: where they cancel, the remainder is their rounding.
     let mut size = 0.0_f64;
     for c in 0..j.cols() {
         let twist = Twist::from_array(std::array::from_fn(|i| j.column(c)[i]));

@@ -3,7 +3,7 @@
 use crate::linalg::{Matrix, Rank, Svd};
 use crate::screws::NoInverse;
 
-/// An inverse and what was done to get it.
+/// An inverse with its report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inverse {
     /// The inverse, n x m: rates = matrix * task.
@@ -20,16 +20,16 @@ pub struct Inverse {
     /// of the weakest direction, with selectively damped least squares, which drop by the rates
     /// that a direction would need, that of the rank at machine precision.
     pub threshold: f64,
-    /// The directions that were dropped, with what is left of them.
+    /// The truncated directions, with their filter factors.
     pub dropped: Vec<TruncatedDirection>,
     /// False where the method has no inverse for this Jacobian; the entries of `matrix` are then
     /// NaN.
     pub exists: bool,
-    /// Why there is none.
+    /// The reason if there is none.
     pub reason: Option<NoInverse>,
 }
 
-/// A task direction that the inverse gives up, wholly or by more than half.
+/// A task direction that the inverse suppresses by more than half.
 #[doc(alias = "lost direction")]
 #[doc(alias = "dropped")]
 #[derive(Debug, Clone, PartialEq)]
@@ -39,12 +39,12 @@ pub struct TruncatedDirection {
     /// Unit vector in the (weighted) task space, m entries (zero in a tall matrix where the
     /// singular value is exactly zero: its direction is not determined).
     pub direction: Vec<f64>,
-    /// The share of a motion along it that is realised, in [0, 1/2).
+    /// Filter factor: the fraction of a motion along it that is realised, in [0, 1/2).
     pub filter_factor: f64,
 }
 
-/// How many directions are kept, and how sure that is. Not always the first ones: selectively
-/// damped least squares drop by rates.
+/// Number of kept directions, with threshold and gap. They need not be the first ones: selectively
+/// damped least squares truncate by joint velocities.
 pub(super) fn rank(svd: &Svd, gains: &[f64], threshold: f64) -> Rank {
     let (mut rank, mut last_kept, mut largest_lost) = (0, None, 0.0_f64);
     for (value, gain) in svd.values().zip(gains) {

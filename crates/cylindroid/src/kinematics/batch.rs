@@ -18,9 +18,9 @@ use crate::error::{Error, Result};
 use crate::linalg::{Matrix, run_all};
 use crate::model::Mechanism;
 
-/// Numbers of a pose.
+/// Numbers for each pose.
 const POSE: usize = 16;
-/// Numbers that are more than most caches hold: 32 MiB.
+/// Results beyond this many numbers (32 MiB) exceed most caches.
 const LARGE: usize = 4 << 20;
 
 /// The kinematics of one end effector, for many configurations in one call.
@@ -48,8 +48,8 @@ pub struct KinematicsBatch {
 }
 
 impl KinematicsBatch {
-    /// Configurations that one thread takes at once, some tenths of a millisecond of work: calls
-    /// with no more stay on the thread of the caller.
+    /// Configurations in one task of the thread pool, some tenths of a millisecond of work: smaller
+    /// calls run on the thread of the caller.
     pub const CHUNK: usize = 4096;
 
     /// For an end effector.

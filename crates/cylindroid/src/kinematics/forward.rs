@@ -17,10 +17,10 @@ use crate::scalar::{Simd, sin_cos};
 use crate::spatial::PackedVec3;
 use crate::spatial::{AlignedPose, Columns, Pose, Rotation, SingleVector3, Vec3};
 
-/// How many angles are taken at once.
+/// Number of angles processed at once.
 pub(super) const CHUNK: usize = 8;
 
-/// Sines and cosines of several angles, as many at once as there are lanes.
+/// Sines and cosines of several angles, one in each lane.
 #[inline(always)]
 pub(super) fn sines<W: Simd>(angle: impl Fn(usize) -> f64) -> ([f64; CHUNK], [f64; CHUNK]) {
     let (mut sin, mut cos) = ([0.0; CHUNK], [0.0; CHUNK]);
@@ -57,7 +57,7 @@ fn forward_avx2(cpu: Avx2, nodes: &[Node], q: &[f64], slots: &mut [AlignedPose])
 #[inline(always)]
 fn forward_with<T: SingleVector3>(_: T::Cpu, nodes: &[Node], q: &[f64], slots: &mut [AlignedPose]) {
     for (chunk, nodes) in nodes.chunks(CHUNK).enumerate() {
-        // All angles first: they wait for nothing, and go four to a register.
+        // All angles first: they are independent, four to a register.
         let mut x = [0.0; CHUNK];
         for (x, node) in x.iter_mut().zip(nodes) {
             *x = q[node.coordinate] * node.multiplier + node.offset;

@@ -107,7 +107,7 @@ impl Tip<'_> {
         }
     }
 
-    /// The last slot that the ways of two tips to the root share.
+    /// The last slot that the paths of two tips to the root share.
     pub(crate) fn common_slot(&self, other: &Self) -> usize {
         let (mut a, mut b) = (self.slot, other.slot);
         while a != b {
@@ -159,8 +159,8 @@ impl Tip<'_> {
         out.as_mut_slice().fill(0.0);
         let tip_twist = self.world_twist(rates);
         let frame = Moving { tip: self.world_from_tip, twist: tip_twist };
-        // The twist of the body that carries the current column: the tip's, less what the joints
-        // nearer the tip add.
+        // The twist of the body that carries the current column: that of the tip without the joints
+        // nearer the tip.
         let mut carrier = tip_twist;
         let mut at = (0, Twist::ZERO);
         self.for_each_column(Vec3::ZERO, |depth, c, column| {
@@ -175,7 +175,7 @@ impl Tip<'_> {
     }
 }
 
-/// A frame that moves: changes the reference of a column and of its rate together.
+/// A moving frame: converts the reference frame of a column and of its rate together.
 pub(crate) struct Moving {
     pub(crate) tip: Pose,
     /// World axes, world origin.

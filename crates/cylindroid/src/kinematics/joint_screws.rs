@@ -21,8 +21,9 @@ impl State {
     /// ```
     /// let robot = cylindroid::load("ur5e")?;
     /// let state = robot.state(robot.home())?;
-    /// let moving = (0..robot.joints().len()).flat_map(|joint| state.joint_screws(joint));
-    /// assert!(moving.clone().count() == 6 && moving.into_iter().all(|screw| screw.pitch == 0.0));
+    /// let screws: Vec<_> = (0..robot.joints().len()).flat_map(|i| state.joint_screws(i)).collect();
+    /// assert_eq!(screws.len(), 6);
+    /// assert!(screws.iter().all(|screw| screw.pitch.abs() < 1e-12));
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     #[must_use]

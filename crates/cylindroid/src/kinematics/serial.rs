@@ -22,7 +22,7 @@ use crate::model::{Node, NodeKind};
 use crate::scalar::Simd;
 use crate::spatial::{AlignedPose, Columns, Pose, Rotation, Vec3, Vector3Like};
 
-/// A joint and the way to the next one.
+/// A joint and the transform to the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SerialJoint {
     /// Place of its coordinate in the chain.
@@ -33,14 +33,14 @@ pub(crate) struct SerialJoint {
     angle: f64,
     by: [f64; 4],
     tilt: Tilt,
-    /// What kernels ask in their loops: true if it slides; if the way has a part along y; if a turn
-    /// is not the coordinate itself.
+    /// Flags for the loops of kernels: the joint translates; the offset to the next joint has a y
+    /// component; the angle is not the coordinate itself.
     slides: bool,
     aside: bool,
     scaled: bool,
 }
 
-/// The angles of [`CHUNK`] joints, those that are not there 0.
+/// The angles of [`CHUNK`] joints, 0 for missing ones.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Angles {
     coordinates: [usize; CHUNK],
@@ -65,7 +65,7 @@ impl Angles {
     }
 }
 
-/// The turn about x from one joint axis to the next.
+/// The rotation about x from one joint axis to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Tilt {
     /// Axes are parallel.
@@ -84,18 +84,18 @@ pub(crate) struct Serial {
     first: AlignedPose,
     joints: Vec<SerialJoint>,
     angles: Vec<Angles>,
-    /// Sine and cosine of what the tool is turned by; `None` where the angle of the last joint
-    /// has it all.
+    /// Sine and cosine of the rotation of the tool about its own z axis; `None` where the angle of
+    /// the last joint includes it.
     last: Option<[f64; 2]>,
     /// True if two joints have one coordinate.
     shared: bool,
 }
 
 impl Serial {
-    /// Of nodes one after the other, the tool last; `None` if a joint does something else.
+    /// The chain of these nodes, the tool last; `None` if it has other kinds of joints.
     pub(crate) fn of(nodes: &[Node]) -> Option<Self> {
         let (tool, moving) = nodes.split_last()?;
-        // The tool is the last way.
+        // The tool is the last transform.
         if tool.kind != NodeKind::Fixed {
             return None;
         }
@@ -210,8 +210,8 @@ impl SerialJoint {
         }
     }
 
-    /// From its origin, before it slides, to that of the next joint; x and z are its axes after it
-    /// has turned.
+    /// From its origin, before it translates, to that of the next joint; x and z are its axes after
+    /// its rotation.
     #[inline(always)]
     pub(crate) fn link_offset<T: Vector3Like>(&self, x: T, z: T, q: T::Scalar) -> T {
         let k = T::Scalar::splat;
@@ -221,8 +221,8 @@ impl SerialJoint {
         if self.aside { z.cross(x).mul_add(k(self.by[1]), way) } else { way }
     }
 
-    /// What it does to a point: linear and angular part, for its axis and the way from any point
-    /// on that.
+    /// Its Jacobian column: linear and angular part, for its axis and the lever from any point of
+    /// the axis.
     #[inline(always)]
     pub(crate) fn column<T: Vector3Like>(&self, axis: T, lever: T) -> (T, T) {
         let k = T::Scalar::splat;
@@ -243,7 +243,7 @@ struct LinkTransform {
 impl LinkTransform {
     fn of(placement: Pose) -> Self {
         let z = placement.rotation.matrix().cols[2];
-        // What is less than rounding is none: parallel and perpendicular axes are meant so.
+        // Values below rounding are zero: parallel and perpendicular axes are intended.
         let clean = |x: f64| if x.abs() <= f64::EPSILON { 0.0 } else { x };
         let (sin, cos) = (clean(z.x.hypot(z.y)), clean(z.z));
         let before = if sin == 0.0 { 0.0 } else { z.x.atan2(-z.y) };
@@ -262,7 +262,7 @@ impl LinkTransform {
         }
     }
 
-    /// Turns before instead of after: the same where there is no tilt.
+    /// Rotates before instead of after: the same where there is no tilt.
     fn turn_before(&mut self) {
         let turn = Rotation::exp(Vec3::new(0.0, 0.0, self.after));
         self.by = turn.inverse() * self.by;

@@ -19,7 +19,7 @@ use crate::scalar::{Array, MAX_LANES, Simd};
 use crate::scalar::{Avx2, Avx512, Lanes4, Lanes8};
 use crate::spatial::{Columns, Vector3Like};
 
-/// What there is, and what is asked for.
+/// Input and requested output.
 pub(super) struct Work<'a> {
     pub(super) serial: &'a Serial,
     /// The place in `q` of each coordinate of the chain.
@@ -29,17 +29,17 @@ pub(super) struct Work<'a> {
     pub(super) q: &'a [f64],
     pub(super) poses: Option<&'a mut [f64]>,
     pub(super) jacobians: Option<(ReferenceFrame, &'a mut [f64])>,
-    /// True if the results of the whole call are more than caches hold.
+    /// True if the results of the whole call exceed the caches.
     pub(super) large: bool,
 }
 
-/// Numbers of a joint: coordinate, cosine, sine, rows.
+/// Numbers for each joint: coordinate, cosine, sine, rows.
 const VALUES_PER_JOINT: usize = 9;
-/// Numbers that are kept on the stack: those of 12 joints, or of a robot of 10 of which 7 move the
-/// end effector. Calls for larger robots ask for memory once.
+/// Numbers on the stack: those of 12 joints, or of a robot of 10 of which 7 move the end effector.
+/// Calls for larger robots allocate once.
 const STACK_LIMIT: usize = 12 * VALUES_PER_JOINT + 20;
 
-/// As many configurations at once as the processor can.
+/// Runs the widest form that the processor has.
 pub(super) fn run(work: Work<'_>) {
     #[cfg(target_arch = "x86_64")]
     {
@@ -85,8 +85,8 @@ fn forward_avx512(
     forward(serial, turns, rows)
 }
 
-/// [`forward`] apart from other code: frames fill the registers, and beside other numbers some
-/// would be put aside in every step, which the next one waits for.
+/// [`forward`], kept out of line: the frame occupies all vector registers, and inlining it next to
+/// other live values would cause spills on the critical path.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 #[inline(never)]
@@ -99,7 +99,7 @@ pub(crate) fn forward_avx2(
     forward(serial, turns, rows)
 }
 
-/// `forward` is [`forward`], in whatever form.
+/// `forward` is [`forward`], inlined or out of line.
 #[inline(always)]
 fn run_with<R: Simd>(
     _: R::Cpu,
@@ -162,8 +162,7 @@ fn run_with<R: Simd>(
     }
 }
 
-/// Has memory brought near that is written soon: stores to memory that is in no cache wait one
-/// after the other.
+/// Prefetches cache lines about to be written; otherwise the stores serialise on cache misses.
 #[inline(always)]
 fn fetch(places: &[f64]) {
     #[cfg(target_arch = "x86_64")]
@@ -197,11 +196,11 @@ fn gather<R: Simd>(q: &[f64], n: usize, serial: &Serial, coordinates: &[usize], 
 /// Sines and cosines of the angles of the joints.
 pub(crate) type SinCos<'a, R> = (&'a [R], &'a [R]);
 
-/// What is known after going along a chain: the axes of the tool, and where the first joint is.
+/// The result of [`forward`]: the axes of the tool, and the origin of the first joint.
 pub(crate) struct FrameAtTip<R>(Columns<[R; 3]>);
 
 impl<R: Simd> FrameAtTip<R> {
-    /// The tool, for the way to it from the origin of the first joint.
+    /// The tool, for its offset from the origin of the first joint.
     #[inline(always)]
     pub(crate) fn tool(&self, way: [R; 3]) -> Columns<[R; 3]> {
         Columns { p: self.0.p.plus(way), ..self.0 }
@@ -216,7 +215,7 @@ impl<R: Simd> FrameAtTip<R> {
     }
 }
 
-/// Goes along the chain: `rows` get one number for each joint, axes x and z.
+/// Forward kinematics along the chain: `rows` receive the axes x and z, one number for each joint.
 ///
 /// Origins follow from them, on the way back, in [`jacobian`] or [`tool_offset`].
 #[inline(always)]
@@ -261,7 +260,7 @@ pub(crate) fn jacobian<R: Simd>(
     rows: &mut [R],
 ) -> [R; 3] {
     let joints = serial.joints();
-    // From where a joint is, at first the tool, to the point whose velocity is asked for.
+    // From a joint, at first the tool, to the point whose velocity is requested.
     let mut lever = [R::splat(0.0); 3];
     let mut way = lever;
     if reference == ReferenceFrame::World {
@@ -285,7 +284,7 @@ pub(crate) fn jacobian<R: Simd>(
     if reference == ReferenceFrame::World { way } else { lever }
 }
 
-/// The six rows of m numbers: what is asked for one place in them is asked for all.
+/// Six rows of m numbers, so that one bounds check serves all.
 #[inline(always)]
 fn split<R>(rows: &mut [R], m: usize) -> [&mut [R]; 6] {
     let (a, rest) = rows.split_at_mut(m);
@@ -310,8 +309,8 @@ fn by_coordinates<R: Simd>(rows: &[R], serial: &Serial, coordinates: &[usize], c
 }
 
 /// The first `count` lanes as rows.
-// The memory for groups that are not whole, once a call, costs less than what would be in the way
-// of whole ones.
+// An allocation for the incomplete group, once a call, costs less than a branch in the path of
+// complete ones.
 #[inline(always)]
 fn put<R: Simd>(numbers: &[R], out: &mut [f64], count: usize) {
     let size = numbers.len();

@@ -17,7 +17,7 @@ use crate::scalar::Avx2;
 use crate::spatial::PackedVec3;
 use crate::spatial::{AlignedPose, SingleVector3};
 
-/// Goes along the chain.
+/// Forward kinematics along the chain.
 #[inline]
 pub(super) fn forward(serial: &Serial, q: &[f64], slots: &mut [AlignedPose]) {
     #[cfg(target_arch = "x86_64")]
@@ -75,7 +75,7 @@ fn forward_with<T: SingleVector3>(
 ) {
     let mut frame = serial.start::<T>();
     for (chunk, (joints, angles)) in serial.chunks().enumerate() {
-        // All angles first: they wait for nothing, and go four to a register.
+        // All angles first: they are independent, four to a register.
         let (sin, cos) = sines::<T::Wide>(|k| angles.at(k, q));
         let slots = &mut slots[chunk * CHUNK + 1..][..joints.len()];
         for (k, (joint, slot)) in joints.iter().zip(slots).enumerate() {

@@ -17,7 +17,7 @@ use crate::spatial::{AlignedPose, Pose, Twist, Vec3};
 pub struct EndEffector {
     /// The frame.
     pub frame: FrameId,
-    /// The tool, seen from the frame.
+    /// The pose of the tool relative to the frame.
     pub frame_from_tool: Pose,
 }
 
@@ -27,7 +27,8 @@ impl From<FrameId> for EndEffector {
     }
 }
 
-/// All frames of a mechanism at one `q`: that it exists proves that forward kinematics ran.
+/// All frames of a mechanism at one configuration `q`; its existence proves that forward kinematics
+/// ran.
 #[doc(alias = "forward kinematics")]
 #[doc(alias = "fk")]
 #[derive(Debug, Clone)]
@@ -160,8 +161,8 @@ impl State {
         }
     }
 
-    /// Calls `f(coordinate, twist)` for what a unit rate of each coordinate of one joint does to
-    /// its child against its parent, in world axes at the world's origin, the last coordinate
+    /// Calls `f(coordinate, twist)` for the twist of the child of one joint relative to its parent
+    /// at a unit rate of each coordinate, in world axes at the world's origin, the last coordinate
     /// first.
     pub(super) fn for_each_twist_of(&self, joint: &Joint, mut f: impl FnMut(usize, Twist)) {
         let slot = |link: usize| self.mechanism.frames()[link].slot; // frames of links come first

@@ -92,7 +92,8 @@ impl BoundedLinearProgram {
     /// use cylindroid::Matrix;
     /// use cylindroid::linalg::{BoundedLinearProgram, Interval, Objective};
     ///
-    /// let program = BoundedLinearProgram::new(&Matrix::identity(2), &[Interval::symmetric(1.0); 2]);
+    /// let bounds = [Interval::symmetric(1.0); 2];
+    /// let program = BoundedLinearProgram::new(&Matrix::identity(2), &bounds);
     /// let vertex = program.maximize(Objective { first: &[1.0, -1.0], second: &[0.0, 0.0] });
     /// assert_eq!(vertex, [1.0, -1.0]);
     /// ```

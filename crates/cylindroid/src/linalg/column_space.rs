@@ -17,7 +17,7 @@ use super::singular_values::{extreme_singular_values, singular_values};
 use super::svd::{Rank, Svd};
 use crate::tolerance::{AMBIGUOUS, MACHINE_RANK};
 
-/// What counts as zero among singular values.
+/// Threshold below which singular values count as zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Threshold {
     /// At most this times the largest: for a matrix of any size.
@@ -27,7 +27,7 @@ pub enum Threshold {
     Absolute(f64),
 }
 
-/// A rank with the two numbers it was cut between.
+/// A rank with the two singular values next to the cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cut {
     /// The rank, its threshold, its gap.
@@ -87,8 +87,8 @@ impl ColumnSpace {
         Self::decompose(a.clone(), threshold, true)
     }
 
-    /// [`ColumnSpace::of`] where of the singular values only the cut and the largest are wanted:
-    /// those between may be missing. A third of the time.
+    /// [`ColumnSpace::of`] with only the cut and the largest singular value: those between may be
+    /// missing. A third of the time.
     pub(crate) fn cut_of(a: Matrix, threshold: Threshold) -> Self {
         Self::decompose(a, threshold, false)
     }
@@ -153,7 +153,7 @@ impl ColumnSpace {
         self.cut.rank.rank
     }
 
-    /// The rank and what it was cut between.
+    /// The rank and the two singular values next to the cut.
     #[must_use]
     pub fn cut(&self) -> Cut {
         self.cut
@@ -171,7 +171,7 @@ impl ColumnSpace {
         self.columns(0, self.rank())
     }
 
-    /// An orthonormal basis of what is orthogonal to all columns, m x (m - r).
+    /// An orthonormal basis of the orthogonal complement, m x (m - r).
     #[must_use]
     pub fn complement(&self) -> Matrix {
         self.columns(self.rank(), self.rows)

@@ -21,7 +21,7 @@ use super::qr::Qr;
 use super::vector::dot;
 use crate::tolerance::HULL;
 
-/// What is wanted of the hull.
+/// The goal of a hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HullGoal {
     /// All facets.
@@ -30,17 +30,17 @@ pub enum HullGoal {
     NearestFacet,
 }
 
-/// When to stop.
+/// Options of a hull.
 #[doc(alias = "convex hull")]
 #[doc(alias = "expanding polytope")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullOptions {
-    /// What is wanted.
+    /// The goal.
     pub goal: HullGoal,
     /// A point that lies beyond a facet by less than this times the size of the body does not
     /// change it [-].
     pub tolerance: f64,
-    /// Most facets held at a time.
+    /// Maximum number of facets at a time.
     pub max_facets: usize,
 }
 
@@ -54,7 +54,7 @@ pub struct Facet {
     /// `normal . x` on the facet: the distance of its plane from the origin, negative where the
     /// origin lies beyond.
     pub offset: f64,
-    /// How far beyond it the body reaches at most (infinite while it was not asked).
+    /// Upper bound of the extent of the body beyond it (infinite before it is queried).
     pub gap: f64,
 }
 
@@ -67,7 +67,7 @@ pub struct Hull {
     pub facets: Vec<Facet>,
     /// Directions in which the body extends, orthonormal, a column each: all d for a solid one.
     pub span: Matrix,
-    /// False where the bound on facets was met first.
+    /// False where the limit on facets was reached first.
     pub complete: bool,
 }
 
@@ -123,7 +123,7 @@ impl Hull {
         self.facets.iter().min_by(|a, b| a.offset.total_cmp(&b.offset))
     }
 
-    /// The corners in the order of the rim, for a body of two dimensions.
+    /// The vertices in order along the boundary, for a body of two dimensions.
     #[must_use]
     pub fn polygon(&self) -> Vec<&[f64]> {
         if self.span.cols() != 2 {
@@ -147,7 +147,7 @@ impl Hull {
         order.into_iter().map(|(_, v)| v).collect()
     }
 
-    /// Vertices that later points left inside go.
+    /// Removes vertices that became interior.
     fn drop_unused(&mut self) {
         if self.facets.is_empty() {
             return;
@@ -182,7 +182,7 @@ fn first_points(
     let mut span = Matrix::zeros(dimension, 0);
     let mut size: f64 = 0.0;
     while span.cols() < dimension {
-        // The largest reach orthogonal to what is spanned: none along a basis means none at all.
+        // The largest extent orthogonal to the span so far: none along a basis means none at all.
         let directions = Qr::plain(span.clone()).complement();
         let mut best: (f64, Vec<f64>) = (0.0, Vec::new());
         for j in 0..directions.cols() {
@@ -217,10 +217,10 @@ struct Expansion {
     span: Matrix,
     /// A point inside.
     inner: Vec<f64>,
-    /// What a point may lie beyond a facet without changing it.
+    /// Distance beyond a facet up to which a point does not change it.
     slack: f64,
-    /// What a point may lie beyond a facet and not see it: rounding, since a facet that is kept
-    /// although it is seen folds the surface.
+    /// Distance beyond a facet up to which the facet counts as invisible: rounding, since a visible
+    /// facet that is kept folds the surface.
     flat: f64,
 }
 
@@ -242,7 +242,7 @@ impl Expansion {
         self.facets.push(Facet { vertices, normal, offset, gap: f64::INFINITY });
     }
 
-    /// The facet to be asked next.
+    /// The facet to be queried next.
     fn open(&self, goal: HullGoal) -> Option<usize> {
         let (i, facet) = match goal {
             HullGoal::Whole => {
@@ -255,7 +255,7 @@ impl Expansion {
         (facet.gap == f64::INFINITY).then_some(i)
     }
 
-    /// True when the goal is met.
+    /// True when the goal is reached.
     fn grow(&mut self, support: &mut impl FnMut(&[f64]) -> Vec<f64>, options: HullOptions) -> bool {
         while let Some(i) = self.open(options.goal) {
             if self.facets.len() > options.max_facets {

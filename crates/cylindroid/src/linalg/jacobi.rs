@@ -27,8 +27,7 @@ use crate::scalar::{Array, Simd4};
 use crate::scalar::{Avx2, Lanes4};
 use crate::tolerance::JACOBI_ORTHOGONAL;
 
-/// More sweeps than any matrix needs (ten or fewer in practice): the bound that makes the cost
-/// finite.
+/// Maximum number of sweeps; at most ten are needed in practice: it bounds the cost.
 const MAX_SWEEPS: usize = 40;
 
 /// Angles up to this, as the spectral norm of K, are turned together: E then lacks 1e-11 of
@@ -45,7 +44,7 @@ const ONE_TERM: f64 = 1e-8;
 /// leaves less than `JACOBI_ORTHOGONAL`: products of the three.
 const LAST: f64 = 4e-6;
 
-/// Steps with all angles together, before rotations one by one take over for good.
+/// Maximum number of steps with all angles together; then rotations one by one continue.
 const MOST_TOGETHER: usize = 8;
 
 /// How B W starts.
@@ -59,7 +58,7 @@ pub(super) enum Start {
     Repaired,
 }
 
-/// B, W and what is needed to rotate them without allocation.
+/// B, W and the memory to rotate them without allocation.
 #[derive(Debug, Clone)]
 pub(super) struct Rotations {
     /// Number of columns.
@@ -257,7 +256,7 @@ impl Rotations {
         self.rest();
     }
 
-    /// The next start is from W itself.
+    /// Resets the extrapolation: the next start is from W itself.
     fn rest(&mut self) {
         self.next.data.copy_from_slice(&self.w.data);
         self.last_turn.fill(0.0);
@@ -416,7 +415,7 @@ fn norm<R: Simd4>(squares: R) -> f64 {
 }
 
 /// All pairs of k columns, ordered so that neighbours share no column: the processor works on
-/// several rotations at once, whose square roots would otherwise wait for each other.
+/// several rotations at once, whose square roots would otherwise depend on each other.
 pub(crate) fn round_robin_pairs(k: usize) -> Vec<(usize, usize)> {
     let ring = (k + k % 2).saturating_sub(1);
     let mut pairs = Vec::with_capacity(k * k / 2);

@@ -127,7 +127,7 @@ impl Matrix {
         Self { rows: self.rows, cols: to - from, data }
     }
 
-    /// The columns of all blocks batched.
+    /// The blocks side by side: their columns in order.
     ///
     /// ```
     /// use cylindroid::Matrix;

@@ -86,8 +86,8 @@ impl Metric {
         Ok(Self { l })
     }
 
-    /// The dual metric `M^-1`, by which forces are measured when motions are measured by M: with
-    /// it power is at most the product of the two norms.
+    /// The dual metric `M^-1` of forces, where M is the metric of motions: power is then at most
+    /// the product of the two norms.
     #[must_use]
     pub fn dual(&self) -> Self {
         // M^-1 = (L^-1)^T L^-1, and L^-1 = Q R makes it R^T R.
@@ -103,7 +103,7 @@ impl Metric {
         Self::of_upper(&Qr::plain(inverse).r())
     }
 
-    /// `B^T M B`: how coordinates y of a subspace are measured, `x = B y`.
+    /// `B^T M B`: the metric of coordinates y of a subspace, `x = B y`.
     ///
     /// # Errors
     /// A basis that has not n rows, is not finite, or whose columns are dependent.
@@ -124,12 +124,13 @@ impl Metric {
         self.whiten_rows(&mut whitened);
         let metric = Self::of_upper(&Qr::plain(whitened).r());
         if (0..metric.len()).any(|i| !(metric.l[(i, i)] > 0.0)) {
-            return Err(refuse("its columns are dependent; leave out those that follow"));
+            return Err(refuse("its columns are dependent; remove the redundant ones"));
         }
         Ok(metric)
     }
 
-    /// `(T M^-1 T^T)^-1`: how images `y = T x` are measured by the least x behind them.
+    /// `(T M^-1 T^T)^-1`: the metric of images `y = T x`, the norm of the smallest x with that
+    /// image.
     ///
     /// # Errors
     /// A map that has not n columns, is not finite, or whose rows are dependent.
@@ -143,7 +144,8 @@ impl Metric {
         Self { l: Matrix::from_fn(r.cols(), r.cols(), entry) }
     }
 
-    /// Largest over smallest diagonal entry of the factor: how lopsided the metric is, 1 at least.
+    /// Largest over smallest diagonal entry of the factor: a lower bound of its condition, at least
+    /// 1.
     #[must_use]
     pub fn diagonal_ratio(&self) -> f64 {
         let diagonal = (0..self.len()).map(|i| self.l[(i, i)]);
@@ -188,7 +190,8 @@ impl Metric {
         }
     }
 
-    /// `y <- L y`: a force in the coordinates that [`Metric::whiten`] gives motions, to its own.
+    /// `y <- L y`: a force from the coordinates of whitened motions ([`Metric::whiten`]) back to
+    /// its own.
     pub fn unwhiten_dual(&self, y: &mut [f64]) {
         for i in (0..self.len()).rev() {
             y[i] = (0..=i).map(|k| self.l[(i, k)] * y[k]).sum();

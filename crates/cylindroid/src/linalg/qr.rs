@@ -25,7 +25,7 @@ pub struct Qr {
 }
 
 impl Qr {
-    /// Columns taken largest first.
+    /// With column pivoting: the largest remaining column first.
     ///
     /// ```
     /// use cylindroid::Matrix;
@@ -41,7 +41,7 @@ impl Qr {
         Self::decompose(a, true)
     }
 
-    /// Columns taken as they stand.
+    /// Without pivoting: columns in their order.
     #[must_use]
     pub fn plain(a: Matrix) -> Self {
         Self::decompose(a, false)
@@ -71,7 +71,7 @@ impl Qr {
             let data = a.as_mut_slice();
             let (head, rest) = data.split_at_mut((j + 1) * m);
             let v = &mut head[j * m + j..];
-            // The sign that adds: no digits are lost in v_0.
+            // The sign without cancellation in v_0.
             let diagonal = -norm.copysign(v[0]);
             let first = v[0] - diagonal;
             factors[j] = -first / diagonal;
@@ -126,8 +126,8 @@ impl Qr {
         self.columns(0, self.factors.len())
     }
 
-    /// The other columns of Q: for independent columns of A an orthonormal basis of what is
-    /// orthogonal to them.
+    /// The other columns of Q: for independent columns of A an orthonormal basis of the orthogonal
+    /// complement.
     #[must_use]
     pub fn complement(&self) -> Matrix {
         self.columns(self.factors.len(), self.packed.rows())
@@ -144,7 +144,7 @@ impl Qr {
 
     /// `A <- Q A`, m rows.
     pub(super) fn apply_to_columns(&self, a: &mut Matrix) {
-        // Column after column under one reflection: none waits for the last.
+        // Column after column under one reflection: they are independent.
         for j in (0..self.factors.len()).rev() {
             for l in 0..a.cols() {
                 self.reflect(j, a.column_mut(l));

@@ -40,7 +40,7 @@ pub struct Svd {
     sweeps: usize,
 }
 
-/// A rank and how sure it is.
+/// A numerical rank and its margin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rank {
     /// Number of singular values above the threshold.
@@ -78,7 +78,7 @@ impl Svd {
         svd
     }
 
-    /// Decomposes `a` from nothing. Non-finite entries give NaN singular values.
+    /// Decomposes `a` without a warm start. Non-finite entries give NaN singular values.
     ///
     /// # Panics
     /// If `a` has not the shape of the workspace.
@@ -203,7 +203,7 @@ impl Svd {
         add_through(self.left(), &gains[..self.len()], self.right(), b, x);
     }
 
-    /// The least x that is nearest to solving `A x = b` in the first `rank` directions.
+    /// The minimum-norm least-squares solution of `A x = b` in the first `rank` directions.
     pub(crate) fn solve(&self, b: &[f64], rank: usize) -> Vec<f64> {
         self.apply_gains(b, |i, s| if i < rank && s > 0.0 { 1.0 / s } else { 0.0 })
     }

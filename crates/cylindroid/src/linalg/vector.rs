@@ -10,8 +10,7 @@ pub(crate) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// `a . b` in four partial sums: none waits for another, and the processor takes two or four at a
-/// time.
+/// `a . b` in four independent partial sums, which the processor vectorises.
 #[inline]
 pub(super) fn dot_unrolled(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 4;

@@ -29,7 +29,7 @@ use crate::linalg::{Matrix, run_all};
 use crate::model::{FrameId, Mechanism};
 use crate::tolerance::{CLEAR_DISTANCE, CLOSED, NEGLIGIBLE_SHARE};
 
-/// How a batch measures.
+/// Options of a [`ManipulabilityBatch`].
 #[derive(Debug, Clone, Default)]
 pub struct BatchOptions {
     /// The frame whose motion is the goal: the mechanism's reference by default.
@@ -268,7 +268,7 @@ impl ManipulabilityBatch {
         }))
     }
 
-    /// From what the kernel found, where no count hangs on little.
+    /// From the result of the kernel, where no count is ambiguous.
     fn clear(&self, kernel: &Kernel, found: Found<'_>) -> Option<Row> {
         let plan = kernel.plan();
         let closure_error = LoopClosureError { distance: found.distance, angle: found.angle };
@@ -282,7 +282,7 @@ impl ManipulabilityBatch {
         if !(found.regularity > CLEAR_DISTANCE && found.share > CLEAR_DISTANCE) {
             return None;
         }
-        // Sines of the pairs: what is left of the rank, and the farthest from its loss.
+        // Sines of the pairs: the distance to rank loss, and the largest.
         let whole = |sigma: f64| (1.0 + sigma * sigma).sqrt();
         let sine = |sigma: f64| sigma / whole(sigma);
         let (mut coordinate, mut least, mut most) = (0, f64::INFINITY, 0.0_f64);
@@ -328,10 +328,10 @@ impl ManipulabilityBatch {
     }
 }
 
-/// Volume, smallest and largest efficiency of so many singular values, the others being nothing;
+/// Volume, smallest and largest efficiency of the non-zero singular values;
 /// `None` where they cannot be told apart.
 fn measured(values: &[f64], count: usize) -> Option<(f64, f64, f64)> {
-    /// What is kept is this much larger than what is not.
+    /// Ratio of the smallest kept to the largest discarded value.
     const APART: f64 = 1e3;
     /// Components of a twist.
     const MOST: usize = 6;

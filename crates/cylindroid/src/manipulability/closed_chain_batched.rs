@@ -32,7 +32,7 @@ use crate::spatial::AlignedPose;
 /// Numbers before the singular values.
 const HEADER: usize = 6;
 
-/// What does not change with the configuration.
+/// The part that is independent of the configuration.
 #[derive(Debug, Clone)]
 pub(super) struct Kernel {
     plan: Box<BatchedConstraintPlan>,
@@ -45,13 +45,13 @@ pub(super) struct Kernel {
     pairs: Vec<(usize, usize)>,
 }
 
-/// What the kernel finds of a configuration.
+/// Results of the kernel for a configuration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Found<'a> {
-    /// How far loops are open (m, rad).
+    /// Loop-closure errors (m, rad).
     pub(super) distance: f64,
     pub(super) angle: f64,
-    /// False where nothing else is to be used.
+    /// False where the other results are invalid.
     pub(super) usable: bool,
     /// Smallest over largest singular value of the constraint.
     pub(super) regularity: f64,
@@ -275,7 +275,7 @@ impl Kernel {
     }
 }
 
-/// What one thread needs.
+/// Memory of one thread.
 #[derive(Debug)]
 struct Scratch<R> {
     q: Vec<R>,

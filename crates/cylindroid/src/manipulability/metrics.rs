@@ -104,7 +104,7 @@ impl Metrics {
     /// use cylindroid::manipulability::Metrics;
     ///
     /// let robot = cylindroid::load("panda")?;
-    /// let limits: Vec<f64> = robot.coordinates().iter().map(|c| c.velocity_limit).collect();
+    /// let limits: Vec<f64> = robot.coordinates().iter().map(|c| c.limits.velocity).collect();
     /// let metrics = Metrics::UNIT.with_velocity_limits(&limits)?;
     /// assert!(metrics.joint.is_some());
     /// # Ok::<(), cylindroid::Error>(())

@@ -9,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::simd::{Simd, Simd4, SimdFloat};
 use super::trig;
 
-/// Several numbers batched.
+/// N lanes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Array<const N: usize>(pub(crate) [f64; N]);
 
@@ -84,7 +84,7 @@ impl<const N: usize> Simd for Array<N> {
 
     #[inline(always)]
     fn sum(self) -> f64 {
-        // The halves first, as registers do.
+        // Halves first, in the order of registers.
         let mut lanes = self.0;
         let mut half = N;
         while half > 1 {
@@ -163,7 +163,7 @@ impl Simd4 for Array<4> {
 
     #[inline(always)]
     fn sums(of: [Self; 4]) -> Self {
-        // Neighbours first, as registers do.
+        // Neighbours first, in the order of registers.
         Self(of.map(|Self([a, b, c, d])| (a + b) + (c + d)))
     }
 
@@ -183,7 +183,7 @@ mod tests {
         of.iter().flat_map(|x| (x.store(&mut lanes), lanes.map(f64::to_bits)).1).collect()
     }
 
-    /// Registers do what arrays do, to the bit: rows of any length, and whatever numbers there are.
+    /// Registers agree with arrays to the bit: rows of any length, any numbers.
     #[inline(always)]
     fn as_arrays<R: Simd, const N: usize>(_: R::Cpu) {
         for n in 0..=9 {

@@ -14,7 +14,7 @@ use super::cpu::Avx2;
 use super::simd::{Simd, Simd4, SimdFloat};
 use super::trig;
 
-/// Sums, differences and products by intrinsics.
+/// Addition, subtraction and multiplication by intrinsics.
 macro_rules! operators {
     ($name:ident, $add:ident, $sub:ident, $mul:ident) => {
         impl Add for $name {
@@ -51,7 +51,7 @@ macro_rules! operators {
 
 pub(super) use operators;
 
-/// Four numbers.
+/// Four lanes.
 #[derive(Debug, Clone, Copy)]
 #[repr(transparent)]
 pub(crate) struct Lanes4(pub(crate) __m256d);
@@ -71,7 +71,7 @@ impl Neg for Lanes4 {
 /// The first of `rows` rows of `length` numbers, `stride` apart.
 ///
 /// # Panics
-/// If they are not all there.
+/// If the slice is too short.
 #[inline(always)]
 pub(super) fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize) -> *mut f64 {
     // The first condition keeps the second from overflowing.
@@ -82,7 +82,7 @@ pub(super) fn rows_of(to: &mut [f64], stride: usize, length: usize, rows: usize)
 /// The first of `rows` rows of `length` numbers, `stride` apart.
 ///
 /// # Panics
-/// If they are not all there.
+/// If the slice is too short.
 #[inline(always)]
 pub(super) fn rows_in(from: &[f64], stride: usize, length: usize, rows: usize) -> *const f64 {
     // The first condition keeps the second from overflowing.
@@ -90,7 +90,7 @@ pub(super) fn rows_in(from: &[f64], stride: usize, length: usize, rows: usize) -
     from.as_ptr()
 }
 
-/// The sign is set in the lanes for which there are numbers.
+/// A mask: the sign bit is set in the lanes that have numbers.
 #[inline(always)]
 fn lanes_of(numbers: &[f64]) -> __m256i {
     const FIRST: [i64; 8] = [-1, -1, -1, -1, 0, 0, 0, 0];
@@ -102,13 +102,13 @@ fn lanes_of(numbers: &[f64]) -> __m256i {
 impl Simd4 for Lanes4 {
     #[inline(always)]
     fn load_partial(from: &[f64]) -> Self {
-        // SAFETY: only numbers that are there are read; see the head of this file.
+        // SAFETY: the mask excludes places beyond the slice; see the head of this file.
         Self(unsafe { _mm256_maskload_pd(from.as_ptr(), lanes_of(from)) })
     }
 
     #[inline(always)]
     fn store_partial(self, to: &mut [f64]) {
-        // SAFETY: only places that are there are written; see the head of this file.
+        // SAFETY: the mask excludes places beyond the slice; see the head of this file.
         unsafe { _mm256_maskstore_pd(to.as_mut_ptr(), lanes_of(to), self.0) }
     }
 

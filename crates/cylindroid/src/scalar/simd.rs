@@ -8,77 +8,76 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Lanes at most.
+/// Maximum number of lanes.
 pub(crate) const MAX_LANES: usize = 8;
 
-/// One number, or several that go the same way.
+/// One number, or several in SIMD lanes.
 pub(crate) trait Simd:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
     /// Proof that the processor has what these lanes need; `()` where they need nothing.
     type Cpu: Copy;
-    /// How many.
+    /// Number of lanes.
     const LANES: usize;
     /// True if [`Simd::mul_add`] rounds once.
     const FUSED: bool;
     /// The same number in all lanes.
     fn splat(x: f64) -> Self;
-    /// The first `LANES` numbers.
+    /// Loads the first `LANES` numbers.
     fn load(from: &[f64]) -> Self;
-    /// Into the first `LANES` places.
+    /// Stores into the first `LANES` places.
     fn store(self, to: &mut [f64]);
     /// Lane l is `f(l)`.
     fn from_fn(f: impl Fn(usize) -> f64) -> Self;
-    /// Lane l of the k-th is `from[l * stride + k]`.
+    /// Transposing load: lane l of `to[k]` is `from[l * stride + k]`.
     fn gather(from: &[f64], stride: usize, to: &mut [Self]);
-    /// Lane l of the k-th goes to `to[l * stride + k]`.
+    /// Transposing store: lane l of `from[k]` goes to `to[l * stride + k]`.
     fn scatter(from: &[Self], to: &mut [f64], stride: usize);
-    /// All lanes together.
+    /// The sum of all lanes.
     fn sum(self) -> f64;
-    /// `self * b + c`, with one rounding where the processor can.
+    /// `self * b + c`, with one rounding if [`Simd::FUSED`].
     fn mul_add(self, b: Self, c: Self) -> Self;
-    /// Without its sign.
+    /// The absolute value.
     fn abs(self) -> Self;
     /// `(a, b)`, in lanes where the lowest bit of `bits` is set `(b, a)`.
     fn swap_if_odd(a: Self, b: Self, bits: Self) -> (Self, Self);
     /// Negated in lanes where the second bit of `bits + more` (as integers) is set.
     fn negate_if_second_bit(self, bits: Self, more: u64) -> Self;
-    /// True if no lane is larger than `limit` or not a number.
+    /// True if the absolute value of every lane is at most `limit`; false for NaN.
     fn all_abs_le(self, limit: f64) -> bool;
-    /// [`super::sin_cos`] of each of `x`: cosines take the place of the angles; `memory` is
-    /// overwritten.
+    /// [`super::sin_cos`] of each of `x`: cosines replace the angles; `memory` is overwritten.
     ///
-    /// Registers do this in a function of its own: its constants need many of them, which numbers
-    /// of the caller would lose.
+    /// For registers this is a function of its own: its constants occupy many registers, and
+    /// inlining would spill those of the caller.
     ///
     /// # Panics
-    /// If not all have one length.
+    /// If the lengths differ.
     fn sines_cosines(x: &mut [Self], sines: &mut [Self], memory: &mut [Self]);
 }
 
-/// Four lanes, which can change places.
+/// Four lanes that can be shuffled.
 pub(crate) trait Simd4: SimdFloat {
-    /// The first four numbers, zeros where there are fewer.
+    /// Loads up to four numbers, zeros in the other lanes.
     fn load_partial(from: &[f64]) -> Self;
-    /// Into the first four places, or those that there are.
+    /// Stores into up to four places.
     fn store_partial(self, to: &mut [f64]);
-    /// Lane l is the sum of all lanes of the l-th.
+    /// Lane l is the sum of all lanes of the l-th value.
     fn sums(of: [Self; 4]) -> Self;
-    /// Lane l of the k-th is lane k of the l-th.
+    /// The transpose: lane l of the k-th value is lane k of the l-th.
     fn transposed(of: [Self; 4]) -> [Self; 4];
 }
 
-/// Numbers that are divided and compared, lane by lane.
+/// Division, square roots and selection, lane by lane: the operations of eliminations.
 pub(crate) trait SimdFloat: Simd + Div<Output = Self> {
-    /// The square root; not a number for negative ones.
+    /// The square root; NaN for negative numbers.
     fn sqrt(self) -> Self;
-    /// The size of `self` with the sign of `other`.
+    /// The absolute value of `self` with the sign of `other`.
     fn copysign(self, other: Self) -> Self;
-    /// The larger; of no number and one, anything.
+    /// The larger of both; unspecified if one is NaN.
     fn max(self, other: Self) -> Self;
-    /// `then` where `a < b`, else `otherwise`, also where one of them is no number.
+    /// `then` where `a < b`; `otherwise` elsewhere, also where one of them is NaN.
     fn select_lt(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
-    /// Zero where not `a > b`.
+    /// `self` where `a > b`; zero elsewhere.
     #[inline(always)]
     fn zero_unless_gt(self, a: Self, b: Self) -> Self {
         Self::select_lt(b, a, self, Self::splat(0.0))

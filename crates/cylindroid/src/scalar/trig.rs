@@ -49,18 +49,18 @@ pub(crate) fn sin_cos<R: Simd>(x: R) -> (R, R) {
     if x.all_abs_le(LARGE) { small(x) } else { beyond(x) }
 }
 
-/// [`sin_cos`] of each: cosines take the place of the angles; `memory` is overwritten.
+/// [`sin_cos`] of each: cosines replace the angles; `memory` is overwritten.
 ///
-/// Step by step, each for all angles: a processor looks some dozens of instructions ahead, and the
-/// steps of one angle wait for each other.
+/// Step by step, each for all angles: the steps of one angle depend on each other, and processors
+/// reorder only some dozens of instructions.
 ///
 /// # Panics
-/// If not all have one length.
+/// If the lengths differ.
 #[inline(always)]
 pub(super) fn sines_cosines<R: Simd>(x: &mut [R], sines: &mut [R], memory: &mut [R]) {
     let n = x.len();
     assert!(sines.len() == n && memory.len() == n, "as many sines as angles");
-    // None is larger than the sum.
+    // The sum bounds each of them.
     let mut sizes = R::splat(0.0);
     for x in &*x {
         sizes = sizes + x.abs();
@@ -289,7 +289,7 @@ mod tests {
         });
     }
 
-    /// What is computed beside an angle changes no bit of its sine, however large it is.
+    /// Other angles in the same register do not change a bit of a sine, however large they are.
     #[cfg(target_arch = "x86_64")]
     #[test]
     fn many_are_as_each() {

@@ -18,10 +18,10 @@ use crate::linalg::{Matrix, Svd, SymmetricEigen};
 use crate::spatial::{Mat3, Rotation, Vec3};
 use crate::tolerance::{ORIGIN_DETERMINED, ZERO_AXIS};
 
-/// A quantity that a verdict hangs on.
+/// A quantity that decides a verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margin {
-    /// What was compared.
+    /// The compared quantity.
     pub quantity: &'static str,
     /// Its value, without unit: lengths are ratios to the characteristic length.
     pub value: f64,

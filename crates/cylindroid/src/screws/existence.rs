@@ -22,21 +22,21 @@ use super::span::{Span, angular};
 use super::system::ScrewSystem;
 use crate::linalg::{Matrix, Svd};
 
-/// Whether a hyperbolic pseudoinverse exists, and how clearly.
+/// Existence of a hyperbolic pseudoinverse, with its margin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Existence {
-    /// True if it does.
+    /// True if it exists.
     pub exists: bool,
     /// Smallest singular value of the Gram matrix of the pitch form, without unit (for an infinite
     /// pitch: smallest sine between the system, or its reciprocal, and the translations).
     pub margin: f64,
     /// At or below this it does not exist.
     pub threshold: f64,
-    /// Why it does not.
+    /// The reason if it does not.
     pub reason: Option<NoInverse>,
 }
 
-/// Why there is no hyperbolic pseudoinverse.
+/// The reason why there is no hyperbolic pseudoinverse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum NoInverse {
@@ -45,7 +45,7 @@ pub enum NoInverse {
         /// The principal pitch [m/rad].
         pitch: f64,
     },
-    /// No pitch will do for systems of this class.
+    /// No pitch exists for systems of this class.
     Class {
         /// The class (of the reciprocal system for orders 4 and 5).
         class: Class,

@@ -21,7 +21,7 @@ use crate::error::{Error, Result};
 use crate::spatial::Twist;
 use crate::tolerance::{MAX_PROJECTION_NORM, NOISE_RANK, SCREW_CLASS, SCREW_RANK};
 
-/// What a projector drops: along which twists it projects.
+/// The complement of a projector: the twists along which it projects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Complement<'a> {
     /// The twists that are h-reciprocal to the motions, in every frame: P_h.

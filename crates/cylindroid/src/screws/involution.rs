@@ -20,10 +20,10 @@ use crate::error::Result;
 use crate::linalg::SymmetricEigen;
 use crate::spatial::{Twist, Wrench};
 
-/// What a set of lines has in common.
+/// Report on the involution of a set of lines.
 #[derive(Debug, Clone)]
 pub struct Involution {
-    /// How many lines.
+    /// Number of lines.
     pub lines: usize,
     /// True if the Gram matrix of the lines in the Klein form is singular.
     pub in_involution: bool,
@@ -33,7 +33,7 @@ pub struct Involution {
     pub null_twists: Vec<Twist>,
     /// The first of them as a screw: a common transversal where its pitch is zero.
     pub null_screw: Option<Screw>,
-    /// The wrench on it, which no joint on the lines feels.
+    /// The wrench on it, which needs no torque at joints on the lines.
     pub wrench: Option<Wrench>,
     /// The lines that meet all lines.
     pub transversals: Transversals,
@@ -90,7 +90,7 @@ pub struct Involution {
 /// ```
 ///
 /// # Errors
-/// Options that are no scale.
+/// Invalid options.
 pub fn involution(lines: &[Line], options: &ScrewOptions) -> Result<Involution> {
     let twists: Vec<_> = lines.iter().map(Line::twist).collect();
     let system = ScrewSystem::of(&twists, options)?;

@@ -28,7 +28,7 @@ use crate::spatial::{Twist, Vec3, Wrench};
 pub struct Projector {
     pub(super) scale: Scale,
     pub(super) span: Span,
-    /// Row i: the coordinate along the i-th basis vector of what is projected.
+    /// Row i: the coordinate of the projection along the i-th basis vector.
     pub(super) coordinates: [[f64; 6]; 6],
 }
 
@@ -45,7 +45,7 @@ impl Projector {
         self.scale.undo(&y)
     }
 
-    /// The rest of the twist: what the projector drops.
+    /// The rest of the twist: the part that the projector discards.
     #[must_use]
     pub fn rest(&self, twist: Twist) -> Twist {
         twist - self.motion(twist)
@@ -123,7 +123,7 @@ pub(crate) fn coordinates(span: &Span, h: f64) -> Option<[[f64; 6]; 6]> {
     if h.is_infinite() && k < 3 {
         return None;
     }
-    // From the complement: what is dropped is Q_h^-1 N times the coordinates below.
+    // From the complement: the discarded part is Q_h^-1 N times the coordinates below.
     let normal = span.complement();
     let n = normal.k();
     let raised = |x: &[f64; 6]| {
@@ -146,7 +146,7 @@ pub(crate) fn coordinates(span: &Span, h: f64) -> Option<[[f64; 6]; 6]> {
     kept[..n].copy_from_slice(normal.vectors());
     solve(&mut small, &mut kept, n)?;
     for (row, b) in rows.iter_mut().zip(span.vectors()) {
-        // b^T (1 - D K) with D the columns of what is dropped.
+        // b^T (1 - D K) with D the columns of the discarded part.
         *row = *b;
         for (d, k) in dropped.iter().zip(&kept).take(n) {
             let along = dot(b, d);

@@ -137,7 +137,7 @@ impl Screw {
     /// ```
     /// use cylindroid::{Screw, Twist, Vec3};
     ///
-    /// // A rotation about the vertical axis through (1, 0, 0), which also advances 0.1 m per radian.
+    /// // A rotation about the vertical axis through (1, 0, 0), advancing 0.1 m per radian.
     /// let twist = Twist { linear: Vec3::new(0.0, -1.0, 0.1), angular: Vec3::Z };
     /// let screw = Screw::of(twist).unwrap();
     /// assert!((screw.pitch - 0.1).abs() < 1e-15);

@@ -13,7 +13,7 @@ use crate::scalar::clamp;
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::NEARLY_PARALLEL;
 
-/// Where and in which unit a screw system is looked at.
+/// Centre and unit of length of a screw system.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     pub(crate) center: Vec3,
@@ -141,7 +141,7 @@ impl Span {
         None
     }
 
-    /// `x <- (1 - B B^T) x`; returns the length of what is left.
+    /// `x <- (1 - B B^T) x`; returns the length of the remainder.
     pub(crate) fn project_out(&self, x: &mut [f64; 6]) -> f64 {
         for b in self.vectors() {
             let along = dot(b, x);

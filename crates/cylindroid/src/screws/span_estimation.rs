@@ -46,7 +46,7 @@ impl ScrewOptions {
         Self { length, ..Self::default() }
     }
 
-    /// Refuses numbers that are no scale.
+    /// Validates the options.
     ///
     /// # Errors
     /// [`Error::InvalidOption`] with the option and its value.
@@ -173,7 +173,7 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
 fn basis(twists: &[Twist], scale: Scale, noise: f64) -> (Span, f64) {
     let (mut span, mut smallest) = (Span::ZERO, 1.0_f64);
     for t in twists {
-        // Noise of a basis vector is that of its column over what it has outside the others.
+        // Noise of a basis vector is that of its column over its part outside the others.
         let threshold = SCREW_CLASS.max(noise / smallest);
         if let Some(rest) = span.push_independent(scale.apply(*t), threshold) {
             smallest = smallest.min(rest);

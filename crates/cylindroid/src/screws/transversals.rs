@@ -47,7 +47,7 @@ pub struct Transversals {
 /// ```
 ///
 /// # Errors
-/// Options that are no scale.
+/// Invalid options.
 pub fn transversals(lines: &[Line], options: &ScrewOptions) -> Result<Transversals> {
     let twists: Vec<_> = lines.iter().map(Line::twist).collect();
     Ok(transversals_of(&ScrewSystem::of(&twists, options)?))

@@ -13,7 +13,7 @@ use super::twist::{Twist, Wrench};
 use super::vec3::{Mat3, Vec3};
 use crate::error::{Error, Result};
 
-/// The pose of frame b seen from frame a: `a_from_b`.
+/// The pose of frame b relative to frame a: `a_from_b`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose {
     /// The axes of b in a.
@@ -43,7 +43,8 @@ impl Pose {
     /// ```
     /// use cylindroid::{Pose, Vec3};
     ///
-    /// let rows = [[1.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.2], [0.0, 0.0, 0.0, 1.0]];
+    /// let mut rows = Pose::IDENTITY.to_matrix();
+    /// (rows[0][3], rows[2][3]) = (0.5, 0.2);
     /// let world_from_tool = Pose::from_matrix(rows)?;
     /// assert_eq!(world_from_tool.translation, Vec3::new(0.5, 0.0, 0.2));
     /// assert_eq!(world_from_tool.to_matrix(), rows);
@@ -93,7 +94,7 @@ impl Pose {
         Self { rotation, translation: -(rotation * self.translation) }
     }
 
-    /// The adjoint: a twist in frame b, seen from frame a.
+    /// The adjoint: expresses a twist of frame b in frame a.
     ///
     /// ```
     /// use cylindroid::{Pose, Twist, Vec3};
@@ -111,7 +112,7 @@ impl Pose {
         Twist { linear: self.rotation * twist.linear + self.translation.cross(angular), angular }
     }
 
-    /// The coadjoint: a wrench in frame b, seen from frame a.
+    /// The coadjoint: expresses a wrench of frame b in frame a.
     ///
     /// ```
     /// use cylindroid::{Pose, Twist, Vec3, Wrench};
@@ -130,13 +131,14 @@ impl Pose {
         Wrench { force, moment: self.rotation * wrench.moment + self.translation.cross(force) }
     }
 
-    /// The error that a controller closes, in the axes of frame a: the translation from this pose
+    /// The pose error of a controller, in the axes of frame a: the translation from this pose
     /// to `target` (m) and the rotation vector from this orientation to the target's (rad).
     ///
     /// ```
     /// use cylindroid::{Pose, Rotation, Vec3};
     ///
-    /// let target = Pose { rotation: Rotation::about_z(0.2), translation: Vec3::new(0.1, 0.0, 0.0) };
+    /// let rotation = Rotation::about_z(0.2);
+    /// let target = Pose { rotation, translation: Vec3::new(0.1, 0.0, 0.0) };
     /// let error = Pose::IDENTITY.error_to(target);
     /// assert_eq!(error.linear, Vec3::new(0.1, 0.0, 0.0));
     /// assert!((error.angular - Vec3::new(0.0, 0.0, 0.2)).norm() < 1e-15);

@@ -9,9 +9,9 @@
 use super::aligned_pose::AlignedPose;
 use crate::scalar::Simd;
 
-/// A vector of three numbers.
+/// A vector of three components.
 pub(crate) trait Vector3Like: Copy {
-    /// What it is multiplied by.
+    /// Its scalars.
     type Scalar: Simd;
     /// The same in all lanes; the fourth number is 0.
     fn load(from: &[f64; 4]) -> Self;
@@ -29,11 +29,11 @@ pub(crate) trait Vector3Like: Copy {
     fn cross(self, b: Self) -> Self;
 }
 
-/// The vector of one configuration.
+/// A vector of a single configuration.
 pub(crate) trait SingleVector3: Vector3Like<Scalar = f64> {
-    /// Proof that the processor has what it needs; `()` where it needs nothing.
+    /// Proof that the processor has the required features; `()` where there are none.
     type Cpu: Copy;
-    /// What several angles are computed with together.
+    /// Lanes for the sines and cosines of several angles.
     type Wide: Simd;
     /// The numbers, the fourth one 0.
     fn store(self, to: &mut [f64; 4]);
@@ -198,7 +198,7 @@ mod avx2 {
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::PackedVec3;
 
-/// A pose `a_from_b` while it is computed with: axes and origin of b in a.
+/// A pose `a_from_b` in a kernel: axes and origin of b in a.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Columns<T> {
     pub(crate) x: T,
@@ -213,7 +213,7 @@ impl<T: Vector3Like> Columns<T> {
         Self { x: T::load(&from.x), y: T::load(&from.y), z: T::load(&from.z), p: T::load(&from.p) }
     }
 
-    /// Turned about its own z axis.
+    /// Rotated about its own z axis.
     #[inline(always)]
     pub(crate) fn rotated_z(self, sin: T::Scalar, cos: T::Scalar) -> Self {
         Self {
@@ -223,7 +223,7 @@ impl<T: Vector3Like> Columns<T> {
         }
     }
 
-    /// Turned about its own x axis.
+    /// Rotated about its own x axis.
     #[inline(always)]
     pub(crate) fn rotated_x(self, sin: T::Scalar, cos: T::Scalar) -> Self {
         Self {
@@ -233,19 +233,19 @@ impl<T: Vector3Like> Columns<T> {
         }
     }
 
-    /// Turned about its own x axis by a right angle.
+    /// Rotated about its own x axis by a right angle.
     #[inline(always)]
     pub(crate) fn rotated_x_90(self) -> Self {
         Self { y: self.z, z: self.y.negative(), ..self }
     }
 
-    /// Moved along its own z axis.
+    /// Translated along its own z axis.
     #[inline(always)]
     pub(crate) fn translated_z(self, length: T::Scalar) -> Self {
         Self { p: self.z.mul_add(length, self.p), ..self }
     }
 
-    /// Moved by a vector in its own axes.
+    /// Translated by a vector in its own axes.
     #[inline(always)]
     pub(crate) fn translated(self, by: &[f64; 4]) -> Self {
         let k = T::Scalar::splat;
@@ -271,8 +271,8 @@ impl<T: Vector3Like> Columns<T> {
         }
     }
 
-    /// A vector in the axes of b, seen in those of a.
-    // No closures here and in other kernels: only functions can be made to be inlined, and what is
+    /// A vector from the axes of b to those of a.
+    // No closures here and in other kernels: only functions can be forced inline, and code that is
     // not inlined is compiled for the baseline.
     #[inline(always)]
     fn rotated(self, v: &[f64; 4]) -> T {
@@ -282,13 +282,13 @@ impl<T: Vector3Like> Columns<T> {
 }
 
 impl<R: Simd> Columns<[R; 3]> {
-    /// A vector in the axes of b.
+    /// A vector from the axes of a to those of b.
     #[inline(always)]
     pub(crate) fn inverse_transform_vector(&self, v: [R; 3]) -> [R; 3] {
         [dot(self.x, v), dot(self.y, v), dot(self.z, v)]
     }
 
-    /// A vector in the axes of b, in those of a.
+    /// A vector from the axes of b to those of a.
     #[inline(always)]
     pub(crate) fn transform_vector(&self, v: [R; 3]) -> [R; 3] {
         let Self { x, y, z, .. } = self;

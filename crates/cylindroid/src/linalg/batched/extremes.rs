@@ -15,16 +15,16 @@
 use super::{add_times, dot, reflector};
 use crate::scalar::SimdFloat;
 
-/// Laguerre's steps at most; seven are usual.
+/// Maximum number of Laguerre steps; seven are usual.
 const MOST_STEPS: usize = 40;
 
-/// Half of what an eigenvalue is found to, relative to a bound of the largest.
+/// Half of the accuracy of an eigenvalue, relative to a bound of the largest.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// By so many of these at most an eigenvalue is passed by rounding.
+/// An eigenvalue is passed by rounding by at most this multiple of it.
 const MOST_BACK: f64 = 20.0;
 
-/// Adding and subtracting it rounds to a whole number.
+/// Adding and subtracting it rounds to an integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// How near to a whole number what seems that many eigenvalues must come.

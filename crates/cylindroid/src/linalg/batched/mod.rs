@@ -23,7 +23,7 @@ use crate::scalar::SimdFloat;
 /// Scalar product of vectors of one length.
 #[inline(always)]
 pub(crate) fn dot<R: SimdFloat>(a: &[R], b: &[R]) -> R {
-    // Two sums, since each product waits for the last one of its sum.
+    // Two sums, since each product depends on the previous one of its sum.
     let mut sums = [R::splat(0.0); 2];
     let (a, a_rest) = a.as_chunks::<2>();
     let (b, b_rest) = b.as_chunks::<2>();
@@ -46,7 +46,7 @@ fn add_times<R: SimdFloat>(y: &mut [R], s: R, x: &[R]) {
 }
 
 /// Turns `x` into the vector v of the reflection `1 - factor v v^T` that takes it to a multiple of
-/// the first axis; gives the multiple and the factor. Nothing is done to a zero.
+/// the first axis; gives the multiple and the factor. A zero stays.
 #[inline(always)]
 fn reflector<R: SimdFloat>(x: &mut [R]) -> (R, R) {
     let zero = R::splat(0.0);
@@ -57,8 +57,8 @@ fn reflector<R: SimdFloat>(x: &mut [R]) -> (R, R) {
     (target, R::select_lt(zero, square, factor, zero))
 }
 
-/// `x <- (1 - factor v v^T) x` of entries `from..` of columns of length n, four at a time: none of
-/// their sums waits for the others, and v is read once.
+/// `x <- (1 - factor v v^T) x` of entries `from..` of columns of length n, four at a time: their
+/// sums are independent, and v is read once.
 #[inline(always)]
 fn reflect<R: SimdFloat>(columns: &mut [R], n: usize, from: usize, v: &[R], factor: R) {
     let m = v.len();
