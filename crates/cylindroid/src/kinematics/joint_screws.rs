@@ -21,7 +21,8 @@ impl State {
     /// ```
     /// let robot = cylindroid::load("ur5e")?;
     /// let state = robot.state(robot.home())?;
-    /// let screws: Vec<_> = (0..robot.joints().len()).flat_map(|i| state.joint_screws(i)).collect();
+    /// let joints = 0..robot.joints().len();
+    /// let screws: Vec<_> = joints.flat_map(|joint| state.joint_screws(joint)).collect();
     /// assert_eq!(screws.len(), 6);
     /// assert!(screws.iter().all(|screw| screw.pitch.abs() < 1e-12));
     /// # Ok::<(), cylindroid::Error>(())
