@@ -66,7 +66,7 @@ impl InverseBatch {
             return Err(Error::InvalidOption {
                 option: "shape",
                 value: format!("{rows} x {cols}"),
-                reason: "a Jacobian in a batch has rows and columns".to_owned(),
+                reason: "a Jacobian must have rows and columns".to_owned(),
             });
         }
         Ok(Self { method, rows, cols })

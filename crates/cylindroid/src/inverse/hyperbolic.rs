@@ -263,7 +263,7 @@ fn damped(
         return Err(Error::InvalidOption {
             option: "h",
             value: h.to_string(),
-            reason: "the damped forms need a finite pitch".to_owned(),
+            reason: "the damped forms require a finite pitch".to_owned(),
         });
     }
     damping.check()?;

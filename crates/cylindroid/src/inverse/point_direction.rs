@@ -61,7 +61,7 @@ pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<Point
         return Err(Error::InvalidOption {
             option: "direction",
             value: format!("{:?}", direction.to_array()),
-            reason: "a direction is finite and not zero".to_owned(),
+            reason: "a direction must be finite and non-zero".to_owned(),
         });
     };
     let mut velocity = Matrix::zeros(3, j.cols());

@@ -28,7 +28,7 @@ impl Metric {
                 return Err(Error::InvalidOption {
                     option: name,
                     value: w.to_string(),
-                    reason: "weights are finite and positive".to_owned(),
+                    reason: "weights must be finite and positive".to_owned(),
                 });
             }
         }
@@ -60,10 +60,10 @@ impl Metric {
         };
         let n = m.rows();
         if n != m.cols() || !m.is_finite() {
-            return Err(refuse("a metric is a square matrix of finite numbers"));
+            return Err(refuse("a metric must be a square matrix of finite numbers"));
         }
         if m.max_difference(&m.transpose()) > 1e-9 * m.max_abs() {
-            return Err(refuse("a metric is symmetric; use (M + M^T) / 2"));
+            return Err(refuse("a metric must be symmetric; use (M + M^T) / 2"));
         }
         let mut l = Matrix::zeros(n, n);
         for j in 0..n {
@@ -73,8 +73,8 @@ impl Metric {
                 if i == j {
                     if !(rest > 0.0) {
                         return Err(refuse(
-                            "a metric is positive definite; add a small multiple \
-                                           of the identity if a direction costs nothing",
+                            "a metric must be positive definite; add a small multiple of the identity \
+                             if a direction has no cost",
                         ));
                     }
                     l[(j, j)] = rest.sqrt();

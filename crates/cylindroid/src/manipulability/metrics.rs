@@ -85,7 +85,7 @@ impl Metrics {
             return Err(Error::InvalidOption {
                 option: "length",
                 value: length.to_string(),
-                reason: "the characteristic length is positive and finite".to_owned(),
+                reason: "the characteristic length must be positive and finite".to_owned(),
             });
         }
         let weights = |units: &[Unit]| -> Vec<f64> {
@@ -143,11 +143,11 @@ impl Metrics {
             culprit: link.clone(),
             message: format!(
                 "link '{link}' {what}; write mass and inertia into the file ([[link]] in mechanism \
-                 files), or measure twists by a metric Wu of your own"
+                 files), or give a metric Wu of twists"
             ),
         };
         let inertia = body_inertia(state, frame).ok_or_else(|| refuse("has no mass"))?;
-        self.with_object(&inertia).map_err(|_| refuse("can turn without inertia"))
+        self.with_object(&inertia).map_err(|_| refuse("has no inertia about an axis"))
     }
 
     /// The same metrics for the task `T u` of [`Relation::task`]: task velocities are measured by
@@ -216,8 +216,8 @@ fn of_limits(name: &'static str, limits: &[f64]) -> Result<Metric> {
             return Err(Error::InvalidOption {
                 option: name,
                 value: limit.to_string(),
-                reason: "limits that measure are positive and finite; give one for each driven \
-                         joint"
+                reason: "limits used as a metric must be positive and finite; give one for each \
+                         actuated joint"
                     .to_owned(),
             });
         }

@@ -100,8 +100,8 @@ impl Body {
             return Err(Error::InvalidOption {
                 option,
                 value: format!("{} to {}", limit.lower, limit.upper),
-                reason: "limits are finite, with zero between them or one of them zero; give a \
-                         pair for each driven joint"
+                reason: "limits must be finite, and zero must lie between them or be one of them; \
+                         give a pair for each actuated joint"
                     .to_owned(),
             });
         }

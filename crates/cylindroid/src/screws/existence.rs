@@ -96,7 +96,7 @@ impl fmt::Display for NoInverse {
         match self {
             Self::PrincipalPitch { pitch } => write!(
                 f,
-                "h is the principal pitch {} m/rad of the screws; take another h",
+                "h is the principal pitch {} m/rad of the screws; choose another h",
                 six_digits(*pitch)
             ),
             Self::Class { class, order } => write!(
@@ -107,34 +107,32 @@ impl fmt::Display for NoInverse {
             ),
             Self::NoLimit { class, order } => write!(
                 f,
-                "for a {} the inverse is not taken for an infinite h, where it or those of its \
-                 neighbours grow without bound; take a finite h",
+                "for a {} the inverse is not defined for an infinite h, where it or that of nearby \
+                 systems grows without bound; choose a finite h",
                 system(class, order)
             ),
             Self::DampingMeetsEigenvalue { eigenvalue } => write!(
                 f,
-                "lambda is the negative of the eigenvalue {} of the Gram matrix; take another, \
-                 or the invariant damping, which always exists",
+                "lambda is the negative of the eigenvalue {} of the Gram matrix; choose \
+                 another lambda, or the invariant damping, which always exists",
                 six_digits(*eigenvalue)
             ),
             Self::NotComplementary { order, other } if order + other != 6 => write!(
                 f,
-                "the motions span {order} dimensions and the twists to give up {other}; \
-                 together they must have six"
+                "the motions span {order} dimensions and the complement {other}; together they \
+                 must span six"
             ),
-            Self::NotComplementary { .. } => write!(
-                f,
-                "some of the twists to give up are among the motions to keep; choose ones that are \
-                 not"
-            ),
+            Self::NotComplementary { .. } => {
+                write!(f, "the complement intersects the motions; choose twists outside their span")
+            }
             Self::TooLarge { norm } => write!(
                 f,
-                "the projector enlarges motions by up to {norm:.3e}, more than allowed; take \
-                 another h, or a posture farther from the one that has no inverse"
+                "the projector enlarges motions by up to {norm:.3e}, more than allowed; \
+                 choose another h, or a configuration farther from the one without an inverse"
             ),
             Self::Close { class, order } => write!(
                 f,
-                "the {} is too near to one without a hyperbolic pseudoinverse; use the invariant \
+                "the {} is too close to one without a hyperbolic pseudoinverse; use the invariant \
                  damped form",
                 system(class, order)
             ),

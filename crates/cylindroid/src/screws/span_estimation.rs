@@ -55,16 +55,18 @@ impl ScrewOptions {
             return Err(Error::InvalidOption {
                 option: "length",
                 value: self.length.to_string(),
-                reason: "the characteristic length is positive and finite: the reach of the arm, \
+                reason:
+                    "the characteristic length must be positive and finite: the reach of the arm, \
                          in the unit of the linear velocities"
-                    .to_owned(),
+                        .to_owned(),
             });
         }
         if !(self.noise >= 0.0 && self.noise < 0.1) {
             return Err(Error::InvalidOption {
                 option: "noise",
                 value: self.noise.to_string(),
-                reason: "noise is relative to the twists, at least 0 and below 0.1".to_owned(),
+                reason: "noise is relative to the twists; it must be at least 0 and below 0.1"
+                    .to_owned(),
             });
         }
         match self.center {

@@ -60,7 +60,8 @@ impl Pose {
             return Err(Error::InvalidOption {
                 option: "pose matrix",
                 value: format!("last row {:?}", m[3]),
-                reason: "the last row of a pose is 0 0 0 1; is the matrix transposed?".to_owned(),
+                reason: "the last row of a pose must be 0 0 0 1; is the matrix transposed?"
+                    .to_owned(),
             });
         }
         let rotation = Mat3::from_rows([0, 1, 2].map(|i: usize| [m[i][0], m[i][1], m[i][2]]));

@@ -361,7 +361,7 @@ fn no_projector_says_why() {
     assert_eq!(reason, NoInverse::NotComplementary { order: 5, other: 1 });
     assert!(reason.to_string().contains("choose"), "{reason}");
     let reason = none(&free, Complement::Twists(&[]));
-    assert!(reason.to_string().contains("together they must have six"), "{reason}");
+    assert!(reason.to_string().contains("must span six"), "{reason}");
     let grazing = [Twist { linear: Vec3::new(1.0, 0.0, 1e-5), angular: Vec3::ZERO }];
     let reason = none(&free, Complement::Twists(&grazing));
     assert!(matches!(reason, NoInverse::TooLarge { norm } if norm > 1e4), "{reason}");
