@@ -42,7 +42,7 @@ pub struct InverseBatch {
 /// Inverses and what was done to get them; see [`Inverse`](super::Inverse) for one with more.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inverses {
-    /// The inverses, N x n x m row-major: rates = matrix * task.
+    /// The inverses, N x n x m row-major: joint velocities = matrix * task.
     pub matrices: Vec<f64>,
     /// The singular values of the Jacobians, N x min(m, n), largest first.
     pub singular_values: Vec<f64>,

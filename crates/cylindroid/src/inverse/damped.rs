@@ -2,7 +2,7 @@
 //!
 //! Formula  J^T (J J^T + l^2 1)^-1, gain_i = s_i / (s_i^2 + l^2)
 //! Shapes   m x n -> n x m          Units  l in the unit of the singular values
-//! Valid    any rank, l > 0; |rates| <= |v| / (2 l)
+//! Valid    any rank, l > 0; |qd| <= |v| / (2 l)
 //! Why so   the simplest inverse without a jump; its price is an error everywhere, which a closed
 //!          loop removes
 //! Source   Nakamura & Hanafusa 1986; Wampler 1986

@@ -37,7 +37,7 @@ pub struct HyperbolicOptions {
     /// Characteristic length, centre and noise, for the rank and the verdict on existence: the
     /// inverse itself does not depend on them.
     pub scale: ScrewOptions,
-    /// Metric of the joint rates, m x m; it matters for dependent columns and for damping.
+    /// Metric of the joint velocities, m x m; it matters for dependent columns and for damping.
     pub joint_metric: Option<Metric>,
     /// Damping.
     pub damping: HyperbolicDamping,
@@ -187,7 +187,8 @@ fn nan(rows: usize, cols: usize) -> Matrix {
     Matrix::from_fn(rows, cols, |_, _| f64::NAN)
 }
 
-/// `C+ X S`: coordinates along the basis of the span, then the smallest rates that give them.
+/// `C+ X S`: coordinates along the basis of the span, then the smallest joint velocities with
+/// these.
 fn from_projector(
     j: &Matrix,
     system: &ScrewSystem,

@@ -17,12 +17,13 @@ use crate::linalg::{Matrix, RowSpace, Svd, dot};
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::{SCREW_CLASS, SCREW_RANK, ZERO_AXIS};
 
-/// The joint rates that move a point along a line.
+/// The joint velocities that move a point along a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointDirection {
-    /// The smallest rates that move the point at 1 m/s along the direction; `None` if none do.
+    /// The smallest joint velocities that move the point at 1 m/s along the direction; `None` if
+    /// none do.
     pub along: Option<Vec<f64>>,
-    /// Rates that keep the point at rest: an orthonormal basis, m x d.
+    /// Joint velocities that keep the point at rest: an orthonormal basis, m x d.
     pub still: Matrix,
 }
 

@@ -6,7 +6,7 @@ use crate::screws::NoInverse;
 /// An inverse with its report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inverse {
-    /// The inverse, n x m: rates = matrix * task.
+    /// The inverse, n x m: joint velocities = matrix * task.
     pub matrix: Matrix,
     /// The singular values of the (weighted) Jacobian, largest first.
     pub singular_values: Vec<f64>,
@@ -17,8 +17,8 @@ pub struct Inverse {
     /// nothing that is not zero was dropped.
     pub gap: f64,
     /// The singular value below which a direction counts as dropped; with numerical filtering that
-    /// of the weakest direction, with selectively damped least squares, which drop by the rates
-    /// that a direction would need, that of the rank at machine precision.
+    /// of the weakest direction, with selectively damped least squares, which truncate by the joint
+    /// velocities that a direction would need, that of the rank at machine precision.
     pub threshold: f64,
     /// The truncated directions, with their filter factors.
     pub dropped: Vec<TruncatedDirection>,

@@ -3,8 +3,8 @@
 //! Formula  f(s) = (s^3 + nu s^2 + 2 s + 2 s_0) / (s^2 + nu s + 2), gain_i = 1 / f(s_i)
 //! Shapes   m x n -> n x m          Units  s_0 in the unit of the singular values, nu [-]
 //! Valid    any rank; f(0) = s_0, f(s) -> s for large s, so gains are at most about 1 / s_0.
-//!          A direction whose singular value is zero up to rounding has no determined rates: its
-//!          gain is zero.
+//!          A direction whose singular value is zero up to rounding has undetermined joint
+//!          velocities: its gain is zero.
 //! Why so   bounded and smooth without a threshold
 //! Source   Colome & Torras 2015, eq. 14
 //! Checked  tests/it/inverse.rs::filtered_*

@@ -11,7 +11,7 @@
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Metric};
 
-/// Metrics of joint rates and of task motions; `None` is the identity.
+/// Metrics of joint velocities and of task motions; `None` is the identity.
 #[doc(alias = "weighted pseudoinverse")]
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Weights {

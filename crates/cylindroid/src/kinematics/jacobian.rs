@@ -142,22 +142,22 @@ impl Tip<'_> {
         }
     }
 
-    /// The twist of the tip for these rates, in world axes at the world's origin.
-    pub(crate) fn world_twist(&self, rates: &[f64]) -> Twist {
+    /// The twist of the tip at these joint velocities, in world axes at the world's origin.
+    pub(crate) fn world_twist(&self, velocities: &[f64]) -> Twist {
         let mut twist = Twist::ZERO;
-        self.for_each_column(Vec3::ZERO, |_, c, t| twist = twist + t * rates[c]);
+        self.for_each_column(Vec3::ZERO, |_, c, t| twist = twist + t * velocities[c]);
         twist
     }
 
-    /// The derivative of the Jacobian in time while the coordinates move with `rates`.
+    /// The derivative of the Jacobian in time at the joint velocities `velocities`.
     pub(crate) fn jacobian_dot_into(
         &self,
-        rates: &[f64],
+        velocities: &[f64],
         reference: ReferenceFrame,
         out: &mut Matrix,
     ) {
         out.as_mut_slice().fill(0.0);
-        let tip_twist = self.world_twist(rates);
+        let tip_twist = self.world_twist(velocities);
         let frame = Moving { tip: self.world_from_tip, twist: tip_twist };
         // The twist of the body that carries the current column: that of the tip without the joints
         // nearer the tip.
@@ -168,7 +168,7 @@ impl Tip<'_> {
                 carrier = carrier - at.1;
                 at = (depth, Twist::ZERO);
             }
-            at.1 = at.1 + column * rates[c];
+            at.1 = at.1 + column * velocities[c];
             let rate = carrier.bracket(column);
             add(out.column_mut(c), frame.seen(reference, column, rate));
         });

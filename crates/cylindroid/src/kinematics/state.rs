@@ -108,7 +108,7 @@ impl State {
         self.tip(of.into()).world_from_tip
     }
 
-    /// The Jacobian, 6 x n: twist of the tool = J * rates.
+    /// The Jacobian, 6 x n: twist of the tool = J * joint velocities.
     ///
     /// ```
     /// use cylindroid::ReferenceFrame;
@@ -175,7 +175,7 @@ impl State {
         tip.for_each_column_above(slot(joint.parent), Vec3::ZERO, |_, c, twist| f(c, twist));
     }
 
-    /// The derivative of the Jacobian in time while the coordinates move with `rates`, 6 x n.
+    /// The derivative of the Jacobian in time at the joint velocities `velocities`, 6 x n.
     ///
     /// ```
     /// use cylindroid::ReferenceFrame;
@@ -191,13 +191,13 @@ impl State {
     /// Joint velocities of the wrong size or non-finite.
     pub fn jacobian_dot(
         &self,
-        rates: &[f64],
+        velocities: &[f64],
         of: impl Into<EndEffector>,
         reference: ReferenceFrame,
     ) -> Result<Matrix> {
-        self.mechanism.check_q("rates", rates)?;
+        self.mechanism.check_q("velocities", velocities)?;
         let mut out = Matrix::zeros(6, self.mechanism.n());
-        self.tip(of.into()).jacobian_dot_into(rates, reference, &mut out);
+        self.tip(of.into()).jacobian_dot_into(velocities, reference, &mut out);
         Ok(out)
     }
 
@@ -240,19 +240,19 @@ impl State {
         analytical(self.pose(of), &self.jacobian(of, ReferenceFrame::LocalWorldAligned), rates)
     }
 
-    /// The twist of the tool while the coordinates move with `rates`.
+    /// The twist of the tool at the joint velocities `velocities`.
     ///
     /// # Errors
     /// Joint velocities of the wrong size or non-finite.
     pub fn twist(
         &self,
-        rates: &[f64],
+        velocities: &[f64],
         of: impl Into<EndEffector>,
         reference: ReferenceFrame,
     ) -> Result<Twist> {
-        self.mechanism.check_q("rates", rates)?;
+        self.mechanism.check_q("velocities", velocities)?;
         let tip = self.tip(of.into());
-        let world = tip.world_twist(rates);
+        let world = tip.world_twist(velocities);
         let pose = tip.world_from_tip;
         Ok(match reference {
             ReferenceFrame::World => world,

@@ -36,8 +36,8 @@ pub struct BatchOptions {
     pub reference: Option<FrameId>,
     /// Characteristic length (m): the reach by default.
     pub length: Option<f64>,
-    /// Metrics of twists and joint rates. Those of wrenches and torques are not used: the indices
-    /// are those of motion.
+    /// Metrics of twists and joint velocities. Those of wrenches and torques are not used: the
+    /// indices are those of motion.
     pub metrics: Metrics,
     /// What regular configurations have, which tells singular ones: looked for from the home
     /// configuration by default ([`GenericMobility::of`]).

@@ -54,7 +54,7 @@ impl Pair {
 pub struct Direction {
     /// Sizes of the parts.
     pub pair: Pair,
-    /// Rates (torques) of the actuated joints.
+    /// Velocities (torques) of the actuated joints.
     pub joint: Vec<f64>,
     /// The twist (wrench) that goes with them.
     pub object: Vec<f64>,
@@ -185,7 +185,7 @@ impl Principal {
 /// `docs/theory/closed-chains.md` of the book.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Manipulability {
-    /// Motions of the object for rates of the actuated joints.
+    /// Motions of the object for velocities of the actuated joints.
     pub kinematic: Spectrum,
     /// Wrenches on the object for torques of the actuated joints: zeros are internal torques,
     /// infinite ones wrenches that the structure holds.

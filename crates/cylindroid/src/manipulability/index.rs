@@ -15,7 +15,8 @@ use super::efficiency::{Manipulability, Spectrum};
 pub enum Index {
     /// Motion, both sides at their best (eq. 9): finite efficiencies only.
     Kinematic,
-    /// Joint rates given, the object moves as little as it may: a zero for each redundant motion.
+    /// Joint velocities given, the object moves as little as it may: a zero for each redundant
+    /// motion.
     ActiveKinematic,
     /// Twist given, the joints as slow as they may: an infinite one for each motion that the
     /// drives do not control.

@@ -20,8 +20,8 @@ use crate::kinematics::State;
 use crate::linalg::{Matrix, Metric};
 use crate::model::FrameId;
 
-/// Metrics of twists, joint rates, wrenches and joint torques. `None` is the identity for twists
-/// and rates, and the dual for wrenches and torques.
+/// Metrics of twists, joint velocities, wrenches and joint torques. `None` is the identity for
+/// twists and velocities, and the dual for wrenches and torques.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Metrics {
     /// W_u, of the object's twist or of the task.
