@@ -8,7 +8,7 @@
 //! Source   Haviland & Corke 2020 (arXiv 2010.08686), in screw form
 //! Checked  tests/it/kinematics.rs::hessian_* (the sum of `hessian[k] * rates[k]` is dJ/dt)
 
-use super::jacobian::{Moving, ReferenceFrame, Tip, add};
+use super::jacobian::{MovingFrame, ReferenceFrame, Tip, add};
 use crate::linalg::Matrix;
 use crate::spatial::{Twist, Vec3};
 
@@ -17,10 +17,10 @@ impl Tip<'_> {
     pub(crate) fn hessian_into(&self, reference: ReferenceFrame, out: &mut [Matrix]) {
         out.iter_mut().for_each(|m| m.as_mut_slice().fill(0.0));
         self.for_each_column(Vec3::ZERO, |depth_k, k, moving| {
-            let frame = Moving { tip: self.world_from_tip, twist: moving };
+            let frame = MovingFrame { tip: self.world_from_tip, twist: moving };
             self.for_each_column(Vec3::ZERO, |depth_i, i, column| {
                 let rate = if depth_k >= depth_i { moving.bracket(column) } else { Twist::ZERO };
-                add(out[k].column_mut(i), frame.seen(reference, column, rate));
+                add(out[k].column_mut(i), frame.rate_in(reference, column, rate));
             });
         });
     }

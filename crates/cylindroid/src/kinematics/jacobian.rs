@@ -158,7 +158,7 @@ impl Tip<'_> {
     ) {
         out.as_mut_slice().fill(0.0);
         let tip_twist = self.world_twist(velocities);
-        let frame = Moving { tip: self.world_from_tip, twist: tip_twist };
+        let frame = MovingFrame { tip: self.world_from_tip, twist: tip_twist };
         // The twist of the body that carries the current column: that of the tip without the joints
         // nearer the tip.
         let mut carrier = tip_twist;
@@ -170,23 +170,23 @@ impl Tip<'_> {
             }
             at.1 = at.1 + column * velocities[c];
             let rate = carrier.bracket(column);
-            add(out.column_mut(c), frame.seen(reference, column, rate));
+            add(out.column_mut(c), frame.rate_in(reference, column, rate));
         });
     }
 }
 
 /// A moving frame: converts the reference frame of a column and of its rate together.
-pub(crate) struct Moving {
+pub(crate) struct MovingFrame {
     pub(crate) tip: Pose,
     /// World axes, world origin.
     pub(crate) twist: Twist,
 }
 
-impl Moving {
-    /// The rate of `column` seen in `reference`; `column` and its rate in world axes at the
+impl MovingFrame {
+    /// The rate of `column` in `reference`; `column` and its rate in world axes at the
     /// world's origin.
     #[inline]
-    pub(crate) fn seen(&self, reference: ReferenceFrame, column: Twist, rate: Twist) -> Twist {
+    pub(crate) fn rate_in(&self, reference: ReferenceFrame, column: Twist, rate: Twist) -> Twist {
         let p = self.tip.translation;
         match reference {
             ReferenceFrame::World => rate,

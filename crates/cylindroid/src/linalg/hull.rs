@@ -271,8 +271,8 @@ impl Expansion {
             let mut rim: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
             let flat = self.flat;
             self.facets.retain(|facet| {
-                let seen = dot(&facet.normal, &x) - facet.offset > flat;
-                if seen {
+                let visible = dot(&facet.normal, &x) - facet.offset > flat;
+                if visible {
                     for left_out in 0..facet.vertices.len() {
                         let mut ridge = facet.vertices.clone();
                         ridge.remove(left_out);
@@ -280,7 +280,7 @@ impl Expansion {
                         *rim.entry(ridge).or_default() += 1;
                     }
                 }
-                !seen
+                !visible
             });
             self.vertices.push(x);
             for (mut ridge, times) in rim {

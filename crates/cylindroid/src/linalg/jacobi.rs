@@ -45,7 +45,7 @@ const ONE_TERM: f64 = 1e-8;
 const LAST: f64 = 4e-6;
 
 /// Maximum number of steps with all angles together; then rotations one by one continue.
-const MOST_TOGETHER: usize = 8;
+const MAX_TOGETHER: usize = 8;
 
 /// How B W starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -166,7 +166,7 @@ impl Rotations {
                 if norm == 0.0 {
                     break;
                 }
-                one_by_one = norm > TOGETHER || together == MOST_TOGETHER;
+                one_by_one = norm > TOGETHER || together == MAX_TOGETHER;
                 if !one_by_one {
                     together += 1;
                     self.turn::<R>(norm, size);
@@ -182,7 +182,7 @@ impl Rotations {
             if largest == 0.0 {
                 break;
             }
-            one_by_one = largest > TOGETHER || together == MOST_TOGETHER;
+            one_by_one = largest > TOGETHER || together == MAX_TOGETHER;
         }
         self.measure::<R>(size);
         self.normalise::<R>(size);

@@ -21,14 +21,14 @@ use super::matrix::Matrix;
 use super::vector::dot_unrolled as dot;
 use crate::scalar::clamp;
 
-/// QR steps for each value before giving up; two or three are usual.
+/// Maximum number of QR steps for each value; two or three are usual.
 const STEPS: usize = 12;
 
-/// So many values come sooner all than the two at the ends alone.
-const FEW: usize = 3;
+/// Up to this many values, all of them are faster than the two extreme ones alone.
+const SMALL: usize = 3;
 
-/// Laguerre's steps before giving up; six are usual.
-const MOST_STEPS: usize = 40;
+/// Maximum number of Laguerre steps; six are usual.
+const MAX_STEPS: usize = 40;
 
 /// The singular values of `a`, largest first.
 pub(super) fn singular_values(a: Matrix) -> Option<Vec<f64>> {
@@ -42,7 +42,7 @@ pub(super) fn singular_values(a: Matrix) -> Option<Vec<f64>> {
 /// The largest and the smallest singular value of `a`, without those between; `None` where the
 /// steps do not settle.
 pub(super) fn extreme_singular_values(a: Matrix) -> Option<[f64; 2]> {
-    if a.cols() <= FEW {
+    if a.cols() <= SMALL {
         let values = singular_values(a)?;
         return Some([*values.first()?, *values.last()?]);
     }
@@ -74,7 +74,7 @@ fn extreme(d: &[f64], e: &[f64], start: f64) -> Option<f64> {
     let mut passed = None;
     // How near to a whole number what seems that many values must come.
     let mut near_whole = 0.05;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let Some((g, h)) = logarithmic_derivatives(d, e, t, side) else {
             if t == start {
                 return t.is_finite().then_some(t);

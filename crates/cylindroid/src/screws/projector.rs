@@ -266,7 +266,7 @@ impl ScrewSystem {
     /// Source: Donelan & Selig, eq. 26.
     #[must_use]
     pub fn projector_along(&self, complement: &Self) -> Option<Projector> {
-        let theirs = self.seen(complement);
+        let theirs = self.rescaled(complement);
         let coordinates =
             oblique_coordinates(&self.span, &theirs, self.joint_tolerance(complement))?;
         Some(Projector { scale: self.scale, span: self.span, coordinates })

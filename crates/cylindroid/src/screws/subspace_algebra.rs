@@ -70,7 +70,8 @@ impl ScrewSystem {
     /// All twists that are sums of one of each.
     #[must_use]
     pub fn sum(&self, other: &Self) -> Self {
-        let both = self.span.vectors().iter().copied().chain(self.seen(other).vectors().to_vec());
+        let both =
+            self.span.vectors().iter().copied().chain(self.rescaled(other).vectors().to_vec());
         let columns: Vec<[f64; 6]> = both.collect();
         let svd = Svd::of(&Matrix::from_fn(6, columns.len(), |i, j| columns[j][i]));
         let threshold = self.joint_tolerance(other);
@@ -94,7 +95,7 @@ impl ScrewSystem {
     /// ```
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
-        let theirs = self.seen(other);
+        let theirs = self.rescaled(other);
         let k = self.span.k();
         if k == 0 || theirs.k() == 0 {
             return self.derived(Span::ZERO);
@@ -123,11 +124,11 @@ impl ScrewSystem {
     /// one lies in the other.
     #[must_use]
     pub fn sine_to_system(&self, other: &Self) -> f64 {
-        self.span.sine_to(&self.seen(other)).min(1.0)
+        self.span.sine_to(&self.rescaled(other)).min(1.0)
     }
 
     /// The other's span in the scale of this one.
-    pub(super) fn seen(&self, other: &Self) -> Span {
+    pub(super) fn rescaled(&self, other: &Self) -> Span {
         if other.scale == self.scale {
             return other.span;
         }

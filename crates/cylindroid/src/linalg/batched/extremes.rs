@@ -16,13 +16,13 @@ use super::{add_times, dot, reflector};
 use crate::scalar::SimdFloat;
 
 /// Maximum number of Laguerre steps; seven are usual.
-const MOST_STEPS: usize = 40;
+const MAX_STEPS: usize = 40;
 
 /// Half of the accuracy of an eigenvalue, relative to a bound of the largest.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
 /// An eigenvalue is passed by rounding by at most this multiple of it.
-const MOST_BACK: f64 = 20.0;
+const MAX_BACKTRACK: f64 = 20.0;
 
 /// Adding and subtracting it rounds to an integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
@@ -145,7 +145,7 @@ pub(crate) fn extreme_eigenvalues<R: SimdFloat, const E: usize>(
     // How near to a whole number what seems that many values must come; 1 where rounding alone was
     // passed, 1 where all is done.
     let (mut near, mut passed, mut done) = ([k(NEAR_WHOLE); E], [zero; E], [zero; E]);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let slopes = logarithmic_derivatives(diagonal, squares, &t, &ends);
         let mut all = one;
         for e in 0..E {
@@ -158,7 +158,7 @@ pub(crate) fn extreme_eigenvalues<R: SimdFloat, const E: usize>(
             let step = n / (g + inner.max(zero).sqrt().copysign(g));
             let beyond = R::select_lt(zero, least, zero, one);
             // By rounding, or by taking several values for one?
-            let rounding = R::select_lt(back[e].abs(), noise * k(MOST_BACK), beyond, zero);
+            let rounding = R::select_lt(back[e].abs(), noise * k(MAX_BACKTRACK), beyond, zero);
             let again = R::select_lt(rounding, beyond, one, zero);
             let settled = R::select_lt(step.abs(), noise, one, passed[e]);
             let ends_here = R::select_lt(half, beyond, zero, settled);
