@@ -13,7 +13,7 @@ use super::report::rank;
 use crate::error::{Error, Result, all_finite};
 use crate::linalg::{Matrix, Rank, Svd, run_all};
 
-/// One way to invert Jacobians of one shape, many in one call.
+/// Inverts many Jacobians of one shape in one call.
 ///
 /// Calls with more than [`InverseBatch::CHUNK`] of them use the threads of rayon
 /// (`RAYON_NUM_THREADS`, or
@@ -39,7 +39,8 @@ pub struct InverseBatch {
     cols: usize,
 }
 
-/// Inverses and what was done to get them; see [`Inverse`](super::Inverse) for one with more.
+/// Inverses with their singular values and ranks; see [`Inverse`](super::Inverse) for a full
+/// report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inverses {
     /// The inverses, N x n x m row-major: joint velocities = matrix * task.
@@ -52,14 +53,14 @@ pub struct Inverses {
 }
 
 impl InverseBatch {
-    /// Jacobians that one thread takes at once, some tenths of a millisecond of work: calls with no
-    /// more stay on the thread of the caller.
+    /// Jacobians in one task of the thread pool, some tenths of a millisecond of work: smaller
+    /// calls run on the thread of the caller.
     pub const CHUNK: usize = 256;
 
-    /// For Jacobians of `rows` x `cols`.
+    /// A batch of Jacobians of `rows` x `cols`.
     ///
     /// # Errors
-    /// Numbers outside the method's domain; Jacobians without entries.
+    /// Parameters outside their domains; Jacobians without entries.
     pub fn new(method: Method, rows: usize, cols: usize) -> Result<Self> {
         method.check()?;
         if rows == 0 || cols == 0 {
@@ -75,7 +76,7 @@ impl InverseBatch {
     /// The inverse of each Jacobian.
     ///
     /// # Errors
-    /// Numbers that are not a whole number of Jacobians; a non-finite entry.
+    /// A slice that is not a whole number of Jacobians; a non-finite entry.
     pub fn inverses(&self, jacobians: &[f64]) -> Result<Inverses> {
         let (each, values) = (self.rows * self.cols, self.rows.min(self.cols));
         let count = jacobians.len() / each;

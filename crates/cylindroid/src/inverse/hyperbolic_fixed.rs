@@ -17,7 +17,7 @@ use crate::linalg::Matrix;
 use crate::screws::{NoInverse, ScrewOptions, independent_coordinates};
 
 /// Writes the hyperbolic pseudoinverse of pitch `h` of the 6 x m Jacobian `j` into `out` (m x 6),
-/// and says why there is none, if there is none (the entries are then NaN).
+/// and returns the reason if there is none (the entries are then NaN).
 ///
 /// # Errors
 /// As [`hyperbolic_with`]; an `out` of the wrong size.

@@ -21,7 +21,7 @@ use crate::tolerance::{SCREW_CLASS, SCREW_RANK, ZERO_AXIS};
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointDirection {
     /// The smallest joint velocities that move the point at 1 m/s along the direction; `None` if
-    /// none do.
+    /// there are none.
     pub along: Option<Vec<f64>>,
     /// Joint velocities that keep the point at rest: an orthonormal basis, m x d.
     pub still: Matrix,

@@ -12,9 +12,9 @@ pub struct Inverse {
     pub singular_values: Vec<f64>,
     /// Number of directions of which at least one half is realised.
     pub rank: usize,
-    /// Smallest singular value of these over the largest that was dropped: near 1 the rank is a
-    /// matter of taste, below 1 where the method dropped a larger one than it kept, infinite when
-    /// nothing that is not zero was dropped.
+    /// Smallest singular value of these over the largest that was dropped: near 1 the rank is
+    /// numerically ambiguous, below 1 where the method dropped a larger one than it kept, infinite
+    /// when no non-zero value was dropped.
     pub gap: f64,
     /// The singular value below which a direction counts as dropped; with numerical filtering that
     /// of the weakest direction, with selectively damped least squares, which truncate by the joint

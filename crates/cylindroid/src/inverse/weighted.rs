@@ -15,7 +15,7 @@ use crate::linalg::{Matrix, Metric};
 #[doc(alias = "weighted pseudoinverse")]
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Weights {
-    /// n x n: a large weight keeps a joint still.
+    /// n x n: a large weight keeps a joint at rest.
     pub joint: Option<Metric>,
     /// m x m: a large weight keeps a task direction exact.
     pub task: Option<Metric>,

@@ -19,12 +19,12 @@ use super::qr::{Qr, solve_upper};
 use super::vector::{dot, norm};
 use crate::tolerance::LINEAR_PROGRAM;
 
-/// What a row may be: from `lower` to `upper`, zero among it.
+/// Bounds of a row: from `lower` to `upper`, which contain zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// At least this, not positive.
+    /// Lower bound, at most zero.
     pub lower: f64,
-    /// At most this, not negative.
+    /// Upper bound, at least zero.
     pub upper: f64,
 }
 
@@ -35,7 +35,7 @@ impl Interval {
         Self { lower: -most, upper: most }
     }
 
-    /// True for finite bounds with zero between them, or at one of them, and room to move.
+    /// True for finite bounds with zero between them, or at one of them, and a positive length.
     #[must_use]
     pub fn is_around_zero(&self) -> bool {
         let finite = self.lower.is_finite() && self.upper.is_finite();
@@ -48,7 +48,7 @@ impl Interval {
     }
 }
 
-/// `lower <= A z <= upper`.
+/// A linear program with the constraints `lower <= A z <= upper`.
 #[doc(alias = "LP")]
 #[doc(alias = "linear programming")]
 #[derive(Debug, Clone)]
@@ -61,20 +61,20 @@ pub struct BoundedLinearProgram {
     inverse: Option<Matrix>,
 }
 
-/// What a corner is wanted for.
+/// The objective of a linear program, with a second one for ties.
 #[derive(Debug, Clone, Copy)]
 pub struct Objective<'a> {
     /// c.
     pub first: &'a [f64],
-    /// Decides among corners that are equally far along `first`.
+    /// Second objective, for vertices with equal `first`.
     pub second: &'a [f64],
 }
 
 impl BoundedLinearProgram {
-    /// Of A (n x m, rank m) and bounds around zero.
+    /// The program of A (n x m, rank m) with bounds that contain zero.
     ///
     /// # Panics
-    /// If there is not a bound for each row.
+    /// If the number of bounds is not that of the rows.
     #[must_use]
     pub fn new(a: &Matrix, bounds: &[Interval]) -> Self {
         assert_eq!(a.rows(), bounds.len(), "a bound for each row");
@@ -86,7 +86,7 @@ impl BoundedLinearProgram {
         Self { normals, bounds: bounds.iter().map(scaled).collect(), inverse }
     }
 
-    /// A corner of largest `first . z`, and among these of largest `second . z`.
+    /// A vertex of largest `first . z`, and among these of largest `second . z`.
     ///
     /// ```
     /// use cylindroid::Matrix;

@@ -20,10 +20,10 @@ use crate::tolerance::{AMBIGUOUS, MACHINE_RANK};
 /// Threshold below which singular values count as zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Threshold {
-    /// At most this times the largest: for a matrix of any size.
+    /// Relative to the largest singular value.
     Relative(f64),
-    /// At most this: for blocks of a matrix with orthonormal columns, where a largest value may
-    /// itself be rounding.
+    /// Absolute: for blocks of a matrix with orthonormal columns, whose largest value may itself be
+    /// rounding.
     Absolute(f64),
 }
 
@@ -32,14 +32,14 @@ pub enum Threshold {
 pub struct Cut {
     /// The rank, its threshold, its gap.
     pub rank: Rank,
-    /// Smallest value that counts (infinite when none does).
+    /// Smallest kept singular value (infinite when none is kept).
     pub kept: f64,
-    /// Largest value that does not (zero when all do).
+    /// Largest dropped singular value (zero when none is dropped).
     pub dropped: f64,
 }
 
 impl Cut {
-    /// Of values in falling order at an absolute threshold.
+    /// The cut of descending values at an absolute threshold.
     #[must_use]
     pub fn of(values: &[f64], threshold: f64) -> Self {
         let rank = values.iter().take_while(|&&s| s > threshold).count();
@@ -60,7 +60,7 @@ impl Cut {
     }
 }
 
-/// The space of the columns of a matrix.
+/// The column space (range) of a matrix.
 #[derive(Debug, Clone)]
 pub struct ColumnSpace {
     rows: usize,
@@ -72,7 +72,7 @@ pub struct ColumnSpace {
 }
 
 impl ColumnSpace {
-    /// Of the columns of `a`, singular values at or below the threshold counting as zero.
+    /// The column space of `a`; singular values at or below the threshold count as zero.
     ///
     /// ```
     /// use cylindroid::Matrix;
@@ -159,7 +159,7 @@ impl ColumnSpace {
         self.cut
     }
 
-    /// All singular values, largest first; those that are rounding may be given as one.
+    /// All singular values, largest first; those at rounding level may be merged into one.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values

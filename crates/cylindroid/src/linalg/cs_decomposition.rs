@@ -20,23 +20,23 @@ use super::qr::Qr;
 use super::svd::Svd;
 use super::vector::norm;
 
-/// Which of the two blocks a direction lives in.
+/// The block that contains a direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PairKind {
-    /// s is zero: the direction lives in the first block.
+    /// s is zero: the direction lies in the first block.
     Zero,
     /// Neither is zero.
     Finite,
-    /// c is zero: the direction lives in the second block.
+    /// c is zero: the direction lies in the second block.
     Infinite,
 }
 
 /// A CS decomposition.
 #[derive(Debug, Clone)]
 pub struct CsDecomposition {
-    /// Share of each direction in the first block, rising.
+    /// Share of each direction in the first block, ascending.
     pub cosines: Vec<f64>,
-    /// Share of each direction in the second block, falling.
+    /// Share of each direction in the second block, descending.
     pub sines: Vec<f64>,
     /// Directions in the first block, a column each.
     pub x: Matrix,
@@ -47,7 +47,7 @@ pub struct CsDecomposition {
 }
 
 impl CsDecomposition {
-    /// Of a matrix with orthonormal columns, split after `split` rows.
+    /// The decomposition of a matrix with orthonormal columns, split after `split` rows.
     ///
     /// ```
     /// use cylindroid::Matrix;

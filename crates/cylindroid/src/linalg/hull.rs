@@ -47,7 +47,7 @@ pub struct HullOptions {
 /// A simplex of the boundary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facet {
-    /// Its corners, as numbers of vertices.
+    /// Its vertices, by index.
     pub vertices: Vec<usize>,
     /// Unit outward normal, within the span of the body.
     pub normal: Vec<f64>,
@@ -58,12 +58,12 @@ pub struct Facet {
     pub gap: f64,
 }
 
-/// A hull.
+/// A convex hull.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hull {
-    /// Points of the body; all are corners of the polytope unless the body is curved.
+    /// Points of the body; all are vertices of the polytope unless the body is curved.
     pub vertices: Vec<Vec<f64>>,
-    /// The boundary in simplices; facets of the body with more corners come in several.
+    /// The boundary in simplices; facets of the body with more vertices are split.
     pub facets: Vec<Facet>,
     /// Directions in which the body extends, orthonormal, a column each: all d for a solid one.
     pub span: Matrix,
@@ -72,8 +72,8 @@ pub struct Hull {
 }
 
 impl Hull {
-    /// Of a body in `dimension` coordinates, of which `support(n)` gives a point of largest
-    /// `n . x`. The directions asked have length one.
+    /// The hull of a body in `dimension` coordinates, whose support function `support(n)` returns a
+    /// point of largest `n . x`. The queried directions have length one.
     ///
     /// ```
     /// use cylindroid::linalg::{Hull, HullGoal, HullOptions};

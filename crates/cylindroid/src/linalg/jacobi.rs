@@ -52,7 +52,7 @@ const MAX_TOGETHER: usize = 8;
 pub(super) enum Start {
     /// W is the identity.
     Cold,
-    /// From the last W, turned on as it was turned last.
+    /// From the last W, extrapolated by its last increment.
     Warm,
     /// The same, made orthogonal to rounding first.
     Repaired,

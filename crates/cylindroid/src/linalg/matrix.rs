@@ -40,7 +40,7 @@ impl Matrix {
         m
     }
 
-    /// The matrix with these rows; `None` when they are of different lengths.
+    /// The matrix with these rows; `None` when their lengths differ.
     ///
     /// ```
     /// use cylindroid::Matrix;
@@ -81,7 +81,7 @@ impl Matrix {
         &self.data[j * self.rows..(j + 1) * self.rows]
     }
 
-    /// Column `j`, to be written.
+    /// Column `j`, mutable.
     pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
         &mut self.data[j * self.rows..(j + 1) * self.rows]
     }
@@ -92,7 +92,7 @@ impl Matrix {
         &self.data
     }
 
-    /// All entries, column by column, to be written.
+    /// All entries, column by column, mutable.
     pub fn as_mut_slice(&mut self) -> &mut [f64] {
         &mut self.data
     }
@@ -138,7 +138,7 @@ impl Matrix {
     /// ```
     ///
     /// # Panics
-    /// If the blocks have not `rows` rows each.
+    /// If a block has another number of rows.
     #[must_use]
     pub fn hstack(rows: usize, blocks: &[&Self]) -> Self {
         let mut data = Vec::with_capacity(rows * blocks.iter().map(|b| b.cols).sum::<usize>());
@@ -152,7 +152,7 @@ impl Matrix {
     /// The rows of all blocks one below the other.
     ///
     /// # Panics
-    /// If the blocks have not `cols` columns each.
+    /// If a block has another number of columns.
     #[doc(alias = "concatenate")]
     #[must_use]
     pub fn vstack(cols: usize, blocks: &[&Self]) -> Self {

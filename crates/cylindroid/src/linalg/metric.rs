@@ -10,7 +10,7 @@ use super::matrix::Matrix;
 use super::qr::Qr;
 use crate::error::{Error, Result};
 
-/// A positive definite quadratic form, held by its lower Cholesky factor L.
+/// A positive definite quadratic form, stored as its lower Cholesky factor L.
 #[doc(alias = "Cholesky")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metric {
@@ -21,7 +21,7 @@ impl Metric {
     /// The metric of the positive weights `w`: `sum w_i x_i^2`.
     ///
     /// # Errors
-    /// A weight that is not finite and positive.
+    /// A weight that is non-positive or non-finite.
     pub fn diagonal(name: &'static str, weights: &[f64]) -> Result<Self> {
         for &w in weights {
             if !(w.is_finite() && w > 0.0) {
@@ -106,7 +106,7 @@ impl Metric {
     /// `B^T M B`: the metric of coordinates y of a subspace, `x = B y`.
     ///
     /// # Errors
-    /// A basis that has not n rows, is not finite, or whose columns are dependent.
+    /// A basis without n rows, with non-finite entries, or with dependent columns.
     pub fn restricted(&self, name: &'static str, basis: &Matrix) -> Result<Self> {
         Error::check_len(name, self.len(), basis.rows())?;
         let refuse = |reason: &str| Error::InvalidOption {
@@ -133,7 +133,7 @@ impl Metric {
     /// image.
     ///
     /// # Errors
-    /// A map that has not n columns, is not finite, or whose rows are dependent.
+    /// A map without n columns, with non-finite entries, or with dependent rows.
     pub fn of_images(&self, name: &'static str, map: &Matrix) -> Result<Self> {
         Ok(self.dual().restricted(name, &map.transpose())?.dual())
     }

@@ -15,7 +15,7 @@
 use super::matrix::Matrix;
 use super::vector::dot_unrolled as dot;
 
-/// A decomposition, the reflections below the diagonal of R.
+/// A QR decomposition; the reflections are stored below the diagonal of R.
 #[derive(Debug, Clone)]
 pub struct Qr {
     packed: Matrix,
@@ -91,7 +91,7 @@ impl Qr {
         Self { packed: a, factors, order }
     }
 
-    /// R with its columns in the order taken: k x n.
+    /// R with its columns in pivoted order: k x n.
     #[must_use]
     pub fn r(&self) -> Matrix {
         let k = self.factors.len();
@@ -163,7 +163,7 @@ impl Qr {
         if self.factors.is_empty() { 0.0 } else { self.packed[(0, 0)].abs() }
     }
 
-    /// `order()[j]` is the column of A that was taken as the `j`-th.
+    /// `order()[j]` is the column of A in place `j` after pivoting.
     #[must_use]
     pub fn order(&self) -> &[usize] {
         &self.order

@@ -48,8 +48,8 @@ impl<'a> RowSpace<'a> {
         Self { svd, kept: Kept::First(rank.min(svd.len())) }
     }
 
-    /// The span of the directions that an inverse retained: a flag for each, those without one are
-    /// not retained. They need not be the first ones.
+    /// The span of the directions that an inverse retained: a flag for each; directions without a
+    /// flag are not retained. They need not be the first ones.
     #[must_use]
     pub fn from_kept(svd: &'a Svd, kept: &'a [bool]) -> Self {
         Self { svd, kept: Kept::Flags(&kept[..kept.len().min(svd.len())]) }

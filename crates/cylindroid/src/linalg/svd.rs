@@ -47,14 +47,14 @@ pub struct Rank {
     pub rank: usize,
     /// The absolute threshold used, in the unit of the singular values.
     pub threshold: f64,
-    /// Smallest singular value kept over largest one dropped: infinite when nothing was dropped
-    /// or what was dropped is exactly zero; a gap near 1 means that the rank is numerically
+    /// Smallest singular value kept over largest one dropped: infinite when nothing was dropped or
+    /// the dropped values are exactly zero; a gap near 1 means that the rank is numerically
     /// ambiguous.
     pub gap: f64,
 }
 
 impl Svd {
-    /// Memory for decompositions of `m x n` matrices; holds the decomposition of zero.
+    /// Memory for decompositions of `m x n` matrices; initially the decomposition of zero.
     #[must_use]
     pub fn workspace(m: usize, n: usize) -> Self {
         let (k, long) = (m.min(n), m.max(n));
@@ -81,7 +81,7 @@ impl Svd {
     /// Decomposes `a` without a warm start. Non-finite entries give NaN singular values.
     ///
     /// # Panics
-    /// If `a` has not the shape of the workspace.
+    /// If the shape of `a` is not that of the workspace.
     pub fn decompose(&mut self, a: &Matrix) {
         self.warm = None;
         self.decompose_warm(a);
@@ -90,7 +90,7 @@ impl Svd {
     /// Decomposes `a`, starting from the rotations of the last call.
     ///
     /// # Panics
-    /// If `a` has not the shape of the workspace.
+    /// If the shape of `a` is not that of the workspace.
     pub fn decompose_warm(&mut self, a: &Matrix) {
         assert_eq!((a.rows(), a.cols()), (self.rows, self.cols), "shape of the SVD workspace");
         let size = size(a);
@@ -183,7 +183,7 @@ impl Svd {
         self.cols
     }
 
-    /// Sweeps that the last decomposition took.
+    /// Number of sweeps of the last decomposition.
     #[must_use]
     pub fn sweeps(&self) -> usize {
         self.sweeps

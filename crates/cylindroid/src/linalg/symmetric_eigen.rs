@@ -12,7 +12,7 @@
 /// More sweeps than any matrix needs: the bound that makes the cost finite.
 const MAX_SWEEPS: usize = 30;
 
-/// An eigendecomposition of the leading n x n block.
+/// The eigendecomposition of a symmetric matrix: the leading n x n block of an array.
 #[doc(alias = "eigenvalues")]
 #[derive(Debug, Clone, Copy)]
 pub struct SymmetricEigen<const N: usize> {
@@ -23,7 +23,7 @@ pub struct SymmetricEigen<const N: usize> {
 }
 
 impl<const N: usize> SymmetricEigen<N> {
-    /// Of the leading `n x n` block of `a`.
+    /// The eigendecomposition of the leading `n x n` block of `a`.
     ///
     /// ```
     /// use cylindroid::linalg::SymmetricEigen;

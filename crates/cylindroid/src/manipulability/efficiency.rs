@@ -25,7 +25,7 @@ use crate::error::Result;
 use crate::linalg::{CsDecomposition, Matrix, Metric, Qr, dot};
 use crate::tolerance::{DUALITY, MAX_METRIC_CONDITION};
 
-/// A point (s : c) of the projective line, `s^2 + c^2 = 1`: what comes out for what goes in.
+/// A point (s : c) of the projective line, `s^2 + c^2 = 1`: output over input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// s: size of the object's part.

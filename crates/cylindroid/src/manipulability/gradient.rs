@@ -62,7 +62,7 @@ impl Measure {
     }
 }
 
-/// The derivative of a measure by the configuration.
+/// The derivative of a measure with respect to the configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gradient {
     /// It exists.
@@ -82,21 +82,21 @@ pub enum Gradient {
         /// How many efficiencies meet.
         multiplicity: usize,
     },
-    /// There is no finite efficiency to measure.
+    /// There is no finite efficiency.
     Nothing,
 }
 
-/// Whose motion is measured.
+/// The motion to be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Goal<'a> {
-    /// The frame; the mechanism's reference without one.
+    /// The frame; the mechanism's reference by default.
     pub reference: Option<FrameId>,
-    /// The task map, as of [`Relation::task`](crate::closure::Relation::task); the whole twist
-    /// without one.
+    /// The task map, as of [`Relation::task`](crate::closure::Relation::task); the whole twist by
+    /// default.
     pub task: Option<&'a Matrix>,
 }
 
-/// The gradient of a measure of the kinematic efficiencies, in metrics that stay.
+/// The gradient of a measure of the kinematic efficiencies, in constant metrics.
 ///
 /// ```
 /// use cylindroid::manipulability::{Goal, Gradient, Measure, Metrics, gradient};

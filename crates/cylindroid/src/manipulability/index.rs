@@ -10,22 +10,21 @@
 
 use super::efficiency::{Manipulability, Spectrum};
 
-/// Which side is given and which is free to choose.
+/// The six indices: which side (joints or object) is given, and which is optimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Index {
     /// Motion, both sides at their best (eq. 9): finite efficiencies only.
     Kinematic,
-    /// Joint velocities given, the object moves as little as it may: a zero for each redundant
-    /// motion.
+    /// Joint velocities given, minimal motion of the object: a zero for each redundant motion.
     ActiveKinematic,
-    /// Twist given, the joints as slow as they may: an infinite one for each motion that the
-    /// drives do not control.
+    /// Twist given, minimal joint velocities: an infinite one for each motion that the actuators do
+    /// not control.
     PassiveKinematic,
     /// Force, both sides at their best (eq. 17): finite efficiencies only.
     Force,
     /// Torques given (eq. 14): a zero for each internal torque.
     ActiveForce,
-    /// Wrench given: an infinite one for each wrench that the structure holds.
+    /// Wrench given: an infinite one for each wrench that the structure resists.
     PassiveForce,
 }
 
@@ -53,7 +52,7 @@ impl Index {
         }
     }
 
-    /// The efficiencies that count, largest first, infinities and zeros included.
+    /// The efficiencies of this index, largest first, infinities and zeros included.
     #[must_use]
     pub fn values(&self, m: &Manipulability) -> Vec<f64> {
         let (spectrum, zeros, infinite) = match self {

@@ -15,8 +15,8 @@ use crate::linalg::Matrix;
 use crate::model::FrameId;
 use crate::spatial::Mat3;
 
-/// The inertia of the body that carries `frame`, about the frame's origin in world axes; `None`
-/// where the file gives no mass of it.
+/// The inertia of the body that carries `frame`, about the frame's origin in world axes; `None` if
+/// the file gives it no mass.
 ///
 /// # Panics
 /// If the frame is of another mechanism.

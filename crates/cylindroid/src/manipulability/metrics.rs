@@ -56,7 +56,7 @@ impl Metrics {
         Ok(self)
     }
 
-    /// With W_w of its own.
+    /// With a separate W_w.
     ///
     /// # Errors
     /// As [`Metrics::with_object`].
@@ -65,7 +65,7 @@ impl Metrics {
         Ok(self)
     }
 
-    /// With W_tau of its own.
+    /// With a separate W_tau.
     ///
     /// # Errors
     /// As [`Metrics::with_object`].
@@ -98,7 +98,7 @@ impl Metrics {
         })
     }
 
-    /// Rates measured by their limits: `|q| <= 1` is an ellipsoid within all of them.
+    /// Joint velocities relative to their limits: `|q| <= 1` is an ellipsoid within all of them.
     ///
     /// ```
     /// use cylindroid::manipulability::Metrics;
@@ -117,8 +117,8 @@ impl Metrics {
         Ok(self)
     }
 
-    /// Torques measured by their limits. Forces are then no longer dual to motions: a drive may be
-    /// fast and weak.
+    /// Torques relative to their limits. Forces are then no longer dual to motions: an actuator may
+    /// be fast and weak.
     ///
     /// # Errors
     /// A limit that is not positive and finite.
@@ -150,9 +150,9 @@ impl Metrics {
         self.with_object(&inertia).map_err(|_| refuse("has no inertia about an axis"))
     }
 
-    /// The same metrics for the task `T u` of [`Relation::task`]: task velocities are measured by
-    /// the least twist behind them, task forces by the wrench `T^T f` that they are. Metrics of
-    /// joints stay.
+    /// The same metrics for the task `T u` of [`Relation::task`]: the norm of a task velocity is
+    /// that of the smallest twist with it, that of a task force is that of the wrench `T^T f`.
+    /// Metrics of joints are unchanged.
     ///
     /// [`Relation::task`]: crate::closure::Relation::task
     ///

@@ -27,13 +27,13 @@ use crate::tolerance::{CLOSURE_BLOCK, HULL, MAX_FACETS};
 /// A polytope of twists or wrenches; zero is in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polytope {
-    /// Corners and facets. Flat where fewer directions than components can be reached.
+    /// Vertices and facets. Flat where fewer directions than components are reachable.
     pub hull: Hull,
-    /// Directions without limit, a column each.
+    /// Unlimited directions, a column each.
     pub unbounded: Matrix,
 }
 
-/// All twists of the object (or velocities of the task) within the rate limits of the driven
+/// All twists of the object (or velocities of the task) within the velocity limits of the actuated
 /// joints.
 ///
 /// ```
@@ -67,8 +67,8 @@ pub fn force_polytope(relation: &Relation, torque_limits: &[Interval]) -> Result
     Ok(Body::new(relation.forces(), "torque limit", torque_limits)?.polytope())
 }
 
-/// From the smallest to the largest value of each component of the twist within the rate limits,
-/// infinite where nothing limits it.
+/// From the smallest to the largest value of each component of the twist within the velocity
+/// limits, infinite where it is unlimited.
 ///
 /// # Errors
 /// As [`velocity_polytope`].
@@ -76,9 +76,8 @@ pub fn velocity_range(relation: &Relation, velocity_limits: &[Interval]) -> Resu
     Ok(Body::new(relation.motions(), "velocity limit", velocity_limits)?.range())
 }
 
-/// From the smallest to the largest value of each component of the wrench that torques within
-/// their limits balance, infinite where the structure holds it. The other components take any
-/// values.
+/// From the smallest to the largest value of each component of the wrench that torques within their
+/// limits balance, infinite where the structure resists it. The other components are arbitrary.
 ///
 /// # Errors
 /// As [`velocity_polytope`].
