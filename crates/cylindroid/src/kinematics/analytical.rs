@@ -14,7 +14,7 @@ use crate::linalg::Matrix;
 use crate::spatial::{Mat3, Pose, Rpy, Vec3, Zyz, rotation_log_derivative};
 use crate::tolerance::ANGLE_SINGULAR;
 
-/// The numbers whose rates describe the change of orientation.
+/// The orientation coordinates whose rates replace the angular velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum OrientationRates {
@@ -26,7 +26,7 @@ pub enum OrientationRates {
     RotationVector,
 }
 
-/// A Jacobian of position and angles, and whether it exists here.
+/// A Jacobian of position and angles, and its existence at this configuration.
 #[doc(alias = "analytical Jacobian")]
 #[doc(alias = "Euler rates")]
 #[derive(Debug, Clone, PartialEq)]

@@ -58,7 +58,7 @@ impl KinematicsBatch {
         Self { mechanism: mechanism.clone(), chain: Chain::new(mechanism, of) }
     }
 
-    /// Numbers of a configuration: those of the mechanism.
+    /// Number of coordinates of a configuration: that of the mechanism.
     #[must_use]
     pub fn n(&self) -> usize {
         self.mechanism.n()

@@ -14,7 +14,7 @@ use crate::linalg::Matrix;
 use crate::model::{Mechanism, Node, NodeKind};
 use crate::spatial::{AlignedPose, Pose, Vec3};
 
-/// The moving part of a mechanism from the ground to one end effector.
+/// The kinematic chain of a mechanism from the ground to one end effector.
 #[doc(alias = "forward kinematics")]
 #[derive(Debug, Clone)]
 pub struct Chain {
@@ -108,7 +108,7 @@ impl Chain {
         &self.coordinates
     }
 
-    /// Moves to the mechanism's configuration `q` (all n entries of it) and gives
+    /// Moves to the mechanism's configuration `q` (all n entries of it) and returns
     /// `world_from_tool`.
     ///
     /// # Panics
@@ -162,7 +162,7 @@ impl Chain {
     /// The Hessian for this chain's coordinates, into `out` (n matrices of 6 x n).
     ///
     /// # Panics
-    /// If `out` has not these sizes.
+    /// If `out` has other sizes.
     pub fn hessian_into(&self, reference: ReferenceFrame, out: &mut [Matrix]) {
         assert!(
             out.len() == self.n() && out.iter().all(|m| (m.rows(), m.cols()) == (6, self.n())),

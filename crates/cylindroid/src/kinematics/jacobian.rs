@@ -20,7 +20,7 @@ use crate::linalg::Matrix;
 use crate::model::{Node, NodeKind};
 use crate::spatial::{AlignedPose, Pose, Twist, Vec3};
 
-/// The point and the axes of a twist or a Jacobian, in the field's words.
+/// The reference frame of a twist or a Jacobian: its point and its axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ReferenceFrame {
     /// Point: the frame's origin. Axes: the frame's.

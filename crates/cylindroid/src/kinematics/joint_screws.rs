@@ -16,7 +16,7 @@ use crate::spatial::{Pose, Twist, Vec3};
 
 impl State {
     /// The screws of a joint of the tree (place in `Mechanism::joints`), one for each coordinate
-    /// that moves it; none for a fixed joint and a place that does not exist.
+    /// that moves it; none for a fixed joint or an invalid place.
     ///
     /// ```
     /// let robot = cylindroid::load("ur5e")?;
@@ -37,7 +37,7 @@ impl State {
     }
 
     /// The screws of a loop-closure joint (place in `Mechanism::loops`); none for a fixed or free
-    /// joint and a place that does not exist.
+    /// joint or an invalid place.
     #[must_use]
     pub fn loop_screws(&self, closing: usize) -> Vec<Screw> {
         let mechanism = self.mechanism();

@@ -108,7 +108,7 @@ impl State {
         self.tip(of.into()).world_from_tip
     }
 
-    /// The Jacobian, 6 x n: twist of the tool = J * joint velocities.
+    /// The geometric Jacobian, 6 x n: twist of the tool = J * joint velocities.
     ///
     /// ```
     /// use cylindroid::ReferenceFrame;
@@ -175,7 +175,7 @@ impl State {
         tip.for_each_column_above(slot(joint.parent), Vec3::ZERO, |_, c, twist| f(c, twist));
     }
 
-    /// The derivative of the Jacobian in time at the joint velocities `velocities`, 6 x n.
+    /// The time derivative of the Jacobian at the joint velocities `velocities`, 6 x n.
     ///
     /// ```
     /// use cylindroid::ReferenceFrame;
@@ -201,7 +201,8 @@ impl State {
         Ok(out)
     }
 
-    /// The Hessian: entry k is the derivative of the Jacobian by coordinate k (6 x n each).
+    /// The Hessian: entry k is the derivative of the Jacobian with respect to coordinate k (6 x n
+    /// each).
     ///
     /// ```
     /// use cylindroid::ReferenceFrame;
@@ -219,7 +220,7 @@ impl State {
         out
     }
 
-    /// The Jacobian of position and of angles that describe the orientation.
+    /// The analytical Jacobian: rates of position and of orientation angles.
     ///
     /// ```
     /// use cylindroid::kinematics::OrientationRates;

@@ -10,7 +10,7 @@ use std::fmt;
 
 use crate::spatial::{Twist, Vec3};
 
-/// The type of a screw system that no rigid motion changes.
+/// The Gibson-Hunt class of a screw system, invariant under rigid motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Class {
@@ -26,7 +26,8 @@ pub enum Class {
     IB,
     /// All directions of a plane or of space with one pitch (orders 2 to 4).
     IIA,
-    /// As [`Class::IIA`] with one less direction and a translation across it (orders 2 to 4).
+    /// As [`Class::IIA`] with one less direction and a translation perpendicular to it (orders 2 to
+    /// 4).
     IIB,
     /// Translations of a plane, of order 3 with a screw across it (orders 2 to 4).
     IIC,
@@ -34,11 +35,11 @@ pub enum Class {
     IA1,
     /// Two of three principal pitches equal (order 3).
     IA2,
-    /// Two directions of one pitch and a translation that leans on them (order 3).
+    /// Two directions of one pitch and a translation oblique to them (order 3).
     IB0,
-    /// Two different pitches and the translation across both (order 3).
+    /// Two different pitches and the translation perpendicular to both (order 3).
     IB3,
-    /// A screw and two translations not both across it (order 3).
+    /// A screw and two translations not both perpendicular to it (order 3).
     IC,
     /// All translations (order 3).
     IID,
@@ -69,7 +70,7 @@ impl Class {
         }
     }
 
-    /// What a system of this class consists of (for orders 4 and 5: its reciprocal system).
+    /// The composition of a system of this class (for orders 4 and 5: its reciprocal system).
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {
@@ -107,17 +108,17 @@ impl fmt::Display for Class {
     }
 }
 
-/// A class with its moduli: the numbers that tell two systems of one class apart.
+/// A class with its moduli: the parameters that distinguish two systems of one class.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalForm {
     /// The class.
     pub class: Class,
-    /// Order of the system that the form describes: that of the reciprocal system for orders 4
-    /// and 5, else that of the system itself.
+    /// Order of the system that the form describes: that of the reciprocal system for orders 4 and
+    /// 5, otherwise that of the system itself.
     pub order: usize,
     /// The pitches of the form [m/rad], largest first; the single one of IA2 comes first.
     pub pitches: Vec<f64>,
-    /// The p of classes IB, IB0 and IC: how much the translation leans away from the axis.
+    /// The p of classes IB, IB0 and IC: the inclination of the translation to the axis.
     pub slope: Option<f64>,
 }
 

@@ -27,7 +27,7 @@ use crate::spatial::{Twist, Vec3};
 /// `h` in m/rad. Source: Donelan & Selig, section 3.
 ///
 /// # Errors
-/// A matrix that has not six rows.
+/// A matrix without six rows.
 pub fn gram(j: &Matrix, h: f64) -> Result<Matrix> {
     let twists = columns(j)?;
     Ok(Matrix::from_fn(twists.len(), twists.len(), |a, b| twists[a].pitch_form(twists[b], h)))
@@ -46,7 +46,7 @@ pub fn gram(j: &Matrix, h: f64) -> Result<Matrix> {
 /// ```
 ///
 /// # Errors
-/// A matrix that has not six rows.
+/// A matrix without six rows.
 pub fn gram_determinant(j: &Matrix, h: f64) -> Result<f64> {
     columns(j)?;
     let m = j.cols();

@@ -52,8 +52,8 @@ pub enum NoInverse {
         /// Order of the system.
         order: usize,
     },
-    /// The system, or its reciprocal, holds translations, so that the projectors of it or of
-    /// systems as near as you like grow without bound as the pitch goes to infinity.
+    /// The system, or its reciprocal, contains translations, so that its projectors or those of
+    /// arbitrarily close systems grow without bound as the pitch goes to infinity.
     NoLimit {
         /// The class (of the reciprocal system for orders 4 and 5).
         class: Class,
@@ -65,20 +65,20 @@ pub enum NoInverse {
         /// The eigenvalue [m/rad times the unit of the joint metric].
         eigenvalue: f64,
     },
-    /// The twists that may be given up do not complete the system.
+    /// The complement does not complete the system to six dimensions.
     NotComplementary {
         /// Order of the system.
         order: usize,
         /// Order of the twists given up.
         other: usize,
     },
-    /// The inverse exists, but enlarges motions beyond what was allowed.
+    /// The inverse exists, but enlarges motions by more than allowed.
     TooLarge {
         /// Size of the projector: 1 for an orthogonal one onto one screw.
         norm: f64,
     },
     /// The Gram matrix is singular to the tolerance, although no principal pitch is near: the
-    /// system is close to a class that has none.
+    /// system is close to a class without an inverse.
     Close {
         /// The class it is found in.
         class: Class,
@@ -220,14 +220,14 @@ impl ScrewSystem {
         Existence { exists, margin, threshold, reason }
     }
 
-    /// The size of P_h, at the centre and length of the system; infinite where there is none.
+    /// The norm of P_h, at the centre and length of the system; infinite where there is none.
     #[must_use]
     pub fn projector_norm(&self, h: f64) -> f64 {
         self.projector(h).map_or(f64::INFINITY, |p| p.norm())
     }
 
     /// |P_h| over the pitch, and the pitch where it is smallest: guidance, not a law, since a
-    /// small projector is not always the wanted one. Ties go to the smallest |h|.
+    /// small projector is not always the desired one. Ties go to the smallest |h|.
     #[must_use]
     pub fn choose_pitch(&self) -> PitchChoice {
         let length = self.scale.length;

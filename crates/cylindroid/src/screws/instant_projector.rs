@@ -34,7 +34,8 @@ pub enum Complement<'a> {
 }
 
 impl Projector {
-    /// The projector on the span of `motions`, or why there is none; all twists in one frame.
+    /// The projector on the span of `motions`, or the reason why there is none; all twists in one
+    /// frame.
     ///
     /// ```
     /// use cylindroid::screws::{Complement, Projector, ScrewOptions};

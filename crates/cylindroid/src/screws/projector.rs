@@ -51,8 +51,8 @@ impl Projector {
         twist - self.motion(twist)
     }
 
-    /// The part of a wrench that does no work on the system: P* of the wrenches. What it drops
-    /// does no work on the twists that [`Projector::motion`] drops.
+    /// The part of a wrench that does no work on the system: P* of the wrenches. The discarded part
+    /// does no work on the twists that [`Projector::motion`] discards.
     #[must_use]
     pub fn constraint(&self, wrench: Wrench) -> Wrench {
         let w = wrench.at_point(self.scale.center);
@@ -78,8 +78,8 @@ impl Projector {
         p
     }
 
-    /// The largest factor by which a twist is enlarged, at the centre and length of the system:
-    /// 1 for an orthogonal projector, large where the two systems nearly meet.
+    /// The largest factor by which a twist is enlarged, at the centre and length of the system: 1
+    /// for an orthogonal projector, large where the two systems nearly intersect.
     #[must_use]
     pub fn norm(&self) -> f64 {
         let k = self.span.k();

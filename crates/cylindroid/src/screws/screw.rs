@@ -108,17 +108,17 @@ pub struct CommonNormal {
     pub from: Vec3,
     /// Its foot on the second line (m).
     pub to: Vec3,
-    /// Unit vector from the first to the second; across both where they meet.
+    /// Unit vector from the first to the second; perpendicular to both where they intersect.
     pub direction: Vec3,
     /// Distance of the lines (m).
     pub distance: f64,
-    /// Angle that turns the first direction into the second about `direction`, in (-pi, pi].
+    /// Angle that rotates the first direction into the second about `direction`, in (-pi, pi].
     pub angle: f64,
     /// False for parallel lines, which have a common normal at every point.
     pub unique: bool,
 }
 
-/// A line with a pitch and an amplitude: a twist in the words of geometry.
+/// A line with a pitch and an amplitude: the geometry of a twist.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screw {
     /// The axis; its point is the one nearest to the origin. For an infinite pitch the point is

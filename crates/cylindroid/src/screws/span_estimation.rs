@@ -20,13 +20,13 @@ use crate::tolerance::{
 /// Steps to the centre at most; each shortens the way by a factor that depends on the system.
 const CENTER_STEPS: usize = 32;
 
-/// Scale and noise of a set of twists.
+/// Options of screw systems: characteristic length, centre and noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScrewOptions {
     /// The characteristic length L, in the unit of the twists' linear parts: the reach of an arm,
     /// the size of a workspace.
     pub length: f64,
-    /// The point at which lengths are judged; `None` for the point nearest to all axes.
+    /// The point at which lengths are measured; `None` for the point nearest to all axes.
     pub center: Option<Vec3>,
     /// Error of the twists, relative to the size of each.
     pub noise: f64,

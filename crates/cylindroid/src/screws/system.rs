@@ -139,7 +139,7 @@ impl ScrewSystem {
         self.span.k()
     }
 
-    /// The order with the singular values behind it: threshold and gap.
+    /// The order with its threshold and its gap of singular values.
     #[must_use]
     pub fn rank(&self) -> Rank {
         self.rank
@@ -157,35 +157,35 @@ impl ScrewSystem {
         &self.form
     }
 
-    /// The canonical frame, seen from the frame of the twists: the normal form in it spans the
+    /// The pose of the canonical frame in the frame of the twists: the normal form in it spans the
     /// system (its reciprocal for orders 4 and 5).
     #[must_use]
     pub fn canonical_pose(&self) -> Pose {
         self.canonical
     }
 
-    /// Sine of the angle between the system and its normal form in the canonical frame: what the
-    /// class leaves out.
+    /// Sine of the angle between the system and its normal form in the canonical frame: the
+    /// deviation from the class.
     #[must_use]
     pub fn residual(&self) -> f64 {
         self.residual
     }
 
-    /// The quantities that the class hangs on.
+    /// The quantities that decide the class.
     #[must_use]
     pub fn margins(&self) -> &[Margin] {
         &self.margins
     }
 
-    /// True if a quantity lies so near to its threshold that the verdict is numerically ambiguous.
+    /// True if a quantity is so close to its threshold that the class is numerically ambiguous.
     #[must_use]
     pub fn is_ambiguous(&self) -> bool {
         self.ambiguous
     }
 
-    /// The pitches [m/rad] at which the hyperbolic pseudoinverse ceases to exist, largest first
-    /// (of class IA2 the single one first); empty for classes that never have one, and where every
-    /// pitch will do.
+    /// The pitches [m/rad] at which the hyperbolic pseudoinverse ceases to exist, largest first (of
+    /// class IA2 the single one first); empty for classes that never have one, or have one for
+    /// every pitch.
     #[must_use]
     pub fn principal_pitches(&self) -> Vec<f64> {
         self.principal.iter().map(|s| s.pitch).collect()
@@ -216,14 +216,14 @@ impl ScrewSystem {
         self.tolerance.class
     }
 
-    /// The point at which lengths are judged (m).
+    /// The point at which lengths are measured (m).
     #[must_use]
     pub fn center(&self) -> Vec3 {
         self.scale.center
     }
 
-    /// The sine of the angle by which a twist leaves the system, at its centre and length: zero
-    /// for a member, one for a twist across all of them. Zero for the zero twist.
+    /// The sine of the angle between a twist and the system, at its centre and length: zero for a
+    /// member, one for a twist orthogonal to all of them. Zero for the zero twist.
     #[must_use]
     pub fn sine_to(&self, twist: Twist) -> f64 {
         let mut x = self.scale.apply(over(twist, power_of_two(size(twist, self.scale.length))));

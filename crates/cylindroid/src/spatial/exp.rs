@@ -35,7 +35,7 @@ impl Derivative6 {
     }
 }
 
-/// The displacement of the constant twist `x` held for one second.
+/// The exponential map: the displacement of the constant twist `x` in one second.
 ///
 /// ```
 /// use cylindroid::spatial::{exp, log};
@@ -55,7 +55,7 @@ pub fn exp(x: Twist) -> Pose {
     }
 }
 
-/// The twist that makes this displacement in one second, rotating by at most pi.
+/// The logarithm: the twist that produces this displacement in one second, rotating by at most pi.
 #[must_use]
 pub fn log(pose: Pose) -> Twist {
     let angular = pose.rotation.log();

@@ -71,7 +71,7 @@ impl Twist {
 
 impl Wrench {
     /// The inverse of the form of pitch `h` on wrenches of one frame. For an infinite pitch the
-    /// form has no inverse; what remains of it is `f_a . f_b`.
+    /// form has no inverse; its limit is `f_a . f_b`.
     #[must_use]
     #[inline]
     pub fn pitch_form(self, other: Self, h: f64) -> f64 {

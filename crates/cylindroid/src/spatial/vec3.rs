@@ -4,7 +4,8 @@
 
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
-/// Three numbers: a point, a direction, a velocity. The name of the variable says in which axes.
+/// A vector of three components: a point, a direction, a velocity. Its axes are those in the name
+/// of the variable.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Vec3 {
     /// First component.
@@ -156,7 +157,7 @@ impl Index<usize> for Vec3 {
     }
 }
 
-/// A 3 x 3 matrix, held by its columns.
+/// A 3 x 3 matrix, stored by columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mat3 {
     /// The images of the unit vectors.
