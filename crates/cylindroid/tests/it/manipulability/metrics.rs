@@ -74,7 +74,7 @@ fn limits_measure() {
     assert_close("forces", &m.force.values(), &[49.0, 9.0], 1e-12);
     for limits in [[1.0, 0.0], [1.0, f64::INFINITY], [f64::NAN, 1.0]] {
         let error = Metrics::UNIT.with_velocity_limits(&limits).unwrap_err().to_string();
-        assert!(error.starts_with("rate limit = "), "{error}");
+        assert!(error.starts_with("velocity limit = "), "{error}");
     }
 }
 
