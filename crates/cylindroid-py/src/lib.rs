@@ -51,7 +51,7 @@ mod _core {
     #[pymodule_export]
     use crate::inverse::point_direction::point_direction;
     #[pymodule_export]
-    use crate::inverse::{PyDropped, PyInverse, PyPointDirection};
+    use crate::inverse::{PyInverse, PyPointDirection, PyTruncatedDirection};
     #[pymodule_export]
     use crate::mechanism::load::{catalogue, load, parse};
     #[pymodule_export]

@@ -43,15 +43,15 @@ fn panda() -> Mechanism {
     catalogue::load("panda").unwrap()
 }
 
-/// Home and a posture near it in turn, so that nothing can be kept from call to call.
-fn posture(robot: &Mechanism, i: usize) -> Vec<f64> {
+/// Home and a configuration near it in turn, so that nothing can be kept from call to call.
+fn configuration(robot: &Mechanism, i: usize) -> Vec<f64> {
     robot.home().iter().map(|x| x + 1e-3 * (i % 2) as f64).collect()
 }
 
 fn forward(calls: usize) {
     let robot = panda();
     let mut chain = Chain::new(&robot, robot.tool());
-    let q = [posture(&robot, 0), posture(&robot, 1)];
+    let q = [configuration(&robot, 0), configuration(&robot, 1)];
     for i in 0..calls {
         black_box(chain.set(black_box(&q[i % 2])));
     }
@@ -61,7 +61,7 @@ fn jacobian(calls: usize) {
     let robot = panda();
     let mut chain = Chain::new(&robot, robot.tool());
     let mut j = Matrix::zeros(6, chain.n());
-    let q = [posture(&robot, 0), posture(&robot, 1)];
+    let q = [configuration(&robot, 0), configuration(&robot, 1)];
     for i in 0..calls {
         black_box(chain.set(black_box(&q[i % 2])));
         chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut j);
@@ -74,7 +74,7 @@ fn batch(calls: usize) {
     let robot = panda();
     let batch = KinematicsBatch::new(&robot, robot.tool());
     let (mut poses, mut jacobians) = (vec![0.0; 1000 * 16], vec![0.0; 1000 * 6 * robot.n()]);
-    let q: Vec<f64> = (0..1000).flat_map(|i| posture(&robot, i)).collect();
+    let q: Vec<f64> = (0..1000).flat_map(|i| configuration(&robot, i)).collect();
     for _ in 0..calls {
         let reference = ReferenceFrame::LocalWorldAligned;
         batch.poses_and_jacobians_into(&q, reference, &mut poses, &mut jacobians).unwrap();
@@ -98,7 +98,7 @@ fn servo_step(calls: usize) {
 fn near_jacobians() -> [Matrix; 2] {
     let robot = panda();
     [0, 1].map(|i| {
-        let state = robot.state(&posture(&robot, i)).unwrap();
+        let state = robot.state(&configuration(&robot, i)).unwrap();
         state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
     })
 }
@@ -134,11 +134,11 @@ fn inverse_kinematics(calls: usize) {
     }
 }
 
-/// Mobility and manipulability of 128 postures near home, as numbers.
+/// Mobility and manipulability of 128 configurations near home, as numbers.
 fn many(calls: usize) {
     let platform = catalogue::load("stewart").unwrap();
     let batch = ManipulabilityBatch::new(&platform, &BatchOptions::default()).unwrap();
-    let q: Vec<f64> = (0..128).flat_map(|i| posture(&platform, i)).collect();
+    let q: Vec<f64> = (0..128).flat_map(|i| configuration(&platform, i)).collect();
     let mut out = vec![0.0; 128 * ManipulabilityBatch::WIDTH];
     for _ in 0..calls {
         batch.analyse_into(black_box(&q), &mut out).unwrap();

@@ -1,9 +1,10 @@
-//! How long a servo step takes, step by step: `cargo bench -p cylindroid --bench jitter`.
+//! Times of single servo steps: `cargo bench -p cylindroid --bench jitter`.
 //!
-//! A million steps in which the arm follows a target round a circle through the middle of its
-//! workspace, each timed by itself: away from its limits with what it does besides, as in `move`, and
-//! with nothing besides, which lets the redundant panda drift from round to round until a joint
-//! stands at its limit and the motion is bent round it. What another program or the kernel takes away is in the largest times.
+//! A million steps in which the arm follows a target around a circle through the middle of its
+//! workspace, each timed separately: with the default secondary tasks, as in `move`, and with none,
+//! which lets the redundant panda drift from round to round until a joint reaches its limit and the
+//! direction of the motion is changed. Interruptions by other programs or the kernel show in the
+//! largest times.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::time::Instant;

@@ -217,7 +217,7 @@ fn hyperbolic_inverse_with_report(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(|| black_box(inverse::hyperbolic(black_box(&j), 0.1).unwrap()));
 }
 
-/// Closed chains by name and size: constraint rows, driven joints, passive columns, object.
+/// Closed chains by name and size: constraint rows, actuated joints, passive columns, object.
 const CHAINS: [(&str, [usize; 4]); 3] =
     [("five-bar", [6, 2, 3, 3]), ("stewart", [18, 6, 12, 6]), ("two-arm", [12, 14, 0, 6])];
 
@@ -313,7 +313,7 @@ fn batch_of_mobility_and_manipulability(bencher: Bencher<'_, '_>, name: &str) {
     const COUNT: usize = 4096;
     let mechanism = robot(name);
     let batch = ManipulabilityBatch::new(&mechanism, &BatchOptions::default()).unwrap();
-    // As many closed postures as are soon found, again and again.
+    // As many closed configurations as are found quickly, repeated.
     let mut closed = Vec::new();
     for i in 0..64 {
         let guess: Vec<f64> =
@@ -333,7 +333,7 @@ fn drift(i: usize) -> f64 {
     (i as f64 * 12.9898).sin()
 }
 
-/// A step of a servo that drives the object of a closed chain.
+/// A step of a servo that moves the object of a closed chain.
 #[divan::bench(args = ["five-bar", "stewart", "two-arm"])]
 fn object_servo_step(bencher: Bencher<'_, '_>, name: &str) {
     let mechanism = robot(name);

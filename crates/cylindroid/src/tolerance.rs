@@ -170,13 +170,14 @@ pub const CLOSED: f64 = 1e-10;
 /// diverge [-].
 pub const CORRECTION_RANK: f64 = 1e-6;
 
-/// A motion of which less than this belongs to the driven joints (of a motion of length one in
-/// units scaled by the reach) is no longer steered by them: passive joints move a hundred times as
-/// fast as the drives, whose errors and clearances they multiply as much [-].
+/// A motion with less than this share in the actuated joints (of a motion of length one in units
+/// scaled by the reach) is no longer controlled by them: passive joints move a hundred times as
+/// fast as the actuators and multiply their errors and clearances as much [-].
 pub const MIN_ACTUATED_SHARE: f64 = 1e-2;
 
-/// Loops that are open by less than this times the reach, and by less than this in angle (rad),
-/// are closed by the way of a servo: measured postures are; others have to be assembled first.
+/// Loops whose closure error is less than this times the reach, and less than this in angle (rad),
+/// are closed by a servo during its motion, as measured configurations need; others must be
+/// assembled first.
 pub const NEARLY_CLOSED: f64 = 1e-2;
 
 /// Rates held at bounds that follow from each other, or contradict each other, by this [-]: above
@@ -190,14 +191,14 @@ pub const UNACTUATED: f64 = 1e-9;
 /// reach and of angles, of a hundred roundings and some [-].
 pub const LOOP_ROUNDING: f64 = 1e-13;
 
-/// Step by which closed postures beside a posture are looked for, in scaled coordinates [rad, or
-/// reaches]: a resistance of second order then shows as 1e-4, of fourth order as 1e-8, far above
-/// rounding.
+/// Step at which closed configurations near a configuration are searched for, in scaled coordinates
+/// [rad, or reaches]: a resistance of second order then shows as 1e-4, of fourth order as 1e-8, far
+/// above rounding.
 pub const FINITE_STEP: f64 = 1e-2;
 
-/// Part of the distance to where branches of closed postures meet below which a singular value of a
-/// posture on one of them counts as zero [-]: where branches cross, what is zero there
-/// grows in proportion to the distance.
+/// Fraction of the distance to a branch point below which a singular value of a configuration on a
+/// branch counts as zero [-]: where branches cross, a value that vanishes there grows in proportion
+/// to the distance.
 pub const BRANCH_RANK: f64 = 1e-3;
 
 /// Two branches whose tangents differ by an angle whose sine is below this are one [-]; tangents
@@ -207,15 +208,15 @@ pub const SAME_BRANCH: f64 = 1e-3;
 /// Steps that can be followed span a direction if they spread along it by more than this [-].
 pub const BRANCH_SPREAD: f64 = 0.1;
 
-/// A branch that turns by more than the angle of this cosine on its way to the posture is not
-/// followed further [-].
+/// A branch whose tangent rotates by more than the angle of this cosine on its way to the
+/// configuration is not followed further [-].
 pub const BRANCH_TURN: f64 = 0.9;
 
 /// Motions whose part outside all branches is below this belong to them [-], as
 /// [`SAME_BRANCH`].
 pub const WITHIN_BRANCHES: f64 = 1e-3;
 
-/// What the limit of generic spaces, taken from postures beside it, is right to [-].
+/// Accuracy of the limit of generic spaces, taken from nearby configurations [-].
 pub const GENERIC_LIMIT: f64 = 1e-6;
 
 /// A joint whose share in motions of length one is below this is at rest [-]: above the error of
@@ -279,9 +280,9 @@ pub const REPEATED: f64 = 1e-7;
 /// similar, about 1e-12.
 pub const MATRIX_STEP: f64 = 1e-3;
 
-/// Two assemblies whose joints stand nearer than this, in lengths over the reach and in angle, are
-/// one: far above the rounding that ends a search, 1e-8 at a double root, far below what tells two
-/// assemblies apart [-].
+/// Two assemblies whose joints differ by less than this, in lengths over the reach and in angle,
+/// are one: far above the rounding at the end of a search, 1e-8 at a double root, far below the
+/// difference of two assemblies [-].
 pub const SAME_ASSEMBLY: f64 = 1e-6;
 
 /// Links that a trial step by 0.05 moves by less than this have come back to where they were, in
@@ -292,8 +293,8 @@ pub const TRIAL_MOVED: f64 = 1e-3;
 /// largest singular value of the rates of the loops [-].
 pub const PATH_SINGULAR: f64 = 1e-3;
 
-/// Least distance to a singularity that can be asked for [-]: closer to a fold, the last steps are
-/// shorter than [`SHARE_FOUND`].
+/// Smallest distance to a singularity that may be requested [-]: closer to a fold, the last steps
+/// are shorter than [`SHARE_FOUND`].
 pub const LEAST_PATH_SINGULAR: f64 = 1e-5;
 
 /// What falls to zero with the distance d to a singularity is below its root there, what does not

@@ -17,7 +17,7 @@ use crate::threads;
 
 pub(crate) use by_name::parameters_of;
 pub(crate) use point_direction::PyPointDirection;
-pub(crate) use report::{PyDropped, PyInverse};
+pub(crate) use report::{PyInverse, PyTruncatedDirection};
 
 /// The inverse of each matrix by a method.
 fn by_method(py: Python<'_>, j: &Numbers<'_>, method: Method) -> Result<PyInverse> {

@@ -60,7 +60,7 @@ enum Inner {
 ///     The share of a motion along it that is realised, in [0, 1/2).
 #[pyclass(frozen, name = "TruncatedDirection", module = "cylindroid")]
 #[derive(Debug, Clone)]
-pub(crate) struct PyDropped {
+pub(crate) struct PyTruncatedDirection {
     #[pyo3(get)]
     singular_value: f64,
     direction: Vec<f64>,
@@ -69,7 +69,7 @@ pub(crate) struct PyDropped {
 }
 
 #[pymethods]
-impl PyDropped {
+impl PyTruncatedDirection {
     #[getter]
     fn direction<'py>(&self, py: Python<'py>) -> Array<'py> {
         arrays::vector(py, &self.direction)
@@ -91,7 +91,7 @@ fn stacked_dropped(
     jacobians: &[f64],
     (m, n): (usize, usize),
     (i, rank): (usize, &Rank),
-) -> Result<Vec<PyDropped>> {
+) -> Result<Vec<PyTruncatedDirection>> {
     if rank.rank == m.min(n) {
         return Ok(Vec::new());
     }
@@ -99,8 +99,8 @@ fn stacked_dropped(
     Ok(dropped(&method.inverse(&j)?))
 }
 
-fn dropped(inverse: &Inverse) -> Vec<PyDropped> {
-    let one = |d: &inverse::TruncatedDirection| PyDropped {
+fn dropped(inverse: &Inverse) -> Vec<PyTruncatedDirection> {
+    let one = |d: &inverse::TruncatedDirection| PyTruncatedDirection {
         singular_value: d.singular_value,
         direction: d.direction.clone(),
         filter_factor: d.filter_factor,

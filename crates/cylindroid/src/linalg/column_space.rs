@@ -65,7 +65,7 @@ impl Cut {
 pub struct ColumnSpace {
     rows: usize,
     qr: Qr,
-    /// Of R; none where the pivots alone tell the space: the columns of Q that they name.
+    /// Of R; `None` where the pivots alone determine the space: the leading columns of Q.
     svd: Option<Svd>,
     values: Vec<f64>,
     cut: Cut,
@@ -133,7 +133,7 @@ impl ColumnSpace {
         let threshold = absolute(values.first().copied().unwrap_or(0.0));
         let cut = Cut::of(&values, threshold);
         if svd.is_none() && cut.dropped > dust * scale {
-            // The cut goes through values that are no rounding: their directions are needed.
+            // The cut is between values above rounding: their directions are needed.
             let svd = Svd::of(&r);
             let values: Vec<f64> = svd.values().map(|s| s * scale).collect();
             let cut = Cut::of(&values, threshold);

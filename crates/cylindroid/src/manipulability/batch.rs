@@ -39,7 +39,7 @@ pub struct BatchOptions {
     /// Metrics of twists and joint velocities. Those of wrenches and torques are not used: the
     /// indices are those of motion.
     pub metrics: Metrics,
-    /// What regular configurations have, which tells singular ones: looked for from the home
+    /// Counts at regular configurations, which identify singular ones: searched for from the home
     /// configuration by default ([`GenericMobility::of`]).
     pub generic: Option<MobilityCounts>,
 }
@@ -84,8 +84,8 @@ impl ManipulabilityBatch {
 
     /// The names of the numbers of a result, those of the reports of one configuration:
     /// - how far the loops are open (m, rad), and 1 where they are closed, else 0,
-    /// - the counts of mobility, from `redundancy` to `zero_torque` of the relation between driven
-    ///   joints and reference,
+    /// - the counts of mobility, from `redundancy` to `zero_torque` of the relation between
+    ///   actuated joints and reference,
     /// - the distances to singularities of each kind, 0 at one and infinite where there is nothing
     ///   to lose,
     /// - the kinematic index: product of the roots of the finite efficiencies, largest and

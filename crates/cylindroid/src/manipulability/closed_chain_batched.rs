@@ -176,12 +176,12 @@ impl Kernel {
         for (own, row) in s.twists.chunks_exact_mut(k).zip(s.rows[t * m..].chunks_exact(m)) {
             own.copy_from_slice(&row[t..]);
         }
-        for (own, column) in s.driven.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
+        for (own, column) in s.actuated.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
             own.copy_from_slice(&column[..a]);
         }
         let share = self.least_share(s);
         s.ratios.copy_from_slice(&s.twists);
-        s.divide_by_driven(a);
+        s.divide_by_actuated(a);
         let scaled = HEADER..HEADER + values;
         columns_of(&s.ratios, k, &mut s.columns, d);
         singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[scaled]);
@@ -196,10 +196,10 @@ impl Kernel {
             times(&self.object, 1.0 / alike, &s.ratios, k, &mut s.columns);
         } else {
             times(&self.object, 1.0, &s.twists, k, &mut s.ratios);
-            for (own, column) in s.driven.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
+            for (own, column) in s.actuated.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
                 times(&self.joint, 1.0, &column[..a], 1, own);
             }
-            s.divide_by_driven(a);
+            s.divide_by_actuated(a);
             columns_of(&s.ratios, k, &mut s.columns, d);
         }
         singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[HEADER + values..]);
@@ -245,8 +245,9 @@ impl Kernel {
             for i in 0..=j {
                 let product = dot(&s.columns[i * d..(i + 1) * d], own);
                 s.weight[j * k + i] = product;
-                let driven = dot(&s.driven[i * a..(i + 1) * a], &s.driven[j * a..(j + 1) * a]);
-                let both = product + driven;
+                let actuated =
+                    dot(&s.actuated[i * a..(i + 1) * a], &s.actuated[j * a..(j + 1) * a]);
+                let both = product + actuated;
                 (s.shares[j * k + i], s.shares[i * k + j]) = (both, both);
             }
             s.weight[j * k + j] = s.weight[j * k + j] + one;
@@ -285,9 +286,9 @@ struct Scratch<R> {
     diagonal: Vec<R>,
     factors: Vec<R>,
     kernel: Vec<R>,
-    driven: Vec<R>,
-    driven_diagonal: Vec<R>,
-    driven_factors: Vec<R>,
+    actuated: Vec<R>,
+    actuated_diagonal: Vec<R>,
+    actuated_factors: Vec<R>,
     /// J K, and J K R^-1: rows.
     twists: Vec<R>,
     ratios: Vec<R>,
@@ -306,15 +307,15 @@ struct Scratch<R> {
 impl<R: SimdFloat> Scratch<R> {
     /// Ratios over the triangle of the actuated joint velocities, which are `a` rows.
     #[inline(always)]
-    fn divide_by_driven(&mut self, a: usize) {
+    fn divide_by_actuated(&mut self, a: usize) {
         let mut upper = Reflections {
             n: a,
-            columns: &mut self.driven,
-            diagonal: &mut self.driven_diagonal,
-            factors: &mut self.driven_factors,
+            columns: &mut self.actuated,
+            diagonal: &mut self.actuated_diagonal,
+            factors: &mut self.actuated_factors,
         };
         upper.run();
-        divide_by_upper(&mut self.ratios, &self.driven, a, &self.driven_diagonal);
+        divide_by_upper(&mut self.ratios, &self.actuated, a, &self.actuated_diagonal);
     }
 
     fn of(kernel: &Kernel, n: usize) -> Self {
@@ -329,9 +330,9 @@ impl<R: SimdFloat> Scratch<R> {
             diagonal: zeros(t),
             factors: zeros(t),
             kernel: zeros(m * k),
-            driven: zeros(a * k),
-            driven_diagonal: zeros(k),
-            driven_factors: zeros(k),
+            actuated: zeros(a * k),
+            actuated_diagonal: zeros(k),
+            actuated_factors: zeros(k),
             twists: zeros(d * k),
             ratios: zeros(d * k),
             columns: zeros(d * k),

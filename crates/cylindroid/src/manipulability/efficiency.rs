@@ -56,7 +56,7 @@ pub struct Direction {
     pub pair: Pair,
     /// Velocities (torques) of the actuated joints.
     pub joint: Vec<f64>,
-    /// The twist (wrench) that goes with them.
+    /// The corresponding twist (wrench).
     pub object: Vec<f64>,
 }
 

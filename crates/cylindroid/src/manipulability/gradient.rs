@@ -188,7 +188,7 @@ pub fn gradient(
     Ok(Gradient::Exists { value, gradient, error })
 }
 
-/// What stands behind the directions: motions of all joints, and the forces at the contacts.
+/// The origin of the directions: motions of all joints, and the forces at the contacts.
 struct Behind<'a> {
     task: Option<&'a Matrix>,
     supports: ContactForceSolver<'a>,
@@ -322,7 +322,7 @@ fn along(state: &State, chain: &ClosedChain, rates: &[f64]) -> Result<(Matrix, M
     Ok((narrow, fine))
 }
 
-/// dM of a tree for each coordinate: the Hessian in the columns of driven and passive joints.
+/// dM of a tree for each coordinate: the Hessian in the columns of actuated and passive joints.
 fn constraint_hessian(state: &State, chain: &ClosedChain) -> Vec<Matrix> {
     let rows = state.mechanism().dimension().components();
     let of = |hessian: &Matrix| {

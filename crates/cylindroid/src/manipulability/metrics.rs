@@ -178,7 +178,7 @@ impl Metrics {
         dual(&self.wrench, &self.object) && dual(&self.torque, &self.joint)
     }
 
-    /// How lopsided the metrics of motions are.
+    /// Diagonal ratio of the metrics of motions: a lower bound of their condition.
     pub(super) fn diagonal_ratio(&self) -> f64 {
         [&self.object, &self.joint].into_iter().flatten().map(Metric::diagonal_ratio).product()
     }

@@ -1,7 +1,7 @@
 //! What a mechanism can do, in numbers: efficiencies of motion and force, indices and their
 //! gradients, polytopes.
 //!
-//! Serial arms and closed chains go through the same code: both are a [`Relation`] between driven
+//! Serial arms and closed chains use the same code: both are a [`Relation`] between actuated
 //! joints and object. For a serial arm the finite kinematic efficiencies are the squares of the
 //! singular values of its Jacobian, and the directions the axes of the textbook ellipsoid.
 //!

@@ -4,7 +4,7 @@
 //! Source   Steele, Lea & Flood 2014
 //! Checked  tests/it/ik.rs, tests/it/closure/modes.rs
 
-/// The next number in [0, 1) of a fixed sequence (SplitMix64); `state` is where it stands.
+/// The next number in [0, 1) of the sequence (SplitMix64); `state` is updated.
 pub(crate) fn uniform(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;

@@ -147,7 +147,7 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
             if step.norm() <= CENTER_FOUND * options.length {
                 break;
             }
-            // Every step is a part of the one before: two tell where they end (Aitken).
+            // Every step is a fraction of the previous one: two determine the limit (Aitken).
             let part = before.map_or(0.0, |b: Vec3| step.dot(b) / b.dot(b));
             if part > 0.0 && part < 0.9 {
                 scale.center += step * (part / (1.0 - part));

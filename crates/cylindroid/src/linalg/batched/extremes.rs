@@ -134,7 +134,7 @@ pub(crate) fn extreme_eigenvalues<R: SimdFloat, const E: usize>(
     let n = k(diagonal.len() as f64);
     let bound = bound(diagonal, squares);
     let noise = bound * k(ROUNDING);
-    // Where each end stands, and stood last on its side; how far to go back from beyond it.
+    // Current and last iterate of each end on its side; how far to step back from beyond it.
     let (mut t, mut before, mut back) = ([zero; E], [zero; E], [noise; E]);
     for e in 0..E {
         if ends[e] == End::Largest {
