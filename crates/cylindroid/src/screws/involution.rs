@@ -78,17 +78,6 @@ pub struct Involution {
 /// Source: Donelan & Selig, section 4, corrected for four and five lines in the chapter
 /// `docs/theory/screws.md` of the book.
 ///
-/// ```
-/// use cylindroid::screws::{Line, ScrewOptions, involution};
-/// use cylindroid::Vec3;
-///
-/// // Three parallel axes in one plane are dependent, so they are in involution.
-/// let lines = [0.0, 1.0, 2.0].map(|x| Line { point: Vec3::X * x, direction: Vec3::Z });
-/// let report = involution(&lines, &ScrewOptions::default())?;
-/// assert!(report.in_involution && !report.independent);
-/// # Ok::<(), cylindroid::Error>(())
-/// ```
-///
 /// # Errors
 /// Invalid options.
 pub fn involution(lines: &[Line], options: &ScrewOptions) -> Result<Involution> {
