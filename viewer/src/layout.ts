@@ -14,7 +14,7 @@ const MOST_TOASTS = 3;
 export function layout(root: HTMLElement): Layout {
   const bar = h("header", { class: "bar" });
   const left = h("aside", { class: "side left", "aria-label": "Controls" });
-  const right = h("aside", { class: "side right", "aria-label": "Numbers" });
+  const right = h("aside", { class: "side right", "aria-label": "Measures" });
   const tools = h("div", { class: "float top", role: "toolbar", "aria-label": "View" });
   const legend = h("div", { class: "legend", "aria-label": "Legend" });
   const banner = h("div", { class: "banner", role: "alert", hidden: true });

@@ -10,7 +10,7 @@ export class LinkBanner {
     fill(
       element,
       h("div", {}, h("b", {}, "The server has stopped."), h("br", {}), this.words),
-      h("button", { class: "button small", type: "button", onclick: retry }, "Try now"),
+      h("button", { class: "button small", type: "button", onclick: retry }, "Reconnect now"),
     );
   }
 
@@ -21,7 +21,7 @@ export class LinkBanner {
     const end = performance.now() + wait * 1000;
     const tell = (): void => {
       const left = Math.max(0, Math.ceil((end - performance.now()) / 1000));
-      text(this.words, left > 0 ? `What you see is its last state. Next attempt in ${left} s.` : "What you see is its last state. Connecting…");
+      text(this.words, left > 0 ? `The last state is shown. Reconnecting in ${left} s.` : "The last state is shown. Reconnecting…");
     };
     tell();
     this.timer = window.setInterval(tell, 500);

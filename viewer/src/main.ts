@@ -1,4 +1,4 @@
-/** Puts the parts together. The server computes; this page asks, draws and lets be dragged. */
+/** Assembles the page. The server computes; the page sends messages and draws. */
 import { Sphere, Vector3 } from "three";
 import { Bar } from "./controls/bar";
 import { Joints } from "./controls/joints";
@@ -28,7 +28,7 @@ import { fragment } from "./share";
 import { Target } from "./target";
 
 const root = document.getElementById("app");
-if (!root) throw new Error("the page has no place for the viewer");
+if (!root) throw new Error("the page has no element for the viewer");
 const page = layout(root);
 
 function start(): void {
@@ -93,7 +93,7 @@ function start(): void {
     picture: () => {
       stage.png().then(
         (blob) => download(blob, `${session.scene?.name ?? "cylindroid"}.png`),
-        (error: unknown) => page.toast(`No picture: ${String(error)}`, true),
+        (error: unknown) => page.toast(`The picture could not be saved: ${String(error)}`, true),
       );
     },
     share: () => void share(),
@@ -106,9 +106,9 @@ function start(): void {
     history.replaceState(null, "", fragment(shot));
     try {
       await navigator.clipboard.writeText(location.href);
-      page.toast("The address of this configuration is copied, and stands in the address bar.");
+      page.toast("The link to this configuration is copied and shown in the address bar.");
     } catch {
-      page.toast("The address bar holds this configuration.");
+      page.toast("The address bar contains the link to this configuration.");
     }
   }
 
@@ -167,7 +167,7 @@ function start(): void {
     if (recorder.isFull) {
       recorder.stop();
       session.eager = false;
-      page.toast("The recorder is full and has stopped: save its states.");
+      page.toast("The recorder is full and has stopped; save the recording.");
     }
     bar.recorded(recorder.recording, recorder.length);
   });
@@ -194,6 +194,6 @@ try {
 } catch (error) {
   page.banner.hidden = false;
   page.banner.append(
-    h("p", {}, h("b", {}, "The view cannot be drawn. "), "This browser gives the page no WebGL 2: turn on hardware acceleration, or try another browser. ", h("span", { class: "note" }, String(error))),
+    h("p", {}, h("b", {}, "The view cannot be displayed. "), "WebGL 2 is not available: enable hardware acceleration, or use another browser. ", h("span", { class: "note" }, String(error))),
   );
 }

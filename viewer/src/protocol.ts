@@ -35,7 +35,7 @@ export type ChosenMethod = {
   name: string; parameters: Record<string, number>; h: number | null; fallback: string | null;
 };
 export type OverlayInfo = { name: OverlayName; title: string; unit: string; frame: string };
-export type Drive = { name: string; kind: JointKind; actuated: boolean };
+export type Actuator = { name: string; kind: JointKind; actuated: boolean };
 
 export type Scene = {
   type: "scene";
@@ -46,7 +46,7 @@ export type Scene = {
   loops: { name: string; kind: JointKind; a: number; b: number; axis: Vec3; actuated: boolean }[];
   contacts: { name: string; kind: string; a: number; b: number; friction: number | null }[];
   objects: { link: number; name: string; reference: boolean }[];
-  drives: Drive[];
+  actuators: Actuator[];
   self_motions: number; method: ChosenMethod; methods: Method[];
   overlays: OverlayInfo[]; reports: ReportName[];
   home: number[]; ignored: number;

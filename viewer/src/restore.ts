@@ -43,7 +43,7 @@ export class Restore {
     this.fresh = false;
     if (this.last?.model === scene.name) {
       this.wanted = this.last;
-      this.say("The server is back; the configuration has been restored.");
+      this.say("The connection is restored, with the previous configuration.");
     }
     this.last = null;
     this.session.send({ type: "overlays", names: this.overlays.names() });
@@ -77,13 +77,13 @@ export class Restore {
     if (!shot) return;
     if (shot.model !== scene.name) {
       this.shownCamera = null;
-      this.say(`The address is for ${shot.model}; this is ${scene.name}, so it is left as it is.`, true);
+      this.say(`The address is for ${shot.model}, but the model is ${scene.name}; it was ignored.`, true);
       return;
     }
     const { session } = this;
     if (shot.frame && shot.frame !== scene.frame) session.send({ type: "frame", name: shot.frame });
     if (shot.task && shot.task !== scene.task.name) session.send({ type: "task", name: shot.task });
-    if (shot.actuated && scene.drives.length > 0) session.send({ type: "actuated", names: shot.actuated });
+    if (shot.actuated && scene.actuators.length > 0) session.send({ type: "actuated", names: shot.actuated });
     if (shot.method && JSON.stringify(shot.method) !== JSON.stringify(scene.method)) session.send({ type: "method", ...shot.method });
     if (shot.playing === false) session.send({ type: "pause" });
     session.send({ type: "configuration", q: shot.q });

@@ -83,7 +83,7 @@ export class Session {
     try {
       message = JSON.parse(raw) as FromServer;
     } catch {
-      console.warn("the server sent something that is no JSON");
+      console.warn("the server sent invalid JSON");
       return;
     }
     if (message.type === "scene") {

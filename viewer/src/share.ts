@@ -15,7 +15,7 @@ export function snapshot(scene: Scene, state: State, overlays: Iterable<OverlayN
     frame: scene.frame,
     task: scene.task.name,
     method: scene.method,
-    ...(scene.drives.length > 0 ? { actuated: scene.drives.filter((d) => d.actuated).map((d) => d.name) } : {}),
+    ...(scene.actuators.length > 0 ? { actuated: scene.actuators.filter((d) => d.actuated).map((d) => d.name) } : {}),
     q: state.q,
     target: state.target,
     playing: state.playing,
@@ -45,7 +45,7 @@ export function parse(hash: string): Snapshot | string | null {
   const fields = new URLSearchParams(hash.slice(1));
   const model = fields.get("model");
   const q = numbers(fields.get("q"));
-  if (!model || !q) return "The address carries no configuration that can be read; the robot starts as it is.";
+  if (!model || !q) return "The address does not contain a valid configuration; the robot starts at its default.";
   const target = numbers(fields.get("target"), 7);
   const camera = numbers(fields.get("camera"), 6);
   const actuated = names(fields.get("actuated"));

@@ -1,16 +1,16 @@
-/** Closed chains: driven joints toggled one by one, the object dragged; numbers agree with the command line. */
+/** Closed chains: actuated joints toggled one by one, the object dragged; numbers agree with the command line. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { apart, browserOfFile, cylindroid, drag, moveTarget, openPanel, picture, scene, showOverlay, state, until, untilReached } from "./lib.mjs";
 
 const { visit } = browserOfFile();
 
-test("toggling drives of the five-bar shows the numbers of manipulability", () =>
+test("toggling actuated joints of the five-bar shows the numbers of manipulability", () =>
   visit(["five-bar"], async (page) => {
     await openPanel(page, "capability");
-    for (const [toggle, driven] of /** @type {[string, string][]} */ ([["", "q1,q2"], ["q5", "q1,q2,q5"], ["q2", "q1,q5"]])) {
-      if (toggle) await page.locator(`[data-drive="${toggle}"]`).click();
-      const wanted = await cylindroid("manipulability", "five-bar", "--actuated", driven);
+    for (const [toggle, actuated] of /** @type {[string, string][]} */ ([["", "q1,q2"], ["q5", "q1,q2,q5"], ["q2", "q1,q5"]])) {
+      if (toggle) await page.locator(`[data-actuator="${toggle}"]`).click();
+      const wanted = await cylindroid("manipulability", "five-bar", "--actuated", actuated);
       for (const kind of ["kinematic", "active_force", "passive_force"]) {
         const values = JSON.stringify(wanted[kind].finite);
         await page.waitForFunction(([name, text]) => {
@@ -21,8 +21,8 @@ test("toggling drives of the five-bar shows the numbers of manipulability", () =
         }, [kind, values]);
       }
     }
-    const drives = (await scene(page)).drives.filter((drive) => drive.actuated).map((drive) => drive.name);
-    assert.deepEqual(drives.sort(), ["q1", "q5"]);
+    const actuated = (await scene(page)).actuators.filter((actuator) => actuator.actuated).map((actuator) => actuator.name);
+    assert.deepEqual(actuated.sort(), ["q1", "q5"]);
     await picture(page, "five-bar-manipulability");
   }, { width: 1280, height: 720 }));
 
@@ -39,9 +39,9 @@ for (const [model, overlay, words] of /** @type {[string, string, RegExp][]} */ 
     }));
 }
 
-test("with one drive of the five-bar the object is free, and the page says so", () =>
+test("with one actuated joint of the five-bar the object is free, and the page says so", () =>
   visit(["five-bar"], async (page) => {
-    await page.locator('[data-drive="q2"]').click();
+    await page.locator('[data-actuator="q2"]').click();
     await until(page, 'state.servo.status === "unavailable"');
     const shown = await page.locator('[data-panel="pose"]').innerText();
     assert.ok(shown.includes((await state(page)).servo.sentence));

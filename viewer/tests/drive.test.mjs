@@ -1,4 +1,4 @@
-/** An arm is driven: by a slider, by its target, by the null space, by the keyboard; numbers agree with the command line. */
+/** An arm is moved: by a slider, by its target, by the null space, by the keyboard; numbers agree with the command line. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
@@ -75,7 +75,7 @@ test("a target typed in is reached; pause, play and reset", () =>
 test("the null-space slider moves the joints and holds the tool", () =>
   visit(["panda"], async (page) => {
     const before = await state(page);
-    const slider = page.getByLabel("Self-motion: rate");
+    const slider = page.getByLabel("Self-motion: share");
     await slider.focus();
     for (let i = 0; i < 4; i += 1) await page.keyboard.press("ArrowRight");
     await until(page, `state.servo.self_motion !== 0 && Math.max(...state.q.map((value, i) => Math.abs(value - [${before.q}][i]))) > 0.15`);
@@ -95,7 +95,7 @@ test("frame, task and inverse are chosen; the handle offers what the task minds"
     await untilNear(page, "state.tool.position", pose.position);
     await page.getByLabel("Task", { exact: true }).selectOption("position");
     await until(page, 'scene.task.components.join() === "x,y,z"');
-    assert.ok(await page.getByRole("button", { name: "Turn" }).isDisabled());
+    assert.ok(await page.getByRole("button", { name: "Rotate" }).isDisabled());
     await page.getByLabel("Inverse", { exact: true }).selectOption("damped");
     await enter(page.getByLabel("damping", { exact: true }), 0.07);
     await until(page, "scene.method.parameters.damping === 0.07");
@@ -106,7 +106,7 @@ test("two inverses side by side: one changes with the reference point, the hyper
     const panel = await openPanel(page, "compare");
     await panel.getByLabel("First inverse").selectOption("damped");
     await panel.locator("table").waitFor();
-    await page.waitForFunction(() => /damped: changes by/.test(document.querySelector('[data-panel="compare"]')?.textContent ?? ""));
+    await page.waitForFunction(() => /damped: depends on the point/.test(document.querySelector('[data-panel="compare"]')?.textContent ?? ""));
     assert.match(await panel.innerText(), /hyperbolic: does not change with the point/);
   }));
 

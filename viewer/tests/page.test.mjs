@@ -87,7 +87,7 @@ test("an address carries the configuration, overlays and camera; a foreign one i
       await until(page, "Math.abs(state.q[5] - 2.1) < 1e-9");
       await showOverlay(page, "joint-axes");
       await page.getByRole("button", { name: "top" }).click();
-      await page.getByRole("button", { name: /Copy an address/ }).click();
+      await page.getByRole("button", { name: /Copy a link/ }).click();
       await page.waitForFunction(() => location.hash.includes("q="));
       [address, q, camera] = [page.url(), (await state(page)).q, await eye(page)];
     });
@@ -97,7 +97,7 @@ test("an address carries the configuration, overlays and camera; a foreign one i
       assert.ok(apart(await eye(page), camera) < 1e-6);
     });
     await look(`${url}#model=ur5e&q=0,0,0,0,0,0`, (page) => page.getByText("The address is for ur5e").waitFor());
-    await look(`${url}#q=one,two`, (page) => page.getByText("no configuration that can be read").waitFor());
+    await look(`${url}#q=one,two`, (page) => page.getByText("does not contain a valid configuration").waitFor());
   }));
 
 /**
@@ -114,7 +114,7 @@ test("a browser without WebGL is told what is missing", () =>
     try {
       const page = await bare.newPage();
       await page.goto(url);
-      await page.getByText("The view cannot be drawn.").waitFor();
+      await page.getByText("The view cannot be displayed.").waitFor();
     } finally {
       await bare.close();
     }
@@ -132,18 +132,18 @@ test("everything is reached by the keyboard and has a name; the theme is kept", 
       await page.keyboard.press("Tab");
       reached.add(await page.evaluate(() => {
         const element = document.activeElement;
-        return element?.getAttribute("data-drive") ?? element?.getAttribute("data-joint") ?? element?.getAttribute("data-overlay") ?? element?.tagName ?? "";
+        return element?.getAttribute("data-actuator") ?? element?.getAttribute("data-joint") ?? element?.getAttribute("data-overlay") ?? element?.tagName ?? "";
       }));
     }
     for (const name of ["q1", "q5", "velocity-ellipsoid", "cylindroid", "CANVAS", "SUMMARY", "SELECT"]) assert.ok(reached.has(name), `${name} is not reached by Tab: ${[...reached]}`);
 
     const theme = () => page.evaluate(() => document.documentElement.dataset["theme"]);
     assert.equal(await theme(), "light");
-    assert.ok((await drawnColours(page)).has("35495e"), "driven joints as the style sheet has them by day");
+    assert.ok((await drawnColours(page)).has("35495e"), "actuated joints as the style sheet has them by day");
     await page.getByRole("button", { name: /^Theme/ }).click();
     await page.getByRole("button", { name: "Theme: light" }).click();
     assert.equal(await theme(), "dark");
-    assert.ok((await drawnColours(page)).has("3f6686"), "driven joints as the style sheet has them by night");
+    assert.ok((await drawnColours(page)).has("3f6686"), "actuated joints as the style sheet has them by night");
     await page.reload();
     await page.waitForFunction(() => document.documentElement.dataset["theme"] === "dark");
   }));

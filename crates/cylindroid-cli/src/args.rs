@@ -1,4 +1,4 @@
-//! The command line as plain data; what it means is worked out in `commands`.
+//! The command line as plain data, interpreted in `commands`.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -30,66 +30,67 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --plot move.svg
   cylindroid screws youbot
 
-Exit codes: 0 done, 1 a negative answer (a target not reached, loops or a grasp not closed), 2 an error.";
+Exit codes: 0 success, 1 negative answer (target not reached, loops or grasp not closed), 2 error.";
 
-/// Moves robots in Cartesian space and tells what they can do.
+/// Computes the kinematics and capabilities of robots and mechanisms, and controls them in
+/// Cartesian space.
 ///
-/// SI units and radians everywhere: lengths in m, angles in rad, times in s. Twists and the rows of
-/// Jacobians are linear first. A <MODEL> is a file (.urdf, .xml of MuJoCo, .sdf, .toml) or a
-/// name of the catalogue (`cylindroid models`).
+/// All quantities are in SI units and radians. Twists and rows of Jacobians have the linear part
+/// first. A <MODEL> is a file (.urdf, .xml of MuJoCo, .sdf, .toml) or a catalogue name
+/// (`cylindroid models`).
 #[derive(Debug, Parser)]
 #[command(name = "cylindroid", version, after_help = EXAMPLES, max_term_width = 100)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 
-    /// Print one JSON object, numbers in full, instead of tables (infinite numbers are null)
+    /// Print one JSON object with full precision instead of tables (infinite values are null)
     #[arg(long, global = true)]
     pub(crate) json: bool,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// List the catalogue: robots that can be loaded by name
+    /// List the built-in robots, which can be loaded by name
     Models,
-    /// Show what a model is: tree, joints and their limits, frames, what the loader ignored
+    /// Show a model: tree, joints and their limits, frames, elements ignored by the loader
     Info(InfoArgs),
     /// Forward kinematics: the pose of a frame, world_from_frame
     Fk(FkArgs),
     /// The Jacobian of a frame, its singular values and rank
     Jacobian(JacobianArgs),
-    /// Inverse kinematics: configurations that put a frame at a target, within all limits
+    /// Inverse kinematics: configurations that bring a frame to a target, within all limits
     #[command(long_about = ik::ABOUT, after_long_help = ik::EXAMPLES)]
     Ik(Box<IkArgs>),
-    /// Cartesian control: drive a frame to a target and say whether and how it got there
+    /// Cartesian control: move a frame to a target and report whether and how it was reached
     #[command(long_about = move_to::ABOUT, after_long_help = move_to::EXAMPLES)]
     Move(Box<MoveArgs>),
     /// The screw system of the joints: class, pitches, frame, and which inverses exist
     #[command(long_about = screws::ABOUT, after_long_help = screws::EXAMPLES)]
     Screws(Box<ScrewsArgs>),
-    /// Close the loops of a mechanism from a guess, within its position limits
+    /// Close the loops of a mechanism from an initial guess, within its position limits
     #[command(long_about = closed::ASSEMBLE, after_long_help = closed::ASSEMBLE_EXAMPLES)]
     Assemble(Box<AssembleArgs>),
-    /// Mobility of a mechanism: how it can move, what is redundant, idle or held twice
+    /// Mobility of a mechanism: degrees of freedom, redundant and idle motions, overconstraint
     #[command(long_about = closed::MOBILITY, after_long_help = closed::MOBILITY_EXAMPLES)]
     Mobility(Box<ClosedArgs>),
-    /// How well motion and force go from the driven joints to the reference frame
+    /// Manipulability: transmission of motion and force from actuated joints to a reference frame
     #[command(long_about = closed::MANIPULABILITY, after_long_help = closed::MANIPULABILITY_EXAMPLES)]
     Manipulability(Box<ManipulabilityArgs>),
-    /// Joint torques that hold a wrench, and the forces in loops and contacts
+    /// Statics: joint torques that balance a wrench, and the forces in loops and contacts
     #[command(long_about = closed::STATICS, after_long_help = closed::STATICS_EXAMPLES)]
     Statics(Box<StaticsArgs>),
-    /// Force closure of the contacts on an object, and its quality
+    /// Force closure of the contacts on an object, and grasp quality
     #[command(long_about = closed::GRASP, after_long_help = closed::GRASP_EXAMPLES)]
     Grasp(Box<GraspArgs>),
-    /// The web viewer: see a model, drag its tool or object, and watch its measures
+    /// The web viewer: display a model, drag its tool or object, and monitor its measures
     #[command(long_about = view::ABOUT, after_long_help = view::EXAMPLES)]
     View(Box<ViewArgs>),
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// A model file or a name of the catalogue
+    /// Model file or catalogue name
     pub(crate) model: String,
 }
 

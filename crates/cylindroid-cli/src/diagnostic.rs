@@ -1,4 +1,4 @@
-//! Errors on stderr: a broken file with its line underlined, everything else as one paragraph.
+//! Errors on stderr: file errors with the line underlined, others as one paragraph.
 
 use std::fmt;
 use std::fs;
@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use cylindroid::{Error, FileError};
 use miette::{Diagnostic, LabeledSpan, NamedSource, Report, SourceCode};
 
-/// Prints an error, if anybody reads it.
+/// Prints an error; failures of stderr are ignored.
 pub(crate) fn print(error: &anyhow::Error) {
     let mut out = io::stderr();
     let _ = match error.downcast_ref::<Error>() {
@@ -16,7 +16,7 @@ pub(crate) fn print(error: &anyhow::Error) {
     };
 }
 
-/// True if the reader of our output has gone away, as `head` does: not an error.
+/// True if the reader closed the pipe, as `head` does; not an error.
 pub(crate) fn is_closed_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| {
         cause
@@ -29,7 +29,7 @@ pub(crate) fn is_closed_pipe(error: &anyhow::Error) -> bool {
 #[derive(Debug)]
 struct Underlined {
     error: FileError,
-    /// The file as the loader read it; `None` if it is gone by now.
+    /// The text of the file; `None` if it can no longer be read.
     source: Option<NamedSource<String>>,
 }
 

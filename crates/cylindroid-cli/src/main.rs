@@ -1,6 +1,7 @@
-//! `cylindroid`: moves robots in Cartesian space and tells what they can do.
+//! `cylindroid`: kinematics, Cartesian control, screw systems and closed chains of robots.
 //!
-//! Parse, run, exit code: 0 done, 1 a negative answer, 2 an error. A closed pipe is a success.
+//! Parses, runs, returns the exit code: 0 success, 1 negative answer, 2 error. A closed pipe counts
+//! as success.
 
 mod args;
 mod commands;
@@ -44,7 +45,7 @@ fn run() -> anyhow::Result<ExitCode> {
     let cli = match Cli::try_parse_from(words) {
         Ok(cli) => cli,
         Err(message) => {
-            // Help and version are no errors and go to stdout; clap knows.
+            // clap prints help and version to stdout with exit code 0.
             message.print()?;
             return Ok(ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(ERROR)));
         }

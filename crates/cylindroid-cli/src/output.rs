@@ -1,4 +1,4 @@
-//! What commands print: numbers of six digits in aligned tables, or one JSON object.
+//! Output of the commands: aligned tables with six significant digits, or one JSON object.
 
 use std::io::{self, Write};
 
@@ -9,14 +9,14 @@ use cylindroid::spatial::{Quaternion, Rpy};
 use cylindroid::{Matrix, Mechanism, Pose};
 use serde::Serialize;
 
-/// Writes one JSON object, numbers in full; what is infinite becomes `null`.
+/// Writes one JSON object with full precision; infinite values become `null`.
 pub(crate) fn json(out: &mut dyn Write, value: &impl Serialize) -> anyhow::Result<()> {
-    // By way of a string: the error of a closed pipe then stays an `io::Error`.
+    // Via a string, so that the error of a closed pipe remains an `io::Error`.
     writeln!(out, "{}", serde_json::to_string_pretty(value)?)?;
     Ok(())
 }
 
-/// Six significant digits, "-" for what is infinite or unknown.
+/// Six significant digits; "-" for infinite or unknown values.
 pub(crate) fn number(x: f64) -> String {
     if x.is_infinite() {
         return "-".to_owned();
@@ -38,12 +38,12 @@ fn trim_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// The columns of a matrix, a list each.
+/// The columns of a matrix as lists.
 pub(crate) fn columns(m: &Matrix) -> Vec<Vec<f64>> {
     (0..m.cols()).map(|j| m.column(j).to_vec()).collect()
 }
 
-/// A configuration or a quaternion: as [`list`], rounding shown as 0.
+/// A configuration or a quaternion, as [`list`], with rounding errors shown as 0.
 pub(crate) fn entries(values: &[f64]) -> String {
     values.iter().map(|x| quiet(*x)).collect::<Vec<_>>().join(", ")
 }
@@ -53,14 +53,14 @@ pub(crate) fn list(values: &[f64]) -> String {
     values.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ")
 }
 
-/// How a column stands.
+/// Alignment of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Align {
     Left,
     Right,
 }
 
-/// A table without frame; the columns are named with their units.
+/// A table without borders; column titles include the units.
 pub(crate) fn table(
     out: &mut dyn Write,
     columns: &[(&str, Align)],
@@ -82,7 +82,7 @@ pub(crate) fn table(
     writeln!(out, "{}", table.trim_fmt())
 }
 
-/// Names and values, one pair a line; the values aligned, and wrapped at `WIDTH`.
+/// Names and values, one pair per line; values are aligned, and wrapped at `WIDTH`.
 pub(crate) fn pairs(
     out: &mut dyn Write,
     rows: impl IntoIterator<Item = (&'static str, String)>,
@@ -99,10 +99,10 @@ pub(crate) fn pairs(
     Ok(())
 }
 
-/// The widest line of running text.
+/// Maximum width of running text.
 const WIDTH: usize = 98;
 
-/// Lines of running text, at most this many characters wide.
+/// Wraps running text to this width [characters].
 pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
@@ -120,15 +120,15 @@ pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// A screw, seen from the world.
+/// A screw in the world frame.
 #[derive(Debug, Serialize)]
 pub(crate) struct ScrewJson {
-    /// Point of the axis nearest to the origin; null for a translation.
+    /// Point of the axis closest to the origin; null for a translation.
     point: Option<[f64; 3]>,
     direction: [f64; 3],
     /// [m/rad]; null for a translation.
     pitch: f64,
-    /// [rad/s], of a translation [m/s].
+    /// [rad/s]; for a translation [m/s].
     amplitude: f64,
 }
 
@@ -176,21 +176,21 @@ pub(crate) fn pose_cells(pose: Pose) -> Vec<String> {
     [p.x, p.y, p.z, roll, pitch, yaw].map(quiet).to_vec()
 }
 
-/// [`number`] for entries of poses and matrices, whose size is of the order of 1: rounding is
-/// shown as 0 (JSON has it).
+/// [`number`] for entries of poses and matrices of order 1: rounding errors are shown as 0 (JSON
+/// has the full value).
 fn quiet(x: f64) -> String {
     number(without_rounding(x))
 }
 
-/// Zero for what is rounding beside numbers of the order of 1.
+/// Replaces rounding errors of quantities of order 1 by zero.
 pub(crate) fn without_rounding(x: f64) -> f64 {
     if x.abs() < ROUNDING { 0.0 } else { x }
 }
 
-/// Entries below this are rounding [m, rad].
+/// Smaller entries are rounding errors [m, rad].
 const ROUNDING: f64 = 1e-12;
 
-/// What a mimic joint follows, in JSON.
+/// The joint followed by a mimic joint, in JSON.
 #[derive(Debug, Serialize)]
 pub(crate) struct MimicJson<'a> {
     joint: &'a str,
@@ -243,12 +243,12 @@ pub(crate) fn joint_names(robot: &Mechanism) -> Vec<&str> {
     robot.coordinates().iter().map(|c| c.name.as_str()).collect()
 }
 
-/// The names of the coordinates that are outside their position limits.
+/// The names of the coordinates outside their position limits.
 pub(crate) fn outside_limits<'a>(robot: &'a Mechanism, q: &'a [f64]) -> Vec<&'a str> {
     robot.outside_limits(q).map(|i| robot.coordinates()[i].name.as_str()).collect()
 }
 
-/// A sentence for tables where a configuration is outside the limits, else nothing.
+/// A note for tables if a configuration is outside the limits, otherwise empty.
 pub(crate) fn outside_note(names: &[&str]) -> String {
     if names.is_empty() {
         return String::new();

@@ -1,4 +1,4 @@
-//! The motion of `move`, step by step, as CSV or JSON.
+//! The trajectory of `move`, step by step, as CSV or JSON.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::output;
 
-/// A motion.
+/// A trajectory.
 #[derive(Debug, Serialize)]
 pub(crate) struct Trajectory {
     pub(crate) model: String,
@@ -21,7 +21,7 @@ pub(crate) struct Trajectory {
     pub(crate) samples: Vec<Row>,
 }
 
-/// One instant.
+/// One sample.
 #[derive(Debug, Serialize)]
 pub(crate) struct Row {
     /// [s]
@@ -48,7 +48,7 @@ pub(crate) enum Format {
     Json,
 }
 
-/// The format that the name of a file asks for.
+/// The format given by the extension of a file.
 pub(crate) fn format_of(path: &Path) -> Result<Format> {
     match path.extension().and_then(|e| e.to_str()) {
         Some("csv") => Ok(Format::Csv),
@@ -72,7 +72,7 @@ impl Trajectory {
         }
     }
 
-    /// Forgets what was kept.
+    /// Removes all samples.
     pub(crate) fn clear(&mut self) {
         self.samples.clear();
     }
@@ -92,7 +92,7 @@ impl Trajectory {
         });
     }
 
-    /// Writes all of it.
+    /// Writes all samples.
     pub(crate) fn write(&self, path: &Path, format: Format) -> Result<()> {
         let written = File::create(path).and_then(|file| {
             let mut file = BufWriter::new(file);

@@ -1,4 +1,4 @@
-//! The values that users type: lists of numbers, configurations, names with a number.
+//! Parsing of argument values: lists of numbers, configurations, names with a number.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -19,16 +19,16 @@ impl<const N: usize> FromStr for Numbers<N> {
         let list = numbers(text)?;
         list.try_into().map(Self).map_err(|list: Vec<f64>| {
             let given = list.len();
-            format!("{given} number{} where {N} are needed", if given == 1 { "" } else { "s" })
+            format!("{given} number{} given, {N} expected", if given == 1 { "" } else { "s" })
         })
     }
 }
 
-/// One number, or one for the linear and one for the angular part.
+/// One number, or two for the linear and the angular part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pair {
     pub(crate) linear: f64,
-    /// `None` where one number was given.
+    /// `None` if one number was given.
     pub(crate) angular: Option<f64>,
 }
 
@@ -39,7 +39,7 @@ impl FromStr for Pair {
         match numbers(text)?[..] {
             [linear] => Ok(Self { linear, angular: None }),
             [linear, angular] => Ok(Self { linear, angular: Some(angular) }),
-            ref list => Err(format!("{} numbers where one or two are needed", list.len())),
+            ref list => Err(format!("{} numbers given, one or two expected", list.len())),
         }
     }
 }
@@ -77,7 +77,7 @@ impl FromStr for Weights {
     }
 }
 
-/// Intervals `1.5,-2:3,...`: a number alone holds both ways.
+/// Intervals `1.5,-2:3,...`; a single number is a symmetric bound.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Intervals(pub(crate) Vec<Interval>);
 
@@ -122,7 +122,7 @@ impl ByName {
         self.named.iter().rev().find(|(n, _)| n == name).map(|(_, x)| *x).or(self.all)
     }
 
-    /// Refuses names that are not among `known`.
+    /// Rejects names that are not among `known`.
     pub(crate) fn check(&self, what: &'static str, known: &[&str]) -> cylindroid::Result<()> {
         match self.named.iter().find(|(name, _)| !known.contains(&name.as_str())) {
             Some((name, _)) => Err(Error::unknown(what, name, known)),
@@ -131,7 +131,7 @@ impl ByName {
     }
 }
 
-/// A configuration or a list of rates, one number for each coordinate.
+/// A configuration or joint velocities, one number per coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Joints {
     /// `home`
@@ -140,7 +140,7 @@ pub(crate) enum Joints {
     Zero,
     /// All numbers, in the order of `info`.
     All(Vec<f64>),
-    /// `name=value,...`, the rest as at home.
+    /// `name=value,...`; the other coordinates as at home.
     Some(Vec<(String, f64)>),
 }
 
@@ -160,7 +160,7 @@ impl FromStr for Joints {
 }
 
 impl Joints {
-    /// The configuration that is meant; angles are read as degrees where `degrees` is set.
+    /// The configuration; angles are in degrees if `degrees` is set.
     pub(crate) fn configuration(
         &self,
         robot: &Mechanism,
@@ -169,7 +169,7 @@ impl Joints {
         self.resolve(robot, degrees, robot.home())
     }
 
-    /// The rates that are meant: those that are not named are zero.
+    /// The joint velocities; those not named are zero.
     pub(crate) fn rates(&self, robot: &Mechanism, degrees: bool) -> cylindroid::Result<Vec<f64>> {
         self.resolve(robot, degrees, &vec![0.0; robot.n()])
     }
@@ -279,7 +279,7 @@ fn number(text: &str) -> Result<f64, String> {
     })
 }
 
-/// Joins what a shell has split after a comma: `--to 0.4, 0.1, 0.2` is one list.
+/// Joins arguments split after a comma: `--to 0.4, 0.1, 0.2` is one list.
 pub(crate) fn join_after_commas(words: impl IntoIterator<Item = String>) -> Vec<String> {
     let mut joined: Vec<String> = Vec::new();
     for word in words {
@@ -305,7 +305,7 @@ mod tests {
     #[test]
     fn numbers_say_what_is_wrong() {
         let refused = |text: &str| text.parse::<Numbers<3>>().unwrap_err();
-        assert_eq!(refused("1,2"), "2 numbers where 3 are needed");
+        assert_eq!(refused("1,2"), "2 numbers given, 3 expected");
         assert_eq!(refused("1,,3"), "a number is missing between two commas");
         assert_eq!(refused("1,x,3"), "'x' is not a number");
     }

@@ -30,8 +30,8 @@ export class Bar {
     this.record.setAttribute("aria-pressed", "false");
     this.saves = h(
       "span", { class: "group" },
-      h("button", { class: "button", type: "button", onclick: () => actions.save("json"), "aria-label": "Save the record as JSON" }, "JSON"),
-      h("button", { class: "button", type: "button", onclick: () => actions.save("csv"), "aria-label": "Save the record as CSV" }, "CSV"),
+      h("button", { class: "button", type: "button", onclick: () => actions.save("json"), "aria-label": "Save the recording as JSON" }, "JSON"),
+      h("button", { class: "button", type: "button", onclick: () => actions.save("csv"), "aria-label": "Save the recording as CSV" }, "CSV"),
     );
     this.saves.hidden = true;
     bar.append(
@@ -44,7 +44,7 @@ export class Bar {
       this.record,
       this.saves,
       button("Save a picture", "picture", actions.picture, "PNG"),
-      button("Copy an address of this configuration", "share", actions.share, "Link"),
+      button("Copy a link to this configuration", "share", actions.share, "Link"),
       this.themeButton,
       this.status,
     );
@@ -75,7 +75,7 @@ export class Bar {
 
   link(link: Link): void {
     this.status.dataset["state"] = link;
-    text(this.status, { open: "connected", connecting: "connecting", lost: "no server" }[link]);
+    text(this.status, { open: "connected", connecting: "connecting", lost: "disconnected" }[link]);
   }
 
   recorded(recording: boolean, states: number): void {
@@ -90,7 +90,7 @@ export class Bar {
 
   private paint(): void {
     const now = theme();
-    const label = { system: "Theme: as the system", light: "Theme: light", dark: "Theme: dark" }[now];
+    const label = { system: "Theme: system", light: "Theme: light", dark: "Theme: dark" }[now];
     this.themeButton.title = label;
     this.themeButton.setAttribute("aria-label", label);
     fill(this.themeButton, icon(now));

@@ -1,8 +1,8 @@
-/** A slider for each coordinate, with limits and unit; a driven switch where loops leave the choice. */
+/** A slider for each coordinate, with limits and unit; and for closed chains a switch for each joint that can be actuated. */
 import { fill, h } from "../dom";
 import { fixed, plain } from "../format";
 import { panel } from "../panels/panel";
-import type { Coordinate, Drive, Scene, State } from "../protocol";
+import type { Coordinate, Actuator, Scene, State } from "../protocol";
 import type { Session } from "../session";
 
 /** Where the file gives no limit a slider still needs an end (rad, or share of the reach). */
@@ -25,27 +25,27 @@ export class Joints {
   }
 
   build(scene: Scene): void {
-    const drives = new Map(scene.drives.map((drive) => [drive.name, drive]));
+    const actuators = new Map(scene.actuators.map((actuator) => [actuator.name, actuator]));
     const placed = new Set<string>();
     this.rows = scene.coordinates.map((coordinate) => {
       const joint = scene.joints[coordinate.joint]?.name ?? coordinate.name;
-      const drive = placed.has(joint) ? undefined : drives.get(joint);
+      const actuator = placed.has(joint) ? undefined : actuators.get(joint);
       placed.add(joint);
-      return this.row(scene, coordinate, drive);
+      return this.row(scene, coordinate, actuator);
     });
-    const closing = scene.drives.filter((drive) => !placed.has(drive.name));
+    const closing = scene.actuators.filter((actuator) => !placed.has(actuator.name));
     const split = scene.closed && scene.coordinates.length > 12;
-    const driven = this.rows.filter((_, i) => !split || scene.coordinates[i]?.actuated);
+    const actuated = this.rows.filter((_, i) => !split || scene.coordinates[i]?.actuated);
     const passive = this.rows.filter((_, i) => split && !scene.coordinates[i]?.actuated);
     const hidden = (this.list.querySelector("details.more") as HTMLDetailsElement | null)?.open ?? false;
     const more = h("details", { class: "more" }, h("summary", {}, `${passive.length} passive coordinates`), ...passive.map((row) => row.element));
     more.open = hidden;
     fill(
       this.list,
-      scene.coordinates.length === 0 && h("p", { class: "empty" }, "This model has no joint that moves."),
-      scene.drives.length > 0 && h("p", { class: "note" }, "The switch before a name says whether the joint is driven."),
-      ...driven.map((row) => row.element),
-      ...closing.map((drive) => h("div", { class: "joint" }, this.driveSwitch(scene, drive), h("span", { class: "note" }, "closes a loop"))),
+      scene.coordinates.length === 0 && h("p", { class: "empty" }, "This model has no movable joint."),
+      scene.actuators.length > 0 && h("p", { class: "note" }, "The switch before a name selects the joint as actuated."),
+      ...actuated.map((row) => row.element),
+      ...closing.map((actuator) => h("div", { class: "joint" }, this.actuatorSwitch(scene, actuator), h("span", { class: "note" }, "loop-closure joint"))),
       passive.length > 0 && more,
     );
     this.panel.note(`${scene.coordinates.length} coordinates`);
@@ -72,7 +72,7 @@ export class Joints {
     if (scene && state) this.show(scene, state);
   }
 
-  private row(scene: Scene, coordinate: Coordinate, drive: Drive | undefined): Row {
+  private row(scene: Scene, coordinate: Coordinate, actuator: Actuator | undefined): Row {
     const { name, unit, adjustable } = coordinate;
     const free = unit === "rad" ? FREE_TURN : scene.reach;
     const [low, high] = [coordinate.lower ?? -free, coordinate.upper ?? free];
@@ -80,7 +80,7 @@ export class Joints {
     const field = h("input", { type: "number", class: "field", step: "any", disabled: !adjustable, "aria-label": `${name} as a number [${unit}]` });
     if (coordinate.lower !== null) field.min = String(low);
     if (coordinate.upper !== null) field.max = String(high);
-    const label = drive ? this.driveSwitch(scene, drive, name) : h("span", { class: "name", title: name }, name);
+    const label = actuator ? this.actuatorSwitch(scene, actuator, name) : h("span", { class: "name", title: name }, name);
     const element = h(
       "div", { class: "joint" },
       label,
@@ -107,15 +107,15 @@ export class Joints {
     return row;
   }
 
-  /** The whole set goes to the server: what is driven is one choice. */
-  private driveSwitch(scene: Scene, drive: Drive, shown = drive.name): HTMLElement {
-    const box = h("input", { type: "checkbox", class: "switch", role: "switch", "aria-label": `${drive.name} driven`, "data-drive": drive.name });
-    box.checked = drive.actuated;
+  /** The whole set goes to the server: the actuated joints are chosen together. */
+  private actuatorSwitch(scene: Scene, actuator: Actuator, shown = actuator.name): HTMLElement {
+    const box = h("input", { type: "checkbox", class: "switch", role: "switch", "aria-label": `${actuator.name} actuated`, "data-actuator": actuator.name });
+    box.checked = actuator.actuated;
     box.addEventListener("change", () => {
-      const names = scene.drives.filter((other) => (other.name === drive.name ? box.checked : other.actuated)).map((other) => other.name);
+      const names = scene.actuators.filter((other) => (other.name === actuator.name ? box.checked : other.actuated)).map((other) => other.name);
       this.session.send({ type: "actuated", names });
     });
-    return h("label", { class: "drive" }, box, h("span", { class: "name", title: shown }, shown));
+    return h("label", { class: "actuator" }, box, h("span", { class: "name", title: shown }, shown));
   }
 
   private buildSelfMotion(scene: Scene): void {
@@ -125,7 +125,7 @@ export class Joints {
       return;
     }
     const which = h("select", { class: "select", "aria-label": "Which self-motion" }, ...Array.from({ length: scene.self_motions }, (_, i) => h("option", { value: i }, `motion ${i + 1}`)));
-    const slider = h("input", { type: "range", min: -1, max: 1, step: "any", "aria-label": "Self-motion: rate as a share of the fastest" });
+    const slider = h("input", { type: "range", min: -1, max: 1, step: "any", "aria-label": "Self-motion: share of the maximum speed" });
     const send = (): void => this.session.sendSoon("null_space", { type: "null_space", rate: slider.valueAsNumber, index: Number(which.value) });
     const rest = (): void => {
       setSlider(slider, 0);
@@ -142,10 +142,10 @@ export class Joints {
     this.selfSlider = slider;
     fill(
       this.selfMotion,
-      h("h3", {}, "Self-motion with the tool at rest"),
+      h("h3", {}, "Self-motion (null space)"),
       h("div", { class: "row" }, scene.self_motions > 1 && which),
       slider,
-      h("p", { class: "note" }, "Null space of the task: hold it off the middle to move, let go to stop."),
+      h("p", { class: "note" }, "Joint motion with the tool at rest: drag the slider to move, release it to stop."),
     );
   }
 }

@@ -1,4 +1,4 @@
-/** What the servo drives and how: frame, components, inverse. */
+/** The servo: controlled frame, task components, inverse. */
 import { fill, h } from "../dom";
 import { panel } from "../panels/panel";
 import type { ChosenMethod, Method, Scene, State } from "../protocol";
@@ -6,10 +6,10 @@ import type { Session } from "../session";
 import { TargetFields } from "./target_fields";
 
 const TASKS: [string, string][] = [
-  ["pose", "whole pose"],
-  ["position", "position alone"],
-  ["orientation", "orientation alone"],
-  ["pointing", "place and pointing"],
+  ["pose", "full pose"],
+  ["position", "position only"],
+  ["orientation", "orientation only"],
+  ["pointing", "position and pointing direction"],
 ];
 const PITCH = 0.1;
 
@@ -43,7 +43,7 @@ export class ServoControls {
       ),
       chosen && this.parameters(chosen, method),
       scene.methods.some((other) => !other.servo) &&
-        h("p", { class: "note" }, "Hyperbolic inverses need a task of all six components; Compare has them always."),
+        h("p", { class: "note" }, "Hyperbolic inverses require a task of all six components; Compare always offers them."),
     );
   }
 
@@ -94,7 +94,7 @@ export class ServoControls {
       method.pitch && field("pitch h [m/rad]", "Pitch of the form", pitch, (value) => {
         pitch = value;
       }),
-      method.pitch && now.fallback && h("p", { class: "note" }, `Where it does not exist: ${now.fallback}`),
+      method.pitch && now.fallback && h("p", { class: "note" }, `Fallback if it does not exist: ${now.fallback}`),
     );
   }
 }

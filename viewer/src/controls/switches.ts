@@ -30,7 +30,7 @@ export class Switches {
     fill(
       this.panel.body,
       ...rows,
-      rows.length === 0 && h("p", { class: "empty" }, "Nothing can be drawn over this model."),
+      rows.length === 0 && h("p", { class: "empty" }, "No overlays are available for this model."),
       hasShapes && row(this.shapes, "body-2", "Shapes of the model", "m; off: rods and joints"),
     );
   }

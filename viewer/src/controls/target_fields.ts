@@ -1,4 +1,4 @@
-/** The target's position as numbers: the handle for those who do not drag. */
+/** The target's position as number fields, an alternative to dragging. */
 import { h } from "../dom";
 import { plain } from "../format";
 import type { State, Vec3 } from "../protocol";
@@ -10,7 +10,7 @@ export class TargetFields {
 
   constructor(private readonly session: Session) {
     this.fields = ["x", "y", "z"].map((name, i) =>
-      h("input", { class: "field", type: "number", step: "any", "aria-label": `Target ${name} in world (m)`, "data-target": name, onchange: () => this.send(i) }),
+      h("input", { class: "field", type: "number", step: "any", "aria-label": `Target ${name} in the world frame (m)`, "data-target": name, onchange: () => this.send(i) }),
     );
     this.element = h("div", { class: "line" }, h("span", { class: "note" }, "Target [m]"), h("span", { class: "three" }, ...this.fields));
   }

@@ -9,7 +9,7 @@ const VIEWS: View[] = ["corner", "front", "side", "top"];
 
 export class Tools {
   private readonly modes = h("span", { class: "group", role: "group", "aria-label": "Handle" });
-  private readonly handles = h("span", { class: "group", role: "group", "aria-label": "What is dragged" });
+  private readonly handles = h("span", { class: "group", role: "group", "aria-label": "Dragged handle" });
   private readonly space: HTMLButtonElement;
   private hasPoint = false;
   private inTool = false;
@@ -21,7 +21,7 @@ export class Tools {
       h("span", { class: "float-row" }, this.modes, this.space, this.handles),
       h(
         "span", { class: "float-row" },
-        h("span", { class: "group", role: "group", "aria-label": "Look from" }, ...VIEWS.map((view) => h("button", { class: "button small", type: "button", onclick: () => stage.view(view) }, view))),
+        h("span", { class: "group", role: "group", "aria-label": "View direction" }, ...VIEWS.map((view) => h("button", { class: "button small", type: "button", onclick: () => stage.view(view) }, view))),
         h("button", { class: "button small", type: "button", title: "Show all (F)", "aria-label": "Show all", onclick: fit }, icon("fit")),
       ),
     );
@@ -63,7 +63,7 @@ export class Tools {
   private paint(): void {
     const modes: [Mode, "move" | "rotate", string, boolean][] = [
       ["translate", "move", "Move (W)", true],
-      ["rotate", "rotate", "Turn (E)", this.turns],
+      ["rotate", "rotate", "Rotate (E)", this.turns],
     ];
     fill(this.modes, ...modes.map(([mode, name, label, there]) =>
       h("button", { class: "button small", type: "button", "aria-pressed": String(this.target.mode === mode), disabled: !there, title: label, onclick: () => this.setMode(mode) }, icon(name), label.split(" ")[0] ?? "")));

@@ -19,6 +19,6 @@ type Full<K extends OverlayName> = Exclude<OverlayData[K], { empty: string }>;
 export type Overlay<K extends OverlayName> = {
   colour: string;
   draw: (group: Group, data: Full<K>, context: Context) => void;
-  /** What the legend says of the numbers, in a few words. */
+  /** A short legend with the values. */
   words: (data: Full<K>) => string;
 };

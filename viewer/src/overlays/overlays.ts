@@ -90,7 +90,7 @@ export class Overlays {
 function drawOne<K extends OverlayName>(name: K, group: Group, context: Context): string {
   const overlay = ALL[name];
   const data = context.state.overlays[name];
-  if (!data) return "on its way";
+  if (!data) return "loading";
   if (isEmpty(data)) return data.empty;
   const full = data as Parameters<typeof overlay.draw>[1];
   overlay.draw(group, full, context);

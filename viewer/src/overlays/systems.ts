@@ -31,7 +31,7 @@ export const jointAxes = {
       if (data.axes.length <= 12) context.label({ text: name.slice(start), at: end, colour: "c-axes" });
     }
   },
-  words: (data: JointAxes) => `${count(data.axes.length, "axis", "axes")}; passive ones are paler`,
+  words: (data: JointAxes) => `${count(data.axes.length, "axis", "axes")}; passive joints are paler`,
 };
 
 export const principalScrews = {
@@ -50,7 +50,7 @@ export const principalScrews = {
   },
   words(data: PrincipalScrews): string {
     const pitches = data.principal_pitches.map((pitch) => fixed(pitch, 3)).join(", ");
-    return `order ${data.order}, class ${data.gibson_hunt}${pitches ? `; pitches ${pitches} m/rad` : ""}${data.ambiguous ? "; close call" : ""}`;
+    return `order ${data.order}, class ${data.gibson_hunt}${pitches ? `; pitches ${pitches} m/rad` : ""}${data.ambiguous ? "; ambiguous" : ""}`;
   },
 };
 

@@ -1,4 +1,4 @@
-/** Manipulability in numbers: the efficiencies that the command line prints. */
+/** Manipulability: the efficiencies printed by the command line. */
 import { fill, h } from "../dom";
 import { short } from "../format";
 import { empty, numbers, pairs, panel } from "./panel";
@@ -30,7 +30,7 @@ export function capabilityPanel(): Watch {
       const measures = objectIn(report, "measures");
       fill(
         made.body,
-        h("h3", {}, "Efficiencies, squared output over input"),
+        h("h3", {}, "Efficiencies (squared output / input)"),
         numbers("Efficiencies", ["", ...parts.map((part) => part.words)], rows),
         h("h3", {}, "Measures"),
         numbers("Measures", ["", "motion", "force"], MEASURES.map((key) => [key, ...["kinematic", "force"].map((side) => short(numberIn(objectIn(measures, side), key), 4))])),

@@ -27,7 +27,7 @@ export class Compare {
       "div", {},
       h("p", { class: "pair" }, this.first, this.second),
       this.pitchRow,
-      h("h3", {}, "Reference point in world [m], also a handle in the view"),
+      h("h3", {}, "Reference point in the world frame [m]; can be dragged in the view"),
       h("p", { class: "three" }, ...this.fields),
     );
     this.panel.body.append(this.form, this.result);
@@ -47,7 +47,7 @@ export class Compare {
     this.form.hidden = scene.closed;
     if (scene.closed) {
       this.point = null;
-      fill(this.result, empty("For arms: the inverses of closed chains are not compared."));
+      fill(this.result, empty("For serial arms and trees only; inverses of closed chains are not compared."));
       this.pointMoved(null);
       return;
     }
@@ -115,15 +115,15 @@ export class Compare {
     );
     fill(
       this.result,
-      h("h3", {}, "Joint rates [rad/s, m/s] for one motion, taken at tool and point"),
-      h("div", { class: "scroll" }, h("table", { class: "numbers" }, h("caption", { class: "hidden-label" }, "Joint rates by both inverses"), h("thead", {}, head, under), h("tbody", {}, ...rows))),
+      h("h3", {}, "Joint velocities [rad/s, m/s] for the same motion, at the tool and at the point"),
+      h("div", { class: "scroll" }, h("table", { class: "numbers" }, h("caption", { class: "hidden-label" }, "Joint velocities of both inverses"), h("thead", {}, head, under), h("tbody", {}, ...rows))),
       ...results.map((result) =>
         h("p", {}, h("b", {}, `${result.method.replaceAll("-", " ")}: `),
           !result.exists ? h("span", { class: "verdict bad" }, "does not exist") :
-          result.invariant ? h("span", { class: "verdict good" }, "does not change with the point") :
-          h("span", { class: "verdict bad" }, `changes by ${short(result.difference)}`),
+          result.invariant ? h("span", { class: "verdict good" }, "independent of the point") :
+          h("span", { class: "verdict bad" }, `depends on the point: difference ${short(result.difference)}`),
           result.reason ? h("span", { class: "note" }, ` ${result.reason}`) : null)),
-      h("p", { class: "note" }, `Motion asked of the tool, at the tool, world axes: v ${triple(comparison.twist.slice(0, 3))} m/s, w ${triple(comparison.twist.slice(3))} rad/s`),
+      h("p", { class: "note" }, `Desired twist at the tool, world axes: v ${triple(comparison.twist.slice(0, 3))} m/s, w ${triple(comparison.twist.slice(3))} rad/s`),
     );
   }
 }

@@ -6,26 +6,26 @@ import { listIn, numberIn, objectIn, type Watch } from "./reports";
 
 type Json = Record<string, unknown>;
 const COUNTS: [string, string][] = [
-  ["dof", "motions (degrees of freedom)"],
-  ["finite_dof", "of finite motion"],
-  ["coordinate", "of the object by the drives"],
+  ["dof", "degrees of freedom"],
+  ["finite_dof", "finite degrees of freedom"],
+  ["coordinate", "controllable object motions"],
   ["redundancy", "redundancy"],
   ["indeterminacy", "indeterminacy"],
   ["idle", "idle motions"],
   ["internal", "internal torques"],
-  ["zero_torque", "wrenches held without torque"],
+  ["zero_torque", "wrenches resisted without torque"],
   ["hyperstatic", "hyperstatic forces"],
 ];
 const DISTANCES: [string, string][] = [
   ["type_i", "type I (motion lost)"],
-  ["type_ii", "type II (motion gained)"],
-  ["configuration_space", "of the configuration space"],
+  ["type_ii", "type II (uncontrolled motion)"],
+  ["configuration_space", "configuration space"],
   ["passive", "passive"],
 ];
 
 export function mobilityPanel(): Watch {
   const made = panel("mobility", "Mobility", false);
-  fill(made.body, empty("Open loops and limits are on their way."));
+  fill(made.body, empty("Waiting for the server."));
   return {
     panel: made,
     fail: (sentence) => fill(made.body, empty(sentence)),
@@ -38,15 +38,15 @@ export function mobilityPanel(): Watch {
       fill(
         made.body,
         h("p", {}, singularity["regular"] === false
-          ? h("span", { class: "verdict bad" }, `Singular: ${kinds.join(", ") || "a motion is lost or gained"}`)
-          : h("span", { class: "verdict good" }, "Regular posture")),
+          ? h("span", { class: "verdict bad" }, `Singular: ${kinds.join(", ") || "a motion is lost or uncontrolled"}`)
+          : h("span", { class: "verdict good" }, "Regular configuration")),
         h("h3", {}, "Counts"),
         pairs(...COUNTS.filter(([key]) => key in report).map(([key, words]): [string, string] => [words, text(report[key])])),
-        known.length > 0 && h("h3", {}, "Distance to singularities (0 is there)"),
+        known.length > 0 && h("h3", {}, "Distance to singularities (0: singular)"),
         known.length > 0 && pairs(...known.map(([key, words]): [string, string] => [words, short(numberIn(distances, key))])),
         motions(report),
         ...listIn(report, "ambiguous_ranks").map((doubt) => h("p", { class: "doubt" }, String(doubt))),
-        h("p", { class: "note" }, `Ranks in metres over ${short(numberIn(report, "length"))} m`),
+        h("p", { class: "note" }, `Ranks with lengths relative to ${short(numberIn(report, "length"))} m`),
       );
     },
   };

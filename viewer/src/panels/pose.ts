@@ -15,7 +15,7 @@ export function posePanel(): Panel & { show: (scene: Scene, state: State) => voi
     ...made,
     show(scene, state) {
       const { status, sentence, limits } = state.servo;
-      made.note(`${scene.frame} in world`);
+      made.note(`${scene.frame} in the world frame`);
       const names = limits.map((limit) => `${scene.coordinates[limit.coordinate]?.name ?? "?"} (${limit.kind})`);
       fill(
         servo,
@@ -30,7 +30,7 @@ export function posePanel(): Panel & { show: (scene: Scene, state: State) => voi
           ...rows("position", ["x", "y", "z"], state, "m"),
           ...rows("quaternion", ["qw", "qx", "qy", "qz"], state, ""),
         ]),
-        h("h3", {}, "Error of the components that matter"),
+        h("h3", {}, "Error of the task components"),
         pairs(["distance [m]", fixed(state.error.position, 6)], ["angle [rad]", fixed(state.error.orientation, 6)]),
       );
     },

@@ -25,12 +25,12 @@ export function screwsPanel(): Panel & { show: (scene: Scene, state: State) => v
         made.body,
         h("p", { class: "row" }, h("span", { class: "class", title: "Gibson-Hunt class" }, data.gibson_hunt), h("span", { class: "note" }, "Gibson-Hunt class", data.order >= 4 && data.order <= 5 ? " of the reciprocal system" : "")),
         h("p", { class: "note" }, data.meaning),
-        data.ambiguous && h("p", { class: "doubt" }, "A close call: a margin of this class is narrow."),
+        data.ambiguous && h("p", { class: "doubt" }, "Ambiguous: the margin of this class is narrow."),
         h("h3", {}, "Principal pitches [m/rad]"),
         data.principal_pitches.length > 0
           ? h("p", { class: "number" }, data.principal_pitches.map((pitch) => fixed(pitch, 5)).join("   "))
-          : empty("None: this system has no pitch that stands out."),
-        data.screws.length > 0 && h("h3", {}, "Principal screws in world"),
+          : empty("None: this system has no principal pitch."),
+        data.screws.length > 0 && h("h3", {}, "Principal screws in the world frame"),
         data.screws.length > 0 && numbers("Principal screws", ["", "direction", "point [m]"], data.screws.map(screwRow)),
       );
     },

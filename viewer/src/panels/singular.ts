@@ -26,11 +26,11 @@ export function singularPanel(): Panel & { show: (scene: Scene, state: State) =>
         bars(singular, Math.max(made.body.clientWidth - 28, 180)),
         pairs(
           ["rank", String(singular.rank)],
-          ["gap, kept over lost", singular.gap === null ? "none lost" : short(singular.gap)],
-          ["smallest over largest", short(singular.ratio)],
+          ["gap (smallest kept / largest lost)", singular.gap === null ? "none lost" : short(singular.gap)],
+          ["smallest / largest", short(singular.ratio)],
           ["threshold", short(singular.threshold)],
         ),
-        h("p", { class: "note" }, `Task Jacobian (${scene.task.components.join(", ")}), linear rows over ${short(singular.length)} m`),
+        h("p", { class: "note" }, `Task Jacobian (${scene.task.components.join(", ")}), linear rows relative to ${short(singular.length)} m`),
       );
     },
   };

@@ -95,7 +95,7 @@ async function collada(url: string): Promise<Object3D> {
   const text = String(await new FileLoader().loadAsync(url));
   const upAsIs = text.replace(/<up_axis>[^<]*<\/up_axis>/, ""); // else the loader turns the scene
   const parsed = new ColladaLoader().parse(upAsIs, url.slice(0, url.lastIndexOf("/") + 1));
-  if (!parsed) throw new Error("is no Collada file");
+  if (!parsed) throw new Error("is not a Collada file");
   const scene = parsed.scene;
   scene.quaternion.copy(new Quaternion());
   const lamps: Object3D[] = [];

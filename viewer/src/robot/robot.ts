@@ -142,12 +142,12 @@ export class Robot {
     this.group.add(slide.object);
   }
 
-  private loop(scene: Scene, kind: string, driven: boolean): { ball: Object3D; open: Mesh } {
+  private loop(scene: Scene, kind: string, actuated: boolean): { ball: Object3D; open: Mesh } {
     const flat = scene.dimension === 2;
     const up = new Vector3(0, 0, 1);
     const ball =
-      (flat ? mark(kind, new Vector3(), up, driven, this.size, true) : null) ??
-      new Mesh(new SphereGeometry(this.size.joint * 1.05, 28, 18), solid(driven ? "joint-driven" : "joint-passive"));
+      (flat ? mark(kind, new Vector3(), up, actuated, this.size, true) : null) ??
+      new Mesh(new SphereGeometry(this.size.joint * 1.05, 28, 18), solid(actuated ? "joint-actuated" : "joint-passive"));
     return this.withGap(ball);
   }
 

@@ -23,7 +23,7 @@ export function linkBody(scene: Scene, index: number, size: Sizes): Group {
   const link = scene.links[index];
   if (!link) return group;
   const corners = points(scene, link, false);
-  // The driven frame is a place to hold on to, but no corner of a plate.
+  // The controlled frame is not a corner of a plate.
   const places = corners.length >= 3 ? corners : points(scene, link);
   const isGround = !scene.joints.some((joint) => joint.child === index);
   const body = solid(index % 2 === 0 ? "body" : "body-2");
@@ -102,14 +102,14 @@ export function jointMark(scene: Scene, joint: SceneJoint, size: Sizes): Object3
 }
 
 /** The mark of a joint's kind: a drum turns, a block slides, a ball turns every way. */
-export function mark(kind: string, at: Vector3, axis: Vector3, driven: boolean, size: Sizes, flat: boolean): Group | null {
+export function mark(kind: string, at: Vector3, axis: Vector3, actuated: boolean, size: Sizes, flat: boolean): Group | null {
   const group = new Group();
-  const colour = solid(driven ? "joint-driven" : "joint-passive");
+  const colour = solid(actuated ? "joint-actuated" : "joint-passive");
   const r = size.joint;
   const none = new Vector3();
   if (TURNING.has(kind)) {
     group.add(drum(none, axis, r, flat ? r * 1.5 : r * 2.5, colour));
-    group.add(drum(none, axis, r * 0.5, flat ? r * 1.62 : r * 2.62, solid(driven ? "body" : "joint-driven")));
+    group.add(drum(none, axis, r * 0.5, flat ? r * 1.62 : r * 2.62, solid(actuated ? "body" : "joint-actuated")));
   } else if (SLIDING.has(kind)) {
     group.add(block(none, axis, r * 1.9, r * 2.5, colour));
   } else if (kind === "universal") {

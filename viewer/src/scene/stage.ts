@@ -36,7 +36,7 @@ export class Stage {
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "application");
-    canvas.setAttribute("aria-label", "View of the robot. Drag to turn, wheel to zoom, right button to pan; arrow keys pan, with Shift they turn, F shows all.");
+    canvas.setAttribute("aria-label", "View of the robot. Drag to rotate, wheel to zoom, right button to pan; arrow keys pan, with Shift they rotate, F fits all.");
     element.prepend(canvas);
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
@@ -110,7 +110,7 @@ export class Stage {
     const canvas = document.createElement("canvas");
     [canvas.width, canvas.height] = [source.width, source.height];
     const context = canvas.getContext("2d");
-    if (!context) throw new Error("this browser gives no 2D canvas");
+    if (!context) throw new Error("this browser does not support 2D canvases");
     const gradient = context.createLinearGradient(0, 0, 0, canvas.height);
     gradient.addColorStop(0, colour("stage-top"));
     gradient.addColorStop(1, colour("stage-bottom"));

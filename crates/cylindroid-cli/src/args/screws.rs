@@ -10,11 +10,11 @@ use crate::values::Numbers;
 pub(crate) const ABOUT: &str = "\
 The screw system of the joints: class, pitches, frame, and which inverses exist
 
-For the joint twists of a robot at a configuration, or for any twists in a file: the order and \
-Gibson-Hunt class of the system they span, its principal pitches and screws, its canonical frame, \
-the reciprocal system, for which pitches h a hyperbolic pseudoinverse exists and which h keeps its \
-projector small, and whether the joint axes are in involution. Verdicts depend neither on the \
-frame nor on the unit of length.";
+For the joint twists of a robot at a configuration, or for twists read from a file: order and \
+Gibson-Hunt class of the screw system they span, principal pitches and screws, canonical frame, \
+reciprocal system, the pitches h at which a hyperbolic pseudoinverse exists, the pitch with the \
+smallest projector norm, and whether the joint axes are in involution. The results are independent \
+of the reference frame and of the unit of length.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -22,8 +22,8 @@ Examples:
   cylindroid screws youbot --q 0.4,0.6,0.9,0.5,0.2 --h 0.1 --plot screws.svg
   cylindroid screws axes.csv --length 0.5 --noise 1e-6
 
-In place of a model, a file of twists (.csv or .json) has six numbers for each, the linear part first: rows of a CSV, \
-or a JSON list of lists.";
+Instead of a model, a file of twists (.csv or .json) can be given: six numbers per twist, the \
+linear part first, as rows of a CSV file or a JSON list of lists.";
 
 #[derive(Debug, Args)]
 pub(crate) struct ScrewsArgs {
@@ -38,21 +38,21 @@ pub(crate) struct ScrewsArgs {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,
 
-    /// Point at which lengths are judged, in the frame of the twists [default: the point nearest
-    /// to all axes]
+    /// Centre at which twists are scaled, in the frame of the twists [default: the point closest to
+    /// all axes]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) center: Option<Numbers<3>>,
 
-    /// Error of the twists, relative to each [default: rounding]
+    /// Relative error of the twists [default: rounding]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
     pub(crate) noise: Option<f64>,
 
-    /// Pitches at which the hyperbolic inverse is looked at [m/rad], `inf` among them; may be
-    /// given several times
+    /// Pitch at which the existence of the hyperbolic inverse is checked [m/rad]; `inf` is allowed;
+    /// repeatable
     #[arg(long, value_name = "H", allow_hyphen_values = true)]
     pub(crate) h: Vec<f64>,
 
-    /// Also the joint rates that move this point, fixed to the frame that is driven, along
+    /// Also compute the joint velocities that move this point of the controlled frame along
     /// --direction; world axes [m]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "direction")]
     pub(crate) point: Option<Numbers<3>>,
@@ -61,12 +61,12 @@ pub(crate) struct ScrewsArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "point")]
     pub(crate) direction: Option<Numbers<3>>,
 
-    /// The twists of the file are written with the angular part first
+    /// The twists of the file have the angular part first
     #[arg(long)]
     pub(crate) angular_first: bool,
 
-    /// Draw the Gram determinant and the size of the projector over the pitch, and the cylindroid
-    /// of a two-system
+    /// Draw the Gram determinant and the projector norm over the pitch, and the cylindroid of a
+    /// two-system
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
 }

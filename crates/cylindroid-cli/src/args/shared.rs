@@ -7,16 +7,16 @@ use crate::values::{Joints, Numbers};
 /// A model at a configuration.
 #[derive(Debug, Args)]
 pub(crate) struct ConfigurationArgs {
-    /// A model file or a name of the catalogue
+    /// Model file or catalogue name
     pub(crate) model: String,
 
-    /// Configuration, in the order of `info` [rad or m]: numbers `0,-0.8,...`, or `name=value,...`
-    /// over home, or `home`, or `zero`
+    /// Configuration [rad or m]: numbers in the order of `info` (`0,-0.8,...`), `name=value,...`
+    /// with the other coordinates at home, `home`, or `zero`
     #[arg(long, value_name = "Q", default_value = "home", allow_hyphen_values = true)]
     pub(crate) q: Joints,
 
-    /// Angles on the command line are in degrees: those of configurations (and rates), --rpy and
-    /// --rotation-vector. Lengths, speeds, tolerances and all output stay in SI units
+    /// Angles of configurations, joint velocities, --rpy and --rotation-vector are given in
+    /// degrees. Lengths, speeds, tolerances and all output remain in SI units
     #[arg(long)]
     pub(crate) degrees: bool,
 }
@@ -28,7 +28,7 @@ pub(crate) struct FrameArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) frame: Option<String>,
 
-    /// Point fixed to the frame, in its axes [m], taken instead of the frame's origin
+    /// Point fixed to the frame that replaces its origin, in its axes [m]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) tool: Option<Numbers<3>>,
 }

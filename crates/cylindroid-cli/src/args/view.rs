@@ -7,14 +7,14 @@ use clap::Args;
 use super::{ConfigurationArgs, FrameArgs};
 
 pub(crate) const ABOUT: &str = "\
-The web viewer: see a model, drag its tool or object, and watch its measures
+The web viewer: display a model, drag its tool or object, and monitor its measures
 
-Prints the URL of the page and serves it until ctrl-c. Every browser window has the model for \
-itself: configuration, target, drives. The servo is that of `move`, with the limits of all joints. \
-Closed chains are assembled first.
+Prints the URL of the page and serves it until Ctrl-C. Every browser window has a session of its \
+own: configuration, target and actuated joints. The servo is that of `move` and respects all joint \
+limits. Closed chains are assembled first.
 
-The server listens on the loopback interface unless --host says otherwise. It gives out meshes from \
-the model's own folders alone: that of its file, its package, and the packages that it names.";
+The server listens on the loopback interface unless --host is given. Meshes are served only from \
+the folders of the model: the folder of its file, its package, and the packages it refers to.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -30,24 +30,24 @@ pub(crate) struct ViewArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
-    /// The driven joints of a mechanism with loops, in place of those of the file
+    /// Actuated joints of a mechanism with loops, replacing those of the file
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
     pub(crate) actuated: Vec<String>,
 
-    /// Port, 0 for any that is free
+    /// Port; 0 selects a free one
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     pub(crate) port: u16,
 
-    /// Address or name of this machine to listen at; others than 127.0.0.1 and ::1 let other
-    /// machines in
+    /// Address or host name to listen on; any other than 127.0.0.1 and ::1 allows access from other
+    /// machines
     #[arg(long, value_name = "HOST", default_value = "127.0.0.1")]
     pub(crate) host: String,
 
-    /// A further folder that meshes may be given out from; may be given several times
+    /// Additional folder from which meshes may be served; repeatable
     #[arg(long, value_name = "FOLDER")]
     pub(crate) meshes: Vec<PathBuf>,
 
-    /// Start, print the URL and stop
+    /// Start, print the URL and exit
     #[arg(long)]
     pub(crate) check: bool,
 }

@@ -1,4 +1,4 @@
-//! What the commands share: style and exit code, the model, its configuration and its frame.
+//! Shared by the commands: output style, exit code, model, configuration and frame.
 
 use std::process::ExitCode;
 
@@ -7,25 +7,25 @@ use cylindroid::{EndEffector, Error, Pose, Vec3};
 
 use crate::args::{ConfigurationArgs, FrameArgs};
 
-/// How a command prints.
+/// Output style of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Style {
     Table,
     Json,
 }
 
-/// Exit code of a yes (0) or a no (1).
+/// Exit code of a positive (0) or negative (1) answer.
 pub(crate) fn answer(yes: bool) -> ExitCode {
     ExitCode::from(u8::from(!yes))
 }
 
-/// The model, driven by these joints where any are named.
+/// Loads the model, with these joints actuated if any are named.
 pub(crate) fn load(model: &str, actuated: &[String]) -> cylindroid::Result<Mechanism> {
     let loaded = cylindroid::load(model)?;
     if actuated.is_empty() { Ok(loaded) } else { loaded.with_actuated(actuated) }
 }
 
-/// The configuration that is meant, of the right size and finite.
+/// The configuration of the arguments; its size and values are checked.
 pub(crate) fn configuration(
     robot: &Mechanism,
     args: &ConfigurationArgs,
@@ -35,7 +35,7 @@ pub(crate) fn configuration(
     Ok(q)
 }
 
-/// Refuses a configuration outside the position limits.
+/// Rejects a configuration outside the position limits.
 pub(crate) fn within_limits(
     robot: &Mechanism,
     option: &'static str,
@@ -51,7 +51,7 @@ pub(crate) fn within_limits(
     })
 }
 
-/// The frame and tool point that are meant.
+/// The frame and tool point of the arguments.
 pub(crate) fn end_effector(robot: &Mechanism, args: &FrameArgs) -> cylindroid::Result<EndEffector> {
     let frame = match &args.frame {
         None => robot.tool(),
@@ -62,13 +62,13 @@ pub(crate) fn end_effector(robot: &Mechanism, args: &FrameArgs) -> cylindroid::R
     Ok(EndEffector { frame, frame_from_tool: Pose::from_translation(Vec3::from_array(tool)) })
 }
 
-/// Joints of trees are all driven.
-pub(crate) fn all_driven(robot: &Mechanism) -> Error {
+/// The error for `--actuated` with a tree, whose joints are all actuated.
+pub(crate) fn all_actuated(robot: &Mechanism) -> Error {
     Error::InvalidOption {
         option: "--actuated",
         value: robot.name().to_owned(),
         reason: format!(
-            "'{}' has no loops or contacts, so all joints are driven; leave the option out",
+            "'{}' has no loops or contacts, so all joints are actuated; omit --actuated",
             robot.name()
         ),
     }

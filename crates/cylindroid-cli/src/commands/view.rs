@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::args::ViewArgs;
 use crate::commands::shared::{
-    Style, all_driven, configuration, end_effector, load, within_limits,
+    Style, all_actuated, configuration, end_effector, load, within_limits,
 };
 use crate::viewer::{Server, Start, page_is_built};
 
@@ -17,7 +17,7 @@ use crate::viewer::{Server, Start, page_is_built};
 struct ViewJson<'a> {
     url: &'a str,
     model: &'a str,
-    /// False where the page is not built.
+    /// False if the page is not built.
     page: bool,
 }
 
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow:
         }
         anyhow::Ok(())
     })?;
-    // Reports in the making are of no use any more.
+    // Unfinished reports are discarded.
     runtime.shutdown_background();
     Ok(ExitCode::SUCCESS)
 }
@@ -66,10 +66,10 @@ fn note() {
 fn start(args: &ViewArgs) -> Result<Start> {
     let robot = load(&args.configuration.model, &args.actuated)?;
     if !args.actuated.is_empty() && !robot.is_closed() {
-        return Err(all_driven(&robot));
+        return Err(all_actuated(&robot));
     }
     let q = configuration(&robot, &args.configuration)?;
-    // What a file calls its home is taken as it is, as by the other commands.
+    // The home configuration of a file is accepted as it is, as in the other commands.
     if q != robot.home() {
         within_limits(&robot, "--q", &q)?;
     }

@@ -1,8 +1,7 @@
-//! Files that the server gives out: the page inside the binary, and meshes inside the model's own
-//! folders.
+//! Files served: the page embedded in the binary, and meshes in the folders of the model.
 //!
-//! A mesh file names its textures relative to itself, so that a whole folder has to be open. It is
-//! open for meshes and images only, and for nothing that a link or `..` leads out to.
+//! Mesh files refer to textures by relative paths, so whole folders must be accessible. Only meshes
+//! and images are served, and nothing outside the folders that is reached through a link or `..`.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -12,7 +11,7 @@ use cylindroid::Mechanism;
 use cylindroid::model::Geometry;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
-/// The page, as `cargo xtask viewer` left it.
+/// The page built by `cargo xtask viewer`.
 #[derive(rust_embed::RustEmbed)]
 #[folder = "../../viewer/dist"]
 #[allow_missing = true]
@@ -23,7 +22,7 @@ pub(crate) fn page_is_built() -> bool {
     Page::get("index.html").is_some()
 }
 
-/// What is a mesh, and what may belong to one.
+/// Extensions of meshes, and of the files that meshes refer to.
 const MESHES: [&str; 3] = ["stl", "dae", "obj"];
 const COMPANIONS: [&str; 10] =
     ["mtl", "png", "jpg", "jpeg", "gif", "bmp", "tga", "tif", "tiff", "webp"];
@@ -31,7 +30,7 @@ const COMPANIONS: [&str; 10] =
 const PATH: &AsciiSet =
     &NON_ALPHANUMERIC.remove(b'/').remove(b'.').remove(b'-').remove(b'_').remove(b'~');
 
-/// The model's own folders, without links, and what the page may know of its meshes.
+/// The folders of the model with links resolved, and the URLs of its meshes.
 #[derive(Debug, Default)]
 pub(super) struct Folders {
     open: Vec<PathBuf>,
@@ -48,8 +47,8 @@ pub(super) struct Served {
 }
 
 impl Folders {
-    /// Of the model in this file (or with this name of the catalogue, which has none), and others
-    /// that the user opens.
+    /// Of the model in this file (a catalogue model has none), and further folders that the user
+    /// allows.
     pub(super) fn of(
         mechanism: &Mechanism,
         model: &str,
@@ -74,12 +73,12 @@ impl Folders {
             })?;
             open.insert(found);
         }
-        // The root of the disk is nobody's own folder.
+        // The root of the file system is never served.
         open.retain(|folder| folder.parent().is_some());
         Ok(Self { open: open.into_iter().collect() })
     }
 
-    /// How the page gets a mesh.
+    /// URL and format of a mesh, or the reason why it is not served.
     pub(super) fn served(&self, uri: &str, path: Option<&Path>) -> Served {
         let refused = |problem: String| Served { url: None, format: None, problem: Some(problem) };
         let Some(path) = path else {
@@ -88,7 +87,9 @@ impl Folders {
         let Some(format) = MESHES.into_iter().find(|m| extension(path).as_deref() == Some(m))
         else {
             let kinds = MESHES.join(", ");
-            return refused(format!("Mesh '{uri}' is of a kind that is not shown ({kinds} are)."));
+            return refused(format!(
+                "Mesh '{uri}' has an unsupported format (supported: {kinds})."
+            ));
         };
         let found = path.canonicalize().ok().and_then(|file| {
             self.open.iter().enumerate().find_map(|(i, folder)| {
@@ -106,7 +107,7 @@ impl Folders {
         }
     }
 
-    /// The file behind `/mesh/<folder>/<path>`, if it may be given out. `path` is decoded.
+    /// The file at `/mesh/<folder>/<path>`, if it may be served. `path` is decoded.
     pub(super) fn file(&self, folder: usize, path: &str) -> Option<PathBuf> {
         let folder = self.open.get(folder)?;
         let relative = Path::new(path);
@@ -115,7 +116,7 @@ impl Folders {
             return None;
         }
         let file = folder.join(relative).canonicalize().ok()?;
-        // Where links lead, the file itself has to be of a kind that is given out, too.
+        // The target of a link must also have an allowed extension.
         (file.starts_with(folder) && file.is_file() && is_given_out(&file)).then_some(file)
     }
 }

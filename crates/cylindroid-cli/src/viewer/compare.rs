@@ -1,4 +1,4 @@
-//! Two inverses for one twist, at the tool and with its reference point moved.
+//! Compares two inverses of one twist, at the tool and at another reference point.
 
 use cylindroid::control::{InverseChoice, TaskProjection, VelocitiesAtPoint};
 use cylindroid::inverse::HyperbolicDamping;
@@ -11,7 +11,7 @@ use super::json::text;
 use super::messages::{Compare, Complaint};
 use super::session::Session;
 
-/// What is asked for where nothing else is [m/s].
+/// The default twist, if the servo requests none [m/s].
 const DEFAULT_TWIST: Twist = Twist { linear: Vec3::new(0.1, 0.0, 0.0), angular: Vec3::ZERO };
 
 #[derive(Debug, Serialize)]

@@ -1,4 +1,4 @@
-//! What each message of a client does to its session, and the answer.
+//! Dispatches each client message to its session and returns the answer.
 
 use cylindroid::{Error, Result};
 use serde_json::Value;
@@ -11,23 +11,23 @@ use super::reaching::{Reached, assembled, reach};
 use super::reports::Report;
 use super::session::Session;
 
-/// What a message is answered with.
+/// The answer to a message.
 #[derive(Debug)]
 pub(super) enum Reply {
-    /// The next state shows it.
+    /// None: the next state shows the effect.
     Nothing,
-    /// The scene has changed.
+    /// The scene changed and is sent again.
     Scene,
     /// This text.
     Text(String),
-    /// What this finds, which takes a while.
+    /// A report, to be computed in the background.
     Report(Report),
-    /// A state has been drawn.
+    /// The client has drawn this state.
     Seen(u64),
 }
 
-/// Does as a client says; on a complaint nothing has changed, but for `joint`, which goes as far as
-/// it can.
+/// Executes a message. On an error the session is unchanged, except for `joint`, which moves as far
+/// as possible.
 pub(super) fn handle(
     session: &mut Session,
     request: Request,

@@ -1,4 +1,5 @@
-//! The inverse of a session's servo: from what a client chooses to the options of `move`.
+//! The inverse of a session's servo: from the client's choice and parameters to the options of
+//! `move`.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use crate::args::InverseArgs;
 use crate::args::inverses::Parameters;
 use crate::commands::move_to::inverse;
 
-/// The parameters of an inverse of this name but the pitch, with their defaults.
+/// The parameters of the inverse of this name except the pitch, with their defaults.
 pub(super) fn damping(name: &str) -> BTreeMap<&'static str, f64> {
     let inverse = hyperbolic().find(|i| i.name == name);
     let own = inverse.into_iter().flat_map(|i| i.parameters).filter(|p| p.name != PITCH);
@@ -21,12 +22,12 @@ pub(super) fn damping(name: &str) -> BTreeMap<&'static str, f64> {
 /// The parameter that chooses a hyperbolic inverse.
 pub(super) const PITCH: &str = "h";
 
-/// The hyperbolic inverses: those that a pitch chooses.
+/// The hyperbolic inverses: those with a pitch.
 pub(super) fn hyperbolic() -> impl Iterator<Item = NamedInverse> {
     NamedInverse::all().filter(|i| i.parameters.iter().any(|p| p.name == PITCH))
 }
 
-/// The inverse as it was asked for, with the values of its parameters.
+/// The inverse that the client chose, with the values of its parameters.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Chosen {
     name: String,
@@ -46,8 +47,8 @@ impl Chosen {
     }
 }
 
-/// What is chosen, and the options that say so; `best_pitch` is asked where a pitch is needed and
-/// none is given.
+/// The chosen inverse, and the servo options for it; `best_pitch` is called if a pitch is required
+/// and not given.
 pub(super) fn invert_by(
     choice: MethodChoice,
     state: &State,
@@ -74,7 +75,7 @@ pub(super) fn invert_by(
     Ok((Chosen { name, parameters, h, fallback }, options))
 }
 
-/// The options of `move` that say the same.
+/// The equivalent options of `move`.
 fn arguments(
     name: &str,
     h: Option<f64>,

@@ -1,4 +1,4 @@
-//! JSON that several messages share: poses, and a message as text.
+//! JSON shared by several messages: poses, and serialisation.
 
 use cylindroid::Pose;
 use serde::Serialize;
@@ -18,8 +18,8 @@ impl From<Pose> for PoseJson {
     }
 }
 
-/// A message as text.
+/// A message as JSON text.
 pub(super) fn text(message: &impl Serialize) -> String {
-    // Names, numbers and lists always have one.
+    // Serialisation of names, numbers and lists cannot fail.
     serde_json::to_string(message).unwrap_or_default()
 }

@@ -4,7 +4,7 @@ use cylindroid::control::ConditionReport;
 
 use super::session::Session;
 
-/// What the servo says of the configuration.
+/// The conditioning of the configuration, as reported by the servo.
 #[derive(Debug)]
 pub(super) struct Measures {
     pub(super) condition: ConditionReport,
@@ -12,7 +12,7 @@ pub(super) struct Measures {
 }
 
 impl Measures {
-    /// None without a servo.
+    /// `None` without a servo.
     pub(super) fn of(session: &mut Session) -> Option<Self> {
         let q = session.state().q().to_vec();
         let length = session.options().length;

@@ -1,4 +1,4 @@
-//! What a client may say, read strictly, and what it is told when it says something else.
+//! Messages of the client, parsed strictly, and the errors for invalid ones.
 
 use std::collections::BTreeMap;
 
@@ -6,17 +6,17 @@ use cylindroid::Error;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// Largest message [bytes].
+/// Maximum message size [bytes].
 pub(super) const LARGEST: usize = 64 * 1024;
 
-/// A message with the mark that its sender wants back.
+/// A message with the id that is returned to its sender.
 #[derive(Debug)]
 pub(super) struct Request {
     pub(super) id: Option<Value>,
     pub(super) message: Message,
 }
 
-/// docs/viewer.md says what each does.
+/// Described in docs/viewer.md.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum Message {
@@ -129,7 +129,7 @@ pub(super) struct Seen {
     pub(super) seq: u64,
 }
 
-/// What is wrong with a message.
+/// An error in a message.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "type", rename = "error")]
 pub(super) struct Complaint {
@@ -139,7 +139,7 @@ pub(super) struct Complaint {
     pub(super) place: Box<str>,
     pub(super) message: Box<str>,
     pub(super) way_out: Box<str>,
-    /// The value that a joint reached.
+    /// The value reached by a joint.
     pub(super) nearest: Option<f64>,
 }
 
@@ -157,7 +157,7 @@ impl Complaint {
         }
     }
 
-    /// An error of the library about the field at `place`.
+    /// An error of the library for the field at `place`.
     pub(super) fn of(place: &str, error: &Error) -> Self {
         let (culprit, way_out) = match error {
             Error::UnknownName { name, similar, .. } => {
@@ -165,7 +165,7 @@ impl Complaint {
                 (name.clone(), if offer.is_empty() { offer } else { format!("use {offer}") })
             }
             Error::Dimension { what, hint, .. } => (what.clone(), hint.clone()),
-            Error::NotFinite { what, .. } => (what.clone(), "give finite numbers".to_owned()),
+            Error::NotFinite { what, .. } => (what.clone(), "give finite values".to_owned()),
             Error::InvalidOption { option, reason, .. } => ((*option).to_owned(), reason.clone()),
             Error::Model { model, culprit, message } => {
                 let culprit = if culprit.is_empty() { model } else { culprit };
@@ -184,18 +184,17 @@ impl Complaint {
     }
 }
 
-/// Reads a message; a complaint names the place and has the mark of the sender where it was found.
+/// Parses a message; an error names the field and contains the id if it could be read.
 pub(super) fn read(text: &str) -> Result<Request, Complaint> {
     let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
-        let what = format!("a message is one JSON object: {error}");
+        let what = format!("a message must be one JSON object: {error}");
         Complaint::new("message", &short(text), &what, "send {\"type\": ..., ...}")
     })?;
     let mut object = object;
     let id = object.remove("id");
     let marked = |complaint| Complaint { reply_to: id.clone(), ..complaint };
     if let Some(id) = id.as_ref().filter(|id| !(id.is_string() || id.is_number())) {
-        let (what, way_out) =
-            ("the id is neither a string nor a number", "give one, or leave it out");
+        let (what, way_out) = ("the id must be a string or a number", "give one, or omit the id");
         return Err(Complaint::new("message.id", &short(&id.to_string()), what, way_out));
     }
     let kind = match object.remove("type") {
@@ -205,7 +204,7 @@ pub(super) fn read(text: &str) -> Result<Request, Complaint> {
         }
         other => {
             let culprit = other.map_or_else(|| "type".to_owned(), |o| short(&o.to_string()));
-            let what = "a message has a \"type\" that is a string";
+            let what = "a message must have a \"type\" that is a string";
             let way_out = format!("one of {}", TYPES.join(", "));
             return Err(marked(Complaint::new("message", &culprit, what, &way_out)));
         }
@@ -216,13 +215,13 @@ pub(super) fn read(text: &str) -> Result<Request, Complaint> {
         let place = error.path().to_string();
         let culprit = at(&tagged, &place).unwrap_or_else(|| kind.clone());
         let what = error.inner().to_string();
-        let way_out = format!("docs/viewer.md has the fields of '{kind}'");
+        let way_out = format!("the fields of '{kind}' are listed in docs/viewer.md");
         marked(Complaint::new(&place, &culprit, &what, &way_out))
     })?;
     Ok(Request { id, message })
 }
 
-/// The value at a path like `target.position[2]`, short; none for objects.
+/// The value at a path like `target.position[2]`, shortened; `None` for objects.
 fn at(value: &Value, path: &str) -> Option<String> {
     let pointer = path.replace(['.', '['], "/").replace(']', "");
     let found = value.pointer(&format!("/{pointer}"))?;
@@ -255,7 +254,7 @@ mod tests {
         assert!(super::read(r#"{"type": "null_space", "rate": 0.5}"#).is_ok());
     }
 
-    /// Every type and its fields stand there as they are read.
+    /// Every type is documented there with an example that parses.
     #[test]
     fn examples_of_the_protocol_are_read() {
         const PAGE: &str = include_str!("../../../../docs/viewer.md");

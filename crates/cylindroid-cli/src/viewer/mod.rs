@@ -1,11 +1,11 @@
 //! The server of the web viewer: docs/viewer.md is its contract.
 //!
-//! Every WebSocket is a session of its own. From the leaves up: `json`, `messages`, `names`,
-//! `inverse_parameters`, `assets` and `reaching` know no session; `start` is what sessions begin
-//! with, `session` one client's configuration, target and servo; `measures`, `overlays`, `compare`,
-//! `reports`, `snapshot` and `scene` show a session; `dispatcher` lets a message change one;
-//! `socket` moves messages and states in time; `safety` guards `server`, which listens.
-//! No mathematics: what is drawn is the library's.
+//! Every WebSocket has a session of its own. From the leaves up: `json`, `messages`, `names`,
+//! `inverse_parameters`, `assets` and `reaching` do not depend on a session; `start` is the initial
+//! state of sessions; `session` is the configuration, target and servo of one client; `measures`,
+//! `overlays`, `compare`, `reports`, `snapshot` and `scene` describe a session; `dispatcher`
+//! executes messages; `socket` exchanges messages and states in real time; `safety` protects `server`, which
+//! listens. All mathematics is in the library.
 
 mod assets;
 mod compare;

@@ -1,4 +1,4 @@
-//! Names that a client may ask for: overlays and reports.
+//! Names of overlays and reports.
 
 use cylindroid::{Error, Result};
 
@@ -66,13 +66,13 @@ impl Overlay {
 
     pub(super) const fn unit(self) -> &'static str {
         match self {
-            Self::Velocity => "m/s, for rates of the drives of length 1 (rad/s, m/s)",
-            Self::AngularVelocity => "rad/s, for rates of the drives of length 1 (rad/s, m/s)",
-            Self::ActiveForce => "N, for torques of the drives of length 1 (N m, N)",
-            Self::PassiveForce => "N, held with torques of the drives of length 1 (N m, N)",
+            Self::Velocity => "m/s, for joint velocities of norm 1 (rad/s, m/s)",
+            Self::AngularVelocity => "rad/s, for joint velocities of norm 1 (rad/s, m/s)",
+            Self::ActiveForce => "N, for joint torques of norm 1 (N m, N)",
+            Self::PassiveForce => "N, resisted with joint torques of norm 1 (N m, N)",
             Self::JointAxes | Self::PrincipalScrews | Self::Reciprocal => "pitch in m/rad",
             Self::Cylindroid => "pitch in m/rad, along each axis",
-            Self::LostDirection => "m and rad, of length 1 with lengths over the reach",
+            Self::LostDirection => "m and rad, of norm 1 with lengths relative to the reach",
         }
     }
 

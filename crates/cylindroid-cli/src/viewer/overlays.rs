@@ -1,6 +1,6 @@
-//! What is drawn over a mechanism: ellipsoids, screws and surfaces, from the library's answers.
+//! Overlays drawn on a mechanism: ellipsoids, screws and surfaces, computed by the library.
 //!
-//! Vectors are in metres of the world, as long as they are to be drawn; numbers stand beside them.
+//! Vectors to be drawn are scaled to metres in the world frame; the values are given separately.
 
 mod ellipsoid;
 mod lost;
@@ -18,10 +18,10 @@ use super::session::Session;
 use crate::commands::screws::report::reciprocal_screws;
 use crate::output::ScrewJson;
 
-/// Screws of a cylindroid that are drawn.
+/// Number of rulings of a cylindroid.
 const RULINGS: usize = 72;
 
-/// An overlay, or why there is nothing to see.
+/// An overlay, or the reason why it is empty.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub(super) enum Shown {
@@ -34,7 +34,7 @@ pub(super) enum Shown {
     Lost(LostJson),
 }
 
-/// Nothing, in a sentence.
+/// An empty overlay with the reason.
 fn empty(why: impl Into<String>) -> Shown {
     Shown::Empty { empty: why.into() }
 }
@@ -79,10 +79,10 @@ struct RulingJson {
     to: [f64; 3],
     pitch: f64,
 }
-/// The overlay as it is now.
+/// The overlay for the current state.
 pub(super) fn shown(overlay: Overlay, session: &Session, measures: Option<&Measures>) -> Shown {
     let drawn = |kind| {
-        let nothing = || empty("The drives do nothing at the tool point here.");
+        let nothing = || empty("The actuated joints have no effect at the tool point here.");
         Ok(ellipsoid(session, kind)?.map_or_else(nothing, Shown::Ellipsoid))
     };
     let found = match overlay {
@@ -126,7 +126,11 @@ fn axes(session: &Session) -> Vec<AxisJson> {
 fn principal(system: &ScrewSystem) -> Shown {
     match system.order() {
         0 => return empty("Nothing moves the tool: the system is empty."),
-        6 => return empty("The tool moves in all six ways: every screw belongs to the system."),
+        6 => {
+            return empty(
+                "The tool moves in all six directions: every screw belongs to the system.",
+            );
+        }
         _ => {}
     }
     Shown::System(SystemJson {
@@ -142,8 +146,12 @@ fn principal(system: &ScrewSystem) -> Shown {
 
 fn reciprocal(system: &ScrewSystem) -> Shown {
     match system.order() {
-        0 => return empty("Nothing moves the tool: every wrench is held."),
-        6 => return empty("The tool moves in all six ways: no wrench is held without work."),
+        0 => return empty("Nothing moves the tool: every wrench is resisted by the structure."),
+        6 => {
+            return empty(
+                "The tool moves in all six directions: no wrench is reciprocal to all motions.",
+            );
+        }
         _ => {}
     }
     Shown::Reciprocal(ReciprocalJson {
@@ -159,10 +167,10 @@ fn cylindroid(system: &ScrewSystem) -> Shown {
     let pencil = system.pencil(RULINGS);
     if pencil.is_empty() {
         return empty(format!(
-            "A system of two screws, or one that is reciprocal to two, has a cylindroid; here {}.",
+            "Only systems of order two or four (reciprocal) have a cylindroid; here {}.",
             match order {
-                1 => "there is one screw".to_owned(),
-                n => format!("there are {n}"),
+                1 => "the order is one".to_owned(),
+                n => format!("the order is {n}"),
             }
         ));
     }

@@ -1,4 +1,4 @@
-//! Configurations that a client asks for: one coordinate, or all of them, with loops kept closed.
+//! Configurations requested by a client, for one coordinate or all, with closed loops.
 
 use cylindroid::closure::{ContinuationOptions, PathEnd, assemble, track_path};
 use cylindroid::model::{Coordinate, CoordinateKind, Mechanism};
@@ -8,20 +8,20 @@ use super::messages::Complaint;
 use crate::commands::shared::within_limits;
 use crate::output::number;
 
-/// True where one coordinate can be set alone.
+/// True if the coordinate can be set individually.
 pub(super) fn is_adjustable(mechanism: &Mechanism, c: &Coordinate) -> bool {
     !mechanism.is_closed() || matches!(c.kind, CoordinateKind::Angle | CoordinateKind::Length)
 }
 
-/// How far a joint got, and what kept it from going on.
+/// The configuration reached, and the reason why a joint stopped early.
 #[derive(Debug)]
 pub(super) struct Reached {
     pub(super) q: Vec<f64>,
     pub(super) complaint: Option<Complaint>,
 }
 
-/// Moves the coordinate `name` to `value`, within limits and with loops closed: the other drives
-/// rest where they can.
+/// Moves the coordinate `name` to `value`, within limits and with closed loops; the other actuated
+/// joints stay at rest if possible.
 pub(super) fn reach(
     state: &State,
     name: &str,
@@ -34,11 +34,13 @@ pub(super) fn reach(
     };
     let c = &mechanism.coordinates()[i];
     if !is_adjustable(mechanism, c) {
-        let what = format!("coordinate '{name}' is a part of a joint that is held as a whole");
+        let what = format!(
+            "coordinate '{name}' belongs to a multi-DOF joint and cannot be set individually"
+        );
         return Err(Complaint::new("joint.name", name, &what, "move another joint, or the target"));
     }
     let (lower, upper, unit) = (c.limits.lower, c.limits.upper, c.kind.unit());
-    // The way through closed configurations is searched step by step.
+    // Path tracking through closed configurations takes steps, so their number is bounded.
     let most = match (mechanism.is_closed(), c.kind.is_length()) {
         (false, _) => f64::INFINITY,
         (true, true) => 2.0 * mechanism.reach(),
@@ -49,8 +51,8 @@ pub(super) fn reach(
     let goal = value.max(lower).min(upper);
     let beyond = (goal != value).then(|| {
         let what =
-            format!("{name} = {value} is beyond its limits, or too far away for one message");
-        let way_out = format!("give {lower} to {upper} {unit}");
+            format!("{name} = {value} is outside its limits or too far away for one message");
+        let way_out = format!("give a value from {lower} to {upper} {unit}");
         Complaint::new("joint.value", &value.to_string(), &what, &way_out)
     });
     let (q, complaint) = if mechanism.is_closed() {
@@ -69,8 +71,8 @@ pub(super) fn reach(
     Ok(Reached { complaint: complaint.map(|c| Complaint { nearest, ..c }), q })
 }
 
-/// Along the branch of closed configurations: with the other drives at rest, or where they
-/// contradict that, with this coordinate alone.
+/// Path tracking on the branch of closed configurations, with the other actuated joints at rest or,
+/// if that is contradictory, with only this coordinate prescribed.
 fn along(state: &State, i: usize, goal: f64) -> Result<(Vec<f64>, PathEnd)> {
     let (mechanism, q) = (state.mechanism(), state.q());
     let mut held: Vec<usize> = Vec::new();
@@ -93,23 +95,23 @@ fn along(state: &State, i: usize, goal: f64) -> Result<(Vec<f64>, PathEnd)> {
     Ok((q.to_vec(), PathEnd::Contradiction))
 }
 
-/// What stopped a joint, and what to do about it.
+/// Why a joint stopped, and what to do.
 fn sentence(mechanism: &Mechanism, name: &str, end: &PathEnd) -> Option<(String, &'static str)> {
     Some(match end {
         PathEnd::Reached => return None,
         PathEnd::Singular(s) => (
             format!(
-                "{name} stops before a singular posture (distance {}), beyond which the other \
-                 joints would choose their way ({})",
+                "{name} stops before a singularity (distance {}), at which the other joints \
+                 would no longer be determined ({})",
                 number(s.distance),
                 s.kind
             ),
-            "come from another side, or drive other joints",
+            "approach from another side, or actuate other joints",
         ),
         PathEnd::Limit { coordinate } => {
             let c = &mechanism.coordinates()[*coordinate];
             let what = format!(
-                "{name} stops where {} would leave its limits, {} to {} {}",
+                "{name} stops because {} would exceed its limits, {} to {} {}",
                 c.name,
                 number(c.limits.lower),
                 number(c.limits.upper),
@@ -118,27 +120,28 @@ fn sentence(mechanism: &Mechanism, name: &str, end: &PathEnd) -> Option<(String,
             (what, "move another joint first")
         }
         PathEnd::Open => (
-            format!("the loops do not close with {name} there"),
+            format!("the loops do not close with {name} at this value"),
             "reset, or move another joint first",
         ),
-        PathEnd::Contradiction => {
-            (format!("the loops do not let {name} move"), "drive fewer joints, or move the target")
-        }
+        PathEnd::Contradiction => (
+            format!("the loops do not allow {name} to move"),
+            "actuate fewer joints, or move the target",
+        ),
         PathEnd::StepTooSmall => (
-            format!("{name} got stuck on its way"),
+            format!("path tracking of {name} stopped: the step became too small"),
             "move it in smaller steps, or another joint first",
         ),
     })
 }
 
-/// `q`, within limits, with loops and contacts closed near it.
+/// Assembles loops and contacts starting from `q`, which must lie within the limits.
 pub(super) fn assembled(mechanism: &Mechanism, q: &[f64]) -> Result<Vec<f64>> {
     mechanism.check_q("q", q)?;
     within_limits(mechanism, "q", q)?;
     closed(mechanism, q)
 }
 
-/// `q`, with loops and contacts closed near it.
+/// Assembles loops and contacts starting from `q`.
 pub(super) fn closed(mechanism: &Mechanism, q: &[f64]) -> Result<Vec<f64>> {
     if !mechanism.is_closed() {
         return Ok(q.to_vec());
@@ -154,7 +157,7 @@ pub(super) fn closed(mechanism: &Mechanism, q: &[f64]) -> Result<Vec<f64>> {
             number(found.closure_error.distance),
             number(found.closure_error.angle)
         ),
-        reason: "no closed configuration was found near it; begin nearer to one that closes"
+        reason: "no closed configuration was found near it; start closer to a closed one"
             .to_owned(),
     })
 }

@@ -1,4 +1,4 @@
-//! Reports: the objects that `cylindroid <command> --json` prints, made by the same functions.
+//! Reports: the objects printed by `cylindroid <command> --json`, made by the same functions.
 
 use clap::Parser;
 use cylindroid::{EndEffector, Error, Mechanism, State};
@@ -14,7 +14,7 @@ use crate::args::{Cli, Command};
 use crate::commands::closed::{Posed, manipulability, mobility};
 use crate::commands::{info, screws};
 
-/// A report to be made; it takes milliseconds, so that others make it than those who serve.
+/// A report request. It takes milliseconds and is processed on a thread of its own.
 #[derive(Debug)]
 pub(super) struct Report {
     name: &'static str,
@@ -33,7 +33,7 @@ struct ReportJson<'a> {
 }
 
 impl Report {
-    /// Of a session as it is now.
+    /// For the current state of a session.
     pub(super) fn new(
         session: &Session,
         name: &str,
@@ -66,7 +66,7 @@ impl Report {
     }
 
     fn find(&self) -> anyhow::Result<Box<RawValue>> {
-        // Every option as it is where none is given.
+        // All options have their defaults.
         let plain = || Cli::try_parse_from(["cylindroid", self.name, self.mechanism.name()]);
         let state = || -> cylindroid::Result<State> { self.mechanism.state(&self.q) };
         let posed = || {

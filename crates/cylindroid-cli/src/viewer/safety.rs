@@ -1,7 +1,7 @@
-//! Who may ask: requests by an address that the server listens on, from no page but its own.
+//! Access control: requests must be addressed to the server, and come from its own page.
 //!
-//! A foreign page cannot forge `Host` and `Origin`. The first is a foreign name where a name of its
-//! own was bound to this address (DNS rebinding), the second where it calls from afar.
+//! A foreign page cannot forge `Host` and `Origin`. `Host` is a foreign name after DNS rebinding,
+//! `Origin` is foreign for cross-origin requests.
 
 use std::net::{IpAddr, SocketAddr};
 
@@ -10,7 +10,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-/// The names that the server answers to.
+/// The host names of the server.
 #[derive(Debug, Clone)]
 pub(super) struct Names {
     /// As given with `--host`.
@@ -26,7 +26,7 @@ impl Names {
     /// The URL of the page.
     pub(super) fn url(&self) -> String {
         let host = match self.host.parse::<IpAddr>() {
-            // Not an address that a browser could go to.
+            // Not an address that a browser can open.
             Ok(ip) if ip.is_unspecified() && ip.is_ipv6() => "[::1]".to_owned(),
             Ok(ip) if ip.is_unspecified() => "127.0.0.1".to_owned(),
             Ok(IpAddr::V6(ip)) => format!("[{ip}]"),
@@ -49,13 +49,13 @@ impl Names {
         let everywhere = bound.is_unspecified();
         let loopback = bound.is_loopback() || everywhere;
         match host.parse::<IpAddr>() {
-            // A page whose name was bound to this address still has its name.
+            // After DNS rebinding the request still carries the name of the foreign page.
             Ok(ip) => ip == bound || everywhere || (loopback && ip.is_loopback()),
             Err(_) => host == self.host || (loopback && host == "localhost"),
         }
     }
 
-    /// Why a request is refused, if it is.
+    /// Why a request is rejected, if it is.
     fn fault(&self, headers: &HeaderMap) -> Option<&'static str> {
         let mut hosts = headers.get_all(header::HOST).iter();
         let host = hosts.next().and_then(|h| h.to_str().ok());
@@ -70,15 +70,13 @@ impl Names {
             authority.is_some_and(|a| self.knows(a))
         };
         if !headers.get_all(header::ORIGIN).iter().all(own) {
-            return Some(
-                "This request comes from another page, which may not talk to this server.",
-            );
+            return Some("Requests from other pages are not allowed.");
         }
         None
     }
 }
 
-/// Refuses foreign requests; puts the security headers on all answers.
+/// Rejects foreign requests; adds the security headers to all answers.
 pub(super) async fn guard(State(names): State<Names>, request: Request, next: Next) -> Response {
     let fault = names.fault(request.headers());
     let host = request.headers().get(header::HOST).and_then(|h| h.to_str().ok());
@@ -86,7 +84,8 @@ pub(super) async fn guard(State(names): State<Names>, request: Request, next: Ne
     let mut response = match fault {
         Some(fault) => (StatusCode::FORBIDDEN, fault).into_response(),
         None if has_foreign_form(request.uri()) => {
-            (StatusCode::BAD_REQUEST, "Ask for a path, not for another server.").into_response()
+            (StatusCode::BAD_REQUEST, "Request a path, not a URL of another server.")
+                .into_response()
         }
         None => next.run(request).await,
     };
@@ -112,7 +111,7 @@ fn has_foreign_form(uri: &Uri) -> bool {
     uri.authority().is_some()
 }
 
-/// Only what this server serves, and what the page makes itself (textures of meshes).
+/// Only resources of this server, and those created by the page (textures of meshes).
 fn policy(host: &str) -> String {
     format!(
         "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' \

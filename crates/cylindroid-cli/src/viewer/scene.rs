@@ -1,4 +1,4 @@
-//! What there is to see: links, joints, frames and choices of a session, as the page gets them.
+//! The message `scene`: links, joints, frames and choices of a session.
 
 use cylindroid::control::NamedInverse;
 use cylindroid::model::{Geometry, Link, Mechanism, Visual};
@@ -30,7 +30,7 @@ pub(super) struct Scene<'a> {
     loops: Vec<LoopJson<'a>>,
     contacts: Vec<ContactJson<'a>>,
     objects: Vec<ObjectJson<'a>>,
-    drives: Vec<DriveJson<'a>>,
+    actuators: Vec<ActuatorJson<'a>>,
     self_motions: usize,
     method: &'a Chosen,
     methods: Vec<ChoiceJson>,
@@ -153,7 +153,7 @@ struct ObjectJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
-struct DriveJson<'a> {
+struct ActuatorJson<'a> {
     name: &'a str,
     kind: &'static str,
     actuated: bool,
@@ -251,7 +251,7 @@ impl<'a> Scene<'a> {
                 .into_iter()
                 .map(|(i, reference)| ObjectJson { link: i, name: link(i), reference })
                 .collect(),
-            drives: drives(mechanism),
+            actuators: actuators(mechanism),
             self_motions: session.servo().map_or(0, Servo::redundancy),
             method: session.method(),
             methods: methods(session),
@@ -267,7 +267,7 @@ fn overlay(o: Overlay) -> OverlayJson {
     OverlayJson { name: o.name(), title: o.title(), unit: o.unit(), frame: o.frame() }
 }
 
-/// All but those that need a complement, which the page cannot give.
+/// All inverses except those that need a complement, which the page cannot specify.
 fn methods(session: &Session) -> Vec<ChoiceJson> {
     let whole = session.options().task.components == [true; 6];
     let choice = |inverse: NamedInverse| {
@@ -312,9 +312,9 @@ fn links(session: &Session) -> Vec<LinkJson<'_>> {
         add(c.a, &c.name, "contact", c.link_a_from_contact);
         add(c.b, &c.name, "contact", c.link_b_from_contact);
     }
-    let driven = mechanism.frame_of(session.options().end_effector.frame);
-    let tool = driven.link_from_frame * session.options().end_effector.frame_from_tool;
-    add(driven.link, &driven.name, "frame", tool);
+    let controlled = mechanism.frame_of(session.options().end_effector.frame);
+    let tool = controlled.link_from_frame * session.options().end_effector.frame_from_tool;
+    add(controlled.link, &controlled.name, "frame", tool);
     all
 }
 
@@ -347,7 +347,7 @@ fn visuals<'a>(session: &'a Session, link: &'a Link) -> Vec<VisualJson<'a>> {
     link.visuals.iter().map(visual).collect()
 }
 
-/// The link of the reference, then what is touched.
+/// The link of the reference frame, then the other links in contact.
 fn objects(mechanism: &Mechanism) -> Vec<(usize, bool)> {
     if !mechanism.is_closed() {
         return Vec::new();
@@ -361,15 +361,16 @@ fn objects(mechanism: &Mechanism) -> Vec<(usize, bool)> {
     all
 }
 
-/// The joints that can be driven: they move, and follow no other.
-fn drives(mechanism: &Mechanism) -> Vec<DriveJson<'_>> {
+/// The joints that can be actuated: movable, and no mimic joints.
+fn actuators(mechanism: &Mechanism) -> Vec<ActuatorJson<'_>> {
     if !mechanism.is_closed() {
         return Vec::new();
     }
     let tree = mechanism.joints().iter().filter(|j| j.kind.dof() > 0 && j.mimic.is_none());
-    let tree = tree.map(|j| DriveJson { name: &j.name, kind: j.kind.name(), actuated: j.actuated });
+    let tree =
+        tree.map(|j| ActuatorJson { name: &j.name, kind: j.kind.name(), actuated: j.actuated });
     let closing = mechanism.loops().iter().filter(|l| l.kind.dof() == 1);
     let closing =
-        closing.map(|l| DriveJson { name: &l.name, kind: l.kind.name(), actuated: l.actuated });
+        closing.map(|l| ActuatorJson { name: &l.name, kind: l.kind.name(), actuated: l.actuated });
     tree.chain(closing).collect()
 }

@@ -18,10 +18,10 @@ use super::safety::{Names, guard};
 use super::socket::talk;
 use super::start::Start;
 
-/// Longest frame that is read at all [bytes]: what is longer than a message may be is answered up to
-/// here, beyond the connection ends.
+/// Maximum frame size [bytes]. Longer messages than allowed are answered with an error up to this
+/// size; beyond it the connection ends.
 const LONGEST: usize = 1024 * 1024;
-/// Sessions at once: far more than one robot is looked at by, few enough for any machine.
+/// Maximum number of concurrent sessions.
 const MOST_SESSIONS: usize = 100;
 
 const NOT_BUILT: &str = "The page is not built: run `cargo xtask viewer` in the source of \
@@ -42,7 +42,7 @@ struct Shared {
     sessions: Arc<AtomicUsize>,
 }
 
-/// A place among the sessions, free again when it is dropped.
+/// A slot for a session, released when dropped.
 #[derive(Debug)]
 struct Place(Arc<AtomicUsize>);
 
@@ -91,7 +91,7 @@ impl Server {
 
 async fn session(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Response {
     let Some(place) = Place::of(&shared.sessions) else {
-        let what = "There are too many sessions; close one.";
+        let what = "There are too many sessions; close one of them.";
         return (StatusCode::SERVICE_UNAVAILABLE, what).into_response();
     };
     upgrade.max_message_size(LONGEST).max_frame_size(LONGEST).on_upgrade(async move |socket| {
@@ -105,7 +105,7 @@ async fn mesh(
     Path((folder, path)): Path<(usize, String)>,
 ) -> Response {
     let Some(file) = shared.start.folders.file(folder, &path) else {
-        return (StatusCode::NOT_FOUND, "There is no such mesh in the model's own folders.")
+        return (StatusCode::NOT_FOUND, "There is no such mesh in the folders of the model.")
             .into_response();
     };
     let kind = mime_guess(&file);
@@ -116,7 +116,7 @@ async fn mesh(
     }
 }
 
-/// Of meshes and images alone.
+/// For meshes and images only.
 fn mime_guess(file: &std::path::Path) -> &'static str {
     let extension = file.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     match extension.as_deref() {

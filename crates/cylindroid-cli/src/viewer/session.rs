@@ -1,6 +1,6 @@
 //! A session: one client's configuration, target and servo.
 //!
-//! It knows nothing of sockets and time. Messages change it, steps move it, and it can be shown.
+//! Independent of sockets and real time: messages change it, and steps move it.
 
 use std::sync::Arc;
 
@@ -22,9 +22,9 @@ use super::messages::{Complaint, NullSpace, TargetPose};
 use super::names::Overlay;
 use super::start::Start;
 
-/// Steps of the servo in a second of its clock.
+/// Servo steps per second of its clock.
 pub(super) const STEPS: u32 = 120;
-/// A servo that is at its target, or stalled, and slower than this is at rest [rad/s or m/s].
+/// A servo that reached its target or stalled is at rest below this speed [rad/s or m/s].
 const REST: f64 = 1e-7;
 
 #[derive(Debug)]
@@ -35,13 +35,13 @@ pub(super) struct Session {
     options: ServoOptions,
     task: String,
     method: Chosen,
-    /// Or why there is none.
+    /// Or the reason why there is none.
     servo: Result<Servo>,
-    /// What ended the last step.
+    /// The error of the last step.
     trouble: Option<Error>,
     target: Pose,
     is_playing: bool,
-    /// True where another step would change nothing.
+    /// True if another step would change nothing.
     is_resting: bool,
     last: Option<(Step, Option<Stall>)>,
     self_motion: Option<SelfMotion>,
@@ -55,13 +55,13 @@ pub(super) struct Session {
 struct SelfMotion {
     rate: f64,
     index: usize,
-    /// Rates at full speed.
+    /// Joint velocities at full speed.
     motion: Vec<f64>,
 }
 
 impl Session {
     /// # Errors
-    /// A start that is not finite.
+    /// A start with non-finite values.
     pub(super) fn new(start: Arc<Start>) -> Result<Self> {
         let mechanism = start.mechanism.clone();
         let mut options = ServoOptions::new(&mechanism);
@@ -76,7 +76,7 @@ impl Session {
             trouble: None,
             task: "pose".to_owned(),
             is_playing: true,
-            // The target is at the tool: there is nothing to do until somebody wants something.
+            // The target is at the tool until a message moves it.
             is_resting: true,
             last: None,
             self_motion: None,
@@ -127,7 +127,7 @@ impl Session {
         self.servo.as_mut().ok()
     }
 
-    /// Why there is no servo, or why it cannot go on from here.
+    /// Why there is no servo, or why it cannot continue.
     pub(super) fn fault(&self) -> Option<&Error> {
         self.servo.as_ref().err().or(self.trouble.as_ref())
     }
@@ -144,7 +144,7 @@ impl Session {
         self.last.as_ref()
     }
 
-    /// Share of the joints' speeds that the self-motion has.
+    /// Speed of the self-motion relative to the joint velocity limits.
     pub(super) fn self_motion(&self) -> f64 {
         self.self_motion.as_ref().map_or(0.0, |s| s.rate)
     }
@@ -166,18 +166,17 @@ impl Session {
         &self.method
     }
 
-    /// True where another step would change nothing.
+    /// True if another step would change nothing.
     pub(super) fn is_resting(&self) -> bool {
         self.is_resting
     }
 
-    /// True while steps change something.
+    /// True while steps change the state.
     pub(super) fn is_moving(&self) -> bool {
         self.is_playing && self.servo.is_ok() && !self.is_resting
     }
 
-    /// Moves by this many steps of the servo, fewer if it comes to rest; false where that has
-    /// changed nothing that is seen.
+    /// Executes this many servo steps, fewer if it comes to rest; false if nothing visible changed.
     pub(super) fn advance(&mut self, steps: u64) -> bool {
         let before = self.state.q().to_vec();
         let first = self.last.is_none();
@@ -189,7 +188,7 @@ impl Session {
             }
             moved = self.step(&mut q);
         }
-        // A configuration that is not finite is no place to go.
+        // Non-finite configurations are rejected.
         if let Err(error) = moved.and_then(|()| self.state.set(&q)) {
             (self.trouble, self.is_resting) = (Some(error), true);
         }
@@ -198,14 +197,14 @@ impl Session {
 
     fn step(&mut self, q: &mut [f64]) -> Result<()> {
         let Ok(servo) = &mut self.servo else { return Ok(()) };
-        let mut wanted = Vec::new();
+        let mut desired = Vec::new();
         if let Some(own) = &mut self.self_motion {
             if let Some(next) = servo.next_self_motion(q, &own.motion)? {
                 own.motion = next;
             }
-            wanted = own.motion.iter().map(|x| own.rate * x).collect();
+            desired = own.motion.iter().map(|x| own.rate * x).collect();
         }
-        let step = servo.step_with(q, Target::from(self.target), &wanted)?;
+        let step = servo.step_with(q, Target::from(self.target), &desired)?;
         let stall = (step.status == Status::Stalled).then(|| servo.stall());
         servo.advance(q);
         self.steps += 1;
@@ -223,12 +222,12 @@ impl Session {
         Ok(())
     }
 
-    /// Remembers the mark of a message, for the next state.
+    /// Stores the id of a message for the next state.
     pub(super) fn acknowledge(&mut self, id: Option<&Value>) {
         self.ack = id.cloned();
     }
 
-    /// Moves this frame, its target where it is now.
+    /// Controls this frame; the target is its current pose.
     pub(super) fn choose_frame(&mut self, frame: FrameId) -> Result<()> {
         let options = ServoOptions { end_effector: frame.into(), ..self.options.clone() };
         self.take(options)?;
@@ -265,24 +264,24 @@ impl Session {
         }
     }
 
-    /// Back to where the session began.
+    /// Returns to the initial configuration.
     pub(super) fn reset(&mut self) -> Result<()> {
         let q = self.start.q.clone();
         self.stand(&q)
     }
 
-    /// Stands at `q`, the target at the tool.
+    /// Sets the configuration, and the target to the tool.
     pub(super) fn stand(&mut self, q: &[f64]) -> Result<()> {
         self.state.set(q)?;
         self.target = self.state.pose(self.options.end_effector);
         self.self_motion = None;
         self.wake();
-        // Nothing to do; above all, joints stay where they were put.
+        // The target is reached, and joints stay at the given values.
         self.is_resting = true;
         Ok(())
     }
 
-    /// Begins anew from rest.
+    /// Restarts the servo from rest.
     fn wake(&mut self) {
         (self.last, self.trouble) = (None, None);
         self.is_resting = false;
@@ -291,23 +290,23 @@ impl Session {
         }
     }
 
-    pub(super) fn aim(&mut self, wanted: &TargetPose) -> std::result::Result<(), Complaint> {
-        let [w, x, y, z] = wanted.quaternion;
+    pub(super) fn aim(&mut self, desired: &TargetPose) -> std::result::Result<(), Complaint> {
+        let [w, x, y, z] = desired.quaternion;
         let rotation = Quaternion { w, x, y, z }
             .rotation()
             .map_err(|error| Complaint::of("target.quaternion", &error))?;
-        let translation = Vec3::from_array(wanted.position);
-        // A distance that overflows is no distance.
+        let translation = Vec3::from_array(desired.position);
+        // The distance must not overflow.
         Error::check_finite("target position", &[translation.norm()])
             .map_err(|error| Complaint::of("target.position", &error))?;
         self.target = Pose { rotation, translation };
-        // Speeds stay: a target that is dragged is followed smoothly.
+        // Velocities are kept, so that a dragged target is followed smoothly.
         (self.last, self.trouble) = (None, None);
         self.is_resting = false;
         Ok(())
     }
 
-    /// Another servo, if the options make one; drives that do not steer the tool leave none.
+    /// Sets new options; there is no servo if the actuated joints do not control the tool.
     fn take(&mut self, mut options: ServoOptions) -> Result<()> {
         options.secondary = options.default_secondary(&self.mechanism)?;
         options.check(&self.mechanism)?;
@@ -318,15 +317,23 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn turn(&mut self, wanted: &NullSpace) -> std::result::Result<(), Complaint> {
+    pub(super) fn turn(&mut self, desired: &NullSpace) -> std::result::Result<(), Complaint> {
         let refuse = |field: &str, value: String, what: &str, way_out: &str| {
             Complaint::new(&format!("null_space.{field}"), &value, what, way_out)
         };
-        if !(-1.0..=1.0).contains(&wanted.rate) {
-            let what = format!("rate = {} is no share of the joints' speeds", wanted.rate);
-            return Err(refuse("rate", wanted.rate.to_string(), &what, "give -1 to 1"));
+        if !(-1.0..=1.0).contains(&desired.rate) {
+            let what = format!(
+                "rate = {} is outside the range -1 to 1 (share of the joint velocity limits)",
+                desired.rate
+            );
+            return Err(refuse(
+                "rate",
+                desired.rate.to_string(),
+                &what,
+                "give a value from -1 to 1",
+            ));
         }
-        if wanted.rate == 0.0 {
+        if desired.rate == 0.0 {
             self.self_motion = None;
             self.wake();
             return Ok(());
@@ -337,17 +344,17 @@ impl Session {
             Err(error) => return Err(Complaint::of("null_space", error)),
         };
         let count = motions.len();
-        let Some(motion) = motions.into_iter().nth(wanted.index) else {
+        let Some(motion) = motions.into_iter().nth(desired.index) else {
             let what = match count {
-                0 => "no motion of the joints leaves the tool at rest here".to_owned(),
-                _ => format!("there are {count} such motions, counted from 0"),
+                0 => "there is no self-motion here: every joint motion moves the tool".to_owned(),
+                _ => format!("there are {count} self-motions, counted from 0"),
             };
             let way_out = "leave components of the pose free (task), or choose another index";
-            return Err(refuse("index", wanted.index.to_string(), &what, way_out));
+            return Err(refuse("index", desired.index.to_string(), &what, way_out));
         };
-        let (rate, index) = (wanted.rate, wanted.index);
+        let (rate, index) = (desired.rate, desired.index);
         match &mut self.self_motion {
-            // A slider that is dragged keeps its motion.
+            // While a slider is dragged, the direction is kept.
             Some(own) if own.index == index => own.rate = rate,
             _ => self.self_motion = Some(SelfMotion { rate, index, motion }),
         }
@@ -358,8 +365,8 @@ impl Session {
     pub(super) fn drive_by(&mut self, names: &[String]) -> std::result::Result<(), Complaint> {
         if !self.mechanism.is_closed() {
             let name = self.mechanism.name();
-            let what = format!("'{name}' has no loops or contacts, so all joints are driven");
-            let way_out = "drives are chosen on closed chains";
+            let what = format!("'{name}' has no loops or contacts, so all joints are actuated");
+            let way_out = "actuated joints can be chosen for closed chains only";
             return Err(Complaint::new("actuated.names", name, &what, way_out));
         }
         let at = |error| Complaint::of("actuated.names", &error);
@@ -372,8 +379,8 @@ impl Session {
         Ok(())
     }
 
-    /// The screw system of what moves the tool: of the joints of a tree, of the motions that a
-    /// closed chain leaves its object.
+    /// The screw system of the tool: of the joints of a tree, or of the motions of the object of a
+    /// closed chain.
     pub(super) fn screw_system(&self) -> Result<ScrewSystem> {
         let (mechanism, state) = (self.mechanism(), self.state());
         let of = self.options().end_effector;
@@ -388,12 +395,12 @@ impl Session {
         ScrewSystem::of(&twists, &ScrewOptions::with_length(mechanism.reach()))
     }
 
-    /// The pitch whose projector is smallest here; it may be infinite.
+    /// The pitch with the smallest projector norm here; may be infinite.
     pub(super) fn best_pitch(&self) -> Result<f64> {
         self.screw_system()?.choose_pitch().pitch.ok_or_else(|| Error::InvalidOption {
             option: "h",
             value: "null".to_owned(),
-            reason: "the joints have no hyperbolic inverse here, whatever the pitch; take another"
+            reason: "no hyperbolic inverse exists here for any pitch; choose another inverse"
                 .to_owned(),
         })
     }

@@ -1,4 +1,4 @@
-//! A session as it is now, as the page gets it.
+//! The message `state`: the current state of a session.
 
 use std::collections::BTreeMap;
 
@@ -167,12 +167,12 @@ fn servo(session: &Session) -> ServoJson {
                 let why = cause(mechanism, session.options().task, q, stall);
                 told("stalled", Some(stall.name()), why)
             }
-            _ => told("moving", None, "On its way to the target.".to_owned()),
+            _ => told("moving", None, "Moving to the target.".to_owned()),
         },
         None if session.is_resting() => {
             told("reached", None, "The target is at the tool.".to_owned())
         }
-        None => told("moving", None, "On its way to the target.".to_owned()),
+        None => told("moving", None, "Moving to the target.".to_owned()),
     }
 }
 

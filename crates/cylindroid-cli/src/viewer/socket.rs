@@ -1,7 +1,7 @@
-//! One client: messages in, the newest state out, the servo in time.
+//! One client: receives messages, steps the servo in real time, sends the latest state.
 //!
-//! A task reads and steps, another writes. Between them stands one state, the newest: what was not
-//! sent when a newer one is there is gone, whatever the speed of the network or the browser.
+//! One task reads and steps, another writes. Only the latest state is kept between them: a state
+//! not yet sent is replaced by a newer one, so slow networks and browsers never lag behind.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -23,26 +23,26 @@ use super::session::{STEPS, Session};
 use super::snapshot::snapshot;
 use super::start::Start;
 
-/// States in a second, at most.
+/// Maximum number of states per second.
 const RATE: u32 = 60;
-/// Time of the servo that is made up for at most when its turn comes late; more is left out.
+/// Maximum servo time that is caught up after a delay; the rest is skipped.
 const CATCH_UP: Duration = Duration::from_millis(100);
-/// Answers that wait for a client that does not read; one more ends the connection.
+/// Maximum number of unread answers; one more ends the connection.
 const ANSWERS: usize = 64;
-/// States under way to a client that says what it has seen.
+/// Maximum number of states in transit to a client that sends `seen`.
 const UNSEEN: usize = 2;
-/// Reports in the making.
+/// Maximum number of concurrent reports.
 const REPORTS: usize = 4;
-/// A client that takes nothing for so long is gone.
+/// A client that receives nothing for this long is disconnected.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// Time between two pings, and how long a client may say nothing at all, not even to these.
+/// Interval of pings, and maximum silence of a client, including answers to pings.
 const PING: Duration = Duration::from_secs(20);
 const SILENCE: Duration = Duration::from_secs(90);
 
-/// The newest state and its number; none where the last scene has none yet.
+/// The latest state and its number; `None` before the first state of a scene.
 type State = Option<Arc<(u64, String)>>;
 
-/// Serves a client until it leaves.
+/// Serves a client until it disconnects.
 pub(super) async fn talk(socket: WebSocket, start: Arc<Start>) {
     let (sink, stream) = socket.split();
     let (states, newest) = watch::channel(None);
@@ -70,11 +70,11 @@ pub(super) async fn talk(socket: WebSocket, start: Arc<Start>) {
         Err(error) => {
             let answers = answers;
             let complaint = text(&Complaint::of("session", &error));
-            // Nothing waits yet.
+            // The queue is still empty.
             let _ = answers.try_send(Frame::Text(complaint.into()));
         }
     }
-    // The senders are gone: it sends what waits, and ends.
+    // The senders are dropped: the writer sends the queued frames and ends.
     if timeout(PATIENCE, &mut writer).await.is_err() {
         writer.abort();
     }
@@ -87,16 +87,16 @@ struct Client {
     seen: watch::Sender<Option<u64>>,
     reports: JoinSet<String>,
     seq: u64,
-    /// True if something has changed since the last state.
+    /// True if the session changed since the last state.
     is_dirty: bool,
-    /// When the servo had its last turn, if it moves.
+    /// Time of the last servo update, if it is moving.
     last: Option<Instant>,
-    /// Time that it has not yet moved for.
+    /// Elapsed time not yet covered by steps.
     owed: Duration,
 }
 
 impl Client {
-    /// Until the client leaves, or does not read.
+    /// Runs until the client disconnects or stops reading.
     async fn serve(&mut self, mut stream: SplitStream<WebSocket>) {
         if self.scene().is_err() {
             return;
@@ -133,7 +133,7 @@ impl Client {
         }
     }
 
-    /// Steps for the time that has passed, and shows what came of it.
+    /// Steps the servo for the elapsed time and publishes the new state.
     fn turn(&mut self) {
         if self.session.is_moving() {
             let now = Instant::now();
@@ -154,7 +154,7 @@ impl Client {
             return;
         }
         self.seq += 1;
-        // A state that cannot be told (numbers that overflow) is told with the next.
+        // A state that cannot be computed (overflow) is skipped.
         if let Ok(state) = snapshot(&mut self.session, self.seq) {
             self.states.send_replace(Some(Arc::new((self.seq, state))));
         }
@@ -166,13 +166,13 @@ impl Client {
                 "message",
                 &format!("{} bytes", said.len()),
                 &format!("a message has at most {LARGEST} bytes"),
-                "send less",
+                "send a shorter message",
             )),
             Frame::Text(said) => read(said),
             Frame::Binary(_) => Err(Complaint::new(
                 "message",
                 "binary",
-                "messages are text",
+                "messages must be text frames",
                 "send one JSON object in a text frame",
             )),
             Frame::Ping(_) | Frame::Pong(_) | Frame::Close(_) => return Ok(()),
@@ -194,7 +194,7 @@ impl Client {
                 Ok(())
             }
             Ok(Reply::Report(_)) => {
-                let what = format!("{REPORTS} reports are in the making");
+                let what = format!("{REPORTS} reports are in progress");
                 let complaint = Complaint::new("report", "report", &what, "wait for one of them");
                 let reply_to = self.session.ack().cloned();
                 self.answer(text(&Complaint { reply_to, ..complaint }))
@@ -204,17 +204,17 @@ impl Client {
     }
 
     fn scene(&self) -> Result<(), Gone> {
-        // One that waits is of the scene before.
+        // A state still waiting belongs to the previous scene.
         self.states.send_replace(None);
         self.answer(text(&Scene::of(&self.session)))
     }
 
-    /// A client that does not read its answers is taken for gone.
+    /// A client that does not read its answers counts as disconnected.
     fn answer(&self, text: String) -> Result<(), Gone> {
         self.answers.try_send(Frame::Text(text.into())).map_err(|_| Gone)
     }
 
-    /// Says why, where the client broke the rules: a message that is too long.
+    /// Closes with a reason if the client violated the protocol (message too long).
     fn close(&self, error: &axum::Error) {
         let reason = error.to_string();
         let code = if reason.contains("too long") || reason.contains("too large") {
@@ -222,17 +222,17 @@ impl Client {
         } else {
             close_code::PROTOCOL
         };
-        let reason = "this is no message of docs/viewer.md".into();
-        // If there is no room, there is no reader.
+        let reason = "not a message of docs/viewer.md".into();
+        // A full queue means that nobody reads.
         let _ = self.answers.try_send(Frame::Close(Some(CloseFrame { code, reason })));
     }
 }
 
-/// The client is gone.
+/// The client is disconnected.
 #[derive(Debug)]
 struct Gone;
 
-/// Sends answers as they come and states as they are asked for, until the session is gone.
+/// Sends answers in order and the latest states at the client's pace, until the session ends.
 async fn write(
     mut sink: SplitSink<WebSocket, Frame>,
     mut states: watch::Receiver<State>,
@@ -246,7 +246,7 @@ async fn write(
         while unseen.front().is_some_and(|seq| drawn.is_some_and(|d| *seq <= d)) {
             unseen.pop_front();
         }
-        // Who never says what it has seen is sent everything.
+        // Clients that never send `seen` get every state.
         let is_ready = drawn.is_none() || unseen.len() < UNSEEN;
         let frame = tokio::select! {
             biased;

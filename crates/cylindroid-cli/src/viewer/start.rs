@@ -1,4 +1,4 @@
-//! What the sessions of a server begin with.
+//! The initial state of all sessions of a server.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use cylindroid::{EndEffector, Mechanism, Result};
 use super::assets::Folders;
 use super::reaching;
 
-/// What all sessions of a server begin with.
+/// The initial state of all sessions of a server.
 #[derive(Debug)]
 pub(crate) struct Start {
     pub(crate) mechanism: Mechanism,
@@ -17,8 +17,8 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// Of a mechanism at `q` near which its loops close; `model` is the file that it comes from,
-    /// `meshes` are further folders of its meshes.
+    /// For a mechanism whose loops are assembled starting from `q`; `model` is the name of its
+    /// file, `meshes` are additional mesh folders.
     pub(crate) fn new(
         (mechanism, model): (Mechanism, &str),
         q: &[f64],

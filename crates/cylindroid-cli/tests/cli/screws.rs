@@ -104,7 +104,7 @@ fn rates_of_a_point() {
     let one = ["screws", "youbot", "--frame", "arm_link_1", "--point", "0.4,0,0", "--direction"];
     let none = json(&[&one[..], &["1,0,0"]].concat(), 0);
     assert!(none["point"]["along"].is_null());
-    assert!(text(&[&one[..], &["1,0,0"]].concat()).contains("No rates move the point"));
+    assert!(text(&[&one[..], &["1,0,0"]].concat()).contains("No joint velocities move the point"));
     let output = cylindroid(&[&one[..], &["0,0,0"]].concat());
     assert_eq!(output.status.code(), Some(2));
 }

@@ -11,7 +11,7 @@ use super::super::target::{target_pose, task};
 use super::bounds::{joint_defaults, path_bounds};
 use super::inverse;
 use crate::args::{MoveArgs, NullSpaceName, PathArgs, ServoArgs};
-use crate::commands::shared::{all_driven, configuration, end_effector, load, within_limits};
+use crate::commands::shared::{all_actuated, configuration, end_effector, load, within_limits};
 use crate::values::Named;
 
 /// What is to be done.
@@ -49,7 +49,7 @@ impl Job {
     pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
         let robot = load(&args.configuration.model, &args.actuated)?;
         if !args.actuated.is_empty() && !robot.is_closed() {
-            return Err(all_driven(&robot).into());
+            return Err(all_actuated(&robot).into());
         }
         let degrees = args.configuration.degrees;
         let start = configuration(&robot, &args.configuration)?;

@@ -7,15 +7,15 @@ use cylindroid::{Result, Vec3};
 use super::twists::Twists;
 use crate::args::ScrewsArgs;
 
-/// The twists and what was found.
+/// The twists and the results.
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) twists: Twists,
     pub(super) system: ScrewSystem,
     pub(super) screws: Vec<Option<Screw>>,
-    /// Of the twists that are lines, where at least two are.
+    /// Involution of the twists of zero pitch, if there are at least two.
     pub(super) involution: Option<Involution>,
-    /// The rates that move the point along the direction, where both were given.
+    /// The joint velocities that move the point along the direction, if both are given.
     pub(super) point: Option<PointDirection>,
 }
 

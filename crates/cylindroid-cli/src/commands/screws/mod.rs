@@ -1,4 +1,4 @@
-//! `screws`: what the joint twists span and what can be done with it.
+//! `screws`: the screw system of the joint twists and its hyperbolic inverses.
 
 mod find;
 pub(crate) mod report;
@@ -37,7 +37,7 @@ pub(crate) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The object of `--json` for a mechanism; `args` say everything but which and where.
+/// The object of `--json` for a mechanism; `args` contains all other options.
 pub(crate) fn report(
     state: &State,
     of: EndEffector,

@@ -1,4 +1,4 @@
-//! What `screws` prints: tables and the JSON object.
+//! Output of `screws`: tables and the JSON object.
 
 use std::io::Write;
 
@@ -21,16 +21,16 @@ struct ScrewsJson<'a> {
     frame: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     q: Option<&'a [f64]>,
-    /// Of the twists: the joints that move the frame, or numbers from 1.
+    /// Names of the twists: the joints that move the frame, or numbers from 1.
     names: &'a [String],
     /// Linear part first, at the origin of the world (or of the file's frame).
     twists: Vec<[f64; 6]>,
-    /// Each twist as a screw; null for a twist that is zero.
+    /// Each twist as a screw; null for a zero twist.
     screws: Vec<Option<ScrewJson>>,
     rank: usize,
-    /// Smallest singular value kept over the largest dropped; null where nothing was dropped.
+    /// Smallest singular value kept over the largest dropped; null if none was dropped.
     gap: f64,
-    /// At or below this singular values of unit twists are zero.
+    /// Singular values of unit twists up to this value count as zero.
     threshold: f64,
     /// Of the system, of its reciprocal for rank 4 and 5.
     gibson_hunt: &'static str,
@@ -46,7 +46,7 @@ struct ScrewsJson<'a> {
     center: [f64; 3],
     /// Screws that span the reciprocal system.
     reciprocal: Vec<ScrewJson>,
-    /// False where no pitch has a hyperbolic inverse.
+    /// False if no pitch has a hyperbolic inverse.
     invertible: bool,
     choice: ChoiceJson,
     /// At the pitches of --h.
@@ -59,9 +59,9 @@ struct ScrewsJson<'a> {
 
 #[derive(Debug, Serialize)]
 struct PointJson {
-    /// The smallest rates that move the point at 1 m/s; null if none do.
+    /// The smallest joint velocities that move the point at 1 m/s; null if there are none.
     along: Option<Vec<f64>>,
-    /// Rates that keep it at rest, orthonormal.
+    /// Joint velocities that leave it at rest, orthonormal.
     still: Vec<Vec<f64>>,
 }
 
@@ -83,12 +83,12 @@ struct MarginJson {
 
 #[derive(Debug, Serialize)]
 struct ChoiceJson {
-    /// [m/rad]; null where no finite pitch is proposed.
+    /// [m/rad]; null if no finite pitch is proposed.
     pitch: Option<f64>,
     /// True if the limit for h to infinity is proposed.
     at_infinity: bool,
     norm: f64,
-    /// null where there is no limit.
+    /// null if there is no limit.
     norm_at_infinity: f64,
 }
 
@@ -99,14 +99,14 @@ struct ExistenceJson {
     exists: bool,
     margin: f64,
     threshold: f64,
-    /// Largest factor by which the projector enlarges a twist; null where there is none.
+    /// Norm of the projector; null if it does not exist.
     norm: f64,
     reason: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
 struct InvolutionJson {
-    /// How many of the twists are lines.
+    /// Number of twists of zero pitch.
     lines: usize,
     in_involution: bool,
     independent: bool,
@@ -224,7 +224,7 @@ fn involution_json(i: &Involution) -> InvolutionJson {
     }
 }
 
-/// Principal screws where they span the reciprocal system, else those of a basis.
+/// The principal screws if they span the reciprocal system, otherwise a basis.
 pub(crate) fn reciprocal_screws(system: &ScrewSystem) -> Vec<Screw> {
     let reciprocal = system.reciprocal();
     let form = reciprocal.normal_form();
@@ -261,7 +261,7 @@ fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<
         ],
     )?;
     writeln!(out)?;
-    writeln!(out, "Twists as screws, seen from {}", seen_from(found))?;
+    writeln!(out, "Twists as screws, in {}", frame_of(found))?;
     let named =
         twists.names.iter().map(String::as_str).zip(found.screws.iter().map(Option::as_ref));
     screws(out, "twist", named)?;
@@ -290,8 +290,8 @@ fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<
     Ok(())
 }
 
-fn seen_from(found: &Found) -> &'static str {
-    if found.twists.robot.is_some() { "the world" } else { "the frame of the file" }
+fn frame_of(found: &Found) -> &'static str {
+    if found.twists.robot.is_some() { "the world frame" } else { "the frame of the file" }
 }
 
 fn order(system: &ScrewSystem, count: usize) -> String {
@@ -321,7 +321,7 @@ fn canonical(system: &ScrewSystem, cells: &[String]) -> String {
         return String::new();
     }
     format!(
-        "origin {} m; roll, pitch, yaw {} rad; the form fits to {}",
+        "origin {} m; roll, pitch, yaw {} rad; residual of the normal form {}",
         cells[..3].join(", "),
         cells[3..].join(", "),
         number(system.residual())
@@ -355,8 +355,8 @@ fn verdict(system: &ScrewSystem) -> String {
 fn inverse(system: &ScrewSystem) -> String {
     let choice = system.choose_pitch();
     match system.order() {
-        0 => return "exists for every h, and is zero".to_owned(),
-        6 => return "exists for every h, and is the pseudoinverse".to_owned(),
+        0 => return "exists for every h and is zero".to_owned(),
+        6 => return "exists for every h and equals the pseudoinverse".to_owned(),
         _ => {}
     }
     let Some(pitch) = choice.pitch else {
@@ -365,7 +365,7 @@ fn inverse(system: &ScrewSystem) -> String {
     };
     let but = match system.principal_pitches()[..] {
         [] => "for every finite h".to_owned(),
-        ref pitches => format!("for every h but {} m/rad", output::entries(pitches)),
+        ref pitches => format!("for every h except {} m/rad", output::entries(pitches)),
     };
     let h = if pitch.is_infinite() {
         "infinity".to_owned()
@@ -378,7 +378,7 @@ fn inverse(system: &ScrewSystem) -> String {
         format!(", {} at infinity", number(choice.norm_at_infinity))
     };
     format!(
-        "exists {but}; the smallest projector is at h = {h} (|P| = {}{limit})",
+        "exists {but}; smallest projector norm at h = {h} (|P| = {}{limit})",
         number(choice.norm)
     )
 }
@@ -461,9 +461,10 @@ fn screws<'a>(
     Ok(output::table(out, &columns, rows)?)
 }
 
-/// Rates, a row each: all motions along the direction are the first times a speed plus the others.
+/// Joint velocities, one row each: every motion along the direction is the first row times a speed
+/// plus a combination of the others.
 fn point(out: &mut dyn Write, names: &[String], p: &PointDirection) -> anyhow::Result<()> {
-    let mut columns = vec![("rates [rad/s or m/s]", Align::Left)];
+    let mut columns = vec![("joint velocities [rad/s or m/s]", Align::Left)];
     columns.extend(names.iter().map(|name| (name.as_str(), Align::Right)));
     let cells = |what: &str, rates: &[f64]| {
         let rates = rates.iter().map(|x| output::entries(&[*x]));
@@ -472,9 +473,9 @@ fn point(out: &mut dyn Write, names: &[String], p: &PointDirection) -> anyhow::R
     let mut rows = Vec::new();
     match &p.along {
         Some(rates) => rows.push(cells("point moves at 1 m/s", rates)),
-        None => writeln!(out, "No rates move the point along this direction.")?,
+        None => writeln!(out, "No joint velocities move the point along this direction.")?,
     }
-    rows.extend(output::columns(&p.still).iter().map(|rates| cells("point rests", rates)));
+    rows.extend(output::columns(&p.still).iter().map(|rates| cells("point at rest", rates)));
     Ok(output::table(out, &columns, rows)?)
 }
 

@@ -1,4 +1,4 @@
-//! Where the twists come from: a robot at a configuration, or a file of numbers.
+//! Reads the twists: of a robot at a configuration, or of a file.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -19,7 +19,7 @@ pub(super) struct Twists {
     pub(super) file: String,
     pub(super) names: Vec<String>,
     pub(super) twists: Vec<Twist>,
-    /// Characteristic length that belongs to them.
+    /// Their characteristic length.
     pub(super) length: f64,
 }
 
@@ -41,7 +41,7 @@ impl Twists {
             return Err(Error::InvalidOption {
                 option: "--frame or --tool",
                 value: args.configuration.model.clone(),
-                reason: "a file of twists has no frames; leave the option out".to_owned(),
+                reason: "a file of twists has no frames; omit the option".to_owned(),
             });
         }
         let twist = |row: [f64; 6]| {
@@ -65,7 +65,7 @@ impl Twists {
             return Err(Error::InvalidOption {
                 option: "--angular-first",
                 value: args.configuration.model.clone(),
-                reason: "it is for files of twists (.csv, .json)".to_owned(),
+                reason: "it applies only to files of twists (.csv, .json)".to_owned(),
             });
         }
         let robot = cylindroid::load(&args.configuration.model)?;
@@ -74,7 +74,7 @@ impl Twists {
         Ok(Self::of(&robot.state(&q)?, end_effector))
     }
 
-    /// Of the joints that move a tool: others have no twist there.
+    /// The twists of the joints that move a tool.
     pub(super) fn of(state: &State, end_effector: EndEffector) -> Self {
         let robot = state.mechanism();
         let frame = robot.frame_of(end_effector.frame).name.clone();
@@ -96,7 +96,7 @@ impl Twists {
         Matrix::from_fn(6, self.twists.len(), |i, j| self.twists[j].to_array()[i])
     }
 
-    /// What they are, for a picture.
+    /// The title of a plot.
     pub(super) fn title(&self) -> String {
         match &self.robot {
             Some((robot, frame, _)) => format!("{}: screws of {frame}", robot.name()),

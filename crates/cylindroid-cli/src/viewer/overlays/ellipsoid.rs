@@ -32,8 +32,8 @@ struct SemiAxisJson {
     cut: bool,
 }
 
-/// The ellipsoid of what comes out for an input of length one, in the unit metrics of
-/// `manipulability`; `None` where nothing comes out.
+/// The ellipsoid of velocities or forces for inputs of norm one, in the unit metrics of
+/// `manipulability`; `None` if the output vanishes.
 pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Option<EllipsoidJson>> {
     let (mechanism, state) = (session.mechanism(), session.state());
     let of = session.options().end_effector;
@@ -85,12 +85,12 @@ pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Option<Ell
     Ok(Some(EllipsoidJson { center: center.to_array(), axes, scale, infinite, unit }))
 }
 
-/// Length of a semi-axis of the usual size, in reaches.
+/// Drawn length of a semi-axis of typical size [reach].
 const SHARE: f64 = 0.25;
-/// Longest drawing, in reaches.
+/// Maximum drawn length [reach].
 const LARGEST: f64 = 0.8;
 
-/// What drives of unit rate (torque) make at the end of an arm of this reach.
+/// Typical output at the end of an arm of this reach for unit joint velocities (torques).
 fn usual(kind: Ellipsoid, sliding: bool, reach: f64) -> f64 {
     match (kind, sliding) {
         (Ellipsoid::Velocity, false) => reach,

@@ -1,4 +1,4 @@
-//! The motion of the tool that is lost next, near a singularity.
+//! The direction of motion lost at a singularity, or about to be lost near one.
 
 use cylindroid::model::Dimension;
 use cylindroid::screws::Screw;
@@ -10,7 +10,7 @@ use super::super::session::Session;
 use crate::commands::closed::singularity::motion_in_words;
 use crate::output::{ScrewJson, number};
 
-/// Length of the drawing, in reaches.
+/// Length of the drawing [reach of the mechanism].
 const SHARE: f64 = 0.3;
 
 #[derive(Debug, Serialize)]
@@ -23,7 +23,7 @@ pub(in super::super) struct LostJson {
     sentence: String,
 }
 
-/// The direction, or in a sentence why there is none.
+/// The direction, or a sentence why there is none.
 pub(super) fn lost(
     session: &Session,
     measures: Option<&Measures>,
@@ -38,7 +38,7 @@ pub(super) fn lost(
     };
     if ratio > DAMPING_ONSET {
         return Err(format!(
-            "No direction is near to being lost: the smallest singular value is {} of the largest.",
+            "No direction is almost lost: the smallest singular value is {} of the largest.",
             number(ratio)
         ));
     }
@@ -50,7 +50,7 @@ pub(super) fn lost(
     let lost = condition.inverse.rank < condition.inverse.singular_values.len();
     let planar = mechanism.dimension() == Dimension::Planar;
     let words = motion_in_words(&screw, planar);
-    let state = if lost { "is lost here" } else { "is nearly lost" };
+    let state = if lost { "is lost here" } else { "is almost lost" };
     let reach = mechanism.reach();
     Ok(LostJson {
         ratio,

@@ -1,4 +1,4 @@
-//! Drives, inverses, overlays and reports.
+//! Actuated joints, inverses, overlays and reports.
 
 use serde_json::{Value, json};
 
@@ -12,24 +12,24 @@ fn report(client: &mut Client, name: &str) -> Value {
     report["report"].clone()
 }
 
-/// The numbers of the page are those of the commands, whatever drives are chosen.
+/// The numbers of the page are those of the commands, whatever joints are actuated.
 #[test]
 fn reports_are_those_of_the_commands() {
     let server = Server::new(&["five-bar"]);
     let mut client = server.client();
     client.next("scene");
-    for drives in [["q2", "q3"], ["q1", "q5"]] {
-        client.say(&json!({"type": "actuated", "names": drives}));
+    for actuated in [["q2", "q3"], ["q1", "q5"]] {
+        client.say(&json!({"type": "actuated", "names": actuated}));
         let scene = client.next("scene");
-        let is_driven = |d: &&Value| d["actuated"] == true;
-        let driven = scene["drives"].as_array().unwrap().iter().filter(is_driven);
-        assert_eq!(driven.map(|d| d["name"].as_str().unwrap()).collect::<Vec<_>>(), drives);
+        let is_actuated = |d: &&Value| d["actuated"] == true;
+        let found = scene["actuators"].as_array().unwrap().iter().filter(is_actuated);
+        assert_eq!(found.map(|d| d["name"].as_str().unwrap()).collect::<Vec<_>>(), actuated);
         client.done(json!({"type": "joint", "name": "q1", "value": 0.05}));
         let state = client.done(json!({"type": "pause"}));
-        let (q, drives) = (posture(&state), drives.join(","));
+        let (q, actuated) = (posture(&state), actuated.join(","));
         for name in ["mobility", "manipulability"] {
             let told = report(&mut client, name);
-            let printed = crate::json(&[name, "five-bar", "--q", &q, "--actuated", &drives], 0);
+            let printed = crate::json(&[name, "five-bar", "--q", &q, "--actuated", &actuated], 0);
             assert_eq!(told["actuated"], printed["actuated"]);
             same(&told, &printed, name);
         }
@@ -70,7 +70,7 @@ fn same(a: &Value, b: &Value, place: &str) {
 }
 
 #[test]
-fn drives_that_leave_the_object_free_leave_no_servo() {
+fn actuators_that_leave_the_object_free_leave_no_servo() {
     let server = Server::new(&["five-bar"]);
     let mut client = server.client();
     client.next("scene");
@@ -79,7 +79,7 @@ fn drives_that_leave_the_object_free_leave_no_servo() {
     let state = client.next("state");
     assert_eq!(state["servo"]["status"], "unavailable");
     assert!(state["servo"]["sentence"].as_str().unwrap().contains("still moves"), "{state}");
-    // Joints can be moved all the same, and other drives take over again.
+    // Joints can be moved all the same, and other actuators take over again.
     assert_eq!(
         client.done(json!({"type": "joint", "name": "q1", "value": 0.1}))["closure_error"]["closed"],
         true
