@@ -28,9 +28,9 @@ cargo xtask <task>
   book      builds the book into target/book and checks its links (needs Python, Node.js with npm,
             PyPI and the npm registry); --serve shows it while you write, --outputs writes what
             its commands and its Python print into the pages
-  layers    checks that the library's modules import only those before them, and that files are
-            short; --circles lists files that import one another, --checked headers that name no
-            test
+  layers    checks that the library's modules import only those before them, that no files import
+            one another in a circle, that headers name tests that exist, and that files are short;
+            --circles lists every import of the circles, --checked only the headers
   vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   viewer-load [seconds]

@@ -23,6 +23,8 @@ const CRATES: [&str; 4] = [
     "crates/cylindroid-py/src/lib.rs",
     "xtask/src/main.rs",
 ];
+/// The crate whose headers name tests.
+const LIBRARY: &str = "crates/cylindroid";
 /// The page's files.
 const PAGE: &str = "viewer/src";
 /// The most lines that a file may have.
@@ -39,19 +41,21 @@ pub(crate) fn task(flag: Option<&str>) -> Result<()> {
     let faults = match flag {
         None => return check(),
         Some("--circles") => all_circles(root)?.iter().map(Circle::in_full).collect(),
-        Some("--checked") => checked::faults(root, &root.join("crates/cylindroid"))?,
+        Some("--checked") => checked::faults(root, &root.join(LIBRARY))?,
         Some(other) => bail!("layers takes --circles or --checked, not '{other}'"),
     };
     refuse(&faults)
 }
 
-/// Checks the line of modules, and the length of files.
+/// Checks the line of modules, circles of files, `Checked` entries and the length of files.
 ///
 /// # Errors
 /// Faults; each names its file.
 pub(crate) fn check() -> Result<()> {
     let root = &crate::shell::root();
     let mut faults = line::faults(root)?;
+    faults.extend(all_circles(root)?.iter().map(ToString::to_string));
+    faults.extend(checked::faults(root, &root.join(LIBRARY))?);
     for folder in SHORT {
         faults.extend(length_faults(root, folder)?);
     }

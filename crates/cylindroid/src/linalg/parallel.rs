@@ -1,7 +1,8 @@
 //! Runs independent jobs on the threads of rayon; one after the other without the feature
 //! `parallel`. Results are in the order of the jobs either way.
 //!
-//! Checked  tests/it/batch.rs::threads_do_not_matter
+//! Checked  tests/it/batch.rs::does_not_depend_on_threads_or_places,
+//!          tests/it/inverse_batch.rs::threads_change_nothing
 
 /// The results of `run` on every job.
 #[cfg(feature = "parallel")]

@@ -2,6 +2,8 @@
 //!
 //! Links and joints are named in any order; `build` finds the root, orders the joints depth-first
 //! in the order given, resolves mimic joints, folds fixed joints away and measures the reach.
+//!
+//! Checked  tests/it/model.rs, tests/it/graph.rs, tests/formats/broken.rs
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

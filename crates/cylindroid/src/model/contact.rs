@@ -1,6 +1,7 @@
 //! Contacts between links: their kinds, their frames, their specification for the builder.
 //!
 //! Source   Bicchi & Prattichizzo 1998, table 1
+//! Checked  tests/it/graph.rs::held_by_contacts
 
 use std::collections::BTreeMap;
 

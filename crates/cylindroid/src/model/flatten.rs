@@ -1,4 +1,6 @@
 //! Where the links have got to: joints become nodes, coordinates and frames.
+//!
+//! Checked  tests/it/graph.rs, tests/it/pinocchio.rs
 
 use std::collections::BTreeMap;
 

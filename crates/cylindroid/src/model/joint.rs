@@ -1,4 +1,6 @@
 //! Joints: what they are, where they sit, how far and how fast they go.
+//!
+//! Checked  tests/formats/mechanism_file.rs::every_joint_type_is_read, tests/it/graph.rs
 
 use std::ops::Range;
 

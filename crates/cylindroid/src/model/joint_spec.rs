@@ -1,4 +1,6 @@
 //! A joint as the builder takes it, and the checks of its numbers.
+//!
+//! Checked  tests/it/model.rs
 
 use super::dimension::Dimension;
 use super::joint::{JointKind, Limits, Mimic};

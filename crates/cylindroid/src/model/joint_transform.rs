@@ -3,7 +3,7 @@
 //! Formula  parent_from_child = parent_from_joint motion(q) joint_from_child
 //! Why so   kinematics works on nodes and comes after the model; loaders need poses while they
 //!          still write the model, once for each file, so the plain product is enough here
-//! Checked  tests/it/graph.rs::motion_*, against `State`; tests/formats/closed_file.rs
+//! Checked  tests/it/graph.rs::motion_* (against `State`), tests/formats/closed_file.rs
 
 use super::joint::JointKind;
 use super::mechanism::Mechanism;

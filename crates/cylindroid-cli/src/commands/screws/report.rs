@@ -461,14 +461,13 @@ fn screws<'a>(
     Ok(output::table(out, &columns, rows)?)
 }
 
-/// Joint velocities, one row each: every motion along the direction is the first row times a speed
-/// plus a combination of the others.
+/// Joint velocities: every motion along the direction is the first row times a speed plus the rest.
 fn point(out: &mut dyn Write, names: &[String], p: &PointDirection) -> anyhow::Result<()> {
     let mut columns = vec![("joint velocities [rad/s or m/s]", Align::Left)];
     columns.extend(names.iter().map(|name| (name.as_str(), Align::Right)));
     let cells = |what: &str, rates: &[f64]| {
-        let rates = rates.iter().map(|x| output::entries(&[*x]));
-        std::iter::once(what.to_owned()).chain(rates).collect::<Vec<_>>()
+        let cells = rates.iter().map(|x| output::entries(&[*x]));
+        [what.to_owned()].into_iter().chain(cells).collect::<Vec<_>>()
     };
     let mut rows = Vec::new();
     match &p.along {

@@ -8,7 +8,7 @@
 //!          Tx(a) Rx(alpha) is therefore part of the next joint's placement, and the frame after
 //!          the last row, the flange, is a link of its own; likewise in the modified convention
 //! Source   Denavit & Hartenberg 1955; Craig, Introduction to Robotics, 1986 (modified)
-//! Checked  tests/formats/dh.rs, against the product of the 4 x 4 matrices
+//! Checked  tests/formats/dh.rs (against the product of the 4 x 4 matrices)
 
 use crate::model::{JointKind, JointSpec, Limits};
 use crate::spatial::{Pose, Rotation, Rpy, Vec3};

@@ -1,4 +1,6 @@
 //! Loading by name or path: the catalogue, or a file whose format is recognised.
+//!
+//! Checked  tests/formats/load.rs
 
 use std::path::Path;
 

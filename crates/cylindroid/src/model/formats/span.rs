@@ -1,5 +1,7 @@
 //! Places in a model file: from byte ranges to errors with line and column, and notes that count
 //! what was not used.
+//!
+//! Checked  tests in this file, tests/formats/broken.rs
 
 use std::ops::Range;
 use std::path::Path;

@@ -5,7 +5,7 @@
 //! Units    k in 1/s
 //! Valid    coordinates with an infinite limit, rotation vectors and free bodies are left alone
 //! Source   Liegeois 1977
-//! Checked  tests/it/servo/secondary.rs::secondary_tasks_reach_their_goal_and_leave_the_tool_alone
+//! Checked  tests/it/servo/secondary.rs::secondary_tasks_do_what_they_say
 
 use super::Context;
 

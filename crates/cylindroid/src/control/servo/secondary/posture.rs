@@ -6,7 +6,7 @@
 //! Units    k in 1/s
 //! Valid    any coordinates
 //! Source   Liegeois 1977
-//! Checked  tests/it/servo/secondary.rs::secondary_tasks_reach_their_goal_and_leave_the_tool_alone
+//! Checked  tests/it/servo/secondary.rs::secondary_tasks_do_what_they_say
 
 use super::Context;
 use crate::model::CoordinateKind;

@@ -1,4 +1,6 @@
 //! Actuators and key frames of MJCF: who is actuated, how hard, and where home is.
+//!
+//! Checked  tests/formats/mjcf.rs::actuators_*, ::home_*
 
 use roxmltree::Node;
 

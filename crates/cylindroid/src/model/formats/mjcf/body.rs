@@ -5,7 +5,7 @@
 //! Why so   every body keeps its own frame, so poses are those of MuJoCo; q counts as qpos does,
 //!          and home is qpos0 (or the key frame named "home")
 //! Source   mujoco.readthedocs.io, XML reference, body, joint; mj_kinematics
-//! Checked  tests/formats/mjcf.rs, against poses that MuJoCo computed
+//! Checked  tests/formats/mjcf.rs (against poses that MuJoCo computed)
 
 use roxmltree::Node;
 

@@ -1,4 +1,6 @@
 //! The files of an MJCF model: `<include>` inside the model's own folder, each file once.
+//!
+//! Checked  tests/formats/mjcf.rs::includes_*
 
 use std::path::{Component, Path, PathBuf};
 

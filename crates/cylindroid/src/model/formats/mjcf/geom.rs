@@ -1,6 +1,7 @@
 //! Shapes and masses of MJCF bodies: kept as data, as far as a link holds them.
 //!
 //! Units    MJCF gives half sizes; ours are whole ones
+//! Checked  tests/formats/mjcf.rs::shapes_*
 
 use std::path::Path;
 

@@ -9,7 +9,7 @@
 //! Why so   equality constraints become loop joints and mimic joints, so that a gripper with
 //!          loops is the same kind of thing as a closed chain of a mechanism file
 //! Source   mujoco.readthedocs.io, XML reference
-//! Checked  tests/formats/mjcf.rs, against vectors that MuJoCo made
+//! Checked  tests/formats/mjcf.rs (against vectors that MuJoCo made)
 
 mod actuators;
 mod assets;

@@ -1,4 +1,6 @@
 //! Links of SDF: mass and shapes, kept as data.
+//!
+//! Checked  tests/formats/sdf.rs
 
 use roxmltree::Node;
 

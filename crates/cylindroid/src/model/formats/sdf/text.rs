@@ -1,4 +1,6 @@
 //! Values that SDF writes as the text of elements.
+//!
+//! Checked  tests/formats/sdf.rs::what_is_broken_*
 
 use std::ops::Range;
 

@@ -21,6 +21,7 @@ mod value;
 mod world;
 
 pub use self::parse::parse;
+pub(in crate::model) use self::robot::Loader;
 
 use std::path::Path;
 
@@ -50,10 +51,6 @@ const KEYS: [&str; 14] = [
     "contact",
     "robot",
 ];
-
-/// Loads the model that a `[[robot]]` table names: from the folder of the file, by name or path, at
-/// a depth of inclusion.
-pub(in crate::model) type Loader<'a> = &'a dyn Fn(&Path, &str, usize) -> Result<Mechanism>;
 
 /// The mechanism and its description.
 pub(in crate::model) fn describe(

@@ -7,7 +7,8 @@
 //!          joints and contacts can be added to a URDF as it is
 //! Checked  tests/formats/closed_file.rs::robots_*
 
-use super::Loader;
+use std::path::Path;
+
 use super::names::GROUND;
 use super::value::Table;
 use super::world::World;
@@ -16,6 +17,10 @@ use crate::model::{Dimension, Inclusion, Mechanism};
 use crate::spatial::Pose;
 
 const KEYS: [&str; 8] = ["name", "model", "link", "base", "start", "free", "actuated", "passive"];
+
+/// Loads the model named by a `[[robot]]` table: from the folder of the file, by name or path, at a
+/// depth of inclusion.
+pub(in crate::model) type Loader<'a> = &'a dyn Fn(&Path, &str, usize) -> Result<Mechanism>;
 
 /// Files that include files that include files: more of them are taken for a ring.
 const DEEPEST: usize = 8;
@@ -97,7 +102,7 @@ fn load(table: &Table<'_>, depth: usize, loader: Loader<'_>) -> Result<Mechanism
         let message = format!("'{model}' is included by {DEEPEST} files, one in the other");
         return Err(table.refuse("model", message, "does a file include itself?"));
     }
-    let folder = table.source.path.parent().unwrap_or_else(|| std::path::Path::new(""));
+    let folder = table.source.path.parent().unwrap_or_else(|| Path::new(""));
     match loader(folder, model, depth + 1) {
         Err(error) if !matches!(error, Error::File(_)) => {
             let help = "name a catalogue model, or a file by its path from this file's folder";

@@ -1,5 +1,7 @@
 //! Reads keys of a TOML table: every value of the right type, every error at its place, every
 //! unknown key refused.
+//!
+//! Checked  tests/formats/mechanism_file.rs::wrong_values_*, ::what_is_not_known_*
 
 use std::ops::Range;
 

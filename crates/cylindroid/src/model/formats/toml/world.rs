@@ -1,4 +1,6 @@
 //! The links of a mechanism file and where they stand at home, while the model is written.
+//!
+//! Checked  tests/formats/mechanism_file.rs::frames_*, tests/formats/closed_file.rs
 
 use std::collections::BTreeMap;
 use std::ops::Range;

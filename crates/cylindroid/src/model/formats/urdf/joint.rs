@@ -4,6 +4,7 @@
 //!           or prismatic joint without any position limit moves without end (noted), and so does
 //!           one whose four limits are all 0, which exporters write for "not filled in". Speeds
 //!           and efforts that are 0 or missing are unlimited (noted).
+//! Checked  tests/formats/urdf.rs, tests/formats/lax.rs
 
 use std::collections::BTreeSet;
 
