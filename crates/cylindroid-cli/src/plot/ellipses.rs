@@ -274,11 +274,9 @@ impl Block<'_> {
             ([], []) if self.force => "no force is resisted in this plane".to_owned(),
             ([], []) => "no motion in this plane".to_owned(),
             ([a], []) if self.force => {
-                format!(
-                    "a line of {a} {unit} in both directions; forces across it are not resisted"
-                )
+                format!("a line of {a} {unit} each way: forces across it are not resisted")
             }
-            ([a], []) => format!("a line of {a} {unit} in both directions; no velocity across it"),
+            ([a], []) => format!("a line of {a} {unit} each way: no velocity across it"),
             ([], [d]) if self.force => {
                 format!("forces along {} need no torque; others are not resisted", along(d))
             }

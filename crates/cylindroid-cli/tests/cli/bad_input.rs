@@ -38,7 +38,7 @@ fn configurations_must_fit() {
 fn targets_must_be_finite_and_complete() {
     refused(&["move", "panda"], "no target");
     refused(&["move", "panda", "--to", "nan,0,0"], "--to[0] is not finite");
-    refused(&["move", "panda", "--to", "0.1,0.2"], "2 numbers where 3 are needed");
+    refused(&["move", "panda", "--to", "0.1,0.2"], "2 numbers given, 3 expected");
     refused(&["move", "panda", "--quaternion", "0,0,0,0"], "it must be finite and not zero");
     refused_move(&["--rpy", "0,0,inf"], "--rpy[2] is not finite");
     refused_move(&["--rpy", "0,0,0", "--rotation-vector", "0,0,0"], "cannot be used with");

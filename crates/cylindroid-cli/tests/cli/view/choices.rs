@@ -78,7 +78,7 @@ fn actuators_that_leave_the_object_free_leave_no_servo() {
     client.next("scene");
     let state = client.next("state");
     assert_eq!(state["servo"]["status"], "unavailable");
-    assert!(state["servo"]["sentence"].as_str().unwrap().contains("still moves"), "{state}");
+    assert!(state["servo"]["sentence"].as_str().unwrap().contains("can still move"), "{state}");
     // Joints can be moved all the same, and other actuators take over again.
     assert_eq!(
         client.done(json!({"type": "joint", "name": "q1", "value": 0.1}))["closure_error"]["closed"],

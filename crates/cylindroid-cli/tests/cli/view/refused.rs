@@ -77,7 +77,10 @@ fn a_message_too_long_is_refused_and_a_huge_one_ends_its_connection_alone() {
     let frame = |n: usize| json!({"type": "frame", "name": "x".repeat(n)});
     assert_eq!(other.complaint(&frame(64 * 1024 - 60))["place"], "frame.name");
     let long = other.complaint(&frame(70_000));
-    assert_eq!((&long["place"], &long["way_out"]), (&"message".into(), &"send less".into()));
+    assert_eq!(
+        (&long["place"], &long["way_out"]),
+        (&"message".into(), &"send a shorter message".into())
+    );
     one.next("scene");
     // The server may hang up before all of it is sent.
     let _ = one.socket.send(Message::text(frame(3 << 20).to_string()));
