@@ -9,13 +9,13 @@ use crate::values::Joints;
 use crate::values::{ByName, Intervals, List, Weights};
 
 pub(crate) const MOBILITY: &str = "\
-Mobility of a mechanism: how it can move, what is redundant, idle or held twice
+Mobility of a mechanism: degrees of freedom, redundancy, idle motions, hyperstaticity, singularities
 
-Counts come from ranks at this configuration, with their gap; Grubler's formula is given beside \
-them, and so is what remains of the motions when the loops are closed after a step (finite motion). \
-The pose is compared with other closed configurations of the mechanism: where it is singular, the wrench \
-that blocks and the motion lost or gained are named as screws, seen from the world. Loops and \
-contacts are taken as closed: the gap by which they are open is printed.";
+Counts are ranks at this configuration, printed with their gap, beside the Gruebler-Kutzbach count \
+and the finite mobility (first-order motions that extend to finite motions). The configuration is \
+compared with other closed configurations of the mechanism: at a singularity, the blocked wrench \
+and the motions lost or gained are given as screws in the world frame. The counts assume closed \
+loops and contacts; the loop-closure error is printed.";
 
 pub(crate) const MOBILITY_EXAMPLES: &str = "\
 Examples:
@@ -24,11 +24,12 @@ Examples:
   cylindroid mobility ur5e --q zero";
 
 pub(crate) const MANIPULABILITY: &str = "\
-How well motion and force go from the actuated joints to the reference frame
+Manipulability: transmission of motion and force from the actuated joints to the reference frame
 
-Efficiencies are squares of output over input along the principal directions: of motion (object \
-speed over joint speed), of force exerted (wrench over torques, the object's free wrenches chosen \
-for the least) and of force resisted. Zero: nothing comes out. Infinite: without any input.";
+Efficiencies are squared ratios of output to input along the principal directions: of motion \
+(object velocity over joint velocity), of active force (exerted wrench over torques, undetermined \
+wrenches of least norm) and of passive force (resisted wrench). Zero: no output. Infinite: output \
+without input.";
 
 pub(crate) const MANIPULABILITY_EXAMPLES: &str = "\
 Examples:
@@ -42,7 +43,7 @@ pub(crate) struct ClosedArgs {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArgs,
 
-    /// The actuated joints, in place of those of the file
+    /// The actuated joints, replacing those of the file
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
     pub(crate) actuated: Vec<String>,
 
@@ -50,21 +51,21 @@ pub(crate) struct ClosedArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) frame: Option<String>,
 
-    /// Characteristic length beside angles [m] [default: the reach]
+    /// Characteristic length [m] [default: the reach]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,
 }
 
 pub(crate) const ASSEMBLE: &str = "\
-Closes the loops of a mechanism from a guess, within its position limits
+Closes the loops of a mechanism from an initial guess, within its position limits
 
-It finds one assembly, mostly the nearest; there may be others, which --modes looks for. With --to, \
-coordinates go from there straight to other values while the loops stay closed in the same assembly \
-mode; the way ends before a singularity and at position limits, and says which.
+One assembly is found, usually the nearest; use --modes to enumerate the assembly modes. With --to, \
+coordinates move straight to other values while the loops stay closed in the same assembly mode; \
+the path ends before a singularity or at a position limit, which is reported.
 
-Exit code 0 if all loops and contacts are closed (with --modes: in one mode at least; with --to: at \
-the goal), 1 if not, 2 on an error. The line q can be given to --q of other commands. Joints that \
-close loops have no coordinate: they cannot be held, and their limits do not count.";
+Exit code 0 if all loops and contacts are closed (with --modes: in at least one mode; with --to: at \
+the goal), 1 if not, 2 on an error. The line q can be passed to --q of other commands. Loop joints \
+have no coordinate: they cannot be prescribed, and their limits are not enforced.";
 
 pub(crate) const ASSEMBLE_EXAMPLES: &str = "\
 Examples:
@@ -78,29 +79,29 @@ pub(crate) struct AssembleArgs {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArgs,
 
-    /// Coordinates that keep the values of --q: names of coordinates or joints, or `actuated` for
-    /// all that are actuated (the passive ones follow)
+    /// Prescribed coordinates, which keep the values of --q: names of coordinates or joints, or
+    /// `actuated` for all actuated ones (the passive ones follow)
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
     pub(crate) hold: Vec<String>,
 
-    /// Look for all ways in which the loops close, from this many starts: the guess, then random
-    /// ones within limits. Some may be missed; how often each was found is printed
+    /// Enumerate the assembly modes from this many starts: the guess, then random restarts within
+    /// limits. Modes may be missed; the number of starts that led to each is printed
     #[arg(long, value_name = "STARTS", conflicts_with = "to")]
     #[arg(allow_negative_numbers = true)]
     pub(crate) modes: Option<usize>,
 
-    /// Other random starts for --modes
+    /// Seed of the random restarts of --modes
     #[arg(long, value_name = "N", default_value_t = 0, requires = "modes")]
     #[arg(allow_negative_numbers = true)]
     pub(crate) seed: u64,
 
-    /// Move these coordinates from --q (assembled) to these values [rad or m], those of --hold at
-    /// rest, all others following: `name=value,...`
+    /// Move these coordinates from --q (assembled) to these values [rad or m], those of --hold fixed
+    /// and all others following: `name=value,...`
     #[arg(long, value_name = "NAME=VALUE,...", allow_hyphen_values = true)]
     pub(crate) to: Option<Joints>,
 
-    /// How near to a singularity --to goes [-]: smallest over largest singular value of the rates
-    /// at which the others open the loops, 1e-5 to 1 [default: 0.001]
+    /// Smallest accepted distance of --to to a singularity [-]: smallest over largest singular value
+    /// of the loop Jacobian with respect to the free coordinates, 1e-5 to 1 [default: 0.001]
     #[arg(long, value_name = "D", allow_hyphen_values = true, requires = "to")]
     pub(crate) least_distance: Option<f64>,
 }
@@ -142,8 +143,8 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "task")]
     pub(crate) task_map: Option<PathBuf>,
 
-    /// Also all velocities and forces within the limits of the actuators: corners up to three
-    /// components, ranges of each component always
+    /// Also compute all velocities and forces within the limits of the actuators: ranges of each
+    /// component, and vertices for up to three components
     #[arg(long)]
     pub(crate) polytope: bool,
 
@@ -213,13 +214,13 @@ pub(crate) enum MeasureName {
 }
 
 pub(crate) const STATICS: &str = "\
-Joint torques that hold a wrench, what the structure holds, and the forces in loops and contacts
+Joint torques in equilibrium with a wrench, structural forces, and forces in loops and contacts
 
-The wrench is what acts on the reference frame from outside, at its origin and in world axes: N, \
-then N m. The torques are what the actuators exert so that nothing moves: for every motion, torques \
-times rates plus wrench times twist is zero. They are the least in size; internal torques, which \
-balance each other, may be added. What a joint or contact transmits is the wrench by which its \
-first link acts on its second; a contact that pushes has a positive normal force.";
+The wrench acts on the reference frame from outside, at its origin and in world axes: N, then N m. \
+The torques are exerted by the actuators in equilibrium: for every motion, torques times joint \
+velocities plus wrench times twist is zero. They have the least norm; internal torques may be \
+added. The transmitted wrench of a joint or contact is exerted by its first link on its second; a \
+contact that pushes has a positive normal force.";
 
 pub(crate) const STATICS_EXAMPLES: &str = "\
 Examples:
@@ -236,24 +237,24 @@ pub(crate) struct StaticsArgs {
     #[arg(long, value_name = "WRENCH", allow_hyphen_values = true)]
     pub(crate) wrench: List,
 
-    /// Metric in which torques are the least: weights of the actuated joints or a file
+    /// Metric of the torque norm: weights of the actuated joints, or a file
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wtau: Option<Weights>,
 
-    /// Elastic forces where several are possible: how far loop joints and contacts give way to
-    /// forces [m/N], a number for all, `name=number` for some; to moments by this over the square
-    /// of the characteristic length
+    /// Compliance of loop joints and contacts [m/N] for elastic forces: a number for all,
+    /// `name=number` for some; for moments it is divided by the square of the characteristic
+    /// length
     #[arg(long, value_name = "M/N", allow_hyphen_values = true)]
     pub(crate) compliance: Option<ByName>,
 }
 
 pub(crate) const GRASP: &str = "\
-Force closure: whether contacts with friction hold every wrench on the object, and how well
+Force closure of a grasp with friction, and its quality
 
-The quality epsilon is the least wrench, in its worst direction, that is more than the fingers \
-hold: between two bounds (Ferrari and Canny), with moments over the characteristic length. \
-Fingers push along their normals, into the object. Only contacts at points count: \
-point_frictionless, hard_finger, soft_finger. Exit code 0 if the grasp is closed, 1 if not.";
+The quality epsilon (Ferrari and Canny) is the norm of the smallest wrench that the fingers cannot \
+resist, in its worst direction, given between certified bounds; moments are divided by the \
+characteristic length. Fingers push along their normals, into the object. Contacts must be points: \
+point_frictionless, hard_finger, soft_finger. Exit code 0 for force closure, 1 otherwise.";
 
 pub(crate) const GRASP_EXAMPLES: &str = "\
 Examples:
@@ -269,8 +270,8 @@ pub(crate) struct GraspArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) frame: Option<String>,
 
-    /// Coefficient of friction, in place of the file's: a number for all contacts, `name=number`
-    /// for some
+    /// Coefficient of friction, replacing that of the file: a number for all contacts,
+    /// `name=number` for some
     #[arg(long, value_name = "MU", allow_hyphen_values = true)]
     pub(crate) mu: Option<ByName>,
 

@@ -201,7 +201,10 @@ fn singular_postures_are_named() {
     );
     assert!(stewart["singularity"]["compared_with"].as_u64().unwrap() > 3);
     let page = text(&["mobility", "stewart"]);
-    assert!(page.contains("none: the pose is regular") && page.contains("all of it"), "{page}");
+    assert!(
+        page.contains("none: the configuration is regular") && page.contains("all of it"),
+        "{page}"
+    );
 
     let turned = json(&["mobility", &file("stewart-turned")], 0);
     let gained = &turned["singularity"]["gained"][0];

@@ -1,4 +1,5 @@
-//! The builder: every check of a mechanism is here, whatever the file it came from.
+//! Builder of mechanisms: validates links, joints, loops, contacts and frames, whatever the file
+//! format.
 //!
 //! Links and joints are named in any order; `build` finds the root, orders the joints depth-first
 //! in the order given, resolves mimic joints, folds fixed joints away and measures the reach.
@@ -23,10 +24,21 @@ use crate::scalar::clamp;
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
-/// Reach of a mechanism whose links have no length (m): a wrist still needs a length scale.
+/// Reach of a mechanism whose links have no length (m): a spherical wrist needs a length scale too.
 const LEAST_REACH: f64 = 1e-3;
 
-/// Collects links, joints and frames; [`Builder::build`] checks them all.
+/// Collects links, joints and frames; [`Builder::build`] validates them.
+///
+/// ```
+/// use cylindroid::Mechanism;
+/// use cylindroid::model::{JointKind, JointSpec};
+///
+/// let mut builder = Mechanism::builder("lever");
+/// builder.joint(JointSpec::new("hinge", JointKind::Revolute, "base", "lever"));
+/// let lever = builder.build()?;
+/// assert_eq!((lever.n(), lever.links().len()), (1, 2));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Builder {
     pub(super) name: String,
@@ -67,13 +79,13 @@ impl Builder {
         self
     }
 
-    /// Adds a joint; links that were not added before exist by being named.
+    /// Adds a joint of the tree; links exist by being named.
     pub fn joint(&mut self, joint: JointSpec) -> &mut Self {
         self.joints.push(joint);
         self
     }
 
-    /// Adds a joint that closes a loop of the others; both links must exist without it.
+    /// Adds a loop joint: a joint that closes a loop of the tree. Both links must exist without it.
     pub fn loop_joint(&mut self, joint: LoopJointSpec) -> &mut Self {
         self.loops.push(joint);
         self
@@ -85,7 +97,7 @@ impl Builder {
         self
     }
 
-    /// Says where the mechanism moves; in space unless said otherwise.
+    /// Sets the dimension; spatial by default.
     pub fn dimension(&mut self, dimension: Dimension) -> &mut Self {
         self.dimension = dimension;
         self
@@ -109,19 +121,19 @@ impl Builder {
         self
     }
 
-    /// Names the frame that is actuated when none is named.
+    /// Names the default frame (tool).
     pub fn tool(&mut self, frame: &str) -> &mut Self {
         self.tool = Some(frame.to_owned());
         self
     }
 
-    /// Names the frame whose motion is the goal; the tool unless said otherwise.
+    /// Names the frame whose motion is the goal (reference); the tool by default.
     pub fn reference(&mut self, frame: &str) -> &mut Self {
         self.reference = Some(frame.to_owned());
         self
     }
 
-    /// The report that goes into the mechanism.
+    /// The load report of the mechanism.
     pub fn report(&mut self) -> &mut LoadReport {
         &mut self.report
     }
@@ -134,14 +146,14 @@ impl Builder {
         })
     }
 
-    /// The mechanism.
+    /// Builds the mechanism.
     ///
     /// # Errors
-    /// [`Error::Model`] for names given twice or unknown, a link with two parents, a cycle, more
-    /// than one root, an axis without direction, limits that contradict each other or that no
-    /// joint of the kind can keep (positions of spherical and free joints), a mimic joint
-    /// that follows itself, nothing, or a joint of several coordinates; for a loop joint or a
-    /// contact on a link that does not exist or on one link alone.
+    /// [`Error::Model`] for names that are repeated or unknown, a link with two parents, a cycle,
+    /// more than one root, an axis without direction, contradictory limits or position limits of
+    /// spherical and free joints, a mimic joint that follows itself, an unknown joint, or a joint
+    /// of several coordinates; for a loop joint or a contact on an unknown link or on one link
+    /// alone.
     pub fn build(mut self) -> Result<Mechanism> {
         let links = self.index_links()?;
         self.check_joints(&links)?;
@@ -166,7 +178,7 @@ impl Builder {
                     self.report.ignore(
                         0,
                         format!("limits of mimic joint '{}'", spec.name),
-                        "they leave no position to the joint it follows, whose own limits hold",
+                        "they leave no position for the joint it follows, whose own limits apply",
                     );
                 }
             }
@@ -175,7 +187,7 @@ impl Builder {
         self.finish(&links, &order, flat)
     }
 
-    /// Link names to indices, links named only by joints added.
+    /// Maps link names to indices; links named only by joints are added.
     fn index_links(&mut self) -> Result<BTreeMap<String, usize>> {
         let mut links = BTreeMap::new();
         for (i, link) in self.links.iter().enumerate() {
@@ -255,7 +267,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The loop joints and the contacts, their links as indices.
+    /// The loop joints and the contacts, with link indices.
     fn closings(&self, links: &BTreeMap<String, usize>) -> Result<(Vec<LoopJoint>, Vec<Contact>)> {
         let place = |name: &str| {
             let name = name.to_owned();
@@ -269,8 +281,8 @@ impl Builder {
         ))
     }
 
-    /// The home configuration: the one that was set, else that of each joint, else rest; zero in a
-    /// closed chain, whose loops close there even where a limit excludes it.
+    /// The home configuration: the one that was set, otherwise that of each joint, otherwise the
+    /// rest position; zero in a closed chain, whose loops close there even if a limit excludes it.
     fn home_of(&self, flat: &FlatMechanism) -> Result<Vec<f64>> {
         let n = flat.coordinates.len();
         if let Some(q) = &self.home {
@@ -346,7 +358,7 @@ impl Builder {
         }
     }
 
-    /// Every link has a parent from here on: walk up until one comes back, and name the ring.
+    /// Every link has a parent from here on: walks up until a link repeats, and names the cycle.
     fn refuse_cycle(
         &self,
         links: &BTreeMap<String, usize>,
@@ -442,7 +454,7 @@ impl Builder {
                 }
             })
             .collect();
-        // From places in the specification to places in the order.
+        // From indices of the specification to indices of the order.
         let mut places = vec![0; self.joints.len()];
         order.joints.iter().enumerate().for_each(|(place, &j)| places[j] = place);
         for c in &mut flat.coordinates {
@@ -472,7 +484,7 @@ impl Builder {
     }
 }
 
-/// Zero where the limits allow it, else their middle: no joint rests at a limit.
+/// Zero if the limits permit, otherwise their middle, so that no joint rests at a limit.
 fn rest(limits: &Limits) -> f64 {
     let (lower, upper) = (limits.lower, limits.upper);
     let middle = 0.5 * (lower + upper);

@@ -1,16 +1,17 @@
-//! What joints and contacts hold: their constraint selectors, written as unit wrenches.
+//! Constraint wrenches of joints and contacts: the wrenches that they transmit, and along which
+//! they constrain motion.
 //!
 //! Formula  a row is a wrench [f; m] at the origin of the joint (contact) frame, in its axes; the
-//!          pair holds f . v + m . w = 0 for the twist (v, w) of its second body relative to its
-//!          first. A pair transmits exactly the sums of its rows
+//!          pair constrains f . v + m . w = 0 for the twist (v, w) of its second body relative to
+//!          its first. A pair transmits exactly the linear combinations of its rows
 //! Shapes   (6 - freedoms) rows in space, (3 - freedoms) in the plane; forces before moments
 //! Valid    joints: z is the axis. Contacts: x tangent (the line), y binormal, z normal. In the
 //!          plane, joints lie in x-y of their frame, contacts in x-z of theirs
 //! Why so   a helical joint couples a force with a moment, which selectors of separate linear and
-//!          angular components cannot say; a wrench can, and power is the only product needed
+//!          angular components cannot express; a wrench can, and power is the only product needed
 //! Source   Bicchi & Prattichizzo 1998, tables 1 and 2 (FS, MS are the linear and angular parts;
 //!          their "2D spherical" is the spatial spherical joint)
-//! Checked  tests/it/graph.rs::held_*
+//! Checked  tests/it/graph.rs
 
 use super::contact::ContactKind;
 use super::dimension::Dimension;
@@ -19,7 +20,7 @@ use crate::spatial::{Rotation, Vec3, Wrench};
 use crate::tolerance::ZERO_AXIS;
 
 impl ContactKind {
-    /// What the contact holds (table 1), in the contact frame.
+    /// The constraint wrenches of the contact (table 1), in the contact frame.
     ///
     /// In the plane a soft finger is a hard finger, and a line with friction is complete.
     #[must_use]
@@ -44,11 +45,19 @@ impl ContactKind {
 }
 
 impl JointKind {
-    /// What a joint of this kind about (or along) `axis` holds (table 2), in the joint frame.
+    /// The constraint wrenches of a joint of this kind about (or along) `axis` (table 2), in the
+    /// joint frame.
     ///
-    /// The rows hold where the joint is at zero. Away from it those of one-axis kinds and of
-    /// planar and spherical joints are fixed in both bodies; the moment of a universal joint is
-    /// normal to the first axis in its first body and the second axis in its second body.
+    /// ```
+    /// use cylindroid::Vec3;
+    /// use cylindroid::model::{Dimension, JointKind};
+    ///
+    /// assert_eq!(JointKind::Revolute.constraint_wrenches(Vec3::Z, Dimension::Spatial).len(), 5);
+    /// ```
+    ///
+    /// They are valid at the zero of the joint. Away from it, those of one-axis kinds and of planar
+    /// and spherical joints are fixed in both bodies; the moment of a universal joint is normal to
+    /// the first axis in its first body and to the second axis in its second body.
     #[must_use]
     pub fn constraint_wrenches(self, axis: Vec3, dimension: Dimension) -> Vec<Wrench> {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
@@ -58,7 +67,7 @@ impl JointKind {
                 Self::Fixed => rows(&[x, y], &[z]),
                 Self::Prismatic => rows(&[z.cross(along)], &[z]),
                 Self::Planar | Self::Free => Vec::new(),
-                // Those that leave the plane hold in it what a revolute joint holds.
+                // Kinds that leave the plane constrain in it what a revolute joint constrains.
                 _ => rows(&[x, y], &[]),
             };
         }

@@ -10,22 +10,22 @@ use super::loop_joint::ends;
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 
-/// What two touching bodies hold of each other.
+/// The kind of a contact: the relative motions that it constrains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContactKind {
-    /// A point that slides: the normal velocity.
+    /// A frictionless point: the normal velocity.
     PointFrictionless,
     /// A point with friction: the velocity of the point.
     HardFinger,
-    /// A soft point: the velocity of the point and the turn about the normal.
+    /// A soft point: the velocity of the point and the rotation about the normal.
     SoftFinger,
-    /// A line along x that slides: the normal velocity and the tilt about y.
+    /// A frictionless line along x: the normal velocity and the rotation about y.
     LineFrictionless,
-    /// A line along x with friction: all but the roll about the line.
+    /// A line along x with friction: all but the rotation about the line.
     LineFriction,
-    /// A face that slides: the normal velocity and both tilts. Spatial only.
+    /// A frictionless face: the normal velocity and the rotations about x and y. Spatial only.
     PlaneFrictionless,
-    /// A firm grasp: everything.
+    /// A firm grasp: all motions.
     Complete,
 }
 
@@ -41,7 +41,7 @@ impl ContactKind {
         Self::Complete,
     ];
 
-    /// The word for it, as in files and tables.
+    /// The name in files and tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -55,7 +55,7 @@ impl ContactKind {
         }
     }
 
-    /// The kind of a word.
+    /// The kind of a name.
     ///
     /// # Errors
     /// [`Error::UnknownName`] with the nearest kinds.
@@ -65,36 +65,36 @@ impl ContactKind {
     }
 }
 
-/// Two links that touch.
+/// A contact of two links.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// Its name.
     pub name: String,
-    /// What it holds.
+    /// Its kind.
     pub kind: ContactKind,
-    /// Index of the link that touches.
+    /// Index of the first link, a finger.
     pub a: usize,
-    /// Index of the link that is touched: the object.
+    /// Index of the second link, the object.
     pub b: usize,
     /// The contact frame on the first link: origin at the point, x tangent, y binormal, z normal.
     /// By convention the normal points into the second link, so that pushing is positive.
     pub link_a_from_contact: Pose,
-    /// The contact frame on the second link; both coincide where the links touch.
+    /// The contact frame on the second link; the two frames coincide at the contact.
     pub link_b_from_contact: Pose,
     /// Coefficient of friction [-], where the file gives one.
     pub friction: Option<f64>,
 }
 
-/// A contact as the builder takes it; links by name.
+/// The specification of a contact for the builder; links by name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSpec {
     /// Its name.
     pub name: String,
-    /// What it holds.
+    /// Its kind.
     pub kind: ContactKind,
-    /// Name of the link that touches.
+    /// Name of the first link, a finger.
     pub a: String,
-    /// Name of the link that is touched.
+    /// Name of the second link, the object.
     pub b: String,
     /// The contact frame on the first link: x tangent, y binormal, z normal.
     pub link_a_from_contact: Pose,
@@ -105,7 +105,8 @@ pub struct ContactSpec {
 }
 
 impl ContactSpec {
-    /// A contact at the origins of both links, its normal along z, friction not given.
+    /// A contact at the origins of both links, with its normal along z and no coefficient of
+    /// friction.
     #[must_use]
     pub fn new(name: &str, kind: ContactKind, a: &str, b: &str) -> Self {
         Self {
@@ -130,12 +131,14 @@ impl ContactSpec {
             return Err(format!("the place of contact '{name}' is not finite"));
         }
         if self.friction.is_some_and(|mu| !(mu >= 0.0 && mu.is_finite())) {
-            return Err(format!("the friction of contact '{name}' is not a number from 0 on"));
+            return Err(format!(
+                "the friction of contact '{name}' must be finite and not negative"
+            ));
         }
         if dimension == Dimension::Planar && self.kind == ContactKind::PlaneFrictionless {
             return Err(format!(
                 "contact '{name}' is plane_frictionless, which the plane x-y does not have; \
-                 line_frictionless holds the same there"
+                 use line_frictionless, which constrains the same motions there"
             ));
         }
         Ok(Contact {

@@ -1,11 +1,11 @@
 //! The dimension of a mechanism: the plane or space.
 
-/// Where a mechanism moves.
+/// The dimension of the space in which a mechanism moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Dimension {
-    /// In the plane x-y of the world: two translations and the turn about z.
+    /// The plane x-y of the world: two translations and the rotation about z.
     Planar,
-    /// In space.
+    /// Space.
     #[default]
     Spatial,
 }
@@ -20,8 +20,8 @@ impl Dimension {
         }
     }
 
-    /// The components of a twist `[v; w]` or wrench `[f; m]` that a body has: in the plane x, y and
-    /// the turn about z.
+    /// The components of a twist `[v; w]` or wrench `[f; m]` of a body: in the plane x, y and the
+    /// rotation about z.
     #[must_use]
     pub const fn components(self) -> &'static [usize] {
         match self {
@@ -30,7 +30,7 @@ impl Dimension {
         }
     }
 
-    /// Freedoms of a body: 3 in the plane, 6 in space.
+    /// Degrees of freedom of a body: 3 in the plane, 6 in space.
     #[must_use]
     pub const fn freedoms(self) -> usize {
         self.components().len()

@@ -10,13 +10,13 @@ use super::mechanism::{Coordinate, CoordinateKind, Frame};
 use super::node::{Node, NodeKind};
 use crate::spatial::{Pose, Rotation, Vec3};
 
-/// Where the links have got to while the nodes are written.
+/// The nodes and coordinates written so far, and the links placed on them.
 pub(super) struct FlatMechanism {
     pub(super) nodes: Vec<Node>,
     pub(super) coordinates: Vec<Coordinate>,
     /// Coordinates of each joint (index of the specification).
     pub(super) ranges: BTreeMap<usize, std::ops::Range<usize>>,
-    /// Slot and pose in the slot of each link, and the length of the way to it.
+    /// Slot of each link, its pose in the slot, and the length of the path to it.
     slots: Vec<(usize, Pose)>,
     way: Vec<f64>,
     pub(super) reach: f64,
@@ -91,8 +91,8 @@ impl FlatMechanism {
         self.ranges.insert(j, start..self.coordinates.len());
     }
 
-    /// Narrows the limits of coordinate `c` by those of a joint that follows it; true (and
-    /// nothing narrowed) if that would leave no position.
+    /// Narrows the limits of coordinate `c` by those of a joint that follows it; true (and nothing
+    /// narrowed) if no position would be left.
     pub(super) fn count_mimic_limits(
         &mut self,
         c: usize,
@@ -108,7 +108,7 @@ impl FlatMechanism {
             ((spec.limits.lower - offset) / multiplier, (spec.limits.upper - offset) / multiplier);
         let narrowed =
             Limits { lower: own.lower.max(a.min(b)), upper: own.upper.min(a.max(b)), ..*own };
-        let clash = !narrowed.leave_a_position();
+        let clash = !narrowed.permit_a_position();
         if !clash {
             *own = narrowed;
         }
@@ -140,7 +140,7 @@ impl FlatMechanism {
             multiplier,
             offset,
         };
-        // Axes were checked to have a direction.
+        // Axes have been validated.
         let z_to = |axis: Vec3| Rotation::z_to(axis).unwrap_or(Rotation::IDENTITY);
         let axis = z_to(spec.axis);
         match spec.kind {
@@ -178,11 +178,11 @@ impl FlatMechanism {
     }
 }
 
-/// Writes the nodes of one joint one after the other.
+/// Writes the nodes of one joint in sequence.
 struct NodeChain<'a> {
     nodes: &'a mut Vec<Node>,
     slot: usize,
-    /// The joint frame at zero, seen from the slot.
+    /// The joint frame at zero, in the slot.
     pending: Pose,
     next: usize,
     multiplier: f64,

@@ -1,4 +1,5 @@
-//! One mechanism inside another: its links, joints, loops, contacts and frames under a prefix.
+//! Inclusion of one mechanism in another: its links, joints, loops, contacts and frames, under a
+//! prefix.
 //!
 //! Checked  tests/it/graph.rs::an_included_mechanism_*
 
@@ -12,14 +13,14 @@ use super::mechanism::Mechanism;
 use crate::error::Result;
 use crate::spatial::Pose;
 
-/// How a mechanism stands in another.
+/// The placement of an included mechanism.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inclusion<'a> {
-    /// Its name: what it brings is called `name/...`. Empty: names stay as they are.
+    /// Its name: its parts are called `name/...`. If empty, names stay as they are.
     pub name: &'a str,
-    /// The link that carries its root. A root that is named like this link is this link.
+    /// The link that carries its root. A root of the same name is identified with this link.
     pub parent: &'a str,
-    /// Where the root stands on that link.
+    /// Pose of the root on that link.
     pub parent_from_root: Pose,
     /// True if the root moves freely, as an object does.
     pub free: bool,
@@ -32,12 +33,12 @@ impl Inclusion<'_> {
         if self.name.is_empty() { name.to_owned() } else { format!("{}/{name}", self.name) }
     }
 
-    /// What the joint between the parent and the root is called.
+    /// The name of the joint between the parent and the root.
     fn base(&self) -> String {
         format!("{}/base", if self.name.is_empty() { self.parent } else { self.name })
     }
 
-    /// What a link of the included mechanism is called.
+    /// The name of a link of the included mechanism.
     #[must_use]
     pub fn link(&self, robot: &Mechanism, index: usize) -> String {
         robot.links().get(index).map_or_else(String::new, |l| self.prefixed(&l.name))
@@ -45,11 +46,11 @@ impl Inclusion<'_> {
 }
 
 impl Builder {
-    /// Adds a whole mechanism. Its root hangs at `parent` by a joint `name/base` (`parent/base`
-    /// without a name), fixed or free.
+    /// Adds a whole mechanism. Its root is attached to `parent` by a joint `name/base`
+    /// (`parent/base` without a name), fixed or free.
     ///
     /// # Errors
-    /// A start configuration that does not fit the mechanism.
+    /// A start configuration that does not match the mechanism.
     pub fn include(&mut self, robot: &Mechanism, how: Inclusion<'_>) -> Result<&mut Self> {
         robot.check_q("start", how.start)?;
         let name = |i: usize| how.link(robot, i);

@@ -6,39 +6,43 @@ use std::ops::Range;
 
 use crate::spatial::{Pose, Vec3};
 
-/// The kind of a joint, in the order of its coordinates.
+/// The kind of a joint, with its coordinates in order.
 ///
-/// Every coordinate has one number in `q` and one in the rates. For all kinds but `Spherical` and
-/// `Free` the rate is the derivative of the coordinate. Those two have no global coordinates of
-/// that kind without a singular place; their numbers in `q` are a rotation vector, and their rates
-/// are the velocity itself, in the axes of the child (`Mechanism::integrate` moves `q` by rates).
+/// Every coordinate has one entry in `q` and one in the joint velocities. For all kinds but
+/// `Spherical` and `Free`, the velocity is the derivative of the coordinate. Those two have no
+/// global coordinates without a singularity; their entries in `q` are a rotation vector (and a
+/// position), and their velocities are the twist in the axes of the child (`Mechanism::integrate`
+/// advances `q` by velocities).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum JointKind {
     /// No motion.
     Fixed,
-    /// Turns about the axis (rad), within limits.
+    /// Rotation about the axis (rad), within limits.
     Revolute,
-    /// Turns about the axis (rad) without end.
+    /// Rotation about the axis (rad), unlimited.
     Continuous,
-    /// Slides along the axis (m).
+    /// Translation along the axis (m).
     Prismatic,
-    /// Turns about the axis (rad) and moves `pitch` [m/rad] times as far along it.
+    /// Rotation about the axis (rad) with a translation of `pitch` [m/rad] along it.
     Helical {
         /// Advance per radian [m/rad].
         pitch: f64,
     },
-    /// Slides along the axis (m) and turns about it (rad).
+    /// Translation along the axis (m) and rotation about it (rad).
     Cylindrical,
-    /// Turns about the axis (rad), then about the second axis, carried along (rad).
+    /// Rotation about the axis (rad), then about the second axis, which it carries (rad).
     Universal {
         /// The second axis, in the joint frame at zero.
         second: Vec3,
     },
-    /// Turns about a point: rotation vector (rad); rates are the angular velocity in child axes.
+    /// Rotation about a point: rotation vector (rad); its velocity is the angular velocity in child
+    /// axes.
     Spherical,
-    /// Slides in the plane normal to the axis along its x and y (m), then turns about the axis (rad).
+    /// Translation in the plane normal to the axis along its x and y (m), then rotation about the
+    /// axis (rad).
     Planar,
-    /// Moves freely: position (m) and rotation vector (rad); rates are the twist in child axes.
+    /// Free motion: position (m) and rotation vector (rad); its velocity is the twist in child
+    /// axes.
     Free,
 }
 
@@ -55,14 +59,14 @@ impl JointKind {
         }
     }
 
-    /// True if position limits mean something: not where the rates are not the derivative of `q`,
-    /// on rotation vectors and free bodies.
+    /// True if position limits are meaningful: not for rotation vectors and free bodies, whose
+    /// velocities are not the derivative of `q`.
     #[must_use]
     pub const fn takes_position_limits(self) -> bool {
         !matches!(self, Self::Spherical | Self::Free)
     }
 
-    /// The field's word for it, as in files and tables.
+    /// The name in files and tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -80,7 +84,7 @@ impl JointKind {
     }
 }
 
-/// How far, fast and hard a coordinate may go. Infinite where nothing is known.
+/// Limits of position, velocity, acceleration and effort. Infinite if unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Smallest position [rad or m]; spherical and free joints have none.
@@ -105,8 +109,8 @@ impl Limits {
         effort: f64::INFINITY,
     };
 
-    /// True if some finite position is within them.
-    pub(super) fn leave_a_position(&self) -> bool {
+    /// True if some finite position is within the limits.
+    pub(super) fn permit_a_position(&self) -> bool {
         self.lower <= self.upper && self.lower < f64::INFINITY && self.upper > f64::NEG_INFINITY
     }
 }
@@ -117,10 +121,10 @@ impl Default for Limits {
     }
 }
 
-/// A joint that follows another: its position is `multiplier * q + offset`.
+/// A mimic joint: its position is `multiplier * q + offset`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mimic {
-    /// Name of the joint that is followed.
+    /// Name of the joint that it follows.
     pub joint: String,
     /// Ratio of the motions.
     pub multiplier: f64,
@@ -139,19 +143,19 @@ pub struct Joint {
     pub parent: usize,
     /// Index of the child link.
     pub child: usize,
-    /// The joint frame at zero, seen from the parent link.
+    /// The joint frame at zero, in the parent link.
     pub parent_from_joint: Pose,
-    /// The child's link frame, seen from the joint frame that moves it: the identity but for
-    /// formats whose bodies have frames of their own (MJCF, SDF).
+    /// The child's link frame, in the joint frame that moves it: the identity except for formats
+    /// whose bodies have frames of their own (MJCF, SDF).
     pub joint_from_child: Pose,
-    /// Unit axis in the joint frame (z where the kind has none).
+    /// Unit axis in the joint frame (z if the kind has none).
     pub axis: Vec3,
-    /// Limits as in the file; those of a joint with several coordinates hold for each.
+    /// Limits as in the file; those of a joint with several coordinates apply to each.
     pub limits: Limits,
-    /// The joint it follows, if it does.
+    /// The joint that it follows, for a mimic joint.
     pub mimic: Option<Mimic>,
     /// Its entries in `q`; those of the followed joint for a mimic joint.
     pub coordinates: Range<usize>,
-    /// True if a motor actuators it. All joints of a serial robot are actuated unless the file says no.
+    /// True if it is actuated: all joints of a serial robot are, unless the file says otherwise.
     pub actuated: bool,
 }

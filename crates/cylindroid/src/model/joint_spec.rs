@@ -7,7 +7,7 @@ use super::joint::{JointKind, Limits, Mimic};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
-/// A joint as the builder takes it; links by name.
+/// The specification of a joint for the builder; links by name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointSpec {
     /// Its name.
@@ -18,17 +18,17 @@ pub struct JointSpec {
     pub parent: String,
     /// Name of the child link.
     pub child: String,
-    /// The joint frame at zero, seen from the parent link.
+    /// The joint frame at zero, in the parent link.
     pub parent_from_joint: Pose,
-    /// The child's link frame, seen from the joint frame that moves it.
+    /// The child's link frame, in the joint frame that moves it.
     pub joint_from_child: Pose,
     /// The axis in the joint frame, any length.
     pub axis: Vec3,
     /// Its limits.
     pub limits: Limits,
-    /// The joint it follows, if it does.
+    /// The joint that it follows, for a mimic joint.
     pub mimic: Option<Mimic>,
-    /// True if a motor actuators it.
+    /// True if it is actuated.
     pub actuated: bool,
 }
 
@@ -50,7 +50,7 @@ impl JointSpec {
         }
     }
 
-    /// What is wrong with the numbers of the joint, if anything.
+    /// The first fault of the specification, if any.
     pub(super) fn fault(&self, dimension: Dimension) -> Option<String> {
         if !(self.parent_from_joint.is_finite() && self.joint_from_child.is_finite()) {
             return Some(format!("the origin of joint '{}' is not finite", self.name));
@@ -59,7 +59,7 @@ impl JointSpec {
     }
 }
 
-/// What is wrong with a joint, if anything.
+/// The first fault of a joint, if any.
 pub(super) fn fault(
     name: &str,
     kind: JointKind,
@@ -94,7 +94,7 @@ pub(super) fn fault(
             "the axis of joint '{name}' has no direction; give a vector that is finite and not zero"
         ));
     }
-    // Their lengths say nothing: short axes are not parallel ones.
+    // Their lengths are irrelevant: short axes are not parallel ones.
     if let JointKind::Universal { second } = kind
         && let (Some(a), Some(b)) = (axis.unit(ZERO_AXIS), second.unit(ZERO_AXIS))
         && a.cross(b).norm() <= ZERO_AXIS
@@ -116,19 +116,19 @@ pub(super) fn fault(
             l.lower, l.upper
         ));
     }
-    if !l.leave_a_position() {
+    if !l.permit_a_position() {
         return Some(format!(
-            "joint '{name}' has position limits {} and {}, which leave it no finite position; \
-             without limits they are -inf and inf",
+            "joint '{name}' has position limits {} and {}, which exclude every finite position; \
+             for no limits use -inf and inf",
             l.lower, l.upper
         ));
     }
     let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
     if bounded && !kind.takes_position_limits() {
         return Some(format!(
-            "joint '{name}' is {} and has position limits {} and {}, which nothing could keep: \
-             its rates are not the derivative of q; leave them infinite, or write it as \
-             revolute and prismatic joints in a row, each with its limits",
+            "joint '{name}' is {} and has position limits {} and {}, which cannot be enforced: \
+             its velocities are not the derivative of q; leave them infinite, or model it as \
+             revolute and prismatic joints in series, each with its limits",
             kind.name(),
             l.lower,
             l.upper

@@ -1,6 +1,6 @@
-//! The displacement of a joint, and where links are at a configuration.
+//! Joint transforms, and the poses of all links at a configuration.
 //!
-//! Formula  parent_from_child = parent_from_joint motion(q) joint_from_child
+//! Formula  parent_from_child = parent_from_joint transform(q) joint_from_child
 //! Why so   kinematics works on nodes and comes after the model; loaders need poses while they
 //!          still write the model, once for each file, so the plain product is enough here
 //! Checked  tests/it/graph.rs::motion_* (against `State`), tests/formats/closed_file.rs
@@ -11,8 +11,8 @@ use crate::spatial::{Pose, Rotation, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
 impl JointKind {
-    /// Where the joint takes its second body: the pose of the joint frame moved by `q` in the
-    /// joint frame at zero. Coordinates that are missing count as zero.
+    /// The pose of the joint frame moved by `q`, in the joint frame at zero. Missing coordinates
+    /// count as zero.
     #[must_use]
     pub fn transform(self, axis: Vec3, q: &[f64]) -> Pose {
         let axis = axis.unit(ZERO_AXIS).unwrap_or(Vec3::Z);

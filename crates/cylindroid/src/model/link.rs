@@ -1,4 +1,4 @@
-//! Links, and what files say of their shape and mass (kept as data: kinematics does not use it).
+//! Links, with the shapes and masses of the file (kept as data: kinematics does not use them).
 
 use std::path::PathBuf;
 
@@ -9,16 +9,16 @@ use crate::spatial::{Mat3, Pose, Vec3};
 pub struct Link {
     /// Its name.
     pub name: String,
-    /// What it looks like.
+    /// Shapes   for display.
     pub visuals: Vec<Visual>,
-    /// What it collides with.
+    /// Shapes   for collision.
     pub collisions: Vec<Visual>,
-    /// Its mass, where the file gives one.
+    /// Its mass, if the file gives one.
     pub inertial: Option<Inertial>,
 }
 
 impl Link {
-    /// A link of which only the name is known.
+    /// A link with a name only.
     #[must_use]
     pub fn named(name: &str) -> Self {
         Self { name: name.to_owned(), ..Self::default() }
@@ -30,11 +30,11 @@ impl Link {
 pub struct Visual {
     /// Its name, often empty.
     pub name: String,
-    /// Where it sits on the link.
+    /// Its pose on the link.
     pub link_from_shape: Pose,
     /// The shape.
     pub geometry: Geometry,
-    /// Colour red, green, blue, alpha in [0, 1], where the file gives one.
+    /// Colour red, green, blue, alpha in [0, 1], if the file gives one.
     pub rgba: Option<[f64; 4]>,
 }
 
@@ -53,23 +53,23 @@ pub enum Geometry {
         /// Length along z.
         length: f64,
     },
-    /// A cylinder along z with half balls at its ends (m).
+    /// A cylinder along z with hemispherical ends (m).
     Capsule {
         /// Radius.
         radius: f64,
         /// Length of the cylinder alone.
         length: f64,
     },
-    /// A ball (m).
+    /// A sphere (m).
     Sphere {
         /// Radius.
         radius: f64,
     },
     /// A mesh in a file of its own.
     Mesh {
-        /// The name as it stands in the model file (`package://...`).
+        /// The name in the model file (`package://...`).
         uri: String,
-        /// The file, where it was found.
+        /// The file, if it was found.
         path: Option<PathBuf>,
         /// Scale along x, y, z.
         scale: Vec3,

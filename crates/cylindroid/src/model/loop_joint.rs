@@ -1,7 +1,9 @@
-//! What makes a graph of a tree: joints that close loops, and contacts.
+//! Loop joints (loop-closure joints): the joints that close loops of the spanning tree.
 //!
-//! A loop joint has no coordinate in `q`. It is at zero where its two frames coincide, and
-//! holds what its kind holds ([`JointKind::constraint_wrenches`]) wherever the tree goes.
+//! A loop joint has no coordinate in `q`. It is at zero when its two frames coincide, and
+//! constrains the relative motion of its links by its [`JointKind::constraint_wrenches`].
+//!
+//! Checked  tests/it/closure/graph.rs, tests/formats/closed_file.rs
 
 use std::collections::BTreeMap;
 
@@ -12,7 +14,7 @@ use crate::error::Error;
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
-/// A joint that closes a loop of the tree.
+/// A loop joint: it closes a loop of the spanning tree.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopJoint {
     /// Its name; no joint of the tree has the same.
@@ -25,18 +27,19 @@ pub struct LoopJoint {
     pub b: usize,
     /// The joint frame on the first link.
     pub link_a_from_joint: Pose,
-    /// The joint frame on the second link; both coincide where the joint is closed and at zero.
+    /// The joint frame on the second link; the two frames coincide when the loop is closed and the
+    /// joint at zero.
     pub link_b_from_joint: Pose,
-    /// Unit axis in the joint frame (z where the kind has none); the second one of a universal
-    /// joint stands in its kind.
+    /// Unit axis in the joint frame (z if the kind has none); the second axis of a universal joint
+    /// is in its kind.
     pub axis: Vec3,
-    /// Limits as in the file; those of a joint with several coordinates hold for each.
+    /// Limits as in the file; those of a joint with several coordinates apply to each.
     pub limits: Limits,
-    /// True if a motor actuators it.
+    /// True if it is actuated.
     pub actuated: bool,
 }
 
-/// A loop joint as the builder takes it; links by name.
+/// The specification of a loop joint for the builder; links by name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopJointSpec {
     /// Its name.
@@ -55,7 +58,7 @@ pub struct LoopJointSpec {
     pub axis: Vec3,
     /// Its limits.
     pub limits: Limits,
-    /// True if a motor actuators it.
+    /// True if it is actuated.
     pub actuated: bool,
 }
 

@@ -14,7 +14,7 @@ use super::report::LoadReport;
 use crate::error::{Error, Result, all_finite};
 use crate::spatial::{Pose, Rotation, Twist, Vec3, exp};
 
-/// A robot or mechanism. Immutable; a clone shares the data.
+/// A robot or mechanism. Immutable; clones share the data.
 #[derive(Debug, Clone)]
 pub struct Mechanism {
     pub(super) data: Arc<Data>,
@@ -30,7 +30,7 @@ pub(super) struct Data {
     pub(super) dimension: Dimension,
     pub(super) reference: FrameId,
     pub(super) frames: Vec<Frame>,
-    /// Fingerprint of the names of the frames: what an id belongs to.
+    /// Hash of the frame names, which identifies the mechanism of a frame.
     pub(super) frame_key: u64,
     pub(super) coordinates: Vec<Coordinate>,
     pub(super) nodes: Vec<Node>,
@@ -47,15 +47,15 @@ pub struct Coordinate {
     pub name: String,
     /// Index of the joint.
     pub joint: usize,
-    /// What the number is.
+    /// Its kind.
     pub kind: CoordinateKind,
-    /// Its limits; those of mimic joints that follow it are counted in.
+    /// Its limits, narrowed by those of mimic joints that follow it.
     pub limits: Limits,
-    /// True if a motor actuators it.
+    /// True if it is actuated.
     pub actuated: bool,
 }
 
-/// What a coordinate measures.
+/// The kind of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CoordinateKind {
     /// Angle (rad).
@@ -69,7 +69,7 @@ pub enum CoordinateKind {
 }
 
 impl CoordinateKind {
-    /// True for what is measured in metres, false for radians.
+    /// True for metres, false for radians.
     #[must_use]
     pub const fn is_length(self) -> bool {
         matches!(self, Self::Length | Self::Position)
@@ -89,14 +89,14 @@ pub struct Frame {
     pub name: String,
     /// The link it is fixed to.
     pub link: usize,
-    /// Where it sits on the link.
+    /// Its pose on the link.
     pub link_from_frame: Pose,
-    /// Slot of the moving frame that carries it (0: ground), and where it sits there.
+    /// Slot of the moving frame that carries it (0: ground), and its pose there.
     pub(crate) slot: usize,
     pub(crate) slot_from_frame: Pose,
 }
 
-/// Names a frame of one mechanism, or of another whose frames have the same names in the same
+/// Identifies a frame of one mechanism, or of another whose frames have the same names in the same
 /// order. From [`Mechanism::frame`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FrameId {
@@ -104,7 +104,7 @@ pub struct FrameId {
     pub(super) frame_key: u64,
 }
 
-/// FNV-1a over the names, each closed by a byte that no name holds.
+/// FNV-1a over the names, each terminated by a byte that no name contains.
 pub(super) fn frame_key(frames: &[Frame]) -> u64 {
     let bytes = frames.iter().flat_map(|f| f.name.bytes().chain([0xff]));
     bytes.fold(0xcbf2_9ce4_8422_2325, |key, byte| {
@@ -119,7 +119,7 @@ impl Mechanism {
         &self.data.name
     }
 
-    /// Number of coordinates: entries of `q` and of the rates.
+    /// Number of coordinates: entries of `q` and of the joint velocities.
     #[must_use]
     pub fn n(&self) -> usize {
         self.data.coordinates.len()
@@ -143,7 +143,7 @@ impl Mechanism {
         &self.data.joints
     }
 
-    /// The joints that close loops of the tree, in the order of the file.
+    /// The loop joints, in the order of the file.
     #[must_use]
     pub fn loops(&self) -> &[LoopJoint] {
         &self.data.loops
@@ -161,21 +161,21 @@ impl Mechanism {
         !(self.data.loops.is_empty() && self.data.contacts.is_empty())
     }
 
-    /// Where it moves: in the plane x-y or in space.
+    /// Its dimension: the plane x-y or space.
     #[must_use]
     pub fn dimension(&self) -> Dimension {
         self.data.dimension
     }
 
-    /// The frame whose motion is the goal: twist and wrench of its link are taken at its origin,
-    /// in world axes. The file's reference, else the tool.
+    /// The frame whose motion is the goal (reference): twist and wrench of its link are taken at
+    /// its origin, in world axes. The file's reference, otherwise the tool.
     #[must_use]
     pub fn reference(&self) -> FrameId {
         self.data.reference
     }
 
-    /// The coordinates that motors drive (indices into `q`). An actuated joint that closes a loop has
-    /// no coordinate; it is found in [`Mechanism::loops`].
+    /// The actuated coordinates (indices into `q`). An actuated loop joint has no coordinate; see
+    /// [`Mechanism::loops`].
     pub fn actuated(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.n()).filter(|&i| self.data.coordinates[i].actuated)
     }
@@ -196,12 +196,18 @@ impl Mechanism {
         coordinate.map(|c| c.limits).or_else(closing)
     }
 
-    /// The same mechanism actuated by these joints and no others: names of joints of the tree, of
+    /// The same mechanism with these actuated joints and no others: names of joints of the tree, of
     /// their coordinates, or of loop joints. Coordinates keep their order.
     ///
+    /// ```
+    /// let five_bar = cylindroid::load("five-bar")?.with_actuated(&["q2", "q4"])?;
+    /// assert_eq!(five_bar.actuated().collect::<Vec<_>>(), [1, 3]);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
-    /// [`Error::UnknownName`] with the nearest names; [`Error::InvalidOption`] for a joint that
-    /// does not move or follows another.
+    /// [`Error::UnknownName`] with the nearest names; [`Error::InvalidOption`] for a fixed joint or
+    /// a mimic joint.
     pub fn with_actuated<S: AsRef<str>>(&self, names: &[S]) -> Result<Self> {
         let data = &self.data;
         let mut joints = data.joints.clone();
@@ -216,16 +222,19 @@ impl Mechanism {
             };
             if let Some(joint) = joints.iter_mut().find(|j| j.name == name) {
                 if let Some(mimic) = &joint.mimic {
-                    return refuse(format!("it follows '{}'; name that one", mimic.joint));
+                    return refuse(format!(
+                        "it is a mimic joint; name '{}', which it follows",
+                        mimic.joint
+                    ));
                 }
                 if joint.kind.dof() == 0 {
-                    return refuse("it is fixed; name a joint that moves".to_owned());
+                    return refuse("it is fixed; name a movable joint".to_owned());
                 }
                 joint.actuated = true;
                 coordinates[joint.coordinates.clone()].iter_mut().for_each(|c| c.actuated = true);
             } else if let Some(joint) = loops.iter_mut().find(|l| l.name == name) {
                 if joint.kind.dof() == 0 {
-                    return refuse("it is fixed; name a joint that moves".to_owned());
+                    return refuse("it is fixed; name a movable joint".to_owned());
                 }
                 joint.actuated = true;
             } else if let Some(coordinate) = coordinates.iter_mut().find(|c| c.name == name) {
@@ -240,7 +249,7 @@ impl Mechanism {
         Ok(Self { data: Arc::new(Data { joints, coordinates, loops, ..Data::clone(data) }) })
     }
 
-    /// The frames: those of the links first, then named ones.
+    /// The frames: link frames first, then named ones.
     #[must_use]
     pub fn frames(&self) -> &[Frame] {
         &self.data.frames
@@ -271,14 +280,14 @@ impl Mechanism {
     /// The frame of an id.
     ///
     /// # Panics
-    /// If the id is of another mechanism; [`Mechanism::check_frame`] asks beforehand.
+    /// If the id belongs to another mechanism; [`Mechanism::check_frame`] checks this.
     #[must_use]
     pub fn frame_of(&self, id: FrameId) -> &Frame {
         assert!(self.owns(id), "the frame is not one of mechanism '{}'", self.name());
         &self.data.frames[id.index]
     }
 
-    /// Refuses the id of a frame of another mechanism.
+    /// Returns an error for the id of a frame of another mechanism.
     ///
     /// # Errors
     /// [`Error::InvalidOption`].
@@ -297,28 +306,28 @@ impl Mechanism {
         id.frame_key == self.data.frame_key && id.index < self.data.frames.len()
     }
 
-    /// The frame that is actuated when none is named: the file's tool, else the last leaf link.
+    /// The default frame (tool): that of the file, otherwise the end of the only moving branch.
     #[must_use]
     pub fn tool(&self) -> FrameId {
         self.data.tool
     }
 
-    /// The home configuration: the file's, else zero, and the middle of limits that exclude zero.
-    /// A closed chain rests at zero in any case: its loops close there.
+    /// The home configuration: that of the file, otherwise zero, or the middle of limits that
+    /// exclude zero. Zero for closed chains, whose loops close there.
     #[must_use]
     pub fn home(&self) -> &[f64] {
         &self.data.home
     }
 
-    /// Characteristic length (m): the longest way from the base to a frame along the links,
-    /// with sliding joints stretched to their own limits (those without limits, and the advance of
-    /// helical joints, count nothing); at least 1 mm.
+    /// Characteristic length (m): the longest path from the base to a frame along the links, with
+    /// prismatic joints extended to their limits (those without limits, and the advance of helical
+    /// joints, are not counted); at least 1 mm.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.data.reach
     }
 
-    /// What was read and what was ignored.
+    /// The load report: what was read and what was ignored.
     #[must_use]
     pub fn report(&self) -> &LoadReport {
         &self.data.report
@@ -328,7 +337,7 @@ impl Mechanism {
         &self.data.nodes
     }
 
-    /// Refuses a `q` of the wrong size or with entries that are not finite, naming the joint.
+    /// Returns an error for a `q` of the wrong size or with non-finite values, naming the joint.
     ///
     /// # Errors
     /// [`Error::Dimension`], [`Error::NotFinite`].
@@ -354,7 +363,7 @@ impl Mechanism {
         }
     }
 
-    /// How many configurations `rows` holds.
+    /// Number of configurations in `rows`.
     pub(crate) fn count_rows(&self, what: &str, rows: &[f64]) -> Result<usize> {
         let n = self.n();
         if rows.len().checked_rem(n).unwrap_or(rows.len()) != 0 {
@@ -363,10 +372,10 @@ impl Mechanism {
         Ok(rows.len().checked_div(n).unwrap_or(0))
     }
 
-    /// Refuses rows of n numbers of which one is not finite, naming row and joint.
+    /// Returns an error for rows of n values with a non-finite one, naming row and joint.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::Dimension`] for a last row that is too short.
+    /// [`Error::NotFinite`]; [`Error::Dimension`] for an incomplete last row.
     pub fn check_rows(&self, what: &str, rows: &[f64]) -> Result<()> {
         if all_finite(rows) {
             return Ok(());
@@ -375,7 +384,7 @@ impl Mechanism {
         rows.try_for_each(|(i, row)| self.check_q(&format!("{what}[{i}]"), row))
     }
 
-    /// Coordinates that are outside their position limits.
+    /// Coordinates outside their position limits.
     pub fn outside_limits<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
         self.data
             .coordinates
@@ -386,11 +395,11 @@ impl Mechanism {
             .map(|(i, _)| i)
     }
 
-    /// `q` moved by constant rates for `dt` seconds: `q + dt * rates`, with rotation vectors and
-    /// free bodies moved on their group.
+    /// `q` after `dt` seconds at constant joint velocities: `q + dt * rates`, with rotation vectors
+    /// and free bodies integrated on their group.
     ///
     /// # Errors
-    /// Sizes and numbers as in [`Mechanism::check_q`].
+    /// As [`Mechanism::check_q`].
     pub fn integrate(&self, q: &[f64], rates: &[f64], dt: f64) -> Result<Vec<f64>> {
         self.check_q("q", q)?;
         self.check_q("rates", rates)?;
@@ -400,7 +409,7 @@ impl Mechanism {
         Ok(next)
     }
 
-    /// [`Mechanism::integrate`] without checks and allocation.
+    /// [`Mechanism::integrate`] without validation and allocation.
     pub(crate) fn integrate_in_place(&self, q: &mut [f64], rates: &[f64], dt: f64) {
         for (i, coordinate) in self.data.coordinates.iter().enumerate() {
             if matches!(coordinate.kind, CoordinateKind::Angle | CoordinateKind::Length) {

@@ -1,4 +1,6 @@
-//! Mimic joints: whom they follow in the end.
+//! Mimic joints: resolution of chains of mimic joints.
+//!
+//! Checked  tests/it/model.rs, tests/formats/mechanism_file.rs::mimics_are_read
 
 use std::collections::BTreeMap;
 
@@ -6,7 +8,8 @@ use super::builder::Builder;
 use crate::error::{Error, Result};
 
 impl Builder {
-    /// For every mimic joint the joint at the end of its chain, with the ratio and offset to it.
+    /// For every mimic joint the independent joint at the end of its chain, with the total ratio
+    /// and offset.
     pub(super) fn resolve_mimics(&self) -> Result<BTreeMap<usize, (usize, f64, f64)>> {
         let mut resolved = BTreeMap::new();
         let by_name: BTreeMap<&str, usize> =

@@ -1,6 +1,6 @@
 //! Mechanisms: an immutable graph of links, joints and contacts, its builder, its file formats.
 //!
-//! Formats are loaders, never classes: whatever the file, the result is one [`Mechanism`].
+//! Formats are loaders, not types: the result of every file is a [`Mechanism`].
 
 mod builder;
 #[cfg(feature = "formats")]

@@ -1,7 +1,7 @@
-//! The form in which kinematics reads a mechanism: a list of moving frames, parents first.
+//! Nodes: the form of a mechanism that kinematics reads, a list of moving frames, parents first.
 //!
-//! Every joint is written as one or more nodes that turn about or slide along their own z axis
-//! (or move freely); fixed joints and fixed links are folded into the placements.
+//! Every joint is one or more nodes that rotate about or translate along their own z axis (or move
+//! freely); fixed joints and fixed links are merged into the placements.
 
 use crate::spatial::AlignedPose;
 
@@ -12,30 +12,30 @@ pub(crate) struct Node {
     pub(crate) parent: usize,
     /// The frame at zero, seen from the parent.
     pub(crate) placement: AlignedPose,
-    /// What it does.
+    /// Its kind.
     pub(crate) kind: NodeKind,
     /// Its first coordinate.
     pub(crate) coordinate: usize,
-    /// Mimic ratio (1 for joints of their own).
+    /// Mimic ratio (1 for independent joints).
     pub(crate) multiplier: f64,
-    /// Mimic offset (0 for joints of their own).
+    /// Mimic offset (0 for independent joints).
     pub(crate) offset: f64,
 }
 
-/// What a node does with its coordinates.
+/// The kind of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum NodeKind {
-    /// Nothing: the tool at the end of a chain. Its coordinate is not read for anything.
+    /// Fixed: the tool at the end of a chain. Its coordinate is not used.
     Fixed,
-    /// Turns about z.
+    /// Rotation about z.
     Revolute,
-    /// Slides along z.
+    /// Translation along z.
     Prismatic,
-    /// Turns about z and advances by the pitch [m/rad].
+    /// Rotation about z with an advance of the pitch [m/rad].
     Helical(f64),
-    /// Rotation vector; rates are the angular velocity in its own axes.
+    /// Rotation vector; its velocity is the angular velocity in its own axes.
     Spherical,
-    /// Position and rotation vector; rates are the twist in its own axes.
+    /// Position and rotation vector; its velocity is the twist in its own axes.
     Free,
 }
 

@@ -1,4 +1,6 @@
-//! The order of the spanning tree, and the link at the end of its only branch.
+//! Order of the spanning tree, and the default tool: the link at the end of its only moving branch.
+//!
+//! Checked  tests/it/model.rs
 
 use std::collections::BTreeMap;
 
@@ -10,9 +12,9 @@ pub(super) struct TreeOrder {
     pub(super) joints: Vec<usize>,
 }
 
-/// The link whose frame is actuated when none is named: from the root along the only branch that moves to
-/// where none or several do (a hand with fingers), then to the last link fixed there. Where the
-/// root itself branches (humanoids, hands), the end of the branch with the most moving joints.
+/// The default tool: from the root along the only moving branch until none or several continue (a
+/// hand with fingers), then to the last link fixed there. If the root itself branches (humanoids,
+/// hands), the end of the branch with the most moving joints.
 pub(super) fn default_tool(
     order: &TreeOrder,
     joints: &[JointSpec],
@@ -21,7 +23,7 @@ pub(super) fn default_tool(
     let ends: Vec<(usize, usize)> =
         joints.iter().map(|j| (links[&j.parent], links[&j.child])).collect();
     let moves = |j: usize| joints[j].kind.dof() > 0;
-    // For each link: the joints that leave it, the moving joints below it and above it.
+    // For each link: the joints that leave it, and the moving joints below and above it.
     let mut children = vec![Vec::new(); links.len()];
     let mut above = vec![0; links.len()];
     for &j in &order.joints {

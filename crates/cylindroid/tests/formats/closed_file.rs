@@ -73,7 +73,7 @@ fn the_reference_point_is_the_first_joint_that_names_the_link() {
 
 /// As many actuated joints as possible are in the tree; the rest goes by the file.
 #[test]
-fn spanning_trees_hold_the_driven_joints() {
+fn spanning_trees_contain_the_actuated_joints() {
     for bits in 0..32_u32 {
         let actuated: [bool; 5] = std::array::from_fn(|i| bits >> i & 1 == 1);
         let m = read(&five_bar(actuated));

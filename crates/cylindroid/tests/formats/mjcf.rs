@@ -247,7 +247,7 @@ fn equality_constraints_are_loops_and_couplings() {
 }
 
 #[test]
-fn actuators_say_who_is_driven_and_how_hard() {
+fn actuators_give_actuated_joints_and_effort_limits() {
     let m = read(ZOO);
     let actuated: Vec<&str> = m.actuated().map(|i| m.coordinates()[i].name.as_str()).collect();
     // A motor at a joint that follows actuators the one that leads.

@@ -34,7 +34,7 @@ fn limits_leave_a_finite_position() {
         let limits = Limits { lower: end, upper: end, ..Limits::NONE };
         let joint = JointSpec { limits, ..JointSpec::new("far", JointKind::Revolute, "a", "b") };
         let error = build([joint]).unwrap_err().to_string();
-        assert!(error.contains("'far'") && error.contains("no finite position"), "{error}");
+        assert!(error.contains("'far'") && error.contains("every finite position"), "{error}");
     }
     // Also where a follower would leave none: it is noted, and the limits of the leader hold.
     let follower = JointSpec {

@@ -142,8 +142,8 @@ fn print(
         )
     } else {
         format!(
-            "not closed: open by {closure_error} where the search ended; try another guess (--q), or hold \
-             fewer coordinates (--hold); that none was found proves nothing"
+            "not closed: open by {closure_error} at the last step; try another guess (--q), or prescribe \
+             fewer coordinates (--hold); this does not prove that no assembly exists"
         )
     };
     output::pairs(
@@ -152,7 +152,7 @@ fn print(
             ("model", report.model.to_owned()),
             ("result", result),
             ("steps", found.steps.to_string()),
-            ("held", report.held.join(", ")),
+            ("prescribed", report.held.join(", ")),
             ("at or beyond a limit", report.at_limit.join(", ")),
             ("q", q_line(&found.q)),
         ],

@@ -136,7 +136,8 @@ fn fingers(
         return Err(Error::InvalidOption {
             option: "--strength",
             value: mechanism.contacts()[*i].name.clone(),
-            reason: "it has none; give a number for all, or name=number for each".to_owned(),
+            reason: "no strength is given; give a number for all, or name=number for each"
+                .to_owned(),
         });
     }
     if found.is_empty() {
@@ -160,9 +161,9 @@ fn print(
     quality: &GraspQuality,
 ) -> anyhow::Result<()> {
     let result = if report.closed {
-        "closed: the fingers hold every wrench, with enough effort".to_owned()
+        "closed: the fingers can resist every wrench with large enough forces".to_owned()
     } else {
-        "open: wrenches along the weakest direction are not held at any effort".to_owned()
+        "open: wrenches along the weakest direction cannot be resisted".to_owned()
     };
     let metric = match report.metric {
         "linf" => "Q-infinity: each normal force at most the finger's strength",

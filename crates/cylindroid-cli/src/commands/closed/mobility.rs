@@ -138,7 +138,7 @@ fn print(
     let mut lines = vec![
         ("degrees of freedom", format!("{} to first order ({gap})", m.dof.dimension())),
         ("finite motion", singularity::finite(posed, &found.finite)),
-        ("Grubler's formula", gruebler_kutzbach(m)),
+        ("Gruebler-Kutzbach", gruebler_kutzbach(m)),
     ];
     lines.extend(singularity::lines(posed, found));
     lines.extend(joints(posed, &m.joints));
@@ -149,8 +149,8 @@ fn print(
     if !m.ambiguous_ranks.is_empty() {
         writeln!(out)?;
     }
-    for doubt in &m.ambiguous_ranks {
-        writeln!(out, "doubtful: {doubt}")?;
+    for warning in &m.ambiguous_ranks {
+        writeln!(out, "warning: {warning}")?;
     }
     Ok(())
 }
@@ -163,13 +163,13 @@ fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow
             "coordinate",
             r.coordinate,
             None,
-            "motions of the reference frame that the actuated joints set",
+            "motions of the reference frame controlled by the actuated joints",
         ),
         (
             "redundancy",
             r.redundancy,
             Some(generic.redundancy),
-            "motions of actuated joints that leave the reference frame at rest",
+            "motions of actuated joints with the reference frame at rest",
         ),
         (
             "indeterminacy",
@@ -182,26 +182,26 @@ fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow
             "internal",
             m.internal.dimension(),
             None,
-            "torques of actuated joints that balance each other",
+            "torques of actuated joints in equilibrium (internal forces)",
         ),
         (
             "zero_torque",
             m.zero_torque.dimension(),
             Some(generic.zero_torque),
-            "wrenches on the reference frame held without torque",
+            "wrenches on the reference frame in equilibrium without torque",
         ),
         (
             "hyperstatic",
             m.hyperstatic.dimension(),
             None,
-            "forces in loops and contacts that nothing determines",
+            "undetermined forces in loops and contacts",
         ),
     ];
     let columns = [
         ("kind", Align::Left),
         ("here", Align::Right),
         ("generic", Align::Right),
-        ("what it counts", Align::Left),
+        ("meaning", Align::Left),
     ];
     let rows = rows.map(|(name, n, generic, what)| {
         let generic = generic.map_or_else(String::new, |n| n.to_string());
@@ -235,7 +235,7 @@ fn joints(posed: &Posed, mobility: &[JointMobility]) -> [(&'static str, String);
                 format!("{} still move", list(&with_drives_at_rest))
             },
         ),
-        ("spinning alone", some(those(&|j| j.idle))),
+        ("idle joints", some(those(&|j| j.idle))),
     ]
 }
 
@@ -243,9 +243,9 @@ fn joints(posed: &Posed, mobility: &[JointMobility]) -> [(&'static str, String);
 fn gruebler_kutzbach(m: &Mobility) -> String {
     let dof = i64::try_from(m.dof.dimension()).unwrap_or(i64::MAX);
     match dof - m.gruebler_kutzbach {
-        0 => format!("{} (the geometry is ordinary)", m.gruebler_kutzbach),
+        0 => format!("{} (no dependent constraints)", m.gruebler_kutzbach),
         more => {
-            format!("{} (it misses {more}: constraints that say the same)", m.gruebler_kutzbach)
+            format!("{} ({more} dependent constraints are not counted)", m.gruebler_kutzbach)
         }
     }
 }

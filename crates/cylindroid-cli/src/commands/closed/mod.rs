@@ -80,7 +80,7 @@ impl Posed {
                 "loops are open by",
                 if open {
                     format!(
-                        "{} m, {} rad: what follows holds where they are closed (`assemble`)",
+                        "{} m, {} rad: the report assumes closed loops (`assemble`)",
                         number(closure_error.distance),
                         number(closure_error.angle)
                     )

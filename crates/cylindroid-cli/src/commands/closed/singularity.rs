@@ -120,31 +120,33 @@ pub(super) fn finite(posed: &Posed, f: &FiniteMobility) -> String {
     let Some(dof) = f.finite else {
         return match f.evidence {
             MobilityEvidence::Unknown if f.step == 0.0 => {
-                "not known: the loops are open here; close them first (`assemble`)".to_owned()
+                "unknown: the loops are open; close them first (`assemble`)".to_owned()
             }
-            _ => "not known: no step away from here could be followed".to_owned(),
+            _ => "unknown: no step from this configuration converged".to_owned(),
         };
     };
-    let unsure = if f.certain { "" } else { "; from a search, which may have missed a branch" };
+    let unsure = if f.certain { "" } else { "; found by a search, which may have missed a branch" };
     match f.evidence {
         _ if f.infinitesimal == 0 => "none: it is a structure".to_owned(),
         MobilityEvidence::Independent if !posed.mechanism.is_closed() => {
-            format!("{dof}: all of it, for there are no loops")
+            format!("{dof}: all of it, there are no loops")
         }
-        MobilityEvidence::Independent => format!("{dof}: all of it, for the loops are independent"),
+        MobilityEvidence::Independent => {
+            format!("{dof}: all of it, the loop equations are independent")
+        }
         MobilityEvidence::Steps => format!(
-            "{dof}: all of it; loops ask for the same thing twice here, and still close after \
+            "{dof}: all of it; some loop equations are dependent, and the loops still close after \
              steps of {step} in every direction"
         ),
         _ if dof == 0 => {
-            format!("none: it gives to first order and does not move (shaky){unsure}")
+            format!("none: it moves to first order only (shaky){unsure}")
         }
         _ => format!(
             "{dof} of {}: {}{unsure}",
             f.infinitesimal,
             match f.branches.len() {
-                1 => "the others give to first order and do not move (shaky)".to_owned(),
-                n => format!("{n} motions cross in this pose, and no sum of them exists"),
+                1 => "the others exist to first order only (shaky)".to_owned(),
+                n => format!("{n} motions cross at this configuration (a bifurcation)"),
             }
         ),
     }
@@ -156,9 +158,9 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
     let planar = posed.mechanism.dimension() == Dimension::Planar;
     let others = d.generic.others;
     let verdict = if found.is_regular() && others == 0 {
-        "none is seen, with nothing to measure by".to_owned()
+        "none found, with no other configuration to compare with".to_owned()
     } else if found.is_regular() {
-        "none: the pose is regular".to_owned()
+        "none: the configuration is regular".to_owned()
     } else {
         let kinds: Vec<String> = found.kinds.iter().map(ToString::to_string).collect();
         kinds.join("; ")
@@ -168,7 +170,7 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
         (
             "compared with",
             match others {
-                0 => "nothing: no other configuration closes".to_owned(),
+                0 => "no other configuration: none closes".to_owned(),
                 1 => "only one other configuration of the mechanism".to_owned(),
                 _ => format!("{others} other configurations of the mechanism"),
             },
@@ -179,7 +181,7 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
         lines.push((name, words.join("; ")));
     };
     named("blocked", &d.blocked, &|s, planar| {
-        format!("{} is held without torque", wrench_in_words(s, planar))
+        format!("{} is resisted without torque", wrench_in_words(s, planar))
     });
     named("lost", &d.lost, &motion_in_words);
     named("gained", &d.gained, &motion_in_words);
@@ -187,12 +189,12 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
     if found.kinds.contains(&SingularityKind::TypeI) || !d.blocked.is_empty() {
         lines.push(("actuators without effect", of(&d.redundant)));
     }
-    lines.push(("gaining idle motion", of(&d.idle)));
+    lines.push(("idle joints gained", of(&d.idle)));
     if !d.separated {
         lines.push((
-            "mind",
-            "what is held or free in every pose could not be told from what is so here alone: all \
-             is listed"
+            "note",
+            "the generic part could not be separated from the excess at this configuration: all is \
+             listed"
                 .to_owned(),
         ));
     }
@@ -281,7 +283,7 @@ pub(super) fn ways(out: &mut dyn Write, posed: &Posed, f: &FiniteMobility) -> an
         for (j, motion) in output::columns(&branch.motions).into_iter().enumerate() {
             let more =
                 if branch.motions.cols() > 1 { format!(".{}", j + 1) } else { String::new() };
-            names.push(format!("way {}{more}", i + 1));
+            names.push(format!("branch {}{more}", i + 1));
             motions.push(scaled(motion));
         }
     }
@@ -290,7 +292,7 @@ pub(super) fn ways(out: &mut dyn Write, posed: &Posed, f: &FiniteMobility) -> an
         motions.push(scaled(motion));
     }
     writeln!(out)?;
-    writeln!(out, "Rates of the joints on the ways out of this pose, and of what is only shaky")?;
+    writeln!(out, "Joint velocities of the branches at this configuration, and of shaky motions")?;
     let mut columns = vec![("joint", Align::Left)];
     columns.extend(names.iter().map(|n| (n.as_str(), Align::Right)));
     let rows = posed.mechanism.coordinates().iter().enumerate().map(|(i, c)| {

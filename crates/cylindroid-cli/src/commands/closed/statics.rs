@@ -121,8 +121,9 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
                 given.of(name).ok_or_else(|| Error::InvalidOption {
                     option: "--compliance",
                     value: (*name).to_owned(),
-                    reason: "it has none; give a number for all, or name=number for each"
-                        .to_owned(),
+                    reason:
+                        "no compliance is given; give a number for all, or name=number for each"
+                            .to_owned(),
                 })
             };
             let all: Vec<f64> = closings.iter().map(of).collect::<Result<_>>()?;
@@ -163,8 +164,8 @@ fn print(out: &mut dyn Write, posed: &Posed, report: &StaticsJson<'_>) -> anyhow
     let mut lines = posed.heading();
     let left = report.unbalanced.iter().any(|x| x.abs() > 0.0);
     if left {
-        let text = "a part of the wrench: the reference frame gives way to it (unbalanced below)";
-        lines.push(("nothing holds", text.to_owned()));
+        let text = "a part of the wrench (below): the reference frame gives way to it";
+        lines.push(("unbalanced", text.to_owned()));
     }
     output::pairs(out, lines)?;
     writeln!(out)?;
@@ -176,7 +177,7 @@ fn print(out: &mut dyn Write, posed: &Posed, report: &StaticsJson<'_>) -> anyhow
     };
     let mut rows = vec![
         row("wrench on the frame", report.wrench),
-        row("held by the structure", &report.structural),
+        row("structural", &report.structural),
         row("unbalanced", &report.unbalanced),
     ];
     rows.extend(report.zero_torque_basis.iter().map(|w| row("zero-torque wrench (basis)", w)));

@@ -1,7 +1,7 @@
-//! File formats: each file here reads one format and writes nothing but a [`Builder`].
+//! File formats: each module reads one format and writes a [`Builder`].
 //!
-//! The format is told by the extension and by what stands in the file: `.toml` is a mechanism
-//! file, everything that begins with `<` is XML (URDF, MJCF, SDF) and is told by its root element.
+//! The format is recognised by extension and content: `.toml` is a mechanism file; files that begin
+//! with `<` are XML (URDF, MJCF, SDF), distinguished by their root element.
 //!
 //! [`Builder`]: super::Builder
 

@@ -147,10 +147,10 @@ fn reference<'a>(job: &'a Job<'_>) -> &'a str {
 fn explain(job: &Job<'_>, goal: &Goal, way: &ContinuationResult) -> String {
     let names = job.names_of(&goal.places).join(", ");
     match &way.end {
-        PathEnd::Reached => format!("reached: {names} where they should be, in the same mode"),
+        PathEnd::Reached => format!("reached: {names} at the goal, in the same assembly mode"),
         PathEnd::Singular(s) => format!(
-            "stopped before a singularity, {}: with {names} at rest {} (distance {}); go another \
-             way round, or hold other coordinates",
+            "stopped before a singularity, {}: with {names} at rest {} (distance {}); choose \
+             another path, or prescribe other coordinates",
             s.kind,
             gained(job, s),
             number(s.distance)
@@ -165,17 +165,16 @@ fn explain(job: &Job<'_>, goal: &Goal, way: &ContinuationResult) -> String {
             )
         }
         PathEnd::Open => format!(
-            "the loops do not close from the start with {names} where they are: open by {}; give \
+            "the loops cannot be closed at the start with {names} prescribed: open by {}; give \
              another --q",
             open_by(way.closure_error)
         ),
         PathEnd::Contradiction => format!(
-            "{names} contradict each other: no motion of the others keeps the loops closed; move \
-             or hold fewer of them"
+            "{names} contradict each other: no motion of the others keeps the loops closed; \
+             prescribe fewer of them"
         ),
         PathEnd::StepTooSmall => {
-            "the branch could not be followed further: no singularity and no limit was met"
-                .to_owned()
+            "the step became too small: neither a singularity nor a limit was met".to_owned()
         }
     }
 }
@@ -199,14 +198,14 @@ fn print(
     let walked = way.path.iter().filter(|p| p.distance.is_finite() && way.fraction > 0.0);
     let nearest = walked.min_by(|a, b| a.distance.total_cmp(&b.distance));
     let nearest = nearest.map_or_else(String::new, |p| {
-        format!("{} at {} of the way (0: singular)", number(p.distance), number(p.fraction))
+        format!("{} at {} of the path (0: singular)", number(p.distance), number(p.fraction))
     });
     output::pairs(
         out,
         [
             ("model", job.mechanism.name().to_owned()),
             ("result", explain(job, goal, way)),
-            ("fraction of the way", number(way.fraction)),
+            ("fraction of the path", number(way.fraction)),
             ("least distance", nearest),
             ("q", q_line(&way.q)),
         ],

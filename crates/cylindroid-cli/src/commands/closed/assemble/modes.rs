@@ -88,8 +88,8 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
     let plural = if modes == 1 { "" } else { "s" };
     let result = if modes == 0 {
         format!(
-            "none found: no start closed, the guess stays open by {}; that none was found proves \
-             nothing",
+            "none found: no start closed, the guess is open by {}; this does not prove that none \
+             exists",
             open_by(found.first.closure_error)
         )
     } else {
@@ -98,18 +98,18 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
     let once = found.modes.iter().filter(|m| m.found == 1).count();
     let more = match (modes, once) {
         (0, _) => String::new(),
-        (_, 0) => "there may be, but every mode was found more than once".to_owned(),
+        (_, 0) => "possible, but every mode was found more than once".to_owned(),
         _ => format!(
-            "likely: {once} found only once; about {} of further starts that close would find a \
-             new one",
+            "likely: {once} found only once; a further closing start finds a new mode with \
+             probability {}",
             number(found.unseen_probability())
         ),
     };
     let self_motion_dof = match found.self_motion_dof() {
         0 => String::new(),
         n => format!(
-            "{n} degree{} of freedom: such modes are no points but motions, and each stands for all \
-             that agree in what those motions leave at rest; hold more coordinates (--hold)",
+            "{n} degree{} of freedom: such modes are continua, and each represents all that agree in \
+             the landmarks at rest; prescribe more coordinates (--hold)",
             if n == 1 { "" } else { "s" }
         ),
     };
@@ -118,9 +118,9 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
         [
             ("model", job.mechanism.name().to_owned()),
             ("result", result),
-            ("others", more),
-            ("left to move", self_motion_dof),
-            ("held", job.names_of(&job.held).join(", ")),
+            ("further modes", more),
+            ("self-motion", self_motion_dof),
+            ("prescribed", job.names_of(&job.held).join(", ")),
         ],
     )?;
     if found.modes.is_empty() {
@@ -131,7 +131,7 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
         ("mode", Align::Right),
         ("found", Align::Right),
         ("distance", Align::Right),
-        ("left to move", Align::Right),
+        ("self-motion dof", Align::Right),
     ];
     let rows = found.modes.iter().enumerate().map(|(i, m)| {
         let count = |n: usize| n.to_string();

@@ -1,7 +1,7 @@
-//! Default classes of MJCF: what an element does not say, its class says.
+//! Default classes of MJCF: the values of attributes that an element does not give.
 //!
-//! Formula  own attribute, else that of its `class` (else the nearest `childclass` above, else the
-//!          outermost default), else that of the class around it, outwards
+//! Formula  own attribute, otherwise that of its `class` (or the nearest `childclass` above, or the
+//!          outermost default), otherwise that of the enclosing class, outwards
 //! Source   mujoco.readthedocs.io, Modeling, default settings
 //! Checked  tests/formats/mjcf.rs::poses_*
 

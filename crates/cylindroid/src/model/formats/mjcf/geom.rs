@@ -1,4 +1,4 @@
-//! Shapes and masses of MJCF bodies: kept as data, as far as a link holds them.
+//! Shapes   and masses of MJCF bodies: kept as data, as far as a link contains them.
 //!
 //! Units    MJCF gives half sizes; ours are whole ones
 //! Checked  tests/formats/mjcf.rs::shapes_*
