@@ -49,6 +49,20 @@ pub struct ContactForces {
 /// Any combination of the hyperstatic forces of the mobility report may be added. Source: Bicchi &
 /// Prattichizzo 1998, eq. 12.
 ///
+/// ```
+/// use cylindroid::closure::{ClosedChain, MotionSpace, StaticLoad, contact_forces, joint_torques};
+///
+/// let five_bar = cylindroid::load("five-bar")?;
+/// let chain = ClosedChain::of(&five_bar.state(five_bar.home())?, None, None)?;
+/// let motions = MotionSpace::of(&chain.constraint);
+/// let wrench = [3.0, -1.0, 0.0];
+/// let found = joint_torques(&motions.relation(), &wrench, None)?;
+/// let held: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, u)| w - u).collect();
+/// let load = StaticLoad { torques: &found.torques, wrench: &held };
+/// assert!(contact_forces(&chain.constraint, &motions, load, None)?.unbalanced < 1e-12);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// Torques, wrench or compliance of the wrong size, or with non-finite entries.
 pub fn contact_forces(

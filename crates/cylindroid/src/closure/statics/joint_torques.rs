@@ -39,6 +39,17 @@ pub struct JointTorques {
 /// entries (N m, N). The part of the wrench that the structure carries, and the part that nothing
 /// balances, are reported beside them. Source: Bicchi & Prattichizzo 1998, eq. 12.
 ///
+/// ```
+/// use cylindroid::Matrix;
+/// use cylindroid::closure::{Constraint, MotionSpace, joint_torques};
+///
+/// // An arm of one joint with a lever of 2 m: tau = -J^T w.
+/// let arm = Constraint::serial(&Matrix::from_rows(&[[2.0]]).unwrap())?;
+/// let found = joint_torques(&MotionSpace::of(&arm).relation(), &[3.0], None)?;
+/// assert!((found.torques[0] + 6.0).abs() < 1e-12);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// A wrench or metric of the wrong size, or with non-finite entries.
 pub fn joint_torques(
