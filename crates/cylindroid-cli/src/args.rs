@@ -120,7 +120,7 @@ pub(crate) struct JacobianArgs {
     #[arg(long, value_name = "NAME", default_value = "local_world_aligned")]
     pub(crate) reference: ReferenceName,
 
-    /// Rates of angles instead of an angular velocity in the last three rows [rad/s], world axes
+    /// Angle rates instead of an angular velocity in the last three rows [rad/s], world axes
     #[arg(long, value_name = "ANGLES", conflicts_with_all = ["reference", "velocities"])]
     pub(crate) analytical: Option<Angles>,
 
@@ -145,7 +145,7 @@ pub(crate) enum ReferenceName {
 pub(crate) enum Angles {
     /// Roll, pitch, yaw about the fixed x, y, z
     Rpy,
-    /// Euler angles about z, the turned y, the turned z
+    /// Euler angles about z, the rotated y, the rotated z
     Zyz,
     /// The rotation vector, axis times angle
     RotationVector,

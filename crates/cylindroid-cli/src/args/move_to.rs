@@ -10,19 +10,19 @@ use super::{ConfigurationArgs, FrameArgs, inverses};
 use crate::values::{Joints, Motion, Named, Numbers, Pair};
 
 pub(crate) const ABOUT: &str = "\
-Cartesian control: drive a frame to a target and say whether and how it got there
+Cartesian control: move a frame to a target and report whether and how it was reached
 
-A servo runs at 1/dt against an ideal robot: rates = J+ (gain * error + feed-forward), within the \
-limits of all joints, until both errors are within tolerance, the error no longer falls, or the \
-time is up. Without an orientation only the position is driven, and the other way round. With \
---line or --via the target moves along a path, with --joint-to every joint moves straight to its \
-goal. Where the servo, going straight at a pose, stalls although another posture within all limits \
-reaches it, every joint moves straight to that posture instead (--no-reconfigure keeps the servo's \
-motion).
+A servo with period dt controls an ideal robot: joint velocities = J+ (gain * error + \
+feed-forward), within the limits of all joints, until both errors are within tolerance, the error \
+no longer falls, or the time limit is reached. Without an orientation only the position is \
+controlled, and vice versa. With --line or --via the target moves along a path, with --joint-to \
+every joint moves straight to its goal. If the servo stalls on its way to a pose that another \
+configuration within all limits reaches, the robot reconfigures: every joint moves straight to \
+that configuration instead (--no-reconfigure keeps the motion of the servo).
 
-Mechanisms with loops or contacts are driven at their reference, through their driven joints \
-(--actuated) and with the least effort of them; passive joints follow, loops stay closed, and the \
-motion ends before one that the drives do not hold.
+Mechanisms with loops or contacts are controlled at their reference, through their actuated joints \
+(--actuated) with minimum effort; passive joints follow, loops stay closed, and the motion stops \
+before a type II singularity, where the object would gain an uncontrolled motion.
 
 Exit code 0 if the target was reached, 1 if not, 2 on an error.";
 
@@ -43,7 +43,7 @@ pub(crate) struct MoveArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
-    /// The driven joints of a mechanism with loops, in place of those of the file
+    /// Actuated joints of a mechanism with loops, overriding those of the file
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
     pub(crate) actuated: Vec<String>,
 
@@ -59,7 +59,7 @@ pub(crate) struct MoveArgs {
     #[command(flatten)]
     pub(crate) inverse: InverseArgs,
 
-    /// Where the servo alone stalls, do not go round through joint space to another posture
+    /// If the servo stalls, do not reconfigure through joint space
     #[arg(long)]
     pub(crate) no_reconfigure: bool,
 
@@ -67,7 +67,7 @@ pub(crate) struct MoveArgs {
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_hyphen_values = true)]
     pub(crate) time_limit: f64,
 
-    /// Write the motion: time, q, rates, pose, errors, singular value ratio of every step
+    /// Write the motion: time, q, joint velocities, pose, errors, singular value ratio of every step
     #[arg(long, value_name = "FILE.csv|FILE.json")]
     pub(crate) out: Option<PathBuf>,
 
@@ -95,9 +95,9 @@ pub(crate) struct TargetArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, group = "orientation")]
     pub(crate) rotation_vector: Option<Numbers<3>>,
 
-    /// What is driven: `pose`, `position`, `orientation`, `pointing` (position and direction of
-    /// the tool's z axis), or components like `x,y,rz` [default: what the target gives]. Where the
-    /// task asks for more than the target gives, the start's position or orientation is held
+    /// Controlled components: `pose`, `position`, `orientation`, `pointing` (position and direction of
+    /// the tool's z axis), or components like `x,y,rz` [default: those of the target]. Where the
+    /// task asks for more than the target gives, the start's position or orientation is kept
     #[arg(long, value_name = "TASK")]
     pub(crate) task: Option<String>,
 

@@ -1,4 +1,4 @@
-//! `ik`: configurations that put a frame at a target.
+//! `ik`: configurations that place a frame at a target.
 
 use std::io::Write;
 use std::process::ExitCode;

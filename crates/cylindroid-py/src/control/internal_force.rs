@@ -8,16 +8,16 @@ use crate::closed::PyConstraint;
 use crate::error::Result;
 use crate::table;
 
-/// How hard an object is squeezed, apart from how it moves: rates of the driven joints that bring
-/// the internal torques to a set-point and leave the object where it is.
+/// The squeeze on an object, independent of its motion: velocities of the actuated joints that
+/// bring the internal torques to a set-point and leave the object where it is.
 ///
 /// Parameters
 /// ----------
 /// gain : float
 ///     The internal torques go to their set-point as exp(-gain t) [1/s]; times dt below 2.
 /// stiffness : array_like, (a,)
-///     Of each driven joint, which follows a position or rate and gives way like a spring [N m/rad
-///     or N/m].
+/// Of each actuated joint, controlled in position or velocity and elastic like a spring [N m/rad or
+/// N/m].
 ///
 /// Raises
 /// ------
@@ -29,7 +29,7 @@ use crate::table;
 ///
 /// Examples
 /// --------
-/// Two drives push on one slider from both sides, each with 1 N too little:
+/// Two actuators push on one slider from both sides, each with 1 N too little:
 ///
 /// >>> import cylindroid as cy
 /// >>> pair = cy.Constraint([[1.0, 0.0], [0.0, 1.0]], G=[[1.0, 1.0]])
@@ -43,7 +43,7 @@ pub(crate) struct PyInternalForceController {
     inner: InternalForceController,
 }
 
-/// What to add to the rates of the driven joints.
+/// Velocities to add to those of the actuated joints.
 ///
 /// Attributes
 /// ----------

@@ -36,17 +36,17 @@ macro_rules! documented {
     };
 }
 
-/// A Cartesian controller of one frame: from joint positions and a target pose to joint rates.
+/// A Cartesian controller of one frame: from joint positions and a target pose to joint velocities.
 ///
-/// It never leaves a position, velocity or acceleration limit, stays bounded at singular poses,
-/// and says why it gets no nearer. Closed chains are driven at their reference through their
-/// driven joints.
+/// It never violates a position, velocity or acceleration limit, stays bounded at singularities,
+/// and reports why it stalls. Closed chains are controlled at their reference through their
+/// actuated joints.
 ///
 /// Parameters
 /// ----------
 /// mechanism : Mechanism
 /// frame : str, optional
-///     What is driven. Default: the tool, or the reference of a closed chain.
+///     The controlled frame. Default: the tool, or the reference of a closed chain.
 /// tool : array_like, (4, 4), optional
 ///     `frame_from_tool`, a tool point fixed to the frame.
 /// gain : float or (float, float), optional
@@ -56,7 +56,7 @@ macro_rules! documented {
 /// tolerance_position, tolerance_orientation : float, optional
 ///     Errors at which the target counts as reached (m, rad). Default: 1e-6.
 /// speed : float or (float, float), optional
-///     Largest speeds of the tool [m/s, rad/s]. Default: what the joints allow.
+///     Speed limits of the tool [m/s, rad/s]. Default: those of the joints.
 /// acceleration : float, optional
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
 /// length : float, optional
@@ -94,25 +94,25 @@ macro_rules! documented {
 /// status : str or None
 ///     'moving', 'reached' or 'stalled' after the last step, None before the first.
 /// stall : Stall or None
-///     Why the last step got no nearer, where it stalled.
+///     The reason of a stall in the last step.
 /// position_error, orientation_error : float
-///     Before the last step, of the components that matter (m, rad).
+///     Before the last step, in the components of the task (m, rad).
 /// singular_ratio : float
 ///     Smallest singular value of the scaled task Jacobian over the largest.
 /// rank : int
 ///     Directions realised by at least half.
 /// joint_velocities : ndarray, (n,)
-///     Of the last step; in a closed chain driven and passive ones [rad/s or m/s].
+///     Of the last step; actuated and passive ones in a closed chain [rad/s or m/s].
 /// loop_closure_velocities : ndarray
-///     Of driven joints that close loops.
+///     Velocities of actuated loop-closure joints.
 /// active_limits : list of (str, str)
-///     Joints whose limit set a rate in the last step, and its kind.
+///     Joints whose limit bounded their velocity in the last step, and its kind.
 /// scale : float
-///     The share of the desired motion that the limits left.
+///     Scale of the desired motion that the limits permit.
 /// direction_lost : bool
-///     True if they did not leave its direction either.
+///     True if the limits changed its direction, since no scaled motion was feasible.
 /// no_inverse : str or None
-///     Why the inverse that was asked for was not used in the last step.
+///     The reason why the requested inverse was not used in the last step.
 /// pose : ndarray, (4, 4)
 ///     `world_from_tool` before the last step.
 /// frame : str
@@ -121,9 +121,9 @@ macro_rules! documented {
 /// Raises
 /// ------
 /// UnknownNameError, InvalidOptionError, NotFiniteError, DimensionError
-///     For options that make no controller.
+///     For options that do not define a controller.
 /// ModelError
-///     Where no joint moves the frame, or the drives of a closed chain do not hold it.
+///     If no joint moves the frame, or the actuated joints of a closed chain do not control it.
 ///
 /// Notes
 /// -----
@@ -235,7 +235,7 @@ impl PyServo {
     /// target : array_like, (4, 4)
     ///     `world_from_tool` as it should be (m).
     /// secondary : array_like, (n,), optional
-    ///     Wanted joint rates, carried out as far as the task allows.
+    ///     Secondary joint velocities, projected onto the null space of the task.
     /// feed_forward : array_like, (6,), optional
     ///     The twist of a moving target, linear first, world axes, at the tool [m/s, rad/s].
     ///

@@ -1,4 +1,4 @@
-//! The class `MotionResult`: how a motion ended.
+//! The class `MotionResult`: the result of a simulated motion.
 
 use cylindroid::Mechanism;
 use cylindroid::control::MotionResult;
@@ -8,7 +8,7 @@ use super::{PyStall, PyTrajectory};
 use crate::arrays::{self, Array};
 use crate::table::{self, Table};
 
-/// How a motion ended.
+/// The result of a motion.
 ///
 /// Attributes
 /// ----------
@@ -24,11 +24,11 @@ use crate::table::{self, Table};
 /// time : float
 ///     Duration (s).
 /// min_singular_ratio : float
-///     Smallest ratio of singular values on the way.
+///     Smallest ratio of singular values during the motion.
 /// limits_hit : list of (str, str)
-///     Joints whose limits set a rate on the way, and their kinds.
+///     Joints whose limits bounded a velocity during the motion, and their kinds.
 /// no_inverse : str or None
-///     Why the inverse that was asked for did not exist, where that happened first.
+///     The reason why the requested inverse did not exist, at its first occurrence.
 /// steps_without_inverse : int
 /// trajectory : Trajectory or None
 #[pyclass(frozen, name = "MotionResult", module = "cylindroid")]

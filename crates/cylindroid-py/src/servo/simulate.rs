@@ -1,4 +1,4 @@
-//! Whole motions: a servo driving an ideal robot, and the search for a way round.
+//! Complete motions: simulation of a servo with an ideal robot, and reconfiguration.
 
 use cylindroid::control::{Target, TrajectorySample, find_reachable_configuration, simulate};
 use cylindroid::{Error, Pose};
@@ -9,7 +9,7 @@ use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::motion::PyCartesianMove;
 
-/// Where a motion goes.
+/// The goal of a motion.
 enum Goal {
     Pose(Pose),
     Along(Box<cylindroid::control::CartesianMove>),
@@ -17,16 +17,16 @@ enum Goal {
 
 #[pymethods]
 impl PyServo {
-    /// Drives an ideal robot, which does as it is told, until the motion ends.
+    /// Simulates the servo with an ideal robot until it reaches the target or stalls.
     ///
     /// Parameters
     /// ----------
     /// q : array_like, (n,)
-    ///     The start.
+    ///     The initial configuration.
     /// target : array_like, (4, 4), or CartesianMove
     ///     A pose, or a motion of the target.
     /// duration : float
-    ///     Longest time (s).
+    ///     Time limit (s).
     /// record : bool
     ///     Whether to keep every step in `MotionResult.trajectory`.
     ///
@@ -74,8 +74,8 @@ impl PyServo {
         Ok(PyMotionResult { outcome, trajectory, mechanism })
     }
 
-    /// A posture within the limits that reaches a target, where one can be found: a way round
-    /// where the servo, going straight at it, stalls.
+    /// A configuration within the limits that reaches a target, if one is found: for
+    /// reconfiguration when the servo, moving straight towards the target, stalls.
     ///
     /// Parameters
     /// ----------
@@ -84,12 +84,13 @@ impl PyServo {
     /// target : array_like, (4, 4)
     ///     `world_from_tool` (m).
     /// max_restarts : int
-    ///     Attempts at most.
+    ///     Largest number of random restarts.
     ///
     /// Returns
     /// -------
     /// ndarray, (n,), or None
-    ///     None says that no run reached it: likely, not proved, that no posture does.
+    ///     None means that no restart reached the target: probably, but not provably, no
+    ///     configuration does.
     ///
     /// Raises
     /// ------

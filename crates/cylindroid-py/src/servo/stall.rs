@@ -1,4 +1,4 @@
-//! The class `Stall`: why a servo gets no nearer.
+//! The class `Stall`: the reason why a servo makes no progress.
 
 use cylindroid::Mechanism;
 use cylindroid::control::Stall;
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::arrays::{self, Array};
 use crate::table;
 
-/// Why a servo gets no nearer to its target.
+/// The reason why a servo makes no progress towards its target.
 ///
 /// Attributes
 /// ----------
@@ -15,11 +15,11 @@ use crate::table;
 ///     'out-of-reach', 'limits', 'singular', 'too-few-joints', 'no-inverse', 'projected',
 ///     'type-ii' or 'slow'.
 /// message : str
-///     What it means, with the numbers.
+///     The meaning, with values.
 /// joints : list of str
-///     The joints that stand at their limits.
+///     The joints at their limits.
 /// direction : ndarray or None
-///     The remaining error (or the motion that escapes) as a unit vector in the task.
+///     The remaining error (or the uncontrolled motion) as a unit vector in the task.
 /// distance, length : float or None
 ///     Out of reach: from the first joint to the target, and the stretched chain from there (m).
 #[pyclass(frozen, name = "Stall", module = "cylindroid")]
@@ -78,7 +78,7 @@ impl PyStall {
             Stall::Singular { ratio, direction } => {
                 new.direction = Some(direction.clone());
                 format!(
-                    "a singular pose: smallest singular value {} of the largest",
+                    "a singular configuration: smallest singular value {} of the largest",
                     number(*ratio)
                 )
             }
@@ -89,19 +89,21 @@ impl PyStall {
             Stall::NoInverse(reason) => format!("the inverse does not exist here: {reason}"),
             Stall::Projected { direction } => {
                 new.direction = Some(direction.clone());
-                "what remains is what the inverse gives up, although the arm could lessen it".into()
+                "the remaining error is the component discarded by the inverse".into()
             }
             Stall::TypeII { share, direction } => {
                 new.direction = Some(direction.clone());
                 format!(
-                    "a motion is about to escape the drives (type II singularity): {} of it is \
-                     still theirs",
+                    "a type II singularity is near: the actuated share of the object's weakest \
+                     motion is {}",
                     number(*share)
                 )
             }
-            Stall::Slow => "no progress for a second, with neither limits nor a singular pose: \
-                            less damping, a higher gain or speed"
-                .into(),
+            Stall::Slow => {
+                "no progress for a second, with neither limits nor a singular configuration: \
+                            use less damping, a higher gain or speed"
+                    .into()
+            }
         };
         new
     }

@@ -1,4 +1,4 @@
-//! What a servo says after a step.
+//! Attributes of a servo after a step.
 
 use cylindroid::control::Status;
 use pyo3::prelude::*;

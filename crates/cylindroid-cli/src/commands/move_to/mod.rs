@@ -1,4 +1,4 @@
-//! `move`: drives a frame to a target and says whether and how it got there.
+//! `move`: moves a frame to a target and reports whether and how it was reached.
 
 mod bounds;
 pub(crate) mod inverse;
@@ -25,10 +25,10 @@ use crate::commands::shared::{Style, answer};
 use crate::plot;
 use crate::trajectory::{self, Trajectory};
 
-/// Runs of the search for another posture after a stall: enough for all that were tried, about a
-/// second at the worst.
+/// Restarts of the search for another configuration after a stall: sufficient in all tests, about
+/// a second at worst.
 const MAX_RESTARTS: usize = 200;
-/// Steps between two signs of life.
+/// Steps between two progress messages.
 const PROGRESS_STEPS: u64 = 256;
 
 pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
@@ -98,14 +98,14 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
     };
     drop(progress);
     let direct = |way| Ok(Result { outcome: outcome.clone(), deviation, closure_error, way });
-    let Some(posture) = other_configuration(job, &servo, &outcome)? else {
+    let Some(configuration) = other_configuration(job, &servo, &outcome)? else {
         return direct(Way::Direct);
     };
     if !job.reconfigure {
-        return direct(Way::Offered { posture });
+        return direct(Way::Offered { configuration });
     }
-    // From the start once more, straight through joint space: the stalled attempt is not made.
-    let motion = JointMove::within_limits(&job.robot, &job.start, &posture, &job.defaults)?;
+    // Again from the start, straight through joint space: the stalled motion is not executed.
+    let motion = JointMove::within_limits(&job.robot, &job.start, &configuration, &job.defaults)?;
     if let Some(trajectory) = &mut trajectory {
         trajectory.clear();
     }
@@ -123,14 +123,14 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
     })
 }
 
-/// A posture that reaches the target which the servo did not, where one can be found.
+/// A configuration that reaches the target at which the servo stalled, if one is found.
 fn other_configuration(
     job: &Job,
     servo: &Servo,
     outcome: &MotionResult,
 ) -> cylindroid::Result<Option<Vec<f64>>> {
     let stalled = outcome.stall.is_some() && outcome.last.status == Status::Stalled;
-    // Neither a proof that there is none, nor an inverse that the user asked for, is gone round.
+    // A proof that there is none, and the choice of an inverse by the user, are final.
     let final_word = matches!(outcome.stall, Some(Stall::OutOfReach { .. } | Stall::NoInverse(_)));
     if !stalled || final_word {
         return Ok(None);
@@ -139,7 +139,7 @@ fn other_configuration(
     Ok(found.map(|found| found.q))
 }
 
-/// A line on stderr that shows that something happens; nothing where stderr is no terminal.
+/// A progress line on stderr, if stderr is a terminal.
 #[derive(Debug)]
 struct Progress(ProgressBar);
 

@@ -14,7 +14,7 @@ use crate::commands::shared::Style;
 use crate::commands::target::errors;
 use crate::output::{self, PoseJson};
 
-/// What came of a job.
+/// The result of a job.
 #[derive(Debug)]
 pub(super) struct Result {
     pub(super) outcome: MotionResult,
@@ -27,18 +27,18 @@ pub(super) struct Result {
 /// The way that was taken.
 #[derive(Debug)]
 pub(super) enum Way {
-    /// As asked for.
+    /// As requested.
     Direct,
-    /// As asked for, and it stalled; this posture reaches the target.
-    Offered { posture: Vec<f64> },
-    /// Round through joint space, since the servo alone would have ended like this.
+    /// As requested, and it stalled; this configuration reaches the target.
+    Offered { configuration: Vec<f64> },
+    /// By reconfiguration through joint space, since the servo alone would have ended like this.
     Round { stalled: Box<MotionResult> },
 }
 
 impl Way {
     fn offered(&self) -> Option<&[f64]> {
         match self {
-            Self::Offered { posture } => Some(posture),
+            Self::Offered { configuration } => Some(configuration),
             Self::Direct | Self::Round { .. } => None,
         }
     }
@@ -109,12 +109,12 @@ struct MoveJson<'a> {
     /// Largest distance from the path.
     #[serde(skip_serializing_if = "Option::is_none")]
     path_deviation: Option<Deviation>,
-    /// Where the motion stalled: a posture that reaches the target, absent if none was found.
+    /// After a stall: a configuration that reaches the target, absent if none was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     other_configuration: Option<&'a [f64]>,
-    /// True if the joints went straight to another posture because the servo alone would stall.
+    /// True if the robot reconfigured because the servo alone would stall.
     reconfigured: bool,
-    /// Why the servo alone would have stalled.
+    /// The reason why the servo alone would have stalled.
     #[serde(skip_serializing_if = "Option::is_none")]
     reconfiguration_reason: Option<&'static str>,
 }
@@ -208,7 +208,7 @@ fn drives(job: &Job) -> Vec<&str> {
 
 fn result_word(outcome: &MotionResult, way: &Way) -> &'static str {
     match (outcome.reached, way) {
-        (true, Way::Round { .. }) => "reached, by way of another posture",
+        (true, Way::Round { .. }) => "reached, after reconfiguration",
         (true, _) => "reached",
         (false, _) => "not reached",
     }

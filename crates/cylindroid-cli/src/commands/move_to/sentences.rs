@@ -1,4 +1,4 @@
-//! Why a motion ended, in full sentences: what happened, with names and numbers, and what to try.
+//! The end of a motion in full sentences: the cause, with names and values, and the remedy.
 
 use cylindroid::ReferenceFrame;
 use cylindroid::control::{MotionResult, Stall, Task};
@@ -16,7 +16,7 @@ pub(super) fn reason(outcome: &MotionResult) -> &'static str {
     }
 }
 
-/// Why the joints went straight to another posture.
+/// The reason of a reconfiguration.
 pub(super) fn round(job: &Job, stalled: &MotionResult) -> String {
     let what = match &stalled.stall {
         Some(Stall::Limits { coordinates }) => {
@@ -24,12 +24,14 @@ pub(super) fn round(job: &Job, stalled: &MotionResult) -> String {
                 coordinates.iter().map(|&i| job.robot.coordinates()[i].name.as_str()).collect();
             format!("at the limit of {}", names.join(", "))
         }
-        Some(Stall::Singular { .. }) => "in a singular pose".to_owned(),
+        Some(Stall::Singular { .. }) => "in a singular configuration".to_owned(),
         Some(Stall::NoInverse(_)) => "where the inverse does not exist".to_owned(),
-        Some(Stall::Projected { .. }) => "left with what the inverse gives up".to_owned(),
-        Some(Stall::TypeII { .. }) => "where a motion escapes the drives".to_owned(),
+        Some(Stall::Projected { .. }) => {
+            "with only the component left that the inverse discards".to_owned()
+        }
+        Some(Stall::TypeII { .. }) => "before a type II singularity".to_owned(),
         Some(Stall::Slow | Stall::TooFewJoints { .. } | Stall::OutOfReach { .. }) | None => {
-            "for want of progress".to_owned()
+            "without progress".to_owned()
         }
     };
     let components = job.options.task.components;
@@ -41,8 +43,9 @@ pub(super) fn round(job: &Job, stalled: &MotionResult) -> String {
         left.push(format!("{} rad", number(stalled.last.orientation_error)));
     }
     format!(
-        "Going straight at the target, the servo would stall {} before it, {what}. So every joint \
-         moved straight to another posture that reaches it (--no-reconfigure keeps the servo's motion).",
+        "Moving straight towards the target, the servo would stall {} before it, {what}. The robot \
+         reconfigured instead: every joint moved straight to another configuration that reaches \
+         the target (--no-reconfigure keeps the motion of the servo).",
         left.join(" and "),
     )
 }
@@ -70,90 +73,89 @@ pub(super) fn explanation(
     text.push_str(&without_inverse(outcome));
     if let Some(q) = other_configuration {
         text.push_str(&format!(
-            " Another posture does reach it: --q \"{0}\" to start there, or --joint-to \"{0}\" to \
-             move there first.",
+            " Another configuration reaches it: --q \"{0}\" to start there, or --joint-to \
+             \"{0}\" to move there first.",
             pasteable(job, q)
         ));
     }
     text
 }
 
-/// Why a servo got no nearer at `q`, without what the command line offers against it.
+/// The reason why a servo stalled at `q`, without the remedies of the command line.
 pub(crate) fn cause(robot: &Mechanism, task: Task, q: &[f64], stall: &Stall) -> String {
     match stall {
         Stall::OutOfReach { distance, length } => format!(
-            "The target is out of reach: it is {} m from the first joint, but the arm stretched \
-             is {} m long from there. Bring the target nearer by at least {} m.",
+            "The target is out of reach: it is {} m from the first joint, but the stretched arm is \
+             only {} m long from there. Bring the target nearer by at least {} m.",
             number(*distance),
             number(*length),
             number(distance - length)
         ),
         Stall::Limits { coordinates } => limits(robot, q, coordinates),
         Stall::Singular { ratio, direction } => format!(
-            "The arm is in a singular pose: its smallest singular value is {} of the largest, and \
-             the remaining error ({}) lies along a direction that is lost there.",
+            "The arm is in a singular configuration: its smallest singular value is {} of the \
+             largest, and the remaining error ({}) lies along a lost direction.",
             number(*ratio),
             along(task, direction)
         ),
         Stall::TooFewJoints { rank, task: components, direction } => format!(
-            "The arm has {rank} independent motion{} here, the task asks for {components} \
-             components; the remaining error ({}) is outside of what it can do.",
+            "The arm has {rank} independent motion{} here, but the task has {components} components; \
+             the remaining error ({}) lies outside the span of its motions.",
             if *rank == 1 { "" } else { "s" },
             along(task, direction)
         ),
         Stall::NoInverse(reason) => {
-            format!("The inverse that was asked for does not exist here: {reason}.")
+            format!("The requested inverse does not exist here: {reason}.")
         }
         Stall::Projected { direction } => format!(
-            "The remaining error ({}) is what the inverse gives up; the arm itself could lessen \
-             it.",
+            "The remaining error ({}) is the component discarded by the inverse; the arm itself \
+             could reduce it.",
             along(task, direction)
         ),
         Stall::TypeII { share, direction } => format!(
-            "A motion of the object ({}) is about to escape the drives: {} of it still belongs to \
-             them (type II singularity), and beyond it passive joints would choose the way.",
+            "The object is about to gain an uncontrolled motion ({}), in a type II singularity: the \
+             actuated share of this motion has fallen to {}.",
             along(task, direction),
             number(*share)
         ),
-        Stall::Slow => "The error fell by less than 0.1 % in the last second, and neither limits \
-             nor a singular pose stop it: the inverse is damped too much or a rate limit is too \
-             tight."
+        Stall::Slow => "The error fell by less than 0.1 % in the last second, and neither limits nor a singular \
+             configuration block it: the damping is too strong or a velocity limit too tight."
             .to_owned(),
     }
 }
 
-/// What the options of `move` can do about it.
+/// Options of `move` that may help.
 fn way_out(stall: &Stall) -> &'static str {
     match stall {
         Stall::OutOfReach { .. } => "",
         Stall::Limits { .. } => {
-            "Start from another posture (--q), keep the joints away from their limits (--secondary \
-             centring), or leave components free (--task)."
+            "Start from another configuration (--q), keep the joints away from their limits \
+             (--secondary centring), or leave components free (--task)."
         }
         Stall::Singular { .. } => {
-            "Start from another posture (--q), or let a damped inverse through (--inverse damped)."
+            "Start from another configuration (--q), or use a damped inverse (--inverse damped)."
         }
         Stall::TooFewJoints { .. } => {
             "Leave components free with --task (position, pointing, or a list like x,y,rz), or \
              change the target."
         }
-        Stall::NoInverse(_) => "Or name what shall take over there (--fallback truncated).",
+        Stall::NoInverse(_) => "Give an inverse to use there instead (--fallback truncated).",
         Stall::Projected { .. } => {
-            "Choose another --h, other motions to give up, or another --inverse."
+            "Choose another --h, other twists for --give-up, or another --inverse."
         }
-        Stall::TypeII { .. } => "Move on another way, or drive other joints (--actuated).",
+        Stall::TypeII { .. } => "Take another path, or actuate other joints (--actuated).",
         Stall::Slow => {
             "Try less damping (--damping), another --inverse, or a higher --gain or --speed."
         }
     }
 }
 
-/// A sentence about the steps that the fallback took, if any.
+/// A sentence about the steps taken by the fallback, if any.
 pub(super) fn without_inverse(outcome: &MotionResult) -> String {
     match &outcome.no_inverse {
         Some(reason) if outcome.steps_without_inverse > 0 && outcome.steps > 0 => format!(
-            " {} of {} steps were taken by the fallback, since the inverse that was asked for did \
-             not exist there: {reason}.",
+            " {} of {} steps were taken by the fallback, since the requested inverse did not exist \
+             there: {reason}.",
             outcome.steps_without_inverse,
             outcome.steps + 1
         ),
@@ -181,19 +183,20 @@ fn limits(robot: &Mechanism, q: &[f64], coordinates: &[usize]) -> String {
         (&c.name, end, number(limit), c.kind.unit())
     });
     let ends: Vec<_> = ends.collect();
-    let stands = match &ends[..] {
+    let at_limits = match &ends[..] {
         [(name, end, limit, unit)] => {
-            format!("Joint {name} stands at its {end} limit, {limit} {unit}")
+            format!("Joint {name} is at its {end} limit, {limit} {unit}")
         }
         several => {
             let list = several
                 .iter()
                 .map(|(name, end, limit, unit)| format!("{name} ({end}, {limit} {unit})"));
-            format!("Joints stand at their limits: {}", list.collect::<Vec<_>>().join(", "))
+            format!("Joints are at their limits: {}", list.collect::<Vec<_>>().join(", "))
         }
     };
     format!(
-        "{stands}. Without that the tool would get nearer; the other joints cannot do it alone."
+        "{at_limits}. They block the motion of the tool towards the target; the other joints cannot \
+         perform it alone."
     )
 }
 
