@@ -6,7 +6,7 @@ use clap::builder::RangedU64ValueParser;
 use super::{ConfigurationArgs, FrameArgs, TargetArgs};
 
 pub(crate) const ABOUT: &str = "\
-Inverse kinematics: configurations that place a frame at a target, within all limits
+Inverse kinematics: configurations that bring a frame to a target, within all limits
 
 For six revolute joints of which three axes intersect or are parallel (a spherical wrist, a UR \
 arm), all solutions are computed in closed form; for seven, one joint is sampled over its range. \
