@@ -122,7 +122,7 @@ fn run(line: &Line<'_>, folder: &Path, page: &Path) -> String {
 
 /// Words of a text; lines of tables are drawn as wide as their columns and are none.
 fn words(text: &str) -> Vec<&str> {
-    text.split_whitespace().filter(|word| word.trim_matches('-') != "").collect()
+    text.split_whitespace().filter(|word| !word.trim_matches('-').is_empty()).collect()
 }
 
 /// Equal, or lists of numbers that differ by rounding.
