@@ -1,10 +1,10 @@
-//! `cylindroid` loads a robot or a mechanism, drives its end effector in Cartesian space, and
-//! tells what it can do, in numbers that do not change when the frame does.
+//! Kinematics, Cartesian control, screw systems and closed chains of robots and mechanisms, with
+//! results that are independent of the chosen reference frame.
 //!
 //! ```
 //! use cylindroid::{catalogue, ReferenceFrame};
 //!
-//! let robot = catalogue::load("panda")?;
+//! let robot = catalogue::load("panda")?; // `cylindroid::load` reads URDF, MJCF, SDF, TOML
 //! let state = robot.state(robot.home())?;
 //! let world_from_tool = state.pose(robot.tool());
 //! let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
@@ -13,11 +13,39 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 //!
-//! Conventions, once for all: SI units and radians; twists and wrenches as vectors are linear
-//! first (`[v; w]`, `[f; m]`); `world_from_tool` names a pose; a Jacobian always names its
-//! [`ReferenceFrame`]. The modules form one line, each imports only those before it:
-//! `error, tolerance, scalar, linalg, spatial, screws, inverse, model, kinematics, closure,
-//! manipulability, ik, control`.
+//! # Where to find things
+//!
+//! | to ... | start at |
+//! |---|---|
+//! | load or build a robot or mechanism | [`load`], [`catalogue`], [`model::Builder`], [`Mechanism`] |
+//! | compute forward kinematics and Jacobians | [`State`]; in a loop [`kinematics::Chain`]; for many configurations [`kinematics::KinematicsBatch`] |
+//! | solve inverse kinematics | [`ik::solve`], [`ik::Solver`]; in closed form [`ik::Analytic`] |
+//! | control an end effector or an object in Cartesian space | [`Servo`], [`ServoOptions`]; whole motions with [`control::simulate`] |
+//! | plan time laws and paths | [`control::TimeLaw`], [`control::CartesianMove`], [`control::JointMove`] |
+//! | control forces, share control with an operator | [`control::HybridController`], [`control::SharedController`], [`control::InternalForceController`] |
+//! | invert a Jacobian near singularities | [`Method`], [`inverse::truncated`], [`inverse::damped`] |
+//! | invert it independently of frame and unit | [`inverse::hyperbolic`], [`inverse::oblique`] |
+//! | analyse screws | [`Screw`], [`ScrewSystem`], [`screws::involution`] |
+//! | close loops, enumerate assembly modes, track a path of configurations | [`closure::assemble`], [`closure::assembly_modes`], [`closure::track_path`] |
+//! | count mobility, find singularities | [`closure::Mobility`], [`closure::Diagnosis`], [`closure::FiniteMobility`] |
+//! | resolve forces of closed chains and grasps | [`closure::joint_torques`], [`closure::contact_forces`], [`closure::grasp_quality`] |
+//! | measure manipulability (Yoshikawa, ellipsoids, polytopes) | [`manipulability::Manipulability`], [`manipulability::Polytope`] |
+//!
+//! # Conventions
+//!
+//! SI units and radians. Twists and wrenches as vectors are linear first (`[v; w]`, `[f; m]`).
+//! `world_from_tool` names a pose; a Jacobian always names its [`ReferenceFrame`]. Degenerate results
+//! are values that explain themselves; errors ([`Error`]) are for input that has no answer.
+//!
+//! # Layers
+//!
+//! The modules form one line, each imports only those before it: `error, tolerance, scalar, linalg,
+//! spatial, screws, inverse, model, kinematics, closure, manipulability, ik, control`.
+//!
+//! # Features
+//!
+//! Both are on by default: `formats` (file loaders and the catalogue) and `parallel` (batches on
+//! several threads).
 
 #![cfg_attr(test, allow(clippy::float_cmp_const))]
 

@@ -110,7 +110,7 @@ macro_rules! define {
                 $variant {
                     $(
                         $(#[doc = $about])+
-                        #[doc = concat!(" [", $unit, "]")]
+                        #[doc = concat!(" Unit: ", $unit, ".")]
                         $parameter: f64,
                     )+
                 },

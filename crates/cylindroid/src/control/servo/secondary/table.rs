@@ -1,8 +1,8 @@
 //! The secondary tasks as one table: name, parameters and velocities of each.
 //!
 //! A new task is a file with its `add`, a row here and its rows in docs/guide/control.md: the
-//! enum, its names, defaults and checks, `--secondary` of the command line, the argument of Python and the
-//! tests over [`SecondaryTask::all`] are made from the row.
+//! enum, its names, defaults and checks, `--secondary` of the command line, the argument of Python
+//! and the tests over [`SecondaryTask::all`] are made from the row.
 //!
 //! Checked  tests/it/parameters.rs, tests/it/servo/secondary.rs
 
@@ -77,7 +77,7 @@ macro_rules! define {
                     $($(#[doc = $own_doc])+ $own: Vec<f64>,)?
                     $(
                         $(#[doc = $about])+
-                        #[doc = concat!(" [", $unit, "]")]
+                        #[doc = concat!(" Unit: ", $unit, ".")]
                         $parameter: f64,
                     )+
                 },
