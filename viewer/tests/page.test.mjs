@@ -51,11 +51,11 @@ test("the recorder gives every state as JSON and as CSV, and a PNG of the view",
     await page.getByRole("button", { name: "Record" }).click();
     await untilReached(page, await moveTarget(page, "x", 0.05));
     await page.getByRole("button", { name: /^Stop recording/ }).click();
-    const json = JSON.parse(await saved(page, "Save the record as JSON"));
+    const json = JSON.parse(await saved(page, "Save the recording as JSON"));
     assert.equal(json.joint_names.length, 7);
     assert.ok(json.states.length > 5);
     assert.ok(json.states.every((/** @type {any} */ s, /** @type {number} */ i) => i === 0 || s.seq > json.states[i - 1].seq));
-    const lines = (await saved(page, "Save the record as CSV")).trim().split("\r\n");
+    const lines = (await saved(page, "Save the recording as CSV")).trim().split("\r\n");
     assert.equal(lines.length, json.states.length + 1);
     assert.equal(lines[0]?.split(",")[1], json.joint_names[0]);
     assert.equal(Number(lines[1]?.split(",")[0]), json.states[0].time);

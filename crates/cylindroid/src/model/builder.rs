@@ -12,7 +12,7 @@ use std::sync::Arc;
 use super::contact::{Contact, ContactSpec};
 use super::dimension::Dimension;
 use super::flatten::FlatMechanism;
-use super::joint::{Joint, Limits};
+use super::joint::Joint;
 use super::joint_spec::JointSpec;
 use super::link::Link;
 use super::loop_joint::{LoopJoint, LoopJointSpec};
@@ -20,7 +20,6 @@ use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
 use super::tree_order::{TreeOrder, default_tool};
 use crate::error::{Error, Result};
-use crate::scalar::clamp;
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
@@ -295,7 +294,7 @@ impl Builder {
             );
         }
         let closed = !(self.loops.is_empty() && self.contacts.is_empty());
-        let still = |c: &Coordinate| if closed { 0.0 } else { rest(&c.limits) };
+        let still = |c: &Coordinate| if closed { 0.0 } else { c.limits.rest() };
         let mut home: Vec<f64> = flat.coordinates.iter().map(still).collect();
         for (j, spec) in self.joints.iter().enumerate() {
             let Some(start) = self.starts.get(&spec.name).filter(|_| spec.mimic.is_none()) else {
@@ -481,17 +480,6 @@ impl Builder {
                 report: self.report,
             }),
         })
-    }
-}
-
-/// Zero if the limits permit, otherwise their middle, so that no joint rests at a limit.
-fn rest(limits: &Limits) -> f64 {
-    let (lower, upper) = (limits.lower, limits.upper);
-    let middle = 0.5 * (lower + upper);
-    match (lower <= 0.0 && 0.0 <= upper, middle.is_finite()) {
-        (true, _) => 0.0,
-        (false, true) => middle,
-        (false, false) => clamp(0.0, lower, upper),
     }
 }
 

@@ -4,6 +4,7 @@
 
 use std::ops::Range;
 
+use crate::scalar::clamp;
 use crate::spatial::{Pose, Vec3};
 
 /// The kind of a joint, with its coordinates in order.
@@ -100,6 +101,17 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Zero if the limits permit, otherwise their middle, so that no joint rests at a limit.
+    pub(super) fn rest(&self) -> f64 {
+        let (lower, upper) = (self.lower, self.upper);
+        let middle = 0.5 * (lower + upper);
+        match (lower <= 0.0 && 0.0 <= upper, middle.is_finite()) {
+            (true, _) => 0.0,
+            (false, true) => middle,
+            (false, false) => clamp(0.0, lower, upper),
+        }
+    }
+
     /// No limits.
     pub const NONE: Self = Self {
         lower: f64::NEG_INFINITY,

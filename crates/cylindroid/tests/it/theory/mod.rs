@@ -4,4 +4,5 @@
 mod closed_chains;
 mod control;
 mod pages;
+mod paper_order;
 mod screws;

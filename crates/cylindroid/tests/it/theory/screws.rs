@@ -9,36 +9,8 @@ use cylindroid::screws::{
 };
 use cylindroid::spatial::{Twist, Vec3, Wrench};
 
+use super::paper_order::{columns, lines, rank, system, twist};
 use crate::support::{Random, assert_close, assert_matrix};
-
-/// A twist in the order of the paper.
-fn twist(s: [f64; 6]) -> Twist {
-    let [wx, wy, wz, vx, vy, vz] = s;
-    Twist { linear: Vec3::new(vx, vy, vz), angular: Vec3::new(wx, wy, wz) }
-}
-
-/// The columns, linear first.
-fn columns(twists: &[[f64; 6]]) -> Matrix {
-    Matrix::from_fn(6, twists.len(), |i, j| twist(twists[j]).to_array()[i])
-}
-
-fn lines(twists: &[[f64; 6]]) -> Vec<Line> {
-    twists
-        .iter()
-        .map(|s| {
-            assert_eq!(twist(*s).klein(twist(*s)), 0.0, "no line: {s:?}");
-            Screw::of(twist(*s)).unwrap().axis
-        })
-        .collect()
-}
-
-fn system(twists: &[[f64; 6]]) -> ScrewSystem {
-    ScrewSystem::of_columns(&columns(twists), &ScrewOptions::default()).unwrap()
-}
-
-fn rank(m: &Matrix) -> usize {
-    Svd::of(m).machine_rank().rank
-}
 
 /// The three lines of example 1, and the twist of example 4.
 const EXAMPLE_1: [[f64; 6]; 3] = [
