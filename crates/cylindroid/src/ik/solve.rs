@@ -305,31 +305,31 @@ impl Solver {
         };
         let mut start = self.start.clone();
         while calls < most && (calls == 0 || !enough(solutions.len())) {
-            let postures = formulas.solve(goal.target, &mut start, calls)?;
+            let candidates = formulas.solve(goal.target, &mut start, calls)?;
             calls += 1;
             let mut q = start.clone();
             // The closest first: often it suffices.
             let places = formulas.analytic.coordinates();
             let far = |i: &usize| -> f64 {
-                postures[*i].q.iter().zip(places).map(|(x, c)| (x - self.start[c]).powi(2)).sum()
+                candidates[*i].q.iter().zip(places).map(|(x, c)| (x - self.start[c]).powi(2)).sum()
             };
             let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
-            let order = &mut order[..postures.len()];
+            let order = &mut order[..candidates.len()];
             order.sort_unstable_by(|a, b| far(a).total_cmp(&far(b)));
-            for posture in order.iter().map(|&i| postures[i]) {
+            for candidate in order.iter().map(|&i| candidates[i]) {
                 if enough(solutions.len()) && !solutions.is_empty() {
                     break;
                 }
                 q.copy_from_slice(&start);
-                for (c, angle) in places.into_iter().zip(posture.q) {
+                for (c, angle) in places.into_iter().zip(candidate.q) {
                     q[c] = angle;
                 }
-                if posture.free != [false; 6] {
+                if candidate.free != [false; 6] {
                     self.approach_start(&mut q);
                 }
                 self.add(solutions, &q, FoundBy::Analytic);
             }
-            if formulas.are_all() && formulas.analytic.is_exact() && !postures.is_open() {
+            if formulas.are_all() && formulas.analytic.is_exact() && !candidates.is_open() {
                 left = Remaining::None;
             }
         }

@@ -154,7 +154,7 @@ base = { xyz = [0.0, 1.0, 0.0] }
     }
 }
 
-/// Beyond reach: said with the proof, and the posture that comes nearest: no small change of the
+/// Beyond reach: said with the proof, and the closest configuration: no small change of the
 /// joints within the limits comes nearer.
 #[test]
 fn out_of_reach_ends_with_the_nearest_pose() {
@@ -216,7 +216,7 @@ fn the_nearest_answer() {
     }
 }
 
-/// A 6R arm has up to eight postures for a pose: distinct, true, sorted by distance.
+/// A 6R arm has up to eight configurations for a pose: distinct, true, sorted by distance.
 #[test]
 fn several_answers() {
     let ur5e = catalogue::load("ur5e").unwrap();

@@ -197,10 +197,10 @@ impl Servo {
     fn find_generic_rank(&mut self) -> usize {
         let n = self.mechanism.n();
         (1..=GENERIC_CONFIGURATIONS)
-            .map(|posture| {
+            .map(|sample| {
                 // Irrational steps: no configuration is aligned with another or with the axes.
                 let mut q: Vec<f64> =
-                    (0..n).map(|i| 0.3 + ((posture * n + i) as f64 * 0.618_034).fract()).collect();
+                    (0..n).map(|i| 0.3 + ((sample * n + i) as f64 * 0.618_034).fract()).collect();
                 for (x, c) in q.iter_mut().zip(self.mechanism.coordinates()) {
                     if c.limits.lower == c.limits.upper {
                         *x = c.limits.lower; // its only position
@@ -217,8 +217,8 @@ impl Servo {
     /// The same for a closed chain, at configurations near home.
     fn find_actuated_rank(&mut self) -> Result<usize> {
         let (mut rank, mut closed, mut free) = (0, 0, None);
-        for posture in 0..=GENERIC_CONFIGURATIONS {
-            let Some(q) = self.nearby_configuration(posture)? else { continue };
+        for sample in 0..=GENERIC_CONFIGURATIONS {
+            let Some(q) = self.nearby_configuration(sample)? else { continue };
             closed += 1;
             self.chain.set(&q);
             self.load_jacobian(&q)?;

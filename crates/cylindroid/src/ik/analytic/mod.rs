@@ -256,7 +256,7 @@ impl Analytic {
             *angle *= sign;
         }
         aim.start = angles;
-        let mut postures = AnalyticSolutions {
+        let mut solutions = AnalyticSolutions {
             list: [AnalyticSolution {
                 q: [0.0; 6],
                 free: [false; 6],
@@ -274,30 +274,30 @@ impl Analytic {
                 q[place] = turn.angle * geometry.sign[i];
                 free[place] = turn.free;
             }
-            postures.open |= free != [false; 6];
-            let Some(posture) = self.confirmed(q, free, &target, &near) else { return false };
-            postures.insert(posture);
+            solutions.open |= free != [false; 6];
+            let Some(solution) = self.confirmed(q, free, &target, &near) else { return false };
+            solutions.insert(solution);
             true
         };
         match three {
             Three::Meet => pieper::meeting(&geometry, &aim, found),
             Three::Parallel => pieper::parallel(&geometry, &aim, found),
         }
-        Ok(postures)
+        Ok(solutions)
     }
 
     /// A solution with all full turns that the limits permit, itself included; joints without
     /// limits keep their angle.
     #[must_use]
-    pub fn with_full_turns(&self, posture: &AnalyticSolution) -> Vec<[f64; 6]> {
-        let mut all = vec![posture.q];
+    pub fn with_full_turns(&self, solution: &AnalyticSolution) -> Vec<[f64; 6]> {
+        let mut all = vec![solution.q];
         for i in 0..6 {
             let (lower, upper) = (self.lower[i], self.upper[i]);
             if !(lower.is_finite() && upper.is_finite()) {
                 continue;
             }
-            let first = ((lower - posture.q[i]) / TAU).ceil();
-            let turns = ((upper - posture.q[i]) / TAU).floor() - first;
+            let first = ((lower - solution.q[i]) / TAU).ceil();
+            let turns = ((upper - solution.q[i]) / TAU).floor() - first;
             let turned = |q: &[f64; 6], k: usize| {
                 let mut q = *q;
                 // The solution itself may be at a limit to the last bit.
@@ -415,9 +415,9 @@ impl AnalyticSolutions {
     }
 
     /// Adds a new solution, up to full turns; of two equal ones the more accurate.
-    fn insert(&mut self, posture: AnalyticSolution) {
+    fn insert(&mut self, solution: AnalyticSolution) {
         let same = |other: &AnalyticSolution| {
-            other.q.iter().zip(posture.q).all(|(a, b)| {
+            other.q.iter().zip(solution.q).all(|(a, b)| {
                 let apart = (a - b).abs();
                 let turned = |apart: f64| (apart - TAU * (apart / TAU).round()).abs();
                 apart < ANALYTIC_SAME || (apart > PI && turned(apart) < ANALYTIC_SAME)
@@ -425,11 +425,11 @@ impl AnalyticSolutions {
         };
         let error = |p: &AnalyticSolution| p.position_error + p.orientation_error;
         if let Some(other) = self.list[..self.len].iter_mut().find(|other| same(other)) {
-            if error(&posture) < error(other) {
-                *other = posture;
+            if error(&solution) < error(other) {
+                *other = solution;
             }
         } else if self.len < self.list.len() {
-            self.list[self.len] = posture;
+            self.list[self.len] = solution;
             self.len += 1;
         }
     }

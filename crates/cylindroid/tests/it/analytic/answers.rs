@@ -88,7 +88,7 @@ fn as_many_as_a_long_search_finds() {
             let goal = Goal::pose(robot.tool(), target);
             let answers = ik.solve(target, &q).unwrap();
             confirm(&robot, target, &answers);
-            // Beside singular postures a search takes many for answers.
+            // Beside singular configurations a search takes many for answers.
             if answers.iter().any(|a| condition(&robot, &a.q) < 3e-3) {
                 continue;
             }
@@ -127,7 +127,7 @@ fn limits_and_whole_turns() {
             let start: Vec<f64> = random.vector(6).iter().map(|x| 8.0 * x).collect();
             let answers = ik.solve(target, &start).unwrap();
             confirm(&robot, target, &answers);
-            // A wrist at a limit of two turns is straight, and the known posture one of many.
+            // A wrist at a limit of two turns is straight, and the known configuration one of many.
             let found = answers.iter().any(|a| apart(&a.q, &q) < 1e-6 || a.free != [false; 6]);
             assert!(found, "{q:?} {answers:?}");
             for answer in answers.iter() {

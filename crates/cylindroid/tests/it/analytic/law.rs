@@ -1,4 +1,4 @@
-//! What every answer must keep, and every posture that made a target.
+//! What every answer must keep, and every configuration that made a target.
 
 use std::f64::consts::{PI, TAU};
 
@@ -39,7 +39,7 @@ pub(super) fn condition(robot: &Mechanism, q: &[f64]) -> f64 {
     svd.value(5) / svd.value(0)
 }
 
-/// The posture that made the target is among the answers.
+/// The configuration that made the target is among the answers.
 pub(super) fn known_postures_are_found(
     robot: &Mechanism,
     random: &mut Random,

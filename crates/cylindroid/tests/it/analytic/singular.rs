@@ -45,7 +45,7 @@ fn a_straight_wrist_leaves_a_joint_free() {
     }
 }
 
-/// A wrist above the shoulder: the first joint is free. A stretched elbow: two postures are one.
+/// A wrist above the shoulder: the first joint is free. A stretched elbow: two solutions coincide.
 #[test]
 fn shoulder_and_elbow() {
     let mut random = Random(74);

@@ -18,16 +18,16 @@ fn singular_values_are_those_of_a_step_and_the_weakest_motion_needs_most() {
         let robot = catalogue::load(name).unwrap();
         let q = bent(&robot);
         let mut servo = servo(&robot, |_| ());
-        let posture = servo.condition(&q).unwrap();
+        let condition = servo.condition(&q).unwrap();
         let step = servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
-        assert!((posture.singular_ratio - step.singular_ratio).abs() < 1e-12);
-        assert_eq!(posture.inverse.rank, step.rank);
+        assert!((condition.singular_ratio - step.singular_ratio).abs() < 1e-12);
+        assert_eq!(condition.inverse.rank, step.rank);
         let length = robot.reach();
         let j = scaled(&robot, &q, length);
         let values: Vec<f64> = Svd::of(&j).values().collect();
-        crate::support::assert_close(name, &posture.inverse.singular_values, &values, 1e-12);
+        crate::support::assert_close(name, &condition.inverse.singular_values, &values, 1e-12);
         // J^T u = s v for the last u, which has length one in scaled units.
-        let weakest = posture.weakest.unwrap();
+        let weakest = condition.weakest.unwrap();
         let u = Twist { linear: weakest.linear * (1.0 / length), ..weakest }.to_array();
         let size = u.iter().map(|x| x * x).sum::<f64>().sqrt();
         assert!((size - 1.0).abs() < 1e-12, "{name}");
@@ -43,11 +43,11 @@ fn singular_values_are_those_of_a_step_and_the_weakest_motion_needs_most() {
 fn the_weakest_motion_is_in_world_axes() {
     let robot = catalogue::load("panda").unwrap();
     let q = bent(&robot);
-    let posture = |axes: ReferenceFrame| {
+    let condition = |axes: ReferenceFrame| {
         let task = Task { axes, ..Task::POSE };
         servo(&robot, |o| o.task = task).condition(&q).unwrap()
     };
-    let [world, local] = [ReferenceFrame::LocalWorldAligned, ReferenceFrame::Local].map(posture);
+    let [world, local] = [ReferenceFrame::LocalWorldAligned, ReferenceFrame::Local].map(condition);
     let (a, b) = (world.weakest.unwrap(), local.weakest.unwrap());
     let sign = a.angular.dot(b.angular).signum();
     crate::support::assert_close("twist", &(b * sign).to_array(), &a.to_array(), 1e-9);
@@ -135,7 +135,7 @@ fn self_motions_of_closed_chains_keep_their_loops() {
 }
 
 #[test]
-fn postures_refuse_what_steps_refuse() {
+fn condition_refuses_what_steps_refuse() {
     let robot = catalogue::load("panda").unwrap();
     let mut servo = servo(&robot, |_| ());
     assert!(servo.condition(&[0.0; 3]).is_err() && servo.self_motions(&[f64::NAN; 7]).is_err());

@@ -21,7 +21,7 @@ fn gap(mechanism: &Mechanism, q: &[f64]) -> f64 {
     chain.closure_error.distance / mechanism.reach() + chain.closure_error.angle
 }
 
-/// A posture in which the loops are closed, near home.
+/// A configuration in which the loops are closed, near home.
 fn assembled(mechanism: &Mechanism, spread: f64, random: &mut Random) -> Vec<f64> {
     let guess: Vec<f64> =
         mechanism.home().iter().map(|x| x + random.within(-spread, spread)).collect();

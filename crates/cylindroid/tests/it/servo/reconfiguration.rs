@@ -49,7 +49,7 @@ fn random_starts_to_random_targets() {
     }
 }
 
-/// Random motions that stall are reached by way of another posture, within all limits.
+/// Random motions that stall are reached by reconfiguration, within all limits.
 #[test]
 fn a_reconfiguration_reaches_what_the_servo_does_not() {
     for (name, seed) in [("panda", 61), ("ur5e", 62), ("puma560", 63)] {
@@ -77,7 +77,7 @@ fn a_reconfiguration_reaches_what_the_servo_does_not() {
     assert_eq!(find_reachable_configuration(&servo, &[0.0; 3], far, 20).unwrap(), None);
 }
 
-/// The move of a reconfiguration keeps every limit and ends at the posture.
+/// The move of a reconfiguration keeps every limit and ends at the configuration.
 #[test]
 fn joint_moves_keep_the_limits() {
     for robot in crate::support::robots() {

@@ -58,7 +58,7 @@ fn stall_with_too_few_joints_says_so() {
 }
 
 /// An arm of the youBot's kind points only in the vertical plane of its first joint: joint 5 does
-/// nothing for a pointing task, in no posture, so this is no singular pose.
+/// nothing for a pointing task, in no configuration, so this one is not singular.
 #[test]
 fn stall_of_a_five_joint_arm_is_not_called_singular() {
     let robot = catalogue::load("youbot").unwrap();
@@ -72,7 +72,7 @@ fn stall_of_a_five_joint_arm_is_not_called_singular() {
     assert_eq!((rank, task), (4, 5));
 }
 
-/// A weak inverse is slow, not singular: the home of the arm is a regular posture.
+/// A weak inverse is slow, not singular: the home of the arm is a regular configuration.
 #[test]
 fn stall_of_a_weak_inverse_is_slow() {
     let robot = catalogue::load("panda").unwrap();
@@ -193,7 +193,7 @@ fn stall_out_of_reach_with_a_follower_that_rests() {
 }
 
 /// What a locked joint takes away for good is no singular pose: with its elbow locked straight the
-/// arm turns its hand about one axis with two joints, in every posture.
+/// arm turns its hand about one axis with two joints, in every configuration.
 #[test]
 fn stall_of_an_arm_locked_straight_is_not_called_singular() {
     let mut b = Mechanism::builder("straight");

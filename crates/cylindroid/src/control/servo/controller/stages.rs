@@ -99,12 +99,12 @@ impl Servo {
     }
 
     /// A configuration near home in which the loops are closed; the first is the closest to home.
-    pub(super) fn nearby_configuration(&self, posture: usize) -> Result<Option<Vec<f64>>> {
-        let spread = if posture == 0 { 0.0 } else { 0.2 };
+    pub(super) fn nearby_configuration(&self, sample: usize) -> Result<Option<Vec<f64>>> {
+        let spread = if sample == 0 { 0.0 } else { 0.2 };
         let n = self.mechanism.n();
         let guess: Vec<f64> = (0..n)
             .map(|i| {
-                let turn = ((posture * n + i) as f64 * 0.618_034).fract() - 0.5;
+                let turn = ((sample * n + i) as f64 * 0.618_034).fract() - 0.5;
                 self.mechanism.home()[i] + spread * turn
             })
             .collect();
