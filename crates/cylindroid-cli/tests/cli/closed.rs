@@ -134,7 +134,7 @@ fn coordinates_go_where_they_are_sent() {
     let round = json(&["assemble", "four-bar", "--to", "q1=360", "--degrees"], 0);
     let turn = std::f64::consts::TAU;
     assert!(difference(&numbers(&round["q"]), &[turn, -turn, 0.0]) < 1e-9);
-    assert_eq!((&round["end"], &round["share"]), (&"reached".into(), &1.0.into()));
+    assert_eq!((&round["end"], &round["fraction"]), (&"reached".into(), &1.0.into()));
     assert!(round["path"].as_array().unwrap().len() > 20);
     // The links of q3 and q4 stretch; the reference frame rests with the actuators.
     let stopped = json(&["assemble", "five-bar", "--to", "q1=0.5,q2=-1.2"], 1);
@@ -142,14 +142,14 @@ fn coordinates_go_where_they_are_sent() {
     let sight = &stopped["singularity"];
     assert_eq!((&sight["kind"], &sight["screw"]), (&"passive".into(), &serde_json::Value::Null));
     assert!((sight["distance"].as_f64().unwrap() - 1e-3).abs() < 1e-6);
-    let share = stopped["share"].as_f64().unwrap();
+    let share = stopped["fraction"].as_f64().unwrap();
     assert!((stopped["q"][0].as_f64().unwrap() - 0.5 * share).abs() < 1e-12);
     let wider = ["assemble", "five-bar", "--to", "q1=0.5,q2=-1.2", "--least-distance", "0.05"];
-    assert!(json(&wider, 1)["share"].as_f64().unwrap() < share);
+    assert!(json(&wider, 1)["fraction"].as_f64().unwrap() < share);
     // A limit of the leg that goes, the others held.
     let limit = json(&["assemble", "stewart", "--to", "leg1=0.5", "--hold", "actuated"], 1);
     assert_eq!((&limit["end"], &limit["limit"]), (&"limit".into(), &"leg1".into()));
-    assert!((limit["share"].as_f64().unwrap() - 0.8).abs() < 1e-9);
+    assert!((limit["fraction"].as_f64().unwrap() - 0.8).abs() < 1e-9);
     assert_eq!(limit["goal"].as_array().unwrap().len(), 6);
     let over = json(&["assemble", "five-bar", "--to", "q1=1", "--hold", "q2,q3"], 1);
     assert_eq!(over["end"], "contradiction");

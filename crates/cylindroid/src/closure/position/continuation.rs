@@ -105,7 +105,7 @@ pub struct PathSingularity {
     pub distance: f64,
     /// The motion that is gained, as rates of all coordinates [rad/s or m/s], the prescribed ones
     /// at rest; of unit norm with lengths divided by the reach, its sign arbitrary.
-    pub rates: Vec<f64>,
+    pub joint_velocities: Vec<f64>,
     /// The twist of the reference frame in this motion: at the frame's origin, world axes.
     pub twist: Twist,
     /// Its screw, in the world; `None` if the reference frame is at rest.
@@ -284,5 +284,5 @@ fn in_sight(tracker: &PathTracker<'_>, point: &Point) -> Result<PathSingularity>
         (true, false) => SingularityKind::Passive,
     };
     let screw = moves.then(|| Screw::of(world)).flatten();
-    Ok(PathSingularity { kind, distance, rates, twist: here, screw })
+    Ok(PathSingularity { kind, distance, joint_velocities: rates, twist: here, screw })
 }

@@ -66,7 +66,7 @@ fn a_crank_stops_before_its_dead_points() {
             let screw = found.screw.unwrap();
             assert!(screw.pitch.abs() < 1e-12 && screw.axis.direction.z.abs() > 1.0 - 1e-12);
             assert!((screw.axis.point - knee).norm() < 1e-4, "{screw:?}");
-            assert!(found.rates[crank] == 0.0 && found.twist.angular.z.abs() > 0.1);
+            assert!(found.joint_velocities[crank] == 0.0 && found.twist.angular.z.abs() > 0.1);
             // A fold: its angle goes with the square of the distance.
             let wide =
                 ContinuationOptions { least_distance: 1e-2, ..ContinuationOptions::default() };

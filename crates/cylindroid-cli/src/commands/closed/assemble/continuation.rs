@@ -49,7 +49,7 @@ struct SightJson<'a> {
     kind: &'static str,
     distance: f64,
     /// Of all coordinates, in the motion that is gained.
-    rates: &'a [f64],
+    joint_velocities: &'a [f64],
     /// Of the reference frame, linear first, at its origin, world axes.
     twist: [f64; 6],
     /// Seen from the world; null where the reference frame rests.
@@ -106,7 +106,7 @@ fn describe<'a>(
         PathEnd::Singular(s) => Some(SightJson {
             kind: s.kind.name(),
             distance: s.distance,
-            rates: &s.rates,
+            joint_velocities: &s.joint_velocities,
             twist: s.twist.to_array(),
             screw: s.screw.as_ref().map(Into::into),
             frame: reference(job),
