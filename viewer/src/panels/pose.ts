@@ -15,7 +15,7 @@ export function posePanel(): Panel & { show: (scene: Scene, state: State) => voi
     ...made,
     show(scene, state) {
       const { status, sentence, limits } = state.servo;
-      made.note(`${scene.frame} in the world frame`);
+      made.note(`${scene.frame} in world`);
       const names = limits.map((limit) => `${scene.coordinates[limit.coordinate]?.name ?? "?"} (${limit.kind})`);
       fill(
         servo,
