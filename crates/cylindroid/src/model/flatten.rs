@@ -1,4 +1,4 @@
-//! Where the links have got to: joints become nodes, coordinates and frames.
+//! Flattening: the joints of a mechanism become nodes, coordinates and frames.
 //!
 //! Checked  tests/it/graph.rs, tests/it/pinocchio.rs
 

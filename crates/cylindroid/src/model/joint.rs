@@ -1,4 +1,4 @@
-//! Joints: what they are, where they sit, how far and how fast they go.
+//! Joints: their kinds, frames and limits.
 //!
 //! Checked  tests/formats/mechanism_file.rs::every_joint_type_is_read, tests/it/graph.rs
 

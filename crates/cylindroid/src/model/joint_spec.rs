@@ -1,4 +1,4 @@
-//! A joint as the builder takes it, and the checks of its numbers.
+//! Specification of a joint for the builder, and its validation.
 //!
 //! Checked  tests/it/model.rs
 

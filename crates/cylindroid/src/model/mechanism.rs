@@ -222,10 +222,7 @@ impl Mechanism {
             };
             if let Some(joint) = joints.iter_mut().find(|j| j.name == name) {
                 if let Some(mimic) = &joint.mimic {
-                    return refuse(format!(
-                        "it is a mimic joint; name '{}', which it follows",
-                        mimic.joint
-                    ));
+                    return refuse(format!("it follows '{}'; name that joint", mimic.joint));
                 }
                 if joint.kind.dof() == 0 {
                     return refuse("it is fixed; name a movable joint".to_owned());

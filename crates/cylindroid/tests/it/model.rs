@@ -19,7 +19,7 @@ fn position_limits_of_rotation_vectors_are_refused() {
             let limits = Limits { lower, upper, ..Limits::NONE };
             let joint = JointSpec { limits, ..JointSpec::new("ball", kind, "a", "b") };
             let error = build([joint]).unwrap_err().to_string();
-            assert!(error.contains("'ball'") && error.contains("in a row"), "{error}");
+            assert!(error.contains("'ball'") && error.contains("in series"), "{error}");
         }
         // Rates are what they say, so their limits are kept.
         let limits = Limits { velocity: 1.0, acceleration: 2.0, ..Limits::NONE };
