@@ -39,6 +39,7 @@ const SAME_CONFIGURATION: f64 = 1e-3;
 
 /// The method that found a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FoundBy {
     /// Closed form: see [`Analytic`](super::Analytic).
     Analytic,
@@ -111,6 +112,7 @@ enum Remaining {
 ///
 /// # Errors
 /// No goals, frames of another mechanism, non-finite values, a mechanism with loops.
+#[doc(alias = "random restart")]
 pub fn solve(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Solution> {
     Solver::new(mechanism, goals, options)?.solve(goals)
 }

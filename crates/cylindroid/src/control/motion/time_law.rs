@@ -58,6 +58,8 @@ pub struct LawSample {
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[doc(alias = "trapezoidal velocity profile")]
+#[doc(alias = "S-curve")]
 pub struct TimeLaw {
     distance: f64,
     duration: f64,

@@ -321,6 +321,7 @@ impl Servo {
 
     /// Joint velocities of the last step, of all n coordinates [rad/s or m/s]: actuated and passive
     /// ones in a closed chain.
+    #[doc(alias = "rates")]
     #[must_use]
     pub fn joint_velocities(&self) -> &[f64] {
         &self.rates[..self.mechanism.n()]

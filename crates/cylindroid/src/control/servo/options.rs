@@ -41,6 +41,7 @@ pub struct SpeedLimit {
 
 /// The null space that secondary tasks may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SecondaryNullSpace {
     /// The null space of the Jacobian at machine precision: the task is never disturbed.
     Exact,

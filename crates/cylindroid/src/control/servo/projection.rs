@@ -22,6 +22,7 @@ use crate::tolerance::GENERIC_RANK;
 
 /// The part of a motion that is realised; the rest is the discarded component.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub enum TaskProjection {
     /// The closest motion in scaled task coordinates: the effect of [`Method`](crate::Method)
     /// alone. It depends on the tool point and the characteristic length.

@@ -20,6 +20,7 @@ pub struct VelocityBounds {
 
 /// The kind of a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum LimitKind {
     /// Position: the joint is at its limit or brakes before it.
     Position,

@@ -105,6 +105,8 @@ impl Deref for AnalyticSolutions {
 
 /// Analytic inverse kinematics of one end effector. [`Analytic::solve`] does not allocate.
 #[derive(Debug, Clone)]
+#[doc(alias = "closed form")]
+#[doc(alias = "Pieper")]
 pub struct Analytic {
     chain: Chain,
     structure: ArmGeometry,
