@@ -54,7 +54,7 @@ impl ClosedChain {
     ///
     /// let stewart = cylindroid::load("stewart")?;
     /// let chain = ClosedChain::of(&stewart.state(stewart.home())?, None, None)?;
-    /// assert_eq!((chain.actuated.len(), chain.passive.len()), (6, 12));
+    /// assert_eq!((chain.actuated.len(), chain.passive.len()), (6, 15));
     /// assert_eq!(MotionSpace::of(&chain.constraint).dof(), 6);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```

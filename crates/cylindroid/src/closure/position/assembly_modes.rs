@@ -103,7 +103,7 @@ impl AssemblyModes {
 /// ```
 /// use cylindroid::closure::{ModeOptions, assembly_modes};
 ///
-/// A four-bar with its crank prescribed: elbow up or elbow down.
+/// // A four-bar with its crank prescribed: elbow up or elbow down.
 /// let four_bar = cylindroid::load("four-bar")?;
 /// let found = assembly_modes(&four_bar, &[0.3, 0.0, 0.0], &[0], ModeOptions::default())?;
 /// assert_eq!(found.modes.len(), 2);

@@ -139,8 +139,8 @@ impl fmt::Display for PathEnd {
 /// ```
 /// use cylindroid::closure::{ContinuationOptions, PathEnd, track_path};
 ///
-/// The crank of this four-bar (1, 1.8, 1.3 on a base of 2) makes a full turn and returns to the
-/// // same assembly mode.
+/// // The crank of this four-bar (1, 1.8, 1.3 on a base of 2) makes a full turn and returns to
+/// // the same assembly mode.
 /// let four_bar = cylindroid::load("four-bar")?;
 /// let turn = std::f64::consts::TAU;
 /// let path = track_path(&four_bar, &[0.0; 3], &[0], &[turn], ContinuationOptions::default())?;
