@@ -1,4 +1,4 @@
-//! The kinds of singularity of a closed chain, and their names.
+//! The kinds of singularity of a closed chain (type I, II, III and others), and their names.
 //!
 //! Source   Gosselin & Angeles 1990 (types I, II, III); Park & Kim 1999 and Zlatanov et al. 1995
 //!          (configuration space, passive)

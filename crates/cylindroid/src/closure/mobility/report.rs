@@ -1,4 +1,5 @@
-//! Mobility report: every kind of motion and force of a closed chain, counted and with a basis.
+//! Mobility report: the motions and forces of a closed chain, counted (beside the Gruebler-Kutzbach
+//! count) and each with a basis.
 //!
 //! Formula  dof            ker [J_a J_p -G^T]
 //!          redundancy     ker J_a: actuated joints move, all else is at rest

@@ -1,5 +1,5 @@
-//! Singularity types of closed chains: counts that differ from their generic values, and distances
-//! to singularities.
+//! Type I, II and III singularities of closed chains: counts that differ from their generic values,
+//! and distances to singularities.
 //!
 //! Formula  type I    zero-torque wrenches s or redundancy r' above generic: the object loses a
 //!          motion
