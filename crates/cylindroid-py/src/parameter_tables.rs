@@ -5,6 +5,25 @@ use cylindroid::inverse::Parameter;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// A table of the library as a list of a docstring.
+macro_rules! documented {
+    ($(
+        $(#[doc = $doc:literal])+
+        $variant:ident = $name:literal $(($($own:tt)*))? {
+            $(
+                $(#[doc = $about:literal])+
+                $parameter:ident: $unit:literal in $domain:ident = $default:expr;
+            )+
+        } => |$($argument:ident),+| $body:expr,
+    )+) => {
+        concat!($(
+            "'", $name, "' :", $($doc,)+ "\n\n",
+            $("    - ", stringify!($parameter), " [", $unit, "]:", $($about,)+ "\n",)+ "\n",
+        )+)
+    };
+}
+pub(crate) use documented;
+
 /// The inverses that `inverse` and `Servo` take by name, and their parameters.
 ///
 /// Returns

@@ -8,21 +8,7 @@ use pyo3::types::PyDict;
 use super::{PyInverse, by_method, of_each};
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
-
-/// The methods as a list of a docstring.
-macro_rules! documented {
-    ($(
-        $(#[doc = $doc:literal])+
-        $variant:ident = $name:literal {
-            $($(#[doc = $about:literal])+ $parameter:ident: $unit:literal in $domain:ident = $default:expr;)+
-        } => |$svd:ident, $task:ident, $out:ident| $gains:expr,
-    )+) => {
-        concat!($(
-            "'", $name, "' :", $($doc,)+ "\n\n",
-            $("    - ", stringify!($parameter), " [", $unit, "]:", $($about,)+ "\n",)+ "\n",
-        )+)
-    };
-}
+use crate::parameter_tables::documented;
 
 /// Values of parameters by name, from keyword arguments: `lam` stands for `lambda`, which Python
 /// reserves.

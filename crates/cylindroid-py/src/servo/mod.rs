@@ -16,25 +16,11 @@ use crate::error::Result;
 use crate::inverse::parameters_of;
 use crate::mechanism::PyMechanism;
 use crate::options;
+use crate::parameter_tables::documented;
 
 pub(crate) use motion_result::PyMotionResult;
 pub(crate) use stall::PyStall;
 pub(crate) use trajectory::PyTrajectory;
-
-/// The secondary tasks as a list of a docstring.
-macro_rules! documented {
-    ($(
-        $(#[doc = $doc:literal])+
-        $variant:ident = $name:literal ($($(#[doc = $own_doc:literal])+ $own:ident)?) {
-            $($(#[doc = $about:literal])+ $parameter:ident: $unit:literal in $domain:ident = $default:expr;)+
-        } => |$context:ident, $out:ident| $add:expr,
-    )+) => {
-        concat!($(
-            "'", $name, "' :", $($doc,)+ "\n\n",
-            $("    - ", stringify!($parameter), " [", $unit, "]:", $($about,)+ "\n",)+ "\n",
-        )+)
-    };
-}
 
 /// A Cartesian controller of one frame: from joint positions and a target pose to joint velocities.
 ///

@@ -8,11 +8,8 @@
 //!          is checked by the compiler, where a list of names and values would be looked up
 //! Checked  tests/it/parameters.rs, tests/it/inverse.rs
 
-use std::collections::BTreeMap;
-
 use super::damped::gains as damped;
 use super::numerical_filtering::{Filter, gains as numerical_filtering};
-use super::parameter::{Domain, Parameter};
 use super::selectively_damped::gains as selectively_damped;
 use super::singular_value_filtering::gains as singular_value_filtering;
 use super::truncated::gains as truncated;
@@ -102,6 +99,16 @@ macro_rules! define {
         } => |$svd:ident, $task:ident, $out:ident| $gains:expr,
     )+) => {
         /// A method to invert a Jacobian near its singularities (a robust pseudoinverse).
+        ///
+        /// ```
+        /// let mut method = cylindroid::Method::named("truncated")?;
+        /// for (parameter, value) in method.parameters_mut() {
+        ///     assert_eq!(parameter.name, "eps");
+        ///     *value = 1e-6;
+        /// }
+        /// assert_eq!(method, cylindroid::Method::Truncated { eps: 1e-6 });
+        /// # Ok::<(), cylindroid::Error>(())
+        /// ```
         #[derive(Debug, Clone, Copy, PartialEq)]
         #[non_exhaustive]
         pub enum Method {
@@ -117,51 +124,20 @@ macro_rules! define {
             )+
         }
 
+        $crate::inverse::impl_parameters! {
+            Method: $(
+                $(#[doc = $doc])+
+                $variant = $name {
+                    $($(#[doc = $about])+ $parameter: $unit in $domain = $default;)+
+                }
+            )+
+        }
+
         impl Method {
             /// Every method with its default parameters, for singular values scaled by a
             /// characteristic length.
             pub const ALL: [Self; [$($name),+].len()] =
                 [$(Self::$variant { $($parameter: $default),+ }),+];
-
-            /// Its name in options and reports.
-            #[must_use]
-            pub const fn name(&self) -> &'static str {
-                match self {
-                    $(Self::$variant { .. } => $name,)+
-                }
-            }
-
-            /// Formula and behaviour in one or two sentences.
-            #[must_use]
-            pub const fn description(&self) -> &'static str {
-                match self {
-                    $(Self::$variant { .. } => concat!($($doc),+).trim_ascii(),)+
-                }
-            }
-
-            /// Its parameters: names, units, domains and defaults.
-            #[must_use]
-            pub const fn parameters(&self) -> &'static [Parameter] {
-                match self {
-                    $(Self::$variant { .. } => {
-                        const ROWS: &[Parameter] = &[$(
-                            Parameter::new(
-                                [stringify!($parameter), $unit, concat!($($about),+)],
-                                Domain::$domain,
-                                $default,
-                            )
-                        ),+];
-                        ROWS
-                    })+
-                }
-            }
-
-            /// The values of its parameters, in the order of [`Method::parameters`], to be set.
-            fn values_mut(&mut self) -> Vec<&mut f64> {
-                match self {
-                    $(Self::$variant { $($parameter),+ } => vec![$($parameter),+],)+
-                }
-            }
 
             /// Writes the gain of each direction and returns the singular value below which a
             /// direction counts as dropped. `task` is the motion to be inverted, which only
@@ -199,34 +175,11 @@ impl Method {
             .ok_or_else(|| Error::unknown("inverse", name, Self::ALL.iter().map(Self::name)))
     }
 
-    /// The values of its parameters by name.
-    #[must_use]
-    pub fn values(&self) -> BTreeMap<&'static str, f64> {
-        let mut own = *self;
-        own.parameters_mut().map(|(parameter, value)| (parameter.name, *value)).collect()
-    }
-
-    /// The parameters of the method and their values, to be set.
-    ///
-    /// ```
-    /// let mut method = cylindroid::Method::named("truncated")?;
-    /// for (parameter, value) in method.parameters_mut() {
-    ///     assert_eq!(parameter.name, "eps");
-    ///     *value = 1e-6;
-    /// }
-    /// assert_eq!(method, cylindroid::Method::Truncated { eps: 1e-6 });
-    /// # Ok::<(), cylindroid::Error>(())
-    /// ```
-    pub fn parameters_mut(&mut self) -> impl Iterator<Item = (&'static Parameter, &mut f64)> {
-        self.parameters().iter().zip(self.values_mut())
-    }
-
     /// Refuses parameters outside their domains.
     ///
     /// # Errors
     /// [`Error::InvalidOption`] with the parameter and its value.
     pub fn check(&self) -> Result<()> {
-        let mut own = *self;
-        own.parameters_mut().try_for_each(|(parameter, value)| parameter.check(*value))
+        self.check_parameters()
     }
 }

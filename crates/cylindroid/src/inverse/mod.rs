@@ -35,6 +35,7 @@ pub(crate) use damped::damp;
 pub use hyperbolic::{HyperbolicDamping, HyperbolicOptions, hyperbolic, hyperbolic_with, oblique};
 pub use hyperbolic_fixed::hyperbolic_into;
 pub use method::Method;
+pub(crate) use parameter::impl_parameters;
 pub use parameter::{Domain, Parameter};
 pub use point_direction::{PointDirection, point_direction};
 pub(crate) use report::is_kept;

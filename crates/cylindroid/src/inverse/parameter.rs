@@ -101,3 +101,77 @@ impl Domain {
         }
     }
 }
+
+/// Names, descriptions, parameters and values of an enum whose variants are rows of a table.
+macro_rules! impl_parameters {
+    ($type:ident: $(
+        $(#[doc = $doc:literal])+
+        $variant:ident = $name:literal {
+            $(
+                $(#[doc = $about:literal])+
+                $parameter:ident: $unit:literal in $domain:ident = $default:expr;
+            )+
+        }
+    )+) => {
+        impl $type {
+            /// Its name in options and reports.
+            #[must_use]
+            pub const fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$variant { .. } => $name,)+
+                }
+            }
+
+            /// What it does, in one or two sentences.
+            #[must_use]
+            pub const fn description(&self) -> &'static str {
+                match self {
+                    $(Self::$variant { .. } => concat!($($doc),+).trim_ascii(),)+
+                }
+            }
+
+            /// Its parameters: names, units, domains and defaults.
+            #[must_use]
+            pub const fn parameters(&self) -> &'static [$crate::inverse::Parameter] {
+                use $crate::inverse::{Domain, Parameter};
+                match self {
+                    $(Self::$variant { .. } => {
+                        const ROWS: &[Parameter] = &[$(
+                            Parameter::new(
+                                [stringify!($parameter), $unit, concat!($($about),+)],
+                                Domain::$domain,
+                                $default,
+                            )
+                        ),+];
+                        ROWS
+                    })+
+                }
+            }
+
+            /// Its parameters and their values, to be set.
+            pub fn parameters_mut(
+                &mut self,
+            ) -> impl Iterator<Item = (&'static $crate::inverse::Parameter, &mut f64)> {
+                let rows = self.parameters();
+                let values = match self {
+                    $(Self::$variant { $($parameter,)+ .. } => vec![$($parameter),+],)+
+                };
+                rows.iter().zip(values)
+            }
+
+            /// The values of its parameters by name.
+            #[must_use]
+            pub fn values(&self) -> std::collections::BTreeMap<&'static str, f64> {
+                let mut own = Self::clone(self);
+                own.parameters_mut().map(|(parameter, value)| (parameter.name, *value)).collect()
+            }
+
+            /// Refuses parameters outside their domains.
+            fn check_parameters(&self) -> $crate::error::Result<()> {
+                let mut own = Self::clone(self);
+                own.parameters_mut().try_for_each(|(parameter, value)| parameter.check(*value))
+            }
+        }
+    };
+}
+pub(crate) use impl_parameters;

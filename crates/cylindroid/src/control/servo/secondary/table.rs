@@ -6,11 +6,8 @@
 //!
 //! Checked  tests/it/parameters.rs, tests/it/servo/secondary.rs
 
-use std::collections::BTreeMap;
-
 use super::{Context, centring, limit_avoidance, manipulability, posture};
 use crate::error::{Error, Result};
-use crate::inverse::{Domain, Parameter};
 use crate::model::Mechanism;
 
 /// Hands the table to a macro. A row: documentation, variant, name, a configuration where the task
@@ -84,6 +81,15 @@ macro_rules! define {
             )+
         }
 
+        $crate::inverse::impl_parameters! {
+            SecondaryTask: $(
+                $(#[doc = $doc])+
+                $variant = $name {
+                    $($(#[doc = $about])+ $parameter: $unit in $domain = $default;)+
+                }
+            )+
+        }
+
         impl SecondaryTask {
             /// The names of the tasks.
             pub const NAMES: [&'static str; [$($name),+].len()] = [$($name),+];
@@ -93,46 +99,6 @@ macro_rules! define {
             #[must_use]
             pub fn all(posture: &[f64]) -> [Self; Self::NAMES.len()] {
                 [$(Self::$variant { $($own: posture.to_vec(),)? $($parameter: $default),+ }),+]
-            }
-
-            /// The name of the task.
-            #[must_use]
-            pub const fn name(&self) -> &'static str {
-                match self {
-                    $(Self::$variant { .. } => $name,)+
-                }
-            }
-
-            /// The goal of the task in one sentence.
-            #[must_use]
-            pub const fn description(&self) -> &'static str {
-                match self {
-                    $(Self::$variant { .. } => concat!($($doc),+).trim_ascii(),)+
-                }
-            }
-
-            /// Its parameters: names, units, domains and defaults.
-            #[must_use]
-            pub const fn parameters(&self) -> &'static [Parameter] {
-                match self {
-                    $(Self::$variant { .. } => {
-                        const ROWS: &[Parameter] = &[$(
-                            Parameter::new(
-                                [stringify!($parameter), $unit, concat!($($about),+)],
-                                Domain::$domain,
-                                $default,
-                            )
-                        ),+];
-                        ROWS
-                    })+
-                }
-            }
-
-            /// The values of its parameters, in their order.
-            fn values_mut(&mut self) -> Vec<&mut f64> {
-                match self {
-                    $(Self::$variant { $($parameter,)+ .. } => vec![$($parameter),+],)+
-                }
             }
 
             /// Adds the joint velocities of the task for the chain's coordinates to `out`. No
@@ -194,23 +160,10 @@ impl SecondaryTask {
         Ok(self)
     }
 
-    /// The values of its parameters by name.
-    #[must_use]
-    pub fn values(&self) -> BTreeMap<&'static str, f64> {
-        let mut own = self.clone();
-        own.parameters_mut().map(|(parameter, value)| (parameter.name, *value)).collect()
-    }
-
-    /// The parameters of the task and their values, to be set.
-    pub fn parameters_mut(&mut self) -> impl Iterator<Item = (&'static Parameter, &mut f64)> {
-        self.parameters().iter().zip(self.values_mut())
-    }
-
     /// Refuses parameters outside their domains, a posture of another mechanism, and tasks that the
     /// loops of a mechanism do not allow.
     pub(in super::super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
-        let mut own = self.clone();
-        own.parameters_mut().try_for_each(|(parameter, value)| parameter.check(*value))?;
+        self.check_parameters()?;
         if let Self::Posture { q, .. } = self {
             mechanism.check_q("posture", q)?;
         }
