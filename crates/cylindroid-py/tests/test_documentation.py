@@ -43,7 +43,7 @@ def names_in(thing, title):
     listed = []
     for line in section.group(1).split("\n") if section else []:
         if line.strip() and not line.startswith(" "):
-            listed += [part.strip() for part in line.split(" : ")[0].split(",")]
+            listed += [part.strip().lstrip("*") for part in line.split(" : ")[0].split(",")]
     return listed
 
 

@@ -83,7 +83,7 @@ def _labels(ax: Any, labels: list[tuple[str, list[NDArray[Any]]]]) -> None:
     pixels = points * ax.figure.dpi / 72
     space = _is_spatial(ax)
     if space:
-        from mpl_toolkits.mplot3d.proj3d import proj_transform
+        from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
         ax.apply_aspect()
         projection = ax.get_proj()

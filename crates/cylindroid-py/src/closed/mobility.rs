@@ -55,7 +55,7 @@ use crate::table::{self, Table};
 /// finite_dof : int or None
 ///     Degrees of freedom of finite motion; None where it is not known.
 /// actuated, passive, components : list of str
-/// gap : LoopClosureError or None
+/// closure_error : LoopClosureError or None
 ///     How far loops are open: the report holds where they are closed.
 /// length : float
 ///     Characteristic length of the rank decisions (m).
@@ -293,7 +293,7 @@ impl PyMobility {
     }
 
     #[getter]
-    fn gap(&self) -> Option<PyLoopClosureError> {
+    fn closure_error(&self) -> Option<PyLoopClosureError> {
         self.constraint.origin.as_ref().map(|o| o.closure_error.into())
     }
 

@@ -16,8 +16,8 @@ use crate::table;
 /// gain : float
 ///     The internal torques go to their set-point as exp(-gain t) [1/s]; times dt below 2.
 /// stiffness : array_like, (a,)
-/// Of each actuated joint, controlled in position or velocity and elastic like a spring [N m/rad or
-/// N/m].
+///     Of each actuated joint, controlled in position or velocity and elastic like a spring
+///     [N m/rad or N/m].
 ///
 /// Raises
 /// ------
