@@ -285,5 +285,5 @@ fn input_that_is_not_finite_is_refused() {
     }
     let error =
         CartesianPath::rotation(good, AxisRotation { axis: Vec3::ZERO, ..turn }).unwrap_err();
-    assert!(error.to_string().contains("names no direction"), "{error}");
+    assert!(error.to_string().contains("it has no direction"), "{error}");
 }
