@@ -184,7 +184,7 @@ def test_batches_of_reports():
         assert repr(many[2]) == repr(one(Q[2]))
 
 
-def test_driven_joints_can_be_chosen():
+def test_actuated_joints_can_be_chosen():
     r = cy.load("five-bar")
     names = r.mobility().actuated
     other = r.mobility(actuated=names[:1])

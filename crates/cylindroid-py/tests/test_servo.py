@@ -154,7 +154,7 @@ def test_hyperbolic_servo_of_five_joints():
     np.testing.assert_array_equal(same.joint_velocities, given_up.joint_velocities)
 
 
-def test_closed_chains_are_driven():
+def test_closed_chains_are_controlled():
     r = cy.load("five-bar")
     start = r.assemble().q
     target = r.fk(start, r.reference)

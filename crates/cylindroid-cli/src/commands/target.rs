@@ -8,7 +8,7 @@ use cylindroid::{Error, Pose, ReferenceFrame, Result, Rotation, Vec3};
 use crate::args::{TargetArgs, TaskAxes};
 use crate::output::number;
 
-/// The task, and what is driven in words.
+/// The task, and what is controlled in words.
 pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String)> {
     let position = args.to.is_some();
     let orientation =
@@ -25,7 +25,7 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
         Some(TaskAxes::Local) => task.axes = ReferenceFrame::Local,
         Some(TaskAxes::World) => task.axes = ReferenceFrame::LocalWorldAligned,
     }
-    let driven = match (&args.task, named) {
+    let controlled = match (&args.task, named) {
         (None, "position") => {
             "position only (--rpy, --quaternion or --rotation-vector give an orientation)".into()
         }
@@ -45,18 +45,18 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
             format!("{} along and about the axes of the {axes}", names.join(", "))
         }
     };
-    Ok((task, driven))
+    Ok((task, controlled))
 }
 
 /// Lines of a table with the errors of position and orientation, where they matter.
 pub(super) fn errors(task: Task, position: f64, orientation: f64) -> [(&'static str, String); 2] {
     let (linear, angular) = task.components.split_at(3);
-    let driven = |components: &[bool], value: f64| {
-        if components.contains(&true) { number(value) } else { "not driven".to_owned() }
+    let controlled = |components: &[bool], value: f64| {
+        if components.contains(&true) { number(value) } else { "not controlled".to_owned() }
     };
     [
-        ("position error [m]", driven(linear, position)),
-        ("orientation error [rad]", driven(angular, orientation)),
+        ("position error [m]", controlled(linear, position)),
+        ("orientation error [rad]", controlled(angular, orientation)),
     ]
 }
 

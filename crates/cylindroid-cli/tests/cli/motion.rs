@@ -20,7 +20,7 @@ fn the_command_of_the_readme_reaches() {
 }
 
 #[test]
-fn without_an_orientation_only_the_position_is_driven() {
+fn without_an_orientation_only_the_position_is_controlled() {
     let report = json(&["move", "panda", "--to", "-0.3, 0.1,", "0.2"], 0);
     assert_eq!(report["task"], serde_json::json!(["x", "y", "z"]));
     assert!(text(&["move", "panda", "--to", "4e-1,0,0.4"]).contains("position only"));

@@ -19,14 +19,14 @@ use crate::values::Named;
 pub(super) struct Job {
     pub(super) robot: Mechanism,
     pub(super) options: ServoOptions,
-    /// Name of the frame that is driven.
+    /// Name of the frame that is controlled.
     pub(super) frame: String,
     pub(super) start: Vec<f64>,
     /// Where the tool shall be in the end; what was not given is as at the start.
     pub(super) target_pose: Pose,
     pub(super) goal: Goal,
-    /// What is driven, in words.
-    pub(super) driven: String,
+    /// What is controlled, in words.
+    pub(super) controlled: String,
     pub(super) time_limit: f64,
     /// Whether to go round where the servo alone stalls on its way to a pose.
     pub(super) reconfigure: bool,
@@ -65,7 +65,7 @@ impl Job {
 
         let mut options = ServoOptions::new(&robot);
         options.end_effector = end_effector(&robot, &args.frame)?;
-        let (task, driven) = task(&args.target, &robot)?;
+        let (task, controlled) = task(&args.target, &robot)?;
         options.task = task;
         apply(&args.servo, &mut options);
         inverse::apply(&args.inverse, &start, &robot, &mut options)?;
@@ -76,7 +76,7 @@ impl Job {
         let defaults = joint_defaults(args);
         let pose = |q: &[f64]| robot.state(q).map(|s| s.pose(options.end_effector));
         let from = pose(&start)?;
-        let (target_pose, goal, driven) = if let Some(q) = &args.path.joint_to {
+        let (target_pose, goal, controlled) = if let Some(q) = &args.path.joint_to {
             no_loops(&robot)?;
             let q = q.configuration(&robot, degrees)?;
             robot.check_q("--joint-to", &q)?;
@@ -94,7 +94,7 @@ impl Job {
                     Goal::Along(Box::new(CartesianMove::new(path, path_bounds(args))?))
                 }
             };
-            (to, goal, driven)
+            (to, goal, controlled)
         };
         let frame = robot.frame_of(options.end_effector.frame).name.clone();
         let time_limit = args.time_limit;
@@ -106,7 +106,7 @@ impl Job {
             start,
             target_pose,
             goal,
-            driven,
+            controlled,
             time_limit,
             reconfigure,
             defaults,

@@ -49,7 +49,7 @@ impl Way {
 pub(super) struct Deviation {
     /// [m]
     pub(super) position: f64,
-    /// [rad]; nothing where the orientation is not driven.
+    /// [rad]; nothing where the orientation is not controlled.
     pub(super) orientation: Option<f64>,
 }
 
@@ -67,9 +67,9 @@ struct MoveJson<'a> {
     explanation: String,
     /// The last configuration.
     q: &'a [f64],
-    /// Of the components that are driven [m].
+    /// Of the components that are controlled [m].
     position_error: f64,
-    /// Of the components that are driven [rad].
+    /// Of the components that are controlled [rad].
     orientation_error: f64,
     steps: usize,
     time: f64,
@@ -78,7 +78,7 @@ struct MoveJson<'a> {
     /// Divides the linear rows for the singular values [m].
     length: f64,
     limits_hit: Vec<LimitJson<'a>>,
-    /// The driven joints of a mechanism with loops or contacts.
+    /// The actuated joints of a mechanism with loops or contacts.
     #[serde(skip_serializing_if = "Option::is_none")]
     actuated: Option<Vec<&'a str>>,
     /// By how much its loops were open at most.
@@ -86,9 +86,9 @@ struct MoveJson<'a> {
     closure_error: Option<ClosureErrorJson>,
     /// The last `world_from_tool`.
     pose: PoseJson,
-    /// Where the tool should be; what is not driven is as at the start.
+    /// Where the tool should be; what is not controlled is as at the start.
     target: PoseJson,
-    /// The components that are driven, and their axes: "local" or "local_world_aligned".
+    /// The components that are controlled, and their axes: "local" or "local_world_aligned".
     task: Vec<&'static str>,
     task_axes: &'static str,
     inverse: &'static str,
@@ -171,7 +171,7 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
             .iter()
             .map(|(i, kind)| LimitJson { joint: &robot.coordinates()[*i].name, kind: kind.name() })
             .collect(),
-        actuated: robot.is_closed().then(|| drives(job)),
+        actuated: robot.is_closed().then(|| actuated_joints(job)),
         closure_error: closure_error.map(Into::into),
         pose: outcome.last.pose.into(),
         target: job.target_pose.into(),
@@ -199,8 +199,8 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
     }
 }
 
-/// Names of the driven joints.
-fn drives(job: &Job) -> Vec<&str> {
+/// Names of the actuated joints.
+fn actuated_joints(job: &Job) -> Vec<&str> {
     let tree = job.robot.coordinates().iter().filter(|c| c.actuated).map(|c| c.name.as_str());
     let closing = job.robot.loops().iter().filter(|l| l.actuated).map(|l| l.name.as_str());
     tree.chain(closing).collect()
@@ -239,8 +239,11 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
         [
             ("model", job.robot.name().to_owned()),
             ("frame", job.frame.clone()),
-            ("driven", job.driven.clone()),
-            ("by", if job.robot.is_closed() { drives(job).join(", ") } else { String::new() }),
+            ("controlled", job.controlled.clone()),
+            (
+                "by",
+                if job.robot.is_closed() { actuated_joints(job).join(", ") } else { String::new() },
+            ),
             ("result", result_word(outcome, way).to_owned()),
             (
                 "reason",
