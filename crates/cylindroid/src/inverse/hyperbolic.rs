@@ -114,6 +114,20 @@ pub fn hyperbolic(j: &Matrix, h: f64) -> Result<Inverse> {
 /// `-lambda` is an eigenvalue of G, for positive `lambda` too; invariant damping always exists and
 /// tends to the h-pseudoinverse as `mu` goes to zero.
 ///
+/// ```
+/// use cylindroid::inverse::{self, HyperbolicDamping, HyperbolicOptions};
+/// use cylindroid::Matrix;
+///
+/// // The pitch of the joint itself has no inverse; the damped one exists.
+/// let j = Matrix::from_rows(&[[0.0], [0.0], [0.0], [0.0], [0.0], [1.0]]).unwrap();
+/// let damping = HyperbolicDamping::Invariant { mu: 0.1 };
+/// let options = HyperbolicOptions { damping, ..HyperbolicOptions::default() };
+/// assert!(!inverse::hyperbolic(&j, 0.0)?.exists);
+/// let damped = inverse::hyperbolic_with(&j, 0.0, &options)?;
+/// assert!(damped.matrix.as_slice().iter().all(|x| *x == 0.0));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// Source: Donelan & Selig, sections 2.3 and 6.2 (which promises too much of Gram damping).
 ///
 /// # Errors

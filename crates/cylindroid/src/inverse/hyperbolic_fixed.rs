@@ -19,6 +19,17 @@ use crate::screws::{NoInverse, ScrewOptions, independent_coordinates};
 /// Writes the hyperbolic pseudoinverse of pitch `h` of the 6 x m Jacobian `j` into `out` (m x 6),
 /// and returns the reason if there is none (the entries are then NaN).
 ///
+/// ```
+/// use cylindroid::screws::ScrewOptions;
+/// use cylindroid::{inverse, Matrix};
+///
+/// let j = Matrix::from_rows(&[[0.0], [-1.0], [0.0], [0.0], [0.0], [1.0]]).unwrap();
+/// let mut out = Matrix::zeros(1, 6);
+/// let reason = inverse::hyperbolic_into(&j, 0.1, &ScrewOptions::default(), &mut out)?;
+/// assert!(reason.is_none() && (&out * &j).max_difference(&Matrix::identity(1)) < 1e-15);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`hyperbolic_with`]; an `out` of the wrong size.
 pub fn hyperbolic_into(

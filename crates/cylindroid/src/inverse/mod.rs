@@ -113,6 +113,17 @@ pub fn damped(j: &Matrix, damping: f64) -> Result<Inverse> {
 /// any rank; at equal singular values the clamps depend on the choice of directions, and the
 /// velocities may jump.
 ///
+/// ```
+/// use cylindroid::{Matrix, inverse};
+///
+/// // The second direction is all but lost; no joint exceeds 2 rad/s.
+/// let j = Matrix::diagonal(&[1.0, 1e-6]);
+/// let found = inverse::selectively_damped(&j, &[0.5, 0.5], 2.0)?;
+/// let velocities = found.matrix.mul_vec(&[0.5, 0.5]);
+/// assert!(velocities.iter().all(|v| v.abs() <= 2.0));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// Source: Buss & Kim 2005, eqs. 13 to 15, for one task vector instead of several end effectors.
 ///
 /// # Errors
@@ -133,6 +144,20 @@ pub fn selectively_damped(j: &Matrix, task: &[f64], max_joint_velocity: f64) -> 
 ///
 /// `j` is m x n, `W_q` n x n and `W_x` m x m, both positive definite; the method's parameters apply
 /// to the singular values of `J_w`.
+///
+/// ```
+/// use cylindroid::inverse::{self, Method, Weights};
+/// use cylindroid::linalg::Metric;
+/// use cylindroid::Matrix;
+///
+/// // The second joint is four times as costly, and moves a quarter as fast.
+/// let j = Matrix::from_rows(&[[1.0, 1.0]]).unwrap();
+/// let weights = Weights { joint: Some(Metric::diagonal("joints", &[1.0, 4.0])?), task: None };
+/// let found = inverse::weighted(&j, Method::default(), &weights)?;
+/// assert!((found.matrix[(0, 0)] - 0.8).abs() < 1e-12);
+/// assert!((found.matrix[(1, 0)] - 0.2).abs() < 1e-12);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 ///
 /// Source: Whitney 1969; Ben-Israel & Greville 2003, section 3.3.
 ///

@@ -9,9 +9,9 @@ use crate::spatial::{Mat3, Pose, Vec3};
 pub struct Link {
     /// Its name.
     pub name: String,
-    /// Shapes   for display.
+    /// Shapes for display.
     pub visuals: Vec<Visual>,
-    /// Shapes   for collision.
+    /// Shapes for collision.
     pub collisions: Vec<Visual>,
     /// Its mass, if the file gives one.
     pub inertial: Option<Inertial>,

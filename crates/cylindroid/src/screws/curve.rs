@@ -67,6 +67,19 @@ impl ScrewSystem {
     /// `count` screws of a system of order two (of the reciprocal system for order four), from one
     /// generator of the normal form to the other and on to the first again; empty for other
     /// orders. Translations count with the characteristic length.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// // The screws of a cylindroid: their pitches lie between the principal ones.
+    /// let yaw = Line { point: Vec3::ZERO, direction: Vec3::Z };
+    /// let pitch = Line { point: Vec3::new(0.0, 0.2, 0.0), direction: Vec3::X };
+    /// let system = ScrewSystem::of(&[yaw.twist(), pitch.twist()], &ScrewOptions::default())?;
+    /// let screws = system.pencil(16);
+    /// assert!(screws.len() == 16 && screws.iter().all(|s| s.pitch.abs() < 0.1 + 1e-12));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn pencil(&self, count: usize) -> Vec<Screw> {
         let [a, b] = self.normal_form().twists()[..] else { return Vec::new() };

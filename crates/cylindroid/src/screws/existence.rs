@@ -221,6 +221,18 @@ impl ScrewSystem {
     }
 
     /// The norm of P_h, at the centre and length of the system; infinite where there is none.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// // A hinge has no projector of its own pitch, zero.
+    /// let hinge = Line { point: Vec3::ZERO, direction: Vec3::Z }.twist();
+    /// let system = ScrewSystem::of(&[hinge], &ScrewOptions::default())?;
+    /// assert_eq!(system.projector_norm(0.0), f64::INFINITY);
+    /// assert!(system.projector_norm(1.0) >= 1.0);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn projector_norm(&self, h: f64) -> f64 {
         self.projector(h).map_or(f64::INFINITY, |p| p.norm())

@@ -34,6 +34,20 @@ pub struct Projector {
 
 impl Projector {
     /// The part of a twist that lies in the system.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Complement, Projector, ScrewOptions};
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// // A hinge about z; along the 0.1-reciprocal twists.
+    /// let hinge = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
+    /// let along = Complement::Reciprocal { h: 0.1 };
+    /// let projector = Projector::of(&[hinge], along, &ScrewOptions::default())?.unwrap();
+    /// let twist = Twist { linear: Vec3::X, angular: Vec3::Z };
+    /// assert_eq!(projector.motion(twist), hinge);
+    /// assert_eq!(projector.rest(twist), Twist { linear: Vec3::X, angular: Vec3::ZERO });
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn motion(&self, twist: Twist) -> Twist {
         let x = self.scale.apply(twist);
@@ -53,6 +67,19 @@ impl Projector {
 
     /// The part of a wrench that does no work on the system: P* of the wrenches. The discarded part
     /// does no work on the twists that [`Projector::motion`] discards.
+    ///
+    /// ```
+    /// use cylindroid::screws::{Complement, Projector, ScrewOptions};
+    /// use cylindroid::{Twist, Vec3, Wrench};
+    ///
+    /// // What a hinge about z can resist: all but a moment about z.
+    /// let hinge = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
+    /// let along = Complement::Reciprocal { h: 0.1 };
+    /// let projector = Projector::of(&[hinge], along, &ScrewOptions::default())?.unwrap();
+    /// let wrench = Wrench { force: Vec3::Y, moment: Vec3::new(0.0, 2.0, 3.0) };
+    /// assert!(hinge.power(projector.constraint(wrench)).abs() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn constraint(&self, wrench: Wrench) -> Wrench {
         let w = wrench.at_point(self.scale.center);

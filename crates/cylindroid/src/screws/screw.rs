@@ -23,6 +23,15 @@ pub struct Line {
 
 impl Line {
     /// The line through `point` along `direction` (any length); `None` if that has no direction.
+    ///
+    /// ```
+    /// use cylindroid::Vec3;
+    /// use cylindroid::screws::Line;
+    ///
+    /// let line = Line::through(Vec3::X, Vec3::new(0.0, 0.0, 2.0)).unwrap();
+    /// assert_eq!(line.direction, Vec3::Z);
+    /// assert_eq!(Line::through(Vec3::X, Vec3::ZERO), None);
+    /// ```
     #[must_use]
     pub fn through(point: Vec3, direction: Vec3) -> Option<Self> {
         let direction = direction.unit(ZERO_AXIS)?;
@@ -36,6 +45,14 @@ impl Line {
     }
 
     /// The point of the line nearest to `p`.
+    ///
+    /// ```
+    /// use cylindroid::Vec3;
+    /// use cylindroid::screws::Line;
+    ///
+    /// let line = Line { point: Vec3::X, direction: Vec3::Z };
+    /// assert_eq!(line.nearest(Vec3::new(3.0, 0.0, 2.0)), Vec3::new(1.0, 0.0, 2.0));
+    /// ```
     #[must_use]
     pub fn nearest(&self, p: Vec3) -> Vec3 {
         self.point + self.direction * self.direction.dot(p - self.point)
@@ -94,6 +111,16 @@ impl Line {
     /// The line through `point` that meets both `a` and `b` (or is parallel to one of them):
     /// run the point along a third line and the transversals of the three sweep their regulus.
     /// `None` where more than one line does, as when the point is on one of the two.
+    ///
+    /// ```
+    /// use cylindroid::Vec3;
+    /// use cylindroid::screws::Line;
+    ///
+    /// let a = Line { point: Vec3::ZERO, direction: Vec3::X };
+    /// let b = Line { point: Vec3::Z, direction: Vec3::Y };
+    /// let line = Line::transversal_through(Vec3::Z * 2.0 + Vec3::Y, &a, &b).unwrap();
+    /// assert!(line.common_normal(&a).distance < 1e-15 && line.common_normal(&b).distance < 1e-15);
+    /// ```
     #[must_use]
     pub fn transversal_through(point: Vec3, a: &Self, b: &Self) -> Option<Self> {
         let plane = |line: &Self| (line.nearest(point) - point).cross(line.direction).unit(0.0);

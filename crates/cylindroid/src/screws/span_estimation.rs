@@ -41,6 +41,14 @@ impl Default for ScrewOptions {
 
 impl ScrewOptions {
     /// The defaults with this characteristic length.
+    ///
+    /// ```
+    /// use cylindroid::screws::ScrewOptions;
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// assert_eq!(ScrewOptions::with_length(robot.reach()).length, robot.reach());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn with_length(length: f64) -> Self {
         Self { length, ..Self::default() }

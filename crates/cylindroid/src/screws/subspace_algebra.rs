@@ -68,6 +68,17 @@ impl ScrewSystem {
     }
 
     /// All twists that are sums of one of each.
+    ///
+    /// ```
+    /// use cylindroid::screws::{ScrewOptions, ScrewSystem};
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// let slide = |linear| Twist { linear, angular: Vec3::ZERO };
+    /// let along = |linear| ScrewSystem::of(&[slide(linear)], &ScrewOptions::default());
+    /// let plane = along(Vec3::X)?.sum(&along(Vec3::Y)?);
+    /// assert!(plane.order() == 2 && plane.sine_to(slide(Vec3::X - Vec3::Y)) < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn sum(&self, other: &Self) -> Self {
         let both =
@@ -122,6 +133,19 @@ impl ScrewSystem {
 
     /// The sine of the largest angle between a twist of this system and the other: zero if this
     /// one lies in the other.
+    ///
+    /// ```
+    /// use cylindroid::screws::{ScrewOptions, ScrewSystem};
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// let slide = |linear| Twist { linear, angular: Vec3::ZERO };
+    /// let options = ScrewOptions::default();
+    /// let line = ScrewSystem::of(&[slide(Vec3::X)], &options)?;
+    /// let plane = ScrewSystem::of(&[slide(Vec3::X), slide(Vec3::Y)], &options)?;
+    /// // The line lies in the plane, the plane not in the line.
+    /// assert!(line.sine_to_system(&plane) < 1e-15 && plane.sine_to_system(&line) > 1.0 - 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn sine_to_system(&self, other: &Self) -> f64 {
         self.span.sine_to(&self.rescaled(other)).min(1.0)

@@ -55,6 +55,18 @@ pub struct ScrewSystem {
 impl ScrewSystem {
     /// The system that these twists of one frame span.
     ///
+    /// ```
+    /// use cylindroid::screws::{Class, Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// // Three intersecting axes, a spherical wrist: all rotations about their common point.
+    /// let axis = |direction| Line { point: Vec3::X, direction }.twist();
+    /// let wrist = [axis(Vec3::X), axis(Vec3::Y), axis(Vec3::Z)];
+    /// let system = ScrewSystem::of(&wrist, &ScrewOptions::default())?;
+    /// assert_eq!((system.order(), system.center()), (3, Vec3::X));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Non-finite twists or options, a length that is not positive.
     pub fn of(twists: &[Twist], options: &ScrewOptions) -> Result<Self> {
@@ -224,6 +236,17 @@ impl ScrewSystem {
 
     /// The sine of the angle between a twist and the system, at its centre and length: zero for a
     /// member, one for a twist orthogonal to all of them. Zero for the zero twist.
+    ///
+    /// ```
+    /// use cylindroid::screws::{ScrewOptions, ScrewSystem};
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// let slide = |linear| Twist { linear, angular: Vec3::ZERO };
+    /// let plane = ScrewSystem::of(&[slide(Vec3::X), slide(Vec3::Y)], &ScrewOptions::default())?;
+    /// assert!(plane.sine_to(slide(Vec3::X + Vec3::Y)) < 1e-15);
+    /// assert!((plane.sine_to(slide(Vec3::X + Vec3::Z)) - 0.5_f64.sqrt()).abs() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn sine_to(&self, twist: Twist) -> f64 {
         let mut x = self.scale.apply(over(twist, power_of_two(size(twist, self.scale.length))));

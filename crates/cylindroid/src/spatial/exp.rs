@@ -26,6 +26,15 @@ pub struct Derivative6 {
 
 impl Derivative6 {
     /// The image of a twist.
+    ///
+    /// ```
+    /// use cylindroid::spatial::exp_derivative;
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// // At zero the derivative of the exponential is the identity.
+    /// let step = Twist { linear: Vec3::X, angular: Vec3::Z };
+    /// assert_eq!(exp_derivative(Twist::ZERO).apply(step), step);
+    /// ```
     #[must_use]
     pub fn apply(&self, t: Twist) -> Twist {
         Twist {
@@ -56,6 +65,17 @@ pub fn exp(x: Twist) -> Pose {
 }
 
 /// The logarithm: the twist that produces this displacement in one second, rotating by at most pi.
+///
+/// ```
+/// use cylindroid::spatial::log;
+/// use cylindroid::{Pose, Rotation, Vec3};
+///
+/// // A quarter turn about z, and 1 m along it.
+/// let quarter = std::f64::consts::FRAC_PI_2;
+/// let twist = log(Pose { rotation: Rotation::about_z(quarter), translation: Vec3::Z });
+/// assert!((twist.angular - Vec3::Z * quarter).norm() < 1e-15);
+/// assert!((twist.linear - Vec3::Z).norm() < 1e-15);
+/// ```
 #[must_use]
 pub fn log(pose: Pose) -> Twist {
     let angular = pose.rotation.log();
@@ -85,6 +105,16 @@ impl Pose {
 }
 
 /// V: `d exp(w) = skew(V dw) exp(w)`, the left derivative of the rotation by the vector `w`.
+///
+/// ```
+/// use cylindroid::spatial::rotation_exp_derivative;
+/// use cylindroid::{Rotation, Vec3};
+///
+/// // exp(w + d) = exp(V d) exp(w), to first order in d.
+/// let (w, d) = (Vec3::new(0.3, -0.2, 0.5), Vec3::new(1e-6, 2e-6, -1e-6));
+/// let angular = (Rotation::exp(w + d) * Rotation::exp(w).inverse()).log();
+/// assert!((rotation_exp_derivative(w) * d - angular).norm() < 1e-11);
+/// ```
 #[must_use]
 pub fn rotation_exp_derivative(w: Vec3) -> Mat3 {
     let t = w.norm();
@@ -93,6 +123,15 @@ pub fn rotation_exp_derivative(w: Vec3) -> Mat3 {
 }
 
 /// V^-1: the rate of the rotation vector for an angular velocity; |w| < 2 pi.
+///
+/// ```
+/// use cylindroid::spatial::{rotation_exp_derivative, rotation_log_derivative};
+/// use cylindroid::Vec3;
+///
+/// let (w, d) = (Vec3::new(0.3, -0.2, 0.5), Vec3::X);
+/// let again = rotation_log_derivative(w) * (rotation_exp_derivative(w) * d);
+/// assert!((again - d).norm() < 1e-15);
+/// ```
 #[must_use]
 pub fn rotation_log_derivative(w: Vec3) -> Mat3 {
     let k = Mat3::skew(w);
@@ -100,12 +139,33 @@ pub fn rotation_log_derivative(w: Vec3) -> Mat3 {
 }
 
 /// D: `d exp(x) = (D dx)^ exp(x)`, in the axes and at the origin of frame a of `a_from_b`.
+///
+/// ```
+/// use cylindroid::spatial::{exp, exp_derivative, log};
+/// use cylindroid::{Twist, Vec3};
+///
+/// // exp(x + d) = exp(D d) exp(x), to first order in d.
+/// let x = Twist { linear: Vec3::X, angular: Vec3::new(0.3, -0.2, 0.5) };
+/// let d = Twist { linear: Vec3::Z * 1e-6, angular: Vec3::Y * 1e-6 };
+/// let twist = log(exp(x + d) * exp(x).inverse());
+/// assert!((exp_derivative(x).apply(d) - twist).linear.norm() < 1e-11);
+/// ```
 #[must_use]
 pub fn exp_derivative(x: Twist) -> Derivative6 {
     Derivative6 { diagonal: rotation_exp_derivative(x.angular), coupling: coupling(x) }
 }
 
 /// D^-1: the rate of `log` for a twist in the axes and at the origin of frame a; |w| < 2 pi.
+///
+/// ```
+/// use cylindroid::spatial::{exp_derivative, log_derivative};
+/// use cylindroid::{Twist, Vec3};
+///
+/// let x = Twist { linear: Vec3::X, angular: Vec3::new(0.3, -0.2, 0.5) };
+/// let d = Twist { linear: Vec3::Y, angular: Vec3::Z };
+/// let again = log_derivative(x).apply(exp_derivative(x).apply(d));
+/// assert!((again - d).linear.norm() < 1e-15 && (again - d).angular.norm() < 1e-15);
+/// ```
 #[must_use]
 pub fn log_derivative(x: Twist) -> Derivative6 {
     let inverse = rotation_log_derivative(x.angular);

@@ -53,12 +53,27 @@ impl Twist {
     }
 
     /// The Killing form `tr(ad(self) ad(other))` [rad^2/s^2].
+    ///
+    /// ```
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// let rotation = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
+    /// assert_eq!(rotation.killing(rotation), -4.0);
+    /// ```
     #[must_use]
     pub fn killing(self, other: Self) -> f64 {
         -4.0 * self.angular.dot(other.angular)
     }
 
     /// `Q_h self` as the wrench whose power with any twist is the form of pitch `h` with it.
+    ///
+    /// ```
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// let a = Twist { linear: Vec3::X, angular: Vec3::Z };
+    /// let b = Twist { linear: Vec3::Y, angular: Vec3::new(0.5, 0.0, 0.5) };
+    /// assert_eq!(b.power(a.lowered(0.2)), a.pitch_form(b, 0.2));
+    /// ```
     #[must_use]
     #[inline]
     pub fn lowered(self, h: f64) -> Wrench {
@@ -72,6 +87,14 @@ impl Twist {
 impl Wrench {
     /// The inverse of the form of pitch `h` on wrenches of one frame. For an infinite pitch the
     /// form has no inverse; its limit is `f_a . f_b`.
+    ///
+    /// ```
+    /// use cylindroid::{Vec3, Wrench};
+    ///
+    /// // A force along z with a moment of -0.2 N m per N vanishes in the form of pitch 0.2 m/rad.
+    /// let wrench = Wrench { force: Vec3::Z, moment: Vec3::Z * -0.2 };
+    /// assert!(wrench.pitch_form(wrench, 0.2).abs() < 1e-15);
+    /// ```
     #[must_use]
     #[inline]
     pub fn pitch_form(self, other: Self, h: f64) -> f64 {
@@ -83,6 +106,13 @@ impl Wrench {
     }
 
     /// `Q_h^-1 self`: the twist that [`Twist::lowered`] takes to this wrench, for a finite pitch.
+    ///
+    /// ```
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// let twist = Twist { linear: Vec3::X, angular: Vec3::Z };
+    /// assert_eq!(twist.lowered(0.2).raised(0.2), twist);
+    /// ```
     #[must_use]
     #[inline]
     pub fn raised(self, h: f64) -> Twist {

@@ -27,6 +27,16 @@ impl Pose {
     pub const IDENTITY: Self = Self { rotation: Rotation::IDENTITY, translation: Vec3::ZERO };
 
     /// A pose without rotation.
+    ///
+    /// ```
+    /// use cylindroid::{Pose, Rotation, Vec3};
+    ///
+    /// // 0.5 m along x, then a rotation about the z axis there.
+    /// let turn = Pose::from_rotation(Rotation::about_z(0.3));
+    /// let pose = Pose::from_translation(Vec3::X * 0.5) * turn;
+    /// assert_eq!(pose.translation, Vec3::X * 0.5);
+    /// assert_eq!(pose.rotation, Rotation::about_z(0.3));
+    /// ```
     #[must_use]
     pub const fn from_translation(translation: Vec3) -> Self {
         Self { rotation: Rotation::IDENTITY, translation }

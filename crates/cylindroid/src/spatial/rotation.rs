@@ -94,6 +94,13 @@ impl Rotation {
     }
 
     /// The rotation about z by `angle` rad.
+    ///
+    /// ```
+    /// use cylindroid::{Rotation, Vec3};
+    ///
+    /// let quarter = Rotation::about_z(std::f64::consts::FRAC_PI_2);
+    /// assert!((quarter * Vec3::X - Vec3::Y).norm() < 1e-15);
+    /// ```
     #[must_use]
     pub fn about_z(angle: f64) -> Self {
         let (s, c) = sin_cos(angle);
@@ -102,6 +109,14 @@ impl Rotation {
 
     /// A rotation that takes z to the direction of `axis`: exact for the six coordinate axes.
     /// `None` if the axis has no direction.
+    ///
+    /// ```
+    /// use cylindroid::{Rotation, Vec3};
+    ///
+    /// let rotation = Rotation::z_to(Vec3::new(1.0, 1.0, 0.0)).unwrap();
+    /// assert!((rotation * Vec3::Z - (Vec3::X + Vec3::Y) * 0.5_f64.sqrt()).norm() < 1e-15);
+    /// assert_eq!(Rotation::z_to(Vec3::ZERO), None);
+    /// ```
     #[must_use]
     pub fn z_to(axis: Vec3) -> Option<Self> {
         let n = axis.unit(ZERO_AXIS)?;
@@ -122,6 +137,16 @@ impl Rotation {
     }
 
     /// The rotation with this matrix, made exactly orthonormal.
+    ///
+    /// ```
+    /// use cylindroid::Rotation;
+    /// use cylindroid::spatial::Mat3;
+    ///
+    /// let half = Mat3::from_rows([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]);
+    /// assert!((Rotation::from_matrix(half)?.log().norm() - std::f64::consts::PI).abs() < 1e-15);
+    /// assert!(Rotation::from_matrix(half * 2.0).is_err());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// A non-finite matrix, or farther from a rotation than `tolerance::ORTHONORMAL`.

@@ -105,6 +105,14 @@ impl Twist {
 
     /// The Lie bracket `ad(self) other`: the rate of `other`, fixed in a body that moves with
     /// `self`, both in one frame.
+    ///
+    /// ```
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// // A rotation about z carries the x axis of a body towards y.
+    /// let axis = |angular| Twist { linear: Vec3::ZERO, angular };
+    /// assert_eq!(axis(Vec3::Z).bracket(axis(Vec3::X)), axis(Vec3::Y));
+    /// ```
     #[doc(alias = "Lie bracket")]
     #[must_use]
     #[inline]
@@ -132,6 +140,14 @@ impl Twist {
 
 impl Wrench {
     /// The same wrench with the moment taken about the point `p` (same axes) (m).
+    ///
+    /// ```
+    /// use cylindroid::{Vec3, Wrench};
+    ///
+    /// // A force along y has the moment -1 N m about a point 1 m along x.
+    /// let push = Wrench { force: Vec3::Y, moment: Vec3::ZERO };
+    /// assert_eq!(push.at_point(Vec3::X).moment, -Vec3::Z);
+    /// ```
     #[must_use]
     pub fn at_point(self, p: Vec3) -> Self {
         Self { force: self.force, moment: self.moment - p.cross(self.force) }

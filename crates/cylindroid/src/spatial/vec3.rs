@@ -75,6 +75,13 @@ impl Vec3 {
     }
 
     /// The unit vector of this direction; `None` if shorter than `shortest` or not finite.
+    ///
+    /// ```
+    /// use cylindroid::Vec3;
+    ///
+    /// assert_eq!(Vec3::new(3.0, 0.0, 4.0).unit(0.0), Some(Vec3::new(0.6, 0.0, 0.8)));
+    /// assert_eq!(Vec3::ZERO.unit(0.0), None);
+    /// ```
     #[must_use]
     pub fn unit(self, shortest: f64) -> Option<Self> {
         let norm = self.norm();
@@ -194,6 +201,13 @@ impl Mat3 {
     }
 
     /// The matrix of the vector product: `skew(a) b = a x b`.
+    ///
+    /// ```
+    /// use cylindroid::Vec3;
+    /// use cylindroid::spatial::Mat3;
+    ///
+    /// assert_eq!(Mat3::skew(Vec3::X) * Vec3::Y, Vec3::X.cross(Vec3::Y));
+    /// ```
     #[doc(alias = "cross product matrix")]
     #[doc(alias = "hat")]
     #[must_use]
