@@ -108,6 +108,16 @@ impl Task {
     }
 
     /// The error from `pose` to `target` in the axes of the task, zero in the other components.
+    ///
+    /// ```
+    /// use cylindroid::ik::Task;
+    /// use cylindroid::{Pose, Rotation, Vec3};
+    ///
+    /// // The position only: an error of orientation does not count.
+    /// let target = Pose { rotation: Rotation::about_z(0.3), translation: Vec3::X };
+    /// let error = Task::POSITION.error(Pose::IDENTITY, target);
+    /// assert_eq!((error.linear, error.angular), (Vec3::X, Vec3::ZERO));
+    /// ```
     #[must_use]
     pub fn error(self, pose: Pose, target: Pose) -> Twist {
         self.seen(pose, pose.error_to(target))
@@ -143,6 +153,19 @@ pub struct Goal {
 
 impl Goal {
     /// The complete pose.
+    ///
+    /// ```
+    /// use cylindroid::ik::{Goal, IkOptions, Task, solve};
+    ///
+    /// // The complete pose, then its position only.
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool());
+    /// let pose = Goal::pose(robot.tool(), target);
+    /// let position = Goal { task: Task::POSITION, ..pose };
+    /// assert!(solve(&robot, &[pose], &IkOptions::default())?.success);
+    /// assert!(solve(&robot, &[position], &IkOptions::default())?.success);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn pose(end_effector: impl Into<EndEffector>, target: Pose) -> Self {
         Self { end_effector: end_effector.into(), target, task: Task::POSE }

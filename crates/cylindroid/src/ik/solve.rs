@@ -110,6 +110,18 @@ enum Remaining {
 
 /// A configuration that reaches all `goals`.
 ///
+/// ```
+/// use cylindroid::ik::{Goal, IkOptions, solve};
+/// use cylindroid::{Pose, Vec3};
+///
+/// // A target out of reach: the closest configuration, and the proof.
+/// let robot = cylindroid::load("ur5e")?;
+/// let far = Pose::from_translation(Vec3::X * 10.0);
+/// let found = solve(&robot, &[Goal::pose(robot.tool(), far)], &IkOptions::default())?;
+/// assert!(!found.success && found.out_of_reach.is_some());
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// No goals, frames of another mechanism, non-finite values, a mechanism with loops.
 #[doc(alias = "random restart")]
@@ -120,6 +132,17 @@ pub fn solve(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Resu
 /// Up to `count` distinct configurations that reach all `goals`, the closest to the initial guess
 /// first; fewer if no more are found within the budget. A redundant arm has infinitely many
 /// solutions, of which some are returned.
+///
+/// ```
+/// use cylindroid::ik::{Goal, IkOptions, solve_distinct};
+///
+/// // Elbow up and down, shoulder left and right, wrist flipped or not.
+/// let robot = cylindroid::load("ur5e")?;
+/// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool());
+/// let goals = [Goal::pose(robot.tool(), target)];
+/// assert_eq!(solve_distinct(&robot, &goals, &IkOptions::default(), 8)?.len(), 8);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`solve`].

@@ -141,6 +141,22 @@ impl Chain {
 
     /// The Jacobian for this chain's coordinates at the last [`Chain::set`], into `out` (6 x n).
     ///
+    /// ```
+    /// use cylindroid::kinematics::Chain;
+    /// use cylindroid::{Matrix, ReferenceFrame};
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let mut chain = Chain::new(&robot, robot.tool());
+    /// let mut jacobian = Matrix::zeros(6, chain.n());
+    /// let pose = chain.set(robot.home());
+    /// chain.jacobian_into(ReferenceFrame::Local, &mut jacobian);
+    /// let state = robot.state(robot.home())?;
+    /// let expected = state.jacobian(robot.tool(), ReferenceFrame::Local);
+    /// assert!(jacobian.max_difference(&expected) < 1e-12);
+    /// assert!((pose.translation - state.pose(robot.tool()).translation).norm() < 1e-12);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Panics
     /// If `out` is not 6 x n.
     #[inline]
@@ -160,6 +176,20 @@ impl Chain {
     }
 
     /// The Hessian for this chain's coordinates, into `out` (n matrices of 6 x n).
+    ///
+    /// ```
+    /// use cylindroid::kinematics::Chain;
+    /// use cylindroid::{Matrix, ReferenceFrame};
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let mut chain = Chain::new(&robot, robot.tool());
+    /// chain.set(robot.home());
+    /// let mut hessian = vec![Matrix::zeros(6, chain.n()); chain.n()];
+    /// chain.hessian_into(ReferenceFrame::World, &mut hessian);
+    /// // The last joint carries no other: only its own column depends on it.
+    /// assert_eq!(hessian[5].column(0), [0.0; 6]);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Panics
     /// If `out` has other sizes.

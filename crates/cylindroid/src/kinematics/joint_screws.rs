@@ -38,6 +38,15 @@ impl State {
 
     /// The screws of a loop-closure joint (place in `Mechanism::loops`); none for a fixed or free
     /// joint or an invalid place.
+    ///
+    /// ```
+    /// let mechanism = cylindroid::load("five-bar")?;
+    /// let state = mechanism.state(mechanism.home())?;
+    /// // The revolute joint that closes the loop: one screw of pitch zero.
+    /// let screws = state.loop_screws(0);
+    /// assert!(screws.len() == 1 && screws[0].pitch == 0.0);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn loop_screws(&self, closing: usize) -> Vec<Screw> {
         let mechanism = self.mechanism();

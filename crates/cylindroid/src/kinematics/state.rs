@@ -65,6 +65,15 @@ impl Mechanism {
 impl State {
     /// Moves to another `q`, without allocation; on an error the state stays as it was.
     ///
+    /// ```
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let mut state = robot.state(robot.home())?;
+    /// let before = state.pose(robot.tool());
+    /// state.set(&[0.1, -1.0, 1.2, 0.3, 0.4, 0.5])?;
+    /// assert!((state.pose(robot.tool()).translation - before.translation).norm() > 0.1);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A `q` of the wrong size or with a non-finite entry.
     pub fn set(&mut self, q: &[f64]) -> Result<()> {
@@ -132,6 +141,20 @@ impl State {
 
     /// [`State::jacobian`] without allocation.
     ///
+    /// ```
+    /// use cylindroid::{Matrix, ReferenceFrame};
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let mut state = robot.state(robot.home())?;
+    /// let mut jacobian = Matrix::zeros(6, robot.n());
+    /// for step in 0..10 {
+    ///     state.set(&[0.1 * f64::from(step); 6])?;
+    ///     state.jacobian_into(robot.tool(), ReferenceFrame::World, &mut jacobian);
+    /// }
+    /// assert_eq!(jacobian, state.jacobian(robot.tool(), ReferenceFrame::World));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Panics
     /// If `out` is not 6 x n.
     pub fn jacobian_into(
@@ -149,6 +172,19 @@ impl State {
     /// with [`ReferenceFrame::World`] has these columns where the coordinate moves the frame and
     /// zeros elsewhere; joints that mimic another come on top, each with its own twist, and are not
     /// in here.
+    ///
+    /// ```
+    /// use cylindroid::{Matrix, ReferenceFrame};
+    ///
+    /// // In a serial arm every joint moves the tool.
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let state = robot.state(robot.home())?;
+    /// let mut twists = Matrix::zeros(6, 6);
+    /// state.joint_twists_into(&mut twists);
+    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::World);
+    /// assert!(twists.max_difference(&jacobian) < 1e-12);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Panics
     /// If `out` is not 6 x n.
@@ -242,6 +278,18 @@ impl State {
     }
 
     /// The twist of the tool at the joint velocities `velocities`.
+    ///
+    /// ```
+    /// use cylindroid::{ReferenceFrame, Vec3};
+    ///
+    /// // The base joint rotates the tool about the vertical at 0.5 rad/s.
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let state = robot.state(robot.home())?;
+    /// let velocities = [0.5, 0.0, 0.0, 0.0, 0.0, 0.0];
+    /// let twist = state.twist(&velocities, robot.tool(), ReferenceFrame::LocalWorldAligned)?;
+    /// assert!((twist.angular - Vec3::Z * 0.5).norm() < 1e-12);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// Joint velocities of the wrong size or non-finite.

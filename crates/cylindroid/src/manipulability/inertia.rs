@@ -18,6 +18,16 @@ use crate::spatial::Mat3;
 /// The inertia of the body that carries `frame`, about the frame's origin in world axes; `None` if
 /// the file gives it no mass.
 ///
+/// ```
+/// use cylindroid::manipulability::body_inertia;
+///
+/// // The catalogue gives no masses to the links of a four-bar.
+/// let mechanism = cylindroid::load("four-bar")?;
+/// let state = mechanism.state(mechanism.home())?;
+/// assert!(body_inertia(&state, mechanism.reference()).is_none());
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Panics
 /// If the frame is of another mechanism.
 #[must_use]

@@ -77,6 +77,18 @@ impl Metrics {
     /// Lengths measured in `length` (m), beside angles: efficiencies without unit. Of the units
     /// those of the object and of the actuated joints are read.
     ///
+    /// ```
+    /// use cylindroid::closure::{ClosedChain, MotionSpace};
+    /// use cylindroid::manipulability::{Manipulability, Metrics};
+    ///
+    /// let arm = cylindroid::load("ur5e")?;
+    /// let chain = ClosedChain::of(&arm.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?, None, None)?;
+    /// let relation = MotionSpace::of(&chain.constraint).relation();
+    /// let metrics = Metrics::characteristic_length(&chain.units, arm.reach())?;
+    /// assert_eq!(Manipulability::of(&relation, &metrics)?.kinematic.values().len(), 6);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A length that is not positive and finite, or whose square is not.
     pub fn characteristic_length(units: &Units, length: f64) -> Result<Self> {

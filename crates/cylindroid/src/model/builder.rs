@@ -29,13 +29,15 @@ const LEAST_REACH: f64 = 1e-3;
 /// Collects links, joints and frames; [`Builder::build`] validates them.
 ///
 /// ```
-/// use cylindroid::Mechanism;
 /// use cylindroid::model::{JointKind, JointSpec};
+/// use cylindroid::{Mechanism, Pose, Vec3};
 ///
 /// let mut builder = Mechanism::builder("lever");
 /// builder.joint(JointSpec::new("hinge", JointKind::Revolute, "base", "lever"));
+/// builder.frame("tip", "lever", Pose::from_translation(Vec3::X)).tool("tip");
 /// let lever = builder.build()?;
 /// assert_eq!((lever.n(), lever.links().len()), (1, 2));
+/// assert_eq!(lever.state(&[0.0])?.pose(lever.tool()).translation, Vec3::X);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -85,12 +87,13 @@ impl Builder {
     }
 
     /// Adds a loop joint: a joint that closes a loop of the tree. Both links must exist without it.
+    /// [`LoopJointSpec::new`] has an example.
     pub fn loop_joint(&mut self, joint: LoopJointSpec) -> &mut Self {
         self.loops.push(joint);
         self
     }
 
-    /// Adds a contact; both links must exist without it.
+    /// Adds a contact; both links must exist without it. [`ContactSpec::new`] has an example.
     pub fn contact(&mut self, contact: ContactSpec) -> &mut Self {
         self.contacts.push(contact);
         self

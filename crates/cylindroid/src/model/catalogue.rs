@@ -51,6 +51,12 @@ pub const fn names() -> &'static [&'static str] {
 }
 
 /// All models, with what they are and where their numbers come from.
+///
+/// ```
+/// let entries = cylindroid::catalogue::entries();
+/// let delta = entries.iter().find(|entry| entry.name == "delta").unwrap();
+/// assert!(delta.loops > 0 && !delta.source.is_empty());
+/// ```
 #[must_use]
 pub fn entries() -> Vec<Entry> {
     let read = |(name, text): (&&'static str, &&str)| {
@@ -68,6 +74,15 @@ pub fn entries() -> Vec<Entry> {
 }
 
 /// A model by name.
+///
+/// ```
+/// let stewart = cylindroid::catalogue::load("stewart")?;
+/// assert!(stewart.is_closed());
+/// // A misspelt name is answered with the nearest ones.
+/// let error = cylindroid::catalogue::load("stuart").unwrap_err();
+/// assert!(error.to_string().contains("stewart"));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::UnknownName`] with the nearest names.

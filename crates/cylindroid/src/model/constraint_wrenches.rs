@@ -23,6 +23,13 @@ impl ContactKind {
     /// The constraint wrenches of the contact (table 1), in the contact frame.
     ///
     /// In the plane a soft finger is a hard finger, and a line with friction is complete.
+    ///
+    /// ```
+    /// use cylindroid::model::{ContactKind, Dimension};
+    ///
+    /// let rows = |kind: ContactKind| kind.constraint_wrenches(Dimension::Spatial).len();
+    /// assert_eq!((rows(ContactKind::HardFinger), rows(ContactKind::SoftFinger)), (3, 4));
+    /// ```
     #[must_use]
     pub fn constraint_wrenches(self, dimension: Dimension) -> Vec<Wrench> {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);

@@ -57,6 +57,13 @@ impl ContactKind {
 
     /// The kind of a name.
     ///
+    /// ```
+    /// use cylindroid::model::ContactKind;
+    ///
+    /// assert_eq!(ContactKind::parse("soft_finger").ok(), Some(ContactKind::SoftFinger));
+    /// assert!(ContactKind::parse("finger").is_err());
+    /// ```
+    ///
     /// # Errors
     /// [`Error::UnknownName`] with the nearest kinds.
     pub fn parse(name: &str) -> Result<Self> {
@@ -107,6 +114,18 @@ pub struct ContactSpec {
 impl ContactSpec {
     /// A contact at the origins of both links, with its normal along z and no coefficient of
     /// friction.
+    ///
+    /// ```
+    /// use cylindroid::Mechanism;
+    /// use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec};
+    ///
+    /// let mut builder = Mechanism::builder("a finger on a free object");
+    /// builder.joint(JointSpec::new("slide", JointKind::Prismatic, "base", "finger"));
+    /// builder.joint(JointSpec::new("float", JointKind::Free, "base", "object"));
+    /// builder.contact(ContactSpec::new("touch", ContactKind::HardFinger, "finger", "object"));
+    /// assert_eq!(builder.build()?.contacts()[0].kind, ContactKind::HardFinger);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn new(name: &str, kind: ContactKind, a: &str, b: &str) -> Self {
         Self {

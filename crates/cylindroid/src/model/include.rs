@@ -49,6 +49,28 @@ impl Builder {
     /// Adds a whole mechanism. Its root is attached to `parent` by a joint `name/base`
     /// (`parent/base` without a name), fixed or free.
     ///
+    /// ```
+    /// use cylindroid::model::{Inclusion, Mechanism};
+    /// use cylindroid::{Pose, Vec3};
+    ///
+    /// // Two arms, 1 m apart.
+    /// let arm = cylindroid::load("ur5e")?;
+    /// let mut builder = Mechanism::builder("two arms");
+    /// for (name, y) in [("left", 0.5), ("right", -0.5)] {
+    ///     builder.include(&arm, Inclusion {
+    ///         name,
+    ///         parent: "ground",
+    ///         parent_from_root: Pose::from_translation(Vec3::Y * y),
+    ///         free: false,
+    ///         start: arm.home(),
+    ///     })?;
+    /// }
+    /// let both = builder.build()?;
+    /// assert_eq!(both.n(), 12);
+    /// assert!(both.limits_of(&format!("left/{}", arm.coordinates()[0].name)).is_some());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A start configuration that does not match the mechanism.
     pub fn include(&mut self, robot: &Mechanism, how: Inclusion<'_>) -> Result<&mut Self> {

@@ -13,6 +13,15 @@ use crate::tolerance::ZERO_AXIS;
 impl JointKind {
     /// The pose of the joint frame moved by `q`, in the joint frame at zero. Missing coordinates
     /// count as zero.
+    ///
+    /// ```
+    /// use cylindroid::Vec3;
+    /// use cylindroid::model::JointKind;
+    ///
+    /// // Half a turn advances a helical joint by pi times its pitch.
+    /// let half = JointKind::Helical { pitch: 0.01 }.transform(Vec3::Z, &[std::f64::consts::PI]);
+    /// assert_eq!(half.translation, Vec3::Z * (0.01 * std::f64::consts::PI));
+    /// ```
     #[must_use]
     pub fn transform(self, axis: Vec3, q: &[f64]) -> Pose {
         let axis = axis.unit(ZERO_AXIS).unwrap_or(Vec3::Z);

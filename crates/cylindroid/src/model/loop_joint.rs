@@ -64,6 +64,29 @@ pub struct LoopJointSpec {
 
 impl LoopJointSpec {
     /// A passive joint about (or along) z at the origins of both links, without limits.
+    ///
+    /// ```
+    /// use cylindroid::model::{JointKind, JointSpec, LoopJointSpec, Mechanism};
+    /// use cylindroid::{Pose, Vec3};
+    ///
+    /// // A parallelogram: two cranks of 0.5 m on pivots 1 m apart, and a coupler of 1 m.
+    /// let hinge = |name: &str, parent: &str, child: &str, x: f64, y: f64| JointSpec {
+    ///     parent_from_joint: Pose::from_translation(Vec3::new(x, y, 0.0)),
+    ///     ..JointSpec::new(name, JointKind::Revolute, parent, child)
+    /// };
+    /// let mut builder = Mechanism::builder("parallelogram");
+    /// builder.joint(hinge("crank", "base", "left", 0.0, 0.0));
+    /// builder.joint(hinge("elbow", "left", "coupler", 0.0, 0.5));
+    /// builder.joint(hinge("rocker", "base", "right", 1.0, 0.0));
+    /// builder.loop_joint(LoopJointSpec {
+    ///     link_a_from_joint: Pose::from_translation(Vec3::X),
+    ///     link_b_from_joint: Pose::from_translation(Vec3::new(0.0, 0.5, 0.0)),
+    ///     ..LoopJointSpec::new("closure", JointKind::Revolute, "coupler", "right")
+    /// });
+    /// let mechanism = builder.build()?;
+    /// assert!(mechanism.is_closed() && mechanism.loops().len() == 1);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn new(name: &str, kind: JointKind, a: &str, b: &str) -> Self {
         Self {

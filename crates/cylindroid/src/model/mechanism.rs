@@ -254,6 +254,14 @@ impl Mechanism {
 
     /// A frame by name.
     ///
+    /// ```
+    /// let robot = cylindroid::load("panda")?;
+    /// let hand = robot.frame("hand_tcp")?;
+    /// assert_eq!(robot.frame_of(hand).name, "hand_tcp");
+    /// assert!(robot.frame("hand").is_err()); // the message lists the nearest names
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::UnknownName`] with the nearest names.
     pub fn frame(&self, name: &str) -> Result<FrameId> {
@@ -336,6 +344,15 @@ impl Mechanism {
 
     /// Returns an error for a `q` of the wrong size or with non-finite values, naming the joint.
     ///
+    /// ```
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let mut q = robot.home().to_vec();
+    /// q[1] = f64::NAN;
+    /// let error = robot.check_q("start", &q).unwrap_err();
+    /// assert!(error.to_string().contains("start[1]"));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::Dimension`], [`Error::NotFinite`].
     pub fn check_q(&self, what: &str, q: &[f64]) -> Result<()> {
@@ -382,6 +399,14 @@ impl Mechanism {
     }
 
     /// Coordinates outside their position limits.
+    ///
+    /// ```
+    /// let robot = cylindroid::load("panda")?;
+    /// let mut q = robot.home().to_vec();
+    /// q[3] = 1.0; // the elbow cannot bend that way
+    /// assert_eq!(robot.outside_limits(&q).collect::<Vec<_>>(), [3]);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     pub fn outside_limits<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
         self.data
             .coordinates
@@ -394,6 +419,13 @@ impl Mechanism {
 
     /// `q` after `dt` seconds at constant joint velocities: `q + dt * rates`, with rotation vectors
     /// and free bodies integrated on their group.
+    ///
+    /// ```
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let q = robot.integrate(&[0.0; 6], &[0.1, 0.0, 0.0, 0.0, 0.0, -0.2], 0.5)?;
+    /// assert_eq!(q, [0.05, 0.0, 0.0, 0.0, 0.0, -0.1]);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Mechanism::check_q`].

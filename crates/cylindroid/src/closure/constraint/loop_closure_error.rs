@@ -27,6 +27,18 @@ impl LoopClosureError {
     }
 
     /// True up to `tolerance::CLOSED` of a length (m), mostly the reach, and in angle.
+    ///
+    /// ```
+    /// use cylindroid::closure::ClosedChain;
+    ///
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let at = |q: &[f64]| ClosedChain::of(&five_bar.state(q)?, None, None);
+    /// let mut q = five_bar.home().to_vec();
+    /// assert!(at(&q)?.closure_error.is_closed(five_bar.reach()));
+    /// q[0] += 0.1; // one joint alone opens the loop
+    /// assert!(!at(&q)?.closure_error.is_closed(five_bar.reach()));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn is_closed(self, length: f64) -> bool {
         self.distance <= CLOSED * length && self.angle <= CLOSED

@@ -107,6 +107,26 @@ impl Constraint {
 
     /// The same constraint with lengths divided by the characteristic length `length` (m).
     ///
+    /// ```
+    /// use cylindroid::closure::{Constraint, ConstraintBlocks, Unit, Units};
+    /// use cylindroid::Matrix;
+    ///
+    /// // A lever of 2 m pushes a slider: v = 2 q'.
+    /// let constraint = Constraint::new(ConstraintBlocks {
+    ///     actuated: Matrix::from_rows(&[[2.0]]).unwrap(),
+    ///     passive: Matrix::zeros(1, 0),
+    ///     grasp: Matrix::identity(1),
+    /// })?;
+    /// let units = Units {
+    ///     rows: vec![Unit::Length],
+    ///     actuated: vec![Unit::Angle],
+    ///     passive: vec![],
+    ///     object: vec![Unit::Length],
+    /// };
+    /// assert_eq!(constraint.with_length(&units, 0.5)?.length(), 0.5);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// The wrong number of units; a length that is not positive and finite, or so large or small
     /// that scaled entries overflow.
@@ -129,6 +149,19 @@ impl Constraint {
     }
 
     /// A serial arm: `u = J q`, all joints actuated.
+    ///
+    /// ```
+    /// use cylindroid::closure::{Constraint, Mobility};
+    /// use cylindroid::ReferenceFrame;
+    ///
+    /// // The one redundant motion of a 7R arm.
+    /// let panda = cylindroid::load("panda")?;
+    /// let state = panda.state(panda.home())?;
+    /// let jacobian = state.jacobian(panda.tool(), ReferenceFrame::LocalWorldAligned);
+    /// let mobility = Mobility::of(&Constraint::serial(&jacobian)?);
+    /// assert_eq!((mobility.dof.dimension(), mobility.redundancy.dimension()), (7, 1));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// NaN or infinity.

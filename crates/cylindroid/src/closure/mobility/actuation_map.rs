@@ -117,6 +117,18 @@ impl ActuationMap {
 
     /// y for desired rates of all joints (n + e): the weighted projection of the actuated ones onto
     /// the motions that the loops allow.
+    ///
+    /// ```
+    /// use cylindroid::closure::ActuationMap;
+    ///
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let map = ActuationMap::of(&five_bar.state(five_bar.home())?, &[], &[])?;
+    /// // A motion that satisfies the loop constraints is its own projection.
+    /// let y = [0.3, -0.2];
+    /// let again = map.project(&map.rates(&y));
+    /// assert!(again.iter().zip(y).all(|(a, b)| (a - b).abs() < 1e-12));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn project(&self, desired: &[f64]) -> Vec<f64> {
         let along = |j: usize| {

@@ -26,6 +26,19 @@ pub struct MobilityCounts {
 
 impl MobilityCounts {
     /// At one configuration.
+    ///
+    /// ```
+    /// use cylindroid::closure::{ClosedChain, MobilityCounts, MotionSpace};
+    ///
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let chain = ClosedChain::of(&five_bar.state(five_bar.home())?, None, None)?;
+    /// let motions = MotionSpace::of(&chain.constraint);
+    /// let counts = MobilityCounts::of(&motions, &motions.relation());
+    /// assert_eq!((counts.idle, counts.redundancy, counts.indeterminacy), (0, 0, 0));
+    /// // The counts of regular configurations are generic.
+    /// assert_eq!(counts.generic(counts), counts);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn of(motions: &MotionSpace, relation: &Relation) -> Self {
         let RelationDimensions { redundancy, indeterminacy, zero_torque, .. } =

@@ -45,6 +45,19 @@ pub struct MotionSpace {
 
 impl MotionSpace {
     /// With the default threshold [`CLOSURE_RANK`].
+    ///
+    /// ```
+    /// use cylindroid::closure::{ClosedChain, MotionSpace, RowSelection};
+    ///
+    /// let four_bar = cylindroid::load("four-bar")?;
+    /// let chain = ClosedChain::of(&four_bar.state(four_bar.home())?, None, None)?;
+    /// let motions = MotionSpace::of(&chain.constraint);
+    /// assert_eq!(motions.dof(), 1);
+    /// // With the actuated joint at rest nothing moves.
+    /// let rows = RowSelection { actuated: true, ..RowSelection::default() };
+    /// assert_eq!(motions.vanishing_on(rows).cols(), 0);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn of(constraint: &Constraint) -> Self {
         Self::with_threshold(constraint, CLOSURE_RANK)

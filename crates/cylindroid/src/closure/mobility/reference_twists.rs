@@ -18,6 +18,17 @@ use crate::spatial::Twist;
 impl ClosedChain {
     /// A basis of the motions of the reference link at `state`, for which this chain was made:
     /// twists at the world origin, world axes.
+    ///
+    /// ```
+    /// use cylindroid::closure::ClosedChain;
+    ///
+    /// // Two actuated joints move the end point of a five-bar in the plane.
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let state = five_bar.state(five_bar.home())?;
+    /// let twists = ClosedChain::of(&state, None, None)?.reference_twists(&state);
+    /// assert!(twists.len() == 2 && twists.iter().all(|twist| twist.linear.z == 0.0));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn reference_twists(&self, state: &State) -> Vec<Twist> {
         let parts = MotionSpace::of(&self.constraint).relation().motions();

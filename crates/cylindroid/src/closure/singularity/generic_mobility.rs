@@ -44,6 +44,17 @@ impl GenericMobility {
     /// For the mechanism of `state`, its reference frame or another, with its reach as
     /// characteristic length or another (m).
     ///
+    /// ```
+    /// use cylindroid::closure::GenericMobility;
+    ///
+    /// // A straight elbow is singular; generically the arm has rank 6.
+    /// let arm = cylindroid::load("ur5e")?;
+    /// let state = arm.state(&[0.0, -0.6, 0.0, 0.4, 1.0, 0.0])?;
+    /// let generic = GenericMobility::of(&state, None, None)?;
+    /// assert!(generic.others > 0 && generic.counts.zero_torque == 0);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`ClosedChain::of`].
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {

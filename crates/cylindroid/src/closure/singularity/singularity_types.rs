@@ -103,6 +103,18 @@ impl SingularityDistances {
 
 impl Singularities {
     /// At a configuration, against the generic counts of its mechanism.
+    ///
+    /// ```
+    /// use cylindroid::closure::{ClosedChain, GenericMobility, MotionSpace, Singularities};
+    ///
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let state = five_bar.state(five_bar.home())?;
+    /// let motions = MotionSpace::of(&ClosedChain::of(&state, None, None)?.constraint);
+    /// let generic = GenericMobility::of(&state, None, None)?.counts;
+    /// let found = Singularities::of(&motions, &motions.relation(), &generic);
+    /// assert!(found.is_regular() && found.distances.type_ii > 0.0);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn of(motions: &MotionSpace, relation: &Relation, generic: &MobilityCounts) -> Self {
         Self::with_counts(&MobilityCounts::of(motions, relation), motions, relation, generic)

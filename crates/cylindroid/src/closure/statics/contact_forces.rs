@@ -135,6 +135,17 @@ impl<'a> ContactForceSolver<'a> {
 
 /// ker G: contact forces without a wrench on the object (internal forces). They require joint
 /// torques unless they are hyperstatic.
+///
+/// ```
+/// use cylindroid::closure::{ClosedChain, internal_forces, structural_forces};
+///
+/// // Two arms squeeze their common object; no force is without joint torques.
+/// let arms = cylindroid::load("two-arm")?;
+/// let chain = ClosedChain::of(&arms.state(arms.home())?, None, None)?;
+/// assert!(internal_forces(&chain.constraint).dimension() > 0);
+/// assert_eq!(structural_forces(&chain.constraint).dimension(), 0);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 #[must_use]
 #[doc(alias = "squeeze forces")]
 pub fn internal_forces(constraint: &Constraint) -> Subspace {

@@ -33,6 +33,39 @@ pub struct ContactProperties {
 /// The contacts on the link that carries `object`, with their indices in the mechanism;
 /// `properties` gives the properties of each.
 ///
+/// ```
+/// use cylindroid::closure::{
+///     ContactProperties, GraspMetric, WrenchSpace, grasp_contacts, grasp_quality,
+/// };
+/// use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec, Mechanism};
+/// use cylindroid::{Pose, Rotation, Vec3};
+///
+/// // Two fingers on opposite sides of a free object.
+/// let mut builder = Mechanism::builder("gripper");
+/// builder.joint(JointSpec::new("float", JointKind::Free, "base", "object"));
+/// for (name, side) in [("left", -1.0), ("right", 1.0)] {
+///     let finger = format!("{name} finger");
+///     builder.joint(JointSpec::new(&finger, JointKind::Prismatic, "base", &finger));
+///     let inward = Rotation::z_to(Vec3::X * -side).unwrap();
+///     let at = Pose { rotation: inward, translation: Vec3::X * (0.05 * side) };
+///     builder.contact(ContactSpec {
+///         link_a_from_contact: at,
+///         link_b_from_contact: at,
+///         friction: Some(0.5),
+///         ..ContactSpec::new(name, ContactKind::HardFinger, &finger, "object")
+///     });
+/// }
+/// let gripper = builder.build()?;
+/// let (state, object) = (gripper.state(gripper.home())?, gripper.frame("object")?);
+/// let properties = |_: &_| ContactProperties { mu: None, torsion: None, strength: 1.0 };
+/// let fingers: Vec<_> =
+///     grasp_contacts(&state, object, properties)?.into_iter().map(|(_, f)| f).collect();
+/// let space = WrenchSpace::about(&state, object, &fingers)?;
+/// // Hard fingers resist no moment about the line through both.
+/// assert!(!grasp_quality(&fingers, space, GraspMetric::L1)?.closed);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// A frame of another mechanism; a contact on it that is no point contact, or whose coefficients
 /// are unknown.

@@ -47,6 +47,27 @@ impl TransmittedWrench {
 
 /// The wrenches of all loop joints, then of all contacts, from the forces of the rows.
 ///
+/// ```
+/// use cylindroid::closure::{
+///     ClosedChain, MotionSpace, StaticLoad, contact_forces, joint_torques, row_compliance,
+///     transmitted_wrenches,
+/// };
+///
+/// // A wrench on the coupler of a four-bar: the force in the joint that closes the loop.
+/// let four_bar = cylindroid::load("four-bar")?;
+/// let state = four_bar.state(four_bar.home())?;
+/// let chain = ClosedChain::of(&state, None, None)?;
+/// let motions = MotionSpace::of(&chain.constraint);
+/// let wrench = [0.0, -10.0, 0.0];
+/// let torques = joint_torques(&motions.relation(), &wrench, None)?.torques;
+/// let load = StaticLoad { torques: &torques, wrench: &wrench };
+/// let compliance = row_compliance(&state, &chain, &[1e-6])?;
+/// let found = contact_forces(&chain.constraint, &motions, load, Some(&compliance))?;
+/// let joints = transmitted_wrenches(&state, &chain, &found.forces)?;
+/// assert!(joints[0].wrench.force.norm() > 0.0 && joints[0].normal.is_none());
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// The wrong number of forces, or non-finite values.
 pub fn transmitted_wrenches(

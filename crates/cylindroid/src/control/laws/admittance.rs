@@ -33,6 +33,18 @@ pub struct AdmittanceGain {
 impl Admittance {
     /// Isotropic admittance at the point `point` (m).
     ///
+    /// ```
+    /// use cylindroid::control::{Admittance, AdmittanceGain};
+    /// use cylindroid::{Vec3, Wrench};
+    ///
+    /// // 10 N move the point at 0.02 m/s; the tool does not rotate.
+    /// let gain = AdmittanceGain { force: 0.002, moment: 0.0 };
+    /// let admittance = Admittance::at(Vec3::ZERO, gain)?;
+    /// let twist = admittance.apply(Wrench { force: Vec3::X * 10.0, moment: Vec3::Z });
+    /// assert_eq!((twist.linear, twist.angular), (Vec3::X * 0.02, Vec3::ZERO));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Negative or non-finite gains, a non-finite point.
     pub fn at(point: Vec3, gain: AdmittanceGain) -> Result<Self> {
@@ -54,6 +66,16 @@ impl Admittance {
     }
 
     /// The map with these rows: twist (linear first) from wrench (force first).
+    ///
+    /// ```
+    /// use cylindroid::control::Admittance;
+    ///
+    /// let mut rows = [[0.0; 6]; 6];
+    /// rows[2][2] = 0.001; // yields along z only
+    /// assert!(Admittance::from_rows(rows).is_ok());
+    /// rows[2][2] = -0.001; // would push back
+    /// assert!(Admittance::from_rows(rows).is_err());
+    /// ```
     ///
     /// # Errors
     /// Non-finite entries; a map that would push back against some wrench.
@@ -88,6 +110,19 @@ impl Admittance {
     }
 
     /// The same admittance in another frame; `self` is in frame b.
+    ///
+    /// ```
+    /// use cylindroid::control::{Admittance, AdmittanceGain};
+    /// use cylindroid::{Pose, Rotation, Vec3, Wrench};
+    ///
+    /// let b = Admittance::at(Vec3::X, AdmittanceGain { force: 0.002, moment: 0.1 })?;
+    /// let a_from_b = Pose { rotation: Rotation::about_z(0.5), translation: Vec3::Y };
+    /// let wrench = Wrench { force: Vec3::X, moment: Vec3::Z };
+    /// // The same response, computed in either frame.
+    /// let response = b.seen_from(a_from_b).apply(a_from_b.coadjoint(wrench));
+    /// assert!((response - a_from_b.adjoint(b.apply(wrench))).linear.norm() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn seen_from(&self, a_from_b: Pose) -> Self {
         let b_from_a = a_from_b.inverse();

@@ -70,6 +70,28 @@ impl HybridController {
 
     /// The twist of this step; `projector` projects on the motions controlled in position.
     ///
+    /// ```
+    /// use cylindroid::control::{Admittance, AdmittanceGain, HybridController, HybridInput};
+    /// use cylindroid::screws::{Complement, Projector, ScrewOptions};
+    /// use cylindroid::{Twist, Vec3, Wrench};
+    ///
+    /// // A point on a surface of normal z: force along the normal, the other motions in position.
+    /// let turn = |angular| Twist { linear: Vec3::ZERO, angular };
+    /// let slide = |linear| Twist { linear, angular: Vec3::ZERO };
+    /// let free = [turn(Vec3::X), turn(Vec3::Y), turn(Vec3::Z), slide(Vec3::X), slide(Vec3::Y)];
+    /// let along = Complement::Reciprocal { h: f64::INFINITY };
+    /// let projector = Projector::of(&free, along, &ScrewOptions::default())?.expect("it exists");
+    /// let admittance = Admittance::at(Vec3::ZERO, AdmittanceGain { force: 0.002, moment: 0.0 })?;
+    /// let input = HybridInput {
+    ///     error: slide(Vec3::new(0.01, 0.0, 0.3)), // the z component is left to the force
+    ///     desired: Wrench { force: Vec3::Z * -5.0, moment: Vec3::ZERO },
+    ///     ..HybridInput::default()
+    /// };
+    /// let command = HybridController::new(2.0, admittance)?.command(&projector, &input)?;
+    /// assert!((command.twist.linear - Vec3::new(0.02, 0.0, -0.01)).norm() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Non-finite input, or a twist that overflows.
     pub fn command(&self, projector: &Projector, input: &HybridInput) -> Result<HybridCommand> {

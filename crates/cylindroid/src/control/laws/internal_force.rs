@@ -57,6 +57,24 @@ impl InternalForceController {
     /// `desired` ones; both as exerted by the joints. For a squeeze t at the contacts (a column of
     /// [`internal_forces`](crate::closure::internal_forces)) the desired torques are -J_a^T t.
     ///
+    /// ```
+    /// use cylindroid::closure::{ClosedChain, MotionSpace, internal_forces};
+    /// use cylindroid::control::InternalForceController;
+    ///
+    /// // Two arms squeeze their object as in the first internal force at the contacts.
+    /// let arms = cylindroid::load("two-arm")?;
+    /// let chain = ClosedChain::of(&arms.state(arms.home())?, None, None)?;
+    /// let relation = MotionSpace::of(&chain.constraint).relation();
+    /// let squeeze = internal_forces(&chain.constraint).basis;
+    /// let torques = chain.constraint.blocks().actuated.transpose().mul_vec(squeeze.column(0));
+    /// let desired: Vec<f64> = torques.iter().map(|torque| -torque).collect();
+    /// let measured = vec![0.0; desired.len()];
+    /// let controller = InternalForceController::new(10.0, &vec![1e4; desired.len()])?;
+    /// let command = controller.command(&relation, &desired, &measured)?;
+    /// assert!(command.joint_velocities.iter().any(|velocity| *velocity != 0.0));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Torques or stiffnesses that are non-finite, or whose number is not that of the actuated
     /// joints.

@@ -38,6 +38,19 @@ pub struct AuthorityTimes {
 impl OperatorAuthority {
     /// Zero at first, one after `rise` seconds without active limits.
     ///
+    /// ```
+    /// use cylindroid::control::{AuthorityTimes, OperatorAuthority, Saturation};
+    ///
+    /// let times = AuthorityTimes { dt: 0.01, fall: 0.1, rise: 0.5 };
+    /// let mut authority = OperatorAuthority::new(times)?;
+    /// let free = Saturation { scale: 1.0, direction_lost: false };
+    /// (0..60).for_each(|_| authority.update(free));
+    /// assert_eq!(authority.get(), 1.0);
+    /// authority.update(Saturation { scale: 0.5, direction_lost: false });
+    /// assert!((authority.get() - (-0.1_f64).exp()).abs() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Times that are not positive and finite.
     pub fn new(times: AuthorityTimes) -> Result<Self> {

@@ -60,6 +60,27 @@ impl SharedController {
 
     /// The twist of this step; `projector` projects on the operator's motions along the robot's.
     ///
+    /// ```
+    /// use cylindroid::control::{SharedController, SharedInput};
+    /// use cylindroid::screws::{Complement, Projector, ScrewOptions};
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// // The operator moves the tool in the plane and rotates it; the robot keeps its height.
+    /// let turn = |angular| Twist { linear: Vec3::ZERO, angular };
+    /// let slide = |linear| Twist { linear, angular: Vec3::ZERO };
+    /// let free = [turn(Vec3::X), turn(Vec3::Y), turn(Vec3::Z), slide(Vec3::X), slide(Vec3::Y)];
+    /// let along = Complement::Reciprocal { h: f64::INFINITY };
+    /// let projector = Projector::of(&free, along, &ScrewOptions::default())?.expect("it exists");
+    /// let input = SharedInput {
+    ///     error: slide(Vec3::Z * 0.1),
+    ///     operator: slide(Vec3::new(0.3, 0.0, 0.4)),
+    ///     ..SharedInput::default()
+    /// };
+    /// let command = SharedController::new(2.0)?.command(&projector, &input)?;
+    /// assert!((command.twist.linear - Vec3::new(0.3, 0.0, 0.2)).norm() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Non-finite input, or a twist that overflows.
     pub fn command(&self, projector: &Projector, input: &SharedInput) -> Result<SharedCommand> {

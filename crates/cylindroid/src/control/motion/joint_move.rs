@@ -98,6 +98,21 @@ pub struct JointSample<'a> {
 impl JointMove {
     /// The move along `path` within the bounds of each joint (n of them, in the joint's unit).
     ///
+    /// ```
+    /// use cylindroid::control::{JointMove, JointPath, JointSample, KinematicBounds};
+    ///
+    /// // The second joint moves farther: it bounds the speed of both.
+    /// let path = JointPath::new(&[0.0, 0.0], &[0.5, 1.0])?;
+    /// let bound = KinematicBounds { velocity: 1.0, acceleration: 2.0, jerk: f64::INFINITY };
+    /// let motion = JointMove::new(path, &[bound, bound])?;
+    /// assert_eq!(motion.law().duration(), 1.5); // 1 / v + v / a
+    /// let (mut positions, mut velocities) = ([0.0; 2], [0.0; 2]);
+    /// let out = JointSample { positions: &mut positions, velocities: &mut velocities };
+    /// motion.sample_into(0.75, out)?;
+    /// assert_eq!((positions, velocities), ([0.25, 0.5], [0.5, 1.0]));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A number of bounds other than the number of joints; bounds that are NaN, zero or negative,
     /// or that leave both acceleration and jerk infinite.
@@ -122,6 +137,18 @@ impl JointMove {
     /// The fastest straight move from `q` to `to` within the joint limits of a mechanism: position
     /// limits form a box, so a path between two points within it stays within it. The limits of
     /// joints at rest, which may be 0, are ignored.
+    ///
+    /// ```
+    /// use cylindroid::control::{JointDefaults, JointMove, KinematicBounds};
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let default = KinematicBounds { velocity: 1.0, acceleration: 4.0, jerk: 40.0 };
+    /// let defaults = JointDefaults { angle: default, length: default };
+    /// let to = [0.5, -1.0, 1.2, 0.3, 0.4, 0.5];
+    /// let motion = JointMove::within_limits(&robot, robot.home(), &to, &defaults)?;
+    /// assert!(motion.scaled_to_duration(20.0)?.law().duration() > 19.9);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// Configurations of the wrong size, non-finite or outside position limits; a displacement of a

@@ -65,6 +65,22 @@ pub struct PathDeviation {
 impl CartesianPath {
     /// The straight line between two poses, rotating about a constant axis by at most pi.
     ///
+    /// ```
+    /// use cylindroid::control::CartesianPath;
+    /// use cylindroid::{Pose, Rotation, Vec3};
+    ///
+    /// let to = Pose { rotation: Rotation::about_z(1.0), translation: Vec3::X };
+    /// let path = CartesianPath::line(Pose::IDENTITY, to)?;
+    /// let half = path.pose(0.5);
+    /// assert_eq!(half.translation, Vec3::X * 0.5);
+    /// assert!(half.rotation.angle_to(Rotation::about_z(0.5)) < 1e-15);
+    /// assert_eq!(path.derivative(0.5).linear, Vec3::X); // m per unit of s
+    /// // 0.1 m beside the path.
+    /// let deviation = path.deviation(Pose { translation: Vec3::new(0.5, 0.1, 0.0), ..half });
+    /// assert!((deviation.position - 0.1).abs() < 1e-15 && (deviation.s - 0.5).abs() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A pose that is not finite.
     pub fn line(from: Pose, to: Pose) -> Result<Self> {
@@ -74,6 +90,18 @@ impl CartesianPath {
 
     /// The arc from `from` through the point `via` (m) to `to`, rotating about a constant axis from
     /// the first orientation to the last by at most pi.
+    ///
+    /// ```
+    /// use cylindroid::control::CartesianPath;
+    /// use cylindroid::{Pose, Vec3};
+    ///
+    /// // Half a circle of radius 1 m.
+    /// let (from, to) = (Pose::from_translation(Vec3::X), Pose::from_translation(-Vec3::X));
+    /// let path = CartesianPath::circle(from, Vec3::Y, to)?;
+    /// assert!((path.length() - std::f64::consts::PI).abs() < 1e-14);
+    /// assert!((path.pose(0.5).translation - Vec3::Y).norm() < 1e-15);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// Non-finite input; three collinear points (the height of the triangle is below

@@ -32,6 +32,19 @@ pub struct Reconfiguration {
 /// A configuration within the limits that places the servo's end effector at `target`; coordinates
 /// that do not move the end effector, and those locked by a limit, keep their values of `q`.
 ///
+/// ```
+/// use cylindroid::control::find_reachable_configuration;
+/// use cylindroid::{Servo, ServoOptions};
+///
+/// let robot = cylindroid::load("ur5e")?;
+/// let servo = Servo::new(&robot, ServoOptions::new(&robot))?;
+/// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool());
+/// let found = find_reachable_configuration(&servo, robot.home(), target, 100)?.expect("in reach");
+/// let there = robot.state(&found.q)?.pose(robot.tool());
+/// assert!(there.error_to(target).linear.norm() < servo.options().tolerance.position);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// A `q` of the wrong size or non-finite; a non-finite target.
 pub fn find_reachable_configuration(

@@ -52,6 +52,25 @@ pub struct MotionResult {
 /// `target` gives the target at a time (s) and whether it is the final one, `observe` receives
 /// every step.
 ///
+/// ```
+/// use cylindroid::control::simulate;
+/// use cylindroid::{Servo, ServoOptions};
+///
+/// let robot = cylindroid::load("panda")?;
+/// let target = robot.state(&[0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5])?.pose(robot.tool());
+/// let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;
+/// let mut times = Vec::new();
+/// let result = simulate(
+///     &mut servo,
+///     robot.home(),
+///     10.0,
+///     |_| (target.into(), true),
+///     |sample| times.push(sample.time),
+/// )?;
+/// assert!(result.reached && times.len() == result.steps + 1);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`Servo::step`].
 pub fn simulate(

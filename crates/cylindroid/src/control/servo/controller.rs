@@ -236,6 +236,23 @@ impl Servo {
 
     /// One step: [`Servo::joint_velocities`] are to be commanded until the next step.
     ///
+    /// ```
+    /// use cylindroid::{Servo, ServoOptions, Vec3};
+    ///
+    /// let robot = cylindroid::load("panda")?;
+    /// let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;
+    /// let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
+    /// let mut target = robot.state(&q)?.pose(robot.tool());
+    /// target.translation = target.translation + Vec3::Z * 0.05;
+    /// for _ in 0..1000 {
+    ///     servo.step(&q, target)?; // command servo.joint_velocities() to the robot
+    ///     servo.advance(&mut q); // in a simulation
+    /// }
+    /// let error = robot.state(&q)?.pose(robot.tool()).error_to(target);
+    /// assert!(error.linear.norm() < 0.05 * (-4.5_f64).exp()); // 1 s at a gain of 5/s
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A `q` of the wrong size or non-finite input; the servo is unchanged.
     pub fn step(&mut self, q: &[f64], target: impl Into<Target>) -> Result<Step> {

@@ -32,6 +32,19 @@ pub struct JointState {
 
 impl VelocityBounds {
     /// The interval for the next step of `dt` seconds.
+    ///
+    /// ```
+    /// use cylindroid::control::{JointState, LimitKind, VelocityBounds};
+    /// use cylindroid::model::Limits;
+    ///
+    /// // A joint 0.5 mrad before its upper limit moves there within one step of 1 ms at most.
+    /// let limits = Limits { lower: -1.0, upper: 1.0, velocity: 2.0, ..Limits::NONE };
+    /// let now = JointState { position: 0.9995, velocity: 0.1 };
+    /// let bounds = VelocityBounds::next(&limits, now, 1e-3);
+    /// assert!(bounds.upper <= 0.5 + 1e-9 && bounds.upper_cause == LimitKind::Position);
+    /// assert_eq!(bounds.met(bounds.clamp(3.0)), Some(LimitKind::Position));
+    /// assert!(bounds.contains(-2.0) && !bounds.contains(1.0));
+    /// ```
     #[must_use]
     pub fn next(limits: &Limits, now: JointState, dt: f64) -> Self {
         let above = distance_to_limit(limits.upper - now.position, now.position, limits.upper);

@@ -132,6 +132,14 @@ impl NamedInverse {
 
     /// The one of this name.
     ///
+    /// ```
+    /// use cylindroid::control::NamedInverse;
+    ///
+    /// assert!(NamedInverse::named("hyperbolic")?.parameters.len() > 0);
+    /// assert!(NamedInverse::named("hyperbole").is_err()); // the message lists the nearest names
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::UnknownName`] with the nearest names.
     pub fn named(name: &str) -> Result<Self> {

@@ -66,6 +66,25 @@ impl InverseChoice {
     /// Inverts `asked`, the twist of the tool (at the tool, world axes), at the tool and with the
     /// reference point moved to `point` (world).
     ///
+    /// ```
+    /// use cylindroid::control::{InverseChoice, TaskProjection};
+    /// use cylindroid::{EndEffector, Method, Twist, Vec3};
+    ///
+    /// // An arm with three joints: the truncated inverse depends on the reference point.
+    /// let robot = cylindroid::load("3r")?;
+    /// let state = robot.state(&[0.3, 0.5, -0.8])?;
+    /// let choice = InverseChoice {
+    ///     method: Method::default(),
+    ///     projection: TaskProjection::Orthogonal,
+    ///     length: robot.reach(),
+    /// };
+    /// let asked = Twist { linear: Vec3::new(0.1, 0.2, 0.3), angular: Vec3::new(0.3, 0.2, 0.1) };
+    /// let tool = EndEffector::from(robot.tool());
+    /// let compared = choice.at_two_points(&state, tool, asked, Vec3::new(1.0, 2.0, 3.0))?;
+    /// assert!(!compared.invariant && compared.difference.is_some());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A closed chain, whose joints are not independent; an end effector of another mechanism;
     /// values that are non-finite or outside the domain of the method.

@@ -158,6 +158,18 @@ impl Analytic {
     /// The same with some coordinates locked: they keep the values of the initial guess in each
     /// call. An arm with seven joints has a closed form for any value of a suitable locked joint.
     ///
+    /// ```
+    /// use cylindroid::ik::Analytic;
+    ///
+    /// // A 7R arm has a closed form once its last joint is locked.
+    /// let arm = cylindroid::load("panda")?;
+    /// let mut ik = Analytic::with_locked(&arm, arm.tool(), &[6]).expect("a closed form");
+    /// let q = arm.home();
+    /// let solutions = ik.solve(arm.state(q)?.pose(arm.tool()), q)?;
+    /// assert!(solutions.iter().any(|s| s.q.iter().zip(q).all(|(a, b)| (a - b).abs() < 1e-9)));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// The reason why there is no closed form.
     ///

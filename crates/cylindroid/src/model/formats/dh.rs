@@ -57,6 +57,37 @@ pub struct Arm {
 /// The joints of an arm: links `base`, `link1`, ... and `flange`, with the root `ground` where the
 /// base stands elsewhere. Link i is fixed to the part that joint i moves and has its origin on
 /// that joint's axis; frame N of the table, moved by `last_from_flange`, is `flange`.
+///
+/// ```
+/// use cylindroid::model::formats::dh::{Arm, Convention, Row, joints};
+/// use cylindroid::model::{Limits, Mechanism};
+/// use cylindroid::{Pose, Vec3};
+///
+/// // Two parallel revolute joints, 0.5 m apart.
+/// let row = |name: &str| Row {
+///     name: name.to_owned(),
+///     a: 0.5,
+///     alpha: 0.0,
+///     d: 0.0,
+///     theta: 0.0,
+///     prismatic: false,
+///     limits: Limits::NONE,
+/// };
+/// let arm = Arm {
+///     convention: Convention::Standard,
+///     rows: vec![row("shoulder"), row("elbow")],
+///     ground_from_base: None,
+///     last_from_flange: Pose::IDENTITY,
+/// };
+/// let mut builder = Mechanism::builder("2r");
+/// for joint in joints(&arm) {
+///     builder.joint(joint);
+/// }
+/// let robot = builder.build()?;
+/// let flange = robot.state(&[0.0, 0.0])?.pose(robot.frame("flange")?);
+/// assert_eq!(flange.translation, Vec3::X);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 #[must_use]
 pub fn joints(arm: &Arm) -> Vec<JointSpec> {
     let mut joints = Vec::with_capacity(arm.rows.len() + 2);

@@ -45,6 +45,15 @@ pub(super) fn load_from(folder: &Path, name_or_path: &str, depth: usize) -> Resu
 
 /// Loads a model file, by its extension and content.
 ///
+/// ```
+/// use cylindroid::model::formats::load_file;
+///
+/// let path = std::env::temp_dir().join("cylindroid-lever.urdf");
+/// std::fs::write(&path, r#"<robot name="lever"><link name="base"/></robot>"#)?;
+/// assert_eq!(load_file(&path)?.name(), "lever");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As [`load`].
 pub fn load_file(path: &Path) -> Result<Mechanism> {

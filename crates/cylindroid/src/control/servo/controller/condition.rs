@@ -36,6 +36,18 @@ impl Servo {
     /// Evaluates a configuration as a step would; the joint velocities, the target and the stall
     /// detector are unchanged.
     ///
+    /// ```
+    /// use cylindroid::{Servo, ServoOptions};
+    ///
+    /// // With a straight elbow the arm cannot retract.
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;
+    /// let regular = servo.condition(&[0.0, -1.1, 1.4, 0.2, 1.0, 0.0])?;
+    /// let singular = servo.condition(&[0.0, -0.6, 0.0, 0.4, 1.0, 0.0])?;
+    /// assert!(singular.singular_ratio < 1e-12 && regular.singular_ratio > 0.01);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Servo::step`].
     pub fn condition(&mut self, q: &[f64]) -> Result<ConditionReport> {
@@ -72,6 +84,21 @@ impl Servo {
 
     /// A basis of the self-motions at `q`, which leave the tool at rest: velocities of all n
     /// coordinates [rad/s or m/s].
+    ///
+    /// ```
+    /// use cylindroid::{ReferenceFrame, Servo, ServoOptions};
+    ///
+    /// // The elbow of a 7R arm moves with the tool at rest.
+    /// let robot = cylindroid::load("panda")?;
+    /// let q = [0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
+    /// let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;
+    /// let motions = servo.self_motions(&q)?;
+    /// let frame = ReferenceFrame::LocalWorldAligned;
+    /// let twist = robot.state(&q)?.twist(&motions[0], robot.tool(), frame)?;
+    /// assert!(motions.len() == 1 && twist.linear.norm() < 1e-12);
+    /// assert!(servo.next_self_motion(&q, &motions[0])?.is_some());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Servo::step`].

@@ -65,6 +65,18 @@ struct Mjcf<'d> {
 /// Reads the text of an MJCF model. The path is used in errors, to find meshes, and to read the
 /// files that the model includes.
 ///
+/// ```
+/// use cylindroid::model::formats::mjcf;
+/// use std::path::Path;
+///
+/// let text = r#"<mujoco><worldbody><body name="lever">
+///     <joint name="hinge" axis="0 0 1"/><geom size="0.1"/>
+/// </body></worldbody></mujoco>"#;
+/// let robot = mjcf::parse(text, Path::new("lever.xml"))?;
+/// assert_eq!((robot.n(), robot.joints()[0].name.as_str()), (1, "hinge"));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::File`] with line and column for broken XML, a number that is not one, a name that is
 /// missing or unknown, an include that cannot be read, and all that the builder refuses.

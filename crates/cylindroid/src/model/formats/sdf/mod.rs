@@ -46,6 +46,21 @@ struct Sdf<'d> {
 
 /// Reads the text of an SDF file. The path is used in errors and to find meshes.
 ///
+/// ```
+/// use cylindroid::model::formats::sdf;
+/// use std::path::Path;
+///
+/// let text = r#"<sdf version="1.9"><model name="lever">
+///     <link name="base"/><link name="lever"/>
+///     <joint name="hinge" type="revolute">
+///         <parent>base</parent><child>lever</child><axis><xyz>0 0 1</xyz></axis>
+///     </joint>
+/// </model></sdf>"#;
+/// let robot = sdf::parse(text, Path::new("lever.sdf"))?;
+/// assert_eq!((robot.name(), robot.n()), ("lever", 1));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::File`](crate::Error::File) with line and column for broken XML, a file without a
 /// model, a number that is not one, a name that is missing or unknown, frames placed in a ring,

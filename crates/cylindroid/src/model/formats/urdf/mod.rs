@@ -27,6 +27,21 @@ use crate::spatial::{Pose, Quaternion, Rotation, Rpy, Vec3};
 /// Reads the text of a URDF. The path is used in errors and to find meshes; nothing is read from
 /// it.
 ///
+/// ```
+/// use cylindroid::model::formats::urdf;
+/// use std::path::Path;
+///
+/// let text = r#"<robot name="lever">
+///     <link name="base"/><link name="lever"/>
+///     <joint name="hinge" type="continuous">
+///         <parent link="base"/><child link="lever"/><axis xyz="0 0 1"/>
+///     </joint>
+/// </robot>"#;
+/// let robot = urdf::parse(text, Path::new("lever.urdf"))?;
+/// assert_eq!((robot.name(), robot.n()), ("lever", 1));
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::File`] with line and column for broken XML, xacro, MJCF and SDF, a number that is not
 /// one, a name that is missing or unknown, and all that the builder refuses.
