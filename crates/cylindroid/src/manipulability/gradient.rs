@@ -1,12 +1,7 @@
 //! Gradients of manipulability indices with respect to the configuration, along closed-loop
 //! motions.
 //!
-//! Formula  an efficiency is the value of |u|^2 / |q_a|^2 at a motion x = (q_a, q_p, u) where it is
-//!          stationary among all motions of M x = 0, so that with M^T t = (-e W_q q_a, 0, W_u u)
-//!          de = -2 t^T dM x / |q_a|^2
-//!          for a serial arm 2 u^T W_u dJ q_a / |q_a|^2; T^T W_u T u in place of W_u u for a task
-//!          T. Volume v = prod sqrt(e_i):
-//!          dv = v sum de_i / (2 e_i); anisotropy a = e_1 / e_n: da = a (de_1 / e_1 - de_n / e_n)
+//! Formula  the page of [`gradient`]; for a task T, T^T W_u T replaces W_u
 //! Shapes   gradient: n entries, one for each coordinate
 //! Units    of the index for each unit of q (of the unit rates of spherical and free joints)
 //! Valid    where the counts of the relation are locally constant, and the metrics too. A closed
@@ -97,6 +92,21 @@ pub struct Goal<'a> {
 }
 
 /// The gradient of a measure of the kinematic efficiencies, in constant metrics.
+///
+/// ```text
+/// M x = 0,  x = (qd_a, qd_p, u),   M^T t = (-e W_q qd_a, 0, W_u u)
+/// de = -2 t^T dM x / |qd_a|^2      serial arm: de = 2 u^T W_u dJ qd_a / |qd_a|^2
+/// volume v = prod sqrt(e_i):       dv = v sum_i de_i / (2 e_i)
+/// anisotropy a = e_1 / e_n:        da = a (de_1 / e_1 - de_n / e_n)
+/// ```
+///
+/// An efficiency e is the stationary value of `|u|^2 / |qd_a|^2` among the motions x of the
+/// constraint M, with Lagrange multipliers t; the derivative of a stationary value needs no
+/// derivative of x. The gradient has n entries, in the unit of the measure for each unit of q. On a
+/// closed chain it is the gradient along the motions that the loops allow. Measures with a repeated
+/// smallest or largest efficiency have none ([`Gradient::Repeated`]).
+///
+/// Source: derivative of a stationary value; Yoshikawa 1985 for the volume.
 ///
 /// ```
 /// use cylindroid::manipulability::{Goal, Gradient, Measure, Metrics, gradient};

@@ -1,7 +1,6 @@
 //! The six manipulability indices, and the usual scalar measures (Yoshikawa's measure, anisotropy).
 //!
-//! Formula  finite efficiencies e_1 >= ... >= e_n of a spectrum, with zeros and infinite ones where
-//!          the index fixes one side; anisotropy e_1 / e_n, volume prod sqrt(e_i)
+//! Formula  the pages of [`Index`] and [`Spectrum`]
 //! Units    of the efficiencies; the anisotropy has none, the volume their root to the power n
 //! Valid    any spectrum. The volume of a serial arm with full rank is Yoshikawa's
 //!          sqrt(det J J^T), its anisotropy the squared condition number.
@@ -11,6 +10,16 @@
 use super::efficiency::{Manipulability, Spectrum};
 
 /// The six indices: which side (joints or object) is given, and which is optimised.
+///
+/// ```text
+/// kinematic  |u|^2 / |qd_a|^2     force  |w|^2 / |tau|^2
+/// active: the joints are given    passive: the object is given
+/// ```
+///
+/// `qd_a` are the actuated joint velocities, `u` the twist, `tau` the torques, `w` the wrench, in
+/// the metrics of [`Metrics`](super::Metrics).
+///
+/// Source: Bicchi & Prattichizzo 1998, sections 3 and 4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Index {
     /// Motion, both sides at their best (eq. 9): finite efficiencies only.
@@ -53,6 +62,10 @@ impl Index {
     }
 
     /// The efficiencies of this index, largest first, infinities and zeros included.
+    ///
+    /// The spectrum of motion (or force) has finite efficiencies, zeros and infinite ones; an index
+    /// contains the zeros if the joints are given, the infinite ones if the object is given. Units:
+    /// of `|u|^2 / |qd_a|^2` for motion and of `|w|^2 / |tau|^2` for force, in the metrics of `m`.
     #[must_use]
     pub fn values(&self, m: &Manipulability) -> Vec<f64> {
         let (spectrum, zeros, infinite) = match self {
@@ -84,6 +97,12 @@ impl Spectrum {
     }
 
     /// Largest over smallest finite efficiency, 1 for an isotropic pose.
+    ///
+    /// ```text
+    /// e_1 / e_n,   e_1 >= ... >= e_n the finite efficiencies
+    /// ```
+    ///
+    /// Without unit. For a serial arm, the squared condition number of the Jacobian.
     #[doc(alias = "condition number")]
     #[must_use]
     pub fn anisotropy(&self) -> Option<f64> {
@@ -92,6 +111,15 @@ impl Spectrum {
 
     /// Product of the roots of the finite efficiencies: the volume of the ellipsoid up to a
     /// constant (1 for none).
+    ///
+    /// ```text
+    /// prod_i sqrt(e_i),   e_i the finite efficiencies
+    /// ```
+    ///
+    /// For a serial arm of full rank this is Yoshikawa's manipulability measure `sqrt(det J J^T)`.
+    /// Its unit is the root of that of an efficiency, to the power of their number.
+    ///
+    /// Source: Yoshikawa 1985.
     ///
     /// ```
     /// use cylindroid::Matrix;

@@ -1,8 +1,7 @@
 //! Spatial inertia of a body about a point: the metric of twists that is twice their kinetic
 //! energy.
 //!
-//! Formula  [m 1, -m S(c); m S(c), I_c - m S(c)^2], c from the point to the centre of mass, summed
-//!          over all links that are fixed to each other
+//! Formula  the page of [`body_inertia`], summed over all links that are fixed to each other
 //! Shapes   6 x 6; 3 x 3 in the plane (x, y and the rotation about z)
 //! Units    kg, kg m, kg m^2: `u^T W u` is twice the kinetic energy [J]
 //! Frame    at the origin of the frame, world axes, as the object's twist
@@ -17,6 +16,16 @@ use crate::spatial::Mat3;
 
 /// The inertia of the body that carries `frame`, about the frame's origin in world axes; `None` if
 /// the file gives it no mass.
+///
+/// ```text
+/// W = [m 1, -m S(c); m S(c), I_c - m S(c)^2],   u^T W u = 2 E_kin
+/// ```
+///
+/// 6 x 6, linear part first (3 x 3 in the plane: x, y and the rotation about z), in kg, kg m and
+/// kg m^2; c from the origin to the centre of mass, I_c the inertia about it, S the matrix of the
+/// vector product.
+///
+/// Source: Featherstone 2008, eq. 2.63.
 ///
 /// ```
 /// use cylindroid::manipulability::body_inertia;

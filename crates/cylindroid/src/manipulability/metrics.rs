@@ -1,8 +1,7 @@
 //! The four metrics of efficiencies (twists, joint velocities, wrenches, torques), and presets of
 //! them.
 //!
-//! Formula  |u|^2 = u^T W_u u, |q|^2 = q^T W_q q, |w|^2 = w^T W_w w, |tau|^2 = tau^T W_tau tau;
-//!          by default W_w = W_u^-1, W_tau = W_q^-1
+//! Formula  the page of [`Metrics`]
 //! Shapes   W_u, W_w: d x d; W_q, W_tau: q_a x q_a
 //! Units    an efficiency has the unit of `|u|^2 / |q|^2`; with lengths beside angles only metrics
 //!          that make both norms dimensionless (limits, a characteristic length) give efficiencies
@@ -22,6 +21,17 @@ use crate::model::FrameId;
 
 /// Metrics of twists, joint velocities, wrenches and joint torques. `None` is the identity for
 /// twists and velocities, and the dual for wrenches and torques.
+///
+/// ```text
+/// |u|^2 = u^T W_u u,   |qd_a|^2 = qd_a^T W_q qd_a
+/// |w|^2 = w^T W_w w,   |tau|^2 = tau^T W_tau tau,   by default W_w = W_u^-1, W_tau = W_q^-1
+/// ```
+///
+/// `W_u` and `W_w` are d x d, `W_q` and `W_tau` have a row for each actuated joint; all are
+/// symmetric and positive definite. With lengths beside angles, only metrics that make both norms
+/// dimensionless (limits, a characteristic length) give efficiencies independent of the unit.
+///
+/// Source: Bicchi & Prattichizzo 1998, section 3; Doty, Melchiorri & Bonivento 1993 on units.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Metrics {
     /// W_u, of the object's twist or of the task.

@@ -1,7 +1,6 @@
 //! Velocity and force polytopes: the twists and wrenches within the limits of the actuated joints.
 //!
-//! Formula  velocity {u: (q, u) in R, lower <= q <= upper}, force {w: (tau, w) in F, lower <= tau
-//!          <= upper}; the range of a component is from its smallest to its largest value on it
+//! Formula  the pages of [`velocity_polytope`], [`force_polytope`] and the ranges
 //! Shapes   limits: q_a intervals; vertices: d entries
 //! Units    of the object's twist or wrench
 //! Frame    that of the object's twist
@@ -36,6 +35,17 @@ pub struct Polytope {
 /// All twists of the object (or velocities of the task) within the velocity limits of the actuated
 /// joints.
 ///
+/// ```text
+/// {u : (qd_a, u) in R,  lower <= qd_a <= upper}
+/// ```
+///
+/// R is the relation of actuated joints and object; an interval [rad/s or m/s] for each actuated
+/// joint, which contains zero. A vertex has the d entries of the twist (m/s, rad/s), at the point
+/// and in the axes of the object's twist. Unlimited directions are listed separately; the polytope
+/// is then the cross-section orthogonal to them. That of a task is the projection of the whole one.
+///
+/// Source: Chiacchio, Bouffard-Vercelli & Pierrot 1997; Bicchi & Prattichizzo 2000.
+///
 /// ```
 /// use cylindroid::Matrix;
 /// use cylindroid::closure::{Constraint, MotionSpace};
@@ -61,6 +71,15 @@ pub fn velocity_polytope(relation: &Relation, velocity_limits: &[Interval]) -> R
 
 /// All wrenches on the object (or forces of the task) that torques within their limits balance.
 ///
+/// ```text
+/// {w : (tau, w) in F = R^perp,  lower <= tau <= upper}
+/// ```
+///
+/// F is the dual relation; an interval (N m or N) for each actuated joint. A vertex has the d
+/// entries of the wrench (N, N m), at the point and in the axes of the object's twist. That of a
+/// task is the section by the forces that only the task works with. [`velocity_polytope`] has an
+/// example.
+///
 /// # Errors
 /// As [`velocity_polytope`].
 pub fn force_polytope(relation: &Relation, torque_limits: &[Interval]) -> Result<Polytope> {
@@ -70,6 +89,12 @@ pub fn force_polytope(relation: &Relation, torque_limits: &[Interval]) -> Result
 /// From the smallest to the largest value of each component of the twist within the velocity
 /// limits, infinite where it is unlimited.
 ///
+/// ```text
+/// [min u_i, max u_i]   over the velocity polytope, for each component i
+/// ```
+///
+/// [`velocity_polytope`] has an example.
+///
 /// # Errors
 /// As [`velocity_polytope`].
 pub fn velocity_range(relation: &Relation, velocity_limits: &[Interval]) -> Result<Vec<Interval>> {
@@ -78,6 +103,10 @@ pub fn velocity_range(relation: &Relation, velocity_limits: &[Interval]) -> Resu
 
 /// From the smallest to the largest value of each component of the wrench that torques within their
 /// limits balance, infinite where the structure resists it. The other components are arbitrary.
+///
+/// ```text
+/// [min w_i, max w_i]   over the force polytope, for each component i
+/// ```
 ///
 /// # Errors
 /// As [`velocity_polytope`].

@@ -1,7 +1,6 @@
 //! Transversals: the lines that meet every line of a set.
 //!
-//! Formula  z meets every line iff it is reciprocal to all of them and of pitch zero: the zeros of
-//!          the Klein form on the reciprocal system
+//! Formula  the page of [`transversals`]
 //! Units    m
 //! Valid    any number of lines. Two, three and most sets of fewer than four lines have infinitely
 //!          many; four have two, one double, none, or infinitely many; a translation among the
@@ -34,6 +33,19 @@ pub struct Transversals {
 }
 
 /// The common transversals of `lines`.
+///
+/// ```text
+/// z meets every line  iff  <z, l_i>_0 = 0 for all i  and  <z, z>_0 = 0
+/// ```
+///
+/// The transversals are the zeros of the Klein form `<a, b>_0 = 1/2 (v_a . w_b + w_a . v_b)` on the
+/// reciprocal system of the lines. Points in m, in the frame of the lines. Fewer than four lines
+/// have in general infinitely many; four have two, one double, none, or infinitely many. A
+/// translation among the zeros is a transversal at infinity, which meets the lines parallel to one
+/// plane.
+///
+/// Source: Hilbert & Cohn-Vossen, section 3 (regulus); Donelan & Selig, section 4, whose counts for
+/// four and five lines omit the transversals at infinity and the double one.
 ///
 /// ```
 /// use cylindroid::screws::{Line, ScrewOptions, transversals};

@@ -1,12 +1,7 @@
 //! Type I, II and III singularities of closed chains: counts that differ from their generic values,
 //! and distances to singularities.
 //!
-//! Formula  type I    zero-torque wrenches s or redundancy r' above generic: the object loses a
-//!          motion
-//!          type II   indeterminacy i' above generic: the object gains an uncontrolled motion
-//!          type III  both
-//!          configuration space  rank of [J_a J_p -G^T] below generic, k above
-//!          passive   idle motions above generic
+//! Formula  the pages of [`Singularities`] and [`SingularityDistances`]
 //! Units    distances have none: the smallest s and c among the finite pairs of the relation (sines
 //!          of angles in units scaled by the characteristic length, at the reference point of the
 //!          object), the smallest singular value of the kernel without passive joints, and the
@@ -29,6 +24,17 @@ use crate::linalg::Matrix;
 
 /// Distances of a configuration to singularities: 0 at a singularity, at most 1 elsewhere [-].
 /// Infinite if there is no motion or rank to lose.
+///
+/// ```text
+/// type I   min s_j       type II  min c_j      s_j, c_j the finite pairs of the relation
+/// passive  smallest singular value of the kernel without passive joints
+/// configuration space  smallest singular value kept of [J_a J_p -G^T] over the largest
+/// ```
+///
+/// Without unit: s_j and c_j are the sine and cosine of the angle between a direction and the joint
+/// space ([`Relation::finite_pairs`]), with lengths divided by the characteristic length, at the
+/// reference point of the object. Their zeros do not depend on point, length or contact frames;
+/// other values do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SingularityDistances {
     /// To type I, the loss of a motion of the object.
@@ -42,6 +48,23 @@ pub struct SingularityDistances {
 }
 
 /// The singularities of a configuration.
+///
+/// ```text
+/// type I               s or r' above generic: the object loses a motion
+/// type II              i' above generic: the object gains a motion that is not controlled
+/// type III             both
+/// configuration space  rank [J_a J_p -G^T] below generic
+/// passive              idle motions above generic
+/// ```
+///
+/// s is the number of zero-torque wrenches, r' the redundancy and i' the indeterminacy of the
+/// relation between actuated joints and object ([`MobilityCounts`]). All are relative to the
+/// generic counts ([`GenericMobility`](crate::closure::GenericMobility)): a mechanism may have
+/// zero-torque wrenches or idle motions at every configuration.
+/// [`Diagnosis`](crate::closure::Diagnosis) gives the motions lost and gained as screws.
+///
+/// Source: Gosselin & Angeles 1990 (I, II, III); Park & Kim 1999 and Zlatanov et al. 1995
+/// (configuration space, passive).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Singularities {
     /// The kinds, in the order of [`SingularityKind`]; empty for a regular configuration.
