@@ -5,7 +5,6 @@ use std::str::FromStr;
 
 use cylindroid::ik::Task;
 use cylindroid::linalg::Interval;
-use cylindroid::model::CoordinateKind;
 use cylindroid::{Error, Mechanism};
 
 /// A list of `N` numbers: `0.1,-2e-3,4`; spaces after commas and square brackets are allowed.
@@ -181,10 +180,8 @@ impl Joints {
         rest: &[f64],
     ) -> cylindroid::Result<Vec<f64>> {
         let coordinates = robot.coordinates();
-        let si = |i: usize, value: f64| match coordinates.get(i).map(|c| c.kind) {
-            Some(CoordinateKind::Angle | CoordinateKind::RotationVector) if degrees => {
-                value.to_radians()
-            }
+        let si = |i: usize, value: f64| match coordinates.get(i) {
+            Some(c) if degrees && !c.kind.is_length() => value.to_radians(),
             _ => value,
         };
         match self {

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use cylindroid::Mechanism;
 use cylindroid::ik::Analytic;
-use cylindroid::model::{CoordinateKind, Joint};
+use cylindroid::model::Joint;
 use serde::Serialize;
 
 use crate::args::InfoArgs;
@@ -267,15 +267,12 @@ fn print_coordinates(
         ("home", Align::Right),
     ];
     let rows = info.coordinates.iter().zip(robot.coordinates()).map(|(c, coordinate)| {
-        let effort = match coordinate.kind {
-            _ if c.effort.is_infinite() => output::number(c.effort),
-            CoordinateKind::Angle | CoordinateKind::RotationVector => {
-                format!("{} N m", output::number(c.effort))
-            }
-            CoordinateKind::Length | CoordinateKind::Position => {
-                format!("{} N", output::number(c.effort))
-            }
+        let unit = match coordinate.kind.is_length() {
+            _ if c.effort.is_infinite() => "",
+            true => " N",
+            false => " N m",
         };
+        let effort = format!("{}{unit}", output::number(c.effort));
         vec![
             c.name.to_owned(),
             c.kind.to_owned(),

@@ -319,32 +319,35 @@ fn links(session: &Session) -> Vec<LinkJson<'_>> {
 }
 
 fn visuals<'a>(session: &'a Session, link: &'a Link) -> Vec<VisualJson<'a>> {
-    let shape = |v: &'a Visual| match &v.geometry {
-        Geometry::Box { size } => ShapeJson::Box { size: size.to_array() },
-        Geometry::Cylinder { radius, length } => {
-            ShapeJson::Cylinder { radius: *radius, length: *length }
-        }
-        Geometry::Capsule { radius, length } => {
-            ShapeJson::Capsule { radius: *radius, length: *length }
-        }
-        Geometry::Sphere { radius } => ShapeJson::Sphere { radius: *radius },
-        Geometry::Mesh { uri, path, scale } => {
-            let served = session.folders().served(uri, path.as_deref());
-            ShapeJson::Mesh {
-                url: served.url,
-                format: served.format,
-                scale: scale.to_array(),
-                uri,
-                problem: served.problem,
+    // None: a kind of shape that the page cannot draw.
+    let shape = |v: &'a Visual| {
+        Some(match &v.geometry {
+            Geometry::Box { size } => ShapeJson::Box { size: size.to_array() },
+            Geometry::Cylinder { radius, length } => {
+                ShapeJson::Cylinder { radius: *radius, length: *length }
             }
-        }
+            Geometry::Capsule { radius, length } => {
+                ShapeJson::Capsule { radius: *radius, length: *length }
+            }
+            Geometry::Sphere { radius } => ShapeJson::Sphere { radius: *radius },
+            Geometry::Mesh { uri, path, scale } => {
+                let served = session.folders().served(uri, path.as_deref());
+                ShapeJson::Mesh {
+                    url: served.url,
+                    format: served.format,
+                    scale: scale.to_array(),
+                    uri,
+                    problem: served.problem,
+                }
+            }
+            _ => return None,
+        })
     };
-    let visual = |v: &'a Visual| VisualJson {
-        shape: shape(v),
-        pose: v.link_from_shape.into(),
-        rgba: v.rgba,
+    let visual = |v: &'a Visual| {
+        let (pose, rgba) = (v.link_from_shape.into(), v.rgba);
+        Some(VisualJson { shape: shape(v)?, pose, rgba })
     };
-    link.visuals.iter().map(visual).collect()
+    link.visuals.iter().filter_map(visual).collect()
 }
 
 /// The link of the reference frame, then the other links in contact.

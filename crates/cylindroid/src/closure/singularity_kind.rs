@@ -8,6 +8,7 @@ use std::fmt;
 
 /// The kinds of singularity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum SingularityKind {
     /// Type I (serial, end-effector singularity): the object loses a motion.
     TypeI,

@@ -21,6 +21,7 @@ use super::efficiency::{Manipulability, Spectrum};
 ///
 /// Source: Bicchi & Prattichizzo 1998, sections 3 and 4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Index {
     /// Motion, both sides at their best (eq. 9): finite efficiencies only.
     Kinematic,
@@ -58,6 +59,19 @@ impl Index {
             Self::Force => "force",
             Self::ActiveForce => "active-force",
             Self::PassiveForce => "passive-force",
+        }
+    }
+
+    /// The given quantity and the one that is optimised, in a phrase.
+    #[must_use]
+    pub const fn description(&self) -> &'static str {
+        match self {
+            Self::Kinematic => "motion, optimal on both sides",
+            Self::ActiveKinematic => "joint velocities given, smallest twist of the object",
+            Self::PassiveKinematic => "twist given, smallest joint velocities",
+            Self::Force => "force, optimal on both sides",
+            Self::ActiveForce => "torques given, smallest wrench",
+            Self::PassiveForce => "wrench given, smallest torques",
         }
     }
 

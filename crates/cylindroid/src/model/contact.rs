@@ -12,6 +12,7 @@ use crate::spatial::Pose;
 
 /// The kind of a contact: the relative motions that it constrains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ContactKind {
     /// A frictionless point: the normal velocity.
     PointFrictionless,

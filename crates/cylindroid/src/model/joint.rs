@@ -15,6 +15,7 @@ use crate::spatial::{Pose, Vec3};
 /// position), and their velocities are the twist in the axes of the child (`Mechanism::integrate`
 /// advances `q` by velocities).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum JointKind {
     /// No motion.
     Fixed,

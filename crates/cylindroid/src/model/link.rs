@@ -40,6 +40,7 @@ pub struct Visual {
 
 /// A shape.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Geometry {
     /// A box with these edges (m).
     Box {

@@ -57,6 +57,7 @@ pub struct Coordinate {
 
 /// The kind of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CoordinateKind {
     /// Angle (rad).
     Angle,

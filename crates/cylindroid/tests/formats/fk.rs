@@ -77,6 +77,7 @@ fn motion(m: &Mechanism, joint: &Joint, q: &[f64]) -> Pose {
             translation: vector(&q[c.start..c.start + 3]),
             rotation: Rotation::exp(vector(&q[c.start + 3..c.start + 6])),
         },
+        other => panic!("no formula for {other:?}"),
     }
 }
 

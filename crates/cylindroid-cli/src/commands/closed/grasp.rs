@@ -4,8 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::closure::{
-    ContactProperties, FingerContact, Friction, GraspMetric, GraspQuality, WrenchSpace,
-    grasp_contacts, grasp_quality,
+    ContactProperties, FingerContact, GraspMetric, GraspQuality, WrenchSpace, grasp_contacts,
+    grasp_quality,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, FrameId, Result};
@@ -78,18 +78,13 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
     let quality = grasp_quality(&fingers, space, metric)?;
     let contacts = places.iter().zip(&fingers).map(|(&i, finger)| {
         let contact = &mechanism.contacts()[i];
-        let (mu, torsion) = match finger.friction {
-            Friction::None => (0.0, None),
-            Friction::Hard { mu } => (mu, None),
-            Friction::Soft { mu, torsion } => (mu, Some(torsion)),
-        };
         ContactJson {
             name: &contact.name,
             kind: contact.kind.name(),
             point: finger.point.to_array(),
             normal: finger.normal.to_array(),
-            mu,
-            torsion,
+            mu: finger.friction.mu(),
+            torsion: finger.friction.torsion(),
             strength: args.strength.is_some().then_some(finger.strength),
         }
     });

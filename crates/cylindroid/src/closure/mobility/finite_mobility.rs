@@ -32,6 +32,7 @@ const NEIGHBOUR_DISTANCE: f64 = 1e-3;
 
 /// The evidence for a count of finite motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MobilityEvidence {
     /// The loops are independent equations, or there is no first-order motion: proved.
     Independent,

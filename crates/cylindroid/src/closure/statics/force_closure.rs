@@ -23,6 +23,7 @@ use crate::tolerance::{GRASP_QUALITY, HULL, MAX_FACETS, ORTHONORMAL};
 
 /// The friction model of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Friction {
     /// Frictionless: a force along the normal.
     None,
@@ -39,6 +40,26 @@ pub enum Friction {
         /// Largest moment over normal force (m).
         torsion: f64,
     },
+}
+
+impl Friction {
+    /// Coefficient of friction [-]; zero if frictionless.
+    #[must_use]
+    pub const fn mu(self) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Hard { mu } | Self::Soft { mu, .. } => mu,
+        }
+    }
+
+    /// Largest moment over normal force (m); none unless the finger is soft.
+    #[must_use]
+    pub const fn torsion(self) -> Option<f64> {
+        match self {
+            Self::None | Self::Hard { .. } => None,
+            Self::Soft { torsion, .. } => Some(torsion),
+        }
+    }
 }
 
 /// A finger on the object.
@@ -237,11 +258,7 @@ impl Finger {
         if metric == GraspMetric::LInf {
             Error::check_positive("strength", strength)?;
         }
-        let (mu, torsion) = match friction {
-            Friction::None => (0.0, 0.0),
-            Friction::Hard { mu } => (mu, 0.0),
-            Friction::Soft { mu, torsion } => (mu, torsion),
-        };
+        let (mu, torsion) = (friction.mu(), friction.torsion().unwrap_or(0.0));
         for (name, value) in [("mu", mu), ("torsion", torsion)] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(refuse(

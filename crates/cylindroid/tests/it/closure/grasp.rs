@@ -136,6 +136,7 @@ fn held_by(contact: &FingerContact, n: &[f64]) -> f64 {
         Friction::None => (0.0, 0.0),
         Friction::Hard { mu } => (mu, 0.0),
         Friction::Soft { mu, torsion } => (mu, torsion),
+        other => panic!("no cone for {other:?}"),
     };
     along + (mu * slip.norm()).hypot(torsion * m.dot(contact.normal))
 }

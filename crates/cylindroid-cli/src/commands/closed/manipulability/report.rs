@@ -284,20 +284,12 @@ fn indices(found: &Found, out: &mut dyn Write) -> anyhow::Result<()> {
         x => number(*x),
     };
     let rows = Index::ALL.iter().map(|index| {
-        let what = match index {
-            Index::Kinematic => "motion, both sides at their best",
-            Index::ActiveKinematic => "joint rates given, the object as slow as it may be",
-            Index::PassiveKinematic => "twist given, the joints as slow as they may be",
-            Index::Force => "force, both sides at their best",
-            Index::ActiveForce => "torques given, the wrench as small as it may be",
-            Index::PassiveForce => "wrench given, the torques as small as they may be",
-        };
         let values = index.values(&found.efficiencies);
         let values = values.iter().map(word).collect::<Vec<_>>().join(", ");
-        vec![index.name().to_owned(), values, what.to_owned()]
+        vec![index.name().to_owned(), values, index.description().to_owned()]
     });
     let columns =
-        [("index", Align::Left), ("efficiencies", Align::Left), ("what is given", Align::Left)];
+        [("index", Align::Left), ("efficiencies", Align::Left), ("definition", Align::Left)];
     output::table(out, &columns, rows)?;
     writeln!(out)?;
     let value = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), number);
