@@ -218,8 +218,9 @@ pub(crate) struct InverseArgs {
     #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
     pub(crate) give_up: Vec<Motion>,
 
-    /// Inverse used where the chosen one does not exist: `truncated`, `hyperbolic-damped`,
-    /// `hyperbolic-gram`, `hyperbolic`, `oblique` [default: none, the arm stops and says why]
+    /// Inverse used where the chosen one does not exist or enlarges motions too much: `truncated`,
+    /// `hyperbolic-damped`, `hyperbolic-gram`, `hyperbolic`, `oblique` [default: none, the arm
+    /// stops and reports the reason]
     #[arg(long, value_name = "NAME")]
     pub(crate) fallback: Option<String>,
 }

@@ -71,7 +71,8 @@ pub(crate) use trajectory::PyTrajectory;
 /// give_up : list of str or array_like, (k, 6), optional
 ///     Motions of the tool, in its axes, that may be given up: names like 'rz', or twists as rows.
 /// fallback : str, optional
-///     The inverse used where that one does not exist. Default: none, the arm stops.
+///     The inverse used where that one does not exist or enlarges motions too much. Default:
+///     none, the arm stops.
 /// **parameters : float
 ///     Parameters of the inverse: `damping=0.05`, `h=0.1`, `mu=0.01`, ...
 ///

@@ -5,7 +5,7 @@
 //! docstrings, the viewer its controls.
 //!
 //! Fails    unknown names, with the nearest; parameters of another inverse; a parameter that must
-//!          be given and is missing; a fallback for an inverse that always exists
+//!          be given and is missing; a fallback for a method, which needs none
 //! Checked  tests/it/parameters.rs
 
 use super::options::ServoOptions;
@@ -44,7 +44,8 @@ pub struct NamedInverse {
     pub description: &'static str,
     /// Its parameters.
     pub parameters: &'static [Parameter],
-    /// True if it may fail to exist, and so can have a fallback or be one.
+    /// True for hyperbolic and oblique inverses: they may not exist, or may enlarge a motion too
+    /// much (also where damping makes them exist), and so can have a fallback or be one.
     pub is_partial: bool,
     /// True if it is given a complement: the twists along which a motion may be changed.
     pub takes_complement: bool,
@@ -158,7 +159,7 @@ pub struct InverseSelection<'a> {
     pub parameters: Vec<(&'a str, f64)>,
     /// Twists of the tool, in its axes, along which a motion may be changed (`oblique`).
     pub complement: Vec<Twist>,
-    /// The inverse that takes over where this one does not exist.
+    /// The inverse that takes over where this one does not exist or enlarges a motion too much.
     pub fallback: Option<&'a str>,
 }
 
@@ -179,7 +180,7 @@ impl InverseSelection<'_> {
     /// # Errors
     /// [`Error::UnknownName`] for an inverse, a parameter or a fallback; [`Error::InvalidOption`]
     /// for a parameter of another inverse, outside its domain, or required and missing, and for a
-    /// fallback of an inverse that always exists.
+    /// fallback of a method (truncated, damped, ...), which needs none.
     pub fn apply(&self, options: &mut ServoOptions) -> Result<()> {
         let chosen = NamedInverse::named(self.name)?;
         let fallback = self.fallback.map(|name| self.find_fallback(&chosen, name)).transpose()?;

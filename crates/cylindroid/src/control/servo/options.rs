@@ -67,8 +67,8 @@ pub struct ServoOptions {
     pub method: Method,
     /// The part of a motion to realise if the arm cannot perform all of it.
     pub projection: TaskProjection,
-    /// The projection used where `projection` does not exist; `None`: the arm stops and reports the
-    /// reason.
+    /// The projection used where `projection` does not exist or enlarges a motion too much
+    /// (`largest_projection`); `None`: the arm stops and reports the reason.
     pub fallback: Option<TaskProjection>,
     /// A projection that enlarges motions by more than this factor counts as non-existent [-].
     pub largest_projection: f64,

@@ -2,9 +2,12 @@
 
 pub(super) const FORMAT: &str = "MJCF";
 
+/// The attributes that give an orientation; an element has at most one of them.
+pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
+
 /// The attributes that are read of an element; those of other elements are not looked at.
-pub(super) fn used(element: &str) -> &'static [&'static str] {
-    match element {
+pub(super) fn used(element: &str) -> Vec<&'static str> {
+    let own: &[&str] = match element {
         "joint" | "freejoint" => &[
             "name",
             "class",
@@ -17,17 +20,12 @@ pub(super) fn used(element: &str) -> &'static [&'static str] {
             "ref",
             "actuatorfrcrange",
         ],
+        "body" => &["name", "childclass"],
         "geom" => &[
             "name",
             "class",
             "type",
             "size",
-            "pos",
-            "quat",
-            "axisangle",
-            "euler",
-            "xyaxes",
-            "zaxis",
             "fromto",
             "rgba",
             "material",
@@ -38,25 +36,17 @@ pub(super) fn used(element: &str) -> &'static [&'static str] {
             "mass",
             "density",
         ],
-        "site" => &[
-            "name",
-            "class",
-            "type",
-            "size",
-            "pos",
-            "quat",
-            "axisangle",
-            "euler",
-            "xyaxes",
-            "zaxis",
-            "rgba",
-            "material",
-            "group",
-        ],
+        "site" => &["name", "class", "type", "size", "rgba", "material", "group"],
         "mesh" => &["name", "class", "file", "scale"],
         "material" => &["name", "class", "rgba"],
         _ => &[],
+    };
+    let mut all = own.to_vec();
+    if matches!(element, "body" | "geom" | "site") {
+        all.push("pos");
+        all.extend(ORIENTATIONS);
     }
+    all
 }
 
 pub(super) fn why_unused(name: &str) -> &'static str {

@@ -11,7 +11,6 @@ use roxmltree::Node;
 
 use super::Mjcf;
 use super::attributes::used;
-use super::compiler::ORIENTATIONS;
 use super::defaults::Element;
 use super::unique_name::unique;
 use crate::error::{Error, Result};
@@ -68,9 +67,7 @@ impl<'d> Mjcf<'d> {
 
     fn body(&mut self, body: Pending<'d>, stack: &mut Vec<Pending<'d>>) -> Result<()> {
         let Pending { node, parent, parent_from_frame, childclass, top } = body;
-        let mut known = vec!["name", "pos", "childclass"];
-        known.extend(ORIENTATIONS);
-        self.reader.unread_attributes(node, &known);
+        self.reader.unread_attributes(node, &used("body"));
         if node.attribute("mocap").is_some_and(|m| m.trim() == "true") {
             let name = node.attribute("name").unwrap_or("");
             self.reader.note(node, "mocap body", "it stays where the file puts it", name);
@@ -141,7 +138,7 @@ impl<'d> Mjcf<'d> {
         }
         for (node, pose, class) in &inside.sites {
             let element = self.defaults.of(&self.reader, *node, *class, &["site"])?;
-            self.reader.unread_attributes(*node, used("site"));
+            self.reader.unread_attributes(*node, &used("site"));
             let Some(name) = node.attribute("name") else {
                 let why = "without a name there is no way to speak of it";
                 self.reader.note(*node, "<site> without a name", why, &link.name);
@@ -225,7 +222,7 @@ impl<'d> Mjcf<'d> {
         } else {
             self.defaults.of(reader, node, class, &["joint"])?
         };
-        reader.unread_attributes(node, used("joint"));
+        reader.unread_attributes(node, &used("joint"));
         let kind = match (is_free, element.text("type").unwrap_or("hinge")) {
             (true, _) | (_, "free") => JointKind::Free,
             (_, "hinge") => JointKind::Revolute,

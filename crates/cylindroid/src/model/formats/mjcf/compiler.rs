@@ -7,15 +7,13 @@
 //! Source   mujoco.readthedocs.io, Modeling, frame orientations and compiler
 //! Checked  tests/formats/mjcf.rs::poses_*
 
+use super::attributes::ORIENTATIONS;
 use super::defaults::Element;
 use super::files::Files;
 use crate::error::{Error, Result};
 use crate::model::formats::xml::Reader;
 use crate::spatial::{Mat3, Pose, Quaternion, Rotation, Vec3};
 use crate::tolerance::ZERO_AXIS;
-
-/// Ways to write an orientation.
-pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// The settings of a model.
 #[derive(Debug, Clone)]

@@ -53,7 +53,7 @@ impl<'d> Defaults<'d> {
                     defaults.classes.push(Class { name, parent, elements: Vec::new() });
                     nested.push((child, defaults.classes.len() - 1));
                 } else {
-                    reader.unread_attributes(child, used(child.tag_name().name()));
+                    reader.unread_attributes(child, &used(child.tag_name().name()));
                     defaults.classes[class].elements.push(child);
                 }
             }

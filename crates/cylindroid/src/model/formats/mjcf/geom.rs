@@ -78,7 +78,7 @@ impl<'d> Mjcf<'d> {
         link_from_frame: Pose,
     ) -> Result<()> {
         let element = self.defaults.of(&self.reader, node, childclass, &["geom"])?;
-        self.reader.unread_attributes(node, used("geom"));
+        self.reader.unread_attributes(node, &used("geom"));
         let mut pose = self.compiler.pose(&self.reader, &element)?;
         let mut size = element.list(&self.reader, "size")?.unwrap_or_default();
         if let Some([a, b, c, d, e, f]) = element.vector::<6>(&self.reader, "fromto")? {
