@@ -62,11 +62,15 @@ def panda():
     ax = space(figure)
     arm(ax, robot, robot.home, GREY)
     tool = robot.fk(robot.home)
-    plot.frame(np.eye(4), ax, size=0.2, name="world")
-    plot.frame(tool, ax, size=0.12, name="tool")
+    plot.frame(np.eye(4), ax, size=0.2)
+    plot.frame(tool, ax, size=0.12)
+    ax.text(-0.2, 0, 0.02, "world")
+    ax.text(*tool[:3, 3] + [0.16, 0, -0.03], "tool")
     report = robot.manipulability(robot.home, task="x,y,z")
     plot.ellipsoid(report.kinematic, tool[:3, 3], ax, scale=0.25)
     equal(ax, (-0.25, -0.35, 0), (0.65, 0.35, 0.75))
+    ax.set(xlabel="x [m]", zlabel="z [m]")
+    ax.set_ylabel("y [m]", labelpad=10)
     for surface in ax.collections:
         surface.set_rasterized(True)
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
@@ -137,7 +141,7 @@ def statics():
     ax.plot(*points.T, "o", color="white", mec="black", ms=7)
     at = linkage.fk(linkage.home, linkage.reference)[:2, 3]
     ax.annotate("", at + 0.3 * wrench[:2], at, arrowprops={"arrowstyle": "-|>", "color": GREEN, "lw": 2})
-    ax.annotate("f = (3, -1) N, m = 0.2 N m", at + [0.3, 0.1])
+    ax.annotate("f = (3, -1) N, m = 0.2 N m", at + [0.35, 0.32], color=GREEN)
     for k, torque in enumerate(torques):
         ax.annotate(f"torque of q{k + 1}: {torque:.2g} N m", points[k], (-8, 14) if k else (12, 10),
                     textcoords="offset points")
@@ -161,10 +165,11 @@ def grasp():
             edges.append(point + 0.035 * (np.array([[c, -s], [s, c]]) @ -out))
         ax.add_patch(plt.Polygon([point, *edges], color=BLUE, alpha=0.35))
         ax.annotate("", point, point + 0.03 * out, arrowprops={"arrowstyle": "-|>", "color": ORANGE, "lw": 2})
-        ax.annotate(name, point + 0.036 * out, ha="center", va="center")
-    ax.set(aspect="equal", xlim=(-0.08, 0.1), ylim=(-0.09, 0.09), xlabel="x [m]", ylabel="y [m]")
+        ax.annotate(name, point + 0.036 * out, ha="left" if out[0] > 0.9 else "center", va="center")
+    ax.set(aspect="equal", xlim=(-0.08, 0.11), ylim=(-0.09, 0.09), xlabel="x [m]", ylabel="y [m]")
     closed = hand.grasp_quality(q, torsion=0.01)
-    ax.set_title(f"closed: {closed.closed}, friction cones of half angle arctan 0.5", fontsize=10)
+    closure = "force closure" if closed.closed else "no force closure"
+    ax.set_title(f"{closure}, friction cones of half angle arctan 0.5", fontsize=10)
     save(figure, "grasp.svg")
 
 
@@ -184,7 +189,7 @@ def gains():
         label = method + ", " + ", ".join(f"{k} {v:g}" for k, v in options.items())
         ax.plot(sigma, inverse.matrix[:, 1, 1], color=colour, label=label)
     ax.set(xscale="log", ylim=(0, 40), xlabel="singular value σ (the largest is 1)", ylabel="gain")
-    ax.legend(frameon=False, fontsize=9)
+    ax.legend(frameon=False, fontsize=9, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.2))
     save(figure, "gains.svg")
 
 

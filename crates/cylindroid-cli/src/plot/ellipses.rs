@@ -222,7 +222,11 @@ impl Block<'_> {
     fn legend(&self, size: f64, room: u32) -> Vec<Entry> {
         let scales = self.scales(size);
         let drawn = |scale: Option<f64>| match scale {
-            Some(scale) => format!("; scale {} {} per m", number(scale), self.unit),
+            // Not broken between lines.
+            Some(scale) => {
+                let scale = format!("scale {} {} per m", number(scale), self.unit);
+                format!("; {}", scale.replace(' ', "\u{a0}"))
+            }
             None => ": none".to_owned(),
         };
         let joints = if self.force { "joint torques" } else { "joint velocities" };

@@ -132,7 +132,7 @@ fn size(area: &Area<'_>, system: &ScrewSystem, range: &Range<f64>) -> Drawn {
     chart
         .configure_mesh()
         .x_desc("pitch h [m/rad]")
-        .y_desc("projector norm |P_h| [-]")
+        .y_desc("projector norm |P_h| [-], at most 1000")
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.12))
         .axis_desc_style((FONT, 15))
@@ -205,6 +205,9 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
         .x_labels(5)
         .y_labels(5)
         .z_labels(5)
+        .x_formatter(&|x| label(*x, half))
+        .y_formatter(&|y| label(*y, half))
+        .z_formatter(&|z| label(*z, half))
         .draw()?;
     for screw in &screws {
         let (p, d) = (screw.axis.point, screw.axis.direction);
