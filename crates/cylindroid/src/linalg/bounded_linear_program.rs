@@ -12,7 +12,7 @@
 //!          the cost finite, and any point returned is within the bounds.
 //! Why so   at most 14 x 14 here, and z = 0 is feasible: an active set of 100 lines needs no solver
 //! Source   Nocedal & Wright, Numerical Optimization, 2nd ed., section 16.5, without curvature
-//! Checked  tests/it/bounded_linear_program.rs
+//! Checked  src/linalg/bounded_linear_program/tests.rs
 
 use super::matrix::Matrix;
 use super::qr::{Qr, solve_upper};
@@ -49,10 +49,8 @@ impl Interval {
 }
 
 /// A linear program with the constraints `lower <= A z <= upper`.
-#[doc(alias = "LP")]
-#[doc(alias = "linear programming")]
 #[derive(Debug, Clone)]
-pub struct BoundedLinearProgram {
+pub(crate) struct BoundedLinearProgram {
     /// A^T with columns divided by the larger bound of each.
     normals: Matrix,
     /// Bounds divided by the same.
@@ -63,11 +61,11 @@ pub struct BoundedLinearProgram {
 
 /// The objective of a linear program, with a second one for ties.
 #[derive(Debug, Clone, Copy)]
-pub struct Objective<'a> {
+pub(crate) struct Objective<'a> {
     /// c.
-    pub first: &'a [f64],
+    pub(crate) first: &'a [f64],
     /// Second objective, for vertices with equal `first`.
-    pub second: &'a [f64],
+    pub(crate) second: &'a [f64],
 }
 
 impl BoundedLinearProgram {
@@ -76,7 +74,7 @@ impl BoundedLinearProgram {
     /// # Panics
     /// If the number of bounds is not that of the rows.
     #[must_use]
-    pub fn new(a: &Matrix, bounds: &[Interval]) -> Self {
+    pub(crate) fn new(a: &Matrix, bounds: &[Interval]) -> Self {
         assert_eq!(a.rows(), bounds.len(), "a bound for each row");
         let normals = Matrix::from_fn(a.cols(), a.rows(), |j, i| a[(i, j)] / bounds[i].size());
         let inverse = (a.rows() == a.cols())
@@ -87,18 +85,8 @@ impl BoundedLinearProgram {
     }
 
     /// A vertex of largest `first . z`, and among these of largest `second . z`.
-    ///
-    /// ```
-    /// use cylindroid::Matrix;
-    /// use cylindroid::linalg::{BoundedLinearProgram, Interval, Objective};
-    ///
-    /// let bounds = [Interval::symmetric(1.0); 2];
-    /// let program = BoundedLinearProgram::new(&Matrix::identity(2), &bounds);
-    /// let vertex = program.maximize(Objective { first: &[1.0, -1.0], second: &[0.0, 0.0] });
-    /// assert_eq!(vertex, [1.0, -1.0]);
-    /// ```
     #[must_use]
-    pub fn maximize(&self, objective: Objective<'_>) -> Vec<f64> {
+    pub(crate) fn maximize(&self, objective: Objective<'_>) -> Vec<f64> {
         match &self.inverse {
             Some(inverse) => {
                 let n = inverse.cols();
@@ -177,3 +165,6 @@ impl BoundedLinearProgram {
         first
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -60,7 +60,8 @@ impl Cut {
     }
 }
 
-/// The column space (range) of a matrix.
+/// The column space (range) of a matrix: a rank with its gap, an orthonormal basis and its
+/// complement, for Jacobians and constraint matrices of one's own.
 #[derive(Debug, Clone)]
 pub struct ColumnSpace {
     rows: usize,

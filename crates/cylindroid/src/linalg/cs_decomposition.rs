@@ -10,7 +10,7 @@
 //!          near s = 1; so where s^2 > 1/2 the rows of A are decomposed again, in the space of
 //!          these columns alone. The full bidiagonal method would be ten times this file.
 //! Source   Van Loan 1985; Golub & Van Loan, Matrix Computations, 4th ed., section 2.5.4
-//! Checked  tests/it/subspaces.rs::cs_*
+//! Checked  src/linalg/cs_decomposition/tests.rs
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -22,7 +22,7 @@ use super::vector::norm;
 
 /// The block that contains a direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PairKind {
+pub(crate) enum PairKind {
     /// s is zero: the direction lies in the first block.
     Zero,
     /// Neither is zero.
@@ -33,37 +33,27 @@ pub enum PairKind {
 
 /// A CS decomposition.
 #[derive(Debug, Clone)]
-pub struct CsDecomposition {
+pub(crate) struct CsDecomposition {
     /// Share of each direction in the first block, ascending.
-    pub cosines: Vec<f64>,
+    pub(crate) cosines: Vec<f64>,
     /// Share of each direction in the second block, descending.
-    pub sines: Vec<f64>,
+    pub(crate) sines: Vec<f64>,
     /// Directions in the first block, a column each.
-    pub x: Matrix,
+    pub(crate) x: Matrix,
     /// Directions in the second block, a column each.
-    pub y: Matrix,
+    pub(crate) y: Matrix,
     /// The same directions in the coordinates of the given basis.
-    pub z: Matrix,
+    pub(crate) z: Matrix,
 }
 
 impl CsDecomposition {
     /// The decomposition of a matrix with orthonormal columns, split after `split` rows.
     ///
-    /// ```
-    /// use cylindroid::Matrix;
-    /// use cylindroid::linalg::CsDecomposition;
-    ///
-    /// // A line at 30 degrees to the first axis.
-    /// let (c, s) = (0.75_f64.sqrt(), 0.5);
-    /// let cs = CsDecomposition::of(&Matrix::from_rows(&[[c], [s]]).unwrap(), 1);
-    /// assert!((cs.cosines[0] - c).abs() < 1e-15 && (cs.sines[0] - s).abs() < 1e-15);
-    /// ```
-    ///
     /// # Panics
     /// If the matrix has fewer rows than `split`; in debug builds if its columns are not
     /// orthonormal.
     #[must_use]
-    pub fn of(basis: &Matrix, split: usize) -> Self {
+    pub(crate) fn of(basis: &Matrix, split: usize) -> Self {
         let (rows, k) = (basis.rows(), basis.cols());
         assert!(split <= rows, "a matrix of {rows} rows split after {split}");
         let (a, b) = (basis.rows_between(0, split), basis.rows_between(split, rows));
@@ -108,20 +98,14 @@ impl CsDecomposition {
 
     /// Number of directions.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.sines.len()
-    }
-
-    /// True for a space of no dimension.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.sines.is_empty()
     }
 
     /// The kind of each direction: a cosine or sine at or below `tolerance` (absolute, since the
     /// columns have length one) is zero.
     #[must_use]
-    pub fn kind(&self, j: usize, tolerance: f64) -> PairKind {
+    pub(crate) fn kind(&self, j: usize, tolerance: f64) -> PairKind {
         if self.cosines[j] <= tolerance {
             PairKind::Infinite
         } else if self.sines[j] <= tolerance {
@@ -133,14 +117,14 @@ impl CsDecomposition {
 
     /// Rank of the first block.
     #[must_use]
-    pub fn first_rank(&self, tolerance: f64) -> Cut {
+    pub(crate) fn first_rank(&self, tolerance: f64) -> Cut {
         let falling: Vec<f64> = self.cosines.iter().rev().copied().collect();
         Cut::of(&falling, tolerance)
     }
 
     /// Rank of the second block.
     #[must_use]
-    pub fn second_rank(&self, tolerance: f64) -> Cut {
+    pub(crate) fn second_rank(&self, tolerance: f64) -> Cut {
         Cut::of(&self.sines, tolerance)
     }
 }
@@ -202,3 +186,6 @@ fn normalise(x: &mut [f64]) -> f64 {
     }
     size
 }
+
+#[cfg(test)]
+mod tests;

@@ -12,7 +12,7 @@
 //!          dimensions, for boxes, their images and friction cones; enumerating all vertices first
 //!          would cost 2^n
 //! Source   van den Bergen 2001 (expanding polytope); Zheng 2013 for its use on grasps
-//! Checked  tests/it/hull.rs
+//! Checked  src/linalg/hull/tests.rs
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ use crate::tolerance::HULL;
 
 /// The goal of a hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HullGoal {
+pub(crate) enum HullGoal {
     /// All facets.
     Whole,
     /// Only the facet nearest to the origin, or the one farthest beyond it.
@@ -31,17 +31,15 @@ pub enum HullGoal {
 }
 
 /// Options of a hull.
-#[doc(alias = "convex hull")]
-#[doc(alias = "expanding polytope")]
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HullOptions {
+pub(crate) struct HullOptions {
     /// The goal.
-    pub goal: HullGoal,
+    pub(crate) goal: HullGoal,
     /// A point that lies beyond a facet by less than this times the size of the body does not
     /// change it [-].
-    pub tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Maximum number of facets at a time.
-    pub max_facets: usize,
+    pub(crate) max_facets: usize,
 }
 
 /// A simplex of the boundary.
@@ -58,7 +56,8 @@ pub struct Facet {
     pub gap: f64,
 }
 
-/// A convex hull.
+/// The convex hull of a polytope of velocities or forces.
+#[doc(alias = "convex hull")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hull {
     /// Points of the body; all are vertices of the polytope unless the body is curved.
@@ -74,16 +73,7 @@ pub struct Hull {
 impl Hull {
     /// The hull of a body in `dimension` coordinates, whose support function `support(n)` returns a
     /// point of largest `n . x`. The queried directions have length one.
-    ///
-    /// ```
-    /// use cylindroid::linalg::{Hull, HullGoal, HullOptions};
-    ///
-    /// // The unit square by its support function.
-    /// let options = HullOptions { goal: HullGoal::Whole, tolerance: 1e-9, max_facets: 100 };
-    /// let square = Hull::of(2, |n| n.iter().map(|x| x.signum()).collect(), options);
-    /// assert_eq!((square.vertices.len(), square.complete), (4, true));
-    /// ```
-    pub fn of(
+    pub(crate) fn of(
         dimension: usize,
         mut support: impl FnMut(&[f64]) -> Vec<f64>,
         options: HullOptions,
@@ -119,7 +109,7 @@ impl Hull {
 
     /// The facet whose plane is nearest to the origin, or the one farthest beyond it.
     #[must_use]
-    pub fn nearest_facet(&self) -> Option<&Facet> {
+    pub(crate) fn nearest_facet(&self) -> Option<&Facet> {
         self.facets.iter().min_by(|a, b| a.offset.total_cmp(&b.offset))
     }
 
@@ -293,3 +283,6 @@ impl Expansion {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;

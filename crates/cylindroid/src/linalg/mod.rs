@@ -17,12 +17,16 @@ mod singular_values;
 mod small_gemm;
 mod svd;
 mod symmetric_eigen;
+#[cfg(test)]
+mod test_support;
 mod vector;
 
-pub use bounded_linear_program::{BoundedLinearProgram, Interval, Objective};
+pub use bounded_linear_program::Interval;
+pub(crate) use bounded_linear_program::{BoundedLinearProgram, Objective};
 pub use column_space::{ColumnSpace, Cut, Threshold};
-pub use cs_decomposition::{CsDecomposition, PairKind};
-pub use hull::{Facet, Hull, HullGoal, HullOptions};
+pub(crate) use cs_decomposition::{CsDecomposition, PairKind};
+pub use hull::{Facet, Hull};
+pub(crate) use hull::{HullGoal, HullOptions};
 pub use matrix::Matrix;
 pub use metric::Metric;
 pub(crate) use parallel::run_all;

@@ -11,7 +11,9 @@ use super::matrix::Matrix;
 use super::svd::Svd;
 use super::vector::{dot, norm};
 
-/// The span of some right singular vectors.
+/// The span of some right singular vectors. Its complement is the null space: for a Jacobian the
+/// joint velocities that leave the end effector at rest, onto which one's own secondary task is
+/// projected.
 #[derive(Debug, Clone, Copy)]
 pub struct RowSpace<'a> {
     svd: &'a Svd,

@@ -12,7 +12,8 @@
 /// More sweeps than any matrix needs: the bound that makes the cost finite.
 const MAX_SWEEPS: usize = 30;
 
-/// The eigendecomposition of a symmetric matrix: the leading n x n block of an array.
+/// The eigendecomposition of a symmetric matrix: the leading n x n block of an array. For the Gram
+/// matrices of pitch forms, which are indefinite; `benches/peers` compares it with faer.
 #[doc(alias = "eigenvalues")]
 #[derive(Debug, Clone, Copy)]
 pub struct SymmetricEigen<const N: usize> {

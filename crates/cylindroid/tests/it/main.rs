@@ -9,10 +9,8 @@
 
 mod analytic;
 mod batch;
-mod bounded_linear_program;
 mod closure;
 mod graph;
-mod hull;
 mod hyperbolic;
 mod ik;
 mod inverse;

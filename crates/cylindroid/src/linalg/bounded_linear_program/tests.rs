@@ -1,16 +1,11 @@
 //! Corners of boxes cut by a plane.
 
-use cylindroid::Matrix;
-use cylindroid::linalg::{BoundedLinearProgram, Interval, Objective};
-
-use crate::support::{Random, assert_close};
+use super::*;
+use crate::linalg::Svd;
+use crate::linalg::test_support::{Random, assert_close};
 
 fn symmetric(bounds: &[f64]) -> Vec<Interval> {
     bounds.iter().map(|b| Interval::symmetric(*b)).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// Against all corners, found by trying all sets of active bounds.
@@ -79,8 +74,10 @@ fn corners(n: usize, m: usize, visit: &mut impl FnMut(&[usize])) {
 }
 
 fn solve(a: &Matrix, b: &[f64]) -> Option<Vec<f64>> {
-    let inverse = cylindroid::inverse::truncated(a, 1e-9).unwrap();
-    (inverse.rank == a.rows()).then(|| inverse.matrix.mul_vec(b))
+    let svd = Svd::of(a);
+    let parts = || (0..svd.len()).map(|k| (svd.v(k), dot(svd.u(k), b) / svd.value(k)));
+    let entry = |i: usize| parts().map(|(v, x)| v[i] * x).sum();
+    (svd.rank(1e-9).rank == a.rows()).then(|| (0..a.cols()).map(entry).collect())
 }
 
 /// Ties go to the corner that the second direction prefers.

@@ -1,15 +1,10 @@
 //! Hulls by farthest points.
 
-use cylindroid::linalg::{Hull, HullGoal, HullOptions};
-
-use crate::support::Random;
+use super::*;
+use crate::linalg::test_support::Random;
 
 const WHOLE: HullOptions =
     HullOptions { goal: HullGoal::Whole, tolerance: 1e-9, max_facets: 10_000 };
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
 
 fn support(points: &[Vec<f64>]) -> impl FnMut(&[f64]) -> Vec<f64> + '_ {
     |n| points.iter().max_by(|p, q| dot(n, p).total_cmp(&dot(n, q))).unwrap().clone()
