@@ -180,8 +180,8 @@ pub const MIN_ACTUATED_SHARE: f64 = 1e-2;
 /// assembled first.
 pub const NEARLY_CLOSED: f64 = 1e-2;
 
-/// Rates held at bounds that follow from each other, or contradict each other, by this [-]: above
-/// the rounding of the motions that the loops leave.
+/// Joint velocities clamped at bounds that follow from each other, or contradict each other, by
+/// this [-]: above the rounding of the motions that the loops permit.
 pub const CLAMPED_ROWS: f64 = 1e-9;
 
 /// A motion of length one (scaled) that moves the task by less than this does not move it [-].
@@ -304,8 +304,8 @@ pub const VANISHING: f64 = 1e-6;
 /// Corrections of a step below this are rounding, whatever the step [-].
 pub const CORRECTION_ROUNDING: f64 = 1e-9;
 
-/// What is left of a motion of the held coordinates that the free ones should follow, relative to
-/// it, where they cannot [-]: far above rounding at the conditioning of the worst pose on a way.
+/// Residual of a motion of the prescribed coordinates that the free ones cannot follow, relative to
+/// the motion [-]: far above rounding at the worst conditioning on a path.
 pub const CONTRADICTION: f64 = 1e-6;
 
 /// Where a way through closed configurations ends is found to this share of it [-]: a fold is

@@ -1,4 +1,4 @@
-/** The mobility report: how many motions, which are idle, held twice or singular. */
+/** The mobility report: motions, idle joints, overconstraint and singularities. */
 import { fill, h } from "../dom";
 import { count, short } from "../format";
 import { empty, pairs, panel } from "./panel";

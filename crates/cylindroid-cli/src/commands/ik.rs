@@ -168,11 +168,11 @@ fn found_by(report: &IkJson<'_>) -> String {
     match &report.analytic {
         _ if !report.success => String::new(),
         Some(analytic) if report.found_by == FoundBy::Analytic.name() => {
-            let held = match analytic.locked.as_slice() {
+            let locked = match analytic.locked.as_slice() {
                 [] => String::new(),
                 names => format!("; {} sampled", names.join(", ")),
             };
-            format!("closed form ({}{held})", analytic.structure)
+            format!("closed form ({}{locked})", analytic.structure)
         }
         _ => report.found_by.to_owned(),
     }

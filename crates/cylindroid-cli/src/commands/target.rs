@@ -32,10 +32,10 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
         (None, "orientation") => "orientation only (--to gives a position)".into(),
         (None, _) => "position and orientation".into(),
         (_, "pose") if !orientation => {
-            "position and orientation, the orientation held as at the start".into()
+            "position and orientation, the orientation kept as at the start".into()
         }
         (_, "pose") if !position => {
-            "position and orientation, the position held as at the start".into()
+            "position and orientation, the position kept as at the start".into()
         }
         (_, "pose") => "position and orientation".into(),
         _ => {

@@ -31,7 +31,7 @@ pub(crate) struct Skeleton {
     /// What slides, from one link to the other.
     pub(crate) slides: Vec<[Vec3; 2]>,
     pub(crate) spots: Vec<Spot>,
-    /// Where the ground holds something.
+    /// Points attached to the ground.
     pub(crate) bases: Vec<Vec3>,
 }
 

@@ -75,19 +75,20 @@ pub(super) fn reach(
 /// if that is contradictory, with only this coordinate prescribed.
 fn along(state: &State, i: usize, goal: f64) -> Result<(Vec<f64>, PathEnd)> {
     let (mechanism, q) = (state.mechanism(), state.q());
-    let mut held: Vec<usize> = Vec::new();
+    let mut prescribed: Vec<usize> = Vec::new();
     if mechanism.coordinates()[i].actuated {
         let whole = |&c: &usize| is_adjustable(mechanism, &mechanism.coordinates()[c]);
-        held = mechanism.actuated().filter(whole).collect();
+        prescribed = mechanism.actuated().filter(whole).collect();
     }
-    for held in [held, vec![i]] {
-        if !held.contains(&i) {
+    for prescribed in [prescribed, vec![i]] {
+        if !prescribed.contains(&i) {
             continue;
         }
-        let goals: Vec<f64> = held.iter().map(|&c| if c == i { goal } else { q[c] }).collect();
-        let way = track_path(mechanism, q, &held, &goals, ContinuationOptions::default())?;
+        let goals: Vec<f64> =
+            prescribed.iter().map(|&c| if c == i { goal } else { q[c] }).collect();
+        let way = track_path(mechanism, q, &prescribed, &goals, ContinuationOptions::default())?;
         let contradicted = matches!(way.end, PathEnd::Contradiction | PathEnd::Open);
-        if !contradicted || held.len() == 1 {
+        if !contradicted || prescribed.len() == 1 {
             let closed = way.closure_error.is_closed(mechanism.reach());
             return Ok((if closed { way.q } else { q.to_vec() }, way.end));
         }

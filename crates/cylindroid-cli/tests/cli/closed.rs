@@ -110,7 +110,10 @@ fn modes_are_listed() {
     );
     let command = ["assemble", "stewart", "--hold", "actuated", "--modes", "40"];
     let legs = json(&command, 0);
-    assert!(legs["modes"].as_array().unwrap().len().is_multiple_of(2) && legs["held"][5] == "leg6");
+    assert!(
+        legs["modes"].as_array().unwrap().len().is_multiple_of(2)
+            && legs["prescribed"][5] == "leg6"
+    );
     // The same seed, the same answer; another, other starts.
     assert_eq!(legs, json(&command, 0));
     let seeded = [&command[..], &["--seed", "9"]].concat();
@@ -146,7 +149,7 @@ fn coordinates_go_where_they_are_sent() {
     assert!((stopped["q"][0].as_f64().unwrap() - 0.5 * share).abs() < 1e-12);
     let wider = ["assemble", "five-bar", "--to", "q1=0.5,q2=-1.2", "--least-distance", "0.05"];
     assert!(json(&wider, 1)["fraction"].as_f64().unwrap() < share);
-    // A limit of the leg that goes, the others held.
+    // A limit of the leg that goes, the others prescribed.
     let limit = json(&["assemble", "stewart", "--to", "leg1=0.5", "--hold", "actuated"], 1);
     assert_eq!((&limit["end"], &limit["limit"]), (&"limit".into(), &"leg1".into()));
     assert!((limit["fraction"].as_f64().unwrap() - 0.8).abs() < 1e-9);

@@ -13,9 +13,9 @@ use crate::table;
 /// Attributes
 /// ----------
 /// distance : float
-///     Along held directions (m).
+///     Along constrained directions (m).
 /// angle : float
-///     About held directions (rad).
+///     About constrained directions (rad).
 #[pyclass(frozen, get_all, name = "LoopClosureError", module = "cylindroid")]
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PyLoopClosureError {
@@ -133,8 +133,8 @@ impl PyMechanism {
     ) -> Result<PyAssembly> {
         let m = &self.inner;
         let guess = self.or_home("guess", guess.as_ref())?;
-        let held = self.places(&hold.unwrap_or_default())?;
-        let found = py.detach(|| assemble(m, guess, &held))?;
+        let prescribed = self.places(&hold.unwrap_or_default())?;
+        let found = py.detach(|| assemble(m, guess, &prescribed))?;
         let names: Vec<String> = m.coordinates().iter().map(|c| c.name.clone()).collect();
         Ok(PyAssembly::new(&found, &names))
     }

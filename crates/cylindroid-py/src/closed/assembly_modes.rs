@@ -18,7 +18,7 @@ use crate::table;
 /// found : list of int
 ///     How many starts led to each.
 /// self_motion_dof : list of int
-///     Degrees of freedom that the held coordinates leave at each: 0 for an isolated assembly.
+///     Degrees of freedom left by the prescribed coordinates at each: 0 for an isolated assembly.
 /// starts, closed : int
 ///     Starts, and those from which the loops closed.
 /// unseen_probability : float
@@ -78,7 +78,7 @@ impl PyAssemblyModes {
 
 #[pymethods]
 impl PyMechanism {
-    /// The ways in which loops close with some coordinates held, from many starts.
+    /// Assembly modes for some prescribed coordinates, from many initial guesses.
     ///
     /// Parameters
     /// ----------
@@ -115,9 +115,9 @@ impl PyMechanism {
     ) -> Result<PyAssemblyModes> {
         let m = &self.inner;
         let guess = self.or_home("guess", guess.as_ref())?;
-        let held = self.places(&hold.unwrap_or_default())?;
+        let prescribed = self.places(&hold.unwrap_or_default())?;
         let options = ModeOptions { starts, seed };
-        let inner = py.detach(|| assembly_modes(m, guess, &held, options))?;
+        let inner = py.detach(|| assembly_modes(m, guess, &prescribed, options))?;
         let names = m.coordinates().iter().map(|c| c.name.clone()).collect();
         Ok(PyAssemblyModes { inner, names })
     }

@@ -125,12 +125,12 @@ impl PyMechanism {
         least_distance: Option<f64>,
     ) -> Result<PyContinuationResult> {
         let names: Vec<String> = goal.keys().cloned().collect();
-        let held = self.places(&names)?;
+        let prescribed = self.places(&names)?;
         let goals: Vec<f64> = goal.values().copied().collect();
         let mut options = ContinuationOptions { step, ..ContinuationOptions::default() };
         options.least_distance = least_distance.unwrap_or(options.least_distance);
         let start = start.vector("start")?;
-        let inner = py.detach(|| track_path(&self.inner, start, &held, &goals, options))?;
+        let inner = py.detach(|| track_path(&self.inner, start, &prescribed, &goals, options))?;
         Ok(PyContinuationResult { inner })
     }
 }

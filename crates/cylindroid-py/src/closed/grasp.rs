@@ -68,16 +68,16 @@ impl PyFingerContact {
     }
 }
 
-/// How well a grasp holds.
+/// Force closure and quality of a grasp.
 ///
 /// Attributes
 /// ----------
 /// closed : bool
-///     True if every wrench can be held with enough effort.
+///     True if every wrench can be resisted with enough effort.
 /// epsilon : (float, float)
-///     Bounds of the least wrench, in its worst direction, that is more than the effort holds.
+///     Bounds of the least wrench, in its worst direction, that exceeds the effort.
 /// weakest : ndarray, (d,)
-///     The direction in which least is held, moments over the length.
+///     The least resisted direction, moments over the length.
 #[pyclass(frozen, name = "GraspQuality", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyGraspQuality {

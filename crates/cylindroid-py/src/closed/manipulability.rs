@@ -19,11 +19,11 @@ use crate::table::{self, Table};
 /// ----------
 /// kinematic : Spectrum
 ///     Motions of the object for rates of the actuated joints: zeros are redundant motions, infinite
-///     ones motions that the actuators do not hold.
+///     ones motions that the actuators do not control.
 /// active_force : Spectrum
 ///     Forces exerted: wrenches for torques; zeros are internal torques.
 /// passive_force : Spectrum
-///     Forces resisted: infinite ones are wrenches that the structure holds.
+///     Forces resisted: infinite ones are wrenches that the structure resists.
 /// metric : str
 /// actuated, components : list of str
 ///     Names of the entries of directions.
@@ -171,7 +171,7 @@ impl PyMechanism {
     ///     Metrics of twists (or the task), joint rates, wrenches and torques, positive definite.
     ///     Defaults: those of `metric`; wrenches and torques by the duals.
     /// metric : str
-    ///     'unit' (m beside rad), 'length' (lengths over the characteristic length), 'limits'
+    ///     'unit' (m and rad, unscaled), 'length' (lengths over the characteristic length), 'limits'
     ///     (lengths so, joint rates over their limits).
     /// length : float, optional
     ///     Characteristic length (m). Default: the reach.

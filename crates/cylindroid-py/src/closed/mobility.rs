@@ -12,7 +12,8 @@ use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
-/// How a mechanism can move, and what holds it: every kind counted, with a basis.
+/// The motions of a mechanism and the wrenches that its structure resists: every kind counted, with
+/// a basis.
 ///
 /// Attributes
 /// ----------
@@ -27,7 +28,7 @@ use crate::table::{self, Table};
 /// internal : int
 ///     Torques of actuated joints that balance each other.
 /// zero_torque : int
-///     Wrenches on the reference frame held without torque.
+///     Wrenches on the reference frame resisted without torque.
 /// hyperstatic : int
 ///     Forces in loops and contacts that nothing determines.
 /// idle : int
@@ -56,7 +57,7 @@ use crate::table::{self, Table};
 ///     Degrees of freedom of finite motion; None where it is not known.
 /// actuated, passive, components : list of str
 /// closure_error : LoopClosureError or None
-///     How far loops are open: the report holds where they are closed.
+///     Loop-closure error: the report is valid where the loops are closed.
 /// length : float
 ///     Characteristic length of the rank decisions (m).
 #[pyclass(frozen, name = "Mobility", module = "cylindroid")]
@@ -305,7 +306,7 @@ impl PyMobility {
 
 #[pymethods]
 impl PyConstraint {
-    /// How it can move, and what holds it.
+    /// Its motions, and the wrenches that its structure resists.
     ///
     /// Returns
     /// -------
@@ -317,7 +318,7 @@ impl PyConstraint {
 
 #[pymethods]
 impl PyMechanism {
-    /// How the mechanism can move, what is redundant, idle or held twice.
+    /// The motions of the mechanism: redundant, idle and overconstrained joints.
     ///
     /// Parameters
     /// ----------

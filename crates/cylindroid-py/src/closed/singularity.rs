@@ -26,7 +26,7 @@ use crate::table::{self, Table};
 /// compared_with : int
 ///     Other closed configurations that these come from.
 /// blocked : list of Screw
-///     Wrenches held without torque, beyond the generic ones.
+///     Wrenches resisted without torque, beyond the generic ones.
 /// lost, gained : list of Screw
 ///     Motions of the reference frame.
 /// redundant : list of str

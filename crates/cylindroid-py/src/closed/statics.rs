@@ -81,7 +81,7 @@ impl PyContactForces {
 
 #[pymethods]
 impl PyConstraint {
-    /// The joint torques of least norm that hold a wrench on the object.
+    /// The joint torques of least norm that balance a wrench on the object.
     ///
     /// Parameters
     /// ----------
@@ -148,7 +148,8 @@ impl PyConstraint {
         arrays::matrix(py, &py.detach(|| closure::internal_forces(&self.inner)).basis)
     }
 
-    /// A basis of the contact forces without torques at any joint: what the structure holds.
+    /// A basis of the contact forces without torques at any joint: those that the structure resists
+    /// alone.
     ///
     /// Returns
     /// -------

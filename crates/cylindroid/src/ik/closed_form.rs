@@ -47,15 +47,17 @@ impl ClosedForm {
         let chain = Chain::new(mechanism, goal.end_effector);
         let all = chain.coordinates();
         let free: Vec<_> = (0..all.len()).filter(|&i| !options.fixed.contains(&all[i])).collect();
-        let holding =
-            |held: &[usize]| Analytic::with_locked(mechanism, goal.end_effector, held).ok();
+        let with_locked =
+            |locked: &[usize]| Analytic::with_locked(mechanism, goal.end_effector, locked).ok();
         if free.len() != 7 {
-            return Some(Self { analytic: holding(&options.fixed)?, locked: None });
+            return Some(Self { analytic: with_locked(&options.fixed)?, locked: None });
         }
         let mut best: Option<(f64, Self)> = None;
         for (&i, moves) in free.iter().zip(self_motion(mechanism, chain.clone(), &free)) {
             let c = all[i];
-            let Some(analytic) = holding(&[&options.fixed[..], &[c]].concat()) else { continue };
+            let Some(analytic) = with_locked(&[&options.fixed[..], &[c]].concat()) else {
+                continue;
+            };
             let value = moves / if analytic.geometry().splits() { 1.0 } else { QUARTIC };
             if best.as_ref().is_none_or(|(most, _)| value > *most) {
                 let limits = mechanism.coordinates()[c].limits;

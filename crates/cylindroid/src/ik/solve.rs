@@ -482,7 +482,7 @@ fn check(mechanism: &Mechanism, goals: &[Goal]) -> Result<()> {
             culprit: String::new(),
             message: format!(
                 "'{}' has loops or contacts, which inverse kinematics of its spanning tree would \
-                 open; move its reference with a servo, or assemble it with actuated joints held",
+                 open; move its reference with a servo, or assemble it for given actuated joints",
                 mechanism.name()
             ),
         });

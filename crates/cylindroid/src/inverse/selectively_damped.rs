@@ -23,7 +23,7 @@ pub(super) fn gains(svd: &Svd, max_joint_velocity: f64, task: &[f64], out: &mut 
         *gain =
             if i < machine.rank { direction_gain(svd, i, max_joint_velocity, task) } else { 0.0 };
     }
-    // The sum of the directions is held to the largest rate as well.
+    // The sum of the directions is limited to the largest joint velocity as well.
     let along = |i: usize| along(svd, i, task);
     let mut largest = 0.0_f64;
     for j in 0..svd.cols() {

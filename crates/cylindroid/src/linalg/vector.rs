@@ -1,4 +1,4 @@
-//! Dot products and norms of vectors held as slices.
+//! Dot products and norms of vectors given as slices.
 
 /// `a . b`
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -188,7 +188,7 @@ pub struct Manipulability {
     /// Motions of the object for velocities of the actuated joints.
     pub kinematic: Spectrum,
     /// Wrenches on the object for torques of the actuated joints: zeros are internal torques,
-    /// infinite ones wrenches that the structure holds.
+    /// infinite ones wrenches that the structure resists.
     pub force: Spectrum,
 }
 
@@ -250,7 +250,7 @@ impl Manipulability {
     }
 
     /// The force efficiencies against given wrenches: finite ones, and an infinite one for each
-    /// wrench that the structure holds.
+    /// wrench that the structure resists.
     #[must_use]
     pub fn passive_force(&self) -> Spectrum {
         let none = Matrix::zeros(self.force.zeros.rows(), 0);

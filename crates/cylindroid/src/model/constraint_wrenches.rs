@@ -85,9 +85,9 @@ impl JointKind {
             Self::Revolute | Self::Continuous => rows(&[x, y, z], &across),
             Self::Prismatic => rows(&across, &[x, y, z]),
             Self::Helical { pitch } => {
-                let mut held = rows(&across, &across);
-                held.push(Wrench { force: along, moment: along * -pitch });
-                held
+                let mut wrenches = rows(&across, &across);
+                wrenches.push(Wrench { force: along, moment: along * -pitch });
+                wrenches
             }
             Self::Cylindrical => rows(&across, &across),
             Self::Universal { second } => {

@@ -1,4 +1,4 @@
-//! The graph beyond the tree: loop joints, contacts, what they hold, who is actuated.
+//! The graph beyond the tree: loop joints, contacts, their constraint wrenches, who is actuated.
 
 use cylindroid::model::{
     ContactKind, ContactSpec, Dimension, Inclusion, JointKind, JointSpec, LoopJointSpec, Mimic,
@@ -55,12 +55,12 @@ fn held_rows_do_no_work_in_the_motion_and_fill_the_rest() {
     for _ in 0..20 {
         let axis = random.vec3(1.0);
         for kind in kinds(&mut random) {
-            let held = kind.constraint_wrenches(axis, Dimension::Spatial);
-            assert_eq!(held.len(), 6 - kind.dof(), "{kind:?}");
-            assert!(independent(&held), "{kind:?}");
+            let wrenches = kind.constraint_wrenches(axis, Dimension::Spatial);
+            assert_eq!(wrenches.len(), 6 - kind.dof(), "{kind:?}");
+            assert!(independent(&wrenches), "{kind:?}");
             for c in 0..kind.dof() {
                 let twist = velocity(kind, axis, c);
-                for row in &held {
+                for row in &wrenches {
                     assert!(twist.power(*row).abs() < 1e-8, "{kind:?} {c}: {row:?}");
                 }
             }
@@ -79,10 +79,10 @@ fn held_rows_in_the_plane_are_those_of_the_plane() {
         (JointKind::Fixed, Vec3::Z, 3),
         (JointKind::Planar, Vec3::Z, 0),
     ] {
-        let held = kind.constraint_wrenches(axis, Dimension::Planar);
-        assert_eq!(held.len(), count, "{kind:?}");
-        assert!(independent(&held));
-        for row in &held {
+        let wrenches = kind.constraint_wrenches(axis, Dimension::Planar);
+        assert_eq!(wrenches.len(), count, "{kind:?}");
+        assert!(independent(&wrenches));
+        for row in &wrenches {
             assert_eq!([row.force.z, row.moment.x, row.moment.y], [0.0; 3], "{kind:?}");
             for c in 0..kind.dof() {
                 assert!(velocity(kind, axis, c).power(*row).abs() < 1e-9, "{kind:?}");

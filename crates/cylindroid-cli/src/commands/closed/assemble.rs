@@ -30,7 +30,7 @@ struct AssembleJson<'a> {
     closure_error: ClosureErrorJson,
     steps: usize,
     guess: &'a [f64],
-    held: Vec<&'a str>,
+    prescribed: Vec<&'a str>,
     /// Coordinates at a position limit, or beyond it where a guess that is closed was kept.
     at_limit: Vec<&'a str>,
 }
@@ -44,7 +44,7 @@ pub(crate) fn run(
     let job = Job {
         names: output::joint_names(&mechanism),
         guess: configuration(&mechanism, &args.configuration)?,
-        held: held(&mechanism, &args.hold)?,
+        prescribed: prescribed(&mechanism, &args.hold)?,
         mechanism: &mechanism,
     };
     if let Some(starts) = args.modes {
@@ -54,7 +54,7 @@ pub(crate) fn run(
         let goal = goal(&job, to, args.configuration.degrees)?;
         return continuation::run(&job, &goal, args.least_distance, style, out);
     }
-    let found = assemble(&mechanism, &job.guess, &job.held)?;
+    let found = assemble(&mechanism, &job.guess, &job.prescribed)?;
     let report = AssembleJson {
         model: mechanism.name(),
         joint_names: job.names.clone(),
@@ -63,7 +63,7 @@ pub(crate) fn run(
         closure_error: found.closure_error.into(),
         steps: found.steps,
         guess: &job.guess,
-        held: job.names_of(&job.held),
+        prescribed: job.names_of(&job.prescribed),
         at_limit: job.names_of(&found.at_limit),
     };
     match style {
@@ -74,9 +74,9 @@ pub(crate) fn run(
 }
 
 /// The places of coordinates by their names, by those of their joints, or `actuated`.
-fn held(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>, Error> {
+fn prescribed(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>, Error> {
     let coordinates = mechanism.coordinates();
-    let mut held: Vec<usize> = Vec::new();
+    let mut prescribed: Vec<usize> = Vec::new();
     for name in names {
         let joint = mechanism.joints().iter().find(|j| j.name == *name && j.mimic.is_none());
         let places: Vec<usize> = if let Some(i) = coordinates.iter().position(|c| c.name == *name) {
@@ -89,11 +89,11 @@ fn held(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>, Error> {
             let known = coordinates.iter().map(|c| c.name.as_str()).chain([ACTUATED]);
             return Err(Error::unknown("coordinate", name, known));
         };
-        held.extend(places);
+        prescribed.extend(places);
     }
-    held.sort_unstable();
-    held.dedup();
-    Ok(held)
+    prescribed.sort_unstable();
+    prescribed.dedup();
+    Ok(prescribed)
 }
 
 /// All that are actuated, where a name is expected.
@@ -118,7 +118,7 @@ fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<continuation::Goal,
         goal.places.push(place);
         goal.values.push(target[place]);
     }
-    for &place in job.held.iter().filter(|i| !goal.places.contains(i)).collect::<Vec<_>>() {
+    for &place in job.prescribed.iter().filter(|i| !goal.places.contains(i)).collect::<Vec<_>>() {
         goal.places.push(place);
         goal.values.push(job.guess[place]);
     }
@@ -152,7 +152,7 @@ fn print(
             ("model", report.model.to_owned()),
             ("result", result),
             ("steps", found.steps.to_string()),
-            ("prescribed", report.held.join(", ")),
+            ("prescribed", report.prescribed.join(", ")),
             ("at or beyond a limit", report.at_limit.join(", ")),
             ("q", q_line(&found.q)),
         ],

@@ -22,13 +22,13 @@ struct GraspJson<'a> {
     /// Moments are about its origin, in world axes.
     frame: &'a str,
     q: &'a [f64],
-    /// True if every wrench can be held.
+    /// True if every wrench can be resisted.
     closed: bool,
     epsilon: BoundsJson,
     /// "l1": the normal forces sum to 1 N; "linf": each is at most the finger's strength.
     metric: &'static str,
     components: &'static [&'static str],
-    /// Unit vector, moments over the length: the direction in which least is held.
+    /// Unit vector, moments over the length: the least resisted direction.
     weakest: &'a [f64],
     /// Characteristic length [m].
     length: f64,

@@ -1,4 +1,4 @@
-//! `mobility`: how a mechanism can move, and what holds it.
+//! `mobility`: the motions of a mechanism, and the wrenches that its structure resists.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -38,7 +38,7 @@ struct MobilityJson<'a> {
     idle_basis: Vec<Vec<f64>>,
     /// Torques of the actuated joints in balance.
     internal_basis: Vec<Vec<f64>>,
-    /// Wrenches (force first) held without torques.
+    /// Wrenches (force first) resisted without torques.
     zero_torque_basis: Vec<Vec<f64>>,
     joints: Vec<JointJson<'a>>,
     /// Counts that hang on little, in words.

@@ -21,7 +21,7 @@ pub(super) struct SingularityJson {
     generic: CountsJson,
     /// Other closed configurations that the generic counts come from.
     compared_with: usize,
-    /// Wrenches held without torque, as screws; those beyond the generic ones.
+    /// Wrenches resisted without torque, as screws; those beyond the generic ones.
     blocked: Vec<ScrewJson>,
     /// Motions of the reference frame.
     lost: Vec<ScrewJson>,
@@ -114,7 +114,7 @@ impl From<&FiniteMobility> for FiniteJson {
     }
 }
 
-/// Finite beside infinitesimal mobility, in a line.
+/// Finite and infinitesimal mobility, in a line.
 pub(super) fn finite(posed: &Posed, f: &FiniteMobility) -> String {
     let step = number(f.step);
     let Some(dof) = f.finite else {

@@ -24,7 +24,7 @@ struct StaticsJson<'a> {
     wrench: &'a [f64],
     /// Of the actuated joints, the least in size [N m or N].
     torques: Vec<f64>,
-    /// The part of the wrench that the structure holds without torques.
+    /// The part of the wrench that the structure resists without torques.
     structural: Vec<f64>,
     /// The part that nothing balances.
     unbalanced: Vec<f64>,
@@ -36,7 +36,7 @@ struct StaticsJson<'a> {
     internal: Vec<InternalJson>,
     /// Forces that neither torques nor the wrench determine, one entry for each.
     hyperstatic: Vec<Vec<TransmittedWrenchJson>>,
-    /// Wrenches held without torques.
+    /// Wrenches resisted without torques.
     zero_torque_basis: Vec<Vec<f64>>,
 }
 
@@ -130,7 +130,7 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
             Some(row_compliance(&state, chain, &all)?)
         }
     };
-    let held: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, u)| w - u).collect();
+    let balanced: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, u)| w - u).collect();
     let through = |torques: &[f64], wrench: &[f64]| -> Result<Vec<TransmittedWrenchJson>> {
         let load = StaticLoad { torques, wrench };
         let forces = contact_forces(constraint, &motions, load, compliance.as_ref())?.forces;
@@ -149,7 +149,7 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
         head: posed.into(),
         components,
         wrench,
-        forces: through(&found.torques, &held)?,
+        forces: through(&found.torques, &balanced)?,
         torques: found.torques,
         structural: found.structural,
         unbalanced: found.unbalanced,

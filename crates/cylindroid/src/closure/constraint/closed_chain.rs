@@ -69,11 +69,11 @@ impl ClosedChain {
         let (rows, loops, closure_error) = constraint_rows(state)?;
         let columns = Columns::of(mechanism, &loops);
         let components = mechanism.dimension().components();
-        let (held, d) = (rows.len(), components.len());
+        let (constraints, d) = (rows.len(), components.len());
         let mut blocks = ConstraintBlocks {
-            actuated: Matrix::zeros(held + d, columns.actuated.len()),
-            passive: Matrix::zeros(held + d, columns.passive.len()),
-            grasp: Matrix::zeros(d, held + d),
+            actuated: Matrix::zeros(constraints + d, columns.actuated.len()),
+            passive: Matrix::zeros(constraints + d, columns.passive.len()),
+            grasp: Matrix::zeros(d, constraints + d),
         };
         let mut add = |i: usize, coordinate: usize, rate: f64| {
             let (actuated, j) = columns.places[coordinate];
@@ -90,11 +90,11 @@ impl ClosedChain {
         target.for_each_column(target.world_from_tip.translation, |_, c, twist| {
             let twist = twist.to_array();
             for (i, &component) in components.iter().enumerate() {
-                add(held + i, c, twist[component]);
+                add(constraints + i, c, twist[component]);
             }
         });
         for i in 0..d {
-            blocks.grasp[(i, held + i)] = 1.0;
+            blocks.grasp[(i, constraints + i)] = 1.0;
         }
         let object: Vec<Unit> =
             components.iter().map(|&c| if c < 3 { Unit::Length } else { Unit::Angle }).collect();

@@ -35,7 +35,7 @@ pub(crate) struct BatchedConstraintPlan {
     pub(crate) actuated_scale: Vec<f64>,
     pub(crate) object_scale: Vec<f64>,
     passive: usize,
-    held: usize,
+    rows: usize,
 }
 
 /// A frame attached to a moving frame.
@@ -106,8 +106,8 @@ impl BatchedConstraintPlan {
         };
         let mut rates = columns.places[n..].iter().map(|p| column(*p));
         let mut pairs = Vec::new();
-        for held in constraint_rows::pair_constraints(mechanism) {
-            let PairConstraints { ends, frames, wrenches, crossed, measure } = held?;
+        for constraints in constraint_rows::pair_constraints(mechanism) {
+            let PairConstraints { ends, frames, wrenches, crossed, measure } = constraints?;
             let ends = [0, 1].map(|i| end(mechanism.link_frame(ends[i]), frames[i]));
             let scaled = |w: &Wrench| {
                 let s = 1.0 / constraint_rows::unit(*w).size(length);
@@ -128,7 +128,7 @@ impl BatchedConstraintPlan {
         let components = mechanism.dimension().components();
         Ok(Self {
             nodes: mechanism.nodes().to_vec(),
-            held: pairs.iter().map(BatchedPair::len).sum(),
+            rows: pairs.iter().map(BatchedPair::len).sum(),
             pairs,
             columns_of: between(mechanism.nodes(), &places, 0, target.slot),
             reference: target,
@@ -142,7 +142,7 @@ impl BatchedConstraintPlan {
 
     /// Number of rows of loop joints and contacts.
     pub(crate) fn constraint_rows(&self) -> usize {
-        self.held
+        self.rows
     }
 
     /// Number of components of the reference.
@@ -228,8 +228,8 @@ impl BatchedConstraintPlan {
                 written.distance = written.distance.max(open);
             }
         }
-        if let Some(held) = &tie.turned {
-            let closure_error = closure_error(held, &a, &b);
+        if let Some(wrenches) = &tie.turned {
+            let closure_error = closure_error(wrenches, &a, &b);
             written.distance = written.distance.max(closure_error[0]);
             written.angle = written.angle.max(closure_error[1]);
         }
@@ -310,13 +310,13 @@ fn between(
     columns_of
 }
 
-/// The loop-closure error along and about `held`, evaluated lane by lane.
+/// The loop-closure error along and about `wrenches`, evaluated lane by lane.
 #[inline(always)]
-fn closure_error<R: SimdFloat>(held: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2] {
+fn closure_error<R: SimdFloat>(wrenches: &[Wrench], a: &Frame<R>, b: &Frame<R>) -> [R; 2] {
     let (mut distance, mut angle) = ([0.0; MAX_LANES], [0.0; MAX_LANES]);
     let (a, b) = (poses(a), poses(b));
     for l in 0..R::LANES {
-        let closure_error = KinematicPair::new(0, [0, 0], [a[l], b[l]]).closure_error(held);
+        let closure_error = KinematicPair::new(0, [0, 0], [a[l], b[l]]).closure_error(wrenches);
         (distance[l], angle[l]) = (closure_error.distance, closure_error.angle);
     }
     [R::load(&distance), R::load(&angle)]

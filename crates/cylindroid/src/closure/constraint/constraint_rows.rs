@@ -153,14 +153,14 @@ pub(crate) fn constraint_rows(
     let mechanism = state.mechanism();
     let pose = |link| state.pose(mechanism.link_frame(link));
     let (mut rows, mut rates) = (Vec::new(), 0);
-    for (place, held) in pair_constraints(mechanism).enumerate() {
-        let held = held?;
-        let [a, b] = held.ends;
-        let on = [pose(a) * held.frames[0], pose(b) * held.frames[1]];
-        let pair = KinematicPair::new(place, held.ends, on);
-        rows.extend(held.crossed.and_then(|[first, second]| pair.crossed(first, second)));
-        rows.extend(pair.rows(&held.wrenches));
-        if let Some(w) = held.measure {
+    for (place, constraints) in pair_constraints(mechanism).enumerate() {
+        let constraints = constraints?;
+        let [a, b] = constraints.ends;
+        let on = [pose(a) * constraints.frames[0], pose(b) * constraints.frames[1]];
+        let pair = KinematicPair::new(place, constraints.ends, on);
+        rows.extend(constraints.crossed.and_then(|[first, second]| pair.crossed(first, second)));
+        rows.extend(pair.rows(&constraints.wrenches));
+        if let Some(w) = constraints.measure {
             rows.push(ConstraintRow { rate_of: Some(rates), ..pair.row(w) });
             rates += 1;
         }
@@ -194,26 +194,27 @@ impl KinematicPair {
         Self { place, ends, world_from_a, world_from_b, offset, turn }
     }
 
-    /// The rows of the constraint wrenches `held`, with residuals.
-    pub(crate) fn rows(&self, held: &[Wrench]) -> impl Iterator<Item = ConstraintRow> {
-        let tilt = self.tilt(held);
-        held.iter()
+    /// The rows of these constraint wrenches, with residuals.
+    pub(crate) fn rows(&self, wrenches: &[Wrench]) -> impl Iterator<Item = ConstraintRow> {
+        let tilt = self.tilt(wrenches);
+        wrenches
+            .iter()
             .map(move |w| ConstraintRow { residual: self.residual(*w, tilt), ..self.row(*w) })
     }
 
     /// The loop-closure error along and about the constraint wrenches.
-    pub(crate) fn closure_error(&self, held: &[Wrench]) -> LoopClosureError {
-        let tilt = self.tilt(held);
+    pub(crate) fn closure_error(&self, wrenches: &[Wrench]) -> LoopClosureError {
+        let tilt = self.tilt(wrenches);
         let mut closure_error = LoopClosureError::default();
-        held.iter().for_each(|w| closure_error.widen(unit(*w), self.residual(*w, tilt)));
+        wrenches.iter().for_each(|w| closure_error.widen(unit(*w), self.residual(*w, tilt)));
         closure_error
     }
 
     /// Two constrained moments constrain the direction of the axis normal to both: their residuals
     /// are components of the shortest rotation of that axis. Components of the whole rotation
     /// vector would have the right derivative at the zero of the joint only.
-    fn tilt(&self, held: &[Wrench]) -> Option<Vec3> {
-        let mut moments = held.iter().filter(|w| unit(**w) == Unit::Angle).map(|w| w.moment);
+    fn tilt(&self, wrenches: &[Wrench]) -> Option<Vec3> {
+        let mut moments = wrenches.iter().filter(|w| unit(**w) == Unit::Angle).map(|w| w.moment);
         let (Some(first), Some(second), None) = (moments.next(), moments.next(), moments.next())
         else {
             return None;
@@ -224,26 +225,26 @@ impl KinematicPair {
         Some(across.unit(0.0)? * across.norm().atan2(axis.dot(turned)))
     }
 
-    fn residual(&self, held: Wrench, tilt: Option<Vec3>) -> f64 {
-        match (unit(held), tilt) {
-            (Unit::Angle, Some(tilt)) => held.moment.dot(tilt),
-            _ => held.force.dot(self.offset) + held.moment.dot(self.turn),
+    fn residual(&self, wrench: Wrench, tilt: Option<Vec3>) -> f64 {
+        match (unit(wrench), tilt) {
+            (Unit::Angle, Some(tilt)) => wrench.moment.dot(tilt),
+            _ => wrench.force.dot(self.offset) + wrench.moment.dot(self.turn),
         }
     }
 
     /// The row of a wrench given in the first frame, as if the pair were closed: forces act at the
     /// second frame.
-    fn row(&self, held: Wrench) -> ConstraintRow {
+    fn row(&self, wrench: Wrench) -> ConstraintRow {
         let at = Pose {
             rotation: self.world_from_a.rotation,
             translation: self.world_from_b.translation,
         };
         ConstraintRow {
-            wrench: at.coadjoint(held),
+            wrench: at.coadjoint(wrench),
             pair: self.place,
             a: self.ends[0],
             b: self.ends[1],
-            unit: unit(held),
+            unit: unit(wrench),
             rate_of: None,
             residual: 0.0,
         }

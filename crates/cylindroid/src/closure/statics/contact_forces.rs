@@ -57,8 +57,8 @@ pub struct ContactForces {
 /// let motions = MotionSpace::of(&chain.constraint);
 /// let wrench = [3.0, -1.0, 0.0];
 /// let found = joint_torques(&motions.relation(), &wrench, None)?;
-/// let held: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, u)| w - u).collect();
-/// let load = StaticLoad { torques: &found.torques, wrench: &held };
+/// let balanced: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, u)| w - u).collect();
+/// let load = StaticLoad { torques: &found.torques, wrench: &balanced };
 /// assert!(contact_forces(&chain.constraint, &motions, load, None)?.unbalanced < 1e-12);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```

@@ -74,7 +74,7 @@ struct Times {
     /// Each of the four with jerk: tj.
     jerk: f64,
     /// Each of the two with constant acceleration: tc.
-    hold: f64,
+    constant: f64,
     /// The one with constant velocity: tv.
     cruise: f64,
 }
@@ -142,7 +142,7 @@ impl Times {
         let limit = a / j;
         // v / j is NaN if both are infinite; `min` then keeps the other operand, as it should.
         let jerk = limit.min((v / j).sqrt()).min((0.5 * h / j).cbrt());
-        let hold = if jerk < limit {
+        let constant = if jerk < limit {
             0.0
         } else {
             // sqrt(tj^2/4 + h/a) - 3 tj/2 without the cancellation
@@ -151,12 +151,12 @@ impl Times {
                 (free - 2.0 * jerk * jerk) / ((0.25 * jerk * jerk + free).sqrt() + 1.5 * jerk);
             (v / a - jerk).min(apex).max(0.0)
         };
-        Self { jerk, hold, cruise: (h / v - (2.0 * jerk + hold)).max(0.0) }
+        Self { jerk, constant, cruise: (h / v - (2.0 * jerk + constant)).max(0.0) }
     }
 
     /// From rest to the peak velocity (s).
     fn ramp(self) -> f64 {
-        2.0 * self.jerk + self.hold
+        2.0 * self.jerk + self.constant
     }
 
     fn total(self) -> f64 {
@@ -185,7 +185,7 @@ impl TimeLaw {
         let law = Self::from_times(distance, times, times.total());
         let KinematicBounds { velocity, acceleration, jerk } = law.peak;
         let numbers = [law.duration, velocity, acceleration, jerk];
-        if times.jerk + times.hold > 0.0 && numbers.iter().all(|x| x.is_finite()) {
+        if times.jerk + times.constant > 0.0 && numbers.iter().all(|x| x.is_finite()) {
             return Ok(law);
         }
         Err(Error::InvalidOption {
@@ -212,7 +212,7 @@ impl TimeLaw {
     fn from_times(distance: f64, times: Times, duration: f64) -> Self {
         let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
         let velocity = ratio(distance, times.ramp() + times.cruise);
-        let acceleration = ratio(velocity, times.jerk + times.hold);
+        let acceleration = ratio(velocity, times.jerk + times.constant);
         let jerk = ratio(acceleration, times.jerk);
         Self { distance, duration, times, peak: KinematicBounds { velocity, acceleration, jerk } }
     }
@@ -237,8 +237,8 @@ impl TimeLaw {
         }
         let times = if self.duration > 0.0 {
             let stretch = |time: f64| time / self.duration * duration;
-            let Times { jerk, hold, cruise } = self.times;
-            Times { jerk: stretch(jerk), hold: stretch(hold), cruise: stretch(cruise) }
+            let Times { jerk, constant, cruise } = self.times;
+            Times { jerk: stretch(jerk), constant: stretch(constant), cruise: stretch(cruise) }
         } else {
             Times { cruise: duration, ..Times::default() }
         };
@@ -272,8 +272,9 @@ impl TimeLaw {
     /// Start times of the seven segments, and the end (s); equal neighbours bound an empty segment.
     #[must_use]
     pub fn switches(&self) -> [f64; 8] {
-        let (Times { jerk, hold, .. }, ramp, end) = (self.times, self.times.ramp(), self.duration);
-        [0.0, jerk, jerk + hold, ramp, end - ramp, end - jerk - hold, end - jerk, end]
+        let (Times { jerk, constant, .. }, ramp, end) =
+            (self.times, self.times.ramp(), self.duration);
+        [0.0, jerk, jerk + constant, ramp, end - ramp, end - jerk - constant, end - jerk, end]
     }
 
     /// The state at time `t` (s): at rest at 0 before 0 (and for NaN), at rest at the distance
@@ -301,7 +302,7 @@ impl TimeLaw {
     /// The first half.
     fn rise(&self, t: f64) -> LawSample {
         let KinematicBounds { velocity: v, acceleration: a, jerk: j } = self.peak;
-        let (Times { jerk: tj, hold, .. }, ramp) = (self.times, self.times.ramp());
+        let (Times { jerk: tj, constant, .. }, ramp) = (self.times, self.times.ramp());
         if t < tj {
             return LawSample {
                 position: j * t * t * t / 6.0,
@@ -310,7 +311,7 @@ impl TimeLaw {
                 jerk: j,
             };
         }
-        if t < tj + hold {
+        if t < tj + constant {
             let d = t - tj;
             return LawSample {
                 position: a * tj * tj / 6.0 + 0.5 * a * d * (tj + d),

@@ -186,9 +186,9 @@ impl Coupled {
     /// loops permit it.
     pub(super) fn close(&self, q: &mut [f64]) {
         let coordinates = self.mechanism.coordinates();
-        let driven: Vec<usize> = (0..q.len()).filter(|&i| coordinates[i].actuated).collect();
-        for held in [driven, self.locked.clone()] {
-            match assemble(&self.mechanism, q, &held) {
+        let actuated: Vec<usize> = (0..q.len()).filter(|&i| coordinates[i].actuated).collect();
+        for prescribed in [actuated, self.locked.clone()] {
+            match assemble(&self.mechanism, q, &prescribed) {
                 Ok(found) if found.closed => return q.copy_from_slice(&found.q),
                 _ => {}
             }

@@ -256,8 +256,8 @@ impl Saturator {
     /// directions.
     fn decompose_free(&mut self, p: &Problem<'_>) -> usize {
         self.reduced.as_mut_slice().copy_from_slice(p.j.as_slice());
-        for (i, held) in self.clamped.iter().enumerate() {
-            if *held {
+        for (i, clamped) in self.clamped.iter().enumerate() {
+            if *clamped {
                 self.reduced.column_mut(i).fill(0.0);
             }
         }

@@ -176,25 +176,25 @@ impl Analytic {
     pub fn with_locked(
         mechanism: &Mechanism,
         end_effector: impl Into<EndEffector>,
-        held: &[usize],
+        locked: &[usize],
     ) -> std::result::Result<Self, NotSolvable> {
         if mechanism.is_closed() {
             return Err(NotSolvable::Loops);
         }
         let end_effector = end_effector.into();
         let mut chain = Chain::new(mechanism, end_effector);
-        let (held, free): (Vec<usize>, Vec<usize>) =
-            chain.coordinates().iter().partition(|c| held.contains(c));
+        let (locked, free): (Vec<usize>, Vec<usize>) =
+            chain.coordinates().iter().partition(|c| locked.contains(c));
         let coordinates: [usize; 6] =
             free.as_slice().try_into().map_err(|_| NotSolvable::Joints(free.len()))?;
         if !are_revolute(mechanism, end_effector, &coordinates) {
             return Err(NotSolvable::Kind);
         }
         let mut jacobian = Matrix::zeros(6, chain.n());
-        // A property at random values of the locked joints holds generically.
+        // A property at random values of the locked joints is generic.
         let mut state = 1;
         let mut q = vec![0.0; mechanism.n()];
-        held.iter().for_each(|&c| q[c] = 2.0 * uniform(&mut state) - 1.0);
+        locked.iter().for_each(|&c| q[c] = 2.0 * uniform(&mut state) - 1.0);
         let reach = mechanism.reach();
         let axes = axes(&mut chain, &coordinates, &q, &mut jacobian).ok_or(NotSolvable::Kind)?;
         let (structure, departure) = axes.structure(reach).ok_or(NotSolvable::Axes)?;
@@ -206,7 +206,7 @@ impl Analytic {
             structure,
             departure,
             coordinates,
-            locked: held,
+            locked,
             lower: limits.map(|l| l.lower),
             upper: limits.map(|l| l.upper),
             reach,
@@ -250,7 +250,7 @@ impl Analytic {
     pub fn solve(&mut self, target: Pose, start: &[f64]) -> Result<AnalyticSolutions> {
         self.check(target, start)?;
         if self.locked.iter().any(|&c| self.q[c] != start[c]) {
-            self.hold(start);
+            self.lock(start);
         }
         self.q.copy_from_slice(start);
         let rotation = target.rotation.matrix() * self.zero.inverse().matrix();
@@ -335,7 +335,7 @@ impl Analytic {
     }
 
     /// The closed form for other values of the locked joints.
-    fn hold(&mut self, start: &[f64]) {
+    fn lock(&mut self, start: &[f64]) {
         self.q.copy_from_slice(start);
         self.coordinates.iter().for_each(|&c| self.q[c] = 0.0);
         let axes = axes(&mut self.chain, &self.coordinates, &self.q, &mut self.jacobian);

@@ -13,8 +13,14 @@ use cylindroid::{Mechanism, catalogue};
 use super::linkage::{dead_four_bar, five_bar, linkage, place};
 use crate::support::{Random, assert_close, planar};
 
-fn go(mechanism: &Mechanism, start: &[f64], held: &[usize], goal: &[f64]) -> ContinuationResult {
-    let way = track_path(mechanism, start, held, goal, ContinuationOptions::default()).unwrap();
+fn go(
+    mechanism: &Mechanism,
+    start: &[f64],
+    prescribed: &[usize],
+    goal: &[f64],
+) -> ContinuationResult {
+    let way =
+        track_path(mechanism, start, prescribed, goal, ContinuationOptions::default()).unwrap();
     check(mechanism, &way);
     way
 }
@@ -86,17 +92,21 @@ fn cranks_stop_before_the_links_between_them_stretch() {
         [("coupler", SingularityKind::TypeII), ("crank", SingularityKind::Passive)]
     {
         let five_bar = five_bar(&format!("reference = \"{reference}\""));
-        let held = [place(&five_bar, "q1"), place(&five_bar, "q5")];
-        let way = go(&five_bar, &[0.0; 4], &held, &[1.0, 0.0]);
-        assert!(way.q[held[0]] < t && way.q[held[0]] > t - 1e-4, "{} {t}", way.q[held[0]]);
-        assert!((way.fraction - way.q[held[0]]).abs() < 1e-12);
+        let prescribed = [place(&five_bar, "q1"), place(&five_bar, "q5")];
+        let way = go(&five_bar, &[0.0; 4], &prescribed, &[1.0, 0.0]);
+        assert!(
+            way.q[prescribed[0]] < t && way.q[prescribed[0]] > t - 1e-4,
+            "{} {t}",
+            way.q[prescribed[0]]
+        );
+        assert!((way.fraction - way.q[prescribed[0]]).abs() < 1e-12);
         let found = singular(&way);
         assert_eq!(found.kind, kind);
         assert_eq!(found.screw.is_some(), kind == SingularityKind::TypeII);
         // No further from there, but back.
-        let on = go(&five_bar, &way.q, &held, &[1.0, 0.0]);
+        let on = go(&five_bar, &way.q, &prescribed, &[1.0, 0.0]);
         assert!(on.fraction < 1e-6 && singular(&on).kind == kind, "{on:?}");
-        let back = go(&five_bar, &way.q, &held, &[0.0, 0.0]);
+        let back = go(&five_bar, &way.q, &prescribed, &[0.0, 0.0]);
         assert_eq!(back.end, PathEnd::Reached);
         assert_close("back", &back.q, &[0.0; 4], 1e-9);
     }
@@ -155,20 +165,22 @@ fn ways_do_not_hang_on_the_steps_and_lead_back() {
     let mut random = Random(4);
     for name in ["four-bar", "five-bar", "3rrr", "stewart", "delta", "watt"] {
         let mechanism = catalogue::load(name).unwrap();
-        let held: Vec<usize> = mechanism.actuated().collect();
+        let prescribed: Vec<usize> = mechanism.actuated().collect();
         let mut reached = 0;
         for _ in 0..6 {
-            let goal: Vec<f64> =
-                held.iter().map(|&i| mechanism.home()[i] + random.within(-0.25, 0.25)).collect();
-            let way = go(&mechanism, mechanism.home(), &held, &goal);
+            let goal: Vec<f64> = prescribed
+                .iter()
+                .map(|&i| mechanism.home()[i] + random.within(-0.25, 0.25))
+                .collect();
+            let way = go(&mechanism, mechanism.home(), &prescribed, &goal);
             let fine = ContinuationOptions { step: 0.02, ..ContinuationOptions::default() };
-            let finer = track_path(&mechanism, mechanism.home(), &held, &goal, fine).unwrap();
+            let finer = track_path(&mechanism, mechanism.home(), &prescribed, &goal, fine).unwrap();
             assert_eq!(way.end.to_string(), finer.end.to_string(), "{name}");
             assert!((way.fraction - finer.fraction).abs() < 1e-9, "{name}");
             assert_close(name, &way.q, &finer.q, 1e-6);
             assert!(finer.path.iter().all(|p| p.distance >= 1e-3));
-            let at_home: Vec<f64> = held.iter().map(|&i| mechanism.home()[i]).collect();
-            let back = go(&mechanism, &way.q, &held, &at_home);
+            let at_home: Vec<f64> = prescribed.iter().map(|&i| mechanism.home()[i]).collect();
+            let back = go(&mechanism, &way.q, &prescribed, &at_home);
             assert_eq!(back.end, PathEnd::Reached, "{name}");
             assert_close(name, &back.q, mechanism.home(), 1e-6);
             reached += usize::from(way.end == PathEnd::Reached);
@@ -248,12 +260,15 @@ fn a_passive_limit_ends_the_way() {
 fn what_cannot_be_followed_is_said() {
     let five_bar = catalogue::load("five-bar").unwrap();
     // Three coordinates on two degrees of freedom; all of them.
-    for held in [&[0, 1, 2][..], &[0, 1, 2, 3]] {
-        let mut goal = vec![0.0; held.len()];
+    for prescribed in [&[0, 1, 2][..], &[0, 1, 2, 3]] {
+        let mut goal = vec![0.0; prescribed.len()];
         goal[0] = 0.1;
-        let way = go(&five_bar, &[0.0; 4], held, &goal);
+        let way = go(&five_bar, &[0.0; 4], prescribed, &goal);
         assert_eq!((way.fraction, &way.end), (0.0, &PathEnd::Contradiction));
-        assert_eq!(go(&five_bar, &[0.0; 4], held, &vec![0.0; held.len()]).end, PathEnd::Reached);
+        assert_eq!(
+            go(&five_bar, &[0.0; 4], prescribed, &vec![0.0; prescribed.len()]).end,
+            PathEnd::Reached
+        );
     }
     // A start that does not close.
     let options = ContinuationOptions::default();
@@ -264,8 +279,8 @@ fn what_cannot_be_followed_is_said() {
     assert_eq!((&way.end, way.q[0]), (&PathEnd::Reached, -0.5));
     assert_eq!(go(&five_bar, &[0.0; 4], &[], &[]).end, PathEnd::Reached);
     // Nonsense.
-    let refused = |held: &[usize], goal: &[f64], options: ContinuationOptions| {
-        track_path(&five_bar, &[0.0; 4], held, goal, options).unwrap_err().to_string()
+    let refused = |prescribed: &[usize], goal: &[f64], options: ContinuationOptions| {
+        track_path(&five_bar, &[0.0; 4], prescribed, goal, options).unwrap_err().to_string()
     };
     assert!(refused(&[0], &[], options).contains("goal"));
     assert!(refused(&[0], &[f64::NAN], options).contains("goal"));

@@ -109,7 +109,7 @@ fn a_five_bar_loses_and_gains() {
     assert_line(&stretched.gained[0], Vec3::new(0.0, 1.0, 0.0), Vec3::Z, 1e-9);
     let dead = at_home(&file("five-bar-dead"));
     assert_eq!(dead.singularities.kinds, [SingularityKind::TypeI]);
-    // One wrench is held in every pose; the other acts along the links in line.
+    // One wrench is resisted in every pose; the other acts along the links in line.
     assert_eq!((dead.generic.counts.zero_torque, dead.blocked.len()), (1, 1));
     assert!(dead.separated);
     assert_line(&dead.blocked[0], Vec3::ZERO, Vec3::X, 1e-6);

@@ -45,7 +45,7 @@ fn four_frictionless_fingers() {
         let half = WrenchSpace { length: 0.5, ..PLANE };
         let b = 2.0 * a;
         assert_exact(&quality(&contacts, half), b / (1.0 + 4.0 * b * b).sqrt());
-        // Through the middle nothing holds a moment.
+        // Through the middle no contact resists a moment.
         let middle = contacts.map(|c| FingerContact { point: c.normal * -1.0, ..c });
         let open = quality(&middle, PLANE);
         assert!(!open.closed && (open.epsilon.lower, open.epsilon.upper) == (0.0, 0.0));
@@ -66,7 +66,7 @@ fn two_fingers_with_friction() {
     }
 }
 
-/// In space two hard fingers hold no moment about the line through them, two soft ones do.
+/// In space two hard fingers resist no moment about the line through them, two soft ones do.
 #[test]
 fn soft_fingers_hold_a_moment_about_their_line() {
     let pair = |friction| {
@@ -84,7 +84,7 @@ fn soft_fingers_hold_a_moment_about_their_line() {
     assert!(soft.epsilon.upper < 0.1 + 1e-3);
 }
 
-/// What is held along any direction at all is at least the lower bound, and along the weakest at
+/// The support along any direction is at least the lower bound, and along the weakest at
 /// most the upper.
 #[test]
 fn bounds_hold_in_space() {
@@ -107,26 +107,26 @@ fn bounds_hold_in_space() {
             let found = grasp_quality(&contacts, SPACE, metric).unwrap();
             let EpsilonQuality { lower, upper } = found.epsilon;
             assert!(found.closed && lower <= upper && upper < lower + 0.02, "{found:?}");
-            let held = |n: &[f64]| -> f64 {
-                let each = contacts.iter().map(|c| held_by(c, n));
+            let support = |n: &[f64]| -> f64 {
+                let each = contacts.iter().map(|c| support_of(c, n));
                 match metric {
                     GraspMetric::L1 => each.fold(f64::NEG_INFINITY, f64::max),
                     GraspMetric::LInf => each.map(|h| h.max(0.0)).sum(),
                 }
             };
-            assert!((held(&found.weakest) - upper).abs() < 1e-9, "{found:?}");
+            assert!((support(&found.weakest) - upper).abs() < 1e-9, "{found:?}");
             for _ in 0..2000 {
                 let n = random.vector(6);
                 let size = n.iter().map(|x| x * x).sum::<f64>().sqrt();
                 let n: Vec<f64> = n.iter().map(|x| x / size).collect();
-                assert!(held(&n) >= lower - 1e-12);
+                assert!(support(&n) >= lower - 1e-12);
             }
         }
     }
 }
 
 /// The farthest wrench of a finger along `n`, by the geometry of its cone.
-fn held_by(contact: &FingerContact, n: &[f64]) -> f64 {
+fn support_of(contact: &FingerContact, n: &[f64]) -> f64 {
     let (f, m) = (Vec3::new(n[0], n[1], n[2]), Vec3::new(n[3], n[4], n[5]));
     // Power of a unit force at the contact along the "twist" n.
     let velocity = f + m.cross(contact.point);
@@ -160,7 +160,7 @@ fn open_grasps() {
     assert!(!one.closed);
 }
 
-/// Twice as strong fingers hold twice as much.
+/// Twice as strong fingers resist twice as much.
 #[test]
 fn strength_scales() {
     let friction = Friction::Hard { mu: 0.5 };
@@ -197,8 +197,8 @@ fn contacts_that_are_none() {
 }
 
 /// A ball between a finger and the ground; the second contact names the ball first.
-fn held_ball(kinds: [ContactKind; 2], dimension: Dimension) -> Mechanism {
-    let mut b = Mechanism::builder("held");
+fn grasped_ball(kinds: [ContactKind; 2], dimension: Dimension) -> Mechanism {
+    let mut b = Mechanism::builder("grasped");
     b.dimension(dimension);
     b.joint(JointSpec {
         axis: Vec3::X,
@@ -228,7 +228,7 @@ fn held_ball(kinds: [ContactKind; 2], dimension: Dimension) -> Mechanism {
 #[test]
 fn fingers_of_a_mechanism() {
     let soft = ContactKind::SoftFinger;
-    let m = held_ball([soft, ContactKind::HardFinger], Dimension::Spatial);
+    let m = grasped_ball([soft, ContactKind::HardFinger], Dimension::Spatial);
     let q: Vec<f64> =
         m.coordinates().iter().map(|c| f64::from(u8::from(c.name == "ball.y"))).collect();
     let state = m.state(&q).unwrap();
@@ -261,12 +261,12 @@ fn fingers_of_a_mechanism() {
     };
     let error = grasp_contacts(&state, m.reference(), none).unwrap_err().to_string();
     assert!(error.contains("soft finger"), "{error}");
-    let plane = held_ball([soft, soft], Dimension::Planar);
+    let plane = grasped_ball([soft, soft], Dimension::Planar);
     let state = plane.state(&vec![0.0; plane.n()]).unwrap();
     let fingers = grasp_contacts(&state, plane.reference(), none).unwrap();
     assert_eq!(fingers[0].1.friction, Friction::Hard { mu: 0.3 });
     // Firm contacts are no points.
-    let firm = held_ball([ContactKind::Complete, soft], Dimension::Spatial);
+    let firm = grasped_ball([ContactKind::Complete, soft], Dimension::Spatial);
     let state = firm.state(&vec![0.0; firm.n()]).unwrap();
     let error = grasp_contacts(&state, firm.reference(), none).unwrap_err().to_string();
     assert!(error.contains("'near' is complete"), "{error}");

@@ -34,7 +34,7 @@ fn a_motion_counted_twice_is_no_coordinate_motion() {
     assert_eq!((r.coordinate, r.redundancy, r.indeterminacy), (0, 1, 2));
 }
 
-/// Grubler's count of the spatial four-bar is -2, it moves by one, and holds three forces that
+/// Grubler's count of the spatial four-bar is -2, it moves by one, and resists three forces that
 /// nothing determines.
 #[test]
 fn spatial_four_bar_moves_against_grubler() {
@@ -64,7 +64,7 @@ fn nothing_actuated_and_everything_actuated() {
         let none = case.actuated_by(&[]).constraint();
         let m = Mobility::of(&none);
         assert_eq!(none.actuated(), 0);
-        // Without actuators every motion is indeterminate, and no wrench is held but by structure.
+        // Without actuators every motion is indeterminate, and only the structure resists wrenches.
         assert_eq!(m.indeterminacy.dimension(), m.dof.dimension(), "{}", case.name);
         assert_eq!((m.relation.coordinate, m.internal.dimension()), (0, 0), "{}", case.name);
         assert_eq!(
@@ -104,9 +104,9 @@ fn folded_four_bar_has_a_second_motion() {
 #[test]
 fn motions_that_let_rows_stand() {
     let motions = MotionSpace::of(&case("two3R_hardfinger_passive").constraint());
-    let held = motions.vanishing_on(RowSelection { actuated: true, ..RowSelection::default() });
-    assert_eq!(held.cols(), 2);
-    assert!(held.rows_between(0, 3).max_abs() < 1e-14);
+    let locked = motions.vanishing_on(RowSelection { actuated: true, ..RowSelection::default() });
+    assert_eq!(locked.cols(), 2);
+    assert!(locked.rows_between(0, 3).max_abs() < 1e-14);
     assert_eq!(motions.vanishing_on(RowSelection::default()).cols(), motions.dof());
 }
 

@@ -10,14 +10,20 @@ use cylindroid::{Mechanism, catalogue};
 use super::linkage::{circles, dead_four_bar, five_bar, place};
 use crate::support::Random;
 
-fn search(mechanism: &Mechanism, guess: &[f64], held: &[usize], starts: usize) -> AssemblyModes {
-    let found = assembly_modes(mechanism, guess, held, ModeOptions { starts, seed: 3 }).unwrap();
+fn search(
+    mechanism: &Mechanism,
+    guess: &[f64],
+    prescribed: &[usize],
+    starts: usize,
+) -> AssemblyModes {
+    let found =
+        assembly_modes(mechanism, guess, prescribed, ModeOptions { starts, seed: 3 }).unwrap();
     assert_eq!(found.starts, starts);
     assert_eq!(found.modes.iter().map(|m| m.found).sum::<usize>(), found.closed);
     for mode in &found.modes {
         assert!(mode.assembly.closed && mode.found > 0);
         assert!(mechanism.outside_limits(&mode.assembly.q).next().is_none());
-        for &i in held {
+        for &i in prescribed {
             assert_eq!(mode.assembly.q[i], guess[i]);
         }
     }
@@ -71,11 +77,11 @@ fn four_bar_has_two() {
 #[test]
 fn five_bar_has_two() {
     let five_bar = five_bar("reference = \"coupler\"\nreference_point = [1.0, 2.0]");
-    let held = [place(&five_bar, "q1"), place(&five_bar, "q5")];
+    let prescribed = [place(&five_bar, "q1"), place(&five_bar, "q5")];
     for (t1, t5) in [(0.0, 0.0), (-0.3, -0.2), (0.1, 1.0)] {
         let mut guess = [0.0; 4];
-        (guess[held[0]], guess[held[1]]) = (t1, t5);
-        let found = search(&five_bar, &guess, &held, 20);
+        (guess[prescribed[0]], guess[prescribed[1]]) = (t1, t5);
+        let found = search(&five_bar, &guess, &prescribed, 20);
         let rocker = |q: &[f64]| five_bar.state(q).unwrap().pose(five_bar.frame("rocker").unwrap());
         let q4 = rocker(&guess) * (rocker(&[0.0; 4]).inverse() * Vec3::new(2.0, 1.0, 0.0));
         let (a, b) = (turned([0.0, 2.0], [0.0; 2], t1), [q4.x, q4.y]);
@@ -85,8 +91,8 @@ fn five_bar_has_two() {
     }
 }
 
-/// 3-RRR with its actuators held: up to six. A scan of one leg's turn, with the circle of the next,
-/// finds them all by changes of sign.
+/// 3-RRR with prescribed actuators: up to six. A scan of one leg's rotation, with the circle of the
+/// next, finds them all by changes of sign.
 #[test]
 fn three_legged_platform_as_a_scan_finds_them() {
     let platform = catalogue::load("3rrr").unwrap();
@@ -151,7 +157,7 @@ fn three_legged_platform_as_a_scan_finds_them() {
     assert!(counts[0] > 0 && counts[4] + counts[6] > 0, "{counts:?}");
 }
 
-/// A Stewart platform with its legs held: base joints in a plane and platform joints in another,
+/// A Stewart platform with prescribed legs: base joints in a plane and platform joints in another,
 /// so that the mirror image of an assembly below the base is an assembly.
 #[test]
 fn stewart_platform_comes_in_mirror_pairs() {
@@ -180,7 +186,7 @@ fn stewart_platform_comes_in_mirror_pairs() {
     }
 }
 
-/// A Delta robot with its arms held: among its modes are the two points where the spheres of the
+/// A Delta robot with prescribed arms: among its modes are the two points where the spheres of the
 /// three pairs of rods meet, its platform not turned.
 #[test]
 fn delta_where_three_spheres_meet() {
@@ -222,12 +228,12 @@ fn delta_where_three_spheres_meet() {
 #[test]
 fn a_double_root_is_one_isolated_mode() {
     let four_bar = dead_four_bar("");
-    let held = [place(&four_bar, "crank")];
-    let found = search(&four_bar, &[0.0; 3], &held, 40);
+    let prescribed = [place(&four_bar, "crank")];
+    let found = search(&four_bar, &[0.0; 3], &prescribed, 40);
     assert_eq!((found.modes.len(), found.self_motion_dof()), (1, 0), "{found:?}");
     // A little before, two; a little beyond, none.
-    assert_eq!(search(&four_bar, &[-1e-3, 0.0, 0.0], &held, 40).modes.len(), 2);
-    let beyond = search(&four_bar, &[1e-3, 0.0, 0.0], &held, 40);
+    assert_eq!(search(&four_bar, &[-1e-3, 0.0, 0.0], &prescribed, 40).modes.len(), 2);
+    let beyond = search(&four_bar, &[1e-3, 0.0, 0.0], &prescribed, 40);
     assert!(beyond.modes.is_empty() && beyond.closed == 0 && beyond.unseen_probability() == 1.0);
     assert!(!beyond.first.closed && beyond.first.closure_error.distance > 0.0);
 }
@@ -243,13 +249,13 @@ fn a_continuum_is_said() {
         assert_eq!(modes, [(free, found.closed)], "{name}");
         assert!(found.modes[0].distance < 1e-12);
     }
-    // A tree is closed wherever it stands; held as a whole it is where it was put.
+    // A tree is closed wherever it stands; prescribed as a whole it is where it was put.
     let panda = catalogue::load("panda").unwrap();
     let all: Vec<usize> = (0..7).collect();
     assert_eq!(search(&panda, panda.home(), &[], 5).self_motion_dof(), 7);
-    let held = search(&panda, panda.home(), &all, 5);
-    assert_eq!((held.modes.len(), held.self_motion_dof()), (1, 0));
-    assert_eq!(held.modes[0].assembly.q, panda.home());
+    let prescribed = search(&panda, panda.home(), &all, 5);
+    assert_eq!((prescribed.modes.len(), prescribed.self_motion_dof()), (1, 0));
+    assert_eq!(prescribed.modes[0].assembly.q, panda.home());
 }
 
 /// A crank and an arm joined by a rod with balls at both ends: the rod spins about itself, which

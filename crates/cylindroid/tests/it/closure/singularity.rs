@@ -63,7 +63,7 @@ fn distance_falls_in_proportion() {
 }
 
 /// The gained motion of the stretched five-bar: its middle joint moves across the links, and what
-/// blocks it is not held.
+/// blocks it is not resisted.
 #[test]
 fn gained_motion_is_across_the_links() {
     let (motions, relation, now) = pose(&case("fivebar_typeII").constraint());
@@ -105,8 +105,8 @@ fn joints_in_line_spin_idly() {
     assert_eq!(found.kinds, [SingularityKind::ConfigurationSpace, SingularityKind::Passive]);
 }
 
-/// A serial arm of two links: stretched it loses a motion, and the wrench along it is held without
-/// torque.
+/// A serial arm of two links: stretched it loses a motion, and the wrench along it is resisted
+/// without torque.
 #[test]
 fn stretched_arm_is_type_i() {
     let arm = |elbow: f64| {

@@ -36,12 +36,13 @@ fn torques_balance_the_wrench() {
         let metric = Metric::diagonal("weights", &weights).unwrap();
         for (metric, weights) in [(None, vec![1.0; weights.len()]), (Some(&metric), weights)] {
             let found = joint_torques(&relation, &wrench, metric).unwrap();
-            let held: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, l)| w - l).collect();
+            let balanced: Vec<f64> =
+                wrench.iter().zip(&found.unbalanced).map(|(w, l)| w - l).collect();
             let motions = relation.motions().basis();
             let size = 1.0 + found.torques.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
             for j in 0..motions.cols() {
                 let (q, u) = motions.column(j).split_at(relation.joints());
-                let power = dot(&found.torques, q) + dot(&held, u);
+                let power = dot(&found.torques, q) + dot(&balanced, u);
                 assert!(power.abs() < 1e-12 * size, "{}: {power}", case.name);
             }
             let internal = relation.forces().zero;
@@ -59,7 +60,8 @@ fn torques_balance_the_wrench() {
             let alone = joint_torques(&relation, &found.structural, metric).unwrap();
             assert_close("alone", &alone.torques, &vec![0.0; alone.torques.len()], 1e-11 * size);
             assert_close("again", &alone.structural, &found.structural, 1e-12);
-            let rest: Vec<f64> = held.iter().zip(&found.structural).map(|(h, s)| h - s).collect();
+            let rest: Vec<f64> =
+                balanced.iter().zip(&found.structural).map(|(h, s)| h - s).collect();
             let other = joint_torques(&relation, &rest, metric).unwrap();
             assert_close("rest", &other.torques, &found.torques, 1e-11 * size);
             assert_close("none", &other.structural, &vec![0.0; wrench.len()], 1e-12);
@@ -80,14 +82,14 @@ fn contact_forces_are_in_equilibrium() {
         let mobility = Mobility::from_parts(&constraint, &motions, &relation);
         let wrench = random.vector(constraint.object());
         let mut found = joint_torques(&relation, &wrench, None).unwrap();
-        let held: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, l)| w - l).collect();
+        let balanced: Vec<f64> = wrench.iter().zip(&found.unbalanced).map(|(w, l)| w - l).collect();
         // Internal torques may be added at will.
         for j in 0..mobility.internal.dimension() {
             let share = random.within(-1.0, 1.0);
             let h = mobility.internal.basis.column(j);
             found.torques.iter_mut().zip(h).for_each(|(t, h)| *t += share * h);
         }
-        let load = StaticLoad { torques: &found.torques, wrench: &held };
+        let load = StaticLoad { torques: &found.torques, wrench: &balanced };
         let t = constraint.rows();
         let weights: Vec<f64> = (0..t).map(|_| random.within(0.1, 4.0)).collect();
         let compliance = Metric::diagonal("compliance", &weights).unwrap();
@@ -98,7 +100,7 @@ fn contact_forces_are_in_equilibrium() {
             let f = &forces.forces;
             let size = 1e-12 * (1.0 + f.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
             assert!(forces.unbalanced < 1e-12, "{}: {}", case.name, forces.unbalanced);
-            assert_close("w", &blocks.grasp.mul_vec(f), &held, size);
+            assert_close("w", &blocks.grasp.mul_vec(f), &balanced, size);
             let torque: Vec<f64> =
                 blocks.actuated.transpose().mul_vec(f).iter().map(|x| -x).collect();
             assert_close("tau", &torque, &found.torques, size);

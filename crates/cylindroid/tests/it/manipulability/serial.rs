@@ -39,7 +39,7 @@ fn arms_of_the_catalogue() {
             assert!((m.kinematic.volume() / volume - 1.0).abs() < 1e-10);
             let condition = (svd.value(0) / svd.value(rank - 1)).powi(2);
             assert!((m.kinematic.anisotropy().unwrap() / condition - 1.0).abs() < 1e-8);
-            // Forces: w = J^-T tau, and what the structure holds for an arm of five joints.
+            // Forces: w = J^-T tau, and the resistance of the structure for an arm of five joints.
             let inverse: Vec<f64> = m.kinematic.values().iter().rev().map(|e| 1.0 / e).collect();
             let ratio: Vec<f64> =
                 m.force.values().iter().zip(&inverse).map(|(f, e)| f / e).collect();
@@ -57,8 +57,8 @@ fn singular_arm() {
     assert_close("values", &m.kinematic.values(), &[5.0], 1e-14);
     assert_eq!((m.kinematic.zeros.cols(), m.kinematic.infinite.cols()), (1, 0));
     assert_eq!((m.force.zeros.cols(), m.force.infinite.cols()), (0, 1));
-    let held = m.force.infinite.column(0);
-    assert_close("held", &[held[0].abs(), held[1]], &[1.0, 0.0], 1e-15);
+    let resisted = m.force.infinite.column(0);
+    assert_close("resisted", &[resisted[0].abs(), resisted[1]], &[1.0, 0.0], 1e-15);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `assemble --to`: held coordinates go to their goal, the loops stay closed.
+//! `assemble --to`: prescribed coordinates go to their goal, the loops stay closed.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -28,7 +28,7 @@ struct ContinuationJson<'a> {
     q: &'a [f64],
     closure_error: ClosureErrorJson,
     start: &'a [f64],
-    /// Names and values that were asked for; held ones at rest too.
+    /// Names and values that were asked for; prescribed ones at rest too.
     goal: Vec<GoalJson<'a>>,
     least_distance: f64,
     /// The coordinate at whose limit it ended.

@@ -10,7 +10,7 @@ pub(super) struct Job<'a> {
     pub(super) mechanism: &'a Mechanism,
     pub(super) names: Vec<&'a str>,
     pub(super) guess: Vec<f64>,
-    pub(super) held: Vec<usize>,
+    pub(super) prescribed: Vec<usize>,
 }
 
 impl Job<'_> {

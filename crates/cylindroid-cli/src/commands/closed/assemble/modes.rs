@@ -22,14 +22,14 @@ struct ModesJson<'a> {
     starts: usize,
     closed_starts: usize,
     seed: u64,
-    /// Degrees of freedom that the held coordinates leave.
+    /// Degrees of freedom that the prescribed coordinates leave.
     self_motion_dof: usize,
     /// Estimated chance that another start which closes finds another mode.
     unseen_probability: f64,
     /// Of the guess itself.
     guess_closure_error: ClosureErrorJson,
     guess: &'a [f64],
-    held: Vec<&'a str>,
+    prescribed: Vec<&'a str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -50,7 +50,7 @@ pub(super) fn run(
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
-    let found = assembly_modes(job.mechanism, &job.guess, &job.held, options)?;
+    let found = assembly_modes(job.mechanism, &job.guess, &job.prescribed, options)?;
     match style {
         Style::Json => output::json(out, &describe(job, options, &found))?,
         Style::Table => print(out, job, &found)?,
@@ -79,7 +79,7 @@ fn describe<'a>(job: &'a Job<'_>, options: ModeOptions, found: &'a AssemblyModes
         unseen_probability: found.unseen_probability(),
         guess_closure_error: found.first.closure_error.into(),
         guess: &job.guess,
-        held: job.names_of(&job.held),
+        prescribed: job.names_of(&job.prescribed),
     }
 }
 
@@ -120,7 +120,7 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
             ("result", result),
             ("further modes", more),
             ("self-motion", self_motion_dof),
-            ("prescribed", job.names_of(&job.held).join(", ")),
+            ("prescribed", job.names_of(&job.prescribed).join(", ")),
         ],
     )?;
     if found.modes.is_empty() {

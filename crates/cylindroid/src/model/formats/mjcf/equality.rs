@@ -138,7 +138,7 @@ impl<'d> Mjcf<'d> {
     fn couple(&mut self, node: Node<'d, 'd>, name: &str) -> Result<()> {
         let follower = self.joint_named(node, "joint1")?;
         if !node.has_attribute("joint2") {
-            let why = "a joint held at one position keeps its coordinate here";
+            let why = "a joint fixed at one position keeps its coordinate here";
             self.reader.note(node, "<joint> of <equality> without joint2", why, name);
             return Ok(());
         }
