@@ -134,7 +134,7 @@ std::string ik(const Robot& robot, const std::vector<double>& targets, size_t fr
   return write(path, out);
 }
 
-// Postures drawn within the limits.
+// Configurations drawn within the limits.
 struct Draw {
   std::mt19937_64 random{6};
   void operator()(const Robot& robot, double* q) {

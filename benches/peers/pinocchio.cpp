@@ -42,7 +42,7 @@ pinocchio::SE3 target_of(const double* x) {
 }
 
 // The loop that one writes first: damped steps, clamped to the limits, from the middle of the
-// limits and then from postures drawn within them.
+// limits and then from configurations drawn within them.
 bool damped_loop(Arm& arm, const Robot& robot, Draw& draw, const double* desired, double tolerance, double* out) {
   const int n = arm.model.nv;
   const pinocchio::SE3 target = target_of(desired);

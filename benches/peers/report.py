@@ -138,8 +138,8 @@ machine shows in the last two figures.
 {self.servo()}
 
 ## Inverse kinematics
-Targets are poses of postures drawn evenly within the limits. Everybody starts at the middle of
-the limits (EAIK needs no start). A target is solved if the answer is within the limits and within
+Targets are poses of configurations drawn evenly within the limits. Everybody starts at the middle
+of the limits (EAIK needs no start). A target is solved if the answer is within the limits and within
 tolerance, in metres and radians, by the referee; outside and wrong are answers that were claimed.
 Time is processor time, of all threads: nobody is charged for interruptions, but everybody for
 reading that clock, about 0.6 us. `Pinocchio, C++` is a damped loop of 20 lines with restarts;

@@ -197,7 +197,7 @@ def load(robots, rtb):
 
 def write(all_robots, folder, targets, far):
     """Files of doubles: configurations `.q`, targets `.targets` (R by rows, p), and such that no
-    posture reaches, `.far`. Drawn evenly within the limits, the same on every run."""
+    configuration reaches, `.far`. Drawn evenly within the limits, the same on every run."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for robot in all_robots.values():

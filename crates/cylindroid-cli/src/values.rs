@@ -169,7 +169,11 @@ impl Joints {
     }
 
     /// The joint velocities; those not named are zero.
-    pub(crate) fn rates(&self, robot: &Mechanism, degrees: bool) -> cylindroid::Result<Vec<f64>> {
+    pub(crate) fn velocities(
+        &self,
+        robot: &Mechanism,
+        degrees: bool,
+    ) -> cylindroid::Result<Vec<f64>> {
         self.resolve(robot, degrees, &vec![0.0; robot.n()])
     }
 

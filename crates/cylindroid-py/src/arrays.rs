@@ -182,7 +182,7 @@ impl<T> Many<T> {
     }
 }
 
-/// Configurations (or rates) of a mechanism: `(n,)` or `(N, n)`, all finite.
+/// Configurations (or joint velocities) of a mechanism: `(n,)` or `(N, n)`, all finite.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rows<'a> {
     pub(crate) values: &'a [f64],

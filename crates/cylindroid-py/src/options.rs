@@ -53,22 +53,22 @@ pub(crate) fn task(
 
 /// The secondary tasks: names, with gains or without.
 pub(crate) fn secondary(
-    wanted: Option<&Bound<'_, PyAny>>,
+    given: Option<&Bound<'_, PyAny>>,
     posture: &[f64],
     robot: &Mechanism,
     options: &ServoOptions,
 ) -> Result<Vec<SecondaryTask>> {
     let named = |name: &str| SecondaryTask::named(name, posture);
-    let Some(wanted) = wanted else {
+    let Some(given) = given else {
         return Ok(options.default_secondary(robot)?);
     };
-    if let Ok(name) = wanted.cast::<PyString>() {
+    if let Ok(name) = given.cast::<PyString>() {
         let name = name.to_cow()?;
         return if name == "none" { Ok(Vec::new()) } else { Ok(vec![named(&name)?]) };
     }
     let words = "secondary is a name, a list of names, or a dict: for each name a gain or a dict of \
                  parameters";
-    if let Ok(by_name) = wanted.cast::<PyDict>() {
+    if let Ok(by_name) = given.cast::<PyDict>() {
         let each = by_name.iter().map(|(name, value)| {
             let mut task = named(&name.extract::<String>()?)?;
             if let Ok(parameters) = value.cast::<PyDict>() {
@@ -82,7 +82,7 @@ pub(crate) fn secondary(
         });
         return each.collect();
     }
-    let names: Vec<String> = wanted.extract().map_err(|_| Failure::kind(words))?;
+    let names: Vec<String> = given.extract().map_err(|_| Failure::kind(words))?;
     names.iter().map(|name| Ok(named(name)?)).collect()
 }
 

@@ -96,7 +96,7 @@ def test_serial_efficiencies_are_singular_values():
     axes = k.kinematic.semi_axes
     np.testing.assert_allclose(np.linalg.norm(axes, axis=0), values, rtol=1e-10)
     np.testing.assert_allclose(k.active_force.finite[::-1], 1 / values**2, rtol=1e-9)
-    # Every joint rate is possible, so no torques balance each other; every twist, so nothing is
+    # Every joint velocity is possible, so no torques balance each other; every twist, so nothing is
     # held without torque.
     assert k.active_force.zeros == 0 and k.passive_force.infinite == 0
     np.testing.assert_allclose(k.index("active-kinematic"), [*values**2, 0], rtol=1e-10)

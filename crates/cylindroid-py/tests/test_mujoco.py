@@ -55,12 +55,12 @@ def stop(arm, servo):
 
 
 def go_round(arm, servo, target):
-    """Through joint space to another posture that reaches the target."""
+    """Through joint space to another configuration that reaches the target."""
     stop(arm, servo)
-    posture = servo.find_reachable_configuration(arm.q, target)
-    assert posture is not None
+    configuration = servo.find_reachable_configuration(arm.q, target)
+    assert configuration is not None
     start = np.clip(arm.q, arm.robot.lower, arm.robot.upper)
-    move = cy.JointMove(arm.robot, start, posture, acceleration=4.0)
+    move = cy.JointMove(arm.robot, start, configuration, acceleration=4.0)
     for i in range(int(move.duration / physics.PERIOD) + 100):
         q, qd = move.at(i * physics.PERIOD)
         arm.run(qd + 10 * (q - arm.q))

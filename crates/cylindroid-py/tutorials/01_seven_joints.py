@@ -24,7 +24,7 @@ report = robot.manipulability(q, task="x,y,z")
 print(report)
 print("most speed along", report.kinematic.directions[0].object.round(3))
 
-# Inverse kinematics: any posture within the limits, or the nearest one.
+# Inverse kinematics: any configuration within the limits, or the nearest one.
 target = robot.fk(q)
 target[:3, 3] += [0.1, 0.15, -0.1]
 found = robot.ik(target, q0=q, nearest=True)
@@ -52,7 +52,7 @@ stall = servo.simulate(robot.home, far).stall
 print("far away:", stall)
 assert stall.name == "out-of-reach"
 
-# The elbow moves while the tool stays: joint rates of ours, as far as the task allows.
+# The elbow moves while the tool stays: joint velocities of ours, as far as the task allows.
 still = robot.fk(robot.home)
 elbow = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
 rates = cy.Servo(robot, secondary="none").step(robot.home, still, secondary=elbow)

@@ -21,7 +21,7 @@ except np.linalg.LinAlgError as error:
 twist = np.array([0.05, 0.02, 0.0, 0.2, 0.1, 0.1])
 millimetres = np.diag([1000.0, 1000.0, 1000.0, 1.0, 1.0, 1.0])
 
-# The pseudoinverse answers with other joint rates when metres become millimetres ...
+# The pseudoinverse answers with other joint velocities when metres become millimetres ...
 in_m = cy.pinv(J, 1e-9).matrix @ twist
 in_mm = cy.pinv(millimetres @ J, 1e-9).matrix @ (millimetres @ twist)
 print("pseudoinverse, m: ", in_m.round(4))
@@ -47,7 +47,7 @@ for pitch in system.principal_pitches:
 best, size = system.choose_pitch()
 print(f"advice: h = {best:.4g} m/rad, where the projector enlarges a motion {size:.2f} times at most")
 
-# Asked for a whole pose beside the ones that it can do, the arm gets as near as it can, position and
+# For a pose that five joints cannot reach, the arm gets as near as it can, position and
 # orientation each a little off, and says that it has too few joints.
 target = robot.fk(q)
 target[:3, 3] += [0.02, 0.02, -0.03]

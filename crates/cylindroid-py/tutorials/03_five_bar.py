@@ -18,7 +18,8 @@ q = assembly.q
 modes = linkage.assembly_modes(q, hold=linkage.joint_names[:1])
 print(modes)
 
-# How it moves, and what holds it. Counts come from ranks, Grubler's formula is beside them.
+# Its motions, and the wrenches that its structure resists. Counts are ranks, printed with those of
+# Grübler's formula.
 report = linkage.mobility(q)
 print(report)
 assert report.dof == 2 and report.redundancy == 0 and report.indeterminacy == 0

@@ -349,7 +349,7 @@ fn object_servo_step(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
-/// Postures drawn within the limits, or half a turn where they are wider.
+/// Configurations drawn within the limits, or half a turn where they are wider.
 fn drawn(robot: &Mechanism) -> impl FnMut() -> Vec<f64> + '_ {
     let mut state = 9_u64;
     let mut one = move |c: &Coordinate| {

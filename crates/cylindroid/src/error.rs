@@ -161,16 +161,16 @@ impl Error {
 
 /// The names of `known` nearest to `name`, best first: at most five, all when there are no more.
 fn nearest(name: &str, known: impl IntoIterator<Item: AsRef<str>>) -> Vec<String> {
-    let wanted = name.to_lowercase();
+    let given = name.to_lowercase();
     let mut ranked: Vec<(f64, String)> = known
         .into_iter()
         .map(|candidate| {
             let candidate = candidate.as_ref();
             let lower = candidate.to_lowercase();
-            let contains = lower.contains(&wanted) || wanted.contains(&lower);
+            let contains = lower.contains(&given) || given.contains(&lower);
             // One or two letters occur in half of all words by chance.
-            let bonus = if contains && lower.len().min(wanted.len()) > 2 { 0.5 } else { 0.0 };
-            (strsim::jaro_winkler(&wanted, &lower) + bonus, candidate.to_owned())
+            let bonus = if contains && lower.len().min(given.len()) > 2 { 0.5 } else { 0.0 };
+            (strsim::jaro_winkler(&given, &lower) + bonus, candidate.to_owned())
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));

@@ -1,4 +1,4 @@
-/** Two inverses side by side, and what moving the reference point does to their rates. */
+/** Two inverses side by side, and their joint velocities for a moved reference point. */
 import { fill, h } from "../dom";
 import { fixed, plain, short } from "../format";
 import type { Comparison, Scene, Vec3 } from "../protocol";

@@ -11,7 +11,7 @@ use crate::values::{ByName, Intervals, List, Weights};
 pub(crate) const MOBILITY: &str = "\
 Mobility of a mechanism: degrees of freedom, redundancy, idle motions, hyperstaticity, singularities
 
-Counts are ranks at this configuration, printed with their gap, beside the Gruebler-Kutzbach count \
+Counts are ranks at this configuration, printed with their gap, the Gruebler-Kutzbach count \
 and the finite mobility (first-order motions that extend to finite motions). The configuration is \
 compared with other closed configurations of the mechanism: at a singularity, the blocked wrench \
 and the motions lost or gained are given as screws in the world frame. The counts assume closed \
@@ -111,9 +111,9 @@ pub(crate) struct ManipulabilityArgs {
     #[command(flatten)]
     pub(crate) closed: ClosedArgs,
 
-    /// How motions are measured: `unit` (m beside rad, as they are), `length` (lengths over the
-    /// characteristic length), `limits` (lengths so, joint rates over their limits), `inertia`
-    /// (twists by the kinetic energy of the body of the reference frame)
+    /// Metric of motions: `unit` (m and rad, unscaled), `length` (lengths over the characteristic
+    /// length), `limits` (as `length`, and joint velocities over their limits), `inertia` (twists
+    /// by the kinetic energy of the body of the reference frame)
     #[arg(long, value_name = "NAME", default_value = "unit")]
     pub(crate) metric: MetricName,
 
@@ -122,7 +122,7 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wu: Option<Weights>,
 
-    /// Metric of the rates of the actuated joints, likewise
+    /// Metric of the velocities of the actuated joints, likewise
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wq: Option<Weights>,
 
@@ -130,7 +130,8 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) ww: Option<Weights>,
 
-    /// Metric of the torques of the actuated joints [default: the inverse of that of rates]
+    /// Metric of the torques of the actuated joints [default: the inverse of that of
+    /// velocities]
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wtau: Option<Weights>,
 
@@ -165,7 +166,7 @@ pub(crate) struct ManipulabilityArgs {
 
     /// In place of one configuration those of a .csv or .json file, a row each [rad or m]: mobility,
     /// distances to singularities and measures of motion as numbers. A first line of CSV names the
-    /// columns, in any order and others beside them, as in the files of `move --out`
+    /// columns, in any order; other columns are ignored, as in the files of `move --out`
     #[arg(long, value_name = "FILE", conflicts_with_all = [
         "q", "degrees", "ww", "wtau", "task", "task_map", "polytope", "torque_limits", "gradient",
         "plot",
@@ -180,11 +181,11 @@ pub(crate) struct ManipulabilityArgs {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MetricName {
-    /// Metres beside radians
+    /// Metres and radians, unscaled
     Unit,
     /// Lengths over the characteristic length
     Length,
-    /// Lengths so, joint rates over their limits
+    /// As `length`, and joint velocities over their limits
     Limits,
     /// Twists by kinetic energy
     Inertia,

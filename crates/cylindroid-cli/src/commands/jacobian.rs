@@ -37,7 +37,7 @@ struct JacobianJson<'a> {
     analytical: Option<AnalyticalJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     joint_velocities: Option<Vec<f64>>,
-    /// d matrix / dt at these rates.
+    /// d matrix / dt at these joint velocities.
     #[serde(skip_serializing_if = "Option::is_none")]
     derivative: Option<Vec<Vec<f64>>>,
 }
@@ -76,7 +76,7 @@ pub(crate) fn run(
         }
     };
     let joint_velocities =
-        args.velocities.as_ref().map(|r| r.rates(&robot, degrees)).transpose()?;
+        args.velocities.as_ref().map(|r| r.velocities(&robot, degrees)).transpose()?;
     let derivative = joint_velocities
         .as_ref()
         .map(|r| state.jacobian_dot(r, end_effector, reference))
@@ -156,7 +156,7 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
     if let Some(derivative) = &report.derivative {
         writeln!(
             out,
-            "\nderivative in time at the rates {}",
+            "\ntime derivative at the joint velocities {}",
             output::list(report.joint_velocities.as_deref().unwrap_or(&[]))
         )?;
         output::matrix(

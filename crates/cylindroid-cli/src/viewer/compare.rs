@@ -42,13 +42,13 @@ struct ResultJson<'a> {
 /// The answer to `compare`.
 pub(super) fn compare(
     session: &Session,
-    wanted: &Compare,
+    requested: &Compare,
     id: Option<&Value>,
 ) -> Result<String, Complaint> {
     let at = |place: &'static str| move |error: Error| Complaint::of(place, &error);
     let (options, state) = (session.options(), session.state());
     let tool = state.pose(options.end_effector);
-    let asked = match wanted.twist {
+    let asked = match requested.twist {
         Some(twist) => Twist::from_array(twist),
         None => {
             let error = tool.error_to(session.target());
@@ -60,11 +60,11 @@ pub(super) fn compare(
             if there { DEFAULT_TWIST } else { asked }
         }
     };
-    let point = Vec3::from_array(wanted.point);
+    let point = Vec3::from_array(requested.point);
     let mut results = Vec::new();
     let mut coordinates = Vec::new();
-    for name in &wanted.methods {
-        let h = match (hyperbolic().any(|i| i.name == name), wanted.h) {
+    for name in &requested.methods {
+        let h = match (hyperbolic().any(|i| i.name == name), requested.h) {
             (false, _) => None,
             (true, Some(h)) => Some(h),
             (true, None) => Some(session.best_pitch().map_err(at("compare.h"))?),
@@ -99,7 +99,7 @@ pub(super) fn compare(
         reply_to: id,
         twist: asked.to_array(),
         tool_point: tool.translation.to_array(),
-        point: wanted.point,
+        point: requested.point,
         names: coordinates.iter().map(name).collect(),
         results,
     }))

@@ -177,7 +177,7 @@ fn servo(session: &Session) -> ServoJson {
 }
 
 fn limits(session: &Session) -> Vec<LimitJson> {
-    // A servo that has not stepped since it was stopped has no rates.
+    // A servo that has not stepped since it was stopped has no joint velocities.
     if session.last().is_none() {
         return Vec::new();
     }

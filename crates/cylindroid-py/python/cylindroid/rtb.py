@@ -43,7 +43,7 @@ class IKSolution:
     iterations : int
     searches : int
     residual : float
-        Half the squared error, metres beside radians.
+        Half the squared error, metres and radians, unscaled.
     reason : str
         Empty on success.
     """

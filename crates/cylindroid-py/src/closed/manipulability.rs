@@ -18,8 +18,8 @@ use crate::table::{self, Table};
 /// Attributes
 /// ----------
 /// kinematic : Spectrum
-///     Motions of the object for rates of the actuated joints: zeros are redundant motions, infinite
-///     ones motions that the actuators do not control.
+///     Motions of the object for velocities of the actuated joints: zeros are redundant motions,
+///     infinite ones motions that the actuators do not control.
 /// active_force : Spectrum
 ///     Forces exerted: wrenches for torques; zeros are internal torques.
 /// passive_force : Spectrum
@@ -87,8 +87,8 @@ impl PyManipulability {
     /// Parameters
     /// ----------
     /// name : str
-    ///     'kinematic', 'active-kinematic' (rates given), 'passive-kinematic' (twist given),
-    ///     'force', 'active-force' (torques given) or 'passive-force' (wrench given).
+    ///     'kinematic', 'active-kinematic' (joint velocities given), 'passive-kinematic' (twist
+    ///     given), 'force', 'active-force' (torques given) or 'passive-force' (wrench given).
     ///
     /// Returns
     /// -------
@@ -168,11 +168,11 @@ impl PyMechanism {
     /// task : str, list of str or array_like, (k, d), optional
     ///     Components of the twist that matter ('x,y'), or a map on it.
     /// Wu, Wq, Ww, Wtau : array_like, square or their diagonals, optional
-    ///     Metrics of twists (or the task), joint rates, wrenches and torques, positive definite.
-    ///     Defaults: those of `metric`; wrenches and torques by the duals.
+    ///     Metrics of twists (or the task), joint velocities, wrenches and torques, positive
+    ///     definite. Defaults: those of `metric`; wrenches and torques by the duals.
     /// metric : str
-    ///     'unit' (m and rad, unscaled), 'length' (lengths over the characteristic length), 'limits'
-    ///     (lengths so, joint rates over their limits).
+    ///     'unit' (m and rad, unscaled), 'length' (lengths over the characteristic length),
+    ///     'limits' (as 'length', and joint velocities over their limits).
     /// length : float, optional
     ///     Characteristic length (m). Default: the reach.
     ///

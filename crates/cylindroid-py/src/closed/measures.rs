@@ -42,7 +42,7 @@ impl PyMechanism {
     /// actuated, reference
     ///     As `constraint`.
     /// Wu, Wq : array_like, square or their diagonals, optional
-    ///     Metrics of twists and joint rates, as `manipulability`.
+    ///     Metrics of twists and joint velocities, as `manipulability`.
     /// metric : str
     ///     'unit', 'length' or 'limits', as `manipulability`.
     /// length : float, optional

@@ -85,7 +85,7 @@ fn task_units(constraint: &PyConstraint, map: Option<&Matrix>) -> Result<Units> 
     Ok(Units { object, ..constraint.units.clone() })
 }
 
-/// The limits of the actuated joints, of rates or torques, all finite.
+/// The limits of the actuated joints, of velocities or torques, all finite.
 pub(super) fn limits(constraint: &PyConstraint, torque: bool) -> Result<Vec<f64>> {
     let what = if torque { "effort" } else { "velocity" };
     let Some(origin) = &constraint.origin else {

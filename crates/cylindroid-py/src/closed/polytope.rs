@@ -124,7 +124,7 @@ impl PyConstraint {
     /// Parameters
     /// ----------
     /// limits : array_like, (a,) or (a, 2), optional
-    ///     Largest rates [rad/s or m/s], or pairs around zero. Default: those of the mechanism.
+    ///     Largest velocities [rad/s or m/s], or pairs around zero. Default: of the mechanism.
     /// task : str, list of str or array_like, (k, d), optional
     ///     Components of the twist, or a map; with more than three there are many facets.
     ///

@@ -65,7 +65,7 @@ impl PyInternalForceController {
         Ok(Self { inner: InternalForceController::new(gain, stiffness.vector("stiffness")?)? })
     }
 
-    /// The rates of this step.
+    /// The joint velocities of this step.
     ///
     /// Parameters
     /// ----------

@@ -1,5 +1,5 @@
-//! Laws for tools in contact, and for tools that a person moves as well: what twist (or rates) to
-//! command. A servo carries it out.
+//! Control laws for tools in contact, and for tools that a person moves as well: the twist (or the
+//! joint velocities) to command. A servo carries it out.
 
 mod admittance;
 mod hybrid;

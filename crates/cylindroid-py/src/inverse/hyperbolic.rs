@@ -22,7 +22,7 @@ fn damping_of(mu: Option<f64>, lam: Option<f64>) -> Result<HyperbolicDamping> {
     }
 }
 
-/// The hyperbolic pseudoinverse of pitch h: joint rates that no change of frame or unit alters.
+/// The hyperbolic pseudoinverse of pitch h: frame- and unit-invariant joint velocities.
 ///
 /// Parameters
 /// ----------

@@ -1,4 +1,4 @@
-//! All joint rates that move a point along a line.
+//! All joint velocities that move a point along a line.
 
 use cylindroid::inverse::point_direction as all_rates;
 use cylindroid::{Error, Matrix, Vec3};
@@ -8,14 +8,15 @@ use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::table;
 
-/// The joint rates that move a point along a line.
+/// The joint velocities that move a point along a line.
 ///
 /// Attributes
 /// ----------
 /// along : ndarray, (m,), or None
-///     The smallest rates that move the point at 1 m/s along the direction; None if none do.
+///     The smallest joint velocities that move the point at 1 m/s along the direction; None if
+///     none do.
 /// still : ndarray, (m, d)
-///     Rates that keep the point at rest: an orthonormal basis.
+///     Joint velocities that keep the point at rest: an orthonormal basis.
 #[pyclass(frozen, name = "PointDirection", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyPointDirection {
@@ -41,7 +42,7 @@ impl PyPointDirection {
     }
 }
 
-/// All joint rates that move a point of the end effector along a direction.
+/// All joint velocities that move a point of the end effector along a direction.
 ///
 /// Parameters
 /// ----------

@@ -15,7 +15,7 @@ use crate::table::{self, Table};
 /// Attributes
 /// ----------
 /// matrix : ndarray, (n, m) or (N, n, m)
-///     The inverse: rates = matrix @ task. NaN where none exists.
+///     The inverse: qd = matrix @ task. NaN where none exists.
 /// rank : int or ndarray of int, (N,)
 ///     Directions of which at least one half is realised.
 /// singular_values : ndarray, (k,) or (N, k)

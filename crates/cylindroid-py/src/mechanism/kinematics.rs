@@ -34,7 +34,7 @@ impl PyMechanism {
             return Err(Failure::option(
                 "qd",
                 format!("{} for {} of q", words(&rates), words(&rows)),
-                "give as many rates as configurations",
+                "give as many joint velocities as configurations",
             ));
         }
         Ok((rows, rates))
@@ -219,7 +219,7 @@ impl PyMechanism {
     /// Notes
     /// -----
     /// Haviland and Corke 2020 (arXiv 2010.08686), in screw form. Spherical and free joints: the
-    /// derivative along their unit rates.
+    /// derivative along their unit velocities.
     #[pyo3(signature = (q, frame = None, reference = "local_world_aligned", tool = None))]
     fn hessian<'py>(
         &self,
@@ -341,14 +341,14 @@ impl PyMechanism {
         })
     }
 
-    /// `q` moved by constant rates for `dt` seconds.
+    /// `q` moved by constant joint velocities for `dt` seconds.
     ///
     /// `q + dt * qd`, with rotation vectors and free bodies moved on their group.
     ///
     /// Parameters
     /// ----------
     /// q, qd : array_like, (n,) or (N, n)
-    ///     Coordinates and as many rates.
+    ///     Coordinates and as many velocities.
     /// dt : float
     ///     Time (s).
     ///

@@ -29,7 +29,7 @@ pub(crate) use load::PyLoadReport;
 /// ----------
 /// name : str
 /// n : int
-///     Number of coordinates: entries of q and of the rates.
+///     Number of coordinates: entries of q and of the joint velocities.
 /// joint_names : list of str
 ///     Names of the coordinates, in the order of q.
 /// units : list of str

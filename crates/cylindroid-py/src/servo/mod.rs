@@ -54,7 +54,7 @@ pub(crate) use trajectory::PyTrajectory;
 ///     gives for each name a gain or a dict of parameters. Default: limit avoidance for redundant
 ///     arms and closed chains, otherwise none.
 /// posture : array_like, (n,), optional
-///     Where 'posture' goes. Default: home.
+///     The configuration of the secondary task 'posture'. Default: home.
 /// null_space : str
 ///     The null space they may use: 'exact' never disturbs the task, 'retained' also lets them
 ///     through directions that the inverse cut.
@@ -213,7 +213,7 @@ impl PyServo {
         Ok(Self { inner: Servo::new(robot, options)?, last: None })
     }
 
-    /// One step: the rates to command from now until the next step.
+    /// One step: the joint velocities to command from now until the next step.
     ///
     /// Parameters
     /// ----------
@@ -265,7 +265,7 @@ impl PyServo {
         Ok(arrays::vector(py, self.inner.joint_velocities()))
     }
 
-    /// `q` moved by the rates of the last step, for simulation.
+    /// `q` moved by the joint velocities of the last step, for simulation.
     ///
     /// Parameters
     /// ----------
@@ -288,7 +288,7 @@ impl PyServo {
         Ok(arrays::vector(py, &next))
     }
 
-    /// Forgets the last rates and target: the joints stand still.
+    /// Forgets the last joint velocities and target: the joints stand still.
     fn reset(&mut self) {
         self.inner.reset();
         self.last = None;

@@ -143,7 +143,7 @@ impl Matrix {
     pub fn hstack(rows: usize, blocks: &[&Self]) -> Self {
         let mut data = Vec::with_capacity(rows * blocks.iter().map(|b| b.cols).sum::<usize>());
         for block in blocks {
-            assert_eq!(block.rows, rows, "{block:?} beside matrices of {rows} rows");
+            assert_eq!(block.rows, rows, "{block:?} next to matrices of {rows} rows");
             data.extend_from_slice(&block.data);
         }
         Self { rows, cols: blocks.iter().map(|b| b.cols).sum(), data }

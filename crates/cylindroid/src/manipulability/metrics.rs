@@ -3,7 +3,7 @@
 //!
 //! Formula  the page of [`Metrics`]
 //! Shapes   W_u, W_w: d x d; W_q, W_tau: q_a x q_a
-//! Units    an efficiency has the unit of `|u|^2 / |q|^2`; with lengths beside angles only metrics
+//! Units    an efficiency has the unit of `|u|^2 / |q|^2`; with lengths and angles only metrics
 //!          that make both norms dimensionless (limits, a characteristic length) give efficiencies
 //!          that do not change with the unit
 //! Valid    positive definite. To leave components out use [`Relation::task`], not zero weights.
@@ -84,7 +84,7 @@ impl Metrics {
         Ok(self)
     }
 
-    /// Lengths measured in `length` (m), beside angles: efficiencies without unit. Of the units
+    /// Lengths measured in `length` (m), as are angles: efficiencies without unit. Of the units
     /// those of the object and of the actuated joints are read.
     ///
     /// ```

@@ -181,8 +181,8 @@ impl ScrewSystem {
     /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
     /// use cylindroid::Vec3;
     ///
-    /// let hinge = Line { point: Vec3::ZERO, direction: Vec3::Z };
-    /// let system = ScrewSystem::of(&[hinge.twist()], &ScrewOptions::default())?;
+    /// let revolute = Line { point: Vec3::ZERO, direction: Vec3::Z };
+    /// let system = ScrewSystem::of(&[revolute.twist()], &ScrewOptions::default())?;
     /// assert!(system.existence(0.1).exists);
     /// // The pitch of a rotation is zero, its principal pitch.
     /// println!("{}", system.existence(0.0).reason.unwrap());
@@ -226,9 +226,9 @@ impl ScrewSystem {
     /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
     /// use cylindroid::Vec3;
     ///
-    /// // A hinge has no projector of its own pitch, zero.
-    /// let hinge = Line { point: Vec3::ZERO, direction: Vec3::Z }.twist();
-    /// let system = ScrewSystem::of(&[hinge], &ScrewOptions::default())?;
+    /// // A revolute joint has no projector of its own pitch, zero.
+    /// let revolute = Line { point: Vec3::ZERO, direction: Vec3::Z }.twist();
+    /// let system = ScrewSystem::of(&[revolute], &ScrewOptions::default())?;
     /// assert_eq!(system.projector_norm(0.0), f64::INFINITY);
     /// assert!(system.projector_norm(1.0) >= 1.0);
     /// # Ok::<(), cylindroid::Error>(())

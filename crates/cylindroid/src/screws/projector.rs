@@ -39,12 +39,12 @@ impl Projector {
     /// use cylindroid::screws::{Complement, Projector, ScrewOptions};
     /// use cylindroid::{Twist, Vec3};
     ///
-    /// // A hinge about z; along the 0.1-reciprocal twists.
-    /// let hinge = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
+    /// // A revolute joint about z; along the 0.1-reciprocal twists.
+    /// let revolute = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
     /// let along = Complement::Reciprocal { h: 0.1 };
-    /// let projector = Projector::of(&[hinge], along, &ScrewOptions::default())?.unwrap();
+    /// let projector = Projector::of(&[revolute], along, &ScrewOptions::default())?.unwrap();
     /// let twist = Twist { linear: Vec3::X, angular: Vec3::Z };
-    /// assert_eq!(projector.motion(twist), hinge);
+    /// assert_eq!(projector.motion(twist), revolute);
     /// assert_eq!(projector.rest(twist), Twist { linear: Vec3::X, angular: Vec3::ZERO });
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
@@ -72,12 +72,12 @@ impl Projector {
     /// use cylindroid::screws::{Complement, Projector, ScrewOptions};
     /// use cylindroid::{Twist, Vec3, Wrench};
     ///
-    /// // What a hinge about z can resist: all but a moment about z.
-    /// let hinge = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
+    /// // What a revolute joint about z can resist: all but a moment about z.
+    /// let revolute = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
     /// let along = Complement::Reciprocal { h: 0.1 };
-    /// let projector = Projector::of(&[hinge], along, &ScrewOptions::default())?.unwrap();
+    /// let projector = Projector::of(&[revolute], along, &ScrewOptions::default())?.unwrap();
     /// let wrench = Wrench { force: Vec3::Y, moment: Vec3::new(0.0, 2.0, 3.0) };
-    /// assert!(hinge.power(projector.constraint(wrench)).abs() < 1e-15);
+    /// assert!(revolute.power(projector.constraint(wrench)).abs() < 1e-15);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     #[must_use]
@@ -267,10 +267,10 @@ impl ScrewSystem {
     /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
     /// use cylindroid::Vec3;
     ///
-    /// let hinge = Line { point: Vec3::ZERO, direction: Vec3::Z };
-    /// let system = ScrewSystem::of(&[hinge.twist()], &ScrewOptions::default())?;
+    /// let revolute = Line { point: Vec3::ZERO, direction: Vec3::Z };
+    /// let system = ScrewSystem::of(&[revolute.twist()], &ScrewOptions::default())?;
     /// let projector = system.projector(0.1).unwrap();
-    /// let kept = projector.motion(hinge.twist());
+    /// let kept = projector.motion(revolute.twist());
     /// assert!((kept.angular - Vec3::Z).norm() < 1e-15);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```

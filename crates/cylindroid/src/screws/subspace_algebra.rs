@@ -20,8 +20,8 @@ impl ScrewSystem {
     /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
     /// use cylindroid::Vec3;
     ///
-    /// let hinge = Line { point: Vec3::ZERO, direction: Vec3::Z };
-    /// let system = ScrewSystem::of(&[hinge.twist()], &ScrewOptions::default())?;
+    /// let revolute = Line { point: Vec3::ZERO, direction: Vec3::Z };
+    /// let system = ScrewSystem::of(&[revolute.twist()], &ScrewOptions::default())?;
     /// // Five independent wrenches do no work on a single rotation.
     /// assert_eq!(system.reciprocal().order(), 5);
     /// # Ok::<(), cylindroid::Error>(())

@@ -11,7 +11,7 @@ use super::job::Job;
 const AT_SPEED: f64 = 1.0 - 1e-9;
 
 /// Runs it, step by step like a servo, until its end or the time limit. The servo only reports
-/// pose, errors and singular values on the way; its rates are not used.
+/// pose, errors and singular values on the way; its joint velocities are not used.
 pub(super) fn simulate(
     servo: &mut Servo,
     job: &Job,

@@ -257,7 +257,7 @@ impl Relation {
         Matrix::from_fn(a.rows(), self.finite().len(), |i, j| a[(i, from + j)] * size(from + j))
     }
 
-    /// The complement of all attainable joint rates.
+    /// The complement of all attainable joint velocities.
     fn internal_scaled(&self) -> Matrix {
         complement(self.cs.x.columns_between(self.infinite, self.cs.len()))
     }

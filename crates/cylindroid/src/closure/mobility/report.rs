@@ -1,4 +1,4 @@
-//! Mobility report: the motions and forces of a closed chain, counted (beside the Gruebler-Kutzbach
+//! Mobility report: the motions and forces of a closed chain, counted (with the Gruebler-Kutzbach
 //! count) and each with a basis.
 //!
 //! Formula  dof            ker [J_a J_p -G^T]

@@ -37,7 +37,7 @@ pub struct JointTorques {
 ///
 /// `wrench` has d entries (N, N m; at the object's reference point, world axes), the torques q_a
 /// entries (N m, N). The part of the wrench that the structure carries, and the part that nothing
-/// balances, are reported beside them. Source: Bicchi & Prattichizzo 1998, eq. 12.
+/// balances, are reported with them. Source: Bicchi & Prattichizzo 1998, eq. 12.
 ///
 /// ```
 /// use cylindroid::Matrix;

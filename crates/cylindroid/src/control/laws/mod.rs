@@ -1,4 +1,4 @@
-//! Control laws beside the servo: twists and joint velocities computed from measured forces and
+//! Control laws around the servo: twists and joint velocities computed from measured forces and
 //! from an operator, for a servo to execute.
 //!
 //! Read `admittance` (a twist from a wrench), `hybrid` (motion and force control in complementary

@@ -298,7 +298,7 @@ impl Servo {
             None => {
                 self.load_bounds(q);
                 let saturation = self.saturate(q)?;
-                Error::check_finite("joint rates", &self.primary)?;
+                Error::check_finite("joint velocities", &self.primary)?;
                 let braking = self.store_rates();
                 self.load_achieved_twist();
                 self.note_limits();

@@ -1,4 +1,4 @@
-//! Joint rates that move a point along a direction, against what the arm does.
+//! Joint velocities that move a point along a direction, against what the arm does.
 
 use cylindroid::inverse::point_direction;
 use cylindroid::linalg::Svd;

@@ -123,7 +123,7 @@ struct SpectrumJson {
     finite: Vec<f64>,
     zeros: usize,
     infinite: usize,
-    /// Of the finite ones: rates or torques of the actuated joints, twist or wrench.
+    /// Of the finite ones: velocities or torques of the actuated joints, twist or wrench.
     directions: Vec<DirectionJson>,
     /// Rates or torques that do nothing.
     zero_directions: Vec<Vec<f64>>,
@@ -222,7 +222,7 @@ fn print(found: &Found, out: &mut dyn Write) -> anyhow::Result<()> {
     let mut lines = posed.heading();
     let length = number(posed.chain.constraint.length());
     let metric = match found.metric {
-        "unit" => "unit (m beside rad, N beside N m)".to_owned(),
+        "unit" => "unit (m and rad, N and N m, unscaled)".to_owned(),
         "inertia" => "inertia (twists by twice their kinetic energy)".to_owned(),
         name => format!("{name} (lengths over {length} m)"),
     };

@@ -26,7 +26,7 @@ const ACTUATORS: [&str; 10] = [
 
 impl<'d> Mjcf<'d> {
     /// Marks the joints that actuators drive. A file without actuators says nothing of motors:
-    /// there all hinges and slides are actuated, as in a URDF.
+    /// there all revolute and prismatic joints are actuated, as in a URDF.
     pub(super) fn actuators(&mut self) -> Result<()> {
         let actuators = self.files.section("actuator");
         if actuators.is_empty() {

@@ -159,11 +159,11 @@ impl<'d> Mjcf<'d> {
 
     /// A tendon of constant length over two joints ties them together.
     fn couple_by_tendon(&mut self, node: Node<'d, 'd>, name: &str) -> Result<()> {
-        let wanted = self.reader.required(node, "tendon1")?.trim();
+        let tendon_name = self.reader.required(node, "tendon1")?.trim();
         let tendons = self.files.section("tendon");
-        let Some(tendon) = tendons.iter().find(|t| t.attribute("name") == Some(wanted)) else {
+        let Some(tendon) = tendons.iter().find(|t| t.attribute("name") == Some(tendon_name)) else {
             let known = tendons.iter().filter_map(|t| t.attribute("name"));
-            let unknown = Error::unknown("tendon", wanted, known);
+            let unknown = Error::unknown("tendon", tendon_name, known);
             return Err(self.reader.refuse(node, "tendon1", unknown.to_string()));
         };
         let mut ends = Vec::new();
@@ -179,7 +179,7 @@ impl<'d> Mjcf<'d> {
                     && !node.has_attribute("tendon2")
                     && a * b != 0.0 =>
             {
-                self.tied.push(wanted.to_owned());
+                self.tied.push(tendon_name.to_owned());
                 // The second joint follows, unless it cannot.
                 let second_follows = self.tie(second, first, -a / b, constant / b);
                 second_follows

@@ -51,7 +51,7 @@ fn read(source: &Source<'_>, folder: &Path, found: &mut Vec<Included>) -> Result
         };
         let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
         if !Path::new(name).components().all(inside) {
-            let help = "put the file beside the model and include it by its name";
+            let help = "put the file into the folder of the model and include it by its name";
             return refuse(format!("'{name}' leaves the folder of the model"), help);
         }
         if found.iter().any(|f| f.name == name) {

@@ -148,7 +148,7 @@ impl<'d> Mjcf<'d> {
                 self.reader.note(node, what, why, &body);
             }
             Some(Geometry::Mesh { uri, path: None, .. }) => {
-                let why = "mesh not found beside the model";
+                let why = "mesh not found in the folder of the model";
                 self.reader.note(node, "mesh", why, uri);
             }
             Some(_) => {}

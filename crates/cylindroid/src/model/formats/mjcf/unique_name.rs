@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 
 /// A name that no other thing of its kind has.
-pub(super) fn unique(taken: &mut BTreeSet<String>, wanted: &str) -> String {
-    let mut name = wanted.to_owned();
+pub(super) fn unique(taken: &mut BTreeSet<String>, preferred: &str) -> String {
+    let mut name = preferred.to_owned();
     let mut count = 1;
     while !taken.insert(name.clone()) {
         count += 1;
-        name = format!("{wanted}.{count}");
+        name = format!("{preferred}.{count}");
     }
     name
 }

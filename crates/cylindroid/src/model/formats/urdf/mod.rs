@@ -111,8 +111,8 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
 fn place(reader: &Reader<'_>, robot: Node<'_, '_>, error: Error) -> Error {
     let Error::Model { culprit, message, .. } = error else { return error };
     let named = |kind: &str| {
-        let wanted = Some(culprit.as_str());
-        robot.children().rfind(|n| reader.is(*n, kind) && n.attribute("name") == wanted)
+        let culprit = Some(culprit.as_str());
+        robot.children().rfind(|n| reader.is(*n, kind) && n.attribute("name") == culprit)
     };
     let (first, second) =
         if message.contains("joint") { ("joint", "link") } else { ("link", "joint") };
