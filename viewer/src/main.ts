@@ -136,7 +136,7 @@ function start(): void {
   };
   stage.orbit.addEventListener("start", touch);
   page.tools.addEventListener("click", touch);
-  /** What is drawn beside the robot is as large as suits it. */
+  /** Overlays have a size that suits the robot. */
   let size = 1;
   const fitAll = (scene: Scene): void => {
     fitWanted = false;

@@ -133,15 +133,15 @@ fn batches_allocate_nothing() {
 /// All answers by formulas.
 #[test]
 fn formulas_allocate_nothing() {
-    for (name, held) in [("ur5e", &[][..]), ("puma560", &[]), ("panda", &[6])] {
+    for (name, locked) in [("ur5e", &[][..]), ("puma560", &[]), ("panda", &[6])] {
         let robot = catalogue::load(name).unwrap();
-        let mut ik = Analytic::with_locked(&robot, robot.tool(), held).unwrap();
+        let mut ik = Analytic::with_locked(&robot, robot.tool(), locked).unwrap();
         let mut start = robot.home().to_vec();
         let target = robot.state(&start).unwrap().pose(robot.tool());
         let mut answers = 0;
         let counted = count(|| {
             for _ in 0..100 {
-                held.iter().for_each(|&c| start[c] += 0.01);
+                locked.iter().for_each(|&c| start[c] += 0.01);
                 answers += ik.solve(target, &start).unwrap().len();
             }
         });

@@ -8,7 +8,7 @@ import type { Context } from "./overlay";
 
 /** Of a drawn semi-axis, over the size of the robot. */
 const LONGEST = 0.32;
-/** A semi-axis whose scale is below this share of another's looks too short beside it. */
+/** A semi-axis whose scale is below this share of another's looks too short next to it. */
 const SEEN = 0.99;
 
 const BALL = new SphereGeometry(1, 36, 24);

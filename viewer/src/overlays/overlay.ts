@@ -1,4 +1,4 @@
-/** What an overlay is: a drawing made anew from each state's data, and words beside it. */
+/** An overlay: a drawing made from the data of each state, and its legend. */
 import type { Group, Vector3 } from "three";
 import type { OverlayData, OverlayName, Scene, State } from "../protocol";
 import type { Label } from "../scene/labels";

@@ -42,7 +42,7 @@ export class Compare {
     });
   }
 
-  /** Choices of a scene; the point starts beside the tool. */
+  /** Choices of a scene; the point starts next to the tool. */
   offer(scene: Scene): void {
     this.form.hidden = scene.closed;
     if (scene.closed) {

@@ -27,7 +27,7 @@ fn document(name: &str) -> String {
 }
 
 /// What a reader would type: lines and code of a text that begin with the binary or its `cargo
-/// run`, without what is said beside them.
+/// run`, without their descriptions.
 fn examples(document: &str, commands: &[String]) -> Vec<String> {
     let lines = document.lines().chain(document.split('`'));
     let typed = lines.filter_map(|line| {

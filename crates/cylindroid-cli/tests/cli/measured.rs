@@ -99,7 +99,7 @@ fn polytopes() {
         assert!(difference(c, e) < 1e-12, "{corners:?}");
     }
     assert!(difference(&numbers(&velocity["range"][0]), &[-4.0, 4.0]) < 1e-12);
-    // The structure holds a wrench: no limit along it.
+    // The structure resists a wrench: no limit along it.
     let force = &report["polytope"]["force"];
     assert_eq!(force["unbounded"].as_array().unwrap().len(), 1);
     assert!(force["range"][1][0].is_null());
@@ -148,8 +148,8 @@ fn gradients() {
     let report = json(&with(&["--gradient", "smallest"]), 0);
     let slope = numbers(&report["gradient"]["gradient"]);
     let at = |q1: &str| {
-        let posture = ["assemble", "five-bar", "--q", q1, "--hold", "q1,q2"];
-        let q = numbers(&json(&posture, 0)["q"]);
+        let command = ["assemble", "five-bar", "--q", q1, "--hold", "q1,q2"];
+        let q = numbers(&json(&command, 0)["q"]);
         let words: Vec<String> = q.iter().map(ToString::to_string).collect();
         let report = json(&with(&["--q", &words.join(",")]), 0);
         (q, report["measures"]["kinematic"]["smallest"].as_f64().unwrap())

@@ -18,7 +18,7 @@ fn torques_of_an_arm() {
     assert!(difference(&numbers(&report["torques"]), &expected) < 1e-12);
     assert!(difference(&numbers(&report["unbalanced"]), &[0.0; 6]) < 1e-12);
     assert!(report["forces"].as_array().unwrap().is_empty());
-    // Stretched out, a pull along the arm is held by its links.
+    // Stretched out, a pull along the arm is resisted by its links.
     let pull = json(&["statics", "3r", "--q", "0,0,0", "--wrench", "5,0,0,0,0,0"], 0);
     assert!(difference(&numbers(&pull["torques"]), &[0.0; 3]) < 1e-12);
     assert!(difference(&numbers(&pull["structural"]), &[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]) < 1e-12);
@@ -67,7 +67,7 @@ fn wrenches_that_nothing_holds() {
     assert!(text(&command).contains("gives way"));
 }
 
-/// A weight held by three fingers: a third each, or by how far they give way.
+/// A weight on three fingers: a third each, or by how far they give way.
 #[test]
 fn forces_at_contacts() {
     let command = ["statics", GRASP, "--wrench", "0,0,-9,0,0,0"];
@@ -106,13 +106,13 @@ fn force_closure() {
     assert_eq!(report["contacts"][0]["mu"], 0.5);
     let size: f64 = numbers(&report["weakest"]).iter().map(|x| x * x).sum();
     assert!((size - 1.0).abs() < 1e-12);
-    // Two fingers as strong hold twice as much.
+    // Two fingers as strong resist twice as much.
     let of = |strength: &str| {
         let command = ["grasp", GRASP, "--torsion", "0.01", "--strength", strength];
         json(&command, 0)["epsilon"]["lower"].as_f64().unwrap()
     };
     assert!((of("20") / of("10") - 2.0).abs() < 1e-9);
-    // Slippery fingers hold no weight: a negative answer.
+    // Slippery fingers resist no weight: a negative answer.
     let open = json(&["grasp", GRASP, "--torsion", "0", "--mu", "0"], 1);
     assert_eq!(open["closed"], false);
     let output = cylindroid(&["grasp", GRASP, "--torsion", "0", "--mu", "0"]);

@@ -74,7 +74,7 @@ def _labels(ax: Any, labels: list[tuple[str, list[NDArray[Any]]]]) -> None:
     """Writes each text at one of its positions so that the texts overlap as little as possible.
 
     Boxes are estimated from the font size; positions are in order of preference. In a plane, the
-    text stands beside its position, in one of four corners.
+    text is placed next to its position, in one of four corners.
     """
     from matplotlib import rcParams
     from matplotlib.font_manager import FontProperties
@@ -99,8 +99,8 @@ def _labels(ax: Any, labels: list[tuple[str, list[NDArray[Any]]]]) -> None:
             right, left = 0.5 * pixels, -0.5 * pixels - extent[0]
             above, below = 0.5 * pixels, -0.5 * pixels - extent[1]
             for offset in ((right, above), (left, above), (right, below), (left, below)):
-                beside = corner + offset
-                candidates.append((beside, ax.transData.inverted().transform(beside)))
+                place = corner + offset
+                candidates.append((place, ax.transData.inverted().transform(place)))
 
         def overlap(candidate: tuple[NDArray[Any], NDArray[Any]]) -> float:
             low, high = candidate[0], candidate[0] + extent

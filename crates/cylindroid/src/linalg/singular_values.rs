@@ -53,9 +53,9 @@ pub(super) fn extreme_singular_values(a: Matrix) -> Option<[f64; 2]> {
     }
     // Gershgorin's bound for the largest value of B^T B.
     let above = |i: usize| if i == 0 { 0.0 } else { e[i - 1] };
-    let beside = |i: usize| (d[i] * e.get(i).copied().unwrap_or(0.0)).sqrt();
-    let before = |i: usize| if i == 0 { 0.0 } else { beside(i - 1) };
-    let bound = (0..d.len()).map(|i| d[i] + above(i) + beside(i) + before(i)).fold(0.0, f64::max);
+    let right = |i: usize| (d[i] * e.get(i).copied().unwrap_or(0.0)).sqrt();
+    let left = |i: usize| if i == 0 { 0.0 } else { right(i - 1) };
+    let bound = (0..d.len()).map(|i| d[i] + above(i) + right(i) + left(i)).fold(0.0, f64::max);
     let largest = extreme(&d, &e, bound * (1.0 + 1e-12))?;
     let smallest = extreme(&d, &e, 0.0)?;
     Some([largest.sqrt(), smallest.sqrt()])

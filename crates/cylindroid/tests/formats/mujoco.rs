@@ -79,14 +79,18 @@ fn against_mujoco(name: &str, m: &Mechanism, expected_dof: usize) {
         let rows: Vec<Vec<f64>> =
             case["jacobian"].as_array().unwrap().iter().map(numbers).collect();
         let rank = case["rank"].as_u64().unwrap() as usize;
-        let held = ColumnSpace::of(
+        let constrained = ColumnSpace::of(
             &Matrix::from_rows(&rows).unwrap().transpose(),
             Threshold::Relative(1e-9),
         );
-        assert_eq!((held.rank(), held.basis().rows() - rank), (rank, expected_dof), "{name}");
+        assert_eq!(
+            (constrained.rank(), constrained.basis().rows() - rank),
+            (rank, expected_dof),
+            "{name}"
+        );
         assert_eq!(ours.cols(), expected_dof, "{name}");
         // The sines of the angles between our motions and MuJoCo's.
-        let sines = &held.basis().transpose() * &ours;
+        let sines = &constrained.basis().transpose() * &ours;
         assert!(sines.frobenius_norm() < ANGLE, "{name}: {:e}", sines.frobenius_norm());
         // What MuJoCo has too many rows is hyperstatic; couplings, which are no rows here, are not.
         let mobility = Mobility::of(&chain.constraint);

@@ -417,7 +417,8 @@ fn screws_of_joints() {
     assert!(looked > 50, "{looked}");
 }
 
-/// What a closing joint holds does no work in its screws, and they are as many as it leaves.
+/// Constraint wrenches of a loop-closure joint do no work in its screws, which are as many as its
+/// degrees of freedom.
 #[test]
 fn screws_of_closing_joints() {
     let mut looked = 0;

@@ -219,7 +219,7 @@ fn point(screw: &Screw, planar: bool) -> String {
     coordinates(&[p.x, p.y, p.z], planar)
 }
 
-/// Rounding, and what spaces of configurations beside this one are right to, shown as zero.
+/// Rounding, and the accuracy of spaces at nearby configurations, shown as zero.
 fn coordinates(all: &[f64; 3], planar: bool) -> String {
     let clean = all.map(|x| if x.abs() < 1e-9 { 0.0 } else { x });
     format!("({})", output::entries(if planar { &clean[..2] } else { &clean }))

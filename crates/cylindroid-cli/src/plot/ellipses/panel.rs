@@ -302,7 +302,7 @@ fn ground() -> Polygon<(i32, i32)> {
     Polygon::new(vec![at(0, 2), at(-9, 15), at(9, 15)], LINK.mix(0.8).filled())
 }
 
-/// Names beside the joints, away from the middle of the mechanism and from the shapes.
+/// Names next to the joints, away from the middle of the mechanism and from the shapes.
 fn names(chart: &mut Chart<'_, '_>, shown: &Panel<'_>) -> Drawn {
     const AWAY: f64 = 17.0;
     let spots = &shown.skeleton.spots;

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Client, Server, posture};
+use super::{Client, Server, configuration};
 use crate::numbers;
 
 fn report(client: &mut Client, name: &str) -> Value {
@@ -26,7 +26,7 @@ fn reports_are_those_of_the_commands() {
         assert_eq!(found.map(|d| d["name"].as_str().unwrap()).collect::<Vec<_>>(), actuated);
         client.done(json!({"type": "joint", "name": "q1", "value": 0.05}));
         let state = client.done(json!({"type": "pause"}));
-        let (q, actuated) = (posture(&state), actuated.join(","));
+        let (q, actuated) = (configuration(&state), actuated.join(","));
         for name in ["mobility", "manipulability"] {
             let told = report(&mut client, name);
             let printed = crate::json(&[name, "five-bar", "--q", &q, "--actuated", &actuated], 0);
@@ -39,7 +39,7 @@ fn reports_are_those_of_the_commands() {
 
     let server = Server::new(&["youbot"]);
     let mut client = server.client();
-    let q = posture(&client.next("state"));
+    let q = configuration(&client.next("state"));
     same(
         &report(&mut client, "screws"),
         &crate::json(&["screws", "youbot", "--q", &q], 0),
@@ -229,7 +229,7 @@ fn ellipsoids_and_screws_are_those_of_the_commands() {
 
     let server = Server::new(&["youbot", "--frame", "arm_link_2"]);
     let mut client = server.client();
-    let q = posture(&client.next("state"));
+    let q = configuration(&client.next("state"));
     let on = ["cylindroid", "principal-screws", "reciprocal-system"];
     let state = client.done(json!({"type": "overlays", "names": on}));
     let printed = crate::json(&["screws", "youbot", "--frame", "arm_link_2", "--q", &q], 0);

@@ -144,6 +144,6 @@ impl Client {
 }
 
 /// A configuration as `--q` takes it.
-fn posture(state: &Value) -> String {
+fn configuration(state: &Value) -> String {
     crate::numbers(&state["q"]).iter().map(f64::to_string).collect::<Vec<_>>().join(",")
 }

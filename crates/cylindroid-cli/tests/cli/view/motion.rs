@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{Server, posture};
+use super::{Server, configuration};
 use crate::{difference, numbers};
 
 #[test]
@@ -16,7 +16,7 @@ fn a_scene_comes_first_and_poses_are_those_of_fk() {
     assert_eq!(scene["coordinates"][3]["upper"], -0.0698);
     let state = client.done(json!({"type": "joint", "name": "panda_joint2", "value": 0.3}));
     assert!((state["q"][1].as_f64().unwrap() - 0.3).abs() < 1e-12);
-    let all = crate::json(&["fk", "panda", "--all", "--q", &posture(&state)], 0);
+    let all = crate::json(&["fk", "panda", "--all", "--q", &configuration(&state)], 0);
     for (link, pose) in
         scene["links"].as_array().unwrap().iter().zip(state["links"].as_array().unwrap())
     {
@@ -44,7 +44,7 @@ fn a_target_is_reached_and_then_nothing_is_sent() {
     let state = client.until(|m| m["servo"]["status"] == "reached");
     assert!(state["error"]["position"].as_f64().unwrap() < 1e-6);
     assert!(state["singular"]["rank"] == 6 && state["singular"]["values"][5].as_f64() > Some(0.0));
-    let fk = crate::json(&["fk", "panda", "--q", &posture(&state)], 0);
+    let fk = crate::json(&["fk", "panda", "--q", &configuration(&state)], 0);
     assert!(difference(&numbers(&fk["pose"]["position"]), &numbers(&target["position"])) < 2e-6);
     // It comes to rest, and is silent.
     std::thread::sleep(std::time::Duration::from_secs(4));
@@ -77,9 +77,9 @@ fn pause_holds_and_reset_goes_home() {
     let home = client.next("state");
     assert_eq!(client.done(json!({"type": "pause"}))["servo"]["status"], "paused");
     let away = json!({"type": "target", "position": [0.4, 0.2, 0.4], "quaternion": [0, 2, 0, 0]});
-    let held = client.done(away);
-    assert!(held["q"] == home["q"] && held["error"]["position"].as_f64() > Some(0.1));
-    assert_eq!(numbers(&held["target"]["quaternion"]), [0.0, 1.0, 0.0, 0.0]);
+    let stopped = client.done(away);
+    assert!(stopped["q"] == home["q"] && stopped["error"]["position"].as_f64() > Some(0.1));
+    assert_eq!(numbers(&stopped["target"]["quaternion"]), [0.0, 1.0, 0.0, 0.0]);
     client.say(&json!({"type": "play"}));
     let there = client.ended();
     assert_ne!(there["q"], home["q"]);

@@ -60,7 +60,7 @@ fn a_home_beyond_its_limits_is_shown() {
     client.say(&json!({"type": "joint", "name": "q1", "value": 0.1}));
     let error = client.next("error");
     assert!(error["message"].as_str().unwrap().contains("q2"), "{error}");
-    // What is asked for is held to the limits.
+    // Requests are clamped to the limits.
     assert!(refused(&["view", file.to_str().unwrap(), "--q", "0.1,0,0"]).contains("q2"));
 }
 

@@ -177,12 +177,12 @@ pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Angles
 #[inline]
 pub(super) fn onto(k: Vec3, p: Vec3, onto: Vec3, scale: f64, start: f64) -> Angles<2> {
     let mut turns = Angles::NONE;
-    let beside = p - k * k.dot(p);
+    let perpendicular = p - k * k.dot(p);
     let least = FREE_TURN * scale;
-    if beside.dot(beside) <= least * least {
+    if perpendicular.dot(perpendicular) <= least * least {
         turns.free = Some(start);
     }
-    let (cos, sin) = (beside.dot(onto), k.cross(p).dot(onto));
+    let (cos, sin) = (perpendicular.dot(onto), k.cross(p).dot(onto));
     if cos != 0.0 || sin != 0.0 {
         turns.push(Angle::along(cos, sin));
     }

@@ -219,7 +219,7 @@ fn logarithmic_derivatives<R: SimdFloat, const E: usize>(
     let k = R::splat;
     let (zero, one) = (k(0.0), k(1.0));
     let mut sums = [Slopes { g: zero, h: zero, least: k(f64::MAX) }; E];
-    // Over the pivot before: the square beside it; its first and second derivative.
+    // Over the pivot before: the off-diagonal square; its first and second derivative.
     let mut last = [(zero, zero, zero); E];
     for (i, d) in diagonal.iter().enumerate() {
         for e in 0..E {

@@ -10,7 +10,7 @@ use super::arms::{arm, unit};
 use super::law::apart;
 use crate::support::{Random, unlimited};
 
-/// Seven joints are six where one is held, at any value.
+/// Seven joints are six where one is locked, at any value.
 #[test]
 fn seven_joints_with_one_held() {
     let mut random = Random(80);
@@ -19,15 +19,15 @@ fn seven_joints_with_one_held() {
         ("iiwa14", 6, "spherical shoulder, "),
         ("panda", 6, "spherical shoulder, axes 5 and 6 meet"),
     ];
-    for (name, held, words) in cases {
+    for (name, locked, words) in cases {
         let robot = unlimited(&catalogue::load(name).unwrap());
-        let mut ik = Analytic::with_locked(&robot, robot.tool(), &[held]).unwrap();
+        let mut ik = Analytic::with_locked(&robot, robot.tool(), &[locked]).unwrap();
         assert!(ik.geometry().to_string().starts_with(words), "{}", ik.geometry());
         for _ in 0..500 {
             let q: Vec<f64> = random.vector(7).iter().map(|x| 3.0 * x).collect();
             let target = robot.state(&q).unwrap().pose(robot.tool());
             let mut start = random.vector(7);
-            start[held] = q[held];
+            start[locked] = q[locked];
             let answers = ik.solve(target, &start).unwrap();
             let mut near = 9.0_f64;
             for answer in answers.iter() {
@@ -142,7 +142,7 @@ fn the_search_uses_formulas() {
     assert!(alone.success || alone.restarts < 60, "{alone:?}");
 }
 
-/// Of seven joints none is held whose value the target decides, though its formulas be there: the
+/// Of seven joints none is locked whose value the target decides, though its formulas be there: the
 /// elbow of an arm with a shoulder that is no ball by less than half a millimetre, as that of the
 /// iiwa14 in published files.
 #[test]

@@ -57,7 +57,7 @@ fn what_cannot_be_assembled_is_not() {
     let found = assemble(&five_bar, &[std::f64::consts::FRAC_PI_2, 0.0, 0.0, 0.0], &[0]).unwrap();
     assert!(!found.closed && found.closure_error.distance > 0.1, "{found:?}");
     assert_eq!(found.q[0], std::f64::consts::FRAC_PI_2);
-    // All held: nothing to do but to say how far it is open.
+    // All prescribed: nothing to do but to say how far it is open.
     let stuck = assemble(&five_bar, &[0.3, 0.0, 0.0, 0.0], &[0, 1, 2, 3]).unwrap();
     assert!(!stuck.closed && stuck.q == [0.3, 0.0, 0.0, 0.0]);
     assert!(assemble(&five_bar, &[0.0; 4], &[4]).is_err());
@@ -103,7 +103,7 @@ fn a_closed_guess_beyond_a_limit_is_said() {
     assert!(found.closed && found.q[place] >= 0.2, "{found:?}");
 }
 
-/// A part of a ball joint cannot be held: its numbers mean nothing one by one.
+/// A part of a ball joint cannot be prescribed: its numbers mean nothing one by one.
 #[test]
 fn balls_are_held_as_a_whole() {
     let stewart = catalogue::load("stewart").unwrap();
@@ -132,7 +132,7 @@ fn passive_joints_follow_the_drives() {
     assert_eq!(torn.q[..3], [0.1, 0.0, 0.1]);
     let home = recover_passive(&over, &[0.0; 4]).unwrap();
     assert!(home.closed && home.q == [0.0; 4]);
-    // A drive that closes the loop has no coordinate: it holds nothing.
+    // A drive that closes the loop has no coordinate: it prescribes nothing.
     let closing = catalogue::load("five-bar").unwrap().with_actuated(&["q5"]).unwrap();
     assert!(recover_passive(&closing, &[0.1, 0.1, 0.0, 0.0]).unwrap().closed);
 }

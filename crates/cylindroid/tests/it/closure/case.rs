@@ -270,7 +270,7 @@ impl Case {
     }
 
     /// Contacts drawn elsewhere on the rigid links they join, as far as that is the same contact: one
-    /// that holds everything anywhere in any frame, a hard finger at its point in any frame, a hinge
+    /// that constrains everything anywhere in any frame, a hard finger at its point in any frame, a hinge
     /// along and about its axis, a point without friction along its normal, a soft finger about it.
     pub(crate) fn redrawn(&self, random: &mut Random) -> Self {
         let mut redrawn = self.clone();

@@ -25,7 +25,7 @@ fn go(
     way
 }
 
-/// What holds for every way.
+/// Properties of every path.
 fn check(mechanism: &Mechanism, way: &ContinuationResult) {
     let last = way.path.last().unwrap();
     assert_eq!((last.fraction, &last.q), (way.fraction, &way.q));

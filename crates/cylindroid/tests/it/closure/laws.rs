@@ -1,4 +1,4 @@
-//! What holds for every mechanism: no work on the relation, statics from free bodies, bases.
+//! Laws of every mechanism: no work on the relation, statics from free bodies, bases.
 
 use cylindroid::Matrix;
 use cylindroid::closure::{Constraint, Mobility, MotionSpace};

@@ -56,7 +56,7 @@ fn torques_balance_the_wrench() {
                     .sum();
                 assert!(weighted.abs() < 1e-12 * size, "{}: {weighted}", case.name);
             }
-            // What the structure holds is along zero-torque wrenches, and asks no torque alone.
+            // The part that the structure resists lies along zero-torque wrenches, and asks no torque alone.
             let alone = joint_torques(&relation, &found.structural, metric).unwrap();
             assert_close("alone", &alone.torques, &vec![0.0; alone.torques.len()], 1e-11 * size);
             assert_close("again", &alone.structural, &found.structural, 1e-12);

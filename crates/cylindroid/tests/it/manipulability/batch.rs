@@ -160,7 +160,7 @@ fn agrees_in_other_metrics_frames_and_lengths() {
     compare("generic", &five_bar, &options, &postures(&five_bar, 9, 0.2));
 }
 
-/// A leg that is a screw, closing joints of every kind that holds moments, and a mimic joint.
+/// A leg that is a screw, loop-closure joints of every kind that constrains rotations, and a mimic joint.
 #[test]
 fn agrees_for_closing_joints_of_all_kinds() {
     for (i, kind) in [

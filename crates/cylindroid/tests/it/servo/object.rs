@@ -163,7 +163,7 @@ fn drives_move_with_the_least_weighted_effort() {
     }
 }
 
-/// What the two arms can do beside holding the box is the null space: a secondary task moves joints
+/// The motions of the two arms with the box at rest are the null space: a secondary task moves joints
 /// and not the box.
 #[test]
 fn redundancy_is_the_null_space() {

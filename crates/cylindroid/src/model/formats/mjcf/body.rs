@@ -172,7 +172,8 @@ impl<'d> Mjcf<'d> {
             let last = i + 1 == joints.len();
             let (mut spec, reference) = self.joint(*node, *class, body)?;
             if spec.kind == JointKind::Free && !(top && joints.len() == 1) {
-                let message = format!("body '{body}' is free beside another joint or below a body");
+                let message =
+                    format!("body '{body}' has a free joint and a second joint or a parent");
                 return Err(self.reader.error(
                     *node,
                     crate::model::formats::xml::Reader::tag(*node),
