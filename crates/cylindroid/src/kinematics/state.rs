@@ -119,6 +119,14 @@ impl State {
 
     /// The geometric Jacobian, 6 x n: twist of the tool = J * joint velocities.
     ///
+    /// ```text
+    /// column of a revolute joint [z x (p - t); z],   of a prismatic joint [z; 0],
+    /// of a helical joint [z x (p - t) + h z; z]
+    /// ```
+    ///
+    /// z is the joint's axis and t its origin, p the reference point; linear rows first, m/s and
+    /// rad/s for each unit of joint velocity.
+    ///
     /// ```
     /// use cylindroid::ReferenceFrame;
     ///
@@ -213,6 +221,10 @@ impl State {
 
     /// The time derivative of the Jacobian at the joint velocities `velocities`, 6 x n.
     ///
+    /// ```text
+    /// dJ_i/dt = ad(V_i) J_i   in world, V_i the twist of the body that carries joint i
+    /// ```
+    ///
     /// ```
     /// use cylindroid::ReferenceFrame;
     ///
@@ -239,6 +251,12 @@ impl State {
 
     /// The Hessian: entry k is the derivative of the Jacobian with respect to coordinate k (6 x n
     /// each).
+    ///
+    /// ```text
+    /// dJ_i/dq_k = ad(J_k) J_i   in world, if joint k carries joint i or is i; otherwise 0
+    /// ```
+    ///
+    /// Source: Haviland & Corke 2020, in screw form.
     ///
     /// ```
     /// use cylindroid::ReferenceFrame;

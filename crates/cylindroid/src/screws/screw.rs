@@ -1,7 +1,6 @@
 //! Screws and lines: the geometry of one twist, and of two axes.
 //!
-//! Formula  axis through p = w x v / |w|^2 along w, pitch h = w . v / |w|^2, amplitude |w|;
-//!          back: w = a u, v = a (h u + p x u)
+//! Formula  the page of [`Screw`]
 //! Units    points m, pitch m/rad, amplitude rad/s (m/s where the pitch is infinite)
 //! Frame    that of the twist
 //! Valid    every twist but zero; w = 0 is a screw of infinite pitch, whose axis has a direction
@@ -146,6 +145,15 @@ pub struct CommonNormal {
 }
 
 /// A line with a pitch and an amplitude: the geometry of a twist.
+///
+/// ```text
+/// axis through p = w x v / |w|^2 along w,   pitch h = w . v / |w|^2,   amplitude |w|
+/// back: w = a n,  v = a (h n + p x n),   n the unit direction, a the amplitude
+/// ```
+///
+/// In the frame of the twist [v; w]: p in m, h in m/rad.
+///
+/// Source: Ball 1900, chapters I and II.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screw {
     /// The axis; its point is the one nearest to the origin. For an infinite pitch the point is

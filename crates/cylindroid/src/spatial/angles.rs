@@ -1,7 +1,6 @@
 //! Euler angles of a rotation: roll-pitch-yaw and ZYZ.
 //!
-//! Formula  rpy: R = Rz(yaw) Ry(pitch) Rx(roll), the URDF's fixed axes x, y, z
-//!          zyz: R = Rz(alpha) Ry(beta) Rz(gamma)
+//! Formula  the pages of [`Rpy`] and [`Zyz`].
 //!          The first angle is read from its two entries, the last one from the rows of
 //!          Rz(first)^T R, which cancels the rounding error of the first near gimbal lock.
 //! Units    rad; pitch in [-pi/2, pi/2], beta in [0, pi]
@@ -17,6 +16,12 @@ use crate::scalar::sin_cos;
 use crate::tolerance::GIMBAL_LOCK;
 
 /// Roll, pitch and yaw: about the fixed axes x, y, z in this order (rad).
+///
+/// ```text
+/// R = Rz(yaw) Ry(pitch) Rx(roll)
+/// ```
+///
+/// As in a URDF. At gimbal lock (|pitch| = pi/2) roll is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rpy {
     /// About the fixed x axis.
@@ -28,6 +33,12 @@ pub struct Rpy {
 }
 
 /// ZYZ Euler angles: about z, the turned y, the turned z (rad).
+///
+/// ```text
+/// R = Rz(alpha) Ry(beta) Rz(gamma)
+/// ```
+///
+/// At gimbal lock (beta = 0 or pi) gamma is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Zyz {
     /// First, about z.

@@ -1,8 +1,6 @@
 //! Exponential and logarithm of rigid displacements, and the derivatives of both.
 //!
-//! Formula  exp([v; w]) = (exp(w), V v), V = 1 + b K + c K^2, K = skew(w)
-//!          d exp(x) = (D dx)^ exp(x), D = [V Q; 0 V], linear first
-//!          V^-1 = 1 - K/2 + d K^2; D^-1 = [V^-1, -V^-1 Q V^-1; 0, V^-1]
+//! Formula  the pages of [`exp`], [`exp_derivative`] and their inverses;
 //!          a..d, and the two coefficients of Q, in `series.rs`
 //! Units    v in m, w in rad
 //! Valid    exp everywhere; log on the whole group, |w| <= pi; D^-1 for |w| < 2 pi
@@ -45,6 +43,13 @@ impl Derivative6 {
 }
 
 /// The exponential map: the displacement of the constant twist `x` in one second.
+///
+/// ```text
+/// exp([v; w]) = (exp(w), V v),   V = 1 + (1 - cos t) / t^2 K + (t - sin t) / t^3 K^2
+/// ```
+///
+/// K is the matrix of the vector product with w, and t its norm. v in m, w in rad; the pose is
+/// `a_from_b`, the twist in the axes and at the origin of frame a.
 ///
 /// ```
 /// use cylindroid::spatial::{exp, log};
@@ -140,6 +145,14 @@ pub fn rotation_log_derivative(w: Vec3) -> Mat3 {
 
 /// D: `d exp(x) = (D dx)^ exp(x)`, in the axes and at the origin of frame a of `a_from_b`.
 ///
+/// ```text
+/// D = [V Q; 0 V],   V = rotation_exp_derivative(w)
+/// ```
+///
+/// 6 x 6, linear part first; Q is that of Barfoot's eq. 7.86.
+///
+/// Source: Barfoot, State Estimation for Robotics, 2017, eqs. 7.85 and 7.86.
+///
 /// ```
 /// use cylindroid::spatial::{exp, exp_derivative, log};
 /// use cylindroid::{Twist, Vec3};
@@ -156,6 +169,10 @@ pub fn exp_derivative(x: Twist) -> Derivative6 {
 }
 
 /// D^-1: the rate of `log` for a twist in the axes and at the origin of frame a; |w| < 2 pi.
+///
+/// ```text
+/// D^-1 = [V^-1, -V^-1 Q V^-1; 0, V^-1]
+/// ```
 ///
 /// ```
 /// use cylindroid::spatial::{exp_derivative, log_derivative};

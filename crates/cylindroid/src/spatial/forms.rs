@@ -19,6 +19,12 @@ impl Twist {
     /// The form of pitch `h` (m/rad) of two twists in one frame [m rad/s^2; rad^2/s^2 for an
     /// infinite pitch].
     ///
+    /// ```text
+    /// <a, b>_h = 1/2 (v_a . w_b + w_a . v_b) - h w_a . w_b,   <a, b>_inf = -w_a . w_b
+    /// ```
+    ///
+    /// Source: Donelan & Selig, section 2.1.
+    ///
     /// ```
     /// use cylindroid::{Twist, Vec3};
     ///
@@ -37,6 +43,10 @@ impl Twist {
 
     /// The Klein form: the form of pitch zero. Two twists are reciprocal when it vanishes: a
     /// wrench on the one screw does no work on the other.
+    ///
+    /// ```text
+    /// <a, b>_0 = 1/2 (v_a . w_b + w_a . v_b)
+    /// ```
     ///
     /// ```
     /// use cylindroid::{Twist, Vec3};
@@ -87,6 +97,10 @@ impl Twist {
 impl Wrench {
     /// The inverse of the form of pitch `h` on wrenches of one frame. For an infinite pitch the
     /// form has no inverse; its limit is `f_a . f_b`.
+    ///
+    /// ```text
+    /// <a, b>*_h = 2 (f_a . m_b + m_a . f_b) + 4 h f_a . f_b
+    /// ```
     ///
     /// ```
     /// use cylindroid::{Vec3, Wrench};

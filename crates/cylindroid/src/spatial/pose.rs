@@ -107,6 +107,10 @@ impl Pose {
 
     /// The adjoint: expresses a twist of frame b in frame a.
     ///
+    /// ```text
+    /// [v; w] -> [R v + t x R w; R w]
+    /// ```
+    ///
     /// ```
     /// use cylindroid::{Pose, Twist, Vec3};
     ///
@@ -124,6 +128,10 @@ impl Pose {
     }
 
     /// The coadjoint: expresses a wrench of frame b in frame a.
+    ///
+    /// ```text
+    /// [f; m] -> [R f; R m + t x R f]
+    /// ```
     ///
     /// ```
     /// use cylindroid::{Pose, Twist, Vec3, Wrench};

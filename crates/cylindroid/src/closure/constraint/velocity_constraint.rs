@@ -68,6 +68,15 @@ pub struct Units {
 }
 
 /// A velocity constraint: finite, of matching shapes, with its scales.
+///
+/// ```text
+/// J_a qd_a + J_p qd_p - G^T u = 0
+/// ```
+///
+/// J_a is t x q_a, J_p t x q_p and G, the grasp matrix, d x t ([`ConstraintBlocks`]); u is the
+/// twist of the object, its wrench is taken at the same point. Rows in m/s or rad/s.
+///
+/// Source: Bicchi & Prattichizzo 1998, eq. 2.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constraint {
     blocks: ConstraintBlocks,

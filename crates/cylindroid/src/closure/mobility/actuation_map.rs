@@ -28,6 +28,17 @@ use crate::model::{LoopJoint, Mechanism};
 use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 
 /// The map from actuated motions to the motions of all joints of a closed chain.
+///
+/// ```text
+/// C s = 0,   s = M y + s_0,   actuated joint velocities D y with |D y|_W = |y|
+/// ```
+///
+/// s are the velocities of the n coordinates and the e actuated loop joints [rad/s or m/s], C the
+/// rows of loops and contacts, M (n + e) x p. Of all motions with the same actuated velocities, M y
+/// has the least passive motion; s_0 ([`ActuationMap::correction`]) closes the loops to first
+/// order.
+///
+/// Source: Bicchi & Prattichizzo 1998, eqs. 2 to 4, in coordinates of the spanning tree.
 #[derive(Debug, Clone)]
 pub struct ActuationMap {
     /// M: the rates of all joints per unit of y, the n coordinates, then the actuated loop joints.

@@ -66,6 +66,16 @@ pub struct Branch {
 }
 
 /// The finite mobility of a mechanism at a configuration.
+///
+/// ```text
+/// closed configurations near q = zeros of the reduced equation g(x), x a first-order motion
+/// ```
+///
+/// Without g, the loop equations are independent and every first-order motion is finite (implicit
+/// function theorem); g zero at every step has the same consequence. Otherwise the zeros of g
+/// (Lyapunov-Schmidt reduction) are searched; each branch of them is a finite motion.
+///
+/// Source: Kuznetsov 1991; Mueller 2002 (kinematic tangent cone).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FiniteMobility {
     /// Number of first-order motions.

@@ -29,6 +29,15 @@ pub struct RowSelection {
 }
 
 /// The space of all motions of a constraint.
+///
+/// ```text
+/// K = ker M',   M' = D_r [J_a J_p -G^T] D_c,   (q_a + q_p + d) x k, orthonormal
+/// ```
+///
+/// D_r and D_c scale lengths by the characteristic length; k is the number of degrees of freedom.
+/// The rank of M' is decided by a relative threshold.
+///
+/// Source: Bicchi & Prattichizzo 1998, eqs. 3 and 4.
 #[derive(Debug, Clone)]
 pub struct MotionSpace {
     actuated: usize,

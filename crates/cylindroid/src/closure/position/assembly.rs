@@ -49,6 +49,14 @@ pub struct Assembly {
 /// `at_limit`). Loop joints have no coordinate: their limits are not enforced, and an actuated one
 /// cannot be prescribed.
 ///
+/// ```text
+/// (J^T J + l^2) dq = -J^T r
+/// ```
+///
+/// Damped Gauss-Newton (Levenberg-Marquardt): r are the loop-closure residuals, J their Jacobian, l
+/// the damping; lengths are divided by the reach. Failure to close the loops is not a proof that no
+/// assembly exists.
+///
 /// ```
 /// use cylindroid::closure::assemble;
 ///
@@ -106,9 +114,9 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], prescribed: &[usize]) -> R
 ///
 /// An actuated loop joint has no coordinate that could be prescribed: a mechanism with such joints
 /// keeps their degrees of freedom, and the nearest assembly is returned. If there are more
-/// actuators than degrees of freedom, their values may contradict each other: the result is then not
-/// closed, its loop-closure error is the remaining one, distributed by least squares, and the actuated
-/// coordinates keep the given values.
+/// actuators than degrees of freedom, their values may contradict each other: the result is then
+/// not closed, its loop-closure error is the remaining one, distributed by least squares, and the
+/// actuated coordinates keep the given values.
 ///
 /// ```
 /// use cylindroid::closure::recover_passive;

@@ -40,6 +40,18 @@ use crate::spatial::{Twist, Vec3, Wrench};
 use crate::tolerance::{CLOSURE_BLOCK, GENERIC_LIMIT, JOINT_AT_REST};
 
 /// The singularities of a configuration, with the screws lost and gained.
+///
+/// ```text
+/// blocked  zero-torque wrenches (ran R)^perp beyond the generic ones
+/// lost     the twists that do work on them and are orthogonal to ran R (scaled)
+/// gained   twists of the object with the actuated joints at rest, beyond the generic ones
+/// ```
+///
+/// R is the relation between actuated joints and object. Screws of amplitude one, in world axes
+/// (points m, pitches m/rad). Blocked wrenches and gained twists do not depend on point, length or
+/// frame if the generic count is zero; lost twists always depend on point and length.
+///
+/// Source: Gosselin & Angeles 1990; Zlatanov et al. 1995.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
     /// The kinds, and the distances to them.

@@ -137,6 +137,18 @@ pub struct GraspQuality {
 
 /// The quality of a grasp with these contacts.
 ///
+/// ```text
+/// w = sum_i G_i f_i,   |f_t / mu|^2 + |m_n / (mu_t)|^2 <= f_n^2,   f_n >= 0
+/// epsilon = min over |n| = 1 of max w . n
+///     with sum f_n <= 1 (L1), or each f_n <= its strength (LInf)
+/// ```
+///
+/// The wrench w acts on the object, with moments divided by the length of `space`: epsilon is a
+/// force (per unit of f_n for L1), and positive for force closure. It is returned with certified
+/// lower and upper bounds; friction cones are round.
+///
+/// Source: Ferrari & Canny 1992; Zheng 2013; soft fingers Howe & Cutkosky 1996.
+///
 /// ```
 /// use cylindroid::closure::{FingerContact, Friction, GraspMetric, WrenchSpace, grasp_quality};
 /// use cylindroid::Vec3;

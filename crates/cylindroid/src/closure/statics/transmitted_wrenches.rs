@@ -47,6 +47,14 @@ impl TransmittedWrench {
 
 /// The wrenches of all loop joints, then of all contacts, from the forces of the rows.
 ///
+/// ```text
+/// wrench of a joint or contact = sum_i t_i h_i over its rows h_i, at its point
+/// ```
+///
+/// `forces` has an entry t_i for each row of the chain
+/// ([`contact_forces`](crate::closure::contact_forces) at the same state), in N and N m; wrenches
+/// are in world axes, exerted by the first link on the second.
+///
 /// ```
 /// use cylindroid::closure::{
 ///     ClosedChain, MotionSpace, StaticLoad, contact_forces, joint_torques, row_compliance,

@@ -1,7 +1,6 @@
 //! Admittance: the compliance of a tool, a twist in response to a wrench.
 //!
-//! Formula  twist = C wrench; from two gains at a point p: v(p) = c_f f, w = c_m m(p);
-//!          in another frame Ad C Ad^T, so that the twist transforms with Ad
+//! Formula  the page of [`Admittance`]
 //! Shapes   6 x 6, both linear first
 //! Units    c_f m/s/N, c_m rad/s/(N m)
 //! Valid    positive semidefinite symmetric part: the tool yields and never pushes back
@@ -16,6 +15,15 @@ use crate::spatial::{Pose, Twist, Vec3, Wrench};
 use crate::tolerance::PASSIVE;
 
 /// A linear map from wrenches to twists in one frame.
+///
+/// ```text
+/// twist = C wrench;   at a point p: v(p) = c_f f, w = c_m m(p);   in another frame Ad C Ad^T
+/// ```
+///
+/// C is 6 x 6, linear parts first, with a positive semidefinite symmetric part: the tool yields and
+/// never pushes back. `c_f` in m/s/N, `c_m` in rad/s/(N m).
+///
+/// Source: Hogan 1985.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Admittance {
     rows: [[f64; 6]; 6],

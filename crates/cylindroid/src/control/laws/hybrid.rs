@@ -1,9 +1,7 @@
 //! Hybrid control: some motions of a tool are controlled in position, the wrenches that do no work
 //! on them in force.
 //!
-//! Formula  x = P (gain e + f) + (1 - P) C P* (w_d - w), P the projector on the motions S along
-//!          some Z, P* = 1 - P^T that on the wrenches that do no work on S;
-//!          e = log(T_d T^-1) the twist error, f the feed-forward, C the admittance
+//! Formula  the page of [`HybridController`]
 //! Shapes   twists and wrenches of one frame; P 6 x 6
 //! Units    gain 1/s; e m and rad; x, f m/s and rad/s; wrenches N and N m
 //! Frame    any, common to the projector, C, the twists and the wrenches. For a servo: world axes
@@ -25,6 +23,19 @@ use crate::screws::Projector;
 use crate::spatial::{Pose, Twist, Wrench};
 
 /// Hybrid motion and force controller.
+///
+/// ```text
+/// x = P (gain e + f) + (1 - P) C P* (w_d - w),   P* = 1 - P^T
+/// ```
+///
+/// P projects on the motions S that are controlled in position, along the twists Z; P* projects on
+/// the wrenches that do no work on S. e is the twist error (m, rad), f the feed-forward twist (m/s,
+/// rad/s), C the [`Admittance`], `w_d` and `w` the desired and the measured wrench (N, N m), x the
+/// commanded twist; all in one frame. Neither part interferes with the other in any frame. Requires
+/// `gain * dt < 2`, and `c_f k dt < 2` for a contact of stiffness k (N/m).
+///
+/// Source: Donelan & Selig, section 6.3; on the first formulation (Raibert & Craig 1981): Lipkin &
+/// Duffy 1988.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HybridController {
     gain: f64,

@@ -1,9 +1,7 @@
 //! Internal forces of cooperating arms, hands and redundantly actuated mechanisms: the squeeze on
 //! an object is regulated independently of its motion.
 //!
-//! Formula  joint velocities = gain C P (desired - measured), C the compliance of the actuators, P
-//!          the projection on the internal torques (which do no work on any actuated motion),
-//!          orthogonal in C
+//! Formula  the page of [`InternalForceController`]
 //! Shapes   torques and velocities: an entry for each actuated joint
 //! Units    gain 1/s; stiffness N m/rad (N/m for prismatic joints), torques N m (N)
 //! Valid    actuators controlled in position or velocity that yield like springs; gain * dt < 2.
@@ -22,6 +20,17 @@ use crate::linalg::Qr;
 
 /// Regulates internal torques to a set-point; its output is added to the joint velocities of a
 /// servo.
+///
+/// ```text
+/// joint velocities = gain C P (tau_d - tau)
+/// ```
+///
+/// C is the compliance of the actuators (the inverse of their stiffness), P the projection on the
+/// internal torques, orthogonal in C. An entry for each actuated joint: torques in N m (N),
+/// stiffness in N m/rad (N/m). The object stays at rest, and the internal torques converge to their
+/// set-point as `exp(-gain t)`. Requires actuators that yield like springs, and `gain * dt < 2`.
+///
+/// Source: Bicchi & Prattichizzo 1998, eq. 13.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InternalForceController {
     gain: f64,

@@ -1,8 +1,7 @@
 //! Authority of an operator: the share of the operator's twist that an arm near its limits can
 //! follow without losing the robot's part.
 //!
-//! Formula  s <- s exp(-dt / fall) after a step that was scaled or changed by limits,
-//!          min(1, s + dt / rise) after any other; s = 0 at the start
+//! Formula  the page of [`OperatorAuthority`]
 //! Units    dt, fall, rise s; s [-]
 //! Valid    any result of a step
 //! Fails    never; but limits are met before s has fallen: while the joints of an arm brake, a tool
@@ -17,6 +16,13 @@ use crate::control::solver::direct::Saturation;
 use crate::error::{Error, Result};
 
 /// The share of the operator's twist to pass to [`SharedController`](super::SharedController).
+///
+/// ```text
+/// s <- s exp(-dt / fall)         after a step that limits scaled or changed
+/// s <- min(1, s + dt / rise)     after any other step,   s = 0 at the start
+/// ```
+///
+/// Times in s; the share s has no unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OperatorAuthority {
     share: f64,

@@ -1,7 +1,6 @@
 //! Shared control: the robot constrains some motions of its tool, an operator commands the others.
 //!
-//! Formula  x = (1 - P) (gain e + f) + P u, P the projector on the operator's motions S2 along the
-//!          robot's S1; e the twist error, f the feed-forward, u the operator's twist
+//! Formula  the page of [`SharedController`]
 //! Shapes   twists of one frame; P 6 x 6
 //! Units    gain 1/s; e m and rad; x, f, u m/s and rad/s
 //! Frame    any, common to the projector and the twists. For a servo: world axes at the tool
@@ -21,6 +20,16 @@ use crate::screws::Projector;
 use crate::spatial::Twist;
 
 /// Shared controller of a robot and an operator.
+///
+/// ```text
+/// x = (1 - P) (gain e + f) + P u
+/// ```
+///
+/// P projects on the operator's motions S2 along the robot's motions S1. e is the twist error (m,
+/// rad), f the feed-forward twist and u the operator's twist (m/s, rad/s), x the commanded twist;
+/// all in one frame. The operator's part has no component along S1. Requires `gain * dt < 2`.
+///
+/// Source: Donelan & Selig, section 6.3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SharedController {
     gain: f64,

@@ -37,6 +37,17 @@ pub struct CartesianBounds {
 
 /// A frame moving along a path.
 ///
+/// ```text
+/// line of length L:      s' <= v / L,  s'' <= a / L,  s''' <= j / L
+/// rotation by angle A:   the same with A and the angular bounds
+/// arc of radius r, u = L s', alpha = L s'', eta = L s''':
+///     |acceleration|^2 = alpha^2 + (u^2 / r)^2
+///     |jerk|^2 = (eta - u^3 / r^2)^2 + (3 u alpha / r)^2
+/// ```
+///
+/// One time law s from 0 to 1 within the tighter of both bounds. Time-optimal on lines and in
+/// rotations, conservative on arcs.
+///
 /// ```
 /// use cylindroid::control::{KinematicBounds, CartesianBounds, CartesianMove, CartesianPath};
 /// use cylindroid::{Pose, Vec3};

@@ -1,7 +1,6 @@
 //! Joint moves: all joints move straight to another configuration, starting and stopping together.
 //!
-//! Formula  q_i = from_i + s d_i, s from 0 to 1 by one law: s' <= v_i/|d_i|, s'' <= a_i/|d_i|,
-//!          s''' <= j_i/|d_i|, each bounded by the most restrictive joint
+//! Formula  the page of [`JointMove`]
 //! Shapes   n positions, n velocities, n bounds        Units  rad or m by the kind of the joint
 //! Valid    any displacement; joints at rest impose no bound, and if all rest the law has duration
 //!          zero. Time-optimal along the straight line in joint space
@@ -71,6 +70,15 @@ impl JointPath {
 }
 
 /// All joints moving straight to another configuration, starting and stopping together.
+///
+/// ```text
+/// q_i = from_i + s d_i,   s' <= v_i / |d_i|,   s'' <= a_i / |d_i|,   s''' <= j_i / |d_i|
+/// ```
+///
+/// One time law s from 0 to 1 for all joints, bounded by the most restrictive one: the path is
+/// straight in joint space, and time-optimal along it. Units: rad or m.
+///
+/// Source: Biagiotti & Melchiorri 2008, chapter 3.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointMove {
     path: JointPath,

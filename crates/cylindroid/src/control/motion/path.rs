@@ -1,8 +1,6 @@
 //! Paths of a frame in space: straight lines, arcs and rotations over s in [0, 1].
 //!
-//! Formula  line: p = p0 + s d;  arc: p = p0 + y sin(phi s) - 2 x sin^2(phi s / 2), x from the
-//!          centre to p0, y = n cross x;  orientation: R = exp(s r) R0, r the rotation vector
-//!          from start to end, in world axes
+//! Formula  the page of [`CartesianPath`]; y = n cross x
 //! Units    lengths m, angles rad, s dimensionless; twists per unit of s
 //! Valid    any finite poses, lengths and angles down to zero; s outside [0, 1] is clamped, and
 //!          at 0 and 1 the poses are the given ones exactly. At an angle of pi, within
@@ -22,6 +20,18 @@ use crate::spatial::{Pose, Rotation, Twist, Vec3};
 use crate::tolerance::{COLLINEAR, HALF_TURN, POSITION, ZERO_AXIS};
 
 /// A path of a frame in space, `world_from_tool` over s in [0, 1].
+///
+/// ```text
+/// line  p = p0 + s d
+/// arc   p = p0 + y sin(phi s) - 2 x sin^2(phi s / 2)
+/// R = exp(s r) R0
+/// ```
+///
+/// x leads from the centre of the arc to its start p0, y is normal to it in the plane of the arc, r
+/// is the rotation vector from start to end in world axes. Lengths in m, angles in rad. Position
+/// and orientation are interpolated separately, so that a straight line stays straight.
+///
+/// Source: Siciliano et al. 2009, section 4.3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CartesianPath {
     start: Pose,

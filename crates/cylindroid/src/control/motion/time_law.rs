@@ -1,10 +1,6 @@
 //! Time laws: the fastest motion of one coordinate from rest to rest within its bounds.
 //!
-//! Formula  seven segments: jerk +j for `tj`, constant a for `tc`, jerk -j for `tj`, cruise at v
-//!          for `tv`, and the mirror image of the first three; with h the distance tj = min(a/j,
-//!          sqrt(v/j), cbrt(h/2j)) tc = min(v/a - tj, sqrt(tj^2/4 + h/a) - 3 tj/2) where tj = a/j,
-//!          else 0 tv = max(h/v - 2 tj - tc, 0),  T = 4 tj + 2 tc + tv,  h = v_peak (2 tj + tc +
-//!          tv)
+//! Formula  the page of [`TimeLaw`]
 //! Units    any length unit u for the coordinate (m, rad, or 1); u/s, u/s^2, u/s^3; time in s
 //! Valid    any finite distance, of either sign; bounds positive. An infinite jerk gives the
 //!          trapezoid, an infinite velocity no cruise, an infinite acceleration (with a finite
@@ -48,6 +44,18 @@ pub struct LawSample {
 }
 
 /// A motion of one coordinate from rest at 0 to rest at a distance.
+///
+/// ```text
+/// jerk +j for tj, acceleration a for tc, jerk -j for tj, velocity v for tv, then the mirror image
+/// tj = min(a / j, sqrt(v / j), cbrt(h / 2 j))
+/// tc = min(v / a - tj, sqrt(tj^2 / 4 + h / a) - 3 tj / 2) where tj = a / j, otherwise 0
+/// tv = max(h / v - 2 tj - tc, 0),   T = 4 tj + 2 tc + tv,   h = v_peak (2 tj + tc + tv)
+/// ```
+///
+/// h is the distance in any unit u (m, rad or 1), T the duration (s); v, a and j are the bounds in
+/// u/s, u/s^2 and u/s^3. An infinite jerk gives the trapezoidal velocity profile.
+///
+/// Source: Biagiotti & Melchiorri 2008, sections 3.2 and 3.4.
 ///
 /// ```
 /// use cylindroid::control::{KinematicBounds, TimeLaw};
