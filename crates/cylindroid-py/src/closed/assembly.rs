@@ -1,4 +1,4 @@
-//! Closing loops and contacts from a guess.
+//! Assembly: loops and contacts closed from an initial guess.
 
 use cylindroid::closure::{Assembly, LoopClosureError, assemble};
 use pyo3::prelude::*;
@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::mechanism::PyMechanism;
 use crate::table;
 
-/// How far loops and contacts are from being closed.
+/// The loop-closure error: the largest violation of loops and contacts.
 ///
 /// Attributes
 /// ----------
@@ -36,7 +36,7 @@ impl PyLoopClosureError {
     }
 }
 
-/// The outcome of an attempt to close loops and contacts.
+/// An assembly: the result of closing loops and contacts from an initial guess.
 ///
 /// Attributes
 /// ----------
@@ -45,10 +45,10 @@ impl PyLoopClosureError {
 /// closed : bool
 ///     True if every loop and contact is closed.
 /// closure_error : LoopClosureError
-///     How far they are open.
+///     The remaining violation.
 /// steps : int
 /// at_limit : list of str
-///     Coordinates that stand at a position limit.
+///     Coordinates at a position limit.
 #[pyclass(frozen, name = "Assembly", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyAssembly {
@@ -99,10 +99,10 @@ impl PyAssembly {
 
 #[pymethods]
 impl PyMechanism {
-    /// Closes loops and contacts from a guess, within position limits.
+    /// Closes loops and contacts from an initial guess, within position limits (assembly).
     ///
-    /// It finds one assembly, mostly the nearest; there may be others, and not to find one proves
-    /// nothing.
+    /// It finds one assembly, usually the nearest; there may be others, and failure to find one is
+    /// not a proof that none exists.
     ///
     /// Parameters
     /// ----------

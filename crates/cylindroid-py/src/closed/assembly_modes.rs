@@ -1,4 +1,4 @@
-//! All ways in which loops close.
+//! Assembly modes: all configurations in which the loops close.
 
 use cylindroid::closure::{ModeOptions, assembly_modes};
 use pyo3::prelude::*;
@@ -9,20 +9,20 @@ use crate::error::Result;
 use crate::mechanism::PyMechanism;
 use crate::table;
 
-/// The ways in which loops close that were found; there may be others.
+/// The assembly modes that were found; there may be others.
 ///
 /// Attributes
 /// ----------
 /// modes : list of Assembly
 ///     Nearest to the guess first.
 /// found : list of int
-///     How many starts led to each.
+///     Number of initial guesses that led to each.
 /// self_motion_dof : list of int
 ///     Degrees of freedom left by the prescribed coordinates at each: 0 for an isolated assembly.
 /// starts, closed : int
-///     Starts, and those from which the loops closed.
+///     Number of initial guesses, and of those from which the loops closed.
 /// unseen_probability : float
-///     Estimate of the chance that another start which closes finds a new mode.
+///     Estimated probability that the next closing initial guess finds a new mode.
 #[pyclass(frozen, name = "AssemblyModes", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyAssemblyModes {
@@ -88,7 +88,7 @@ impl PyMechanism {
     ///     Coordinates that keep the values of the guess.
     /// starts : int
     /// seed : int
-    ///     The same seed gives the same starts.
+    ///     The same seed gives the same initial guesses.
     ///
     /// Returns
     /// -------

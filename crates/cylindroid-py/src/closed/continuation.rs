@@ -1,4 +1,4 @@
-//! The way from one configuration of closed loops to another.
+//! Continuation: tracks a path of closed configurations.
 
 use cylindroid::closure::{ContinuationOptions, ContinuationResult, PathEnd, track_path};
 use pyo3::prelude::*;
@@ -9,7 +9,7 @@ use crate::mechanism::PyMechanism;
 use crate::screws::PyScrew;
 use crate::table;
 
-/// A way of a mechanism with loops, all of them closed on it.
+/// A path of closed configurations of a mechanism with loops (continuation).
 ///
 /// Attributes
 /// ----------
@@ -19,11 +19,11 @@ use crate::table;
 /// q : ndarray, (n,)
 ///     The last configuration.
 /// fraction : float
-///     How far it got, 0 to 1.
+///     Fraction of the path that was tracked, 0 to 1.
 /// path : ndarray, (S, n)
-///     All configurations on the way.
+///     All configurations on the path.
 /// fractions, distances : ndarray, (S,)
-///     Of the way, and to the next singularity.
+///     Fraction of the path, and distance to the closest singularity.
 /// screw : Screw or None
 ///     The motion of the reference frame that a singularity would gain.
 #[pyclass(frozen, name = "ContinuationResult", module = "cylindroid")]
@@ -95,7 +95,7 @@ impl PyMechanism {
     /// ----------
     /// start : array_like, (n,)
     /// goal : dict of float by str
-    ///     Coordinates and where they go [rad or m].
+    ///     Coordinates and their goals [rad or m].
     /// step : float
     ///     Largest change of any coordinate in a step [rad, or reaches].
     /// least_distance : float, optional

@@ -7,21 +7,21 @@ use pyo3::prelude::*;
 use crate::arrays::{self, Array};
 use crate::error::Result;
 
-/// How a mechanism can move from a configuration beyond first order.
+/// Finite mobility: the motions of a mechanism at a configuration beyond first order.
 ///
 /// Attributes
 /// ----------
 /// dof : int or None
-///     Degrees of freedom of finite motion: those of the largest branch; None where unknown.
+///     Degrees of freedom of finite motion: those of the largest branch; None if unknown.
 /// infinitesimal : int
 ///     Motions to first order.
 /// branches : list of Branch
-///     Two and more: the mechanism can go different ways from here.
+///     Two or more: the mechanism can choose between motions at this configuration.
 /// shaky : ndarray, (n, k)
-///     Rates of q that exist to first order and lead nowhere.
+///     Rates of q that exist to first order only.
 /// evidence : str
 /// certain : bool
-///     False where branches may have been missed.
+///     False if branches may have been missed.
 /// step : float
 ///     [rad, or characteristic lengths]
 /// residual : float

@@ -1,4 +1,4 @@
-//! The class `Gradient`: how a measure of manipulability changes with the configuration.
+//! The class `Gradient`: the gradient of a manipulability measure.
 
 use cylindroid::Error;
 use cylindroid::manipulability::{Goal, Gradient, Measure, gradient};
@@ -11,20 +11,20 @@ use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;
 use crate::table;
 
-/// The derivative of a measure of the kinematic efficiencies by the configuration.
+/// The gradient of a manipulability measure with respect to the configuration.
 ///
 /// Attributes
 /// ----------
 /// exists : bool
-///     False where efficiencies are equal and the measure has a kink, or there is none.
+///     False if efficiencies are equal and the measure has a kink, or if there are none.
 /// value : float or None
-///     The measure; None where no efficiency is finite.
+///     The measure; None if no efficiency is finite.
 /// gradient : ndarray, (n,), or None
 ///     An entry for each coordinate; of a mechanism with loops it lies along their motions.
 /// error : float
-///     Estimate from above of the error of a slope: zero for trees, where rounding is left.
+///     Upper estimate of the error of a slope: zero for trees (rounding only).
 /// multiplicity : int
-///     How many efficiencies meet: 1 where the gradient exists.
+///     Number of equal efficiencies: 1 if the gradient exists.
 #[pyclass(frozen, name = "Gradient", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyGradient {
@@ -110,7 +110,7 @@ impl PyGradient {
 
 #[pymethods]
 impl PyMechanism {
-    /// How a measure of manipulability changes with the configuration.
+    /// The gradient of a manipulability measure with respect to the configuration.
     ///
     /// Parameters
     /// ----------

@@ -18,7 +18,7 @@ use crate::table;
 /// Parameters
 /// ----------
 /// point : array_like, (3,)
-///     Where it touches (m).
+///     The point of contact (m).
 /// normal : array_like, (3,)
 ///     Unit normal into the object: the direction in which the finger pushes.
 /// mu : float
@@ -112,15 +112,15 @@ impl PyGraspQuality {
     }
 }
 
-/// The quality of a grasp by fingers with friction: is there force closure, and how much of it.
+/// The quality of a grasp by fingers with friction: force closure and epsilon.
 ///
 /// Parameters
 /// ----------
 /// contacts : list of FingerContact
 /// point : array_like, (3,), optional
-///     Where moments are taken (m). Default: the origin.
+///     The point about which moments are taken (m). Default: the origin.
 /// length : float
-///     Characteristic length that moments are divided by (m).
+///     Characteristic length that divides moments (m).
 /// planar : bool
 ///     True for objects in the plane x-y.
 /// metric : str
@@ -141,7 +141,7 @@ impl PyGraspQuality {
 ///
 /// Examples
 /// --------
-/// Two fingers that press a disc between them:
+/// Two fingers press a disc between them:
 ///
 /// >>> import cylindroid as cy
 /// >>> left = cy.FingerContact([-1, 0, 0], [1, 0, 0], mu=0.5)
@@ -199,7 +199,7 @@ impl PyMechanism {
     /// ------
     /// DimensionError, NotFiniteError, UnknownNameError
     /// InvalidOptionError
-    ///     Also for contacts that are no points, or whose coefficients nobody gives.
+    ///     Also for contacts other than points, and for missing coefficients.
     #[pyo3(signature = (q = None, reference = None, mu = None, torsion = None, strength = 1.0,
         metric = "l1"))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]

@@ -1,4 +1,4 @@
-//! Mobility and manipulability of many configurations, as numbers.
+//! Batched mobility and manipulability measures of many configurations.
 
 use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 use numpy::IntoPyArray;

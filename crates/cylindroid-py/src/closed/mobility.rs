@@ -1,4 +1,4 @@
-//! The mobility report.
+//! The mobility report: degrees of freedom, redundancy, idle motions, hyperstatic forces.
 
 use std::sync::OnceLock;
 
@@ -24,20 +24,20 @@ use crate::table::{self, Table};
 /// indeterminacy : int
 ///     Motions of the reference frame with actuated joints at rest.
 /// coordinate : int
-///     Motions of the reference frame that the actuated joints set.
+///     Motions of the reference frame that the actuated joints control.
 /// internal : int
 ///     Torques of actuated joints that balance each other.
 /// zero_torque : int
 ///     Wrenches on the reference frame resisted without torque.
 /// hyperstatic : int
-///     Forces in loops and contacts that nothing determines.
+///     Forces in loops and contacts that equilibrium does not determine.
 /// idle : int
 ///     Motions of passive joints alone.
 /// gruebler_kutzbach : int
 ///     Grubler's count, for comparison.
 /// rank_gap : float
-///     Smallest singular value kept over the largest dropped: near 1 the counts are a matter of
-///     taste.
+///     Smallest singular value kept over the largest dropped: near 1 the counts are numerically
+///     ambiguous.
 /// dof_basis : ndarray, (a + p + d, dof)
 ///     Motions: actuated joints, passive ones, components of the reference frame.
 /// idle_basis : ndarray, (a + p + d, idle)
@@ -48,13 +48,13 @@ use crate::table::{self, Table};
 /// hyperstatic_basis : ndarray, (t, hyperstatic)
 /// joints : list of JointMobility
 /// ambiguous_ranks : list of str
-///     Counts that hang on little, in words.
+///     Numerically ambiguous counts, in words.
 /// singularity : Singularity or None
-///     What is singular about the configuration; None for bare matrices. Computed when it is asked for.
+///     The singularities of the configuration; None for bare matrices. Computed on first access.
 /// finite : FiniteMobility or None
-///     What can be done of the motions beyond first order.
+///     The motions beyond first order.
 /// finite_dof : int or None
-///     Degrees of freedom of finite motion; None where it is not known.
+///     Degrees of freedom of finite motion; None if unknown.
 /// actuated, passive, components : list of str
 /// closure_error : LoopClosureError or None
 ///     Loop-closure error: the report is valid where the loops are closed.
@@ -68,19 +68,19 @@ pub(crate) struct PyMobility {
     diagnosis: OnceLock<Diagnosis>,
 }
 
-/// How a joint can move.
+/// Mobility of a joint.
 ///
 /// Attributes
 /// ----------
 /// name : str
 /// moves : bool
-///     False where it is locked by the geometry.
+///     False if the geometry locks it.
 /// share : float
 ///     Its largest share in a motion of unit length (scaled), between 0 and 1.
 /// free : bool
-///     True where it can move with all actuated joints at rest.
+///     True if it can move with all actuated joints at rest.
 /// idle : bool
-///     True where it can move with the actuated joints and the reference frame at rest.
+///     True if it can move with the actuated joints and the reference frame at rest.
 #[pyclass(frozen, get_all, name = "JointMobility", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyJointMobility {

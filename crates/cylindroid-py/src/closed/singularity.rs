@@ -1,4 +1,4 @@
-//! The class `Singularity`: what is singular about a configuration.
+//! The class `Singularity`: the singularities of a configuration (type I, II, III).
 
 use cylindroid::closure::Diagnosis;
 use pyo3::prelude::*;
@@ -7,24 +7,24 @@ use pyo3::types::PyDict;
 use crate::screws::{PyScrew, screw_list};
 use crate::table::{self, Table};
 
-/// What is singular about a configuration, with the motions lost and gained as screws (world frame).
+/// The singularities of a configuration, with the motions lost and gained as screws (world frame).
 ///
 /// Attributes
 /// ----------
 /// regular : bool
 /// kinds : list of str
 ///     'type-i' (the object loses motion), 'type-ii' (it gains motion that the actuators do not
-///     hold), 'type-iii' (both), 'configuration-space' (the mechanism gains a motion), 'passive'
+///     control), 'type-iii' (both), 'configuration-space' (the mechanism gains a motion), 'passive'
 ///     (passive joints gain one of their own).
 /// descriptions : list of str
 ///     The same in words.
 /// distances : dict
-///     How far the configuration is from each kind: 0 at a singularity, at most 1 elsewhere, infinite
-///     where there is nothing to lose. Keys 'type_i', 'type_ii', 'configuration_space', 'passive'.
+///     Distance to each kind: 0 at a singularity, at most 1 elsewhere, infinite if there is nothing
+///     to lose. Keys 'type_i', 'type_ii', 'configuration_space', 'passive'.
 /// generic : dict
-///     Counts of the mechanism where nothing is special about its configuration.
+///     Counts of the mechanism at regular configurations.
 /// compared_with : int
-///     Other closed configurations that these come from.
+///     Number of other closed configurations from which these were computed.
 /// blocked : list of Screw
 ///     Wrenches resisted without torque, beyond the generic ones.
 /// lost, gained : list of Screw
@@ -34,7 +34,7 @@ use crate::table::{self, Table};
 /// idle : list of str
 ///     Passive coordinates that move alone, beyond the generic ones.
 /// separated : bool
-///     False where what is generic could not be told from what is not.
+///     False if the generic part could not be separated from the excess.
 #[pyclass(frozen, name = "Singularity", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PySingularity {

@@ -1,4 +1,4 @@
-//! The classes `Spectrum` and `Direction`: the efficiencies of a kind.
+//! The classes `Spectrum` and `Direction`: efficiencies of manipulability.
 
 use cylindroid::manipulability::{Direction, Spectrum};
 use pyo3::prelude::*;
@@ -14,15 +14,15 @@ use crate::table;
 /// finite : ndarray, (k,)
 ///     Largest first: squares of output over input.
 /// zeros, infinite : int
-///     How many are zero and infinite, by kind, never by size.
+///     Number of zero and of infinite ones, decided by kind and not by size.
 /// directions : list of Direction
 ///     Of the finite ones.
 /// zero_directions : ndarray, (zeros, a)
-///     Rates (torques) that do nothing, as rows.
+///     Rates (torques) without effect on the object, as rows.
 /// infinite_directions : ndarray, (infinite, d)
 ///     Twists (wrenches) without input, as rows.
 /// semi_axes : ndarray, (d, k)
-///     Of the ellipsoid of what comes out for an input of length one, longest first.
+///     Of the ellipsoid of outputs for inputs of length one, longest first.
 /// volume : float
 ///     Product of the roots of the finite efficiencies; of a serial arm Yoshikawa's index.
 /// anisotropy : float or None
@@ -105,7 +105,7 @@ impl PySpectrum {
 /// joint : ndarray, (a,)
 ///     Rates (torques) of the actuated joints.
 /// object : ndarray, (d,)
-///     The twist (wrench) that goes with them.
+///     The corresponding twist (wrench).
 #[pyclass(frozen, name = "Direction", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyDirection {

@@ -1,4 +1,4 @@
-//! Joint torques and contact forces.
+//! Statics: joint torques and contact forces in equilibrium.
 
 use cylindroid::closure::{self, MotionSpace, StaticLoad};
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use crate::table;
 /// Attributes
 /// ----------
 /// torques : ndarray, (a,)
-///     Those of least norm [N m or N]; internal torques may be added.
+///     The torques of least norm [N m or N]; internal torques may be added.
 /// unbalanced : ndarray, (d,)
 ///     The part of the wrench that nothing balances.
 #[pyclass(frozen, name = "JointTorques", module = "cylindroid")]
@@ -50,8 +50,8 @@ impl PyJointTorques {
 /// forces : ndarray, (t,)
 ///     An entry for each row of the constraint: from the object on the limbs [N or N m].
 /// unbalanced : float
-///     What the load leaves unbalanced over the load: rounding, unless torques and wrench
-///     contradict each other.
+///     Norm of the unbalanced part of the load over that of the load: rounding, unless torques and
+///     wrench contradict each other.
 #[pyclass(frozen, name = "ContactForces", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyContactForces {
@@ -139,7 +139,7 @@ impl PyConstraint {
         Ok(PyContactForces { inner })
     }
 
-    /// A basis of the contact forces without a wrench on the object: what squeezes it.
+    /// A basis of the internal (squeeze) forces: contact forces without a wrench on the object.
     ///
     /// Returns
     /// -------
@@ -148,8 +148,7 @@ impl PyConstraint {
         arrays::matrix(py, &py.detach(|| closure::internal_forces(&self.inner)).basis)
     }
 
-    /// A basis of the contact forces without torques at any joint: those that the structure resists
-    /// alone.
+    /// A basis of the structural forces: contact forces without torques at any joint.
     ///
     /// Returns
     /// -------
