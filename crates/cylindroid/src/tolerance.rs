@@ -154,7 +154,12 @@ pub const HULL: f64 = 1e-9;
 /// and a second of computation.
 pub const MAX_FACETS: usize = 20_000;
 
-/// Final distance of the bounds of a grasp's quality, relative to its largest wrench [-].
+/// Maximum number of simplices in the search for the weakest direction of a grasp: ten seconds of
+/// computation, which five soft fingers in a ring may need.
+pub const MAX_SIMPLICES: usize = 10_000_000;
+
+/// Final distance of the bounds of a grasp's quality, relative to the largest difference of two of
+/// its wrenches [-].
 pub const GRASP_QUALITY: f64 = 1e-3;
 
 /// An eigenvalue of an admittance, divided by the roots of its diagonal, may be this much below

@@ -15,11 +15,12 @@
 //! Source   Ferrari & Canny 1992; Zheng 2013; cones of soft fingers Howe & Cutkosky 1996
 //! Checked  tests/it/closure/grasp.rs
 
+use super::smallest_support::{Search, Smallest, Vector, smallest_support};
 use crate::error::{Error, Result};
-use crate::linalg::{Hull, HullGoal, HullOptions, Matrix, Qr, norm};
+use crate::linalg::{Hull, HullGoal, HullOptions, Qr, dot, norm};
 use crate::model::Dimension;
 use crate::spatial::Vec3;
-use crate::tolerance::{GRASP_QUALITY, HULL, MAX_FACETS, ORTHONORMAL};
+use crate::tolerance::{GRASP_QUALITY, HULL, MAX_FACETS, MAX_SIMPLICES, ORTHONORMAL};
 
 /// The friction model of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -178,25 +179,16 @@ pub fn grasp_quality(
     let fingers: Vec<Finger> =
         contacts.iter().map(|c| Finger::new(c, space, metric)).collect::<Result<_>>()?;
     let d = space.components().len();
+    let body = |n: &[f64]| body_point(&fingers, metric, n);
+    // The smallest value of all directions that the hull asks for.
+    let mut known = (f64::INFINITY, [0.0; 6]);
     let support = |n: &[f64]| -> Vec<f64> {
-        let mut wrench = vec![0.0; d];
-        let reach = fingers.iter().map(|f| f.reach(n));
-        match metric {
-            GraspMetric::L1 => {
-                let best = reach.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-                if let Some((i, _)) = best {
-                    fingers[i].add_support_point(n, &mut wrench);
-                }
-            }
-            GraspMetric::LInf => {
-                for (finger, reach) in fingers.iter().zip(reach) {
-                    if reach > 0.0 {
-                        finger.add_support_point(n, &mut wrench);
-                    }
-                }
-            }
+        let wrench = body(n);
+        let value = dot(n, &wrench);
+        if value < known.0 {
+            known = (value, six(n));
         }
-        wrench
+        wrench[..d].to_vec()
     };
     let hull = Hull::of(
         d,
@@ -211,19 +203,67 @@ pub fn grasp_quality(
     if hull.span.cols() < d {
         return Ok(flat(&hull, size));
     }
-    let Some(nearest) = hull.nearest_facet() else {
-        return Ok(GraspQuality {
-            closed: false,
-            epsilon: EpsilonQuality { lower: 0.0, upper: 0.0 },
-            weakest: Vec::new(),
-        });
+    let mut found = Smallest {
+        lower: hull.nearest_facet().map_or(f64::NEG_INFINITY, |f| f.offset),
+        upper: known.0,
+        direction: known.1,
     };
-    let upper = nearest.offset + nearest.gap;
+    let search = Search {
+        dimension: d,
+        gap: GRASP_QUALITY * size,
+        relative_gap: f64::INFINITY,
+        max_simplices: MAX_SIMPLICES,
+    };
+    if !hull.complete {
+        let refined = smallest_support(search, found.direction, |n| body(n));
+        found = Smallest { lower: refined.lower.max(found.lower), ..refined };
+    }
+    if found.lower <= HULL * size && found.upper > HULL * size {
+        // The bounds leave the verdict open. The wrenches of one finger at a time are closed
+        // exactly if those of all together are, and belong to these.
+        let search = Search { relative_gap: 0.5, ..search };
+        let one = |n: &Vector| body_point(&fingers, GraspMetric::L1, n);
+        let certain = smallest_support(search, found.direction, one);
+        let value = dot(&certain.direction, &body(&certain.direction));
+        if value < found.upper {
+            (found.upper, found.direction) = (value, certain.direction);
+        }
+        found.lower = found.lower.max(certain.lower);
+    }
     Ok(GraspQuality {
-        closed: nearest.offset > HULL * size,
-        epsilon: EpsilonQuality { lower: nearest.offset, upper },
-        weakest: nearest.normal.clone(),
+        closed: found.lower > HULL * size,
+        epsilon: EpsilonQuality { lower: found.lower.min(found.upper), upper: found.upper },
+        weakest: found.direction[..d].to_vec(),
     })
+}
+
+/// The wrench of the fingers that is farthest along `n`.
+fn body_point(fingers: &[Finger], metric: GraspMetric, n: &[f64]) -> Vector {
+    let mut wrench = [0.0; 6];
+    match metric {
+        GraspMetric::L1 => {
+            let mut best = f64::NEG_INFINITY;
+            for finger in fingers {
+                let (reach, point) = finger.farthest(n);
+                if reach > best {
+                    (best, wrench) = (reach, point);
+                }
+            }
+        }
+        GraspMetric::LInf => {
+            for finger in fingers {
+                let (reach, point) = finger.farthest(n);
+                if reach > 0.0 {
+                    wrench.iter_mut().zip(point).for_each(|(w, x)| *w += x);
+                }
+            }
+        }
+    }
+    wrench
+}
+
+fn six(n: &[f64]) -> Vector {
+    std::array::from_fn(|i| n.get(i).copied().unwrap_or(0.0))
 }
 
 /// A flat set of wrenches resists nothing normal to it; if it does not contain zero, it even pushes
@@ -248,7 +288,7 @@ fn flat(hull: &Hull, size: f64) -> GraspQuality {
 /// A contact with scaled columns: strength and friction are absorbed, so that the cone is `|rest|
 /// <= first`.
 struct Finger {
-    columns: Matrix,
+    columns: [Vector; 4],
 }
 
 impl Finger {
@@ -282,45 +322,38 @@ impl Finger {
         }
         let arm = point - space.point;
         let size = if metric == GraspMetric::LInf { strength } else { 1.0 };
-        let column = |force: Vec3, moment: Vec3, scale: f64| -> Vec<f64> {
+        let column = |force: Vec3, moment: Vec3, scale: f64| -> Vector {
             let moment = (arm.cross(force) + moment) * (1.0 / space.length);
             let w = [force.x, force.y, force.z, moment.x, moment.y, moment.z];
-            space.components().iter().map(|&i| w[i] * scale * size).collect()
+            let components = space.components();
+            std::array::from_fn(|i| components.get(i).map_or(0.0, |&c| w[c] * scale * size))
         };
-        let mut columns = vec![column(normal, Vec3::ZERO, 1.0)];
-        let tangents = if space.planar {
-            vec![Vec3::new(-normal.y, normal.x, 0.0)]
+        let [first, second, torsion] = if space.planar {
+            [Vec3::new(-normal.y, normal.x, 0.0), Vec3::ZERO, Vec3::ZERO]
         } else {
             let first = across(normal);
-            vec![first, normal.cross(first)]
+            [first, normal.cross(first), normal * torsion]
         };
-        columns.extend(tangents.into_iter().map(|t| column(t, Vec3::ZERO, mu)));
-        if !space.planar {
-            columns.push(column(Vec3::ZERO, normal, torsion));
+        let columns = [
+            column(normal, Vec3::ZERO, 1.0),
+            column(first, Vec3::ZERO, mu),
+            column(second, Vec3::ZERO, mu),
+            column(Vec3::ZERO, torsion, 1.0),
+        ];
+        Ok(Self { columns })
+    }
+
+    /// Support function along `n` for a normal force of one, and the wrench that attains it.
+    fn farthest(&self, n: &[f64]) -> (f64, Vector) {
+        let g = self.columns.map(|c| dot(&c, n));
+        let slip = norm(&g[1..]);
+        let mut wrench = self.columns[0];
+        if slip > 0.0 {
+            for (column, along) in self.columns[1..].iter().zip(&g[1..]) {
+                wrench.iter_mut().zip(column).for_each(|(w, c)| *w += c * (along / slip));
+            }
         }
-        Ok(Self { columns: Matrix::from_fn(columns[0].len(), columns.len(), |i, j| columns[j][i]) })
-    }
-
-    /// Support function along `n` for a normal force of one.
-    fn reach(&self, n: &[f64]) -> f64 {
-        let g = self.along(n);
-        g[0] + norm(&g[1..])
-    }
-
-    fn add_support_point(&self, n: &[f64], wrench: &mut [f64]) {
-        let mut force = self.along(n);
-        let slip = norm(&force[1..]);
-        force[0] = 1.0;
-        force[1..].iter_mut().for_each(|f| *f = if slip > 0.0 { *f / slip } else { 0.0 });
-        for (w, x) in wrench.iter_mut().zip(self.columns.mul_vec(&force)) {
-            *w += x;
-        }
-    }
-
-    fn along(&self, n: &[f64]) -> Vec<f64> {
-        let mut g = vec![0.0; self.columns.cols()];
-        self.columns.tr_mul_vec_into(n, &mut g);
-        g
+        (g[0] + slip, wrench)
     }
 }
 

@@ -2,11 +2,12 @@
 //!
 //! `joint_torques` balances a wrench by torques, `contact_forces` by forces at the contacts;
 //! `transmitted_wrenches` combines these forces into one wrench for each loop joint and contact.
-//! `force_closure` computes the quality of a grasp, whose contacts `grasp_contacts` reads from a
-//! mechanism. Read them in this order.
+//! `force_closure` computes the quality of a grasp, by `smallest_support` where a hull is not
+//! enough; `grasp_contacts` reads the contacts from a mechanism. Read them in this order.
 
 pub(crate) mod contact_forces;
 pub(crate) mod force_closure;
 pub(crate) mod grasp_contacts;
 pub(crate) mod joint_torques;
+mod smallest_support;
 pub(crate) mod transmitted_wrenches;

@@ -6,6 +6,7 @@ use cylindroid::closure::{
 };
 use cylindroid::model::{ContactKind, ContactSpec, Dimension, JointKind, JointSpec};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
+use cylindroid::tolerance::GRASP_QUALITY;
 use cylindroid::{Error, Mechanism};
 
 use crate::support::Random;
@@ -107,13 +108,7 @@ fn bounds_hold_in_space() {
             let found = grasp_quality(&contacts, SPACE, metric).unwrap();
             let EpsilonQuality { lower, upper } = found.epsilon;
             assert!(found.closed && lower <= upper && upper < lower + 0.02, "{found:?}");
-            let support = |n: &[f64]| -> f64 {
-                let each = contacts.iter().map(|c| support_of(c, n));
-                match metric {
-                    GraspMetric::L1 => each.fold(f64::NEG_INFINITY, f64::max),
-                    GraspMetric::LInf => each.map(|h| h.max(0.0)).sum(),
-                }
-            };
+            let support = |n: &[f64]| support(&contacts, metric, n);
             assert!((support(&found.weakest) - upper).abs() < 1e-9, "{found:?}");
             for _ in 0..2000 {
                 let n = random.vector(6);
@@ -123,6 +118,154 @@ fn bounds_hold_in_space() {
             }
         }
     }
+}
+
+/// Soft fingers of torsion 0.4 and more on opposite sides are equally weak in a ring of directions:
+/// the worst wrench pushes one finger away and shears both.
+#[test]
+fn two_soft_fingers_that_twist_well() {
+    for (torsion, epsilon) in [(0.3, 0.3), (0.4, 1.0 / 3.0), (0.5, 1.0 / 3.0), (0.8, 1.0 / 3.0)] {
+        let friction = Friction::Soft { mu: 0.5, torsion };
+        let contacts = [
+            finger([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], friction),
+            finger([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], friction),
+        ];
+        let found = quality(&contacts, SPACE);
+        let EpsilonQuality { lower, upper } = found.epsilon;
+        assert!(found.closed && lower <= epsilon && epsilon <= upper + 1e-12, "{found:?}");
+        assert!(upper - lower < 1.3 * GRASP_QUALITY, "{found:?}");
+    }
+}
+
+/// Pairs and triples about an object: the bounds are finite and as close as promised, and enclose
+/// the smallest value that a search over directions by the geometry of the cones finds.
+#[test]
+fn random_pairs_and_triples() {
+    let mut random = Random(916);
+    for round in 0..60 {
+        let contacts = opposed(&mut random, 2 + round % 2);
+        for metric in [GraspMetric::L1, GraspMetric::LInf] {
+            let found = grasp_quality(&contacts, SPACE, metric).unwrap();
+            let EpsilonQuality { lower, upper } = found.epsilon;
+            assert!(lower <= upper && upper - lower < promised(&contacts, metric), "{found:?}");
+            assert!((support(&contacts, metric, &found.weakest) - upper).abs() < 1e-9, "{found:?}");
+            let smallest = descended(&mut random, &contacts, metric);
+            assert!(lower <= smallest + 1e-12, "{smallest} {found:?}");
+            assert!(upper - promised(&contacts, metric) <= smallest, "{smallest} {found:?}");
+            if found.closed {
+                assert!(lower > 0.0, "{found:?}");
+            } else {
+                assert!(upper < 1e-9, "{found:?}");
+            }
+        }
+    }
+}
+
+/// Moved, rotated, scaled or reordered, a grasp has bounds of the same number.
+#[test]
+fn quality_does_not_depend_on_the_frame() {
+    let mut random = Random(917);
+    for round in 0..30 {
+        let contacts = opposed(&mut random, 2 + round % 2);
+        let metric = [GraspMetric::L1, GraspMetric::LInf][round % 2];
+        let found = grasp_quality(&contacts, SPACE, metric).unwrap();
+        let pose =
+            Pose { rotation: random.rotation(), translation: random.vec3(100.0 / 3_f64.sqrt()) };
+        let scale = 10_f64.powf(random.within(-3.0, 3.0));
+        let mut there: Vec<FingerContact> = contacts
+            .iter()
+            .map(|c| FingerContact {
+                point: (pose * c.point) * scale,
+                normal: pose.rotation * c.normal,
+                friction: match c.friction {
+                    Friction::Soft { mu, torsion } => {
+                        Friction::Soft { mu, torsion: torsion * scale }
+                    }
+                    other => other,
+                },
+                ..*c
+            })
+            .collect();
+        there.reverse();
+        let space = WrenchSpace { point: pose.translation * scale, length: scale, planar: false };
+        let moved = grasp_quality(&there, space, metric).unwrap();
+        assert_eq!(found.closed, moved.closed, "{found:?} {moved:?}");
+        let (a, b) = (found.epsilon, moved.epsilon);
+        assert!(a.lower <= b.upper + 1e-9 && b.lower <= a.upper + 1e-9, "{found:?} {moved:?}");
+        assert!((a.upper - b.upper).abs() < promised(&contacts, metric), "{found:?} {moved:?}");
+    }
+}
+
+/// Fingers on the unit sphere that press inwards, the first two nearly opposite.
+fn opposed(random: &mut Random, count: usize) -> Vec<FingerContact> {
+    let mut unit = |size: f64, about: Vec3| {
+        let v = about + random.vec3(size);
+        v * (1.0 / v.norm())
+    };
+    let first = unit(1.0, Vec3::X * 1e-3);
+    let points: Vec<(Vec3, Vec3)> = (0..count)
+        .map(|i| {
+            let point = match i {
+                0 => first,
+                1 => unit(0.2, -first),
+                _ => unit(1.0, Vec3::Y * 1e-3),
+            };
+            (point, unit(0.15, -point))
+        })
+        .collect();
+    let friction = Friction::Soft { mu: random.within(0.2, 1.0), torsion: random.within(0.0, 1.0) };
+    let contact = |(point, normal)| FingerContact { point, normal, friction, strength: 1.0 };
+    points.into_iter().map(contact).collect()
+}
+
+/// The distance of the bounds that is promised: relative to the largest difference of two wrenches
+/// of fingers on the unit sphere, whose moments are of length `mu` and `torsion`.
+fn promised(contacts: &[FingerContact], metric: GraspMetric) -> f64 {
+    let largest = contacts.iter().map(|c| match c.friction {
+        Friction::Soft { mu, torsion } => 1.0 + 2.0 * mu + torsion,
+        _ => 2.0,
+    });
+    2.0 * GRASP_QUALITY
+        * match metric {
+            GraspMetric::L1 => largest.fold(0.0, f64::max),
+            GraspMetric::LInf => largest.sum(),
+        }
+}
+
+fn support(contacts: &[FingerContact], metric: GraspMetric, n: &[f64]) -> f64 {
+    let each = contacts.iter().map(|c| support_of(c, n));
+    match metric {
+        GraspMetric::L1 => each.fold(f64::NEG_INFINITY, f64::max),
+        GraspMetric::LInf => each.map(|h| h.max(0.0)).sum(),
+    }
+}
+
+/// The smallest value by random steps, from many directions.
+fn descended(random: &mut Random, contacts: &[FingerContact], metric: GraspMetric) -> f64 {
+    let unit = |n: Vec<f64>| -> Vec<f64> {
+        let size = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        n.iter().map(|x| x / size).collect()
+    };
+    let mut smallest = f64::INFINITY;
+    for _ in 0..20 {
+        let mut n = unit(random.vector(6));
+        let mut value = support(contacts, metric, &n);
+        let mut step = 0.5;
+        while step > 1e-4 {
+            let better = (0..40).find_map(|_| {
+                let change = random.vector(6);
+                let next = unit(n.iter().zip(&change).map(|(x, c)| x + step * c).collect());
+                let found = support(contacts, metric, &next);
+                (found < value).then_some((next, found))
+            });
+            match better {
+                Some(found) => (n, value) = found,
+                None => step *= 0.5,
+            }
+        }
+        smallest = smallest.min(value);
+    }
+    smallest
 }
 
 /// The farthest wrench of a finger along `n`, by the geometry of its cone.
