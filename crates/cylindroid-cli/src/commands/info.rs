@@ -54,6 +54,7 @@ struct JointJson<'a> {
     parent: &'a str,
     child: &'a str,
     axis: [f64; 3],
+    reversed: bool,
     actuated: bool,
     mimic: Option<MimicJson<'a>>,
 }
@@ -146,6 +147,7 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
         parent: link(j.parent),
         child: link(j.child),
         axis: j.axis.to_array(),
+        reversed: j.reversed,
         actuated: j.actuated,
         mimic: j.mimic.as_ref().map(MimicJson::from),
     });
@@ -353,6 +355,9 @@ fn joint_text(joint: &Joint) -> String {
             output::number(mimic.multiplier),
             output::number(mimic.offset)
         ));
+    }
+    if joint.reversed {
+        text.push_str(", reversed");
     }
     if !joint.actuated && joint.kind.dof() > 0 {
         text.push_str(", passive");

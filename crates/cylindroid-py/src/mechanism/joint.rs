@@ -10,6 +10,8 @@ use super::PyMechanism;
 /// ----------
 /// name, kind, parent, child : str
 ///     `kind` is 'revolute', 'prismatic', ...; parent and child are links.
+/// reversed : bool
+///     True if q describes the motion of the parent relative to the child.
 /// actuated : bool
 /// coordinates : list of str
 ///     Its entries of q; none for fixed joints, those that follow another or close a loop.
@@ -23,6 +25,7 @@ pub(crate) struct PyJoint {
     kind: &'static str,
     parent: String,
     child: String,
+    reversed: bool,
     actuated: bool,
     /// The names of its coordinates; none for fixed joints and those that close loops.
     coordinates: Vec<String>,
@@ -43,6 +46,7 @@ impl PyMechanism {
             kind: j.kind.name(),
             parent: link(j.parent),
             child: link(j.child),
+            reversed: j.reversed,
             actuated: j.actuated,
             coordinates: match j.mimic {
                 Some(_) => Vec::new(),
@@ -58,6 +62,7 @@ impl PyMechanism {
             kind: l.kind.name(),
             parent: link(l.a),
             child: link(l.b),
+            reversed: false,
             actuated: l.actuated,
             coordinates: Vec::new(),
             mimic: None,

@@ -1,7 +1,8 @@
 //! Forward kinematics of a tree: the pose of every moving frame, parents first.
 //!
 //! Formula  world_from_node = world_from_parent * placement * motion(multiplier q + offset),
-//!          motion: Rz(x); translation x along z; both (helical); exp of a rotation vector; free
+//!          motion: Rz(x); translation x along z; both (helical); exp of a rotation vector (times
+//!          the multiplier); free
 //! Shapes   `slots` holds the ground and one pose for each node
 //! Units    rad, m
 //! Why so   joints rotate about their own z axis, so a rotation mixes two columns (12 products)
@@ -73,8 +74,8 @@ fn forward_with<T: SingleVector3>(_: T::Cpu, nodes: &[Node], q: &[f64], slots: &
                     base.rotated_z(sin[k], cos[k]).translated_z(pitch * x[k])
                 }
                 NodeKind::Spherical => {
-                    let turn = Pose::from_rotation(Rotation::exp(three(q, node.coordinate)));
-                    base.then(&turn.into())
+                    let vector = three(q, node.coordinate) * node.multiplier;
+                    base.then(&Pose::from_rotation(Rotation::exp(vector)).into())
                 }
                 NodeKind::Free => {
                     let free = Pose {

@@ -95,6 +95,7 @@ impl Tip<'_> {
                     f(depth, c, (turn(z) + slide(z * pitch)) * node.multiplier);
                 }
                 NodeKind::Spherical => {
+                    let turn = |axis| turn(axis) * node.multiplier;
                     here.axes().iter().enumerate().for_each(|(k, &a)| f(depth, c + k, turn(a)));
                 }
                 NodeKind::Free => {

@@ -30,7 +30,10 @@ pub(crate) fn forward<R: SimdFloat>(nodes: &[Node], q: &[R], frames: &mut [Frame
                     _ => turned(base, x),
                 }
             }
-            NodeKind::Spherical => moved(base, &[k(0.0); 3], &q[c..c + 3]),
+            NodeKind::Spherical => {
+                let vector = [0, 1, 2].map(|i| q[c + i] * k(node.multiplier));
+                moved(base, &[k(0.0); 3], &vector)
+            }
             NodeKind::Free => moved(base, &q[c..c + 3], &q[c + 3..c + 6]),
         };
     }

@@ -53,6 +53,7 @@ pub struct Builder {
     starts: BTreeMap<String, Vec<f64>>,
     tool: Option<String>,
     reference: Option<String>,
+    by_name: bool,
     report: LoadReport,
 }
 
@@ -70,6 +71,7 @@ impl Builder {
             starts: BTreeMap::new(),
             tool: None,
             reference: None,
+            by_name: false,
             report: LoadReport { format: "builder", ..LoadReport::default() },
         }
     }
@@ -129,6 +131,12 @@ impl Builder {
         self
     }
 
+    /// Names decide where the order in which links and joints are given must not.
+    pub(super) fn by_name(&mut self) -> &mut Self {
+        self.by_name = true;
+        self
+    }
+
     /// Names the frame whose motion is the goal (reference); the tool by default.
     pub fn reference(&mut self, frame: &str) -> &mut Self {
         self.reference = Some(frame.to_owned());
@@ -157,6 +165,7 @@ impl Builder {
     /// of several coordinates; for a loop joint or a contact on an unknown link or on one link
     /// alone.
     pub fn build(mut self) -> Result<Mechanism> {
+        self.joints.iter_mut().for_each(JointSpec::normalise);
         let links = self.index_links()?;
         self.check_joints(&links)?;
         let order = self.depth_first(&links)?;
@@ -320,76 +329,6 @@ impl Builder {
         Ok(home)
     }
 
-    fn depth_first(&self, links: &BTreeMap<String, usize>) -> Result<TreeOrder> {
-        let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.links.len()];
-        let mut parent_joint = vec![None; self.links.len()];
-        for (j, joint) in self.joints.iter().enumerate() {
-            children[links[&joint.parent]].push(j);
-            parent_joint[links[&joint.child]] = Some(j);
-        }
-        let roots: Vec<usize> =
-            (0..self.links.len()).filter(|&l| parent_joint[l].is_none()).collect();
-        let root = match roots.as_slice() {
-            [] => return self.refuse_cycle(links, &parent_joint, 0),
-            [root] => *root,
-            several => {
-                let names: Vec<&str> =
-                    several.iter().map(|&l| self.links[l].name.as_str()).collect();
-                return self.refuse(
-                    names[1],
-                    format!(
-                        "it falls into {} parts: links {} have no parent joint; connect them or \
-                         remove all but one",
-                        names.len(),
-                        names.join(", ")
-                    ),
-                );
-            }
-        };
-        let mut joints = Vec::with_capacity(self.joints.len());
-        let mut visited = vec![false; self.links.len()];
-        let mut stack = vec![root];
-        while let Some(link) = stack.pop() {
-            visited[link] = true;
-            joints.extend(parent_joint[link]);
-            stack.extend(children[link].iter().rev().map(|&j| links[&self.joints[j].child]));
-        }
-        match visited.iter().position(|v| !v) {
-            None => Ok(TreeOrder { root, joints }),
-            Some(unreached) => self.refuse_cycle(links, &parent_joint, unreached),
-        }
-    }
-
-    /// Every link has a parent from here on: walks up until a link repeats, and names the cycle.
-    fn refuse_cycle(
-        &self,
-        links: &BTreeMap<String, usize>,
-        parent_joint: &[Option<usize>],
-        start: usize,
-    ) -> Result<TreeOrder> {
-        let mut path = vec![start];
-        let mut link = start;
-        while let Some(j) = parent_joint[link] {
-            link = links[&self.joints[j].parent];
-            if let Some(first) = path.iter().position(|&l| l == link) {
-                let mut names: Vec<&str> =
-                    path[first..].iter().rev().map(|&l| self.links[l].name.as_str()).collect();
-                names.push(names[0]);
-                let culprit = &self.joints[j].name;
-                return self.refuse(
-                    culprit,
-                    format!(
-                        "its links form a cycle without a root: {}; a tree has one link that is \
-                         no joint's child",
-                        names.join(" -> ")
-                    ),
-                );
-            }
-            path.push(link);
-        }
-        self.refuse(&self.links[start].name, "it is not connected to the root")
-    }
-
     fn finish(
         self,
         links: &BTreeMap<String, usize>,
@@ -426,7 +365,7 @@ impl Builder {
             }
         };
         let tool = match &self.tool {
-            None => default_tool(order, &self.joints, links),
+            None => default_tool(order, &self.joints, links, self.by_name),
             Some(name) => named("tool", name)?,
         };
         let reference = match &self.reference {
@@ -449,6 +388,7 @@ impl Builder {
                     parent_from_joint: spec.parent_from_joint,
                     joint_from_child: spec.joint_from_child,
                     axis: spec.axis.unit(ZERO_AXIS).unwrap_or(Vec3::Z),
+                    reversed: spec.reversed,
                     limits: spec.limits,
                     mimic: spec.mimic.clone(),
                     coordinates: flat.ranges.get(&j).cloned().unwrap_or(0..0),

@@ -58,6 +58,15 @@ impl FlatMechanism {
     pub(super) fn allocate(&mut self, j: usize, spec: &JointSpec) {
         use CoordinateKind::{Angle, Length, Position, RotationVector};
         let start = self.coordinates.len();
+        let position = if spec.reversed { Length } else { Position };
+        let free = [
+            (".x", position),
+            (".y", position),
+            (".z", position),
+            (".rx", RotationVector),
+            (".ry", RotationVector),
+            (".rz", RotationVector),
+        ];
         let parts: &[(&str, CoordinateKind)] = match spec.kind {
             JointKind::Fixed => &[],
             JointKind::Revolute | JointKind::Continuous | JointKind::Helical { .. } => {
@@ -70,14 +79,7 @@ impl FlatMechanism {
                 &[(".rx", RotationVector), (".ry", RotationVector), (".rz", RotationVector)]
             }
             JointKind::Planar => &[(".x", Length), (".y", Length), (".angle", Angle)],
-            JointKind::Free => &[
-                (".x", Position),
-                (".y", Position),
-                (".z", Position),
-                (".rx", RotationVector),
-                (".ry", RotationVector),
-                (".rz", RotationVector),
-            ],
+            JointKind::Free => &free,
         };
         for (suffix, kind) in parts {
             self.coordinates.push(Coordinate {
@@ -136,34 +138,11 @@ impl FlatMechanism {
             nodes: &mut self.nodes,
             slot,
             pending: base,
-            next: range.start,
+            first: range.start,
             multiplier,
             offset,
         };
-        // Axes have been validated.
-        let z_to = |axis: Vec3| Rotation::z_to(axis).unwrap_or(Rotation::IDENTITY);
-        let axis = z_to(spec.axis);
-        match spec.kind {
-            JointKind::Fixed => {}
-            JointKind::Revolute | JointKind::Continuous => chain.push(axis, NodeKind::Revolute),
-            JointKind::Prismatic => chain.push(axis, NodeKind::Prismatic),
-            JointKind::Helical { pitch } => chain.push(axis, NodeKind::Helical(pitch)),
-            JointKind::Cylindrical => {
-                chain.push(axis, NodeKind::Prismatic);
-                chain.push(axis, NodeKind::Revolute);
-            }
-            JointKind::Universal { second } => {
-                chain.push(axis, NodeKind::Revolute);
-                chain.push(z_to(second), NodeKind::Revolute);
-            }
-            JointKind::Planar => {
-                chain.push(axis * z_to(Vec3::X), NodeKind::Prismatic);
-                chain.push(axis * z_to(Vec3::Y), NodeKind::Prismatic);
-                chain.push(axis, NodeKind::Revolute);
-            }
-            JointKind::Spherical => chain.push(Rotation::IDENTITY, NodeKind::Spherical),
-            JointKind::Free => chain.push(Rotation::IDENTITY, NodeKind::Free),
-        }
+        chain.joint(spec);
         let (slot, slot_from_child) = (chain.slot, chain.pending);
         let slide = match spec.kind {
             JointKind::Prismatic | JointKind::Cylindrical | JointKind::Planar => {
@@ -184,24 +163,71 @@ struct NodeChain<'a> {
     slot: usize,
     /// The joint frame at zero, in the slot.
     pending: Pose,
-    next: usize,
+    /// The first coordinate of the joint.
+    first: usize,
     multiplier: f64,
     offset: f64,
 }
 
 impl NodeChain<'_> {
+    /// The inverse of a product of motions is the product of their inverses, in reverse order, each
+    /// about (or along) the opposite axis.
+    fn joint(&mut self, spec: &JointSpec) {
+        use NodeKind::{Helical, Prismatic, Revolute, Spherical};
+        let along = if spec.reversed { -1.0 } else { 1.0 };
+        // Axes have been validated.
+        let z_to = |axis: Vec3| Rotation::z_to(axis * along).unwrap_or(Rotation::IDENTITY);
+        let axis = z_to(spec.axis);
+        let plane = Rotation::z_to(spec.axis).unwrap_or(Rotation::IDENTITY);
+        let in_plane = |direction: Vec3| plane * z_to(direction);
+        let motions = match spec.kind {
+            JointKind::Fixed => vec![],
+            JointKind::Revolute | JointKind::Continuous => vec![(axis, Revolute)],
+            JointKind::Prismatic => vec![(axis, Prismatic)],
+            JointKind::Helical { pitch } => vec![(axis, Helical(pitch))],
+            JointKind::Cylindrical => vec![(axis, Prismatic), (axis, Revolute)],
+            JointKind::Universal { second } => vec![(axis, Revolute), (z_to(second), Revolute)],
+            JointKind::Planar => vec![
+                (in_plane(Vec3::X), Prismatic),
+                (in_plane(Vec3::Y), Prismatic),
+                (axis, Revolute),
+            ],
+            JointKind::Spherical => vec![(Rotation::IDENTITY, Spherical)],
+            JointKind::Free if spec.reversed => vec![
+                (z_to(Vec3::X), Prismatic),
+                (z_to(Vec3::Y), Prismatic),
+                (z_to(Vec3::Z), Prismatic),
+                (Rotation::IDENTITY, Spherical),
+            ],
+            JointKind::Free => vec![(Rotation::IDENTITY, NodeKind::Free)],
+        };
+        let mut next = self.first;
+        let mut numbered = Vec::with_capacity(motions.len());
+        for (joint_from_z, kind) in motions {
+            numbered.push((joint_from_z, kind, next));
+            next += kind.dof();
+        }
+        if spec.reversed {
+            numbered.reverse();
+        }
+        for (joint_from_z, kind, coordinate) in numbered {
+            // A rotation vector has no axis that could be reversed.
+            let sign = if kind == Spherical { along } else { 1.0 };
+            self.push(joint_from_z, kind, coordinate, sign);
+        }
+    }
+
     /// Adds a node whose z axis is `joint_from_z * z` in the joint frame.
-    fn push(&mut self, joint_from_z: Rotation, kind: NodeKind) {
+    fn push(&mut self, joint_from_z: Rotation, kind: NodeKind, coordinate: usize, sign: f64) {
         let turn = Pose::from_rotation(joint_from_z);
         self.nodes.push(Node {
             parent: self.slot,
             placement: (self.pending * turn).into(),
             kind,
-            coordinate: self.next,
-            multiplier: self.multiplier,
+            coordinate,
+            multiplier: sign * self.multiplier,
             offset: self.offset,
         });
-        self.next += kind.dof();
         self.slot = self.nodes.len();
         self.pending = turn.inverse();
     }

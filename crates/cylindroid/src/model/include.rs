@@ -101,6 +101,7 @@ impl Builder {
                 parent_from_joint: joint.parent_from_joint,
                 joint_from_child: joint.joint_from_child,
                 axis: joint.axis,
+                reversed: joint.reversed,
                 limits: joint.limits,
                 mimic: joint.mimic.as_ref().map(follows),
                 actuated: joint.actuated,

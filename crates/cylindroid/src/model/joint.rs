@@ -14,6 +14,11 @@ use crate::spatial::{Pose, Vec3};
 /// global coordinates without a singularity; their entries in `q` are a rotation vector (and a
 /// position), and their velocities are the twist in the axes of the child (`Mechanism::integrate`
 /// advances `q` by velocities).
+///
+/// A [reversed](Joint::reversed) joint has the same `q`, and the inverse motion of its kind. If it is
+/// spherical, its velocity is the angular velocity of its second link (the parent in the tree)
+/// relative to its first, in the axes of the first: again in those of the child. If it is free, the
+/// velocities of its position are the derivatives, in the same axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum JointKind {
@@ -66,6 +71,11 @@ impl JointKind {
     #[must_use]
     pub const fn takes_position_limits(self) -> bool {
         !matches!(self, Self::Spherical | Self::Free)
+    }
+
+    /// True if its inverse motion is not that about (or along) the opposite axis.
+    pub(super) const fn has_several_axes(self) -> bool {
+        matches!(self, Self::Universal { .. } | Self::Spherical | Self::Planar | Self::Free)
     }
 
     /// The name in files and tables.
@@ -163,6 +173,10 @@ pub struct Joint {
     pub joint_from_child: Pose,
     /// Unit axis in the joint frame (z if the kind has none).
     pub axis: Vec3,
+    /// True if its coordinates describe the motion of the parent relative to the child: the joint
+    /// is written from the link farther from ground, and has several axes. (One axis is reversed
+    /// instead.)
+    pub reversed: bool,
     /// Limits as in the file; those of a joint with several coordinates apply to each.
     pub limits: Limits,
     /// The joint that it follows, for a mimic joint.

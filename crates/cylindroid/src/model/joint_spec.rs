@@ -24,6 +24,8 @@ pub struct JointSpec {
     pub joint_from_child: Pose,
     /// The axis in the joint frame, any length.
     pub axis: Vec3,
+    /// True if its coordinates describe the motion of the parent relative to the child.
+    pub reversed: bool,
     /// Its limits.
     pub limits: Limits,
     /// The joint that it follows, for a mimic joint.
@@ -44,9 +46,19 @@ impl JointSpec {
             parent_from_joint: Pose::IDENTITY,
             joint_from_child: Pose::IDENTITY,
             axis: Vec3::Z,
+            reversed: false,
             limits: Limits::NONE,
             mimic: None,
             actuated: true,
+        }
+    }
+
+    /// Joints of one axis are reversed by their axis: the inverse motion is that about (or along)
+    /// the opposite axis, pitch included.
+    pub(super) fn normalise(&mut self) {
+        if self.reversed && !self.kind.has_several_axes() {
+            self.axis = -self.axis;
+            self.reversed = false;
         }
     }
 

@@ -1,6 +1,7 @@
 //! Joint transforms, and the poses of all links at a configuration.
 //!
-//! Formula  parent_from_child = parent_from_joint transform(q) joint_from_child
+//! Formula  parent_from_child = parent_from_joint transform(q) joint_from_child, with the inverse of
+//!          the transform for reversed joints
 //! Why so   kinematics works on nodes and comes after the model; loaders need poses while they
 //!          still write the model, once for each file, so the plain product is enough here
 //! Checked  tests/it/graph.rs::motion_* (against `State`), tests/formats/closed_file.rs
@@ -73,6 +74,7 @@ impl Mechanism {
             } else {
                 joint.kind.transform(joint.axis, &q[joint.coordinates.clone()])
             };
+            let motion = if joint.reversed { motion.inverse() } else { motion };
             poses[joint.child] =
                 poses[joint.parent] * joint.parent_from_joint * motion * joint.joint_from_child;
         }

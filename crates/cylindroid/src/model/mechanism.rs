@@ -454,8 +454,10 @@ impl Mechanism {
                 | NodeKind::Prismatic
                 | NodeKind::Helical(_) => {}
                 NodeKind::Spherical => {
-                    let r = Rotation::exp(vec3(q, c)) * Rotation::exp(vec3(rates, c) * dt);
-                    put(q, c, r.renormalised().log());
+                    let here = Rotation::exp(vec3(q, c));
+                    let turn = Rotation::exp(vec3(rates, c) * dt);
+                    let next = if node.multiplier < 0.0 { turn * here } else { here * turn };
+                    put(q, c, next.renormalised().log());
                 }
                 NodeKind::Free => {
                     let here =

@@ -18,6 +18,7 @@ mod link;
 mod loop_joint;
 mod mechanism;
 mod mimic;
+mod natural_order;
 mod node;
 mod report;
 mod tree_order;

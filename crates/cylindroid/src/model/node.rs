@@ -16,7 +16,8 @@ pub(crate) struct Node {
     pub(crate) kind: NodeKind,
     /// Its first coordinate.
     pub(crate) coordinate: usize,
-    /// Mimic ratio (1 for independent joints).
+    /// Mimic ratio (1 for independent joints); for `Spherical`, the factor of rotation vector and
+    /// velocity: -1 for reversed joints.
     pub(crate) multiplier: f64,
     /// Mimic offset (0 for independent joints).
     pub(crate) offset: f64,

@@ -30,7 +30,9 @@ fn link(m: &Mechanism, q: &[f64], index: usize) -> Pose {
     match m.joints().iter().find(|j| j.child == index) {
         None => Pose::IDENTITY,
         Some(j) => {
-            link(m, q, j.parent) * j.parent_from_joint * motion(m, j, q) * j.joint_from_child
+            let motion = motion(m, j, q);
+            let motion = if j.reversed { motion.inverse() } else { motion };
+            link(m, q, j.parent) * j.parent_from_joint * motion * j.joint_from_child
         }
     }
 }

@@ -13,6 +13,7 @@ mod mechanism_file;
 mod mjcf;
 mod mujoco;
 mod mutations;
+mod order;
 mod real_chains;
 mod sdf;
 mod urdf;

@@ -5,7 +5,7 @@ use cylindroid::model::{JointKind, JointSpec, Limits, Mimic};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
 use cylindroid::{EndEffector, Error, Matrix, Mechanism, ReferenceFrame, catalogue};
 
-use crate::support::{Random, assert_close, planar, zoo};
+use crate::support::{Random, assert_close, planar, reversed_zoo, zoo};
 
 const REFERENCES: [ReferenceFrame; 3] =
     [ReferenceFrame::Local, ReferenceFrame::World, ReferenceFrame::LocalWorldAligned];
@@ -63,7 +63,7 @@ fn robots() -> Vec<(Mechanism, EndEffector)> {
     let mut random = Random(12);
     let mut robots: Vec<Mechanism> =
         catalogue::names().iter().map(|n| catalogue::load(n).unwrap()).collect();
-    robots.extend([planar(1), planar(2), planar(9), planar(30), zoo()]);
+    robots.extend([planar(1), planar(2), planar(9), planar(30), zoo(), reversed_zoo()]);
     // Tools anyhow, along the last axis, turned about it, and the other way up.
     let about_z = Rotation::exp(Vec3::Z * 0.7);
     let upside_down = about_z * Rotation::exp(Vec3::X * std::f64::consts::PI);

@@ -112,7 +112,7 @@ fn held_by_contacts() {
 #[test]
 fn motion_is_that_of_the_kinematics() {
     let mut random = Random(9);
-    for kind in kinds(&mut random) {
+    for (kind, reversed) in kinds(&mut random).into_iter().flat_map(|k| [(k, false), (k, true)]) {
         let (axis, parent_from_joint, joint_from_child) =
             (random.vec3(1.0), random.pose(), random.pose());
         let mut b = Mechanism::builder("one");
@@ -120,13 +120,16 @@ fn motion_is_that_of_the_kinematics() {
             axis,
             parent_from_joint,
             joint_from_child,
+            reversed,
             ..JointSpec::new("j", kind, "base", "link")
         });
         let m = b.build().unwrap();
         let q: Vec<f64> = (0..m.n()).map(|_| random.vec3(1.0).x).collect();
         let state = m.state(&q).unwrap();
         let link = state.pose(m.frame("link").unwrap());
-        let expected = parent_from_joint * kind.transform(axis, &q) * joint_from_child;
+        let motion = kind.transform(axis, &q);
+        let motion = if reversed { motion.inverse() } else { motion };
+        let expected = parent_from_joint * motion * joint_from_child;
         let error = expected.error_to(link);
         assert!(error.linear.norm() < 1e-14 && error.angular.norm() < 1e-14, "{kind:?}");
     }

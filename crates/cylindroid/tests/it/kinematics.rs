@@ -3,7 +3,9 @@ use cylindroid::model::{JointKind, JointSpec};
 use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3, Zyz, log};
 use cylindroid::{EndEffector, Matrix, Mechanism, ReferenceFrame, catalogue};
 
-use crate::support::{Random, assert_close, assert_matrix, planar, pose_entries, zoo};
+use crate::support::{
+    Random, assert_close, assert_matrix, planar, pose_entries, reversed_zoo, zoo,
+};
 
 const REFERENCES: [ReferenceFrame; 3] =
     [ReferenceFrame::Local, ReferenceFrame::World, ReferenceFrame::LocalWorldAligned];
@@ -14,6 +16,7 @@ fn robots() -> Vec<Mechanism> {
     robots.extend((1..=7).map(planar));
     robots.push(planar(30));
     robots.push(zoo());
+    robots.push(reversed_zoo());
     robots
 }
 

@@ -100,8 +100,17 @@ pub(crate) fn pose_entries(p: Pose) -> Vec<f64> {
 
 /// A mechanism with one joint of every kind, a branch, a mimic joint and a fixed link.
 pub(crate) fn zoo() -> Mechanism {
+    animals("zoo", false)
+}
+
+/// The same with every joint of these kinds reversed.
+pub(crate) fn reversed_zoo() -> Mechanism {
+    animals("reversed zoo", true)
+}
+
+fn animals(name: &str, reversed: bool) -> Mechanism {
     let mut random = Random(7);
-    let mut b = Mechanism::builder("zoo");
+    let mut b = Mechanism::builder(name);
     let kinds = [
         JointKind::Revolute,
         JointKind::Prismatic,
@@ -119,6 +128,7 @@ pub(crate) fn zoo() -> Mechanism {
         b.joint(JointSpec {
             parent_from_joint: Pose { rotation: random.rotation(), translation: random.vec3(0.4) },
             axis: random.vec3(1.0),
+            reversed,
             ..JointSpec::new(&format!("j{i}"), kind, &format!("l{i}"), &format!("l{}", i + 1))
         });
     }

@@ -301,7 +301,7 @@ fn between(
                 add(2, true, 0, node.multiplier);
                 add(2, false, 0, pitch * node.multiplier);
             }
-            NodeKind::Spherical => (0..3).for_each(|i| add(i, true, i, 1.0)),
+            NodeKind::Spherical => (0..3).for_each(|i| add(i, true, i, node.multiplier)),
             NodeKind::Free => (0..6).for_each(|i| add(i % 3, i >= 3, i, 1.0)),
         }
         let next = if a > b { &mut a } else { &mut b };

@@ -266,7 +266,10 @@ fn displacement(mechanism: &Mechanism, q: &[f64], prescribed: &[usize], goal: &[
             _ => None,
         };
         if let (Some(here), Some(there)) = (pose(q), pose(&target)) {
-            let twist = log(here.inverse() * there).to_array();
+            // As `Mechanism::integrate` advances them.
+            let reversed = node.multiplier < 0.0;
+            let between = if reversed { there * here.inverse() } else { here.inverse() * there };
+            let twist = log(between).to_array();
             let skip = 6 - node.kind.dof(); // spherical joints only rotate
             rates[c..c + node.kind.dof()].copy_from_slice(&twist[skip..]);
         }

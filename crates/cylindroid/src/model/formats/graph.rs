@@ -1,13 +1,67 @@
 //! A spanning tree of a graph of links and joints, and the joints that close its loops.
 //!
-//! Formula  Kruskal: joints enter the tree by falling weight, and in the order of the file within
-//!          one; the tree is then walked breadth-first from its roots
+//! Formula  Kruskal: joints enter the tree by their [`Rank`]; the tree is then walked breadth-first
+//!          from its roots
 //! Valid    any graph. Links that no root reaches are returned, never dropped
-//! Why so   a tree of largest weight holds as many actuated joints as any tree can (matroid), which
-//!          a walk from the root does not: it takes whatever it meets first
-//! Checked  tests/formats/closed_file.rs::spanning_*
+//! Why so   a tree of best ranks holds as many actuated joints as any tree can (matroid), which a
+//!          walk from the root does not: it takes whatever it meets first. No rank depends on the
+//!          order of the file, so no result does
+//! Checked  tests/formats/closed_file.rs::spanning_*, tests/formats/order.rs
 
 use std::collections::VecDeque;
+
+use crate::model::natural_order::Natural;
+use crate::model::{JointKind, Mimic};
+
+/// The rank of a joint: smaller ones enter the tree first.
+///
+/// Joints that are followed or follow another must have coordinates. Actuated joints should, those
+/// with most coordinates before the others. Passive joints close loops all the better the more
+/// freedoms they have: they constrain less. Among joints that are alike the name decides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Rank<'a> {
+    class: u8,
+    freedoms: usize,
+    name: Natural<'a>,
+}
+
+/// What a joint has to do with mimic joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Coupling {
+    None,
+    /// Another joint follows it.
+    Followed,
+    /// It follows another one.
+    Follows,
+}
+
+impl Coupling {
+    /// Of a joint among others, each with its name and whom it follows.
+    pub(super) fn of(
+        (name, follows): (&str, Option<&Mimic>),
+        mut others: impl Iterator<Item = Option<&Mimic>>,
+    ) -> Self {
+        if follows.is_some() {
+            Self::Follows
+        } else if others.any(|mimic| mimic.is_some_and(|m| m.joint == name)) {
+            Self::Followed
+        } else {
+            Self::None
+        }
+    }
+}
+
+impl<'a> Rank<'a> {
+    pub(super) fn new(name: &'a str, kind: JointKind, coupling: Coupling, actuated: bool) -> Self {
+        let (class, freedoms) = match (coupling, actuated) {
+            (Coupling::Followed, _) => (0, 0),
+            (Coupling::Follows, _) => (1, 0),
+            (Coupling::None, true) => (2, 6 - kind.dof()),
+            (Coupling::None, false) => (3, kind.dof()),
+        };
+        Self { class, freedoms, name: Natural(name) }
+    }
+}
 
 /// A joint of the tree, seen from its root.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,7 +119,7 @@ impl Groups {
 pub(super) fn spanning_tree(
     links: usize,
     ends: &[[usize; 2]],
-    weights: &[u8],
+    ranks: &[Rank<'_>],
     roots: &[usize],
 ) -> SpanningTree {
     let mut groups = Groups::new(links);
@@ -73,7 +127,7 @@ pub(super) fn spanning_tree(
         groups.join(pair[0], pair[1]);
     }
     let mut order: Vec<usize> = (0..ends.len()).collect();
-    order.sort_by_key(|&j| std::cmp::Reverse(weights[j]));
+    order.sort_by_key(|&j| ranks[j]);
     let mut in_tree = vec![false; ends.len()];
     for j in order {
         let [a, b] = ends[j];

@@ -190,6 +190,7 @@ fn agrees_for_closing_joints_of_all_kinds() {
             b.joint(JointSpec {
                 parent_from_joint: random.pose(),
                 actuated: j != 2,
+                reversed: i % 2 == 0,
                 ..JointSpec::new(&format!("j{j}"), kind, &format!("l{j}"), &format!("l{}", j + 1))
             });
         }

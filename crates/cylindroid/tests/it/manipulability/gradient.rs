@@ -6,7 +6,7 @@ use cylindroid::model::{JointKind, JointSpec};
 use cylindroid::spatial::{Pose, Vec3};
 use cylindroid::{Matrix, Mechanism, catalogue};
 
-use crate::support::{Random, assert_close, planar, robots, zoo};
+use crate::support::{Random, assert_close, planar, reversed_zoo, robots, zoo};
 
 fn value(m: &Mechanism, q: &[f64], goal: Goal<'_>, metrics: &Metrics, measure: Measure) -> f64 {
     let chain = ClosedChain::of(&m.state(q).unwrap(), goal.reference, None).unwrap();
@@ -42,7 +42,7 @@ fn found(
 #[test]
 fn trees() {
     let mut random = Random(101);
-    for m in robots().into_iter().chain([zoo(), planar(3)]) {
+    for m in robots().into_iter().chain([zoo(), reversed_zoo(), planar(3)]) {
         let q = random.q(&m);
         let d = if m.dimension().number() == 2 { 3 } else { 6 };
         let task = random.matrix(2, d);

@@ -139,9 +139,11 @@ fn secondary_manipulability_gradient_by_finite_differences() {
 #[test]
 fn secondary_posture_of_spherical_and_free_joints() {
     let mut random = Random(42);
-    for kind in [JointKind::Spherical, JointKind::Free] {
+    for (kind, reversed) in
+        [(JointKind::Spherical, false), (JointKind::Spherical, true), (JointKind::Free, false)]
+    {
         let mut b = Mechanism::builder("body");
-        b.joint(JointSpec::new("body", kind, "ground", "a"));
+        b.joint(JointSpec { reversed, ..JointSpec::new("body", kind, "ground", "a") });
         // Position alone of the joint's own origin: a ball joint is free to turn.
         b.joint(JointSpec {
             parent_from_joint: Pose::from_translation(Vec3::ZERO),

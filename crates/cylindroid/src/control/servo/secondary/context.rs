@@ -23,6 +23,11 @@ impl Context<'_> {
         &self.mechanism.coordinates()[self.chain.coordinates()[i]]
     }
 
+    /// True if the joint of coordinate `i` of the chain is reversed.
+    pub(super) fn is_reversed(&self, i: usize) -> bool {
+        self.mechanism.joints()[self.coordinate(i).joint].reversed
+    }
+
     /// True for an angle or a length: coordinates that may have limits.
     pub(super) fn is_scalar(&self, i: usize) -> bool {
         matches!(self.coordinate(i).kind, CoordinateKind::Angle | CoordinateKind::Length)

@@ -1,7 +1,7 @@
 //! Posture task: towards a preferred configuration.
 //!
 //! Formula  k (q_0 - q); of rotation vectors and free bodies k log(R^T R_0) and k R^T (p_0 - p),
-//!          velocities in the axes of the child
+//!          velocities in the axes of the child; k log(R_0 R^T) of reversed joints
 //! Shapes   velocities of the n coordinates that move the end effector
 //! Units    k in 1/s
 //! Valid    any coordinates
@@ -24,7 +24,7 @@ pub(super) fn add(context: &Context<'_>, q: &[f64], gain: f64, out: &mut [f64]) 
     }
     let mut i = 0;
     while i < out.len() {
-        let kind = context.coordinate(i).kind;
+        let kind = (context.coordinate(i).kind, context.is_reversed(i));
         let (here, there) = (&chain.q()[i..], &q[chain.coordinates()[i]..]);
         i += add_joint(kind, here, there, gain, &mut out[i..]);
     }
@@ -33,7 +33,7 @@ pub(super) fn add(context: &Context<'_>, q: &[f64], gain: f64, out: &mut [f64]) 
 /// Adds the velocities from one configuration to another of the joint that the first coordinate
 /// belongs to; returns the number of its coordinates.
 fn add_joint(
-    kind: CoordinateKind,
+    (kind, reversed): (CoordinateKind, bool),
     here: &[f64],
     there: &[f64],
     gain: f64,
@@ -45,7 +45,8 @@ fn add_joint(
     };
     let rotation = |i: usize| {
         let back = Rotation::exp(vector(here, i)).inverse();
-        (back, (back * Rotation::exp(vector(there, i))).log())
+        let there = Rotation::exp(vector(there, i));
+        (back, if reversed { there * back } else { back * there }.log())
     };
     match kind {
         CoordinateKind::Angle | CoordinateKind::Length => {

@@ -10,7 +10,7 @@ use super::joint_entry::JointEntry;
 use super::{FORMAT, MODEL, Sdf};
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
-use crate::model::formats::graph::{Branch, spanning_tree};
+use crate::model::formats::graph::{Branch, Coupling, Rank, spanning_tree};
 use crate::model::formats::xml::Reader;
 use crate::model::{JointKind, JointSpec, Link, LoopJointSpec, Mechanism};
 use crate::spatial::Pose;
@@ -79,17 +79,15 @@ impl<'d> Sdf<'d> {
         let place = |name: &String| index.get(name.as_str()).copied().unwrap_or(root);
         let ends: Vec<[usize; 2]> =
             self.joints.iter().map(|j| [place(&j.between[0]), place(&j.between[1])]).collect();
-        let followed = |name: &String| {
-            self.joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == *name))
+        let coupling = |j: &JointEntry<'_>| {
+            let others = self.joints.iter().map(|other| other.mimic.as_ref());
+            Coupling::of((&j.name, j.mimic.as_ref()), others)
         };
-        let weights: Vec<u8> = self
-            .joints
+        let named: Vec<_> =
+            self.joints.iter().map(|j| (j.name.clone(), j.kind, coupling(j))).collect();
+        let ranks: Vec<Rank<'_>> = named
             .iter()
-            .map(|j| match () {
-                () if j.mimic.is_some() || followed(&j.name) => 2,
-                () if actuated(j.kind) => 1,
-                () => 0,
-            })
+            .map(|(name, kind, coupling)| Rank::new(name, *kind, *coupling, actuated(*kind)))
             .collect();
         let mut groups = crate::model::formats::graph::Groups::new(graph.names.len());
         ends.iter().for_each(|[a, b]| _ = groups.join(*a, *b));
@@ -112,14 +110,9 @@ impl<'d> Sdf<'d> {
                 roots.push(link);
             }
         }
-        let spanned = spanning_tree(graph.names.len(), &ends, &weights, &roots);
+        let spanned = spanning_tree(graph.names.len(), &ends, &ranks, &roots);
         for branch in &spanned.tree {
             let joint = &self.joints[branch.joint];
-            if branch.reversed && joint.kind.dof() > 1 {
-                let why = "the tree meets its child first: its coordinates are those of the parent \
-                           relative to the child, those of a universal joint in reverse order";
-                self.reader.note(joint.node, "joint from far to near", why, &joint.name);
-            }
             builder.joint(graph.branch(joint, branch));
         }
         for &j in &spanned.loops {
@@ -160,25 +153,18 @@ struct Graph<'a> {
 }
 
 impl Graph<'_> {
-    /// A joint of the tree, its motion that of the link farther from the root.
+    /// A joint of the tree.
     fn branch(&self, joint: &JointEntry<'_>, branch: &Branch) -> JointSpec {
         let world_from_joint = self.world_from_model * joint.model_from_joint;
-        let (axis, kind) = match (branch.reversed, joint.kind) {
-            (false, kind) => (joint.axis, kind),
-            // (R(a, p) R(b, q))^-1 = R(-b, q) R(-a, p)
-            (true, JointKind::Universal { second }) => {
-                (-second, JointKind::Universal { second: -joint.axis })
-            }
-            (true, kind) => (-joint.axis, kind),
-        };
         JointSpec {
             name: joint.name.clone(),
-            kind,
+            kind: joint.kind,
             parent: self.names[branch.parent].clone(),
             child: self.names[branch.child].clone(),
             parent_from_joint: self.poses[branch.parent].inverse() * world_from_joint,
             joint_from_child: world_from_joint.inverse() * self.poses[branch.child],
-            axis,
+            axis: joint.axis,
+            reversed: branch.reversed,
             limits: joint.limits,
             mimic: joint.mimic.clone(),
             actuated: actuated(joint.kind),

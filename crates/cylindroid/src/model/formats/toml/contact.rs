@@ -20,7 +20,7 @@ const KEYS: [&str; 7] = ["name", "type", "between", "point", "normal", "tangent"
 /// A contact as it stands in the file.
 pub(super) struct ContactEntry<'t> {
     table: Table<'t>,
-    name: &'t str,
+    pub(super) name: &'t str,
     kind: ContactKind,
     pub(super) between: [&'t str; 2],
     pub(super) point: Vec3,

@@ -80,6 +80,9 @@ pub(in crate::model) fn describe(
         }
         world.place(GROUND, Pose::IDENTITY);
     }
+    if !file.has("robot") {
+        world.builder.by_name();
+    }
     world.arm(arm);
     let own = world.placed();
     robot::include(&file, &mut world, depth, loader)?;

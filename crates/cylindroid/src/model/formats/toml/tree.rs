@@ -3,9 +3,7 @@
 //! Formula  parent_from_joint = world_from_parent^-1 Trans(origin): every link frame has world
 //!          axes at home and lies at the origin of the joint that leads to ground
 //! Why so   a joint written from the far link to the near one keeps its q, the motion of the
-//!          second link relative to the first. Its inverse is the same motion about the opposite
-//!          axis for all kinds of one axis, pitch included; the others must be written near
-//!          link first where they are in the tree. Loop joints keep the order of the file
+//!          second link relative to the first: it enters the tree reversed
 //! Checked  tests/formats/mechanism_file.rs, tests/formats/closed_file.rs
 
 use std::collections::BTreeMap;
@@ -15,7 +13,8 @@ use super::names::GROUND;
 use super::value::Table;
 use super::world::World;
 use crate::error::{Error, Result};
-use crate::model::formats::graph::{Branch, Groups, spanning_tree};
+use crate::model::formats::graph::{Branch, Coupling, Groups, Rank, spanning_tree};
+use crate::model::natural_order::Natural;
 use crate::model::{JointKind, JointSpec, Limits, LoopJointSpec, Mimic};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
@@ -61,9 +60,9 @@ pub(super) fn joints<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<JointEntr
 
 /// Writes the joints: those of the tree, those that close it, and free joints for objects that
 /// only contacts hold.
-pub(super) fn write(
+pub(super) fn write<'t>(
     world: &mut World<'_>,
-    joints: &[JointEntry<'_>],
+    joints: &[JointEntry<'t>],
     contacts: &[ContactEntry<'_>],
     reference: Option<(&str, Option<Vec3>)>,
 ) -> Result<()> {
@@ -95,27 +94,25 @@ pub(super) fn write(
             Some((name, Some(point))) if name == names[link] => Some(point),
             _ => first_origin(joints, names[link]),
         };
-        let touching = contacts.iter().find(|c| c.between.contains(&names[link])).map(|c| c.point);
+        let touching = contacts.iter().filter(|c| c.between.contains(&names[link]));
+        let touching = touching.min_by_key(|c| Natural(c.name)).map(|c| c.point);
         let place = Pose::from_translation(point.or(touching).unwrap_or(Vec3::ZERO));
         free.push(world.free(names[link], place));
         roots.push(link);
     }
 
-    let followed =
-        |name: &str| joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == name));
-    let weight = |j: &JointEntry<'_>| match () {
-        () if j.mimic.is_some() || followed(j.name) => 2,
-        () if j.actuated => 1,
-        () => 0,
+    let rank = |j: &JointEntry<'t>| {
+        let others = joints.iter().map(|other| other.mimic.as_ref());
+        Rank::new(j.name, j.kind, Coupling::of((j.name, j.mimic.as_ref()), others), j.actuated)
     };
-    let weights: Vec<u8> = joints.iter().map(weight).collect();
-    let graph = spanning_tree(names.len(), &ends, &weights, &roots);
+    let ranks: Vec<Rank<'t>> = joints.iter().map(rank).collect();
+    let graph = spanning_tree(names.len(), &ends, &ranks, &roots);
     if let Some(&loose) = graph.loose.first() {
         return Err(in_the_air(&joints[loose], joints.iter().any(|j| j.between.contains(&GROUND))));
     }
     for branch in graph.tree {
         let Branch { joint, parent, child, reversed } = branch;
-        branch_out(world, &joints[joint], names[parent], names[child], reversed)?;
+        branch_out(world, &joints[joint], names[parent], names[child], reversed);
     }
     for joint in free {
         world.builder.joint(joint);
@@ -127,15 +124,18 @@ pub(super) fn write(
 }
 
 /// The links that hang on contacts alone, one for each group of links: the reference where it is
-/// one of them, else the first that is touched.
+/// one of them, otherwise the touched link whose name comes first, those that contacts name second
+/// before the others.
 fn objects(
     contacts: &[ContactEntry<'_>],
     reference: Option<&str>,
     index: &BTreeMap<&str, usize>,
     groups: &mut Groups,
 ) -> Vec<usize> {
-    let touched: Vec<usize> =
-        contacts.iter().flat_map(|c| [c.between[1], c.between[0]]).map(|l| index[l]).collect();
+    let mut touched: Vec<(usize, &str)> =
+        contacts.iter().flat_map(|c| [(0, c.between[1]), (1, c.between[0])]).collect();
+    touched.sort_by_key(|(end, link)| (*end, Natural(link)));
+    let touched: Vec<usize> = touched.into_iter().map(|(_, link)| index[link]).collect();
     let reference = reference.and_then(|r| index.get(r).copied());
     let is_touched = |groups: &mut Groups, link: usize| {
         let group = groups.of(link);
@@ -152,9 +152,10 @@ fn objects(
     objects
 }
 
-/// The origin of the first joint that names the link.
+/// The origin of the joint of the link whose name comes first.
 pub(super) fn first_origin(joints: &[JointEntry<'_>], link: &str) -> Option<Vec3> {
-    joints.iter().find(|j| j.between.contains(&link)).and_then(|j| j.origin)
+    let of_link = joints.iter().filter(|j| j.between.contains(&link));
+    of_link.min_by_key(|j| Natural(j.name)).and_then(|j| j.origin)
 }
 
 fn in_the_air(joint: &JointEntry<'_>, grounded: bool) -> Error {
@@ -177,20 +178,7 @@ fn branch_out(
     parent: &str,
     child: &str,
     reversed: bool,
-) -> Result<()> {
-    let one_axis = !matches!(
-        joint.kind,
-        JointKind::Universal { .. } | JointKind::Spherical | JointKind::Planar | JointKind::Free
-    );
-    if reversed && !one_axis {
-        let message = format!(
-            "joint '{}' is {} and written from the far link to the one nearer to ground",
-            joint.name,
-            joint.kind.name()
-        );
-        let help = format!("write between = [\"{parent}\", \"{child}\"]");
-        return Err(joint.table.refuse("between", message, help));
-    }
+) {
     let world_from_parent = world.pose(parent);
     let origin = joint.origin.unwrap_or(world_from_parent.translation);
     let world_from_joint = Pose::from_translation(origin);
@@ -202,12 +190,12 @@ fn branch_out(
         child: child.to_owned(),
         parent_from_joint: world_from_parent.inverse() * world_from_joint,
         joint_from_child: Pose::IDENTITY,
-        axis: if reversed { -joint.axis } else { joint.axis },
+        axis: joint.axis,
+        reversed,
         limits: joint.limits,
         mimic: joint.mimic.clone(),
         actuated: joint.actuated,
     });
-    Ok(())
 }
 
 fn close(world: &mut World<'_>, joint: &JointEntry<'_>) -> Result<()> {
