@@ -10,8 +10,8 @@
 
 use std::collections::VecDeque;
 
+use crate::model::JointKind;
 use crate::model::natural_order::Natural;
-use crate::model::{JointKind, Mimic};
 
 /// The rank of a joint: smaller ones enter the tree first.
 ///
@@ -36,17 +36,11 @@ pub(super) enum Coupling {
 }
 
 impl Coupling {
-    /// Of a joint among others, each with its name and whom it follows.
-    pub(super) fn of(
-        (name, follows): (&str, Option<&Mimic>),
-        mut others: impl Iterator<Item = Option<&Mimic>>,
-    ) -> Self {
-        if follows.is_some() {
-            Self::Follows
-        } else if others.any(|mimic| mimic.is_some_and(|m| m.joint == name)) {
-            Self::Followed
-        } else {
-            Self::None
+    pub(super) const fn of(follows: bool, followed: bool) -> Self {
+        match (follows, followed) {
+            (true, _) => Self::Follows,
+            (false, true) => Self::Followed,
+            (false, false) => Self::None,
         }
     }
 }

@@ -79,10 +79,10 @@ impl<'d> Sdf<'d> {
         let place = |name: &String| index.get(name.as_str()).copied().unwrap_or(root);
         let ends: Vec<[usize; 2]> =
             self.joints.iter().map(|j| [place(&j.between[0]), place(&j.between[1])]).collect();
-        let coupling = |j: &JointEntry<'_>| {
-            let others = self.joints.iter().map(|other| other.mimic.as_ref());
-            Coupling::of((&j.name, j.mimic.as_ref()), others)
+        let followed = |name: &String| {
+            self.joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == *name))
         };
+        let coupling = |j: &JointEntry<'_>| Coupling::of(j.mimic.is_some(), followed(&j.name));
         let named: Vec<_> =
             self.joints.iter().map(|j| (j.name.clone(), j.kind, coupling(j))).collect();
         let ranks: Vec<Rank<'_>> = named

@@ -101,9 +101,11 @@ pub(super) fn write<'t>(
         roots.push(link);
     }
 
+    let followed =
+        |name: &str| joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == name));
     let rank = |j: &JointEntry<'t>| {
-        let others = joints.iter().map(|other| other.mimic.as_ref());
-        Rank::new(j.name, j.kind, Coupling::of((j.name, j.mimic.as_ref()), others), j.actuated)
+        let coupling = Coupling::of(j.mimic.is_some(), followed(j.name));
+        Rank::new(j.name, j.kind, coupling, j.actuated)
     };
     let ranks: Vec<Rank<'t>> = joints.iter().map(rank).collect();
     let graph = spanning_tree(names.len(), &ends, &ranks, &roots);
