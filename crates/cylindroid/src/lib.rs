@@ -63,14 +63,16 @@ pub mod screws;
 pub mod spatial;
 pub mod tolerance;
 
+#[cfg(feature = "formats")]
+pub use closure::{load, load_file, load_text};
 pub use control::{Servo, ServoOptions};
 pub use error::{Error, FileError, Result};
 pub use inverse::{Inverse, Method};
 pub use kinematics::{EndEffector, ReferenceFrame, State};
 pub use linalg::Matrix;
-pub use model::{FrameId, Mechanism};
 #[cfg(feature = "formats")]
-pub use model::{catalogue, load};
+pub use model::catalogue;
+pub use model::{FrameId, Mechanism};
 pub use screws::{Screw, ScrewSystem};
 pub use spatial::{Pose, Rotation, Twist, Vec3, Wrench};
 

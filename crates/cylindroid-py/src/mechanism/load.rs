@@ -89,7 +89,7 @@ pub(crate) fn parse(
         ("urdf", formats::urdf::parse),
         ("mjcf", formats::mjcf::parse),
         ("sdf", formats::sdf::parse),
-        ("toml", formats::toml::parse),
+        ("toml", cylindroid::load_text),
     ];
     let read = options::named("format", format, &readers)?;
     let inner = py.detach(|| read(text, &path))?;

@@ -46,6 +46,8 @@ pub use position::assembly_modes::{AssemblyModes, Mode, ModeOptions, assembly_mo
 pub use position::continuation::{
     ContinuationOptions, ContinuationResult, PathEnd, PathPoint, PathSingularity, track_path,
 };
+#[cfg(feature = "formats")]
+pub use position::load::{load, load_file, load_text};
 pub use singularity::diagnosis::Diagnosis;
 pub use singularity::generic_mobility::GenericMobility;
 pub use singularity::singularity_types::{Singularities, SingularityDistances};

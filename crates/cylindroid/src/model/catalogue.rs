@@ -98,7 +98,7 @@ fn read(name: &str, text: &str) -> Result<(Mechanism, String)> {
         text,
         Path::new(&format!("catalogue/{name}.toml")),
         "catalogue",
-        0,
-        &|_, name, _| load(name),
+        (0, &|_, name, _| load(name)),
+        &Ok,
     )
 }

@@ -123,6 +123,9 @@ impl Builder {
                 actuated: joint.actuated,
             });
         }
+        for name in robot.unassembled() {
+            self.assemble_home(&how.prefixed(name));
+        }
         for contact in robot.contacts() {
             self.contact(ContactSpec {
                 name: how.prefixed(&contact.name),

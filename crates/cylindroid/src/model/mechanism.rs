@@ -26,6 +26,8 @@ pub(super) struct Data {
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<Joint>,
     pub(super) loops: Vec<LoopJoint>,
+    /// Names of loop joints that may be open at home.
+    pub(super) unassembled: Vec<String>,
     pub(super) contacts: Vec<Contact>,
     pub(super) dimension: Dimension,
     pub(super) reference: FrameId,

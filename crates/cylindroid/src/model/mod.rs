@@ -5,6 +5,7 @@
 mod builder;
 #[cfg(feature = "formats")]
 pub mod catalogue;
+mod closure_frames;
 mod constraint_wrenches;
 mod contact;
 mod dimension;
@@ -26,8 +27,6 @@ mod tree_order;
 pub use builder::Builder;
 pub use contact::{Contact, ContactKind, ContactSpec};
 pub use dimension::Dimension;
-#[cfg(feature = "formats")]
-pub use formats::load;
 pub use include::Inclusion;
 pub use joint::{Joint, JointKind, Limits, Mimic};
 pub use joint_spec::JointSpec;

@@ -1,6 +1,6 @@
 //! Real URDFs are lax: what the kinematics does not need is noted, never refused.
 
-use cylindroid::model::{Geometry, Limits, formats};
+use cylindroid::model::{Geometry, Limits};
 
 use crate::urdf::one_joint;
 use crate::{read_urdf, report};
@@ -134,7 +134,7 @@ fn names_and_comments_need_not_be_ascii() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("old.urdf");
     std::fs::write(&path, b"<!-- Gr\xf6\xdfe --><robot name='r'><link name='a'/></robot>").unwrap();
-    assert_eq!(formats::load_file(&path).unwrap().links().len(), 1);
+    assert_eq!(cylindroid::load_file(&path).unwrap().links().len(), 1);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 mod broken;
 mod catalogue;
 mod closed_file;
+mod closures;
 mod dh;
 mod fk;
 mod lax;
@@ -32,7 +33,7 @@ fn read_urdf(text: &str) -> Result<Mechanism> {
 }
 
 fn read_toml(text: &str) -> Result<Mechanism> {
-    formats::toml::parse(text, Path::new("robots/test.toml"))
+    cylindroid::load_text(text, Path::new("robots/test.toml"))
 }
 
 /// The robots of example-robot-data, fetched by `cargo xtask setup`.

@@ -125,7 +125,7 @@ fn poses_of_real_models_are_those_of_mujoco() {
     let robots = robots.map(|name| (name, format!("robots/{name}/robot.xml")));
     let grippers = grippers.map(|name| (name, format!("grippers/{name}.xml")));
     for (name, path) in robots.into_iter().chain(grippers) {
-        let m = formats::load_file(&robosuite().join(path)).unwrap();
+        let m = cylindroid::load_file(&robosuite().join(path)).unwrap();
         assert_eq!(m.report().format, "MJCF");
         against_mujoco(name, &m);
         assert!(m.actuated().next().is_some() || name == "xarm7_gripper", "{name}");
@@ -145,7 +145,7 @@ fn real_models_are_read_or_refused_in_words() {
             } else if path.extension().is_some_and(|e| e == "xml")
                 && fs::read_to_string(&path).unwrap().contains("<mujoco")
             {
-                match formats::load_file(&path) {
+                match cylindroid::load_file(&path) {
                     Ok(m) => {
                         closed_at_home(&m, 1e-9);
                         loaded += 1;
@@ -160,7 +160,7 @@ fn real_models_are_read_or_refused_in_words() {
 
 #[test]
 fn grippers_with_loops() {
-    let m = formats::load_file(&robosuite().join("grippers/xarm7_gripper.xml")).unwrap();
+    let m = cylindroid::load_file(&robosuite().join("grippers/xarm7_gripper.xml")).unwrap();
     assert_eq!((m.n(), m.loops().len()), (5, 2));
     assert!(m.loops().iter().all(|l| l.kind == JointKind::Spherical));
     closed_at_home(&m, 1e-12);
@@ -183,11 +183,11 @@ fn grippers_with_tendons() {
         ("robotiq_gripper_s", 11, 4),
         ("jaco_three_finger_gripper", 6, 3),
     ] {
-        let m = formats::load_file(&robosuite().join(format!("grippers/{name}.xml"))).unwrap();
+        let m = cylindroid::load_file(&robosuite().join(format!("grippers/{name}.xml"))).unwrap();
         let moving = m.joints().iter().filter(|j| j.kind.dof() > 0).count();
         assert_eq!((moving, m.n(), m.actuated().count()), (joints, free, free), "{name}");
     }
-    let m = formats::load_file(&robosuite().join("grippers/robotiq_gripper_140.xml")).unwrap();
+    let m = cylindroid::load_file(&robosuite().join("grippers/robotiq_gripper_140.xml")).unwrap();
     let inner = m.joints().iter().find(|j| j.name == "left_inner_finger_joint").unwrap();
     assert!((inner.mimic.as_ref().unwrap().multiplier + 1.0 / 1.5).abs() < 1e-15);
 }
@@ -295,7 +295,7 @@ fn includes_stand_in_the_folder_of_the_model() {
         fs::write(&path, text).unwrap();
         path
     };
-    let load = |path: &Path| formats::load_file(path);
+    let load = |path: &Path| cylindroid::load_file(path);
     write(
         "arm.xml",
         "<mujoco><worldbody><body name='a'><include file='hand.xml'/></body></worldbody></mujoco>",

@@ -3,7 +3,7 @@
 
 use cylindroid::closure::{ClosedChain, Mobility};
 use cylindroid::linalg::{ColumnSpace, Matrix, Threshold};
-use cylindroid::model::{Joint, JointKind, formats};
+use cylindroid::model::{Joint, JointKind};
 use cylindroid::{Mechanism, State};
 
 use crate::mjcf::{LOOPS, coordinates, numbers, read_mjcf, robosuite, vectors};
@@ -114,7 +114,7 @@ fn motions_of_grippers_are_those_of_mujoco() {
         ("robotiq_gripper_s", 4),
         ("xarm7_gripper", 1),
     ] {
-        let m = formats::load_file(&robosuite().join(format!("grippers/{name}.xml"))).unwrap();
+        let m = cylindroid::load_file(&robosuite().join(format!("grippers/{name}.xml"))).unwrap();
         against_mujoco(name, &m, dof);
     }
     let mut with_equality = Vec::new();

@@ -7,7 +7,6 @@ use std::fs;
 use cylindroid::closure::{ClosedChain, Mobility, MotionSpace};
 use cylindroid::linalg::{ColumnSpace, Matrix, Threshold};
 use cylindroid::manipulability::{Manipulability, Metrics};
-use cylindroid::model::formats;
 use cylindroid::{Mechanism, load};
 use serde_json::Value;
 
@@ -54,7 +53,7 @@ fn cassie_moves_as_its_links_do() {
     ];
     for (case, (file, dof, loops)) in vectors("cassie").iter().zip(expected) {
         assert_eq!((case["file"].as_str().unwrap(), count(&case["dof"])), (file, dof));
-        let m = formats::load_file(&folder.join(file)).unwrap();
+        let m = cylindroid::load_file(&folder.join(file)).unwrap();
         assert_eq!(m.loops().len(), loops, "{file}");
         assert_eq!(report(&m).contains("gearbox joint"), file == "cassie.sdf", "{}", report(&m));
         let chain = at_home(&m);

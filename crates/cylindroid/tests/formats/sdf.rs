@@ -117,7 +117,7 @@ fn cassie_has_its_loops() {
         ("cassie_wo_gearbox_spring", 4, 0),
     ] {
         let path = folder.join(format!("{file}.sdf"));
-        let m = formats::load_file(&path).unwrap();
+        let m = cylindroid::load_file(&path).unwrap();
         assert_eq!(m.report().format, "SDF");
         closed_at_home(&m, 1e-12);
         let text = std::fs::read_to_string(&path).unwrap();
@@ -132,7 +132,7 @@ fn cassie_has_its_loops() {
         assert_eq!(says, gearboxes > 0, "{file}");
     }
     // The two legs mirror one another in the plane x-z of the model.
-    let m = formats::load_file(&folder.join("cassie_v2.sdf")).unwrap();
+    let m = cylindroid::load_file(&folder.join("cassie_v2.sdf")).unwrap();
     let pelvis = frame(&m, m.home(), "pelvis").inverse();
     for closing in m.loops().iter().filter(|l| l.name.starts_with("left")) {
         let other = closing.name.replace("left", "right");

@@ -60,8 +60,8 @@ fn every_robot_agrees_with_pinocchio() {
     for file in files {
         let data: Value = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
         let urdf = robots_folder().join(data["urdf"].as_str().unwrap());
-        let robot = cylindroid::model::formats::load_file(&urdf)
-            .unwrap_or_else(|e| panic!("{}: {e}", urdf.display()));
+        let robot =
+            cylindroid::load_file(&urdf).unwrap_or_else(|e| panic!("{}: {e}", urdf.display()));
         check(&robot, &data);
     }
 }
@@ -116,7 +116,7 @@ fn every_robot_file_loads() {
     assert!(files.len() > 60, "{} files", files.len());
     let mut refused = Vec::new();
     for file in &files {
-        match cylindroid::model::formats::load_file(file) {
+        match cylindroid::load_file(file) {
             Ok(robot) => assert!(robot.state(robot.home()).is_ok()),
             Err(e) => refused.push((file.file_name().unwrap().to_string_lossy().into_owned(), e)),
         }

@@ -12,5 +12,7 @@ pub(crate) mod configuration_signature;
 pub(crate) mod continuation;
 pub(crate) mod coordinates;
 pub(crate) mod initial_guesses;
+#[cfg(feature = "formats")]
+pub(crate) mod load;
 pub(crate) mod loop_closure;
 pub(crate) mod predictor_corrector;

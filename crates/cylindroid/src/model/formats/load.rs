@@ -12,23 +12,24 @@ use crate::model::{Mechanism, catalogue};
 /// Extensions by which a word is taken for a file that is not there, not for a misspelt name.
 const EXTENSIONS: [&str; 6] = ["urdf", "xml", "xacro", "sdf", "toml", "mjcf"];
 
+/// Closes the loops that a file closes by frames: the mechanism with an assembled home.
+pub(crate) type CloseHome<'a> = &'a dyn Fn(Mechanism) -> Result<Mechanism>;
+
 /// Loads a model: the name of a catalogue model, or the path of a file.
 ///
 /// # Errors
-/// A name that is neither, a file that cannot be read or understood.
-///
-/// # Examples
-/// ```
-/// let robot = cylindroid::load("panda")?;
-/// assert_eq!(robot.n(), 7);
-/// # Ok::<(), cylindroid::Error>(())
-/// ```
-pub fn load(name_or_path: &str) -> Result<Mechanism> {
-    load_from(Path::new(""), name_or_path, 0)
+/// A name that is neither, a file that cannot be read or understood, a loop that cannot be closed.
+pub(crate) fn load(name_or_path: &str, close: CloseHome<'_>) -> Result<Mechanism> {
+    load_from(Path::new(""), name_or_path, 0, close)
 }
 
 /// [`load`] for a file in `folder` that is included by `depth` others.
-pub(super) fn load_from(folder: &Path, name_or_path: &str, depth: usize) -> Result<Mechanism> {
+pub(super) fn load_from(
+    folder: &Path,
+    name_or_path: &str,
+    depth: usize,
+    close: CloseHome<'_>,
+) -> Result<Mechanism> {
     if catalogue::names().contains(&name_or_path) {
         return catalogue::load(name_or_path);
     }
@@ -37,7 +38,7 @@ pub(super) fn load_from(folder: &Path, name_or_path: &str, depth: usize) -> Resu
         || extension(path).is_some_and(|e| EXTENSIONS.contains(&e.as_str()));
     let path = folder.join(path);
     if looks_like_a_path || path.exists() {
-        return read_file(&path, depth);
+        return read_file(&path, depth, close);
     }
     let names = catalogue::names().iter().copied();
     Err(Error::unknown("catalogue model or file", name_or_path, names))
@@ -45,22 +46,13 @@ pub(super) fn load_from(folder: &Path, name_or_path: &str, depth: usize) -> Resu
 
 /// Loads a model file, by its extension and content.
 ///
-/// ```
-/// use cylindroid::model::formats::load_file;
-///
-/// let path = std::env::temp_dir().join("cylindroid-lever.urdf");
-/// std::fs::write(&path, r#"<robot name="lever"><link name="base"/></robot>"#)?;
-/// assert_eq!(load_file(&path)?.name(), "lever");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// # Errors
 /// As [`load`].
-pub fn load_file(path: &Path) -> Result<Mechanism> {
-    read_file(path, 0)
+pub(crate) fn load_file(path: &Path, close: CloseHome<'_>) -> Result<Mechanism> {
+    read_file(path, 0, close)
 }
 
-fn read_file(path: &Path, depth: usize) -> Result<Mechanism> {
+fn read_file(path: &Path, depth: usize, close: CloseHome<'_>) -> Result<Mechanism> {
     let bytes = std::fs::read(path).map_err(|e| Error::Io {
         path: path.to_owned(),
         action: "read",
@@ -70,7 +62,7 @@ fn read_file(path: &Path, depth: usize) -> Result<Mechanism> {
     let text = String::from_utf8_lossy(&bytes);
     let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
     match extension(path).as_deref() {
-        Some("toml") => Ok(toml::describe(&text, path, "mechanism file", depth, &load_from)?.0),
+        Some("toml") => toml::read_included(&text, path, depth, close),
         Some("mjcf") => mjcf::parse(&text, path),
         Some("urdf" | "xml" | "xacro" | "sdf") => read_xml(&text, path),
         _ if is_xml => read_xml(&text, path),

@@ -9,7 +9,7 @@ pub mod dh;
 #[cfg(feature = "formats")]
 mod graph;
 #[cfg(feature = "formats")]
-mod load;
+pub(crate) mod load;
 #[cfg(feature = "formats")]
 mod mesh;
 #[cfg(feature = "formats")]
@@ -24,6 +24,3 @@ pub mod toml;
 pub mod urdf;
 #[cfg(feature = "formats")]
 mod xml;
-
-#[cfg(feature = "formats")]
-pub use load::{load, load_file};

@@ -3,7 +3,7 @@
 //!
 //! Keys     name, description, source, dimension (2 or 3), reference, reference_point, home, tool;
 //!          `[[joint]]`, or `[dh]` with convention, rows, base, flange; `[[link]]`, `[[contact]]`,
-//!          `[[robot]]`, `[[frame]]`
+//!          `[[robot]]`, `[[frame]]`, `[[closure]]`
 //! Units    m, rad, N, N m; pitch in m/rad
 //! Valid    any graph that hangs together. Home is q = 0 but for included robots, whose start
 //!          configuration it is; a joint between links that are already connected closes a loop
@@ -12,6 +12,7 @@
 
 mod arm;
 mod body;
+mod closure;
 mod contact;
 mod names;
 mod parse;
@@ -21,6 +22,8 @@ mod value;
 mod world;
 
 pub use self::parse::parse;
+pub(crate) use self::parse::read;
+pub(in crate::model) use self::parse::read_included;
 pub(in crate::model) use self::robot::Loader;
 
 use std::path::Path;
@@ -30,12 +33,13 @@ use ::toml::de::DeTable;
 use self::names::{GROUND, REFERENCE};
 use self::value::Table;
 use self::world::World;
+use super::load::CloseHome;
 use super::span::Source;
 use crate::error::Result;
 use crate::model::{Dimension, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "name",
     "description",
     "source",
@@ -49,6 +53,7 @@ const KEYS: [&str; 14] = [
     "dh",
     "frame",
     "contact",
+    "closure",
     "robot",
 ];
 
@@ -57,8 +62,8 @@ pub(in crate::model) fn describe(
     text: &str,
     path: &Path,
     format: &'static str,
-    depth: usize,
-    loader: Loader<'_>,
+    (depth, loader): (usize, Loader<'_>),
+    close: CloseHome<'_>,
 ) -> Result<(Mechanism, String)> {
     let source = Source { format, path, text };
     let document = DeTable::parse(text).map_err(|e| {
@@ -104,6 +109,7 @@ pub(in crate::model) fn describe(
         world.check_link(&frame, "link", link)?;
         world.builder.frame(name, link, frame.pose()?);
     }
+    closure::write(&file, &mut world)?;
     if let Some(reference) = reference {
         world.check_link(&file, "reference", reference)?;
         refer(&mut world, reference, point.or(tree::first_origin(&joints, reference)));
@@ -120,7 +126,7 @@ pub(in crate::model) fn describe(
     let report = world.builder.report();
     report.format = format;
     report.source = file.string("source")?.unwrap_or("").to_owned();
-    Ok((world.build()?, file.string("description")?.unwrap_or("").to_owned()))
+    Ok((world.build(close)?, file.string("description")?.unwrap_or("").to_owned()))
 }
 
 /// The link's motion is the goal: its own frame, or one with world axes where the point is
@@ -156,8 +162,8 @@ fn note_places(world: &mut World<'_>, file: &Table<'_>) -> Result<()> {
         None => Vec::new(),
     };
     let frames = file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])?;
-    let contacts = contact::tables(file)?;
-    for table in rows.iter().chain(&tree::tables(file)?).chain(&contacts).chain(&frames) {
+    let named = [contact::tables(file)?, closure::tables(file)?].concat();
+    for table in rows.iter().chain(&tree::tables(file)?).chain(&named).chain(&frames) {
         world.note_place(table.required_string("name")?, table.at("name"));
     }
     for table in robot::tables(file)? {

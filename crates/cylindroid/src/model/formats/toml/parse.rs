@@ -5,32 +5,30 @@ use std::path::Path;
 use super::describe;
 use crate::error::Result;
 use crate::model::Mechanism;
-use crate::model::formats::load::load_from;
+use crate::model::formats::load::{CloseHome, load_from};
 
-/// Reads the text of a mechanism file. The path is used in errors, and to find the files of
-/// `[[robot]]` tables, which are read.
-///
-/// ```
-/// use cylindroid::model::formats::toml;
-/// use std::path::Path;
-///
-/// let text = r#"
-///     name = "lever"
-///     [[joint]]
-///     name = "hinge"
-///     type = "revolute"
-///     between = ["ground", "lever"]
-///     origin = [0.0, 0.0, 0.0]
-///     axis = [0.0, 0.0, 1.0]
-/// "#;
-/// let robot = toml::parse(text, Path::new("lever.toml"))?;
-/// assert_eq!((robot.name(), robot.n()), ("lever", 1));
-/// # Ok::<(), cylindroid::Error>(())
-/// ```
+/// Reads the text of a mechanism file without assembling home: loops that are closed by frames may
+/// be open there ([`Mechanism::unassembled`]). `cylindroid::load_text` closes them.
 ///
 /// # Errors
 /// [`Error::File`](crate::Error::File) with line and column for broken TOML, unknown keys, values of a wrong type,
 /// and all that the builder refuses; the errors of included files.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
-    Ok(describe(text, path, "mechanism file", 0, &load_from)?.0)
+    read(text, path, &Ok)
+}
+
+/// Reads the text of a mechanism file; `close` assembles home.
+pub(crate) fn read(text: &str, path: &Path, close: CloseHome<'_>) -> Result<Mechanism> {
+    read_included(text, path, 0, close)
+}
+
+/// [`read`] for a file that is included by `depth` others.
+pub(in crate::model) fn read_included(
+    text: &str,
+    path: &Path,
+    depth: usize,
+    close: CloseHome<'_>,
+) -> Result<Mechanism> {
+    let loader = |folder: &Path, name: &str, depth: usize| load_from(folder, name, depth, close);
+    Ok(describe(text, path, "mechanism file", (depth, &loader), close)?.0)
 }

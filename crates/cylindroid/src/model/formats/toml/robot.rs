@@ -90,7 +90,12 @@ fn add(table: &Table<'_>, name: &str, world: &mut World<'_>, robot: Mechanism) -
             let message = format!("'{}' brings a second link '{link}'", robot.name());
             return Err(table.refuse("model", message, "give the robot a name"));
         }
-        world.place(&link, world_from_root * root_from_link);
+        let world_from_link = world_from_root * root_from_link;
+        if link == parent {
+            world.place(&link, world_from_link);
+        } else {
+            world.bring(&link, world_from_link);
+        }
     }
     world.builder.include(&robot, how)?;
     Ok(())

@@ -17,7 +17,7 @@ use crate::model::formats::graph::{Branch, Coupling, Groups, Rank, spanning_tree
 use crate::model::natural_order::Natural;
 use crate::model::{JointKind, JointSpec, Limits, LoopJointSpec, Mimic};
 use crate::spatial::{Pose, Vec3};
-use crate::tolerance::ZERO_AXIS;
+use crate::tolerance::{CLOSED, ZERO_AXIS};
 
 const TYPES: [&str; 10] = [
     "revolute",
@@ -211,6 +211,24 @@ fn close(world: &mut World<'_>, joint: &JointEntry<'_>) -> Result<()> {
         return Err(joint.table.refuse("mimic", message, help));
     }
     let [world_from_a, world_from_b] = [world.pose(a), world.pose(b)];
+    if joint.kind == JointKind::Fixed
+        && joint.origin.is_none()
+        && world.is_brought(a)
+        && world.is_brought(b)
+    {
+        let apart = world_from_a.inverse() * world_from_b;
+        let (distance, angle) = (apart.translation.norm(), apart.rotation.log().norm());
+        if distance > CLOSED * (1.0 + world_from_a.translation.norm()) || angle > CLOSED {
+            let message = format!(
+                "joint '{}' is fixed and closes a loop between the frames of '{a}' and '{b}', \
+                 which are {distance:.3} m and {angle:.3} rad apart",
+                joint.name
+            );
+            let help = "write [[closure]] with type = \"pose\" to bring the frames together, or \
+                        origin = [...] to weld the links where they are";
+            return Err(joint.table.refuse("type", message, help));
+        }
+    }
     let world_from_joint = Pose::from_translation(joint.origin.unwrap_or(world_from_a.translation));
     world.builder.loop_joint(LoopJointSpec {
         name: joint.name.to_owned(),

@@ -2,13 +2,14 @@
 //!
 //! Checked  tests/formats/mechanism_file.rs::frames_*, tests/formats/closed_file.rs
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::names::GROUND;
 use super::value::Table;
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
+use crate::model::formats::load::CloseHome;
 use crate::model::formats::span::{IgnoredLog, Source};
 use crate::model::{Dimension, JointKind, JointSpec, Mechanism};
 use crate::spatial::{Pose, Vec3};
@@ -24,6 +25,8 @@ pub(super) struct World<'t> {
     /// Where names stand in the file, for errors of the builder.
     places: Vec<(String, Range<usize>)>,
     notes: IgnoredLog,
+    /// Links of robots.
+    brought: BTreeSet<String>,
 }
 
 impl<'t> World<'t> {
@@ -31,7 +34,8 @@ impl<'t> World<'t> {
         let mut builder = Mechanism::builder(name);
         builder.dimension(dimension);
         let (links, index, places) = (Vec::new(), BTreeMap::new(), Vec::new());
-        Self { source, builder, dimension, links, index, places, notes: IgnoredLog::default() }
+        let (notes, brought) = (IgnoredLog::default(), BTreeSet::new());
+        Self { source, builder, dimension, links, index, places, notes, brought }
     }
 
     /// Says where a link stands; it counts as connected with the root.
@@ -42,6 +46,17 @@ impl<'t> World<'t> {
             self.index.insert(link.to_owned(), self.links.len());
             self.links.push((link.to_owned(), world_from_link));
         }
+    }
+
+    /// Says where a link of a robot stands.
+    pub(super) fn bring(&mut self, link: &str, world_from_link: Pose) {
+        self.place(link, world_from_link);
+        self.brought.insert(link.to_owned());
+    }
+
+    /// True for links of robots, which have frames of their own.
+    pub(super) fn is_brought(&self, link: &str) -> bool {
+        self.brought.contains(link)
     }
 
     /// The links that stand somewhere, the root first.
@@ -112,10 +127,11 @@ impl<'t> World<'t> {
         self.places.push((name.to_owned(), span));
     }
 
-    /// The mechanism; errors of the builder get their place in the file.
-    pub(super) fn build(mut self) -> Result<Mechanism> {
+    /// The mechanism, home assembled by `close`; errors get their place in the file.
+    pub(super) fn build(mut self, close: CloseHome<'_>) -> Result<Mechanism> {
         std::mem::take(&mut self.notes).write(&[self.source], self.builder.report());
-        self.builder.build().map_err(|error| {
+        let assembled = |m: Mechanism| if m.unassembled().is_empty() { Ok(m) } else { close(m) };
+        self.builder.build().and_then(assembled).map_err(|error| {
             let Error::Model { culprit, message, .. } = error else { return error };
             let robot = culprit.split('/').next().unwrap_or("");
             let of = |name: &str| self.places.iter().rev().find(|p| p.0 == name);

@@ -1,0 +1,128 @@
+//! Loading of models, with the assembly of home where a file closes loops by frames.
+//!
+//! Formula  home: the assembly nearest to the configuration of the file; if there is none, the
+//!          nearest that random restarts find
+//! Why so   the loaders belong to the model and come before kinematics. They take the assembly as
+//!          an argument, so that files included by others are assembled too
+//! Checked  tests/formats/closures.rs, tests/formats/load.rs
+
+use std::path::Path;
+
+use super::assembly::{Assembly, assemble};
+use super::assembly_modes::{ModeOptions, assembly_modes};
+use crate::error::{Error, Result};
+use crate::model::{JointKind, LoopJoint, Mechanism, formats};
+
+/// Loads a model: the name of a catalogue model, or the path of a file.
+///
+/// Loops that a mechanism file closes by frames are assembled: home is the nearest configuration
+/// in which all loops are closed.
+///
+/// # Errors
+/// A name that is neither, a file that cannot be read or understood, a loop that cannot be closed.
+///
+/// # Examples
+/// ```
+/// let robot = cylindroid::load("panda")?;
+/// assert_eq!(robot.n(), 7);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+pub fn load(name_or_path: &str) -> Result<Mechanism> {
+    formats::load::load(name_or_path, &|mechanism| close_home(&mechanism))
+}
+
+/// Loads a model file, by its extension and content.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_file(path: &Path) -> Result<Mechanism> {
+    formats::load::load_file(path, &|mechanism| close_home(&mechanism))
+}
+
+/// Reads the text of a mechanism file. The path is used in errors, and to find the files of
+/// `[[robot]]` tables, which are read.
+///
+/// ```
+/// let text = r#"
+/// [[joint]]
+/// name = "lever"
+/// type = "revolute"
+/// between = ["ground", "lever"]
+/// origin = [0, 0, 0]
+/// axis = [0, 0, 1]
+/// "#;
+/// let lever = cylindroid::load_text(text, "lever.toml".as_ref())?;
+/// assert_eq!(lever.n(), 1);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::File`] with line and column for broken TOML, unknown keys, values of a wrong type, all
+/// that the builder refuses, and loops that cannot be closed; the errors of included files.
+pub fn load_text(text: &str, path: &Path) -> Result<Mechanism> {
+    formats::toml::read(text, path, &|mechanism| close_home(&mechanism))
+}
+
+/// The same mechanism with an assembled home, where closures by frames may be open.
+fn close_home(mechanism: &Mechanism) -> Result<Mechanism> {
+    let first = assemble(mechanism, mechanism.home(), &[])?;
+    if first.closed {
+        return Ok(mechanism.with_assembled_home(first.q));
+    }
+    let options = ModeOptions::default();
+    let found = assembly_modes(mechanism, mechanism.home(), &[], options)?;
+    match found.modes.into_iter().next() {
+        Some(nearest) => Ok(mechanism.with_assembled_home(nearest.assembly.q)),
+        None => Err(refuse(mechanism, &first, options.starts)?),
+    }
+}
+
+/// The closure that is open farthest at the best attempt from home.
+fn refuse(mechanism: &Mechanism, first: &Assembly, starts: usize) -> Result<Error> {
+    let state = mechanism.state(&first.q)?;
+    let gap = |l: &LoopJoint| {
+        let on_a = state.pose(mechanism.link_frame(l.a)) * l.link_a_from_joint;
+        let on_b = state.pose(mechanism.link_frame(l.b)) * l.link_b_from_joint;
+        let (a, b) = (on_a.rotation * l.axis, on_b.rotation * l.axis);
+        let angle = match l.kind {
+            JointKind::Fixed => on_a.rotation.angle_to(on_b.rotation),
+            JointKind::Spherical => 0.0,
+            _ => a.cross(b).norm().atan2(a.dot(b)),
+        };
+        ((on_a.translation - on_b.translation).norm(), angle)
+    };
+    let by_frames = mechanism.loops().iter().filter(|l| mechanism.unassembled().contains(&l.name));
+    let size = |(distance, angle): (f64, f64)| distance / mechanism.reach() + angle;
+    let worst = by_frames.map(|l| (l, gap(l))).max_by(|a, b| size(a.1).total_cmp(&size(b.1)));
+    let Some((joint, (distance, angle))) = worst else {
+        // Only called for mechanisms with closures by frames.
+        return Ok(Error::Model {
+            model: mechanism.name().to_owned(),
+            culprit: String::new(),
+            message: "its loops cannot be closed".to_owned(),
+        });
+    };
+    let mut open = format!("{} m", short(distance));
+    if !matches!(joint.kind, JointKind::Spherical)
+        && !matches!(mechanism.dimension(), crate::model::Dimension::Planar if joint.kind != JointKind::Fixed)
+    {
+        open += &format!(" and {} rad", short(angle));
+    }
+    let links = mechanism.links();
+    let message = format!(
+        "closure '{}' cannot be closed: its frames on '{}' and '{}' remain {open} apart, in the \
+         best configuration found from home and {} random restarts within the limits; check the \
+         frames, give a start nearer to an assembly (home, or start of a [[robot]]), or widen \
+         the limits",
+        joint.name,
+        links[joint.a].name,
+        links[joint.b].name,
+        starts - 1
+    );
+    Ok(Error::Model { model: mechanism.name().to_owned(), culprit: joint.name.clone(), message })
+}
+
+/// Three digits are enough to see how far something is open.
+fn short(x: f64) -> String {
+    format!("{:.3}", x)
+}
