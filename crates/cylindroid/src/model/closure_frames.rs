@@ -9,7 +9,12 @@ use std::sync::Arc;
 
 use super::builder::Builder;
 use super::mechanism::{Data, Mechanism};
+use crate::error::Result;
 use crate::spatial::Pose;
+
+/// Closes the loops that a file closes by frames: the mechanism with an assembled home.
+#[cfg(feature = "formats")]
+pub(crate) type CloseHome<'a> = &'a dyn Fn(Mechanism) -> Result<Mechanism>;
 
 impl Builder {
     /// Says that this loop joint may be open at home, which is to be assembled.

@@ -8,6 +8,7 @@ pub mod catalogue;
 mod closure_frames;
 mod constraint_wrenches;
 mod contact;
+mod depth_first;
 mod dimension;
 mod flatten;
 pub mod formats;
@@ -25,6 +26,8 @@ mod report;
 mod tree_order;
 
 pub use builder::Builder;
+#[cfg(feature = "formats")]
+pub(crate) use closure_frames::CloseHome;
 pub use contact::{Contact, ContactKind, ContactSpec};
 pub use dimension::Dimension;
 pub use include::Inclusion;

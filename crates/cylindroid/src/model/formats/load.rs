@@ -7,13 +7,10 @@ use std::path::Path;
 use super::span::Source;
 use super::{mjcf, sdf, toml, urdf, xml};
 use crate::error::{Error, Result};
-use crate::model::{Mechanism, catalogue};
+use crate::model::{CloseHome, Mechanism, catalogue};
 
 /// Extensions by which a word is taken for a file that is not there, not for a misspelt name.
 const EXTENSIONS: [&str; 6] = ["urdf", "xml", "xacro", "sdf", "toml", "mjcf"];
-
-/// Closes the loops that a file closes by frames: the mechanism with an assembled home.
-pub(crate) type CloseHome<'a> = &'a dyn Fn(Mechanism) -> Result<Mechanism>;
 
 /// Loads a model: the name of a catalogue model, or the path of a file.
 ///
@@ -62,7 +59,10 @@ fn read_file(path: &Path, depth: usize, close: CloseHome<'_>) -> Result<Mechanis
     let text = String::from_utf8_lossy(&bytes);
     let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
     match extension(path).as_deref() {
-        Some("toml") => toml::read_included(&text, path, depth, close),
+        Some("toml") => {
+            let loader = |from: &Path, name: &str, depth| load_from(from, name, depth, close);
+            Ok(toml::describe(&text, path, "mechanism file", (depth, &loader), close)?.0)
+        }
         Some("mjcf") => mjcf::parse(&text, path),
         Some("urdf" | "xml" | "xacro" | "sdf") => read_xml(&text, path),
         _ if is_xml => read_xml(&text, path),

@@ -23,7 +23,6 @@ mod world;
 
 pub use self::parse::parse;
 pub(crate) use self::parse::read;
-pub(in crate::model) use self::parse::read_included;
 pub(in crate::model) use self::robot::Loader;
 
 use std::path::Path;
@@ -33,10 +32,9 @@ use ::toml::de::DeTable;
 use self::names::{GROUND, REFERENCE};
 use self::value::Table;
 use self::world::World;
-use super::load::CloseHome;
 use super::span::Source;
 use crate::error::Result;
-use crate::model::{Dimension, Mechanism};
+use crate::model::{CloseHome, Dimension, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
 const KEYS: [&str; 15] = [

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::describe;
 use crate::error::Result;
-use crate::model::Mechanism;
-use crate::model::formats::load::{CloseHome, load_from};
+use crate::model::formats::load::load_from;
+use crate::model::{CloseHome, Mechanism};
 
 /// Reads the text of a mechanism file without assembling home: loops that are closed by frames may
 /// be open there ([`Mechanism::unassembled`]). `cylindroid::load_text` closes them.
@@ -19,16 +19,6 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
 
 /// Reads the text of a mechanism file; `close` assembles home.
 pub(crate) fn read(text: &str, path: &Path, close: CloseHome<'_>) -> Result<Mechanism> {
-    read_included(text, path, 0, close)
-}
-
-/// [`read`] for a file that is included by `depth` others.
-pub(in crate::model) fn read_included(
-    text: &str,
-    path: &Path,
-    depth: usize,
-    close: CloseHome<'_>,
-) -> Result<Mechanism> {
-    let loader = |folder: &Path, name: &str, depth: usize| load_from(folder, name, depth, close);
-    Ok(describe(text, path, "mechanism file", (depth, &loader), close)?.0)
+    let loader = |from: &Path, name: &str, depth| load_from(from, name, depth, close);
+    Ok(describe(text, path, "mechanism file", (0, &loader), close)?.0)
 }

@@ -9,9 +9,8 @@ use super::names::GROUND;
 use super::value::Table;
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
-use crate::model::formats::load::CloseHome;
 use crate::model::formats::span::{IgnoredLog, Source};
-use crate::model::{Dimension, JointKind, JointSpec, Mechanism};
+use crate::model::{CloseHome, Dimension, JointKind, JointSpec, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
 /// What has been written so far.
