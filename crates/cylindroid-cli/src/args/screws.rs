@@ -10,7 +10,8 @@ use crate::values::Numbers;
 pub(crate) const ABOUT: &str = "\
 The screw system of the joints: class, pitches, frame, and which inverses exist
 
-For the joint twists of a robot at a configuration, or for twists read from a file: order and \
+For the joint twists of a robot at a configuration, for the motions that the loops of a closed \
+chain permit its reference or another frame, or for twists read from a file: order and \
 Gibson-Hunt class of the screw system they span, principal pitches and screws, canonical frame, \
 reciprocal system, the pitches h at which a hyperbolic pseudoinverse exists, the pitch with the \
 smallest projector norm, and whether the joint axes are in involution. The results are independent \

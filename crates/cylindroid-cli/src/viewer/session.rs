@@ -4,16 +4,13 @@
 
 use std::sync::Arc;
 
-use cylindroid::closure::ClosedChain;
+use cylindroid::closure::frame_twists;
 use cylindroid::control::{Stall, Status, Step, Target};
 use cylindroid::ik::Task;
-use cylindroid::kinematics::Chain;
 use cylindroid::model::FrameId;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::spatial::Quaternion;
-use cylindroid::{
-    Error, Mechanism, Pose, ReferenceFrame, Result, Servo, ServoOptions, State, Twist, Vec3,
-};
+use cylindroid::{Error, Mechanism, Pose, Result, Servo, ServoOptions, State, Vec3};
 use serde_json::Value;
 
 use super::assets::Folders;
@@ -384,14 +381,7 @@ impl Session {
     pub(super) fn screw_system(&self) -> Result<ScrewSystem> {
         let (mechanism, state) = (self.mechanism(), self.state());
         let of = self.options().end_effector;
-        let twists = if mechanism.is_closed() {
-            ClosedChain::of(state, Some(of.frame), None)?.reference_twists(state)
-        } else {
-            let jacobian = state.jacobian(of, ReferenceFrame::World);
-            let column =
-                |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
-            Chain::new(mechanism, of).coordinates().iter().map(column).collect()
-        };
+        let twists = frame_twists(state, of)?;
         ScrewSystem::of(&twists, &ScrewOptions::with_length(mechanism.reach()))
     }
 

@@ -131,7 +131,10 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             ],
         ],
         "screws" => {
-            vec![vec!["youbot", "--h", "0.1", "--point", "0.4,0.2,0.2", "--direction", "0,0,1"]]
+            vec![
+                vec!["youbot", "--h", "0.1", "--point", "0.4,0.2,0.2", "--direction", "0,0,1"],
+                vec!["delta"],
+            ]
         }
         "assemble" => vec![
             vec!["five-bar"],

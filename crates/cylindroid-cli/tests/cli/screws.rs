@@ -48,6 +48,25 @@ fn the_frame_and_the_tool_change_no_verdict() {
     assert_eq!(a["gibson_hunt"], "IB0");
 }
 
+/// The platform of a closed chain has the motions that all legs permit.
+#[test]
+fn closed_chains_have_the_screws_of_their_platform() {
+    for (name, rank, class) in [("delta", 3, "IID"), ("stewart", 6, "6"), ("five-bar", 2, "")] {
+        let report = json(&["screws", name], 0);
+        assert_eq!(report["rank"], rank, "{name}");
+        assert_eq!(report["names"].as_array().unwrap().len(), rank, "{name}");
+        assert!(report["closure_error"]["distance"].as_f64().unwrap() < 1e-9, "{name}");
+        assert!(report["involution"].is_null(), "{name}");
+        assert!(report["gibson_hunt"].as_str().unwrap().ends_with(class), "{name}");
+    }
+    let shown = text(&["screws", "delta"]);
+    assert!(shown.contains("that the loops permit"), "{shown}");
+    let open = text(&["screws", "five-bar", "--q", "0.3,0,0,0"]);
+    assert!(open.contains("loops are open by"), "{open}");
+    let point = ["screws", "delta", "--point", "0,0,0", "--direction", "0,0,1"];
+    assert!(crate::refused(&point).contains("loops couple its joint velocities"));
+}
+
 #[test]
 fn files_of_twists() {
     let folder = tempfile::tempdir().unwrap();

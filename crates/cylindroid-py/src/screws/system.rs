@@ -1,5 +1,6 @@
 //! The class `ScrewSystem`: class, frame, principal screws, sums and intersections.
 
+use cylindroid::closure::frame_twists;
 use cylindroid::screws::{self, ScrewSystem};
 use cylindroid::{Error, Twist};
 use pyo3::prelude::*;
@@ -7,6 +8,7 @@ use pyo3::prelude::*;
 use super::{PyScrew, scale_of, screw_list};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
+use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
 /// The subspace of twists that a set of twists spans, with its class, principal screws and frame.
@@ -305,5 +307,58 @@ impl PyScrewSystem {
             table.row("ambiguous", "a quantity lies near its threshold, see margins");
         }
         table
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// The screw system of a frame: of the joints that move it, in a closed chain of the motions
+    /// that its loops permit.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,), optional
+    ///     Configuration [rad or m]. Default: home.
+    /// frame : str, optional
+    ///     Default: the tool.
+    /// length, center, noise
+    ///     As `ScrewSystem`; the length is that of the mechanism by default.
+    ///
+    /// Returns
+    /// -------
+    /// ScrewSystem
+    ///     In the world frame.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError
+    ///
+    /// Examples
+    /// --------
+    /// The platform of a delta robot only translates.
+    ///
+    /// >>> import cylindroid as cy
+    /// >>> system = cy.load("delta").screw_system()
+    /// >>> system.rank, system.meaning
+    /// (3, 'all translations')
+    #[pyo3(signature = (q = None, frame = None, length = None, center = None, noise = None))]
+    fn screw_system(
+        &self,
+        q: Option<Numbers<'_>>,
+        frame: Option<&str>,
+        length: Option<f64>,
+        center: Option<Numbers<'_>>,
+        noise: Option<f64>,
+    ) -> Result<PyScrewSystem> {
+        let mechanism = &self.inner;
+        let length = length.unwrap_or(mechanism.reach());
+        let options = scale_of(Some(length), center.as_ref(), noise)?;
+        let q = match &q {
+            Some(q) => q.vector("q")?.to_vec(),
+            None => mechanism.home().to_vec(),
+        };
+        let of = self.end_effector(frame, None)?;
+        let twists = frame_twists(&mechanism.state(&q)?, of)?;
+        Ok(PyScrewSystem { inner: ScrewSystem::of(&twists, &options)? })
     }
 }

@@ -38,6 +38,7 @@ pub use mobility::actuation_map::ActuationMap;
 pub use mobility::counts::MobilityCounts;
 pub use mobility::finite_mobility::{Branch, FiniteMobility, MobilityEvidence};
 pub use mobility::motion_space::{MotionSpace, RowSelection};
+pub use mobility::reference_twists::frame_twists;
 pub use mobility::relation::{Relation, RelationBases, RelationDimensions};
 pub use mobility::report::{CoordinateKinds, JointMobility, Mobility, RankWarning};
 pub use mobility::subspace::Subspace;

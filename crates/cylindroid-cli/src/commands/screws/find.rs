@@ -13,7 +13,7 @@ pub(super) struct Found {
     pub(super) twists: Twists,
     pub(super) system: ScrewSystem,
     pub(super) screws: Vec<Option<Screw>>,
-    /// Involution of the twists of zero pitch, if there are at least two.
+    /// Involution of the joint axes of zero pitch, if there are at least two.
     pub(super) involution: Option<Involution>,
     /// The joint velocities that move the point along the direction, if both are given.
     pub(super) point: Option<PointDirection>,
@@ -28,7 +28,9 @@ pub(super) fn find(twists: Twists, args: &ScrewsArgs) -> Result<Found> {
     let system = ScrewSystem::of(&twists.twists, &options)?;
     let screws: Vec<Option<Screw>> = twists.twists.iter().map(|t| Screw::of(*t)).collect();
     let lines = lines(&screws, &system);
-    let involution = if lines.len() < 2 { None } else { Some(involution(&lines, &options)?) };
+    // The twists of a closed chain are a basis: their axes are not those of joints.
+    let single = lines.len() < 2 || twists.is_of_loops();
+    let involution = if single { None } else { Some(involution(&lines, &options)?) };
     let point = match (args.point, args.direction) {
         (Some(point), Some(direction)) => Some(point_direction(
             &twists.matrix(),

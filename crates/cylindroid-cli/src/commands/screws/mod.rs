@@ -43,5 +43,5 @@ pub(crate) fn report(
     of: EndEffector,
     args: &ScrewsArgs,
 ) -> anyhow::Result<Box<RawValue>> {
-    report::raw(&find(Twists::of(state, of), args)?, &args.h)
+    report::raw(&find(Twists::of(state, of)?, args)?, &args.h)
 }

@@ -10,6 +10,8 @@ use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
 use super::find::Found;
+use super::twists::Twists;
+use crate::commands::closed::ClosureErrorJson;
 use crate::commands::shared::Style;
 use crate::output::{self, Align, PoseJson, ScrewJson, number};
 
@@ -23,6 +25,9 @@ struct ScrewsJson<'a> {
     q: Option<&'a [f64]>,
     /// Names of the twists: the joints that move the frame, or numbers from 1.
     names: &'a [String],
+    /// In a closed chain, whose twists are a basis of the motions that the loops permit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    closure_error: Option<ClosureErrorJson>,
     /// Linear part first, at the origin of the world (or of the file's frame).
     twists: Vec<[f64; 6]>,
     /// Each twist as a screw; null for a zero twist.
@@ -156,6 +161,7 @@ fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
         frame: robot.map(|(_, frame, _)| frame.as_str()),
         q: robot.map(|(.., q)| q.as_slice()),
         names: &twists.names,
+        closure_error: twists.closure_error.map(Into::into),
         twists: twists.twists.iter().map(|t| t.to_array()).collect(),
         screws: found.screws.iter().map(|s| s.as_ref().map(Into::into)).collect(),
         rank: system.order(),
@@ -249,6 +255,7 @@ fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<
             ("model", robot.map_or(twists.file.as_str(), |(r, ..)| r.name()).to_owned()),
             ("frame", robot.map_or_else(String::new, |(_, frame, _)| frame.clone())),
             ("q [rad or m]", robot.map_or_else(String::new, |(.., q)| output::entries(q))),
+            ("loops are open by", open(twists)),
             ("order", order(system, twists.twists.len())),
             ("class", class(system)),
             ("pitches of the class [m/rad]", output::entries(&form.pitches)),
@@ -261,7 +268,15 @@ fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<
         ],
     )?;
     writeln!(out)?;
-    writeln!(out, "Twists as screws, in {}", frame_of(found))?;
+    match robot {
+        Some((_, frame, _)) if twists.is_of_loops() => {
+            writeln!(
+                out,
+                "Motions of {frame} that the loops permit: a basis, as screws of the world"
+            )?;
+        }
+        _ => writeln!(out, "Twists as screws, in {}", frame_of(found))?,
+    }
     let named =
         twists.names.iter().map(String::as_str).zip(found.screws.iter().map(Option::as_ref));
     screws(out, "twist", named)?;
@@ -292,6 +307,16 @@ fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<
 
 fn frame_of(found: &Found) -> &'static str {
     if found.twists.robot.is_some() { "the world frame" } else { "the frame of the file" }
+}
+
+/// Nothing if they are closed.
+fn open(twists: &Twists) -> String {
+    match twists.closure_error {
+        Some(error) if !error.is_closed(twists.length) => {
+            format!("{} m, {} rad: run assemble", number(error.distance), number(error.angle))
+        }
+        _ => String::new(),
+    }
 }
 
 fn order(system: &ScrewSystem, count: usize) -> String {

@@ -3,9 +3,10 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
+use cylindroid::closure::{ClosedChain, LoopClosureError, frame_twists};
 use cylindroid::kinematics::Chain;
 use cylindroid::model::Mechanism;
-use cylindroid::{EndEffector, Error, Matrix, ReferenceFrame, Result, State, Twist, Vec3};
+use cylindroid::{EndEffector, Error, Matrix, Result, State, Twist, Vec3};
 
 use crate::args::ScrewsArgs;
 use crate::commands::shared::{configuration, end_effector};
@@ -19,6 +20,8 @@ pub(super) struct Twists {
     pub(super) file: String,
     pub(super) names: Vec<String>,
     pub(super) twists: Vec<Twist>,
+    /// How far the loops of a closed chain are open.
+    pub(super) closure_error: Option<LoopClosureError>,
     /// Their characteristic length.
     pub(super) length: f64,
 }
@@ -56,6 +59,7 @@ impl Twists {
             file: args.configuration.model.clone(),
             names: (1..=rows.len()).map(|i| i.to_string()).collect(),
             twists: rows.into_iter().map(twist).collect(),
+            closure_error: None,
             length: 1.0,
         })
     }
@@ -71,24 +75,47 @@ impl Twists {
         let robot = cylindroid::load(&args.configuration.model)?;
         let q = configuration(&robot, &args.configuration)?;
         let end_effector = end_effector(&robot, &args.frame)?;
-        Ok(Self::of(&robot.state(&q)?, end_effector))
+        let found = Self::of(&robot.state(&q)?, end_effector)?;
+        if found.is_of_loops() && args.point.is_some() {
+            return Err(Error::InvalidOption {
+                option: "--point",
+                value: args.configuration.model.clone(),
+                reason: "the loops couple its joint velocities; move solves for them".to_owned(),
+            });
+        }
+        Ok(found)
     }
 
-    /// The twists of the joints that move a tool.
-    pub(super) fn of(state: &State, end_effector: EndEffector) -> Self {
+    /// The twists of the joints that move a tool; in a closed chain those that the loops permit.
+    pub(super) fn of(state: &State, end_effector: EndEffector) -> Result<Self> {
         let robot = state.mechanism();
         let frame = robot.frame_of(end_effector.frame).name.clone();
-        let chain = Chain::new(robot, end_effector);
-        let jacobian = state.jacobian(end_effector, ReferenceFrame::World);
-        let column = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
-        let names = chain.coordinates().iter().map(|&c| robot.coordinates()[c].name.clone());
-        Self {
+        let twists = frame_twists(state, end_effector)?;
+        let closed = robot.is_closed();
+        let names = if closed {
+            (1..=twists.len()).map(|i| i.to_string()).collect()
+        } else {
+            let chain = Chain::new(robot, end_effector);
+            let coordinates = chain.coordinates().iter();
+            coordinates.map(|&c| robot.coordinates()[c].name.clone()).collect()
+        };
+        let closure_error = match closed {
+            true => Some(ClosedChain::of(state, None, None)?.closure_error),
+            false => None,
+        };
+        Ok(Self {
             file: String::new(),
-            names: names.collect(),
-            twists: chain.coordinates().iter().map(column).collect(),
+            names,
+            twists,
+            closure_error,
             length: robot.reach(),
             robot: Some((robot.clone(), frame, state.q().to_vec())),
-        }
+        })
+    }
+
+    /// True for the motions that the loops of a closed chain permit: not those of single joints.
+    pub(super) fn is_of_loops(&self) -> bool {
+        self.closure_error.is_some()
     }
 
     /// The twists as columns.

@@ -7,13 +7,40 @@
 //! Units    m, rad
 //! Frame    world, at the world origin
 //! Valid    any mechanism; for a tree they span the columns of its Jacobian
-//! Checked  tests/it/closure/graph.rs::motions_of_the_reference
+//! Checked  tests/it/closure/graph.rs::motions_of_the_reference, ::twists_of_frames
 
 use super::motion_space::MotionSpace;
 use crate::closure::constraint::closed_chain::ClosedChain;
-use crate::kinematics::State;
+use crate::error::Result;
+use crate::kinematics::{Chain, EndEffector, ReferenceFrame, State};
 use crate::model::Dimension;
 use crate::spatial::Twist;
+
+/// Twists that span the motions of a frame: of a tree those of the joints that move it, a twist for
+/// each coordinate; of a closed chain a basis of the motions that loops and contacts permit. At the
+/// world origin, world axes.
+///
+/// ```
+/// use cylindroid::closure::frame_twists;
+///
+/// // One leg of a delta robot has more freedoms than its platform, which only translates.
+/// let delta = cylindroid::load("delta")?;
+/// let twists = frame_twists(&delta.state(delta.home())?, delta.reference())?;
+/// assert_eq!(twists.len(), 3);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`ClosedChain::of`].
+pub fn frame_twists(state: &State, of: impl Into<EndEffector>) -> Result<Vec<Twist>> {
+    let (mechanism, of) = (state.mechanism(), of.into());
+    if mechanism.is_closed() {
+        return Ok(ClosedChain::of(state, Some(of.frame), None)?.reference_twists(state));
+    }
+    let jacobian = state.jacobian(of, ReferenceFrame::World);
+    let twist = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
+    Ok(Chain::new(mechanism, of).coordinates().iter().map(twist).collect())
+}
 
 impl ClosedChain {
     /// A basis of the motions of the reference link at `state`, for which this chain was made:

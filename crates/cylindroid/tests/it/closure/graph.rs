@@ -1,6 +1,6 @@
 //! From mechanisms to constraints: exact values, counts, wherever the loops are cut.
 
-use cylindroid::closure::{ClosedChain, Mobility, MotionSpace};
+use cylindroid::closure::{ClosedChain, Mobility, MotionSpace, frame_twists};
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::{ContactKind, ContactSpec, JointKind, JointSpec, LoopJointSpec};
@@ -161,6 +161,36 @@ fn bad_requests_are_refused() {
     let finger = b.build().unwrap();
     let chain = ClosedChain::of(&finger.state(&[0.0]).unwrap(), None, None).unwrap();
     assert_eq!(Mobility::of(&chain.constraint).dof.dimension(), 1, "it turns about the point");
+}
+
+/// In a closed chain as many as the frame has degrees of freedom, not those of one leg; in a tree
+/// the columns of the Jacobian.
+#[test]
+fn twists_of_frames() {
+    for (name, dof) in [
+        ("four-bar", 1),
+        ("five-bar", 2),
+        ("3rrr", 3),
+        ("delta", 3),
+        ("stewart", 6),
+        ("watt", 1),
+        ("two-arm", 6),
+    ] {
+        let m = catalogue::load(name).unwrap();
+        let state = m.state(m.home()).unwrap();
+        let twists = frame_twists(&state, m.reference()).unwrap();
+        assert_eq!(twists.len(), dof, "{name}");
+        // A delta's platform does not rotate.
+        if name == "delta" {
+            assert!(twists.iter().all(|t| t.angular.norm() < 1e-12));
+        }
+    }
+    let robot = catalogue::load("ur5e").unwrap();
+    let state = robot.state(&[0.1, -0.4, 0.7, 0.2, 0.9, -0.3]).unwrap();
+    let j = state.jacobian(robot.tool(), ReferenceFrame::World);
+    let twists = frame_twists(&state, robot.tool()).unwrap();
+    assert_eq!(twists.len(), 6);
+    twists.iter().enumerate().for_each(|(c, t)| assert_eq!(j.column(c), t.to_array()));
 }
 
 /// Of a tree what its Jacobian spans; of a linkage the way that its reference really goes.
