@@ -68,6 +68,14 @@ pub const LIMIT_MET: f64 = 1e-12;
 /// component is positive, so that rounding does not choose the direction.
 pub const HALF_TURN: f64 = 1e-9;
 
+/// Positions are known to this fraction of the largest of them [-]: a few roundings of each joint on
+/// the way.
+pub const POSITION_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Axes that pass a common point within this fraction of the extent of their joints meet there, so
+/// that their distances yield no length [-].
+pub const COMMON_POINT: f64 = 1e-3;
+
 /// Three points define no circle when the height of their triangle is below this times its longest
 /// side [-]: a radius beyond 1e5 such sides.
 pub const COLLINEAR: f64 = 1e-6;
@@ -196,10 +204,20 @@ pub const UNACTUATED: f64 = 1e-9;
 /// reach and of angles, of a hundred roundings and some [-].
 pub const LOOP_ROUNDING: f64 = 1e-13;
 
-/// Step at which closed configurations near a configuration are searched for, in scaled coordinates
-/// [rad, or reaches]: a resistance of second order then shows as 1e-4, of fourth order as 1e-8, far
-/// above rounding.
+/// Unit of the distance between a configuration and its neighbours, in scaled coordinates [rad, or
+/// characteristic lengths].
 pub const FINITE_STEP: f64 = 1e-2;
+
+/// Distance to which a branch of closed configurations is tracked [rad, or characteristic lengths]:
+/// a resistance of eighth order then shows as 4e-3, far above rounding.
+pub const TRACKED: f64 = 0.5;
+
+/// A motion that was tracked less far than this does not prove to be finite [rad, or characteristic
+/// lengths]: a resistance of eighth order would be 2e-10 there.
+pub const TRACKED_AT_LEAST: f64 = 1.0 / 16.0;
+
+/// A residual this many times its rounding is no rounding [-].
+pub const CLEARLY_OPEN: f64 = 1e3;
 
 /// Fraction of the distance to a branch point below which a singular value of a configuration on a
 /// branch counts as zero [-]: where branches cross, a value that vanishes there grows in proportion

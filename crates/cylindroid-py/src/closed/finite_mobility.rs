@@ -22,9 +22,11 @@ use crate::error::Result;
 /// evidence : str
 /// certain : bool
 ///     False if branches may have been missed.
-/// step : float
-///     [rad, or characteristic lengths]
-/// residual : float
+/// tracked : float
+///     Distance to which the motions were tracked [rad, or characteristic lengths].
+/// contact_order : int or None
+///     Power of the distance with which the loops open (2 for most shaky structures); None where
+///     they stay closed, or where it differs between directions.
 #[pyclass(frozen, name = "FiniteMobility", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyFiniteMobility {
@@ -70,13 +72,13 @@ impl PyFiniteMobility {
     }
 
     #[getter]
-    fn step(&self) -> f64 {
-        self.inner.step
+    fn tracked(&self) -> f64 {
+        self.inner.tracked
     }
 
     #[getter]
-    fn residual(&self) -> f64 {
-        self.inner.residual
+    fn contact_order(&self) -> Option<u32> {
+        self.inner.contact_order
     }
 
     fn __repr__(&self) -> String {
@@ -93,17 +95,29 @@ impl PyFiniteMobility {
 ///     Its finite degrees of freedom.
 /// motions : ndarray, (n, k)
 ///     Rates of q along it.
+/// tracked : float
+///     Distance to which it was tracked [rad, or characteristic lengths].
+/// configurations : ndarray, (N, n)
+///     Configurations on it, as far from this one as it was tracked.
 #[pyclass(frozen, name = "Branch", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyBranch {
     #[pyo3(get)]
     dimension: usize,
     motions: Matrix,
+    #[pyo3(get)]
+    tracked: f64,
+    configurations: Vec<Vec<f64>>,
 }
 
 impl From<&Branch> for PyBranch {
     fn from(branch: &Branch) -> Self {
-        Self { dimension: branch.dimension, motions: branch.motions.clone() }
+        Self {
+            dimension: branch.dimension,
+            motions: branch.motions.clone(),
+            tracked: branch.tracked,
+            configurations: branch.configurations.clone(),
+        }
     }
 }
 
@@ -112,6 +126,14 @@ impl PyBranch {
     #[getter]
     fn motions<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
         arrays::matrix(py, &self.motions)
+    }
+
+    #[getter]
+    fn configurations<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        let rows = Matrix::from_fn(self.configurations.len(), self.motions.rows(), |i, j| {
+            self.configurations[i][j]
+        });
+        arrays::matrix(py, &rows)
     }
 
     fn __repr__(&self) -> String {

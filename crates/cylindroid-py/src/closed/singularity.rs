@@ -18,13 +18,19 @@ use crate::table::{self, Table};
 ///     (passive joints gain one of their own).
 /// descriptions : list of str
 ///     The same in words.
+/// everywhere : list of str
+///     The kinds that every configuration of the branch has (architecture singularities); empty
+///     where the singularity is one of this configuration.
+/// structure : str
+///     The closed configurations around this one: 'regular', 'bifurcation', 'cone', 'shaky',
+///     'shaky-rigid', 'rigid' or 'unknown'.
 /// distances : dict
 ///     Distance to each kind: 0 at a singularity, at most 1 elsewhere, infinite if there is nothing
 ///     to lose. Keys 'type_i', 'type_ii', 'configuration_space', 'passive'.
 /// generic : dict
-///     Counts of the mechanism at regular configurations.
+///     Counts at regular configurations of its branch.
 /// compared_with : int
-///     Number of other closed configurations from which these were computed.
+///     Number of other configurations of the branch from which these were computed.
 /// blocked : list of Screw
 ///     Wrenches resisted without torque, beyond the generic ones.
 /// lost, gained : list of Screw
@@ -51,22 +57,32 @@ impl From<&Diagnosis> for PySingularity {
 impl PySingularity {
     #[getter]
     fn regular(&self) -> bool {
-        self.inner.singularities.is_regular()
+        self.inner.verdict.is_regular()
     }
 
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
-        self.inner.singularities.kinds.iter().map(|k| k.name()).collect()
+        self.inner.verdict.kinds().iter().map(|k| k.name()).collect()
+    }
+
+    #[getter]
+    fn everywhere(&self) -> Vec<&'static str> {
+        self.inner.verdict.everywhere().iter().map(|k| k.name()).collect()
+    }
+
+    #[getter]
+    fn structure(&self) -> &'static str {
+        self.inner.verdict.structure().name()
     }
 
     #[getter]
     fn descriptions(&self) -> Vec<String> {
-        self.inner.singularities.kinds.iter().map(ToString::to_string).collect()
+        self.inner.verdict.kinds().iter().map(ToString::to_string).collect()
     }
 
     #[getter]
     fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let d = &self.inner.singularities.distances;
+        let d = &self.inner.distances;
         let all = PyDict::new(py);
         all.set_item("type_i", d.type_i)?;
         all.set_item("type_ii", d.type_ii)?;
@@ -140,7 +156,7 @@ impl PySingularity {
         for description in self.descriptions() {
             table.row("kind", description);
         }
-        let d = &self.inner.singularities.distances;
+        let d = &self.inner.distances;
         for (name, distance) in [
             ("to type I", d.type_i),
             ("to type II", d.type_ii),

@@ -51,7 +51,9 @@ pub use position::continuation::{
 pub use position::load::{load, load_file, load_text};
 pub use singularity::diagnosis::Diagnosis;
 pub use singularity::generic_mobility::GenericMobility;
+pub(crate) use singularity::singularity_types::Excess;
 pub use singularity::singularity_types::{Singularities, SingularityDistances};
+pub use singularity::verdict::{LocalStructure, Verdict};
 pub use singularity_kind::SingularityKind;
 pub(crate) use statics::contact_forces::ContactForceSolver;
 pub use statics::contact_forces::{

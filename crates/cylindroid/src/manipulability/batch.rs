@@ -20,8 +20,8 @@ use super::closed_chain_batched::{Found, Kernel};
 use super::efficiency::Manipulability;
 use super::metrics::Metrics;
 use crate::closure::{
-    BatchedConstraintPlan, ClosedChain, GenericMobility, LoopClosureError, MobilityCounts,
-    MotionSpace, Singularities, SingularityDistances,
+    BatchedConstraintPlan, ClosedChain, Excess, GenericMobility, LoopClosureError, MobilityCounts,
+    MotionSpace, SingularityDistances,
 };
 use crate::error::{Error, Result};
 use crate::kinematics::State;
@@ -249,7 +249,9 @@ impl ManipulabilityBatch {
         let chain = ClosedChain::of(state, Some(self.reference), Some(self.length))?;
         let motions = MotionSpace::of(&chain.constraint);
         let relation = motions.relation();
-        let singularities = Singularities::of(&motions, &relation, &self.generic);
+        let counts = MobilityCounts::of(&motions, &relation);
+        let unactuated = self.generic.lack_actuation(motions.sizes());
+        let excess = Excess::of(&counts, &self.generic, unactuated);
         let dimensions = relation.dimensions();
         let spectrum = Manipulability::of(&relation, &self.metrics)?.kinematic;
         let none = f64::NAN;
@@ -260,8 +262,8 @@ impl ManipulabilityBatch {
             coordinate: dimensions.coordinate,
             internal: dimensions.internal,
             hyperstatic: motions.hyperstatic(),
-            counts: MobilityCounts::of(&motions, &relation),
-            distances: singularities.distances,
+            counts,
+            distances: SingularityDistances::of(&counts, &motions, &relation).against(excess),
             volume: spectrum.volume(),
             largest: spectrum.largest().unwrap_or(none),
             smallest: spectrum.smallest().unwrap_or(none),
@@ -320,7 +322,8 @@ impl ManipulabilityBatch {
             internal: plan.actuated() - dof,
             hyperstatic: 0,
             counts,
-            distances: here.against(&counts, &self.generic),
+            // Without indeterminacy the actuators are independent.
+            distances: here.against(Excess::of(&counts, &self.generic, false)),
             volume,
             largest,
             smallest,

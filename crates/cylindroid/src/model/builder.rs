@@ -2,7 +2,7 @@
 //! format.
 //!
 //! Links and joints are named in any order; `build` finds the root, orders the joints depth-first
-//! in the order given, resolves mimic joints, folds fixed joints away and measures the reach.
+//! in the order given, resolves mimic joints, folds fixed joints away and measures the characteristic length.
 //!
 //! Checked  tests/it/model.rs, tests/it/graph.rs, tests/formats/broken.rs
 
@@ -22,9 +22,6 @@ use super::tree_order::{TreeOrder, default_tool};
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
-
-/// Reach of a mechanism whose links have no length (m): a spherical wrist needs a length scale too.
-const LEAST_REACH: f64 = 1e-3;
 
 /// Collects links, joints and frames; [`Builder::build`] validates them.
 ///
@@ -175,7 +172,7 @@ impl Builder {
 
         let mut flat = FlatMechanism::new(self.links.len());
         let root = order.root;
-        flat.place(root, 0, Pose::IDENTITY, 0.0);
+        flat.place(root, 0, Pose::IDENTITY);
         for &j in &order.joints {
             if !mimics.contains_key(&j) {
                 flat.allocate(j, &self.joints[j]);
@@ -355,7 +352,6 @@ impl Builder {
             if !pose.is_finite() {
                 return self.refuse(name, format!("the pose of frame '{name}' is not finite"));
             }
-            flat.stretch(index, pose.translation.norm());
             frames.push(flat.frame(name.clone(), index, *pose));
         }
 
@@ -406,7 +402,7 @@ impl Builder {
         }
         let frame_key = frame_key(&frames);
         let id = |index| FrameId { index, frame_key };
-        Ok(Mechanism {
+        let mut mechanism = Mechanism {
             data: Arc::new(Data {
                 name: self.name,
                 links: self.links,
@@ -422,10 +418,15 @@ impl Builder {
                 nodes: flat.nodes,
                 home,
                 tool: id(tool),
-                reach: flat.reach.max(LEAST_REACH),
+                reach: 1.0,
+                far: 0.0,
                 report: self.report,
             }),
-        })
+        };
+        let [reach, far] = mechanism.measure_lengths();
+        let data = Arc::make_mut(&mut mechanism.data);
+        (data.reach, data.far) = (reach, far);
+        Ok(mechanism)
     }
 }
 

@@ -16,10 +16,8 @@ pub(super) struct FlatMechanism {
     pub(super) coordinates: Vec<Coordinate>,
     /// Coordinates of each joint (index of the specification).
     pub(super) ranges: BTreeMap<usize, std::ops::Range<usize>>,
-    /// Slot of each link, its pose in the slot, and the length of the path to it.
+    /// Slot of each link, and its pose in the slot.
     slots: Vec<(usize, Pose)>,
-    way: Vec<f64>,
-    pub(super) reach: f64,
 }
 
 impl FlatMechanism {
@@ -29,19 +27,11 @@ impl FlatMechanism {
             coordinates: Vec::new(),
             ranges: BTreeMap::new(),
             slots: vec![(0, Pose::IDENTITY); links],
-            way: vec![0.0; links],
-            reach: 0.0,
         }
     }
 
-    pub(super) fn place(&mut self, link: usize, slot: usize, slot_from_link: Pose, way: f64) {
+    pub(super) fn place(&mut self, link: usize, slot: usize, slot_from_link: Pose) {
         self.slots[link] = (slot, slot_from_link);
-        self.way[link] = way;
-        self.reach = self.reach.max(way);
-    }
-
-    pub(super) fn stretch(&mut self, link: usize, further: f64) {
-        self.reach = self.reach.max(self.way[link] + further);
     }
 
     pub(super) fn frame(&self, name: String, link: usize, link_from_frame: Pose) -> Frame {
@@ -144,16 +134,7 @@ impl FlatMechanism {
         };
         chain.joint(spec);
         let (slot, slot_from_child) = (chain.slot, chain.pending);
-        let slide = match spec.kind {
-            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Planar => {
-                let most = spec.limits.lower.abs().max(spec.limits.upper.abs());
-                if most.is_finite() { most } else { 0.0 }
-            }
-            _ => 0.0,
-        };
-        let lengths = [spec.parent_from_joint, spec.joint_from_child].map(|p| p.translation.norm());
-        let way = self.way[parent] + lengths[0] + lengths[1] + slide;
-        self.place(child, slot, slot_from_child * spec.joint_from_child, way);
+        self.place(child, slot, slot_from_child * spec.joint_from_child);
     }
 }
 

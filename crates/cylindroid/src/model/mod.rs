@@ -5,6 +5,7 @@
 mod builder;
 #[cfg(feature = "formats")]
 pub mod catalogue;
+mod characteristic_length;
 mod closure_frames;
 mod constraint_wrenches;
 mod contact;

@@ -16,6 +16,7 @@ mod ik;
 mod inverse;
 mod inverse_batch;
 mod kinematics;
+mod linkages;
 mod manipulability;
 mod model;
 mod parameters;

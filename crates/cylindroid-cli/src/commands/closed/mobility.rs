@@ -92,7 +92,7 @@ fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJs
         head: posed.into(),
         dof: m.dof.dimension(),
         finite_dof: found.finite.finite,
-        finite: (&found.finite).into(),
+        finite: FiniteJson::of(&found.finite, found.verdict.structure(), &found.generic),
         singularity: found.into(),
         redundancy: m.relation.redundancy,
         indeterminacy: m.relation.indeterminacy,
@@ -137,7 +137,7 @@ fn print(
     };
     let mut lines = vec![
         ("degrees of freedom", format!("{} to first order ({gap})", m.dof.dimension())),
-        ("finite motion", singularity::finite(posed, &found.finite)),
+        ("finite motion", found.verdict.motion()),
         ("Gruebler-Kutzbach", gruebler_kutzbach(m)),
     ];
     lines.extend(singularity::lines(posed, found));

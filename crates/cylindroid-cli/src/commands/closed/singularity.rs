@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use cylindroid::closure::{
-    Diagnosis, FiniteMobility, MobilityCounts, MobilityEvidence, SingularityKind,
+    Diagnosis, FiniteMobility, GenericMobility, LocalStructure, MobilityCounts, SingularityKind,
 };
 use cylindroid::model::Dimension;
 use cylindroid::screws::Screw;
@@ -17,6 +17,9 @@ pub(super) struct SingularityJson {
     regular: bool,
     /// In words.
     kinds: Vec<String>,
+    /// True if every configuration of the branch is singular, and the kinds that they all have.
+    everywhere: bool,
+    everywhere_kinds: Vec<String>,
     distances: DistancesJson,
     generic: CountsJson,
     /// Other closed configurations that the generic counts come from.
@@ -55,9 +58,12 @@ struct CountsJson {
 pub(super) struct FiniteJson {
     evidence: String,
     certain: bool,
-    /// [rad, or characteristic lengths]
-    step: f64,
-    residual: f64,
+    /// "regular", "bifurcation", "cone", "shaky", "shaky-rigid", "rigid" or "unknown".
+    structure: &'static str,
+    /// Distance to which the motions were tracked [rad, or characteristic lengths].
+    tracked: f64,
+    /// Power of the distance with which the loops open; null if they do not, or it differs.
+    contact_order: Option<u32>,
     branches: Vec<BranchJson>,
     /// Motions to first order that do not exist: rates of q.
     shaky: Vec<Vec<f64>>,
@@ -66,26 +72,30 @@ pub(super) struct FiniteJson {
 #[derive(Debug, Serialize)]
 struct BranchJson {
     dimension: usize,
+    tracked: f64,
+    /// Its generic counts.
+    generic: CountsJson,
     /// Rates of q, a list each.
     motions: Vec<Vec<f64>>,
 }
 
 impl From<&Diagnosis> for SingularityJson {
     fn from(d: &Diagnosis) -> Self {
-        let at = &d.singularities.distances;
-        let MobilityCounts { rank, idle, redundancy, indeterminacy, zero_torque } =
-            d.generic.counts;
+        let at = &d.distances;
+        let everywhere = d.verdict.everywhere();
         let screws = |of: &[Screw]| of.iter().map(Into::into).collect();
         Self {
-            regular: d.singularities.is_regular(),
-            kinds: d.singularities.kinds.iter().map(ToString::to_string).collect(),
+            regular: d.verdict.is_regular(),
+            kinds: d.verdict.kinds().iter().map(ToString::to_string).collect(),
+            everywhere: !everywhere.is_empty(),
+            everywhere_kinds: everywhere.iter().map(ToString::to_string).collect(),
             distances: DistancesJson {
                 type_i: at.type_i,
                 type_ii: at.type_ii,
                 configuration_space: at.configuration_space,
                 passive: at.passive,
             },
-            generic: CountsJson { rank, idle, redundancy, indeterminacy, zero_torque },
+            generic: d.generic.counts.into(),
             compared_with: d.generic.others,
             blocked: screws(&d.blocked),
             lost: screws(&d.lost),
@@ -97,82 +107,45 @@ impl From<&Diagnosis> for SingularityJson {
     }
 }
 
-impl From<&FiniteMobility> for FiniteJson {
-    fn from(f: &FiniteMobility) -> Self {
-        let branch = |b: &cylindroid::closure::Branch| BranchJson {
+impl From<MobilityCounts> for CountsJson {
+    fn from(counts: MobilityCounts) -> Self {
+        let MobilityCounts { rank, idle, redundancy, indeterminacy, zero_torque } = counts;
+        Self { rank, idle, redundancy, indeterminacy, zero_torque }
+    }
+}
+
+impl FiniteJson {
+    pub(super) fn of(f: &FiniteMobility, structure: LocalStructure, g: &GenericMobility) -> Self {
+        let branch = |(b, counts): (&cylindroid::closure::Branch, &MobilityCounts)| BranchJson {
             dimension: b.dimension,
+            tracked: b.tracked,
+            generic: (*counts).into(),
             motions: output::columns(&b.motions),
         };
         Self {
             evidence: f.evidence.to_string(),
             certain: f.certain,
-            step: f.step,
-            residual: f.residual,
-            branches: f.branches.iter().map(branch).collect(),
+            structure: structure.name(),
+            tracked: f.tracked,
+            contact_order: f.contact_order,
+            branches: f.branches.iter().zip(&g.branches).map(branch).collect(),
             shaky: output::columns(&f.shaky),
         }
     }
 }
 
-/// Finite and infinitesimal mobility, in a line.
-pub(super) fn finite(posed: &Posed, f: &FiniteMobility) -> String {
-    let step = number(f.step);
-    let Some(dof) = f.finite else {
-        return match f.evidence {
-            MobilityEvidence::Unknown if f.step == 0.0 => {
-                "unknown: the loops are open; close them first (`assemble`)".to_owned()
-            }
-            _ => "unknown: no step from this configuration converged".to_owned(),
-        };
-    };
-    let unsure = if f.certain { "" } else { "; found by a search, which may have missed a branch" };
-    match f.evidence {
-        _ if f.infinitesimal == 0 => "none: it is a structure".to_owned(),
-        MobilityEvidence::Independent if !posed.mechanism.is_closed() => {
-            format!("{dof}: all of it, there are no loops")
-        }
-        MobilityEvidence::Independent => {
-            format!("{dof}: all of it, the loop equations are independent")
-        }
-        MobilityEvidence::Steps => format!(
-            "{dof}: all of it; some loop equations are dependent, and the loops still close after \
-             steps of {step} in every direction"
-        ),
-        _ if dof == 0 => {
-            format!("none: it moves to first order only (shaky){unsure}")
-        }
-        _ => format!(
-            "{dof} of {}: {}{unsure}",
-            f.infinitesimal,
-            match f.branches.len() {
-                1 => "the others exist to first order only (shaky)".to_owned(),
-                n => format!("{n} motions cross at this configuration (a bifurcation)"),
-            }
-        ),
-    }
-}
-
 /// The verdict, what is lost and gained, and the distances.
 pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)> {
-    let found = &d.singularities;
     let planar = posed.mechanism.dimension() == Dimension::Planar;
-    let others = d.generic.others;
-    let verdict = if found.is_regular() && others == 0 {
-        "none found, with no other configuration to compare with".to_owned()
-    } else if found.is_regular() {
-        "none: the configuration is regular".to_owned()
-    } else {
-        let kinds: Vec<String> = found.kinds.iter().map(ToString::to_string).collect();
-        kinds.join("; ")
-    };
+    let branches = d.generic.branches.len();
     let mut lines = vec![
-        ("singularity", verdict),
+        ("singularity", d.verdict.to_string()),
         (
             "compared with",
-            match others {
-                0 => "no other configuration: none closes".to_owned(),
-                1 => "only one other configuration of the mechanism".to_owned(),
-                _ => format!("{others} other configurations of the mechanism"),
+            match (d.generic.others, branches) {
+                (0, _) => "no other configuration: none was reached".to_owned(),
+                (n, 1) => format!("{n} configurations of its branch, a finite way off"),
+                (n, _) => format!("{n} configurations of its {branches} branches"),
             },
         ),
     ];
@@ -186,7 +159,7 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
     named("lost", &d.lost, &motion_in_words);
     named("gained", &d.gained, &motion_in_words);
     let of = |names: &[String]| if names.is_empty() { String::new() } else { list(names) };
-    if found.kinds.contains(&SingularityKind::TypeI) || !d.blocked.is_empty() {
+    if d.verdict.kinds().contains(&SingularityKind::TypeI) || !d.blocked.is_empty() {
         lines.push(("actuators without effect", of(&d.redundant)));
     }
     lines.push(("idle joints gained", of(&d.idle)));
@@ -198,7 +171,7 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
                 .to_owned(),
         ));
     }
-    let at = &found.distances;
+    let at = &d.distances;
     let closed = posed.mechanism.is_closed();
     let distances: Vec<String> = [
         ("type I", at.type_i, true),
@@ -268,7 +241,7 @@ fn wrench_in_words(s: &Screw, planar: bool) -> String {
 
 /// The branches and what is shaky, joint by joint, where first order does not tell all.
 pub(super) fn ways(out: &mut dyn Write, posed: &Posed, f: &FiniteMobility) -> anyhow::Result<()> {
-    if f.evidence != MobilityEvidence::Search {
+    if f.branches.len() < 2 && f.shaky.cols() == 0 {
         return Ok(());
     }
     // The largest rate is one, the first not negative.

@@ -17,13 +17,15 @@
 //! Source   Bicchi & Prattichizzo 1998, eq. 2, with further objects as passive columns
 //! Checked  tests/it/closure/graph.rs
 
+use std::ops::Range;
+
 use super::constraint_rows::{constraint_rows, for_each_rate, rate_unit};
 use super::loop_closure_error::LoopClosureError;
 use super::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;
-use crate::model::{FrameId, LoopJoint, Mechanism};
+use crate::model::{FrameId, JointKind, LoopJoint, Mechanism};
 
 /// The velocity constraint of a mechanism at a configuration, with the names of its columns.
 #[derive(Debug, Clone)]
@@ -98,6 +100,7 @@ impl ClosedChain {
         }
         let object: Vec<Unit> =
             components.iter().map(|&c| if c < 3 { Unit::Length } else { Unit::Angle }).collect();
+        let vectors = columns.vectors(mechanism);
         let units = Units {
             rows: rows.iter().map(|r| r.unit).chain(object.iter().copied()).collect(),
             actuated: columns.actuated_units,
@@ -105,7 +108,8 @@ impl ClosedChain {
             object,
         };
         let constraint = Constraint::new(blocks)?
-            .with_length(&units, length.unwrap_or_else(|| mechanism.reach()))?;
+            .with_length(&units, length.unwrap_or_else(|| mechanism.reach()))?
+            .with_vectors(vectors);
         Ok(Self {
             constraint,
             actuated: columns.actuated,
@@ -136,6 +140,29 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
+    /// The columns of rotation vectors, positions of free bodies, and displacements in a plane.
+    fn vectors(&self, mechanism: &Mechanism) -> Vec<Range<usize>> {
+        let first = |coordinate: usize| {
+            let (actuated, place) = self.places[coordinate];
+            if actuated { place } else { self.actuated.len() + place }
+        };
+        let joints = mechanism.joints().iter().filter(|j| j.mimic.is_none());
+        let groups = joints.flat_map(|joint| {
+            let sizes: &[usize] = match joint.kind {
+                JointKind::Spherical => &[3],
+                JointKind::Free => &[3, 3],
+                JointKind::Planar => &[2],
+                _ => &[],
+            };
+            let mut from = joint.coordinates.start;
+            sizes.iter().map(move |size| {
+                from += size;
+                (from - size, *size)
+            })
+        });
+        groups.map(|(c, size)| first(c)..first(c) + size).collect()
+    }
+
     pub(crate) fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {
         let mut columns = Self::default();
         columns.places.reserve(mechanism.n() + loops.len());

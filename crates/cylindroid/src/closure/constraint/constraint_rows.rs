@@ -4,7 +4,8 @@
 //! Shapes   a row for each constraint wrench, and one for the rate of a loop joint of one
 //!          coordinate
 //! Units    m, rad
-//! Frame    world axes, wrenches at the world origin
+//! Frame    world axes, wrenches at the second frame of their pair: moments about a far origin would
+//!          cancel to rounding
 //! Source   `closed_chain.rs`; the wrenches: `model/constraint_wrenches.rs`
 //! Checked  tests/it/closure/graph.rs
 
@@ -15,10 +16,12 @@ use crate::kinematics::State;
 use crate::model::{Dimension, JointKind, LoopJoint, Mechanism};
 use crate::spatial::{Pose, Vec3, Wrench};
 
-/// A row: a constrained relative motion of two links, in world axes at the world origin.
+/// A row: a constrained relative motion of two links, in world axes.
 pub(crate) struct ConstraintRow {
-    /// The wrench whose power with the motion of `b` relative to `a` is measured.
+    /// The wrench whose power with the motion of `b` relative to `a` is measured, at `point`.
     pub(crate) wrench: Wrench,
+    /// The point (m) at which it acts, the same for all rows of a pair.
+    pub(crate) point: Vec3,
     /// Index of its joint or contact: loop joints first, then contacts.
     pub(crate) pair: usize,
     a: usize,
@@ -48,12 +51,12 @@ pub(crate) fn for_each_rate(
     // The rows of a pair are adjacent. Both links are walked once, up to their common ancestor:
     // motions of that ancestor do not change the row.
     let mut from = 0;
-    for pair in rows.chunk_by(|x, y| (x.a, x.b) == (y.a, y.b)) {
+    for pair in rows.chunk_by(|x, y| x.pair == y.pair) {
         let tip = |link| state.tip(mechanism.link_frame(link).into());
         let (a, b) = (tip(pair[0].a), tip(pair[0].b));
         let common = a.common_slot(&b);
         for (link, sign) in [(a, -1.0), (b, 1.0)] {
-            link.for_each_column_above(common, Vec3::ZERO, |_, c, twist| {
+            link.for_each_column_above(common, pair[0].point, |_, c, twist| {
                 for (i, row) in pair.iter().enumerate() {
                     f(from + i, c, sign * twist.power(row.wrench));
                 }
@@ -235,12 +238,10 @@ impl KinematicPair {
     /// The row of a wrench given in the first frame, as if the pair were closed: forces act at the
     /// second frame.
     fn row(&self, wrench: Wrench) -> ConstraintRow {
-        let at = Pose {
-            rotation: self.world_from_a.rotation,
-            translation: self.world_from_b.translation,
-        };
+        let axes = self.world_from_a.rotation;
         ConstraintRow {
-            wrench: at.coadjoint(wrench),
+            wrench: Wrench { force: axes * wrench.force, moment: axes * wrench.moment },
+            point: self.world_from_b.translation,
             pair: self.place,
             a: self.ends[0],
             b: self.ends[1],

@@ -14,6 +14,8 @@
 //! Source   Bicchi & Prattichizzo 1998, eq. 2 and appendix A
 //! Checked  tests/it/closure/scaling.rs, tests/it/closure/bad_input.rs
 
+use std::ops::Range;
+
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix};
 use crate::model::CoordinateKind;
@@ -85,6 +87,9 @@ pub struct Constraint {
     row_scale: Vec<f64>,
     /// D_c of actuated joints, passive columns and object.
     column_scale: Vec<f64>,
+    /// Columns that are components of one vector (a rotation, a position): the axes along which
+    /// they are taken are a choice.
+    vectors: Vec<Range<usize>>,
 }
 
 impl Constraint {
@@ -111,7 +116,8 @@ impl Constraint {
         check_finite("passive Jacobian", &blocks.passive)?;
         check_finite("grasp matrix", &blocks.grasp)?;
         let n = blocks.actuated.cols() + blocks.passive.cols() + blocks.grasp.rows();
-        Ok(Self { blocks, length: 1.0, row_scale: vec![1.0; t], column_scale: vec![1.0; n] })
+        let (row_scale, column_scale) = (vec![1.0; t], vec![1.0; n]);
+        Ok(Self { blocks, length: 1.0, row_scale, column_scale, vectors: Vec::new() })
     }
 
     /// The same constraint with lengths divided by the characteristic length `length` (m).
@@ -155,6 +161,19 @@ impl Constraint {
             check_finite("constraint scaled by the length, transposed,", &scaled)?;
         }
         Ok(self)
+    }
+
+    /// The same constraint, with the ranges of columns that are components of one vector.
+    pub(crate) fn with_vectors(mut self, vectors: Vec<Range<usize>>) -> Self {
+        self.vectors = vectors;
+        self
+    }
+
+    /// For every actuated or passive column, the columns of the vector of which it is a component:
+    /// itself for a scalar.
+    pub(crate) fn vector_of(&self, column: usize) -> Range<usize> {
+        let own = self.vectors.iter().find(|v| v.contains(&column));
+        own.cloned().unwrap_or(column..column + 1)
     }
 
     /// A serial arm: `u = J q`, all joints actuated.

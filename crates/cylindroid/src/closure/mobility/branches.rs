@@ -18,8 +18,9 @@ use crate::error::Result;
 use crate::inverse::damp;
 use crate::linalg::{ColumnSpace, Matrix, Svd, Threshold, dot, norm};
 use crate::model::Mechanism;
-use crate::scalar::uniform;
-use crate::tolerance::{BRANCH_RANK, BRANCH_SPREAD, BRANCH_TURN, SAME_BRANCH};
+use crate::tolerance::{
+    BRANCH_RANK, BRANCH_SPREAD, BRANCH_TURN, CLOSURE_RANK, SAME_BRANCH, TRACKED, TRACKED_AT_LEAST,
+};
 
 /// Maximum number of steps of a search.
 const MAX_STEPS: usize = 60;
@@ -35,6 +36,9 @@ pub(crate) struct Tangent {
     pub(crate) directions: Matrix,
     /// Closed configurations on it, on both sides.
     pub(crate) configurations: Vec<Vec<f64>>,
+    /// Closed configurations on it a finite way off, and their distance.
+    pub(crate) far: Vec<Vec<f64>>,
+    pub(crate) tracked: f64,
 }
 
 /// The result of a search.
@@ -44,18 +48,16 @@ pub(crate) struct Found {
     pub(crate) complete: bool,
 }
 
-/// A random unit vector.
-pub(crate) fn direction(k: usize, random: &mut u64) -> Vec<f64> {
-    let x: Vec<f64> = (0..k).map(|_| uniform(random) - 0.5).collect();
-    let size = norm(&x);
-    x.iter().map(|x| if size > 0.0 { x / size } else { 1.0 / (k as f64).sqrt() }).collect()
-}
-
 fn times(x: &[f64], factor: f64) -> Vec<f64> {
     x.iter().map(|x| factor * x).collect()
 }
 
-/// The branches through the configuration of `reduction`, searched at the distance `h`.
+/// Distance at which the rank of a configuration on a branch is above the error of its position.
+fn resolved(reduction: &LyapunovSchmidt<'_>) -> f64 {
+    (reduction.tolerance() / BRANCH_RANK).sqrt()
+}
+
+/// The branches through the configuration of `reduction`, searched at the distance `h` or beyond.
 pub(crate) fn branches(
     mechanism: &Mechanism,
     length: f64,
@@ -63,11 +65,8 @@ pub(crate) fn branches(
     h: f64,
 ) -> Result<Found> {
     let k = reduction.motions();
-    let mut random = 1;
-    let starts: Vec<Vec<f64>> = match k {
-        1 => vec![vec![1.0], vec![-1.0]],
-        _ => (0..(16 + 8 * k).min(64)).map(|_| direction(k, &mut random)).collect(),
-    };
+    let h = h.max(4.0 * resolved(reduction));
+    let starts = (0..(16 + 8 * k as u64).min(64)).map(|number| reduction.direction(number));
     let mut tangents: Vec<Tangent> = Vec::new();
     let mut sound = true;
     for start in starts {
@@ -80,17 +79,29 @@ pub(crate) fn branches(
         if here.motions.cols() == 0 {
             continue;
         }
-        let Some(tangent) = tangent(mechanism, length, reduction, (&x, h), &here)? else {
+        let Some(mut tangent) = tangent(mechanism, length, reduction, (&x, h), &here)? else {
             sound = false;
             continue;
         };
-        if !tangents.iter().any(|t| same(t, &tangent)) {
-            tangents.push(tangent);
+        if tangents.iter().any(|t| same(t, &tangent)) {
+            continue;
         }
+        if here.clear {
+            let out = &here.motions.transpose() * &(reduction.kernel() * &column(&x));
+            let Some((q, tracked)) = outwards(mechanism, length, &near.q, &here, out, h)? else {
+                sound = false;
+                continue;
+            };
+            (tangent.far, tangent.tracked) = (vec![q], tracked);
+            sound &= tracked >= TRACKED_AT_LEAST;
+        } else {
+            (tangent.far, tangent.tracked) = (vec![near.q], h);
+        }
+        tangents.push(tangent);
     }
     let tangents = merged(tangents, k);
     let largest = tangents.first().map_or(0, |t| t.dimension);
-    let proved = k == 1 || morse(reduction, h)? == Some(largest);
+    let proved = morse(reduction, h)? == Some(largest);
     Ok(Found { tangents, complete: sound && proved })
 }
 
@@ -110,10 +121,10 @@ impl Here {
             Some(true) => Ok(Some(Self { motions: at.kernel().clone(), clear: true })),
             Some(false) => {
                 // Shaky along the whole branch: the steps that converge span its motions.
-                let (k, mut random, h) = (at.motions(), 6, 0.25 * h);
+                let (k, h) = (at.motions(), 0.25 * h);
                 let mut found = Matrix::zeros(k, 0);
-                for _ in 0..4 * k + 4 {
-                    let start = times(&direction(k, &mut random), h);
+                for number in 0..4 * k as u64 + 4 {
+                    let start = times(&at.direction(number), h);
                     if let Some((x, _)) = zero(&at, &start, h)? {
                         found = Matrix::hstack(k, &[&found, &column(&times(&x, 1.0 / h))]);
                     }
@@ -131,13 +142,11 @@ fn column(x: &[f64]) -> Matrix {
 
 /// Whether steps along all motions are finite; none if Newton's method fails.
 fn followed(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<bool>> {
-    if reduction.superfluous() == 0 {
+    if reduction.dependent() == 0 {
         return Ok(Some(true));
     }
-    let mut random = 2;
-    let k = reduction.motions();
-    for _ in 0..2 * k {
-        let Some(near) = reduction.step(&times(&direction(k, &mut random), h))? else {
+    for number in 0..2 * reduction.motions() as u64 {
+        let Some(near) = reduction.step(&times(&reduction.direction(number), h))? else {
             return Ok(None);
         };
         if near.error() > reduction.tolerance() {
@@ -195,7 +204,7 @@ fn tangent(
     (x, h): (&[f64], f64),
     there: &Here,
 ) -> Result<Option<Tangent>> {
-    let inwards = if there.clear { INWARDS } else { 0.25 };
+    let inwards = if there.clear { INWARDS.max(resolved(reduction) / h) } else { 0.25 };
     let small = h * inwards;
     let mut sides = Vec::new();
     let mut configurations = Vec::new();
@@ -218,7 +227,52 @@ fn tangent(
     let both = Matrix::hstack(x.len(), &sides.iter().collect::<Vec<_>>());
     let svd = Svd::of(&both);
     let directions = Matrix::from_fn(x.len(), dimension, |i, j| svd.u(j)[i]);
-    Ok(Some(Tangent { dimension, directions, configurations }))
+    let (far, tracked) = (Vec::new(), 0.0);
+    Ok(Some(Tangent { dimension, directions, configurations, far, tracked }))
+}
+
+/// A configuration of the branch far from the crossing, from `q` at the distance `h`, and its
+/// distance; none if the loops open on the way, so that there is no branch of this dimension.
+/// `out`: coefficients of the direction away from the crossing.
+fn outwards(
+    mechanism: &Mechanism,
+    length: f64,
+    q: &[f64],
+    here: &Here,
+    out: Matrix,
+    h: f64,
+) -> Result<Option<(Vec<f64>, f64)>> {
+    let dimension = here.motions.cols();
+    let (mut q, mut distance, mut step) = (q.to_vec(), h, 0.5 * h);
+    let mut towards = &here.motions * &out;
+    // Far enough, what opens with a high power has a clear rank.
+    let rank = |distance: f64| if distance < 0.1 { BRANCH_RANK * distance } else { CLOSURE_RANK };
+    while distance < TRACKED * (1.0 - 1e-9) {
+        step = step.min(TRACKED - distance);
+        let at = LyapunovSchmidt::of(mechanism, &q, length, rank(distance))?;
+        if at.motions() < dimension {
+            return Ok(None);
+        }
+        let along = at.kernel().transpose().mul_vec(towards.column(0));
+        let share = norm(&along) / norm(towards.column(0));
+        if !(share > BRANCH_TURN) {
+            return Ok((at.motions() == dimension).then_some((q, distance)));
+        }
+        let x = times(&along, step / norm(&along));
+        match at.step(&x)? {
+            Some(near) if near.error() <= at.tolerance_at(step) => {
+                towards = at.kernel() * &column(&x);
+                q = near.q;
+                distance = if step < TRACKED - distance { distance + step } else { TRACKED };
+                step = (0.5 * distance).min(1.0 / 16.0);
+            }
+            // Open although the motion is one to first order: a contact, unless the step is long.
+            Some(_) if step <= 0.1 * distance => return Ok(None),
+            _ if step < 0.01 * distance => break,
+            _ => step *= 0.5,
+        }
+    }
+    Ok(Some((q, distance)))
 }
 
 fn same(a: &Tangent, b: &Tangent) -> bool {
@@ -248,10 +302,9 @@ fn merged(mut tangents: Vec<Tangent>, k: usize) -> Vec<Tangent> {
 /// The dimension of the zeros of g if it is one function with a Hessian of full rank.
 fn morse(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<usize>> {
     let k = reduction.motions();
-    let mut random = 3;
-    let mut samples = Matrix::zeros(reduction.superfluous(), 2 * k + 2);
+    let mut samples = Matrix::zeros(reduction.dependent(), 2 * k + 2);
     for j in 0..samples.cols() {
-        let Some(near) = reduction.step(&times(&direction(k, &mut random), h))? else {
+        let Some(near) = reduction.step(&times(&reduction.direction(j as u64), h))? else {
             return Ok(None);
         };
         samples.column_mut(j).copy_from_slice(&near.residual);

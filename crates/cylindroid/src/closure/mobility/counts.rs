@@ -64,4 +64,11 @@ impl MobilityCounts {
             zero_torque: self.zero_torque.min(other.zero_torque),
         }
     }
+
+    /// True if the actuated joints depend on each other: they set fewer motions than their number
+    /// and that of the motions permit. At regular configurations, a fault of the architecture.
+    pub(crate) fn lack_actuation(&self, [actuated, columns]: [usize; 2]) -> bool {
+        let free = columns.saturating_sub(self.rank).saturating_sub(self.idle);
+        self.indeterminacy > free.saturating_sub(actuated)
+    }
 }

@@ -2,11 +2,12 @@
 //!
 //! Formula  the closed configurations near q are the zeros of the reduced equation g(x), x in the
 //!          first-order motions (see `lyapunov_schmidt.rs`). No g: the equations are independent,
-//!          and every motion is finite (implicit function theorem). g zero at every step: every
-//!          motion is finite, the dependent equations stay dependent. Otherwise the zeros of g are
-//!          searched (`branches.rs`)
+//!          and every motion is finite (implicit function theorem). g zero along rays in generic
+//!          directions, tracked a finite way (`rays.rs`): every motion is finite, the dependent
+//!          equations stay dependent. g not zero for a single motion: rigid, since the zeros of an
+//!          analytic function are isolated. Otherwise the zeros of g are searched (`branches.rs`)
 //! Shapes   motions: n x dimension, rates of the coordinates of q
-//! Units    rad, m; steps and residuals scaled by the characteristic length
+//! Units    rad, m; distances and residuals scaled by the characteristic length
 //! Valid    closed configurations; position limits are ignored. Geometry given to fewer than ten
 //!          digits makes dependent equations independent: the rank gap of `Mobility` shows this
 //! Why so   a structure may move to first order and be rigid (shaky), a mechanism may have a
@@ -17,15 +18,16 @@
 
 use std::fmt;
 
-use super::branches::{branches, direction};
+use super::branches::branches;
 use super::lyapunov_schmidt::LyapunovSchmidt;
+use super::rays::Rays;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
-use crate::tolerance::{CLOSURE_RANK, FINITE_STEP, WITHIN_BRANCHES};
+use crate::tolerance::{
+    CLEARLY_OPEN, CLOSURE_RANK, FINITE_STEP, TRACKED_AT_LEAST, WITHIN_BRANCHES,
+};
 
-/// Maximum number of halvings of a step that does not converge.
-const HALVINGS: usize = 8;
 /// Distance of the neighbours of a configuration, relative to the step: the mean of the spaces on
 /// both sides differs from the space at the configuration by 1e-10 times its curvature.
 const NEIGHBOUR_DISTANCE: f64 = 1e-3;
@@ -36,9 +38,12 @@ const NEIGHBOUR_DISTANCE: f64 = 1e-3;
 pub enum MobilityEvidence {
     /// The loops are independent equations, or there is no first-order motion: proved.
     Independent,
-    /// Some equations are dependent here, and after steps in all directions as well.
-    Steps,
-    /// Not every step converges; the closed configurations nearby were searched.
+    /// Some equations are dependent here, and stay so: the motions were tracked a finite way with
+    /// the loops closed to rounding.
+    Tracked,
+    /// A single first-order motion along which the loops open: proved not to be finite.
+    Opens,
+    /// The closed configurations nearby were searched.
     Search,
     /// The loops are open, or no step converged.
     Unknown,
@@ -48,7 +53,8 @@ impl fmt::Display for MobilityEvidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Independent => "the loop equations are independent",
-            Self::Steps => "the loops close after steps in every direction",
+            Self::Tracked => "the motions were tracked with the loops closed",
+            Self::Opens => "the loops open along the only motion",
             Self::Search => "from a search around the configuration",
             Self::Unknown => "not known",
         })
@@ -63,6 +69,11 @@ pub struct Branch {
     /// Motions along it: rates of the coordinates of q, orthonormal when scaled; more than its
     /// dimension if the branch is a cone with its apex here.
     pub motions: Matrix,
+    /// Distance to which it was tracked with the loops closed to rounding [rad, or characteristic
+    /// lengths].
+    pub tracked: f64,
+    /// Configurations on it, as far from this one as it was tracked.
+    pub configurations: Vec<Vec<f64>>,
 }
 
 /// The finite mobility of a mechanism at a configuration.
@@ -92,10 +103,14 @@ pub struct FiniteMobility {
     pub evidence: MobilityEvidence,
     /// False if branches may have been missed.
     pub certain: bool,
-    /// Length of the steps [rad, or characteristic lengths]; 0 if none was needed.
-    pub step: f64,
-    /// Largest loop residual after a step (scaled) [-]: rounding if all motions are finite.
+    /// Distance to which all motions were tracked, those of the largest branch if there are
+    /// branches [rad, or characteristic lengths]; 0 if the loop equations are independent.
+    pub tracked: f64,
+    /// Largest loop residual on the way (scaled) [-]: rounding if all motions are finite.
     pub residual: f64,
+    /// The power of the distance with which the loops open: 2 for most shaky structures. `None`
+    /// for finite motions, and if it differs between directions.
+    pub contact_order: Option<u32>,
     neighbours: Vec<Vec<f64>>,
 }
 
@@ -126,33 +141,50 @@ impl FiniteMobility {
             shaky: Matrix::zeros(mechanism.n(), 0),
             evidence: MobilityEvidence::Unknown,
             certain: false,
-            step: 0.0,
+            tracked: 0.0,
             residual: 0.0,
+            contact_order: None,
             neighbours: Vec::new(),
         };
         if !reduction.is_closed() {
             return Ok(report);
         }
-        if k == 0 || reduction.superfluous() == 0 {
-            report.whole(&reduction, MobilityEvidence::Independent)?;
+        if k == 0 || reduction.dependent() == 0 {
+            report.whole(&reduction, MobilityEvidence::Independent, Vec::new())?;
             return Ok(report);
         }
-        let Some((step, residual)) = open_after_steps(&reduction)? else { return Ok(report) };
-        (report.step, report.residual) = (step, residual);
-        if residual <= reduction.tolerance() {
-            report.whole(&reduction, MobilityEvidence::Steps)?;
+        let rays = Rays::of(&reduction)?;
+        (report.tracked, report.residual) = (rays.tracked, rays.residual);
+        if rays.tracked == 0.0 {
             return Ok(report);
         }
-        let found = branches(mechanism, length, &reduction, step)?;
+        if rays.openness <= 1.0 {
+            let ends = rays.ends().cloned().collect();
+            report.whole(&reduction, MobilityEvidence::Tracked, ends)?;
+            report.certain = rays.tracked >= TRACKED_AT_LEAST;
+            return Ok(report);
+        }
+        report.contact_order = rays.power;
+        if k == 1 {
+            report.evidence = MobilityEvidence::Opens;
+            report.certain = rays.openness > CLEARLY_OPEN;
+            report.finite = Some(0);
+            report.shaky = reduction.unscaled(reduction.kernel());
+            return Ok(report);
+        }
+        let found = branches(mechanism, length, &reduction, rays.open_distance(&reduction))?;
         report.evidence = MobilityEvidence::Search;
         report.certain = found.complete;
         report.finite = Some(found.tangents.first().map_or(0, |t| t.dimension));
+        report.tracked = found.tangents.first().map_or(0.0, |t| t.tracked);
         let mut tangents = Matrix::zeros(k, 0);
         for tangent in found.tangents {
             tangents = Matrix::hstack(k, &[&tangents, &tangent.directions]);
             report.branches.push(Branch {
                 dimension: tangent.dimension,
                 motions: reduction.unscaled(&(reduction.kernel() * &tangent.directions)),
+                tracked: tangent.tracked,
+                configurations: tangent.far,
             });
             if report.neighbours.is_empty() {
                 report.neighbours = tangent.configurations;
@@ -175,39 +207,25 @@ impl FiniteMobility {
         &self.neighbours
     }
 
-    fn whole(&mut self, reduction: &LyapunovSchmidt<'_>, evidence: MobilityEvidence) -> Result<()> {
+    fn whole(
+        &mut self,
+        reduction: &LyapunovSchmidt<'_>,
+        evidence: MobilityEvidence,
+        configurations: Vec<Vec<f64>>,
+    ) -> Result<()> {
         let k = reduction.motions();
         (self.finite, self.evidence, self.certain) = (Some(k), evidence, true);
         if k == 0 {
             return Ok(());
         }
         let motions = reduction.unscaled(reduction.kernel());
-        self.branches.push(Branch { dimension: k, motions });
-        let x = direction(k, &mut 4);
+        let tracked = self.tracked;
+        self.branches.push(Branch { dimension: k, motions, tracked, configurations });
+        let x = reduction.direction(0);
         for side in [FINITE_STEP * NEIGHBOUR_DISTANCE, -FINITE_STEP * NEIGHBOUR_DISTANCE] {
             let x: Vec<f64> = x.iter().map(|x| side * x).collect();
             self.neighbours.extend(reduction.step(&x)?.map(|near| near.q));
         }
         Ok(())
     }
-}
-
-/// The step that converges in every direction tried, and the largest residual.
-fn open_after_steps(reduction: &LyapunovSchmidt<'_>) -> Result<Option<(f64, f64)>> {
-    let k = reduction.motions();
-    let mut step = FINITE_STEP;
-    'shorter: for _ in 0..=HALVINGS {
-        let mut random = 5;
-        let mut worst: f64 = 0.0;
-        for _ in 0..(2 * k + 6).min(24) {
-            let x: Vec<f64> = direction(k, &mut random).iter().map(|x| step * x).collect();
-            let Some(near) = reduction.step(&x)? else {
-                step *= 0.5;
-                continue 'shorter;
-            };
-            worst = worst.max(near.error());
-        }
-        return Ok(Some((step, worst)));
-    }
-    Ok(None)
 }

@@ -19,7 +19,8 @@ use crate::closure::position::loop_closure::LoopClosure;
 use crate::error::Result;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm};
 use crate::model::Mechanism;
-use crate::tolerance::LOOP_ROUNDING;
+use crate::scalar::uniform;
+use crate::tolerance::{LOOP_ROUNDING, POSITION_ROUNDING};
 
 /// Maximum number of Newton steps: four are usual.
 const MAX_STEPS: usize = 30;
@@ -38,6 +39,7 @@ pub(crate) struct LyapunovSchmidt<'a> {
     cokernel: Matrix,
     at_start: Vec<f64>,
     tolerance: f64,
+    dropped: f64,
     closed: bool,
 }
 
@@ -73,7 +75,10 @@ impl<'a> LyapunovSchmidt<'a> {
         let image = Qr::plain(&start.jacobian * &complement);
         let (range, cokernel) = (image.basis(), image.complement());
         let at_start = cokernel.transpose().mul_vec(&start.residuals);
-        let tolerance = LOOP_ROUNDING.max(10.0 * start.residual_norm);
+        let far = mechanism.far_from_origin() / length;
+        let rounding = LOOP_ROUNDING.max(POSITION_ROUNDING * far);
+        let tolerance = rounding.max(10.0 * start.residual_norm);
+        let dropped = rows.cut().dropped;
         let (q, closed) = (q.to_vec(), start.is_closed(length));
         let scale = free.iter().map(|&i| column_scale(mechanism, i, length)).collect();
         Ok(Self {
@@ -88,6 +93,7 @@ impl<'a> LyapunovSchmidt<'a> {
             cokernel,
             at_start,
             tolerance,
+            dropped,
             closed,
         })
     }
@@ -103,7 +109,7 @@ impl<'a> LyapunovSchmidt<'a> {
     }
 
     /// Number t - r of equations that depend on the others to first order.
-    pub(crate) fn superfluous(&self) -> usize {
+    pub(crate) fn dependent(&self) -> usize {
         self.cokernel.cols()
     }
 
@@ -115,6 +121,23 @@ impl<'a> LyapunovSchmidt<'a> {
     /// The residual below which g counts as zero: rounding, and the residual of the start.
     pub(crate) fn tolerance(&self) -> f64 {
         self.tolerance
+    }
+
+    /// The same at the distance `s`: singular values that count as zero open the loops in
+    /// proportion to it.
+    pub(crate) fn tolerance_at(&self, s: f64) -> f64 {
+        self.tolerance + 10.0 * self.dropped * s
+    }
+
+    /// A random unit vector of first-order motions, k entries: the same motion whatever the order
+    /// of the coordinates and the basis K, since its components belong to their names.
+    pub(crate) fn direction(&self, number: u64) -> Vec<f64> {
+        let random: Vec<f64> =
+            self.mechanism.coordinates().iter().map(|c| by_name(&c.name, number)).collect();
+        let x = self.kernel.transpose().mul_vec(&random);
+        let size = norm(&x);
+        let even = 1.0 / (x.len() as f64).sqrt();
+        x.iter().map(|x| if size > 0.0 { x / size } else { even }).collect()
     }
 
     /// Scaled rates in the units of the coordinates.
@@ -131,7 +154,13 @@ impl<'a> LyapunovSchmidt<'a> {
 
     /// The configuration at `x`; none if Newton's method does not converge.
     pub(crate) fn step(&self, x: &[f64]) -> Result<Option<ReducedPoint>> {
-        let mut q = self.moved(&self.q, &self.kernel.mul_vec(x));
+        self.step_from(&self.q, x)
+    }
+
+    /// The configuration that is further by `x` than `from`, where P^T f = 0; none if Newton's
+    /// method does not converge.
+    pub(crate) fn step_from(&self, from: &[f64], x: &[f64]) -> Result<Option<ReducedPoint>> {
+        let mut q = self.moved(from, &self.kernel.mul_vec(x));
         let mut last = f64::INFINITY;
         for _ in 0..MAX_STEPS {
             let now = LoopClosure::at(self.mechanism, &q, &self.free, self.length)?;
@@ -164,4 +193,12 @@ impl<'a> LyapunovSchmidt<'a> {
         }
         Ok(None)
     }
+}
+
+/// A random number in (-1, 1) that belongs to a name.
+fn by_name(name: &str, number: u64) -> f64 {
+    // FNV-1a.
+    let hash = |h: u64, byte: u8| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    let mut seed = name.bytes().fold(0xcbf2_9ce4_8422_2325, hash) ^ number.wrapping_mul(0x9e37);
+    2.0 * uniform(&mut seed) - 1.0
 }

@@ -227,6 +227,11 @@ impl MotionSpace {
         motions.clone().scale_rows(&self.scale)
     }
 
+    /// Number of actuated joints, and of all columns of the constraint.
+    pub(crate) fn sizes(&self) -> [usize; 2] {
+        [self.actuated, self.scale.len()]
+    }
+
     /// Number of actuated joints.
     #[must_use]
     pub fn actuated(&self) -> usize {

@@ -22,12 +22,13 @@
 //! Checked  tests/it/closure/reference.rs, tests/it/closure/mobility.rs
 
 use std::fmt;
+use std::ops::Range;
 
 use super::motion_space::{MotionSpace, RowSelection};
 use super::relation::{Relation, RelationDimensions};
 use super::subspace::Subspace;
 use crate::closure::constraint::velocity_constraint::Constraint;
-use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
+use crate::linalg::{ColumnSpace, Cut, Matrix, Svd, Threshold};
 
 /// Coordinate motions by what moves besides the actuated joints. A motion of the actuated joints
 /// that either passive joints or the object can compensate is counted in `passive` and in `object`.
@@ -46,7 +47,8 @@ pub struct CoordinateKinds {
 /// The mobility of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMobility {
-    /// Largest norm of its entry in a motion of unit norm (scaled) [-], between 0 and 1.
+    /// Largest norm of its entry in a motion of unit norm (scaled) [-], between 0 and 1; for a
+    /// component of a vector (rotation, position of a free body), that of the vector.
     pub share: f64,
     /// False where it is locked by the geometry.
     pub moves: bool,
@@ -193,7 +195,7 @@ impl Mobility {
                 overlap: (passive + object + both).saturating_sub(c),
             },
             mixed,
-            joints: joint_mobility(motions, &indeterminacy.0, &idle.0),
+            joints: joint_mobility(constraint, motions, &indeterminacy.0, &idle.0),
             redundancy: space(&redundancy),
             indeterminacy: space(&indeterminacy),
             idle: space(&idle),
@@ -224,6 +226,7 @@ impl Mobility {
 }
 
 fn joint_mobility(
+    constraint: &Constraint,
     motions: &MotionSpace,
     indeterminate: &Matrix,
     idle: &Matrix,
@@ -231,12 +234,22 @@ fn joint_mobility(
     let kernel = motions.kernel();
     let (free, idle) = (kernel * indeterminate, kernel * idle);
     let tolerance = motions.tolerance();
+    // The norm of a scalar's row, the largest singular value of a vector's rows.
+    let norm = |of: &Matrix, rows: Range<usize>| match rows.len() {
+        1 => of.row_norm(rows.start),
+        _ => Svd::of(&of.rows_between(rows.start, rows.end)).values().next().unwrap_or(0.0),
+    };
     (0..motions.actuated() + motions.passive())
-        .map(|i| JointMobility {
-            share: kernel.row_norm(i).min(1.0),
-            moves: kernel.row_norm(i) > tolerance,
-            free_of_actuators: i >= motions.actuated() && free.row_norm(i) > tolerance,
-            idle: i >= motions.actuated() && idle.row_norm(i) > tolerance,
+        .map(|i| {
+            let rows = constraint.vector_of(i);
+            let share = norm(kernel, rows.clone());
+            let passive = i >= motions.actuated();
+            JointMobility {
+                share: share.min(1.0),
+                moves: share > tolerance,
+                free_of_actuators: passive && norm(&free, rows.clone()) > tolerance,
+                idle: passive && norm(&idle, rows) > tolerance,
+            }
         })
         .collect()
 }

@@ -23,14 +23,14 @@
 //! Checked  tests/it/closure/diagnosis.rs
 
 use super::generic_mobility::GenericMobility;
-use super::singularity_types::Singularities;
+use super::singularity_types::SingularityDistances;
+use super::verdict::Verdict;
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::FiniteMobility;
 use crate::closure::mobility::motion_space::{MotionSpace, RowSelection};
 use crate::closure::mobility::relation::Relation;
-use crate::closure::singularity_kind::SingularityKind;
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};
@@ -54,8 +54,10 @@ use crate::tolerance::{CLOSURE_BLOCK, GENERIC_LIMIT, JOINT_AT_REST};
 /// Source: Gosselin & Angeles 1990; Zlatanov et al. 1995.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
-    /// The kinds, and the distances to them.
-    pub singularities: Singularities,
+    /// The kinds, and the mobility.
+    pub verdict: Verdict,
+    /// The distances to singularities.
+    pub distances: SingularityDistances,
     /// The counts of this configuration.
     pub counts: MobilityCounts,
     /// The generic counts.
@@ -88,7 +90,7 @@ impl Diagnosis {
     /// // The elbow straight: a 6R arm cannot move along the line from wrist to shoulder.
     /// let arm = cylindroid::load("ur5e")?;
     /// let found = Diagnosis::of(&arm.state(&[0.0, -0.6, 0.0, 0.4, 1.0, 0.0])?, None, None)?;
-    /// assert_eq!(found.singularities.kinds, [SingularityKind::TypeI]);
+    /// assert_eq!(found.verdict.kinds(), [SingularityKind::TypeI]);
     /// assert_eq!(found.blocked.len(), 1);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
@@ -100,24 +102,16 @@ impl Diagnosis {
         let here = Configuration::of(state, reference, length)?;
         let length = here.chain.constraint.length();
         let counts = MobilityCounts::of(&here.motions, &here.relation);
-        let generic = GenericMobility::around(state, reference, length, counts)?;
         let finite = FiniteMobility::of(state, Some(length))?;
+        let generic = GenericMobility::around(state, reference, length, counts, &finite)?;
+        let verdict = Verdict::of(&counts, &finite, &generic, here.motions.sizes());
+        let distances = SingularityDistances::of(&counts, &here.motions, &here.relation)
+            .against(verdict.excess());
         let beside: Vec<Configuration> = finite
             .neighbours()
             .iter()
             .map(|q| Configuration::of(&mechanism.state(q)?, reference, Some(length)))
             .collect::<Result<_>>()?;
-        let mut singularities =
-            Singularities::with_counts(&counts, &here.motions, &here.relation, &generic.counts);
-        let fold = SingularityKind::ConfigurationSpace;
-        // No other configuration to compare with, but motions that are not finite: the rank is lost
-        // here.
-        let shaky = finite.finite.is_some_and(|f| f < finite.infinitesimal);
-        if generic.others == 0 && shaky && !singularities.kinds.contains(&fold) {
-            singularities.kinds.push(fold);
-            singularities.kinds.sort_unstable();
-            singularities.distances.configuration_space = 0.0;
-        }
         let mut separated = true;
         let mut beyond = |space: &dyn Fn(&Configuration) -> Matrix, generic: usize| {
             let (part, clear) = beyond(&space(&here), &beside, space, generic);
@@ -141,7 +135,8 @@ impl Diagnosis {
             gained: screws(&gains.collect::<Vec<_>>(), length, of_gains)?,
             redundant: movers(&redundant, &here.chain.actuated),
             idle: movers(&idle, &here.chain.passive),
-            singularities,
+            verdict,
+            distances,
             counts,
             generic,
             finite,

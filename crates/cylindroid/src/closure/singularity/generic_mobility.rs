@@ -1,48 +1,53 @@
-//! Generic mobility: the counts of a mechanism at regular configurations.
+//! Generic mobility: the counts of the branch of closed configurations on which a configuration
+//! lies, at its regular configurations.
 //!
-//! Method   the counts of the given configuration, of configurations near it and of random
-//!          configurations within the position limits: random initial guesses (the same on every
-//!          run), closed by [`assemble`]; those that do not close, or return to the given
-//!          configuration, are left out. Of all, the largest rank and the smallest of every other
-//!          count
-//! Valid    configurations of other assembly modes count too. A mechanism whose components differ
-//!          in mobility (kinematotropic) is compared with the one of least mobility. If no other
-//!          configuration closes, the counts are those of the given one: see
-//!          [`GenericMobility::others`]
+//! Method   the branches through the configuration (`finite_mobility.rs`) are followed a finite
+//!          way; of the counts there the largest rank and the smallest of every other count. If the
+//!          loop equations are independent, or there are none, rays in generic directions are
+//!          followed (`rays.rs`)
+//! Valid    on an analytic branch the counts are those of its regular configurations everywhere but
+//!          on a subset of lower dimension, which a generic direction meets with probability zero.
+//!          Other assembly modes and operation modes do not count: an isolated rigid assembly says
+//!          nothing about a mechanism that moves. Without a branch (structures, open loops) the
+//!          counts are those of the configuration itself: see [`GenericMobility::others`]
 //! Why so   counts of a single regular configuration would require it to be known; the
 //!          Gruebler-Kutzbach count is wrong for overconstrained mechanisms
-//! Checked  tests/it/closure/diagnosis.rs
+//! Checked  tests/it/closure/diagnosis.rs, tests/it/linkages.rs
 
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::mobility::counts::MobilityCounts;
+use crate::closure::mobility::finite_mobility::FiniteMobility;
+use crate::closure::mobility::lyapunov_schmidt::LyapunovSchmidt;
 use crate::closure::mobility::motion_space::MotionSpace;
-use crate::closure::position::assembly::assemble;
-use crate::closure::position::configuration_signature::{link_poses, max_displacement};
-use crate::closure::position::initial_guesses::{perturbed, random};
+use crate::closure::mobility::rays::Rays;
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::model::FrameId;
-use crate::tolerance::FINITE_STEP;
+use crate::tolerance::CLOSURE_RANK;
 
-/// Number of guesses near the configuration, and of random ones.
-const GUESSES: (usize, usize) = (6, 6);
-/// Perturbation of the guesses near it [rad, or reaches].
-const NEAR: f64 = 0.3;
-
-/// Generic counts, and the number of configurations they come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Generic counts of the branches through a configuration.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GenericMobility {
-    /// The counts.
+    /// The counts: of all branches the largest rank and the smallest of every other count.
     pub counts: MobilityCounts,
-    /// Number of other closed configurations that were counted.
+    /// The counts of each branch, in the order of [`FiniteMobility::branches`].
+    pub branches: Vec<MobilityCounts>,
+    /// Number of other configurations that were counted.
     pub others: usize,
-    /// Number of initial guesses tried.
-    pub guesses: usize,
 }
 
 impl GenericMobility {
-    /// For the mechanism of `state`, its reference frame or another, with its reach as
-    /// characteristic length or another (m).
+    /// For the branch of `state`, its mechanism's reference frame or another, with the
+    /// characteristic length of the mechanism or another (m).
+    ///
+    /// ```
+    /// use cylindroid::closure::GenericMobility;
+    ///
+    /// let stewart = cylindroid::load("stewart")?;
+    /// let generic = GenericMobility::of(&stewart.state(stewart.home())?, None, None)?;
+    /// assert_eq!(generic.counts.indeterminacy, 0);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// ```
     /// use cylindroid::closure::GenericMobility;
@@ -59,36 +64,42 @@ impl GenericMobility {
     /// As [`ClosedChain::of`].
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let chain = ClosedChain::of(state, reference, length)?;
-        Self::around(state, reference, chain.constraint.length(), counted(&chain))
+        let length = chain.constraint.length();
+        let finite = FiniteMobility::of(state, Some(length))?;
+        Self::around(state, reference, length, counted(&chain), &finite)
     }
 
-    /// The same for a configuration whose counts are known.
+    /// The same for a configuration whose counts and finite mobility are known.
     pub(crate) fn around(
         state: &State,
         reference: Option<FrameId>,
         length: f64,
         counts: MobilityCounts,
+        finite: &FiniteMobility,
     ) -> Result<Self> {
         let mechanism = state.mechanism();
-        let all: Vec<usize> = (0..mechanism.n()).collect();
-        let here = link_poses(state);
-        let mut seed = 7;
-        let mut generic = Self { counts, others: 0, guesses: GUESSES.0 + GUESSES.1 };
-        for guess in 0..generic.guesses {
-            let guess = if guess < GUESSES.0 {
-                perturbed(mechanism, state.q(), NEAR, &mut seed)
+        let at = |q: &Vec<f64>| -> Result<MobilityCounts> {
+            Ok(counted(&ClosedChain::of(&mechanism.state(q)?, reference, Some(length))?))
+        };
+        let mut generic = Self { counts, branches: Vec::new(), others: 0 };
+        for branch in &finite.branches {
+            let rays;
+            let configurations: Vec<&Vec<f64>> = if branch.configurations.is_empty() {
+                let reduction = LyapunovSchmidt::of(mechanism, state.q(), length, CLOSURE_RANK)?;
+                rays = Rays::of(&reduction)?;
+                rays.ends().collect()
             } else {
-                random(mechanism, state.q(), &all, &mut seed)
+                branch.configurations.iter().collect()
             };
-            let closed = assemble(mechanism, &guess, &[])?;
-            let there = mechanism.state(&closed.q)?;
-            let away = max_displacement(&link_poses(&there), &here, mechanism) > FINITE_STEP;
-            if closed.closed && away {
-                let chain = ClosedChain::of(&there, reference, Some(length))?;
-                generic.counts = generic.counts.generic(counted(&chain));
+            let mut own: Option<MobilityCounts> = None;
+            for q in configurations {
+                let there = at(q)?;
+                own = Some(own.map_or(there, |own| own.generic(there)));
                 generic.others += 1;
             }
+            generic.branches.push(own.unwrap_or(counts));
         }
+        generic.counts = generic.branches.iter().fold(counts, |all, branch| all.generic(*branch));
         Ok(generic)
     }
 }

@@ -8,3 +8,4 @@
 pub(crate) mod diagnosis;
 pub(crate) mod generic_mobility;
 pub(crate) mod singularity_types;
+pub(crate) mod verdict;

@@ -79,25 +79,27 @@ pub struct Singularities {
     pub distances: SingularityDistances,
 }
 
-/// The counts that differ from their generic values.
-struct Beyond {
-    loses: bool,
-    gains: bool,
-    folds: bool,
-    idles: bool,
+/// The counts that exceed their generic values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Excess {
+    pub(crate) loses: bool,
+    pub(crate) gains: bool,
+    pub(crate) folds: bool,
+    pub(crate) idles: bool,
 }
 
-impl Beyond {
-    fn of(now: &MobilityCounts, generic: &MobilityCounts) -> Self {
+impl Excess {
+    /// `unactuated`: [`MobilityCounts::lack_actuation`] of the branch.
+    pub(crate) fn of(now: &MobilityCounts, generic: &MobilityCounts, unactuated: bool) -> Self {
         Self {
             loses: now.zero_torque > generic.zero_torque || now.redundancy > generic.redundancy,
-            gains: now.indeterminacy > generic.indeterminacy,
+            gains: now.indeterminacy > generic.indeterminacy || unactuated,
             folds: now.rank < generic.rank,
             idles: now.idle > generic.idle,
         }
     }
 
-    fn kinds(&self) -> Vec<SingularityKind> {
+    pub(crate) fn kinds(self) -> Vec<SingularityKind> {
         let first = match (self.loses, self.gains) {
             (true, true) => Some(SingularityKind::TypeIII),
             (true, false) => Some(SingularityKind::TypeI),
@@ -111,9 +113,21 @@ impl Beyond {
 }
 
 impl SingularityDistances {
-    /// The distances for these counts: 0 to each kind that the configuration has.
-    pub(crate) fn against(self, now: &MobilityCounts, generic: &MobilityCounts) -> Self {
-        let Beyond { loses, gains, folds, idles } = Beyond::of(now, generic);
+    /// To the next loss or gain, whether or not there is one here already.
+    pub(crate) fn of(now: &MobilityCounts, motions: &MotionSpace, relation: &Relation) -> Self {
+        let pairs = relation.finite_pairs();
+        let none = f64::INFINITY;
+        Self {
+            type_i: pairs.last().map_or(none, |p| p.0),
+            type_ii: pairs.first().map_or(none, |p| p.1),
+            configuration_space: if now.rank > 0 { motions.regularity() } else { none },
+            passive: motions.vanishing_coefficients(ACTUATED_AND_OBJECT).1.kept,
+        }
+    }
+
+    /// These distances, 0 to each kind that the configuration has.
+    pub(crate) fn against(self, excess: Excess) -> Self {
+        let Excess { loses, gains, folds, idles } = excess;
         let or_zero = |singular: bool, x: f64| if singular { 0.0 } else { x };
         Self {
             type_i: or_zero(loses, self.type_i),
@@ -140,29 +154,13 @@ impl Singularities {
     /// ```
     #[must_use]
     pub fn of(motions: &MotionSpace, relation: &Relation, generic: &MobilityCounts) -> Self {
-        Self::with_counts(&MobilityCounts::of(motions, relation), motions, relation, generic)
-    }
-
-    /// The same for a configuration whose counts are known.
-    pub(crate) fn with_counts(
-        now: &MobilityCounts,
-        motions: &MotionSpace,
-        relation: &Relation,
-        generic: &MobilityCounts,
-    ) -> Self {
-        let pairs = relation.finite_pairs();
-        let none = f64::INFINITY;
-        let here = SingularityDistances {
-            type_i: pairs.last().map_or(none, |p| p.0),
-            type_ii: pairs.first().map_or(none, |p| p.1),
-            configuration_space: if now.rank > 0 { motions.regularity() } else { none },
-            passive: motions.vanishing_coefficients(ACTUATED_AND_OBJECT).1.kept,
-        };
+        let now = MobilityCounts::of(motions, relation);
+        let excess = Excess::of(&now, generic, false);
         Self {
-            kinds: Beyond::of(now, generic).kinds(),
+            kinds: excess.kinds(),
             blocked: relation.forces().infinite,
             gained: relation.motions().infinite,
-            distances: here.against(now, generic),
+            distances: SingularityDistances::of(&now, motions, relation).against(excess),
         }
     }
 

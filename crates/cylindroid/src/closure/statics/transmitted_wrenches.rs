@@ -90,7 +90,7 @@ pub fn transmitted_wrenches(
     let pose = |link: usize| state.pose(mechanism.link_frame(link));
     let sum = |place: usize, point: Vec3| {
         let own = rows.iter().zip(forces).filter(|(row, _)| row.pair == place);
-        own.fold(Wrench::ZERO, |sum, (row, t)| sum + row.wrench * *t).at_point(point)
+        own.fold(Wrench::ZERO, |sum, (row, t)| sum + row.wrench.at_point(point - row.point) * *t)
     };
     let mut all = Vec::new();
     for joint in mechanism.loops() {

@@ -17,3 +17,4 @@ mod rings;
 mod scaling;
 mod singularity;
 mod statics;
+mod verdict;

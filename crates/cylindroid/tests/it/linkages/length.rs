@@ -1,0 +1,84 @@
+//! The characteristic length: of every mechanism, whatever the frame, order and drawn points.
+
+use cylindroid::Mechanism;
+use cylindroid::catalogue;
+use cylindroid::model::{JointKind, JointSpec, Limits};
+use cylindroid::spatial::{Pose, Rotation, Vec3};
+
+use crate::support::assert_close;
+
+/// Of one joint between ground and a link, whose frame is at `tip`.
+fn single(kind: JointKind, base: Vec3, tip: Vec3, limits: Limits) -> f64 {
+    let mut b = Mechanism::builder("single");
+    b.joint(JointSpec {
+        parent_from_joint: Pose::from_translation(base),
+        limits,
+        ..JointSpec::new("q1", kind, "ground", "link")
+    });
+    b.frame("tip", "link", Pose::from_translation(tip)).reference("tip");
+    b.build().unwrap().reach()
+}
+
+#[test]
+fn every_mechanism_has_one() {
+    let far = Vec3::new(70.0, -50.0, 20.0);
+    let tip = Vec3::new(0.3, 0.4, 0.7);
+    for base in [Vec3::ZERO, far] {
+        // One axis: the distance from it to the reference, whatever the height.
+        let one = single(JointKind::Revolute, base, tip, Limits::NONE);
+        assert_close("one axis", &[one], &[0.5], 1e-12);
+        // On the axis: the distance along it, from where the joint is drawn.
+        let along = single(JointKind::Revolute, base, Vec3::Z, Limits::NONE);
+        assert_close("on the axis", &[along], &[4.0 / 3.0], 1e-12);
+        // A slide: the reference and the origins of its frames.
+        let slide = single(JointKind::Prismatic, base, tip, Limits::NONE);
+        assert!(slide > 0.5 && slide < 2.0, "{slide}");
+        // A slide at the reference: its travel.
+        let travel = Limits { lower: -0.1, upper: 0.4, ..Limits::NONE };
+        let slide = single(JointKind::Prismatic, base, Vec3::ZERO, travel);
+        assert_close("travel", &[slide], &[0.5], 1e-15);
+        // A sphere about the reference: no length.
+        let sphere = single(JointKind::Spherical, base, Vec3::ZERO, Limits::NONE);
+        assert!(sphere == 1.0, "{sphere}");
+    }
+    // A floating base does not add its place.
+    let mut b = Mechanism::builder("floating");
+    b.joint(JointSpec {
+        parent_from_joint: Pose::from_translation(far),
+        ..JointSpec::new("root", JointKind::Free, "world", "base")
+    });
+    b.joint(JointSpec {
+        parent_from_joint: Pose::from_translation(Vec3::X),
+        ..JointSpec::new("q1", JointKind::Revolute, "base", "link")
+    });
+    b.frame("tip", "link", Pose::from_translation(tip)).reference("tip");
+    assert_close("floating", &[b.build().unwrap().reach()], &[0.5], 1e-12);
+    for name in catalogue::names() {
+        let length = catalogue::load(name).unwrap().reach();
+        assert!(length > 0.1 && length < 10.0, "{name}: {length}");
+    }
+}
+
+/// The point on an axis at which a joint is drawn says nothing about the mechanism.
+#[test]
+fn it_does_not_depend_on_the_drawn_points() {
+    let of = |slid: f64| {
+        let mut b = Mechanism::builder("slid");
+        let tilt = Rotation::about(Vec3::X, 0.4).unwrap();
+        let first = Pose { rotation: tilt, translation: Vec3::new(0.2, 0.1, 0.0) };
+        let along = |z: f64| Pose::from_translation(Vec3::Z * z);
+        b.joint(JointSpec {
+            parent_from_joint: first * along(slid),
+            joint_from_child: along(-slid),
+            ..JointSpec::new("q1", JointKind::Revolute, "ground", "a")
+        });
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::X) * along(2.0 * slid),
+            joint_from_child: along(-2.0 * slid),
+            ..JointSpec::new("q2", JointKind::Revolute, "a", "b")
+        });
+        b.frame("tip", "b", Pose::from_translation(Vec3::Y)).reference("tip");
+        b.build().unwrap().reach()
+    };
+    assert_close("slid", &[of(0.3), of(-5.0)], &[of(0.0), of(0.0)], 1e-12);
+}
