@@ -402,7 +402,7 @@ impl Builder {
         }
         let frame_key = frame_key(&frames);
         let id = |index| FrameId { index, frame_key };
-        let mut mechanism = Mechanism {
+        let mechanism = Mechanism {
             data: Arc::new(Data {
                 name: self.name,
                 links: self.links,
@@ -423,10 +423,7 @@ impl Builder {
                 report: self.report,
             }),
         };
-        let [reach, far] = mechanism.measure_lengths();
-        let data = Arc::make_mut(&mut mechanism.data);
-        (data.reach, data.far) = (reach, far);
-        Ok(mechanism)
+        Ok(mechanism.measured())
     }
 }
 

@@ -11,7 +11,9 @@
 //! Why so   distances between lines and points are those of the mechanism, whatever the origin and
 //!          the axes of the world, the order of the joints and the point on an axis at which a file
 //!          draws a joint; the reference point makes the centre unique
-//! Checked  tests/it/characteristic_length.rs
+//! Checked  tests/it/linkages/length.rs
+
+use std::sync::Arc;
 
 use super::joint::JointKind;
 use super::mechanism::Mechanism;
@@ -35,9 +37,46 @@ impl Feature {
 }
 
 impl Mechanism {
+    /// Characteristic length (m), which divides lengths wherever they stand beside angles: the
+    /// extent of the mechanism at home. It does not depend on the frame, the order of the joints
+    /// or the points at which their axes are drawn, and is proportional to the mechanism.
+    ///
+    /// ```text
+    /// L = 2 max |distance of f from c|,   c minimises sum |distance of f from c|^2
+    /// ```
+    ///
+    /// over the features f: axes of revolute, helical and cylindrical joints, centres of universal
+    /// and spherical joints, contact points, and the reference point. Where they all meet in one
+    /// point, or there are only slides: the same over the origins of the joints, otherwise the
+    /// longest travel, otherwise 1 m.
+    ///
+    /// ```
+    /// let arm = cylindroid::load("3r")?;
+    /// assert!(arm.reach() > 0.0);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    #[doc(alias = "characteristic length")]
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.data.reach
+    }
+
+    /// Largest distance of a joint from the origin of the world, at home (m).
+    pub(crate) fn far_from_origin(&self) -> f64 {
+        self.data.far
+    }
+
+    /// The same mechanism with its characteristic length, which depends on its home.
+    pub(super) fn measured(mut self) -> Self {
+        let [reach, far] = self.lengths();
+        let data = Arc::make_mut(&mut self.data);
+        (data.reach, data.far) = (reach, far);
+        self
+    }
+
     /// The characteristic length of this mechanism, see the module, and the largest distance of a
     /// joint from the origin of the world at home (m), whose rounding all positions have.
-    pub(super) fn measure_lengths(&self) -> [f64; 2] {
+    fn lengths(&self) -> [f64; 2] {
         let links = self.link_poses(self.home());
         let reference = self.frame_of(self.reference());
         let reference = links[reference.link] * reference.link_from_frame.translation;

@@ -66,6 +66,6 @@ impl Mechanism {
     #[cfg(feature = "formats")]
     pub(crate) fn with_assembled_home(&self, home: Vec<f64>) -> Self {
         let unassembled = Vec::new();
-        Self { data: Arc::new(Data { home, unassembled, ..Data::clone(&self.data) }) }
+        Self { data: Arc::new(Data { home, unassembled, ..Data::clone(&self.data) }) }.measured()
     }
 }

@@ -328,35 +328,6 @@ impl Mechanism {
         &self.data.home
     }
 
-    /// Characteristic length (m), which divides lengths wherever they stand beside angles: the
-    /// extent of the mechanism at home. It does not depend on the frame, the order of the joints
-    /// or the points at which their axes are drawn, and is proportional to the mechanism.
-    ///
-    /// ```text
-    /// L = 2 max |distance of f from c|,   c minimises sum |distance of f from c|^2
-    /// ```
-    ///
-    /// over the features f: axes of revolute, helical and cylindrical joints, centres of universal
-    /// and spherical joints, contact points, and the reference point. Where they all meet in one
-    /// point, or there are only slides: the same over the origins of the joints, otherwise the
-    /// longest travel, otherwise 1 m.
-    ///
-    /// ```
-    /// let arm = cylindroid::load("3r")?;
-    /// assert!(arm.reach() > 0.0);
-    /// # Ok::<(), cylindroid::Error>(())
-    /// ```
-    #[doc(alias = "characteristic length")]
-    #[must_use]
-    pub fn reach(&self) -> f64 {
-        self.data.reach
-    }
-
-    /// Largest distance of a joint from the origin of the world, at home (m).
-    pub(crate) fn far_from_origin(&self) -> f64 {
-        self.data.far
-    }
-
     /// The load report: what was read and what was ignored.
     #[must_use]
     pub fn report(&self) -> &LoadReport {

@@ -11,7 +11,7 @@
 //!          [`TRACKED`], earlier where Newton's method fails: y(s) turns back there
 //! Why so   a single short step cannot distinguish a finite motion from a contact of high order: of
 //!          c s^8 a step of 0.01 leaves 1e-16
-//! Checked  tests/it/closure/finite.rs, tests/it/linkages.rs
+//! Checked  tests/it/closure/finite.rs, tests/it/linkages/published.rs
 
 use super::lyapunov_schmidt::{LyapunovSchmidt, ReducedPoint};
 use crate::error::Result;
@@ -165,5 +165,5 @@ impl Rays {
 fn integer(powers: &[f64]) -> Option<u32> {
     let least = powers.iter().copied().fold(f64::INFINITY, f64::min).round();
     let all = powers.iter().all(|p| (p - least).abs() <= NEAR_INTEGER);
-    (all && least >= 1.0 && least < 64.0).then_some(least as u32)
+    (all && (1.0..64.0).contains(&least)).then_some(least as u32)
 }

@@ -12,7 +12,7 @@
 //!          counts are those of the configuration itself: see [`GenericMobility::others`]
 //! Why so   counts of a single regular configuration would require it to be known; the
 //!          Gruebler-Kutzbach count is wrong for overconstrained mechanisms
-//! Checked  tests/it/closure/diagnosis.rs, tests/it/linkages.rs
+//! Checked  tests/it/closure/diagnosis.rs, tests/it/linkages/published.rs
 
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::mobility::counts::MobilityCounts;

@@ -12,7 +12,7 @@
 //!          singularities and on distances
 //! Source   Gosselin & Angeles 1990; Zlatanov et al. 1995; Ma & Angeles 1991 (architecture
 //!          singularities)
-//! Checked  tests/it/closure/verdict.rs, tests/it/linkages.rs
+//! Checked  tests/it/closure/verdict.rs, tests/it/linkages/published.rs
 
 use std::fmt;
 
