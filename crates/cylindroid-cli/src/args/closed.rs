@@ -51,7 +51,7 @@ pub(crate) struct ClosedArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) frame: Option<String>,
 
-    /// Characteristic length [m] [default: the reach]
+    /// Characteristic length [m] [default: that of the model, see `info`]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,
 }

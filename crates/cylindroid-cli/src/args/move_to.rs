@@ -173,7 +173,7 @@ pub(crate) struct ServoArgs {
     pub(crate) acceleration: Option<f64>,
 
     /// Length that scales the linear rows of the Jacobian for the inverse and for singular values
-    /// [m] [default: the reach of the model]
+    /// [m] [default: that of the model]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,
 

@@ -34,7 +34,7 @@ pub(crate) struct ScrewsArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
-    /// Characteristic length, in the unit of the linear parts [default: the reach of the model; 1
+    /// Characteristic length, in the unit of the linear parts [default: that of the model; 1
     /// for a file of twists]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,

@@ -308,7 +308,7 @@ impl PyMechanism {
     /// reference : str, optional
     ///     The frame whose motion is the goal. Default: that of the file, else the tool.
     /// length : float, optional
-    ///     Characteristic length (m). Default: the reach.
+    ///     Characteristic length (m). Default: that of the mechanism, `reach`.
     ///
     /// Returns
     /// -------

@@ -174,7 +174,7 @@ impl PyMechanism {
     ///     'unit' (m and rad, unscaled), 'length' (lengths over the characteristic length),
     ///     'limits' (as 'length', and joint velocities over their limits).
     /// length : float, optional
-    ///     Characteristic length (m). Default: the reach.
+    ///     Characteristic length (m). Default: that of the mechanism, `reach`.
     ///
     /// Returns
     /// -------

@@ -46,7 +46,7 @@ impl PyMechanism {
     /// metric : str
     ///     'unit', 'length' or 'limits', as `manipulability`.
     /// length : float, optional
-    ///     Characteristic length (m). Default: the reach.
+    ///     Characteristic length (m). Default: that of the mechanism, `reach`.
     ///
     /// Returns
     /// -------

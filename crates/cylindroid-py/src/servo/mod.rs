@@ -46,7 +46,7 @@ pub(crate) use trajectory::PyTrajectory;
 /// acceleration : float, optional
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
 /// length : float, optional
-///     Characteristic length that scales linear rows (m). Default: the reach.
+///     Characteristic length that scales linear rows (m). Default: that of the mechanism, `reach`.
 /// joint_weights : array_like, (n,), optional
 ///     A large weight keeps a joint still.
 /// secondary : str, list of str or dict, optional
