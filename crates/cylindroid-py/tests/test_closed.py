@@ -372,3 +372,80 @@ point = [1, 1]
 normal = [-1, 0]
 friction = 0.5
 """
+
+
+LEG = """
+<robot name="leg">
+  <link name="base"/> <link name="thigh"/> <link name="shank"/> <link name="foot"/>
+  <joint name="hip" type="continuous">
+    <parent link="base"/> <child link="thigh"/> <axis xyz="0 0 1"/>
+  </joint>
+  <joint name="knee" type="continuous">
+    <parent link="thigh"/> <child link="shank"/> <origin xyz="0.3 0 0"/> <axis xyz="0 0 1"/>
+  </joint>
+  <joint name="ankle" type="fixed">
+    <parent link="shank"/> <child link="foot"/> <origin xyz="0.3 0 0"/>
+  </joint>
+</robot>
+"""
+TWO_LEGS = """
+[[robot]]
+name = "a"
+model = "leg.urdf"
+start = [1.2, 0.5]
+
+[[robot]]
+name = "b"
+model = "leg.urdf"
+base = { xyz = [0.4, 0, 0] }
+start = [1.9, -0.5]
+
+[[closure]]
+name = "feet"
+type = "point"
+between = ["a/foot", "b/foot"]
+"""
+
+
+def test_frames_of_a_urdf_close_a_loop(tmp_path):
+    (tmp_path / "leg.urdf").write_text(LEG)
+    path = tmp_path / "legs.toml"
+    path.write_text(TWO_LEGS)
+    for m in [cy.load(path), cy.parse(TWO_LEGS, "toml", path)]:
+        feet = [m.fk(m.home, f"{leg}/foot")[:3, 3] for leg in "ab"]
+        np.testing.assert_allclose(feet[0], feet[1], atol=1e-12)
+        assert m.mobility().dof == 2
+        assert [j.name for j in m.joints if j.closes_loop] == ["feet"]
+        copy.deepcopy(m)
+        # The feet translate in a plane: the screws of one leg are others.
+        assert m.screw_system(frame="a/foot").rank == 2
+    far = TWO_LEGS.replace("0.4, 0, 0", "1.4, 0, 0")
+    with pytest.raises(cy.ModelFileError, match="'feet' cannot be closed.*0.200 m apart"):
+        cy.parse(far, "toml", path)
+
+
+def test_screw_systems_of_closed_chains():
+    for name, rank in [("delta", 3), ("stewart", 6), ("five-bar", 2), ("3rrr", 3)]:
+        assert cy.load(name).screw_system().rank == rank
+    arm = cy.load("ur5e")
+    q = arm.home + 0.1
+    system, columns = arm.screw_system(q), cy.ScrewSystem(arm.jacobian(q, reference="world"))
+    assert system.rank == columns.rank == 6
+    with pytest.raises(cy.DimensionError):
+        arm.screw_system([0.0])
+
+
+def test_joints_from_either_link_have_one_meaning():
+    joint = """
+    [[joint]]
+    name = "ball"
+    type = "spherical"
+    between = ["{}", "{}"]
+    origin = [0, 0, 0]
+    """
+    q = [0.3, -0.2, 0.9]
+    forward = cy.parse(joint.format("ground", "a"), "toml")
+    reversed = cy.parse(joint.format("a", "ground"), "toml")
+    pose = forward.fk(q, "a")
+    np.testing.assert_allclose(reversed.fk(q, "a"), np.linalg.inv(pose), atol=1e-15)
+    assert [j.reversed for m in (forward, reversed) for j in m.joints] == [False, True]
