@@ -89,8 +89,20 @@ pub const GENERIC_RANK: f64 = 1e-9;
 pub const NEARLY_PARALLEL: f64 = 1e-6;
 
 /// The centre of a screw system has converged when a step is below this fraction of the
-/// characteristic length [-]: margins then depend on the given twists by less than a factor of two.
-pub const CENTER_FOUND: f64 = 0.1;
+/// characteristic length [-]: margins then depend on the frame to a similar fraction.
+pub const CENTER_FOUND: f64 = 1e-9;
+
+/// A screw system is the same from all points along a direction in which it changes by less than the
+/// root of this, relative to the others [-]: rounding, and what is far below [`FAR_AXIS`].
+pub const FREE_TRANSLATION: f64 = 1e-10;
+
+/// The centre of a screw system is put nearest to the origin, where it is free, from less than this
+/// many lengths away [-]: moments then keep thirteen digits.
+pub const FAR_ORIGIN: f64 = 10.0;
+
+/// Twists of which a unit has an angular part below this do not determine the centre of a screw
+/// system: their pitch, or their distance from the others, is a hundred thousand lengths [-].
+pub const FAR_AXIS: f64 = 1e-5;
 
 /// Coordinates of a canonical origin whose weight is below this are undetermined [-].
 pub const ORIGIN_DETERMINED: f64 = 1e-13;
@@ -109,9 +121,13 @@ pub const SCREW_CLASS: f64 = 1e-8;
 /// size [-]. This factor and the next were found by experiment over all classes in random frames.
 pub const NOISE_RANK: f64 = 30.0;
 
-/// Noise of the twists, at the centre and times the conditioning of the twists, raises the
-/// threshold of the class to this multiple of its size [-].
+/// Noise of the twists, at the centre and times [`NOISE_CONDITION`], raises the threshold of the
+/// class to this multiple of its size [-].
 pub const NOISE_CLASS: f64 = 100.0;
+
+/// Noise of twists reaches their span times their conditioning; up to this one, thresholds cover it,
+/// and twists that are conditioned worse are flagged [-].
+pub const NOISE_CONDITION: f64 = 5.0;
 
 /// A zero perturbed by noise stays below this fraction of the threshold that the noise raises [-]:
 /// in 6e5 random systems the largest was 0.31.

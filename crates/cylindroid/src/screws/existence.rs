@@ -256,22 +256,28 @@ impl ScrewSystem {
             .map(|h| (h, norm(h)))
             .collect();
         let norm_at_infinity = norm(f64::INFINITY);
-        let best = (0..curve.len())
-            .min_by(|&i, &j| {
-                curve[i]
-                    .1
-                    .total_cmp(&curve[j].1)
-                    .then(curve[i].0.abs().total_cmp(&curve[j].0.abs()))
+        let mut minima: Vec<usize> = (0..curve.len())
+            .filter(|&i| {
+                curve[i].1.is_finite()
+                    && (i == 0 || curve[i].1 <= curve[i - 1].1)
+                    && (i + 1 == curve.len() || curve[i].1 <= curve[i + 1].1)
             })
-            .filter(|&i| curve[i].1.is_finite());
-        let Some(best) = best else {
+            .collect();
+        minima.sort_by(|&i, &j| {
+            curve[i].1.total_cmp(&curve[j].1).then(curve[i].0.abs().total_cmp(&curve[j].0.abs()))
+        });
+        let Some(&best) = minima.first() else {
             let pitch = norm_at_infinity.is_finite().then_some(f64::INFINITY);
             return PitchChoice { pitch, norm: norm_at_infinity, curve, norm_at_infinity };
         };
         let (mut pitch, mut smallest) = curve[best];
-        // Between its neighbours the curve is smooth: golden section.
-        if best > 0 && best + 1 < curve.len() {
-            let (mut a, mut b) = (curve[best - 1].0, curve[best + 1].0);
+        for i in minima {
+            // Between its neighbours the curve is smooth: golden section. One that is much worse
+            // before does not become the best.
+            if i == 0 || i + 1 == curve.len() || curve[i].1 > 1.1 * curve[best].1 {
+                continue;
+            }
+            let (mut a, mut b) = (curve[i - 1].0, curve[i + 1].0);
             let golden = 0.5 * (5_f64.sqrt() - 1.0);
             for _ in 0..40 {
                 let (c, d) = (b - golden * (b - a), a + golden * (b - a));

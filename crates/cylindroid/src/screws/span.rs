@@ -8,10 +8,10 @@
 //!          the frame: verdicts then depend neither on the frame nor on the unit
 //! Checked  tests/it/screws/
 
-use crate::linalg::{Matrix, SymmetricEigen};
+use crate::linalg::{Matrix, Svd, SymmetricEigen};
 use crate::scalar::clamp;
 use crate::spatial::{Twist, Vec3};
-use crate::tolerance::NEARLY_PARALLEL;
+use crate::tolerance::{FREE_TRANSLATION, NEARLY_PARALLEL};
 
 /// Centre and unit of length of a screw system.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -156,6 +156,48 @@ impl Span {
 
     pub(crate) fn vectors(&self) -> &[[f64; 6]] {
         &self.basis[..self.k]
+    }
+
+    /// The basis turned by the right singular vectors of its angular block: angular parts are
+    /// orthogonal, largest first.
+    pub(crate) fn turned_by_angular_parts(&self) -> impl Iterator<Item = [f64; 6]> + '_ {
+        // Rows of zeros make the block tall: the decomposition then has all right singular vectors.
+        let block =
+            Matrix::from_fn(6, self.k, |i, j| if i < 3 { self.basis[j][3 + i] } else { 0.0 });
+        let svd = Svd::of(&block);
+        (0..self.k).map(move |i| {
+            let mut x = [0.0; 6];
+            for (b, v) in self.vectors().iter().zip(svd.v(i)) {
+                x.iter_mut().zip(b).for_each(|(xi, bi)| *xi += v * bi);
+            }
+            x
+        })
+    }
+
+    /// Directions in which the origin of the twists may move without the span leaving itself, to
+    /// rounding: those of the translations that are symmetries of the system.
+    pub(crate) fn free_translations(&self) -> impl Iterator<Item = Vec3> {
+        let mut a = [[0.0; 3]; 3];
+        for x in self.vectors() {
+            let change = [Vec3::X, Vec3::Y, Vec3::Z].map(|e| {
+                let mut y = join(angular(x).cross(e), Vec3::ZERO);
+                self.project_out(&mut y);
+                y
+            });
+            for i in 0..3 {
+                for j in i..3 {
+                    a[i][j] += dot(&change[i], &change[j]);
+                }
+            }
+        }
+        let eigen = SymmetricEigen::of(a, 3);
+        let free = (0..3).filter(move |&i| eigen.values[i] <= FREE_TRANSLATION * eigen.values[0]);
+        free.map(move |i| Vec3::from_array(eigen.vectors[i]))
+    }
+
+    /// The largest angular part of a unit vector.
+    pub(crate) fn largest_angular_part(&self) -> f64 {
+        self.turned_by_angular_parts().next().map_or(0.0, |x| angular(&x).norm())
     }
 
     /// The orthogonal complement.

@@ -8,17 +8,18 @@
 //!          the thresholds include the distance to the centre
 //! Checked  tests/it/screws/classes.rs
 
-use super::span::{Scale, Span, dot, least_squares_center, over, power_of_two, size};
+use super::span::{Scale, Span, angular, dot, least_squares_center, over, power_of_two, size};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank, Svd};
 use crate::scalar::clamp;
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::{
-    AMBIGUOUS, CENTER_FOUND, NOISE_CLASS, NOISE_OF_ZERO, NOISE_RANK, SCREW_CLASS, SCREW_RANK,
+    AMBIGUOUS, CENTER_FOUND, FAR_AXIS, FAR_ORIGIN, NOISE_CLASS, NOISE_CONDITION, NOISE_OF_ZERO,
+    NOISE_RANK, SCREW_CLASS, SCREW_RANK,
 };
 
 /// Steps to the centre at most; each shortens the way by a factor that depends on the system.
-const CENTER_STEPS: usize = 32;
+const CENTER_STEPS: usize = 64;
 
 /// Options of screw systems: characteristic length, centre and noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,6 +92,8 @@ pub(super) struct Tolerances {
     pub(super) class: f64,
     /// What noise asks for as a threshold of the class.
     pub(super) noise: f64,
+    /// What the noise of these twists, which may be conditioned worse, makes of it.
+    pub(super) of_twists: f64,
     /// True if a singular value lies near the threshold of the rank.
     pub(super) narrow_rank: bool,
 }
@@ -99,6 +102,14 @@ pub(super) struct Tolerances {
 /// its own, makes of zero.
 pub(super) fn is_narrow(value: f64, threshold: f64, noise: f64) -> bool {
     value < threshold * AMBIGUOUS && value > (threshold / AMBIGUOUS).max(NOISE_OF_ZERO * noise)
+}
+
+impl Tolerances {
+    /// True if a quantity does not decide the class with certainty.
+    pub(super) fn is_narrow(&self, value: f64) -> bool {
+        is_narrow(value, self.class, self.noise)
+            || (value > self.class && value < self.of_twists * AMBIGUOUS)
+    }
 }
 
 /// The twists that are the columns of a matrix with six rows.
@@ -139,48 +150,81 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
             .fold(1.0, f64::max)
     };
     if options.center.is_none() && !used.is_empty() {
-        // The centre of the given twists depends on which were given; that of a basis which is
-        // orthonormal there does not.
         let amplified = amplification(&scale);
-        let (mut span, smallest) = basis(&used, scale, NOISE_RANK * options.noise * amplified);
-        let turning = class(amplified / smallest);
-        let mut before: Option<Vec3> = None;
-        for _ in 0..CENTER_STEPS {
-            let twists: [Twist; 6] = std::array::from_fn(|i| {
-                span.vectors().get(i).map_or(Twist::ZERO, |x| scale.undo(x))
-            });
-            let twists = &twists[..span.k()];
-            let step = least_squares_center(twists, options.length, turning) - scale.center;
-            scale.center += step;
-            if step.norm() <= CENTER_FOUND * options.length {
-                break;
-            }
-            // Every step is a fraction of the previous one: two determine the limit (Aitken).
-            let part = before.map_or(0.0, |b: Vec3| step.dot(b) / b.dot(b));
-            if part > 0.0 && part < 0.9 {
-                scale.center += step * (part / (1.0 - part));
-                before = None;
-            } else {
-                before = Some(step);
-            }
-            span = Span::of_independent(twists.iter().map(|t| scale.apply(*t)));
-        }
+        let span = basis(&used, scale, NOISE_RANK * options.noise * amplified);
+        let independent: Vec<Twist> = span.vectors().iter().map(|x| scale.undo(x)).collect();
+        scale = center_of(&independent, scale, class(NOISE_CONDITION).max(FAR_AXIS));
     }
-    let amplified = amplification(&scale);
-    let found = decompose(&used, scale, options, amplified);
-    let factor = amplified * found.conditioning;
+    let found = decompose(&used, scale, options, amplification(&scale));
+    // Of the space, not of the twists that span it: the threshold is then the same for all of them.
+    let lever = found.span.largest_angular_part() * scale.center.norm() / scale.length;
+    let factor = NOISE_CONDITION * lever.hypot(1.0);
     let tolerance = Tolerances {
         rank: found.rank.threshold,
         class: class(factor),
         noise: noise(factor),
+        of_twists: noise(amplification(&scale) * found.conditioning),
         narrow_rank: found.narrow,
     };
     (found.span, scale, tolerance, found.rank)
 }
 
+/// The centre of the space that these independent twists span: a function of the space and, along
+/// directions nearly parallel to all axes, of the origin of the frame, not of the twists.
+///
+/// Each step goes to the least-squares point of the axes of a basis that is orthonormal at the
+/// previous one and in which the angular parts are orthogonal: unique as long as the choice matters.
+fn center_of(twists: &[Twist], start: Scale, turning: f64) -> Scale {
+    let at = |scale: Scale| Span::of_independent(twists.iter().map(|t| scale.apply(*t)));
+    let origin = Scale { center: Vec3::ZERO, ..start };
+    // The origin is a start that all twists of the space share, unless axes are far from it.
+    let near_axes = |scale: Scale| {
+        let span = at(scale);
+        let sines = span.turned_by_angular_parts().map(|x| angular(&x).norm());
+        sines.filter(|sine| 2.0 * FAR_ORIGIN * sine > 1.0).count()
+    };
+    let turns = at(start).largest_angular_part() > turning;
+    let near = start.center.norm() < 5.0 * FAR_ORIGIN * start.length;
+    let shared = !turns || (near && near_axes(origin) >= near_axes(start).max(1));
+    let first = if shared { origin } else { start };
+    let near = stationary(twists, first, turning);
+    // Where the system is the same at every point of a line or a plane, as far as can be told, it
+    // is the point nearest to the origin; not from so far that the way costs digits.
+    let center = at(near)
+        .free_translations()
+        .filter(|e| e.dot(near.center).abs() < FAR_ORIGIN * near.length)
+        .fold(near.center, |c, e| c - e * e.dot(c));
+    stationary(twists, Scale { center, ..near }, turning)
+}
+
+/// The fixed point that is reached from `start`.
+fn stationary(twists: &[Twist], start: Scale, turning: f64) -> Scale {
+    let mut scale = start;
+    let mut twists = twists.to_vec();
+    let mut before: Option<Vec3> = None;
+    for _ in 0..CENTER_STEPS {
+        let span = Span::of_independent(twists.iter().map(|t| scale.apply(*t)));
+        twists = span.turned_by_angular_parts().map(|x| scale.undo(&x)).collect();
+        let step = least_squares_center(&twists, scale.length, turning) - scale.center;
+        scale.center += step;
+        if step.norm() <= CENTER_FOUND * scale.length {
+            break;
+        }
+        // Every step is a fraction of the previous one: two determine the limit (Aitken).
+        let part = before.map_or(0.0, |b: Vec3| step.dot(b) / b.dot(b));
+        if part > 0.0 && part < 0.9 {
+            scale.center += step * (part / (1.0 - part));
+            before = None;
+        } else {
+            before = Some(step);
+        }
+    }
+    scale
+}
+
 /// The columns, made orthonormal in their order, those left out that depend on the ones before
-/// them; and how much of the last one that was taken was outside the others.
-fn basis(twists: &[Twist], scale: Scale, noise: f64) -> (Span, f64) {
+/// them.
+fn basis(twists: &[Twist], scale: Scale, noise: f64) -> Span {
     let (mut span, mut smallest) = (Span::ZERO, 1.0_f64);
     for t in twists {
         // Noise of a basis vector is that of its column over its part outside the others.
@@ -189,7 +233,7 @@ fn basis(twists: &[Twist], scale: Scale, noise: f64) -> (Span, f64) {
             smallest = smallest.min(rest);
         }
     }
-    (span, smallest)
+    span
 }
 
 struct Decomposed {

@@ -18,7 +18,7 @@ use super::class::{Class, NormalForm};
 use super::classify::{Classified, Margin, classify, placed};
 use super::screw::{Line, Screw};
 use super::span::{Scale, Span, dot, join, over, power_of_two, size};
-use super::span_estimation::{ScrewOptions, Tolerances, columns, is_narrow, six, spanned};
+use super::span_estimation::{ScrewOptions, Tolerances, columns, six, spanned};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank};
 use crate::spatial::{Pose, Twist, Vec3};
@@ -139,8 +139,8 @@ impl ScrewSystem {
             system.principal = principal_screws(&system.form, system.canonical, k);
             margins.extend(classified.margins);
         }
-        system.ambiguous = tolerance.narrow_rank
-            || margins.iter().any(|m| is_narrow(m.value, m.threshold, tolerance.noise));
+        system.ambiguous =
+            tolerance.narrow_rank || margins.iter().any(|m| tolerance.is_narrow(m.value));
         system.margins = margins;
         system
     }

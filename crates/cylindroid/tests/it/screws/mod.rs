@@ -1,5 +1,6 @@
 //! Screws, screw systems and what is built on them.
 
+mod bases;
 mod classes;
 mod curve;
 mod forms;
