@@ -132,4 +132,28 @@ mod tests {
         assert_eq!(cosc4(0.0), -1.0 / 24.0);
         assert_eq!(sinc5(0.0), -1.0 / 120.0);
     }
+
+    /// The series, of which enough terms converge at any angle of a rotation.
+    #[test]
+    fn beyond_small_angles() {
+        let series = |first: u32, sign: f64, t: f64| -> f64 {
+            let mut term = sign / (1..=first).map(f64::from).product::<f64>();
+            let mut sum = 0.0;
+            for k in (first + 1..first + 60).step_by(2) {
+                sum += term;
+                term *= -t * t / (f64::from(k) * f64::from(k + 1));
+            }
+            sum
+        };
+        for t in [-2.5, 0.6, 1.0, 2.0, 3.1] {
+            for (name, got, expected) in [
+                ("cosc", cosc(t), series(2, 1.0, t)),
+                ("sinc3", sinc3(t), series(3, 1.0, t)),
+                ("cosc4", cosc4(t), series(4, -1.0, t)),
+                ("sinc5", sinc5(t), series(5, -1.0, t)),
+            ] {
+                assert!((got / expected - 1.0).abs() < 1e-12, "{name}({t}) = {got}, {expected}");
+            }
+        }
+    }
 }

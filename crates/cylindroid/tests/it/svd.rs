@@ -225,3 +225,17 @@ fn null_space_is_the_kernel() {
         }
     }
 }
+
+/// Of a matrix other than the one decomposed, the residual is their relative difference.
+#[test]
+fn residual_of_another_matrix() {
+    let mut random = Random(1611);
+    let (a, change) = (random.matrix(6, 7), random.matrix(6, 7));
+    let svd = Svd::of(&a);
+    for size in [1e-6, 1e-3, 1.0] {
+        let other = Matrix::from_fn(6, 7, |i, j| a[(i, j)] + size * change[(i, j)]);
+        let expected = size * change.frobenius_norm() / other.frobenius_norm();
+        assert!((svd.residual(&other) / expected - 1.0).abs() < 1e-7);
+    }
+    assert!(svd.residual(&a) < 1e-15 * 10.0);
+}

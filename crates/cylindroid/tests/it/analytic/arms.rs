@@ -120,3 +120,27 @@ pub(super) fn published() -> Vec<Mechanism> {
     }
     all
 }
+
+/// A wrist whose axes miss each other by a fraction of the reach has the same structure in every
+/// unit of length.
+#[test]
+fn structure_does_not_depend_on_the_unit() {
+    let mut random = Random(1612);
+    let h: [Vec3; 6] = std::array::from_fn(|_| unit(&mut random));
+    let mut o: [Vec3; 6] = std::array::from_fn(|_| random.vec3(0.5));
+    (o[4], o[5]) = (o[3], o[3]);
+    // Axes 1 and 2 meet, too.
+    o[1] = o[0];
+    let across = h[4].cross(h[5]);
+    for (miss, expected) in [(0.0, true), (1e-6, true), (1e-3, false)] {
+        for scale in [1e-3, 1.0, 1e3] {
+            let mut points = o;
+            points[5] = points[5] + across * miss;
+            let axes: Vec<_> = h.into_iter().zip(points.map(|p| p * scale)).collect();
+            let tool = Pose::from_translation((o[5] + Vec3::X * 0.1) * scale);
+            let robot = arm(&axes, Pose::IDENTITY, tool, Limits::NONE);
+            let found = cylindroid::ik::Analytic::of(&robot, robot.tool()).is_ok();
+            assert_eq!(found, expected, "{miss} {scale}");
+        }
+    }
+}

@@ -239,3 +239,16 @@ fn transmitted_by_closing_joints() {
     assert!(row_compliance(&state, &chain, &[]).is_err());
     assert!(row_compliance(&state, &chain, &[0.0]).is_err());
 }
+
+/// A wrench across all attainable motions needs no torque: the structure balances it whole.
+#[test]
+fn structure_balances_what_needs_no_torque() {
+    let jacobian = Matrix::from_fn(6, 2, |i, j| f64::from(u8::from(i == 3 * j)));
+    let constraint = cylindroid::closure::Constraint::serial(&jacobian).unwrap();
+    let relation = MotionSpace::of(&constraint).relation();
+    let wrench = [2.0, -1.0, 0.5, 3.0, 0.25, -4.0];
+    let found = joint_torques(&relation, &wrench, None).unwrap();
+    assert_close("torques", &found.torques, &[-2.0, -3.0], 1e-12);
+    assert_close("structure", &found.structural, &[0.0, -1.0, 0.5, 0.0, 0.25, -4.0], 1e-12);
+    assert_close("unbalanced", &found.unbalanced, &[0.0; 6], 1e-12);
+}

@@ -430,3 +430,16 @@ fn margins_do_not_depend_on_the_twists() {
         }
     }
 }
+
+/// Pitches that differ by less than the threshold: the deviation from the class of one pitch.
+#[test]
+fn residual_is_the_deviation_from_the_class() {
+    for gap in [1e-9, 4e-9] {
+        let screw = |e: Vec3, pitch: f64| Twist { linear: e * pitch, angular: e };
+        let twists = [screw(Vec3::X, 1.0 + gap), screw(Vec3::Y, 1.0 - gap)];
+        let s = ScrewSystem::of(&twists, &ScrewOptions::default()).unwrap();
+        assert_eq!((s.class(), s.is_ambiguous()), (Class::IIA, true));
+        // Each unit twist leaves the form by the angle of (gap, 0) to (1, 1), over two of them.
+        assert!((s.residual() / (gap / 2.0_f64.sqrt()) - 1.0).abs() < 1e-6, "{}", s.residual());
+    }
+}
