@@ -1,12 +1,12 @@
 //! Actuation map: from the actuated joints of a closed chain to the motion of all joints.
 //!
-//! Formula  C s = 0 for the rates s of all joints: constraint rows of loops and contacts, and rate
-//!          rows of actuated loop joints; ker C = [X c; Y s] Z^T (CS decomposition), actuated rows
-//!          above passive ones. Directions with c = 0 are uncontrolled, the others controlled: s =
-//!          M y + s_0, actuated rates = D y with |D y|_W = |y|; s_0 = -C^+ residual closes the
-//!          loops to first order
+//! Formula  C s = 0 for the velocities s of all joints: constraint rows of loops and contacts, and
+//!          rate rows of actuated loop joints; ker C = [X c; Y s] Z^T (CS decomposition), actuated
+//!          rows above passive ones. Directions with c = 0 are uncontrolled, the others controlled:
+//!          s = M y + s_0, actuated velocities = D y with |D y|_W = |y|; s_0 = -C^+ residual closes
+//!          the loops to first order
 //! Shapes   C: t x (n + e), n coordinates of the tree, e actuated loop joints; M: (n + e) x p; D: a
-//!          x p, orthonormal in the weighted rates of the a actuated joints
+//!          x p, orthonormal in the weighted velocities of the a actuated joints
 //! Units    lengths are divided by the reach for every rank decision; rates in rad/s and m/s
 //!          outside
 //! Valid    any mechanism; for a tree without passive joints M is W^(-1/2). Of all motions with the
@@ -41,7 +41,8 @@ use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 /// Source: Bicchi & Prattichizzo 1998, eqs. 2 to 4, in coordinates of the spanning tree.
 #[derive(Debug, Clone)]
 pub struct ActuationMap {
-    /// M: the rates of all joints per unit of y, the n coordinates, then the actuated loop joints.
+    /// M: the velocities of all joints per unit of y: of the n coordinates, then of the actuated
+    /// loop joints.
     pub motions: Matrix,
     /// Uncontrolled motions, with the actuated joints at rest: one column each, of unit norm
     /// (scaled).
@@ -126,8 +127,8 @@ impl ActuationMap {
         })
     }
 
-    /// y for desired rates of all joints (n + e): the weighted projection of the actuated ones onto
-    /// the motions that the loops allow.
+    /// y for desired velocities of all joints (n + e): the weighted projection of the actuated ones
+    /// onto the motions permitted by the loops.
     ///
     /// ```
     /// use cylindroid::closure::ActuationMap;
@@ -136,7 +137,7 @@ impl ActuationMap {
     /// let map = ActuationMap::of(&five_bar.state(five_bar.home())?, &[], &[])?;
     /// // A motion that satisfies the loop constraints is its own projection.
     /// let y = [0.3, -0.2];
-    /// let again = map.project(&map.rates(&y));
+    /// let again = map.project(&map.joint_velocities(&y));
     /// assert!(again.iter().zip(y).all(|(a, b)| (a - b).abs() < 1e-12));
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
@@ -149,9 +150,10 @@ impl ActuationMap {
         (0..self.motions.cols()).map(along).collect()
     }
 
-    /// The rates of all joints for `y`; they satisfy the loop constraints.
+    /// The joint velocities `M y`: those of the n coordinates, then of the e actuated loop joints
+    /// [rad/s or m/s]; they satisfy the loop constraints.
     #[must_use]
-    pub fn rates(&self, y: &[f64]) -> Vec<f64> {
+    pub fn joint_velocities(&self, y: &[f64]) -> Vec<f64> {
         self.motions.mul_vec(y)
     }
 }

@@ -13,16 +13,16 @@
 use crate::model::{JointKind, JointSpec, Limits};
 use crate::spatial::{Pose, Rotation, Rpy, Vec3};
 
-/// Which of the two conventions the rows follow.
+/// The Denavit-Hartenberg convention of the rows: standard or modified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Convention {
-    /// Denavit & Hartenberg, Paul, Siciliano: joint i turns about z of frame i - 1.
+    /// Denavit & Hartenberg, Paul, Siciliano: joint i rotates about z of frame i - 1.
     Standard,
-    /// Craig, Khalil: joint i turns about z of frame i.
+    /// Craig, Khalil: joint i rotates about z of frame i.
     Modified,
 }
 
-/// One row of the table.
+/// One row of a Denavit-Hartenberg table: the parameters a, alpha, d, theta of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Name of the joint.
@@ -41,22 +41,32 @@ pub struct Row {
     pub limits: Limits,
 }
 
-/// A serial arm.
+/// A serial arm as a Denavit-Hartenberg table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
-    /// How to read the rows.
+    /// The convention of the rows.
     pub convention: Convention,
     /// Rows from the base on.
     pub rows: Vec<Row>,
-    /// Where frame 0 stands in the world; with `None` it is the world, and the root.
+    /// The pose of frame 0 in the world; `None`: frame 0 is the world, and the root.
     pub ground_from_base: Option<Pose>,
     /// A last constant displacement: the flange in the frame of the last row.
     pub last_from_flange: Pose,
 }
 
-/// The joints of an arm: links `base`, `link1`, ... and `flange`, with the root `ground` where the
-/// base stands elsewhere. Link i is fixed to the part that joint i moves and has its origin on
-/// that joint's axis; frame N of the table, moved by `last_from_flange`, is `flange`.
+/// The joints of an arm given by Denavit-Hartenberg parameters: links `base`, `link1`, ... and
+/// `flange`, with the root `ground` if `ground_from_base` is given.
+///
+/// ```text
+/// standard  (i-1)_from_i = Rz(theta) Tz(d) Tx(a) Rx(alpha),  joint i along z of frame i - 1
+/// modified  (i-1)_from_i = Rx(alpha) Tx(a) Rz(theta) Tz(d),  joint i along z of frame i
+/// ```
+///
+/// q is added to theta (revolute) or to d (prismatic): the parameters of a row are those at q = 0,
+/// a and d in m, alpha and theta in rad. Link i moves with joint i, and its frame has its origin on
+/// the axis of that joint; `flange` is frame N of the table displaced by `last_from_flange`.
+///
+/// Source: Denavit & Hartenberg 1955; Craig, Introduction to Robotics, 1986 (modified).
 ///
 /// ```
 /// use cylindroid::model::formats::dh::{Arm, Convention, Row, joints};
@@ -95,7 +105,7 @@ pub fn joints(arm: &Arm) -> Vec<JointSpec> {
         joints.push(fixed("base", "ground", "base", pose));
     }
     let mut parent = "base".to_owned();
-    // What the rows so far leave between the last joint's frame and the next row.
+    // The displacement from the last joint's frame to the next row.
     let mut pending = Pose::IDENTITY;
     for (i, row) in arm.rows.iter().enumerate() {
         let child = format!("link{}", i + 1);

@@ -1,11 +1,11 @@
 //! A spanning tree of a graph of links and joints, and the joints that close its loops.
 //!
-//! Formula  Kruskal: joints enter the tree by their [`Rank`]; the tree is then walked breadth-first
-//!          from its roots
-//! Valid    any graph. Links that no root reaches are returned, never dropped
-//! Why so   a tree of best ranks holds as many actuated joints as any tree can (matroid), which a
-//!          walk from the root does not: it takes whatever it meets first. No rank depends on the
-//!          order of the file, so no result does
+//! Formula  Kruskal's algorithm: joints enter the tree in the order of their [`Rank`]; the tree is
+//!          then traversed breadth-first from its roots
+//! Valid    any graph. Joints that are not connected to a root are returned, never dropped
+//! Why so   a spanning tree of minimum rank contains the largest possible number of actuated joints
+//!          (matroid); a breadth-first search from the root does not, since its tree depends on the
+//!          order of traversal. No rank depends on the order of the file, so no result does
 //! Checked  tests/formats/closed_file.rs::spanning_*, tests/formats/order.rs
 
 use std::collections::VecDeque;
@@ -15,9 +15,9 @@ use crate::model::natural_order::Natural;
 
 /// The rank of a joint: smaller ones enter the tree first.
 ///
-/// Joints that are followed or follow another must have coordinates. Actuated joints should, those
-/// with most coordinates before the others. Passive joints close loops all the better the more
-/// freedoms they have: they constrain less. Among joints that are alike the name decides.
+/// Mimic joints and the joints that they follow must have coordinates. Actuated joints should have
+/// them, those with most coordinates first. Passive joints with many degrees of freedom are
+/// preferred as loop joints, since they impose fewer constraints. Ties are broken by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Rank<'a> {
     class: u8,
@@ -25,7 +25,7 @@ pub(super) struct Rank<'a> {
     name: Natural<'a>,
 }
 
-/// What a joint has to do with mimic joints.
+/// The role of a joint in a mimic relation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Coupling {
     None,
@@ -70,18 +70,18 @@ pub(super) struct Branch {
     pub(super) reversed: bool,
 }
 
-/// A graph taken apart.
+/// A spanning tree, and the joints outside it.
 #[derive(Debug, Default)]
 pub(super) struct SpanningTree {
     /// Parents before children.
     pub(super) tree: Vec<Branch>,
     /// Joints that close loops, in the order of the file.
     pub(super) loops: Vec<usize>,
-    /// Joints that no root reaches, in the order of the file.
+    /// Joints that are not connected to a root, in the order of the file.
     pub(super) loose: Vec<usize>,
 }
 
-/// Groups of links that hang together.
+/// Connected components of the links (union-find).
 #[derive(Debug, Clone)]
 pub(super) struct Groups {
     parent: Vec<usize>,
@@ -100,7 +100,7 @@ impl Groups {
         link
     }
 
-    /// Joins two groups; false if they were one already.
+    /// Merges two components; false if they were one already.
     pub(super) fn join(&mut self, a: usize, b: usize) -> bool {
         let (a, b) = (self.of(a), self.of(b));
         self.parent[a] = b;

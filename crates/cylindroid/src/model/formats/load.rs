@@ -9,18 +9,18 @@ use super::{mjcf, sdf, toml, urdf, xml};
 use crate::error::{Error, Result};
 use crate::model::{CloseHome, Mechanism, catalogue};
 
-/// Extensions by which a word is taken for a file that is not there, not for a misspelt name.
+/// Extensions that mark a word as a missing file, not as a misspelt name.
 const EXTENSIONS: [&str; 6] = ["urdf", "xml", "xacro", "sdf", "toml", "mjcf"];
 
 /// Loads a model: the name of a catalogue model, or the path of a file.
 ///
 /// # Errors
-/// A name that is neither, a file that cannot be read or understood, a loop that cannot be closed.
+/// A name that is neither, a file that cannot be read or parsed, a loop that cannot be closed.
 pub(crate) fn load(name_or_path: &str, close: CloseHome<'_>) -> Result<Mechanism> {
     load_from(Path::new(""), name_or_path, 0, close)
 }
 
-/// [`load`] for a file in `folder` that is included by `depth` others.
+/// [`load`] for a file in `folder`, at a nesting depth of `depth` inclusions.
 pub(super) fn load_from(
     folder: &Path,
     name_or_path: &str,
@@ -55,7 +55,7 @@ fn read_file(path: &Path, depth: usize, close: CloseHome<'_>) -> Result<Mechanis
         action: "read",
         message: e.to_string(),
     })?;
-    // Old files hold names and comments in other encodings; the numbers are ASCII in all of them.
+    // Old files have names and comments in other encodings; the numbers are ASCII in all of them.
     let text = String::from_utf8_lossy(&bytes);
     let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
     match extension(path).as_deref() {
@@ -74,7 +74,7 @@ fn read_file(path: &Path, depth: usize, close: CloseHome<'_>) -> Result<Mechanis
     }
 }
 
-/// Reads XML by its root element; what cannot be told goes to URDF, which says what it is not.
+/// Reads XML by its root element; unknown ones go to the URDF reader, which reports the element.
 fn read_xml(text: &str, path: &Path) -> Result<Mechanism> {
     let source = Source { format: "XML", path, text };
     let root = xml::document(&source).ok().map(|d| d.root_element().tag_name().name().to_owned());

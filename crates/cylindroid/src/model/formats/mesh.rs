@@ -1,17 +1,17 @@
 //! Finds mesh files: `package://`, `model://`, `file://` and plain paths.
 //!
-//! `package://NAME/rest` is looked for in every folder above the URDF that is called NAME or has a
-//! folder NAME, then in the entries of `ROS_PACKAGE_PATH`, then in `share` of those of
-//! `AMENT_PREFIX_PATH`.
+//! `package://NAME/rest` is resolved against, in this order: every parent folder of the URDF that
+//! is called NAME or contains a folder NAME, the entries of `ROS_PACKAGE_PATH`, and the `share`
+//! folders of the entries of `AMENT_PREFIX_PATH`.
 
 use std::path::{Path, PathBuf};
 
-/// Where the packages of a model may lie.
+/// Search paths of the packages of a model.
 #[derive(Debug)]
 pub(super) struct Packages {
     /// Folder of the model file.
     folder: PathBuf,
-    /// Folders that are, or hold, packages.
+    /// Folders that are packages or contain them.
     roots: Vec<PathBuf>,
 }
 
@@ -29,7 +29,7 @@ impl Packages {
         Self { folder, roots }
     }
 
-    /// The file of a mesh, if it is there.
+    /// The file of a mesh, if it exists.
     pub(super) fn find(&self, uri: &str) -> Option<PathBuf> {
         let uri = uri.trim();
         let package = uri.strip_prefix("package://").or_else(|| uri.strip_prefix("model://"));

@@ -1,5 +1,5 @@
-//! Places in a model file: from byte ranges to errors with line and column, and notes that count
-//! what was not used.
+//! Places in a model file: from byte ranges to errors with line and column, and the log of ignored
+//! elements.
 //!
 //! Checked  tests in this file, tests/formats/broken.rs
 
@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::error::{Error, FileError};
 use crate::model::LoadReport;
 
-/// The text of a model file, and how errors in it are written.
+/// The text of a model file, for errors with line and column.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) format: &'static str,
@@ -65,10 +65,10 @@ impl Source<'_> {
     }
 }
 
-/// Characters of names listed in one note; the rest are counted only.
+/// Characters of the names listed in one note; further names are only counted.
 const NAMES_SHOWN: usize = 60;
 
-/// What was not used, one note for each distinct thing.
+/// The log of ignored elements and attributes, one note for each distinct reason.
 #[derive(Debug, Default)]
 pub(super) struct IgnoredLog {
     notes: Vec<Note>,
@@ -86,8 +86,8 @@ struct Note {
 }
 
 impl IgnoredLog {
-    /// Notes `what` at a byte offset; `name` says whose it is (may be empty). The same `what`
-    /// again is counted.
+    /// Logs `what` at a byte offset; `name` is that of its owner (may be empty). Repetitions of the
+    /// same `what` are counted.
     pub(super) fn add(
         &mut self,
         offset: usize,

@@ -1,5 +1,5 @@
-//! Reads elements and attributes of XML models: every number checked, every error at its place,
-//! every thing that is not used noted. Shared by URDF, MJCF and SDF.
+//! Reads elements and attributes of XML models: numbers are checked, errors carry line and column,
+//! unused elements and attributes are reported. Shared by URDF, MJCF and SDF.
 //!
 //! Checked  tests/formats/broken.rs, tests/formats/mutations.rs
 
@@ -15,22 +15,22 @@ use crate::model::LoadReport;
 pub(super) const XACRO_HELP: &str = "expand it first: pip install xacro, then \
                                      xacro file.urdf.xacro > file.urdf";
 
-/// What all parts of a reader share.
+/// The state shared by all parts of a reader.
 #[derive(Debug)]
 pub(super) struct Reader<'a> {
     pub(super) source: Source<'a>,
-    /// The texts of files that the main one includes.
+    /// The texts of included files.
     pub(super) included: Vec<Source<'a>>,
     pub(super) notes: IgnoredLog,
     /// The namespace of the root: elements of another one are extensions.
     pub(super) namespace: Option<&'a str>,
-    /// Elements whose names tell in notes whose something was.
+    /// Elements whose `name` identifies the owner of an ignored element or attribute in notes.
     pub(super) owners: &'static [&'static str],
-    /// Why an element or attribute of this name is not used.
+    /// The reason for ignoring an element or attribute of this name.
     pub(super) why: fn(&str) -> &'static str,
 }
 
-/// Parses XML; errors get their place.
+/// Parses XML; errors carry line and column.
 pub(super) fn document<'t>(source: &Source<'t>) -> Result<Document<'t>> {
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     Document::parse_with_options(source.text, options).map_err(|error| {
@@ -58,13 +58,13 @@ impl<'a> Reader<'a> {
         Self { source, included, notes, namespace, owners: &[], why }
     }
 
-    /// The file that a node stands in: 0 is the main one.
+    /// The index of the file of a node: 0 is the main one.
     fn file(&self, node: Node<'_, '_>) -> usize {
         let text = node.document().input_text().as_ptr();
         self.included.iter().position(|s| s.text.as_ptr() == text).map_or(0, |i| i + 1)
     }
 
-    /// An error at a byte range of the file that the node stands in.
+    /// An error at a byte range of the file of the node.
     pub(super) fn error(
         &self,
         node: Node<'_, '_>,
@@ -76,7 +76,7 @@ impl<'a> Reader<'a> {
         source.unwrap_or(&self.source).error(span, message, help)
     }
 
-    /// Notes that something at a node was not used; `name` says whose it is (may be empty).
+    /// Logs an ignored part of a node; `name` is that of its owner (may be empty).
     pub(super) fn note(
         &mut self,
         node: Node<'_, '_>,
@@ -121,7 +121,7 @@ impl<'a> Reader<'a> {
         start..start + length.unwrap_or(text.len())
     }
 
-    /// The byte range of an attribute's value; of the tag where there is no such attribute.
+    /// The byte range of an attribute's value; of the tag if there is no such attribute.
     pub(super) fn value(node: Node<'_, '_>, attribute: &str) -> Range<usize> {
         node.attribute_node(attribute).map_or_else(|| Self::tag(node), |a| a.range_value())
     }
@@ -138,7 +138,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The numbers of an attribute, any count; infinite ones pass, NaN does not.
+    /// The numbers of an attribute, any count; infinite ones are accepted, NaN is rejected.
     pub(super) fn list(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<Vec<f64>>> {
         let Some(text) = node.attribute(attribute) else { return Ok(None) };
         let what = || format!("{attribute} of <{}>", node.tag_name().name());
@@ -160,7 +160,7 @@ impl<'a> Reader<'a> {
         self.error(node, Self::value(node, attribute), message, help)
     }
 
-    /// The numbers of an attribute; infinite ones pass, NaN does not.
+    /// The numbers of an attribute; infinite ones are accepted, NaN is rejected.
     fn numbers<const N: usize>(
         &self,
         node: Node<'_, '_>,
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
         Ok(self.numbers::<1>(node, attribute)?.map(|[x]| x))
     }
 
-    /// The first child element of this name; further ones are noted.
+    /// The first child element of this name; further ones are logged as ignored.
     pub(super) fn child<'d, 'i>(&mut self, node: Node<'d, 'i>, name: &str) -> Option<Node<'d, 'i>> {
         let mut all = node.children().filter(|c| self.is(*c, name));
         let first = all.next()?;
@@ -219,7 +219,7 @@ impl<'a> Reader<'a> {
         Some(first)
     }
 
-    /// An error at the value of an attribute, where the message says it all.
+    /// An error at the value of an attribute, with a complete message.
     pub(super) fn refuse(
         &self,
         node: Node<'_, '_>,
@@ -229,7 +229,7 @@ impl<'a> Reader<'a> {
         self.error(node, Self::value(node, attribute), message, "")
     }
 
-    /// Notes attributes and children that are not among those read.
+    /// Logs attributes and children that are not among those read.
     pub(super) fn leftovers(&mut self, node: Node<'_, '_>, attributes: &[&str], children: &[&str]) {
         self.unread_attributes(node, attributes);
         for child in node.children().filter(Node::is_element) {
@@ -243,7 +243,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Notes attributes that are not among those read.
+    /// Logs attributes that are not among those read.
     pub(super) fn unread_attributes(&mut self, node: Node<'_, '_>, known: &[&str]) {
         let tag = node.tag_name().name();
         let owner = self.owner(node);
@@ -257,7 +257,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The name of the link, joint, ... that an element stands in.
+    /// The name of the link, joint, ... that contains an element.
     pub(super) fn owner<'d>(&self, node: Node<'d, '_>) -> &'d str {
         node.ancestors()
             .find(|n| self.owners.contains(&n.tag_name().name()))
@@ -266,7 +266,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The numbers of a text; the first word that is none (NaN is none) as an error.
+/// The numbers of a text; an error with the first word that is not a number, or is NaN.
 pub(super) fn numbers_in(text: &str) -> std::result::Result<Vec<f64>, &str> {
     let number = |word: &'_ str| word.parse().ok().filter(|x: &f64| !x.is_nan());
     text.split_whitespace().map(|word| number(word).ok_or(word)).collect()

@@ -1,4 +1,4 @@
-//! What actuators of closed chains can do, against the constraint matrices and positions.
+//! The actuation map of closed chains, against the constraint matrices and positions.
 
 use cylindroid::catalogue;
 use cylindroid::closure::{ActuationMap, ClosedChain, MotionSpace, assemble};
@@ -37,7 +37,7 @@ fn steering_agrees_with_the_constraint() {
         assert_eq!(steered, dimensions.coordinate + dimensions.redundancy, "{name}");
         for j in 0..steered {
             let y: Vec<f64> = (0..steered).map(|i| f64::from(u8::from(i == j))).collect();
-            let rates = steering.rates(&y);
+            let rates = steering.joint_velocities(&y);
             let back = steering.project(&rates);
             for (a, b) in back.iter().zip(&y) {
                 assert!((a - b).abs() < 1e-9, "{name}: {back:?}");

@@ -41,7 +41,7 @@ fn two_arms_squeeze_a_box_that_rests() {
             let state = two_arm.state(&q).unwrap();
             let steering = ActuationMap::of(&state, &stiffness, &[]).unwrap();
             let way: Vec<f64> = theta.iter().zip(&q).map(|(t, q)| t - q).collect();
-            let moved = steering.rates(&steering.project(&way));
+            let moved = steering.joint_velocities(&steering.project(&way));
             let change: Vec<f64> =
                 moved.iter().zip(&steering.correction).map(|(m, c)| m + c).collect();
             q = two_arm.integrate(&q, &change, 1.0).unwrap();

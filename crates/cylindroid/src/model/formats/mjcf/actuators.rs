@@ -1,4 +1,4 @@
-//! Actuators and key frames of MJCF: who is actuated, how hard, and where home is.
+//! Actuators and key frames of MJCF: actuated joints, their effort limits, and home.
 //!
 //! Checked  tests/formats/mjcf.rs::actuators_*, ::home_*
 
@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::model::JointKind;
 use crate::spatial::Quaternion;
 
-/// Elements whose defaults actuators take.
+/// Elements whose default classes apply to actuators.
 const ACTUATORS: [&str; 10] = [
     "general",
     "motor",
@@ -25,8 +25,8 @@ const ACTUATORS: [&str; 10] = [
 ];
 
 impl<'d> Mjcf<'d> {
-    /// Marks the joints that actuators drive. A file without actuators says nothing of motors:
-    /// there all revolute and prismatic joints are actuated, as in a URDF.
+    /// Marks the actuated joints. In a file without actuators, all revolute and prismatic joints
+    /// are actuated, as in a URDF.
     pub(super) fn actuators(&mut self) -> Result<()> {
         let actuators = self.files.section("actuator");
         if actuators.is_empty() {
@@ -39,7 +39,7 @@ impl<'d> Mjcf<'d> {
         for node in actuators {
             self.actuator(node)?;
         }
-        // A motor at a joint that follows another actuators that one.
+        // A motor at a mimic joint actuates the joint that it follows.
         for i in 0..self.joints.len() {
             let mut at = i;
             for _ in 0..self.joints.len() {
@@ -76,7 +76,7 @@ impl<'d> Mjcf<'d> {
         let joint = self.joint_named(node, attribute)?;
         let element: Element<'d> = self.defaults.of(&self.reader, node, 0, &ACTUATORS)?;
         let gear = element.list(&self.reader, "gear")?.and_then(|g| g.first().copied());
-        // The control of a motor is its force; other kinds say theirs in forcerange.
+        // The control of a motor is its force; the force of other kinds is in forcerange.
         let range = match element.vector::<2>(&self.reader, "forcerange")? {
             None if tag == "motor" => element.vector::<2>(&self.reader, "ctrlrange")?,
             range => range,

@@ -1,11 +1,11 @@
-//! Assets of MJCF: colours and meshes that geoms refer to by name.
+//! Assets of MJCF: colours and meshes, referenced by geoms by name.
 
 use std::collections::BTreeMap;
 
 use crate::model::formats::mesh::Packages;
 use crate::spatial::Vec3;
 
-/// What geoms refer to by name.
+/// Assets of geoms, by name.
 #[derive(Default)]
 pub(super) struct Assets<'d> {
     pub(super) colours: BTreeMap<&'d str, [f64; 4]>,

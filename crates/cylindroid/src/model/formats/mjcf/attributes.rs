@@ -1,11 +1,11 @@
-//! The attributes that are read of MJCF elements, and the reasons for ignoring others.
+//! Attributes of MJCF elements: those that are read, and the reasons for ignoring others.
 
 pub(super) const FORMAT: &str = "MJCF";
 
 /// The attributes that give an orientation; an element has at most one of them.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
-/// The attributes that are read of an element; those of other elements are not looked at.
+/// The attributes that are read, by element; other elements are not checked.
 pub(super) fn used(element: &str) -> Vec<&'static str> {
     let own: &[&str] = match element {
         "joint" | "freejoint" => &[

@@ -2,8 +2,8 @@
 //!
 //! Formula  parent_from_body(q) = pose product_i [Trans(p_i) motion_i(q_i - ref_i) Trans(-p_i)]
 //!          with p_i, axis_i in the axes of the body; free: parent_from_body(q) = motion(q)
-//! Why so   every body keeps its own frame, so poses are those of MuJoCo; q counts as qpos does,
-//!          and home is qpos0 (or the key frame named "home")
+//! Why so   every body keeps its own frame, so poses equal MuJoCo's; q has the zero of qpos, and
+//!          home is qpos0 (or the key frame named "home")
 //! Source   mujoco.readthedocs.io, XML reference, body, joint; mj_kinematics
 //! Checked  tests/formats/mjcf.rs (against poses that MuJoCo computed)
 
@@ -17,18 +17,18 @@ use crate::error::{Error, Result};
 use crate::model::{JointKind, JointSpec, Limits, Link};
 use crate::spatial::{Pose, Vec3};
 
-/// A body still to be read.
+/// A body that has not been read yet.
 struct Pending<'d> {
     node: Node<'d, 'd>,
     parent: String,
-    /// Where `<frame>` elements put it.
+    /// Its pose by enclosing `<frame>` elements.
     parent_from_frame: Pose,
     childclass: usize,
-    /// True inside the world, where a body may be free.
+    /// True for a child of the world, which may be free.
     top: bool,
 }
 
-/// What stands in a body, `<frame>` elements resolved.
+/// The contents of a body, with `<frame>` elements resolved.
 #[derive(Default)]
 struct Inside<'d> {
     bodies: Vec<(Node<'d, 'd>, Pose, usize)>,
@@ -95,7 +95,7 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
-    /// What stands in a body; `<frame>` elements only move what is in them.
+    /// The contents of a body; `<frame>` elements only displace their contents.
     fn inside(&mut self, body: Node<'d, 'd>, childclass: usize) -> Result<Inside<'d>> {
         let mut inside = Inside::default();
         let under = |node, pose: Pose, class: usize| {

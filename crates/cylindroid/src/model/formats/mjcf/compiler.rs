@@ -1,7 +1,7 @@
-//! The `<compiler>` of MJCF and what it rules: angles and orientations.
+//! The `<compiler>` of MJCF and its settings: units of angles, orientations, mesh folder.
 //!
-//! Formula  quat w x y z; axisangle x y z a; euler by eulerseq, small letters about turned axes,
-//!          capitals about fixed ones; xyaxes x y, y made orthogonal to x; zaxis the smallest turn
+//! Formula  quat w x y z; axisangle x y z a; euler by eulerseq, lower case about moving axes, upper
+//!          case about fixed ones; xyaxes x y, y made orthogonal to x; zaxis: the smallest rotation
 //!          of z onto it
 //! Units    degrees unless angle = "radian"; lengths in m
 //! Source   mujoco.readthedocs.io, Modeling, frame orientations and compiler
@@ -18,11 +18,11 @@ use crate::tolerance::ZERO_AXIS;
 /// The settings of a model.
 #[derive(Debug, Clone)]
 pub(super) struct Compiler {
-    /// rad in the file's unit of angle.
+    /// The file's unit of angle in rad.
     pub(super) unit: f64,
     sequence: [char; 3],
     pub(super) autolimits: bool,
-    /// Folder of meshes, from that of the model.
+    /// Folder of meshes, relative to that of the model.
     pub(super) meshes: String,
 }
 
@@ -72,7 +72,7 @@ impl Compiler {
         Ok(it)
     }
 
-    /// The pose that an element writes as `pos` and one of the orientations.
+    /// The pose of an element: `pos` and one of the orientation attributes.
     pub(super) fn pose(&self, reader: &Reader<'_>, element: &Element<'_>) -> Result<Pose> {
         let translation = element.vector::<3>(reader, "pos")?.map_or(Vec3::ZERO, Vec3::from_array);
         Ok(Pose { rotation: self.orientation(reader, element)?, translation })
@@ -135,7 +135,7 @@ impl Compiler {
     }
 }
 
-/// The smallest turn that takes z to a direction; half a turn about x where it is -z.
+/// The smallest rotation of z to a direction; half a turn about x if it is -z.
 pub(super) fn turn_z_to(direction: Vec3) -> Option<Rotation> {
     let direction = direction.unit(ZERO_AXIS)?;
     let across = Vec3::Z.cross(direction);

@@ -1,4 +1,4 @@
-//! Default classes of MJCF: the values of attributes that an element does not give.
+//! Default classes of MJCF: the values of attributes missing in an element.
 //!
 //! Formula  own attribute, otherwise that of its `class` (or the nearest `childclass` above, or the
 //!          outermost default), otherwise that of the enclosing class, outwards
@@ -27,7 +27,7 @@ struct Class<'d> {
 #[derive(Clone)]
 pub(super) struct Element<'d> {
     pub(super) node: Node<'d, 'd>,
-    /// Where its attributes are looked for, nearest first.
+    /// The elements searched for its attributes, nearest first.
     places: Vec<Node<'d, 'd>>,
 }
 
@@ -37,7 +37,7 @@ impl<'d> Defaults<'d> {
             Self { classes: vec![Class { name: "main", parent: None, elements: Vec::new() }] };
         let root = files.children(files.main.root_element());
         let outermost = root.into_iter().filter(|n| n.has_tag_name("default"));
-        // Outermost defaults are all one class; those inside make classes of their own.
+        // All outermost defaults are one class; each nested one is a class of its own.
         let mut stack: Vec<(Node<'d, 'd>, usize)> = outermost.map(|n| (n, 0)).collect();
         stack.reverse();
         while let Some((node, class)) = stack.pop() {
@@ -80,7 +80,7 @@ impl<'d> Defaults<'d> {
         }
     }
 
-    /// An element with its defaults, which stand in elements of these names.
+    /// An element with its defaults, given by elements of these names.
     pub(super) fn of(
         &self,
         reader: &Reader<'_>,
@@ -105,7 +105,7 @@ impl<'d> Element<'d> {
         Self { node, places: vec![node] }
     }
 
-    /// The element that gives an attribute: itself, or a default.
+    /// The element that defines an attribute: itself, or a default.
     pub(super) fn source_element(&self, attribute: &str) -> Option<Node<'d, 'd>> {
         self.places.iter().find(|n| n.has_attribute(attribute)).copied()
     }
@@ -120,7 +120,7 @@ impl<'d> Element<'d> {
         reader.refuse(self.source_element(attribute).unwrap_or(self.node), attribute, message)
     }
 
-    /// Finite numbers, as many as the attribute must have.
+    /// Finite numbers, exactly as many as the attribute requires.
     pub(super) fn vector<const N: usize>(
         &self,
         reader: &Reader<'_>,

@@ -1,10 +1,11 @@
-//! `<equality>` of MJCF: loops, and joints that follow others.
+//! `<equality>` of MJCF: loop joints and mimic joints.
 //!
 //! Formula  connect: a spherical joint at `anchor` of body1 (or of site1 at site2);
-//!          weld: a fixed joint, body1_from_body2 = relpose, else as the file places them;
-//!          joint: q1 = ref1 + c0 + c1 (q2 - ref2), higher coefficients are not read;
+//!          weld: a fixed joint, body1_from_body2 = relpose, by default the pose in the file;
+//!          joint: q1 = ref1 + c0 + c1 (q2 - ref2), higher coefficients are ignored;
 //!          tendon, fixed, of two joints: a1 (q1 - ref1) + a2 (q2 - ref2) = c0
-//! Why so   a coupled joint is a mimic joint: it needs no loop and its column goes to the other
+//! Why so   a coupled joint is a mimic joint: it needs no loop, and its column is added to that of
+//!          the joint that it follows
 //! Source   mujoco.readthedocs.io, XML reference, equality
 //! Checked  tests/formats/mjcf.rs::equality_*
 
@@ -107,7 +108,7 @@ impl<'d> Mjcf<'d> {
         Err(self.reader.refuse(node, attribute, unknown.to_string()))
     }
 
-    /// The body and place of a site.
+    /// The body of a site and its pose on it.
     fn site(&self, node: Node<'d, 'd>, attribute: &str) -> Result<(String, Pose)> {
         let name = self.reader.required(node, attribute)?.trim();
         match self.sites.iter().find(|s| s.0 == name) {
@@ -157,7 +158,7 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
-    /// A tendon of constant length over two joints ties them together.
+    /// A tendon of constant length over two joints couples them.
     fn couple_by_tendon(&mut self, node: Node<'d, 'd>, name: &str) -> Result<()> {
         let tendon_name = self.reader.required(node, "tendon1")?.trim();
         let tendons = self.files.section("tendon");
@@ -180,7 +181,7 @@ impl<'d> Mjcf<'d> {
                     && a * b != 0.0 =>
             {
                 self.tied.push(tendon_name.to_owned());
-                // The second joint follows, unless it cannot.
+                // The second joint follows the first; if it cannot, the first follows the second.
                 let second_follows = self.tie(second, first, -a / b, constant / b);
                 second_follows
                     .and_then(|why| self.tie(first, second, -b / a, constant / a).and(Some(why)))
@@ -193,7 +194,8 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
-    /// Makes a joint follow another, `q - ref = constant + slope (q' - ref')`; why not, if not.
+    /// Makes a joint follow another, `q - ref = constant + slope (q' - ref')`; otherwise returns
+    /// the reason.
     fn tie(
         &mut self,
         follower: usize,

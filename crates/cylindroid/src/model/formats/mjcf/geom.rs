@@ -1,6 +1,6 @@
-//! Shapes   and masses of MJCF bodies: kept as data, as far as a link contains them.
+//! Shapes and masses of MJCF bodies: kept as data, to the extent that a link represents them.
 //!
-//! Units    MJCF gives half sizes; ours are whole ones
+//! Units    MJCF gives half sizes; shapes of links have full sizes
 //! Checked  tests/formats/mjcf.rs::shapes_*
 
 use std::path::Path;
@@ -69,7 +69,7 @@ impl<'d> Mjcf<'d> {
         Ok(Some(Inertial { mass, link_from_inertia, inertia }))
     }
 
-    /// A geom, as what the link looks like and as what it collides with.
+    /// A geom, as visual shape and as collision shape.
     pub(super) fn geom(
         &mut self,
         link: &mut Link,

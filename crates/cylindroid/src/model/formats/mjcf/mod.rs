@@ -1,15 +1,15 @@
 //! MJCF: models of MuJoCo.
 //!
-//! Formula  world_from_body and q as MuJoCo's xpos, xquat and qpos (quaternions as rotation
+//! Formula  world_from_body and q equal MuJoCo's xpos, xquat and qpos (quaternions as rotation
 //!          vectors); home is qpos0 or the key frame "home"
 //! Units    m, kg; degrees unless `<compiler angle="radian">`
 //! Valid    bodies, joints, sites, shapes, default classes, `<frame>`, `<include>` in the model's
-//!          own folder, `<equality>` connect, weld, joint and tendon, actuators at joints. What else
-//!          stands in the file is named in the load report
-//! Why so   equality constraints become loop joints and mimic joints, so that a gripper with
-//!          loops is the same kind of thing as a closed chain of a mechanism file
+//!          own folder, `<equality>` connect, weld, joint and tendon, actuators at joints. Other
+//!          elements and attributes are listed in the load report
+//! Why so   equality constraints become loop joints and mimic joints, so a gripper with loops is
+//!          represented like any closed chain of a mechanism file
 //! Source   mujoco.readthedocs.io, XML reference
-//! Checked  tests/formats/mjcf.rs (against vectors that MuJoCo made)
+//! Checked  tests/formats/mjcf.rs (against vectors computed by MuJoCo)
 
 mod actuators;
 mod assets;
@@ -40,7 +40,7 @@ use crate::error::{Error, Result};
 use crate::model::{JointSpec, Link, LoopJointSpec, Mechanism};
 use crate::spatial::Pose;
 
-/// What is read so far.
+/// The model while it is read.
 struct Mjcf<'d> {
     reader: Reader<'d>,
     files: Files<'d>,
@@ -50,11 +50,11 @@ struct Mjcf<'d> {
     links: Vec<Link>,
     joints: Vec<JointSpec>,
     loops: Vec<LoopJointSpec>,
-    /// Name, body, place on it.
+    /// Name, body, pose on it.
     sites: Vec<(String, String, Pose)>,
-    /// Home positions of joints; later ones count.
+    /// Home positions of joints; later ones take precedence.
     starts: Vec<(String, Vec<f64>)>,
-    /// Tendons that equality constraints make into couplings.
+    /// Tendons that equality constraints turn into couplings.
     tied: Vec<String>,
     /// Poses of the bodies at qpos0.
     world: BTreeMap<String, Pose>,
@@ -79,7 +79,7 @@ struct Mjcf<'d> {
 ///
 /// # Errors
 /// [`Error::File`] with line and column for broken XML, a number that is not one, a name that is
-/// missing or unknown, an include that cannot be read, and all that the builder refuses.
+/// missing or unknown, an include that cannot be read, and everything that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
     let source = Source { format: FORMAT, path, text };
     let main = xml::document(&source)?;
@@ -137,7 +137,7 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
 }
 
 impl Mjcf<'_> {
-    /// Notes tendons that tie nothing together here.
+    /// Reports tendons that couple no joints here.
     fn tendons(&mut self) {
         for tendon in self.files.section("tendon") {
             let name = tendon.attribute("name").unwrap_or("");
@@ -162,7 +162,7 @@ impl Mjcf<'_> {
         for joint in self.loops {
             builder.loop_joint(joint);
         }
-        // Sites and bodies have names of their own in MJCF; frames have one list of names here.
+        // MJCF has separate namespaces for sites and bodies; frames share one here.
         for (name, link, pose) in self.sites {
             let free = self.link_names.insert(name.clone());
             let name =

@@ -1,8 +1,9 @@
-//! Frames of SDF: who is placed relative to whom, and which link carries a frame.
+//! Frames of SDF: the frame that each pose is relative to, and the link that each frame is
+//! attached to.
 //!
 //! Formula  model_from_x = model_from_(relative_to of x) pose of x, along the chain of relative_to
-//! Valid    `relative_to` of SDF 1.7 on and `frame` of 1.5 and 1.6; defaults: a link's the model, a
-//!          joint's its child, a frame's what it is attached to. Rings are refused
+//! Valid    `relative_to` of SDF 1.7 on and `frame` of 1.5 and 1.6; defaults: the model for a link,
+//!          the child for a joint, the `attached_to` frame for a frame. Cycles are rejected
 //! Source   sdformat.org, pose frame semantics
 //! Checked  tests/formats/sdf.rs::poses_*
 
@@ -20,12 +21,12 @@ pub(super) const MODEL: &str = "__model__";
 /// A link, joint, frame or model.
 #[derive(Debug, Clone)]
 pub(super) struct PosedFrame<'d> {
-    /// Where it stands in the file.
+    /// Its place in the file.
     pub(super) node: Node<'d, 'd>,
-    /// Relative to which it is placed.
+    /// The frame that its pose is relative to.
     pub(super) relative_to: String,
     pub(super) pose: Pose,
-    /// What carries it: itself for a link.
+    /// The frame that it is attached to: itself for a link.
     pub(super) attached_to: String,
 }
 
@@ -59,7 +60,7 @@ impl<'d> Frames<'d> {
         self.all.keys().filter(|k| !k.ends_with(MODEL))
     }
 
-    /// An error about a name that nothing has.
+    /// An error about an unknown name.
     pub(super) fn unknown(&self, name: &str) -> Error {
         Error::unknown("link, joint or frame", name, self.known())
     }
@@ -82,7 +83,7 @@ impl<'d> Frames<'d> {
         Err(self.blame(reader, name, format!("'{name}' is placed relative to itself in a ring")))
     }
 
-    /// The link that carries a frame.
+    /// The link to which a frame is attached.
     pub(super) fn link(&self, reader: &Reader<'_>, name: &str) -> Result<String> {
         let mut at = name;
         for _ in 0..=self.all.len() {

@@ -1,10 +1,10 @@
 //! Joints of SDF.
 //!
-//! Formula  axis in the joint frame: xyz, or joint_from_frame xyz with `expressed_in`, or from the
-//!          model's axes with `use_parent_model_frame` (the rule up to SDF 1.4);
+//! Formula  axis in the joint frame: xyz, or joint_from_frame xyz with `expressed_in`, or xyz in
+//!          the model's axes with `use_parent_model_frame` (the rule up to SDF 1.4);
 //!          screw: pitch = screw_thread_pitch / 2 pi, or -1 / thread_pitch (rad/m, left-handed)
 //! Valid    revolute, continuous, prismatic, screw, universal, revolute2, ball, fixed. A gearbox
-//!          couples two joints and is named in the report
+//!          couples two joints and is listed in the report
 //! Source   sdformat.org, specification of joint; sdformat pull request 1168 (thread pitches)
 //! Checked  tests/formats/sdf.rs::joints_*
 
@@ -31,7 +31,7 @@ const TYPES: [&str; 9] = [
     "gearbox",
 ];
 
-/// SDF writes this for a limit that is none.
+/// The value that stands for "unlimited" in SDF.
 const UNLIMITED: f64 = 1e16;
 
 impl<'d> Sdf<'d> {
@@ -89,7 +89,7 @@ impl<'d> Sdf<'d> {
         Ok(Some(JointEntry { node, name, kind, between, model_from_joint, axis, limits, mimic }))
     }
 
-    /// The link at one end: one that is named, or that carries the frame that is named.
+    /// The link at one end: the named link, or the link to which the named frame is attached.
     fn end(&mut self, joint: Node<'d, 'd>, scope: &str, which: &'static str) -> Result<String> {
         let name = joint.attribute("name").unwrap_or("").to_owned();
         let Some(node) = self.reader.child(joint, which) else {
@@ -162,7 +162,7 @@ impl<'d> Sdf<'d> {
         }
     }
 
-    /// Limits and the joint that is followed.
+    /// Limits, and the joint that a mimic joint follows.
     fn axis_settings(
         &mut self,
         joint: Node<'d, 'd>,

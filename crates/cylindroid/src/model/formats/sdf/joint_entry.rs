@@ -5,7 +5,7 @@ use roxmltree::Node;
 use crate::model::{JointKind, Limits, Mimic};
 use crate::spatial::{Pose, Vec3};
 
-/// A joint as it stands in the file; the poses are in the outermost model.
+/// A joint as read from the file; poses are relative to the outermost model.
 #[derive(Debug)]
 pub(super) struct JointEntry<'d> {
     pub(super) node: Node<'d, 'd>,

@@ -32,7 +32,7 @@ impl Reader<'_> {
         Ok(link)
     }
 
-    /// The pose in a link; one that is relative to something else is noted.
+    /// The pose in a link; a pose relative to another frame is reported as unused.
     fn pose_on_link(&mut self, node: Node<'_, '_>) -> Result<Pose> {
         let Some(pose) = self.child(node, "pose") else { return Ok(Pose::IDENTITY) };
         let given = ["relative_to", "frame"].into_iter().find_map(|a| pose.attribute(a));

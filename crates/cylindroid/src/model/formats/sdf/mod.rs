@@ -1,13 +1,14 @@
 //! SDF: models of Gazebo and Drake, versions 1.4 to 1.11.
 //!
-//! Formula  parent_from_joint = model_from_parent^-1 model_from_joint, likewise for the child: every
-//!          link keeps the frame of the file
-//! Units    m, rad (degrees where a pose says so), kg, N, N m
+//! Formula  parent_from_joint = model_from_parent^-1 model_from_joint, likewise for the child:
+//!          every link keeps the frame of the file
+//! Units    m, rad (degrees for a pose with `degrees="true"`), kg, N, N m
 //! Valid    the first model of a file, nested models included (`model::link`). Joints form a graph:
-//!          those that close loops do so. The root is `world` where a joint names it or the model
-//!          is static, else the canonical link
-//! Why so   SDF names no motors, so every joint of one coordinate counts as actuated, as in URDF;
-//!          the report says so where there are loops
+//!          a spanning tree provides the coordinates, and the remaining joints become loop joints.
+//!          The root is `world` if a joint refers to it or the model is static, otherwise the
+//!          canonical link
+//! Why so   SDF does not declare actuators, so every joint of one coordinate counts as actuated, as
+//!          in URDF; for models with loops the report says so
 //! Source   sdformat.org, specification
 //! Checked  tests/formats/sdf.rs
 
@@ -33,7 +34,7 @@ use crate::spatial::Pose;
 
 const FORMAT: &str = "SDF";
 
-/// What is read so far.
+/// The model while it is read.
 struct Sdf<'d> {
     reader: Reader<'d>,
     version: f64,
@@ -63,8 +64,8 @@ struct Sdf<'d> {
 ///
 /// # Errors
 /// [`Error::File`](crate::Error::File) with line and column for broken XML, a file without a
-/// model, a number that is not one, a name that is missing or unknown, frames placed in a ring,
-/// and all that the builder refuses.
+/// model, an invalid number, a name that is missing or unknown, a cycle of frames, and everything
+/// that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
     let source = Source { format: FORMAT, path, text };
     let document = xml::document(&source)?;
@@ -115,7 +116,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
 }
 
 impl<'d> Sdf<'d> {
-    /// The model and those nested in it: frames first, then what refers to them.
+    /// The model and those nested in it: frames first, then the elements that refer to them.
     fn read(&mut self, model: Node<'d, 'd>) -> Result<()> {
         let packages = Packages::of(self.reader.source.path);
         let mut joints = Vec::new();
@@ -155,7 +156,7 @@ impl<'d> Sdf<'d> {
                     _ => {}
                 }
             }
-            // The frame of a model is carried by its canonical link.
+            // The frame of a model is attached to its canonical link.
             let canonical = model.attribute("canonical_link").map(|l| scoped(&scope, l.trim()));
             let attached_to = canonical.or(first_link).unwrap_or_default();
             if scope.is_empty() {
@@ -185,7 +186,7 @@ impl<'d> Sdf<'d> {
         Ok(())
     }
 
-    /// Notes where a link (which nothing else carries), a joint or a frame stands.
+    /// Records the pose of a link (attached to itself), a joint or a frame.
     fn place(&mut self, node: Node<'d, 'd>, scope: &str, on: Option<String>) -> Result<String> {
         let own = self.reader.required(node, "name")?.trim();
         let name = scoped(scope, own);
@@ -202,7 +203,7 @@ impl<'d> Sdf<'d> {
         Ok(name)
     }
 
-    /// The `<pose>` of an element and the full name of what it is relative to.
+    /// The `<pose>` of an element and the full name of the frame that it is relative to.
     fn pose_of(
         &mut self,
         node: Node<'d, 'd>,
@@ -220,7 +221,7 @@ impl<'d> Sdf<'d> {
     }
 }
 
-/// The full name of what is called `name` in a nested model.
+/// The full name of `name` in a nested model.
 fn scoped(scope: &str, name: &str) -> String {
     if scope.is_empty() { name.to_owned() } else { format!("{scope}::{name}") }
 }

@@ -1,4 +1,4 @@
-//! Values that SDF writes as the text of elements.
+//! Values of SDF elements, written as text: numbers, vectors, poses, truth values.
 //!
 //! Checked  tests/formats/sdf.rs::what_is_broken_*
 
@@ -31,12 +31,12 @@ impl Reader<'_> {
         Some(self.child(node, name)?.text().unwrap_or("").trim())
     }
 
-    /// True if a child element says so; false where it is missing.
+    /// The truth value of a child element; false if it is missing.
     pub(super) fn child_flag(&mut self, node: Node<'_, '_>, name: &str) -> bool {
         self.child_text(node, name).is_some_and(is_true)
     }
 
-    /// The numbers that stand in an element; infinite ones pass.
+    /// The numbers of an element; infinite ones are accepted.
     pub(super) fn content<const N: usize>(&self, node: Node<'_, '_>) -> Result<[f64; N]> {
         let tag = node.tag_name().name();
         let values = numbers_in(node.text().unwrap_or(""))
@@ -47,7 +47,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The finite numbers that stand in an element.
+    /// The finite numbers of an element.
     pub(super) fn finite<const N: usize>(&self, node: Node<'_, '_>) -> Result<[f64; N]> {
         let values = self.content::<N>(node)?;
         if values.iter().all(|x| x.is_finite()) {
@@ -68,7 +68,7 @@ impl Reader<'_> {
         self.finite::<3>(child).map(|v| Some(Vec3::from_array(v)))
     }
 
-    /// The pose that an element of the kind `<pose>` holds; the identity where it is empty.
+    /// The pose of an element of the kind `<pose>`; the identity if it is empty.
     pub(super) fn pose_in(&self, node: Node<'_, '_>) -> Result<Pose> {
         if node.text().unwrap_or("").trim().is_empty() {
             return Ok(Pose::IDENTITY);

@@ -1,4 +1,4 @@
-//! From links and joints of SDF to a mechanism: the spanning tree and what closes it.
+//! From links and joints of SDF to a mechanism: the spanning tree and the loop joints.
 //!
 //! Checked  tests/formats/sdf.rs::joints_*, ::cassie_*
 
@@ -67,7 +67,7 @@ impl<'d> Sdf<'d> {
         })
     }
 
-    /// Spans the graph; a part that hangs on nothing moves freely.
+    /// Computes the spanning tree; a part without connection to the root gets a free joint.
     fn connect(
         &mut self,
         builder: &mut Builder,
@@ -140,12 +140,12 @@ impl<'d> Sdf<'d> {
     }
 }
 
-/// True for the kinds that count as actuated.
+/// True for joints of these kinds, which count as actuated.
 fn actuated(kind: JointKind) -> bool {
     kind.dof() == 1
 }
 
-/// The links and where they stand.
+/// The links and their poses.
 struct Graph<'a> {
     names: &'a [String],
     poses: &'a [Pose],

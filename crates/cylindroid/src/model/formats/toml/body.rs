@@ -1,9 +1,9 @@
-//! The `[[link]]` tables of a mechanism file: the masses of links that joints or contacts name.
+//! The `[[link]]` tables of a mechanism file: masses of the links of joints and contacts.
 //!
 //! Keys     name, mass, center (world at home), inertia: [ixx, iyy, izz] or with ixy, ixz, iyz
 //!          after them, in the plane one number
-//! Formula  link_from_inertia = world_from_link^-1 Trans(center): axes are those of the world
-//! Valid    inertia about the centre of mass; without one it is zero, a point
+//! Formula  link_from_inertia = world_from_link^-1 Trans(center), in world axes
+//! Valid    inertia about the centre of mass; zero (a point mass) by default
 //! Checked  tests/formats/closed_file.rs::links_*
 
 use super::value::Table;
@@ -14,7 +14,7 @@ use crate::spatial::{Mat3, Pose};
 
 const KEYS: [&str; 4] = ["name", "mass", "center", "inertia"];
 
-/// Writes the masses, when all links have their place. `brought` are links that robots bring.
+/// Writes the masses, once all links are placed. `brought` are the links of included robots.
 pub(super) fn write(file: &Table<'_>, world: &mut World<'_>, brought: &[String]) -> Result<()> {
     let mut seen: Vec<&str> = Vec::new();
     for table in file.tables("link", "[[link]]", &KEYS)? {
@@ -60,7 +60,7 @@ fn inertial(table: &Table<'_>, world: &World<'_>, name: &str) -> Result<Inertial
         let help = "moments of inertia are not negative [kg m^2]";
         return Err(table.refuse("inertia", "a moment of inertia is negative", help));
     }
-    // Link frames have world axes at home in files without robots; in any case the axes are given.
+    // In files without robots, link frames have world axes at home; otherwise rotate to them.
     let link_from_inertia = world.pose(name).inverse() * Pose::from_translation(center);
     let inertia = Mat3::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
     Ok(Inertial { mass, link_from_inertia, inertia })

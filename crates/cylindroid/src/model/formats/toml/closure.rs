@@ -4,8 +4,8 @@
 //!          frames (`[[frame]]`, MJCF sites) or of joints; axis: for "axis", in both frames (z)
 //! Formula  a loop joint at zero where the frames coincide: fixed (pose), spherical (point; in the
 //!          plane revolute), revolute about the axis (axis)
-//! Valid    the frames may be apart where the file places them: home is assembled from there
-//! Why so   links of other files have frames, and points in world axes at home are known only when
+//! Valid    the frames need not coincide at the poses of the file: home is assembled from there
+//! Why so   links of other files have frames, and points in world axes at home are known only once
 //!          the loop is closed
 //! Checked  tests/formats/closures.rs
 
@@ -24,7 +24,7 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
     file.tables("closure", "[[closure]]", &KEYS)
 }
 
-/// Writes the closures, when all links, joints and frames are written.
+/// Writes the closures, once all links, joints and frames are written.
 pub(super) fn write(file: &Table<'_>, world: &mut World<'_>) -> Result<()> {
     for table in tables(file)? {
         let name = table.required_string("name")?;

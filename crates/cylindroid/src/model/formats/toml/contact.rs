@@ -3,7 +3,7 @@
 //!
 //! Formula  world_from_contact = [x y z | point], z = normal, x = tangent less its part along the
 //!          normal, y = z x x
-//! Valid    the normal may be left out where nothing depends on it (hard_finger, complete), the
+//! Valid    the normal is optional for contacts independent of it (hard_finger, complete), the
 //!          tangent for all but line contacts; in the plane the tangent follows from the normal
 //! Checked  tests/formats/closed_file.rs::contacts_*
 
@@ -17,7 +17,7 @@ use crate::tolerance::ZERO_AXIS;
 
 const KEYS: [&str; 7] = ["name", "type", "between", "point", "normal", "tangent", "friction"];
 
-/// A contact as it stands in the file.
+/// A contact as read from the file.
 pub(super) struct ContactEntry<'t> {
     table: Table<'t>,
     pub(super) name: &'t str,
@@ -33,7 +33,7 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
     file.tables("contact", "[[contact]]", &KEYS)
 }
 
-/// The contacts as they stand in the file.
+/// The contacts as read from the file.
 pub(super) fn contacts<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<ContactEntry<'t>>> {
     tables(file)?.into_iter().map(|t| read(t, planar)).collect()
 }
@@ -81,8 +81,8 @@ fn axes(table: &Table<'_>, kind: ContactKind, planar: bool) -> Result<Rotation> 
     Rotation::from_matrix(columns).map_err(|e| table.refuse("tangent", e.to_string(), ""))
 }
 
-/// Refuses a contact whose first link nobody else names: only what is touched (the second link)
-/// may be an object that exists by its contacts alone.
+/// Rejects a contact whose first link is defined nowhere else: only the touched (second) link may
+/// be an object defined by its contacts alone.
 pub(super) fn check(
     contacts: &[ContactEntry<'_>],
     world: &World<'_>,
@@ -114,7 +114,7 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Writes the contacts, when all links have their place.
+/// Writes the contacts, once all links are placed.
 pub(super) fn write(world: &mut World<'_>, contacts: &[ContactEntry<'_>]) {
     for contact in contacts {
         let world_from_contact = Pose { rotation: contact.axes, translation: contact.point };

@@ -1,12 +1,12 @@
-//! The mechanism file: one TOML graph of joints and contacts in world axes at home, of robots from
+//! The mechanism file (TOML): a graph of joints and contacts in world axes at home, robots from
 //! other files, or a table of Denavit-Hartenberg rows.
 //!
 //! Keys     name, description, source, dimension (2 or 3), reference, reference_point, home, tool;
 //!          `[[joint]]`, or `[dh]` with convention, rows, base, flange; `[[link]]`, `[[contact]]`,
 //!          `[[robot]]`, `[[frame]]`, `[[closure]]`
 //! Units    m, rad, N, N m; pitch in m/rad
-//! Valid    any graph that hangs together. Home is q = 0 but for included robots, whose start
-//!          configuration it is; a joint between links that are already connected closes a loop
+//! Valid    any connected graph. Home is q = 0, for included robots their start configuration; a
+//!          joint between links that are already connected is a loop joint
 //! Checked  tests/formats/mechanism_file.rs, tests/formats/closed_file.rs, tests/formats/dh.rs,
 //!          tests/formats/catalogue.rs
 
@@ -127,8 +127,7 @@ pub(in crate::model) fn describe(
     Ok((world.build(close)?, file.string("description")?.unwrap_or("").to_owned()))
 }
 
-/// The link's motion is the goal: its own frame, or one with world axes where the point is
-/// another.
+/// The reference frame: the link's own frame, or one with world axes at the reference point.
 fn refer(world: &mut World<'_>, link: &str, point: Option<Vec3>) {
     let world_from_link = world.pose(link);
     let frame = match point {
@@ -153,7 +152,7 @@ fn dimension(file: &Table<'_>) -> Result<Dimension> {
     }
 }
 
-/// Records where joints, contacts, robots and frames stand in the file.
+/// Records the places of joints, contacts, robots and frames in the file.
 fn note_places(world: &mut World<'_>, file: &Table<'_>) -> Result<()> {
     let rows = match arm::table(file)? {
         Some(dh) => arm::rows(&dh)?,

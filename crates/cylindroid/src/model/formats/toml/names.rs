@@ -1,7 +1,7 @@
-//! Names that every mechanism file knows.
+//! Names that are predefined in every mechanism file.
 
 /// The root of every mechanism file.
 pub(super) const GROUND: &str = "ground";
 
-/// The name of the frame that the reference point makes.
+/// The name of the frame at the reference point.
 pub(super) const REFERENCE: &str = "reference";

@@ -1,4 +1,4 @@
-//! Mechanism files from text, with the files that they include.
+//! Parses mechanism files from text, with the files that they include.
 
 use std::path::Path;
 
@@ -7,12 +7,12 @@ use crate::error::Result;
 use crate::model::formats::load::load_from;
 use crate::model::{CloseHome, Mechanism};
 
-/// Reads the text of a mechanism file without assembling home: loops that are closed by frames may
-/// be open there ([`Mechanism::unassembled`]). `cylindroid::load_text` closes them.
+/// Reads the text of a mechanism file without assembling home: loops closed by `[[closure]]` frames
+/// may be open there ([`Mechanism::unassembled`]). `cylindroid::load_text` closes them.
 ///
 /// # Errors
-/// [`Error::File`](crate::Error::File) with line and column for broken TOML, unknown keys, values of a wrong type,
-/// and all that the builder refuses; the errors of included files.
+/// [`Error::File`](crate::Error::File) with line and column for broken TOML, unknown keys, values
+/// of a wrong type, and everything that the builder rejects; the errors of included files.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
     read(text, path, &Ok)
 }

@@ -3,8 +3,8 @@
 //! Keys     model (a name of the catalogue, or a path from this file's folder), name, link, base
 //!          (xyz, rpy), start, free, actuated, passive
 //! Formula  world_from_root = world_from_link base; home is the robot's start
-//! Why so   what a robot brings is called `name/...`; one without a name keeps its names, so that
-//!          joints and contacts can be added to a URDF as it is
+//! Why so   links, joints and frames of a robot get the prefix `name/`; those of a robot without a
+//!          name keep their names, so that joints and contacts can be added to an unchanged URDF
 //! Checked  tests/formats/closed_file.rs::robots_*
 
 use std::path::Path;
@@ -18,11 +18,11 @@ use crate::spatial::Pose;
 
 const KEYS: [&str; 8] = ["name", "model", "link", "base", "start", "free", "actuated", "passive"];
 
-/// Loads the model named by a `[[robot]]` table: from the folder of the file, by name or path, at a
+/// Loads the model of a `[[robot]]` table: from the folder of the file, by name or path, at a
 /// depth of inclusion.
 pub(in crate::model) type Loader<'a> = &'a dyn Fn(&Path, &str, usize) -> Result<Mechanism>;
 
-/// Files that include files that include files: more of them are taken for a ring.
+/// Maximum depth of inclusion; deeper nesting is treated as a cycle.
 const DEEPEST: usize = 8;
 
 /// The `[[robot]]` tables.
@@ -30,7 +30,7 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
     file.tables("robot", "[[robot]]", &KEYS)
 }
 
-/// Brings in the robots, in the order of the file.
+/// Adds the robots, in the order of the file.
 pub(super) fn include(
     file: &Table<'_>,
     world: &mut World<'_>,
@@ -117,14 +117,14 @@ fn load(table: &Table<'_>, depth: usize, loader: Loader<'_>) -> Result<Mechanism
     }
 }
 
-/// The robot with the actuated joints that the table names.
+/// The robot with the actuated joints of the table.
 fn set_actuated(table: &Table<'_>, robot: Mechanism) -> Result<Mechanism> {
     let refuse = |key: &'static str| move |e: Error| table.refuse(key, e.to_string(), "");
     match (table.names("actuated")?, table.names("passive")?) {
         (None, None) => Ok(robot),
         (Some(names), None) => robot.with_actuated(&names).map_err(refuse("actuated")),
         (None, Some(names)) => {
-            // Every name must be one that could be actuated.
+            // Every name must be that of a joint that can be actuated.
             let passive = robot.with_actuated(&names).map_err(refuse("passive"))?;
             let coordinates = robot.actuated().filter(|&i| !passive.coordinates()[i].actuated);
             let closing = robot.loops().iter().zip(passive.loops());
@@ -145,7 +145,7 @@ fn set_actuated(table: &Table<'_>, robot: Mechanism) -> Result<Mechanism> {
     }
 }
 
-/// The start configuration: all numbers, or some by name over the robot's home.
+/// The start configuration: all coordinates, or some by name, the others at the robot's home.
 fn start(table: &Table<'_>, robot: &Mechanism) -> Result<Vec<f64>> {
     if let Some(named) = table.named_numbers("start")? {
         let mut q = robot.home().to_vec();

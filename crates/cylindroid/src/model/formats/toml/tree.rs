@@ -1,7 +1,7 @@
-//! The joints of a mechanism file: a graph in world axes at home, hung up at `ground`.
+//! The joints of a mechanism file: a graph in world axes at home, with the root `ground`.
 //!
-//! Formula  parent_from_joint = world_from_parent^-1 Trans(origin): every link frame has world
-//!          axes at home and lies at the origin of the joint that leads to ground
+//! Formula  parent_from_joint = world_from_parent^-1 Trans(origin): at home every link frame has
+//!          world axes, and its origin is that of the joint towards ground
 //! Why so   a joint written from the far link to the near one keeps its q, the motion of the
 //!          second link relative to the first: it enters the tree reversed
 //! Checked  tests/formats/mechanism_file.rs, tests/formats/closed_file.rs
@@ -35,7 +35,7 @@ const TYPES: [&str; 10] = [
 const KEYS: [&str; 10] =
     ["name", "type", "between", "origin", "axis", "axis2", "pitch", "actuated", "limits", "mimic"];
 
-/// A joint as it stands in the file.
+/// A joint as read from the file.
 pub(super) struct JointEntry<'t> {
     table: Table<'t>,
     name: &'t str,
@@ -53,13 +53,13 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
     file.tables("joint", "[[joint]]", &KEYS)
 }
 
-/// The joints as they stand in the file.
+/// The joints as read from the file.
 pub(super) fn joints<'t>(file: &Table<'t>, planar: bool) -> Result<Vec<JointEntry<'t>>> {
     tables(file)?.into_iter().map(|t| read(t, planar)).collect()
 }
 
-/// Writes the joints: those of the tree, those that close it, and free joints for objects that
-/// only contacts hold.
+/// Writes the joints: those of the tree, the loop joints, and free joints for objects with contacts
+/// alone.
 pub(super) fn write<'t>(
     world: &mut World<'_>,
     joints: &[JointEntry<'t>],
@@ -125,9 +125,9 @@ pub(super) fn write<'t>(
     Ok(())
 }
 
-/// The links that hang on contacts alone, one for each group of links: the reference where it is
-/// one of them, otherwise the touched link whose name comes first, those that contacts name second
-/// before the others.
+/// The links that are connected by contacts alone, one for each connected component: the reference
+/// link if it is among them, otherwise the first touched (second) link of a contact by name,
+/// otherwise the first link by name.
 fn objects(
     contacts: &[ContactEntry<'_>],
     reference: Option<&str>,
@@ -154,7 +154,7 @@ fn objects(
     objects
 }
 
-/// The origin of the joint of the link whose name comes first.
+/// The origin of the first joint of a link, by name.
 pub(super) fn first_origin(joints: &[JointEntry<'_>], link: &str) -> Option<Vec3> {
     let of_link = joints.iter().filter(|j| j.between.contains(&link));
     of_link.min_by_key(|j| Natural(j.name)).and_then(|j| j.origin)

@@ -1,5 +1,5 @@
-//! Reads keys of a TOML table: every value of the right type, every error at its place, every
-//! unknown key refused.
+//! Reads keys of a TOML table: types are checked, errors carry line and column, unknown keys are
+//! rejected.
 //!
 //! Checked  tests/formats/mechanism_file.rs::wrong_values_*, ::what_is_not_known_*
 
@@ -17,7 +17,7 @@ use crate::spatial::{Pose, Rpy, Vec3};
 #[derive(Debug, Clone)]
 pub(super) struct Table<'t> {
     pub(super) source: Source<'t>,
-    /// How errors call it: `[[joint]]`, `limits`, ...
+    /// Its name in errors: `[[joint]]`, `limits`, ...
     what: &'static str,
     map: &'t DeTable<'t>,
     pub(super) span: Range<usize>,
@@ -51,7 +51,7 @@ impl<'t> Table<'t> {
         self.get(key).is_some()
     }
 
-    /// Where the value of a key stands; the table itself where there is no such key.
+    /// The place of the value of a key; of the table itself if there is no such key.
     pub(super) fn at(&self, key: &str) -> Range<usize> {
         self.get(key).map_or_else(|| self.span.clone(), Spanned::span)
     }
@@ -139,7 +139,7 @@ impl<'t> Table<'t> {
         }
     }
 
-    /// A point or direction: in the plane two numbers, or three of which the last is zero.
+    /// A point or direction: in the plane two numbers, or three with the last one zero.
     pub(super) fn vector(&self, key: &str, planar: bool) -> Result<Option<Vec3>> {
         if !planar {
             return self.vec3(key);
@@ -187,8 +187,8 @@ impl<'t> Table<'t> {
         array.iter().map(read).collect::<Result<_>>().map(Some)
     }
 
-    /// The numbers of a table with keys of any name, and where they stand; `None` where the value
-    /// is no table.
+    /// The numbers of a table with keys of any name, and their places; `None` if the value is no
+    /// table.
     #[allow(clippy::type_complexity)]
     pub(super) fn named_numbers(
         &self,
@@ -245,7 +245,7 @@ impl<'t> Table<'t> {
         Ok(Pose { rotation: Rpy { roll, pitch, yaw }.rotation(), translation })
     }
 
-    /// The key `limits`; what is not given is unlimited.
+    /// The key `limits`; missing limits are infinite.
     pub(super) fn limits(&self) -> Result<Limits> {
         let keys = ["lower", "upper", "velocity", "acceleration", "effort"];
         let Some(table) = self.table("limits", "limits", &keys)? else { return Ok(Limits::NONE) };

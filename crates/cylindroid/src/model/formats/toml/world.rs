@@ -1,4 +1,4 @@
-//! The links of a mechanism file and where they stand at home, while the model is written.
+//! The links of a mechanism file and their poses at home, while the model is written.
 //!
 //! Checked  tests/formats/mechanism_file.rs::frames_*, tests/formats/closed_file.rs
 
@@ -13,7 +13,7 @@ use crate::model::formats::span::{IgnoredLog, Source};
 use crate::model::{CloseHome, Dimension, JointKind, JointSpec, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
-/// What has been written so far.
+/// The model while it is written.
 pub(super) struct World<'t> {
     source: Source<'t>,
     pub(super) builder: Builder,
@@ -21,7 +21,7 @@ pub(super) struct World<'t> {
     /// The root first, then in the order in which they were placed.
     links: Vec<(String, Pose)>,
     index: BTreeMap<String, usize>,
-    /// Where names stand in the file, for errors of the builder.
+    /// The places of names in the file, for errors of the builder.
     places: Vec<(String, Range<usize>)>,
     notes: IgnoredLog,
     /// Links of robots.
@@ -37,7 +37,7 @@ impl<'t> World<'t> {
         Self { source, builder, dimension, links, index, places, notes, brought }
     }
 
-    /// Says where a link stands; it counts as connected with the root.
+    /// Places a link; it counts as connected to the root.
     pub(super) fn place(&mut self, link: &str, world_from_link: Pose) {
         if let Some(&i) = self.index.get(link) {
             self.links[i].1 = world_from_link;
@@ -47,7 +47,7 @@ impl<'t> World<'t> {
         }
     }
 
-    /// Says where a link of a robot stands.
+    /// Places a link of a robot.
     pub(super) fn bring(&mut self, link: &str, world_from_link: Pose) {
         self.place(link, world_from_link);
         self.brought.insert(link.to_owned());
@@ -58,7 +58,7 @@ impl<'t> World<'t> {
         self.brought.contains(link)
     }
 
-    /// The links that stand somewhere, the root first.
+    /// The links that are placed, the root first.
     pub(super) fn placed(&self) -> Vec<String> {
         self.links.iter().map(|l| l.0.clone()).collect()
     }
@@ -67,7 +67,7 @@ impl<'t> World<'t> {
         self.index.contains_key(link)
     }
 
-    /// Where a link stands; the world's origin for one that is not known.
+    /// The pose of a link; the world origin for an unknown one.
     pub(super) fn pose(&self, link: &str) -> Pose {
         self.index.get(link).map_or(Pose::IDENTITY, |&i| self.links[i].1)
     }
@@ -84,7 +84,7 @@ impl<'t> World<'t> {
         }
     }
 
-    /// Writes a joint; position limits that its kind cannot keep are dropped with a note.
+    /// Writes a joint; position limits that its kind does not support are dropped with a note.
     pub(super) fn joint(&mut self, mut joint: JointSpec) {
         let l = &mut joint.limits;
         let bounded = l.lower > f64::NEG_INFINITY || l.upper < f64::INFINITY;
@@ -98,8 +98,8 @@ impl<'t> World<'t> {
         self.builder.joint(joint);
     }
 
-    /// A link that hangs on nothing: free in space, or in the plane. The joint is to be written
-    /// after those of the file, so that their coordinates come first.
+    /// The free (or planar) joint of an unconnected link. It must be written after those of the
+    /// file, so that their coordinates come first.
     pub(super) fn free(&mut self, link: &str, world_from_link: Pose) -> JointSpec {
         let root = self.links.first().map_or(GROUND, |l| l.0.as_str()).to_owned();
         let kind = match self.dimension {
@@ -112,7 +112,7 @@ impl<'t> World<'t> {
         JointSpec { parent_from_joint, axis: Vec3::Z, actuated: false, ..joint }
     }
 
-    /// Refuses a name, the value of a key, that is no link.
+    /// Rejects the value of a key that is not the name of a link.
     pub(super) fn check_link(&self, table: &Table<'_>, key: &str, link: &str) -> Result<()> {
         if self.has(link) {
             return Ok(());
@@ -121,12 +121,12 @@ impl<'t> World<'t> {
         Err(table.refuse(key, unknown.to_string(), ""))
     }
 
-    /// Records where a joint, contact, robot or frame stands in the file, for errors of the builder.
+    /// Records the place of a joint, contact, robot or frame in the file, for the builder's errors.
     pub(super) fn note_place(&mut self, name: &str, span: Range<usize>) {
         self.places.push((name.to_owned(), span));
     }
 
-    /// The mechanism, home assembled by `close`; errors get their place in the file.
+    /// The mechanism, home assembled by `close`; errors carry line and column.
     pub(super) fn build(mut self, close: CloseHome<'_>) -> Result<Mechanism> {
         std::mem::take(&mut self.notes).write(&[self.source], self.builder.report());
         let assembled = |m: Mechanism| if m.unassembled().is_empty() { Ok(m) } else { close(m) };

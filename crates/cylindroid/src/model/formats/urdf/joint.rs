@@ -1,9 +1,9 @@
 //! Joints of a URDF.
 //!
-//! Defaults  axis x; origin the parent's; of two position limits the missing one is 0. A revolute
-//!           or prismatic joint without any position limit moves without end (noted), and so does
+//! Defaults  axis x; origin the parent's; if one position limit is given, the missing one is 0. A
+//!           revolute or prismatic joint without position limits is unlimited (reported), and so is
 //!           one whose four limits are all 0, which exporters write for "not filled in". Speeds
-//!           and efforts that are 0 or missing are unlimited (noted).
+//!           and efforts that are 0 or missing are unlimited (reported).
 //! Checked  tests/formats/urdf.rs, tests/formats/lax.rs
 
 use std::collections::BTreeSet;
@@ -35,7 +35,7 @@ impl Reader<'_> {
         let child = self.end(node, "child", links)?;
         let mut spec = JointSpec::new(name, kind, parent, child);
         spec.parent_from_joint = self.origin(node)?;
-        // Exporters leave axes of zeros and empty limits on fixed joints; they mean nothing there.
+        // Exporters write zero axes and empty limits for fixed joints; they have no meaning there.
         if kind != JointKind::Fixed {
             spec.axis = self.axis(node, kind)?;
             spec.limits = self.limits(node, kind)?;
@@ -62,7 +62,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The link that `<parent>` or `<child>` names.
+    /// The link of `<parent>` or `<child>`.
     fn end<'d>(
         &mut self,
         joint: Node<'d, '_>,
@@ -161,7 +161,7 @@ impl Reader<'_> {
         Ok(limits)
     }
 
-    /// A largest speed or effort: unlimited where it is 0 or missing.
+    /// A limit of speed or effort: unlimited if it is 0 or missing.
     fn largest(
         &mut self,
         limit: Node<'_, '_>,

@@ -1,5 +1,5 @@
-//! Links of a URDF: inertia, shapes, materials. Kept as data; kinematics does not use it, so what
-//! is missing here is noted and never stops a robot from being loaded.
+//! Links of a URDF: inertia, shapes, materials. Kept as data and not used by kinematics, so missing
+//! values are reported and never prevent a robot from being loaded.
 //!
 //! Checked  tests/formats/urdf.rs::shapes_*, tests/formats/lax.rs::meshes_*
 
@@ -35,12 +35,12 @@ impl Reader<'_> {
         materials
     }
 
-    /// The colour written in a material itself.
+    /// The colour given in a material itself.
     fn color(&self, material: Node<'_, '_>) -> Option<[f64; 4]> {
         let color = material.children().find(|c| self.is(*c, "color"))?;
         match self.vector::<4>(color, "rgba") {
             Ok(Some(rgba)) => Some(rgba),
-            // Files with three numbers are common enough to be read.
+            // Files with three numbers are common.
             _ => self.vector::<3>(color, "rgba").ok()?.map(|[r, g, b]| [r, g, b, 1.0]),
         }
     }
@@ -91,7 +91,7 @@ impl Reader<'_> {
         Ok(Some(Inertial { mass, link_from_inertia, inertia }))
     }
 
-    /// A `<visual>` or `<collision>`; `None` (and a note) where it has no shape.
+    /// A `<visual>` or `<collision>`; `None` (and a note) if it has no shape.
     fn shape(
         &mut self,
         node: Node<'_, '_>,

@@ -2,9 +2,9 @@
 //!
 //! Formula  parent_from_child = Trans(xyz) Rz(yaw) Ry(pitch) Rx(roll) motion(axis, q)
 //! Units    m, rad, kg, N, N m, as in the file
-//! Valid    expanded URDF. xacro is refused with the command that expands it
-//! Why so   real files are lax, so what the kinematics does not need is noted and never refused;
-//!          what it does need is never guessed. A reader of our own, because the existing crate
+//! Valid    expanded URDF. xacro is rejected with the command that expands it
+//! Why so   real files are lax, so errors outside the kinematics are reported and never rejected;
+//!          kinematic data are never guessed. This reader is our own, because the existing crate
 //!          drops unknown elements, has no line numbers and reads missing limits as zero
 //! Source   wiki.ros.org/urdf/XML; urdfdom for the defaults
 //! Checked  tests/formats/urdf.rs, tests/formats/lax.rs, tests/formats/broken.rs
@@ -43,8 +43,8 @@ use crate::spatial::{Pose, Quaternion, Rotation, Rpy, Vec3};
 /// ```
 ///
 /// # Errors
-/// [`Error::File`] with line and column for broken XML, xacro, MJCF and SDF, a number that is not
-/// one, a name that is missing or unknown, and all that the builder refuses.
+/// [`Error::File`] with line and column for broken XML, xacro, MJCF and SDF, an invalid number, a
+/// name that is missing or unknown, and everything that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
     let mut source = Source { format: "URDF", path, text };
     let document = xml::document(&source)?;
@@ -107,7 +107,7 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
     builder.build().map_err(|e| place(reader, robot, e))
 }
 
-/// Finds the element that an error of the builder speaks of.
+/// Finds the element to which an error of the builder refers.
 fn place(reader: &Reader<'_>, robot: Node<'_, '_>, error: Error) -> Error {
     let Error::Model { culprit, message, .. } = error else { return error };
     let named = |kind: &str| {
@@ -126,7 +126,7 @@ fn place(reader: &Reader<'_>, robot: Node<'_, '_>, error: Error) -> Error {
     }
 }
 
-/// xacro is told by its elements. A declared prefix alone says nothing: expanded files keep it.
+/// xacro is recognised by its elements, not by a declared prefix, which expanded files keep.
 fn refuse_xacro(source: &Source<'_>, root: Node<'_, '_>) -> Result<()> {
     let is_xacro = |n: &Node<'_, '_>| {
         let text = source.text.get(n.range().start..).unwrap_or("");
@@ -140,7 +140,7 @@ fn refuse_xacro(source: &Source<'_>, root: Node<'_, '_>) -> Result<()> {
 }
 
 impl Reader<'_> {
-    /// The pose of the `<origin>` of an element; the identity without one.
+    /// The pose of the `<origin>` of an element; the identity if it has none.
     fn origin(&mut self, node: Node<'_, '_>) -> Result<Pose> {
         let Some(origin) = self.child(node, "origin") else { return Ok(Pose::IDENTITY) };
         self.leftovers(origin, &["xyz", "rpy", "quat_xyzw"], &[]);
