@@ -4,7 +4,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use cylindroid::closure::{ClosedChain, Mobility, MobilityCounts, MotionSpace, Singularities};
+use cylindroid::closure::{
+    ClosedChain, Diagnosis, Mobility, MobilityCounts, MotionSpace, Singularities,
+};
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::formats;
 use cylindroid::{Mechanism, ReferenceFrame};
@@ -168,12 +170,36 @@ fn results(m: &Mechanism, turned: &[String]) -> BTreeMap<String, Vec<f64>> {
     all
 }
 
+/// Six equal parallel rods stay parallel on their branch, which has its rank everywhere. The rotation
+/// that they resist to second order only is taken for a part of the branch in some orders.
+fn has_clear_verdict(path: &Path) -> bool {
+    !path.ends_with("six_parallel.toml")
+}
+
+/// The verdict at home, with its distances.
+fn verdict(m: &Mechanism) -> BTreeMap<String, Vec<f64>> {
+    let found = Diagnosis::of(&m.state(m.home()).unwrap(), None, None).unwrap();
+    let kinds: Vec<String> = found.verdict.kinds().iter().map(|k| format!("{k:?}")).collect();
+    let mut redundant = found.redundant.clone();
+    redundant.sort();
+    let d = found.distances;
+    let finite = found.finite.finite.map_or(-1.0, |n| n as f64);
+    BTreeMap::from([
+        (format!("kinds {kinds:?}, redundant {redundant:?}"), vec![]),
+        ("distances".to_owned(), vec![d.type_i, d.type_ii, d.configuration_space, d.passive]),
+        ("finite mobility".to_owned(), vec![finite]),
+    ])
+}
+
 #[track_caller]
-fn assert_same(what: &str, got: &Mechanism, turned: &[String], expected: &Mechanism) {
-    let (got, expected) = (results(got, turned), results(expected, &[]));
+fn assert_same(
+    what: &str,
+    got: &BTreeMap<String, Vec<f64>>,
+    expected: &BTreeMap<String, Vec<f64>>,
+) {
     let names = |all: &BTreeMap<String, _>| all.keys().cloned().collect::<Vec<_>>();
-    assert_eq!(names(&got), names(&expected), "{what}");
-    for (name, expected) in &expected {
+    assert_eq!(names(got), names(expected), "{what}");
+    for (name, expected) in expected {
         let got = &got[name];
         assert_eq!(got.len(), expected.len(), "{what}, {name}");
         for (a, b) in got.iter().zip(expected) {
@@ -205,9 +231,14 @@ fn tables_in_any_order() {
     for path in files() {
         let text = std::fs::read_to_string(&path).unwrap();
         let expected = read(&text, &path);
-        for _ in 0..10 {
+        let what = path.display().to_string();
+        let (values, judged) = (results(&expected, &[]), verdict(&expected));
+        for i in 0..10 {
             let m = read(&shuffled(&text, &mut random), &path);
-            assert_same(&path.display().to_string(), &m, &[], &expected);
+            assert_same(&what, &results(&m, &[]), &values);
+            if i == 0 && has_clear_verdict(&path) {
+                assert_same(&what, &verdict(&m), &judged);
+            }
         }
     }
 }
@@ -218,10 +249,15 @@ fn joints_from_either_link() {
     for path in files() {
         let text = std::fs::read_to_string(&path).unwrap();
         let expected = read(&text, &path);
-        for _ in 0..10 {
+        let (values, judged) = (results(&expected, &[]), verdict(&expected));
+        for i in 0..10 {
             let (other, names) = turned(&shuffled(&text, &mut random), &mut random);
             let m = read(&other, &path);
-            assert_same(&format!("{} {names:?}", path.display()), &m, &names, &expected);
+            let what = format!("{} {names:?}", path.display());
+            assert_same(&what, &results(&m, &names), &values);
+            if i == 0 && has_clear_verdict(&path) {
+                assert_same(&what, &verdict(&m), &judged);
+            }
         }
     }
 }
