@@ -130,7 +130,14 @@ impl Builder {
         self
     }
 
+    /// Says that this loop joint may be open at home, which is to be assembled.
+    pub(super) fn assemble_home(&mut self, loop_joint: &str) -> &mut Self {
+        self.unassembled.push(loop_joint.to_owned());
+        self
+    }
+
     /// Names decide where the order in which links and joints are given must not.
+    #[cfg(feature = "formats")]
     pub(super) fn by_name(&mut self) -> &mut Self {
         self.by_name = true;
         self

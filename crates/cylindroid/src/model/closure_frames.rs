@@ -13,16 +13,9 @@ use crate::error::Result;
 use crate::spatial::Pose;
 
 /// Closes the loops that a file closes by frames: the mechanism with an assembled home.
-#[cfg(feature = "formats")]
 pub(crate) type CloseHome<'a> = &'a dyn Fn(Mechanism) -> Result<Mechanism>;
 
 impl Builder {
-    /// Says that this loop joint may be open at home, which is to be assembled.
-    pub(super) fn assemble_home(&mut self, loop_joint: &str) -> &mut Self {
-        self.unassembled.push(loop_joint.to_owned());
-        self
-    }
-
     /// The link of a frame and its pose there: of a link, a named frame, a joint (on the link that
     /// it moves; on the second link if it closes a loop).
     pub(super) fn placed_frame(&self, name: &str) -> Option<(String, Pose)> {
@@ -55,15 +48,7 @@ impl Builder {
 }
 
 impl Mechanism {
-    /// The loop joints that a file gives by two frames and that may be open at home: none after
-    /// loading, which assembles home.
-    #[must_use]
-    pub fn unassembled(&self) -> &[String] {
-        &self.data.unassembled
-    }
-
     /// The same mechanism with a home configuration in which all loops are closed.
-    #[cfg(feature = "formats")]
     pub(crate) fn with_assembled_home(&self, home: Vec<f64>) -> Self {
         let unassembled = Vec::new();
         Self { data: Arc::new(Data { home, unassembled, ..Data::clone(&self.data) }) }.measured()

@@ -153,6 +153,13 @@ impl Mechanism {
         &self.data.loops
     }
 
+    /// The loop joints that a file gives by two frames and that may be open at home: none after
+    /// loading, which assembles home.
+    #[must_use]
+    pub fn unassembled(&self) -> &[String] {
+        &self.data.unassembled
+    }
+
     /// The contacts, in the order of the file.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {

@@ -6,6 +6,7 @@ mod builder;
 #[cfg(feature = "formats")]
 pub mod catalogue;
 mod characteristic_length;
+#[cfg(feature = "formats")]
 mod closure_frames;
 mod constraint_wrenches;
 mod contact;

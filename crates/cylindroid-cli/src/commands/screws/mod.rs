@@ -1,6 +1,7 @@
 //! `screws`: the screw system of the joint twists and its hyperbolic inverses.
 
 mod find;
+mod involution;
 pub(crate) mod report;
 mod twists;
 
