@@ -16,37 +16,41 @@ use crate::table::{self, Table};
 
 /// The velocity constraint of a closed chain: `Ja qa + Jp qp - G^T u = 0`.
 ///
-/// From `Mechanism.constraint`, or from matrices.
+/// Created by `Mechanism.constraint`, or from matrices.
 ///
 /// Parameters
 /// ----------
 /// Ja : array_like, (t, a)
-///     Velocities at the contacts by the actuated joints.
+///     Contact velocities per velocity of the actuated joints.
 /// Jp : array_like, (t, p), optional
-///     By passive joints, and by objects other than the reference.
+///     Contact velocities per velocity of the passive joints, and of objects other than the
+///     reference. Default: none.
 /// G : array_like, (d, t), optional
-///     Wrench on the object by the forces at the contacts. Default: the identity, as of a serial
-///     arm.
+///     Grasp matrix: the wrench on the object per contact force. Default: the identity, as for a
+///     serial arm.
 /// length : float, optional
-///     Characteristic length of rank decisions, where units are given (m).
+///     Characteristic length of rank decisions (m); requires `units`. Default: 1.
 /// units : tuple of four str, optional
-///     Units of rows, actuated joints, passive columns and the object: a letter each, 'm' or 'r', as
-///     in ('mmr', 'rr', 'rr', 'mmr').
+///     Units of rows, actuated joints, passive columns and the object's components, one letter for
+///     each, 'm' or 'r': for example ('mmr', 'rr', 'rr', 'mmr'). Default: all 'r', unscaled.
 ///
 /// Attributes
 /// ----------
 /// actuated, passive, components : list of str
 ///     Names of the actuated joints, the passive columns, the components of the object's twist.
 /// Ja, Jp, G : ndarray
+///     (t, a), (t, p) and (d, t).
 /// matrix : ndarray, (t, a + p + d)
 ///     `[Ja Jp -G^T]`.
 /// length : float
+///     Characteristic length (m).
 /// closure_error : LoopClosureError or None
-///     How far the loops of the mechanism are open.
+///     The loop-closure error of the configuration; None for a constraint from matrices.
 ///
 /// Raises
 /// ------
 /// DimensionError, NotFiniteError, InvalidOptionError
+///     For blocks of inconsistent shapes, non-finite values, unknown units.
 ///
 /// Notes
 /// -----
@@ -68,7 +72,7 @@ pub(crate) struct PyConstraint {
     pub(super) origin: Option<Origin>,
 }
 
-/// The mechanism, its configuration and the frame that a constraint is of.
+/// The mechanism, configuration and reference frame of a constraint.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     pub(super) state: State,
@@ -125,7 +129,7 @@ impl PyConstraint {
         })
     }
 
-    /// What it is of, in a title.
+    /// The mechanism or the shape, for a title.
     pub(super) fn name(&self) -> String {
         match &self.origin {
             Some(origin) => format!("'{}'", origin.state.mechanism().name()),
@@ -149,7 +153,7 @@ impl PyConstraint {
         names.iter().map(ToString::to_string).collect()
     }
 
-    /// The rows of a task map and their names, from a matrix or names of components.
+    /// A task map and the names of its rows, from a matrix or from names of components.
     pub(super) fn task(&self, task: &Bound<'_, PyAny>) -> Result<(Matrix, Vec<String>)> {
         let names: Vec<String> = if let Ok(text) = task.extract::<String>() {
             text.split(',').map(|s| s.trim().to_owned()).collect()
@@ -171,7 +175,7 @@ impl PyConstraint {
         Ok((map, names))
     }
 
-    /// Of the actuated joints and the object, or the task that the map makes of its twist.
+    /// The relation between the actuated joints and the object, or the task `map` of its twist.
     pub(crate) fn relation(&self, map: Option<&Matrix>) -> cylindroid::Result<Relation> {
         let relation = MotionSpace::of(&self.inner).relation();
         match map {
@@ -297,23 +301,24 @@ impl PyConstraint {
 
 #[pymethods]
 impl PyMechanism {
-    /// The velocity constraint of loops, contacts and reference frame.
+    /// The velocity constraint of a closed chain (loops, contacts and reference frame):
+    /// `Ja qa + Jp qp - G^T u = 0`.
     ///
     /// Parameters
     /// ----------
     /// q : array_like, (n,) or (N, n), optional
-    ///     Default: home.
+    ///     Configurations [rad or m]. Default: home.
     /// actuated : list of str, optional
-    ///     The actuated joints, in place of those of the file.
+    ///     The actuated joints. Default: those of the file.
     /// reference : str, optional
-    ///     The frame whose motion is the goal. Default: that of the file, else the tool.
+    ///     The reference frame: its twist is u. Default: that of the file, otherwise the tool.
     /// length : float, optional
     ///     Characteristic length (m). Default: that of the mechanism, `reach`.
     ///
     /// Returns
     /// -------
     /// Constraint, or list of Constraint
-    ///     Loops are taken as closed; `closure_error` says how far they are open.
+    ///     Loops are assumed to be closed; `closure_error` is their loop-closure error.
     ///
     /// Raises
     /// ------

@@ -1,4 +1,4 @@
-//! The class `Manipulability`: efficiencies of motion and force.
+//! The class `Manipulability`: kinematic and force efficiencies.
 
 use cylindroid::Error;
 use cylindroid::manipulability::{Index, Manipulability};
@@ -13,18 +13,19 @@ use crate::error::Result;
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
-/// How well motion and force go from the actuated joints to the object.
+/// Manipulability: kinematic and force efficiencies between the actuated joints and the object.
 ///
 /// Attributes
 /// ----------
 /// kinematic : Spectrum
-///     Motions of the object for velocities of the actuated joints: zeros are redundant motions,
-///     infinite ones motions that the actuators do not control.
+///     Twists of the object per velocity of the actuated joints: zero for redundant motions,
+///     infinite for motions that the actuators do not control.
 /// active_force : Spectrum
-///     Forces exerted: wrenches for torques; zeros are internal torques.
+///     Wrenches exerted per torque of the actuated joints: zero for internal torques.
 /// passive_force : Spectrum
-///     Forces resisted: infinite ones are wrenches that the structure resists.
+///     Wrenches resisted per torque: infinite for those resisted by the structure alone.
 /// metric : str
+///     The preset of metrics: 'unit', 'length' or 'limits'.
 /// actuated, components : list of str
 ///     Names of the entries of directions.
 #[pyclass(frozen, name = "Manipulability", module = "cylindroid")]
@@ -82,13 +83,13 @@ impl PyManipulability {
         self.components.clone()
     }
 
-    /// The efficiencies that count for an index, largest first, infinities and zeros included.
+    /// The efficiencies of a manipulability index, largest first, including infinities and zeros.
     ///
     /// Parameters
     /// ----------
     /// name : str
-    ///     'kinematic', 'active-kinematic' (joint velocities given), 'passive-kinematic' (twist
-    ///     given), 'force', 'active-force' (torques given) or 'passive-force' (wrench given).
+    ///     'kinematic', 'active-kinematic' (given joint velocities), 'passive-kinematic' (given
+    ///     twist), 'force', 'active-force' (given torques) or 'passive-force' (given wrench).
     ///
     /// Returns
     /// -------
@@ -97,6 +98,7 @@ impl PyManipulability {
     /// Raises
     /// ------
     /// UnknownNameError
+    ///     For an unknown index.
     #[pyo3(signature = (name))]
     fn index<'py>(&self, py: Python<'py>, name: &str) -> Result<Array<'py>> {
         let Some(index) = Index::ALL.iter().find(|i| i.name() == name) else {
@@ -124,12 +126,12 @@ impl PyManipulability {
 
 #[pymethods]
 impl PyConstraint {
-    /// How well motion and force go from the actuated joints to the object.
+    /// Manipulability: kinematic and force efficiencies between the actuated joints and the object.
     ///
     /// Parameters
     /// ----------
     /// task, Wu, Wq, Ww, Wtau, metric
-    ///     As `Mechanism.manipulability`.
+    ///     As for `Mechanism.manipulability`.
     ///
     /// Returns
     /// -------
@@ -156,23 +158,25 @@ impl PyConstraint {
 
 #[pymethods]
 impl PyMechanism {
-    /// How well motion and force go from the actuated joints to the reference frame.
+    /// Manipulability (Yoshikawa; closed chains: Bicchi and Prattichizzo) of the reference frame:
+    /// kinematic and force efficiencies along principal directions.
     ///
-    /// Efficiencies are squares of output over input along principal directions. Zero: nothing
-    /// comes out; infinite: without any input.
+    /// An efficiency is the squared ratio of output to input: zero if there is no output, infinite
+    /// if there is output without input.
     ///
     /// Parameters
     /// ----------
     /// q, actuated, reference
-    ///     As `constraint`.
+    ///     As for `constraint`.
     /// task : str, list of str or array_like, (k, d), optional
-    ///     Components of the twist that matter ('x,y'), or a map on it.
+    ///     Components of the twist that form the task ('x,y'), or a linear map of the twist.
+    ///     Default: all.
     /// Wu, Wq, Ww, Wtau : array_like, square or their diagonals, optional
-    ///     Metrics of twists (or the task), joint velocities, wrenches and torques, positive
-    ///     definite. Defaults: those of `metric`; wrenches and torques by the duals.
+    ///     Metrics of twists (or the task), joint velocities, wrenches and torques, symmetric and
+    ///     positive definite. Defaults: the preset `metric`; the duals for wrenches and torques.
     /// metric : str
-    ///     'unit' (m and rad, unscaled), 'length' (lengths over the characteristic length),
-    ///     'limits' (as 'length', and joint velocities over their limits).
+    ///     'unit' (m and rad, unscaled), 'length' (lengths divided by the characteristic length),
+    ///     'limits' (as 'length', with joint velocities divided by their limits).
     /// length : float, optional
     ///     Characteristic length (m). Default: that of the mechanism, `reach`.
     ///
@@ -186,8 +190,8 @@ impl PyMechanism {
     ///
     /// Notes
     /// -----
-    /// Bicchi and Prattichizzo 1998. For a serial arm the kinematic efficiencies are the squares
-    /// of the singular values of its Jacobian.
+    /// Bicchi and Prattichizzo 1998. For a serial arm, the kinematic efficiencies are the squared
+    /// singular values of its Jacobian (Yoshikawa 1985).
     ///
     /// Examples
     /// --------

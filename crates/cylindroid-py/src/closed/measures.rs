@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::mechanism::PyMechanism;
 use crate::threads;
 
-/// What Python makes of a number.
+/// The Python type of a measure.
 enum Kind {
     Truth,
     Count,
@@ -30,34 +30,34 @@ fn kind(name: &str) -> Kind {
 
 #[pymethods]
 impl PyMechanism {
-    /// Mobility and manipulability of many configurations, as numbers.
+    /// Batched mobility and manipulability measures of many configurations.
     ///
-    /// What `mobility` and `manipulability` say of each, without their bases and directions: ten
-    /// times as fast and more, and on all cores.
+    /// The values of `mobility` and `manipulability` without bases and directions: at least ten
+    /// times as fast, and on all cores.
     ///
     /// Parameters
     /// ----------
     /// q : array_like, (n,) or (N, n)
     ///     Coordinates in the order of `joint_names` [rad or m].
     /// actuated, reference
-    ///     As `constraint`.
+    ///     As for `constraint`.
     /// Wu, Wq : array_like, square or their diagonals, optional
-    ///     Metrics of twists and joint velocities, as `manipulability`.
+    ///     Metrics of twists and joint velocities, as for `manipulability`.
     /// metric : str
-    ///     'unit', 'length' or 'limits', as `manipulability`.
+    ///     'unit', 'length' or 'limits', as for `manipulability`.
     /// length : float, optional
     ///     Characteristic length (m). Default: that of the mechanism, `reach`.
     ///
     /// Returns
     /// -------
     /// dict of str to ndarray, (N,), or to a number for one configuration
-    ///     `closure_distance` [m], `closure_angle` [rad], `closed`: how far loops are open;
+    ///     `closure_distance` [m], `closure_angle` [rad], `closed`: the loop-closure error;
     ///     `dof`, `redundancy`, `indeterminacy`, `coordinate`, `internal`, `zero_torque`,
     ///     `hyperstatic`, `idle`: the counts of `mobility`;
     ///     `type_i`, `type_ii`, `configuration_space`, `passive`: distances to singularities of
-    ///     these kinds, 0 at one, infinite where there is nothing to lose;
+    ///     these kinds, 0 at a singularity, infinite if the kind cannot occur;
     ///     `volume`, `largest`, `smallest`, `anisotropy` of the kinematic efficiencies, the last
-    ///     three NaN where none is finite.
+    ///     three NaN if no efficiency is finite.
     ///
     /// Raises
     /// ------
@@ -65,8 +65,8 @@ impl PyMechanism {
     ///
     /// Notes
     /// -----
-    /// A configuration is singular where it has more, or less, than ordinary configurations of the mechanism.
-    /// They are looked for around home by the first call: up to tens of milliseconds.
+    /// A configuration is singular if its counts differ from the generic counts of the branches
+    /// through home, which the first call determines (up to tens of milliseconds).
     ///
     /// Examples
     /// --------
@@ -109,7 +109,6 @@ impl PyMechanism {
         let found = PyDict::new(py);
         for (i, name) in ManipulabilityBatch::COLUMNS.into_iter().enumerate() {
             let column = || numbers.iter().skip(i).step_by(ManipulabilityBatch::WIDTH).copied();
-            // Counts are whole numbers.
             #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
             match (kind(name), rows.count) {
                 (Kind::Truth, None) => found.set_item(name, numbers[i] > 0.0),

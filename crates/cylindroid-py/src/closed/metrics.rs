@@ -1,4 +1,4 @@
-//! Metrics and limits of the actuated joints from what Python gives.
+//! Metrics of twists and joint velocities, and limits of actuated joints, from Python arguments.
 
 use cylindroid::closure::{Unit, Units};
 use cylindroid::manipulability::Metrics;
@@ -9,18 +9,18 @@ use super::PyConstraint;
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result};
 
-/// A question about efficiencies: which components of the object's twist, in which metrics.
+/// Arguments of a manipulability analysis: components of the object's twist, and metrics.
 #[derive(Debug)]
 pub(super) struct Question {
     pub(super) map: Option<Matrix>,
     pub(super) components: Vec<String>,
     pub(super) preset: String,
-    /// Those that take the place of the preset's.
+    /// Metrics that override those of the preset.
     given: Metrics,
 }
 
 impl Question {
-    /// About constraints like this one; `weights` are Wu, Wq, Ww, Wtau.
+    /// For constraints of the shape and units of this one; `weights` are Wu, Wq, Ww, Wtau.
     pub(super) fn about(
         constraint: &PyConstraint,
         task: Option<&Bound<'_, PyAny>>,
@@ -49,7 +49,7 @@ impl Question {
         Ok(Self { map, components, preset: preset.to_owned(), given })
     }
 
-    /// The metrics at this constraint.
+    /// The metrics for this constraint.
     pub(super) fn metrics(&self, constraint: &PyConstraint) -> Result<Metrics> {
         let mut metrics = Metrics::UNIT;
         if self.preset != "unit" {
@@ -69,7 +69,8 @@ impl Question {
     }
 }
 
-/// Units with those of the task in place of the object's: each of its rows is of one kind.
+/// The units with those of the task in place of the object's; a row must not mix lengths and
+/// angles.
 fn task_units(constraint: &PyConstraint, map: Option<&Matrix>) -> Result<Units> {
     let Some(map) = map else { return Ok(constraint.units.clone()) };
     let row = |i: usize| {
@@ -85,7 +86,7 @@ fn task_units(constraint: &PyConstraint, map: Option<&Matrix>) -> Result<Units> 
     Ok(Units { object, ..constraint.units.clone() })
 }
 
-/// The limits of the actuated joints, of velocities or torques, all finite.
+/// The velocity or torque limits of the actuated joints, all finite.
 pub(super) fn limits(constraint: &PyConstraint, torque: bool) -> Result<Vec<f64>> {
     let what = if torque { "effort" } else { "velocity" };
     let Some(origin) = &constraint.origin else {

@@ -1,4 +1,4 @@
-//! One object of Python, or a list of them.
+//! Conversion of results to Python: one object, or a list of objects for many configurations.
 
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -6,7 +6,7 @@ use pyo3::{PyClass, PyClassInitializer};
 
 use crate::arrays::Many;
 
-/// One object of Python, or a list of them.
+/// The Python object of one result, or a list of them for many configurations.
 pub(super) fn object<'py, T>(py: Python<'py>, many: Many<T>) -> PyResult<Bound<'py, PyAny>>
 where
     T: PyClass + Into<PyClassInitializer<T>>,

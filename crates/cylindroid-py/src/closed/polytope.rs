@@ -1,4 +1,4 @@
-//! The class `Polytope`: all velocities or forces within the limits of the actuated joints.
+//! The class `Polytope`: velocity and force polytopes within the limits of the actuated joints.
 
 use cylindroid::linalg::{Hull, Interval};
 use cylindroid::manipulability::{Polytope, force_polytope, velocity_polytope};
@@ -9,22 +9,23 @@ use super::metrics::limits;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 
-/// All velocities or forces that the limits of the actuated joints allow, about zero.
+/// A velocity or force polytope: all twists or wrenches within the limits of the actuated joints.
 ///
 /// Attributes
 /// ----------
 /// vertices : ndarray, (V, d)
 /// facets : list of list of int
-///     Simplices of the boundary, as numbers of vertices.
+///     Simplices of the boundary, as indices of vertices.
 /// normals : ndarray, (F, d)
+///     Outward unit normals of the facets.
 /// offsets : ndarray, (F,)
-///     `normals @ x <= offsets` within.
+///     Points x of the polytope satisfy `normals @ x <= offsets`.
 /// span : ndarray, (d, k)
-///     The directions in which it extends.
+///     An orthonormal basis of the space spanned by the polytope.
 /// unbounded : ndarray, (d, k)
-///     Directions without limit.
+///     A basis of the unbounded directions.
 /// complete : bool
-///     False where there were too many facets.
+///     False if the computation was stopped at the maximum number of facets.
 #[pyclass(frozen, name = "Polytope", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyPolytope {
@@ -119,18 +120,26 @@ impl PyPolytope {
 
 #[pymethods]
 impl PyConstraint {
-    /// All twists of the object that the rate limits of the actuated joints allow.
+    /// Velocity polytope: all twists of the object within the velocity limits of the actuated
+    /// joints.
     ///
     /// Parameters
     /// ----------
     /// limits : array_like, (a,) or (a, 2), optional
-    ///     Largest velocities [rad/s or m/s], or pairs around zero. Default: of the mechanism.
+    ///     Velocity limits [rad/s or m/s], or intervals that contain zero. Default: those of the
+    ///     mechanism.
     /// task : str, list of str or array_like, (k, d), optional
-    ///     Components of the twist, or a map; with more than three there are many facets.
+    ///     Components of the twist, or a linear map of it; more than three give many facets.
     ///
     /// Returns
     /// -------
     /// Polytope
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, UnknownNameError
+    /// InvalidOptionError
+    ///     For missing limits, and intervals that do not contain zero.
     #[pyo3(signature = (limits = None, task = None))]
     fn velocity_polytope(
         &self,
@@ -141,17 +150,25 @@ impl PyConstraint {
         PyPolytope::of(py, self, limits.as_ref(), task.as_ref(), false)
     }
 
-    /// All wrenches on the object that torques of the actuated joints within their limits balance.
+    /// Force polytope: all wrenches on the object balanced by torques of the actuated joints within
+    /// their limits.
     ///
     /// Parameters
     /// ----------
     /// limits : array_like, (a,) or (a, 2), optional
-    ///     Largest torques [N m or N], or pairs around zero. Default: those of the mechanism.
+    ///     Torque limits [N m or N], or intervals that contain zero. Default: those of the
+    ///     mechanism.
     /// task : str, list of str or array_like, (k, d), optional
+    ///     As for `velocity_polytope`.
     ///
     /// Returns
     /// -------
     /// Polytope
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, UnknownNameError, InvalidOptionError
+    ///     As for `velocity_polytope`.
     #[pyo3(signature = (limits = None, task = None))]
     fn force_polytope(
         &self,

@@ -1,4 +1,4 @@
-//! The class `Admittance`: how a tool gives way to a wrench.
+//! The class `Admittance`: admittance control, a twist from a wrench.
 
 use cylindroid::control::{Admittance, AdmittanceGain};
 use cylindroid::{Matrix, Vec3};
@@ -7,26 +7,26 @@ use pyo3::prelude::*;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Failure, Result};
 
-/// How a tool gives way to a wrench: twist = matrix @ wrench.
+/// Admittance of a tool: twist = matrix @ wrench.
 ///
 /// Parameters
 /// ----------
 /// force : float
-///     How much to forces, in all directions [m/s/N].
+///     Gain from forces to linear velocities, in all directions [m/s/N].
 /// moment : float
-///     How much to moments [rad/s/(N m)]; zero for a tool that does not turn.
+///     Gain from moments to angular velocities [rad/s/(N m)]; zero for a tool that does not rotate.
 /// point : array_like, (3,), optional
-///     Where moments are taken (m). Default: the origin of the frame.
+///     Reference point of moments (m). Default: the origin of the frame.
 ///
 /// Attributes
 /// ----------
 /// matrix : ndarray, (6, 6)
-///     Twist (linear first) from wrench (force first).
+///     The twist (linear first) per wrench (force first).
 ///
 /// Raises
 /// ------
 /// InvalidOptionError, NotFiniteError
-///     For gains that are negative: a tool gives way, it never pushes back.
+///     For negative gains: an admittance must be passive.
 ///
 /// Notes
 /// -----
@@ -52,12 +52,13 @@ impl PyAdmittance {
         Ok(Self { inner: Admittance::at(point, AdmittanceGain { force, moment })? })
     }
 
-    /// From its matrix.
+    /// The admittance with a given matrix.
     ///
     /// Parameters
     /// ----------
     /// matrix : array_like, (6, 6)
-    ///     Its symmetric part positive semidefinite.
+    ///     The twist (linear first) per wrench (force first); its symmetric part must be positive
+    ///     semidefinite.
     ///
     /// Returns
     /// -------
@@ -66,6 +67,7 @@ impl PyAdmittance {
     /// Raises
     /// ------
     /// InvalidOptionError, NotFiniteError
+    ///     For a matrix of the wrong shape, and one that is not passive.
     #[staticmethod]
     #[pyo3(signature = (matrix))]
     fn from_matrix(matrix: Numbers<'_>) -> Result<Self> {
@@ -84,16 +86,17 @@ impl PyAdmittance {
         arrays::matrix(py, &Matrix::from_fn(6, 6, |i, j| rows[i][j]))
     }
 
-    /// The same admittance seen from another frame.
+    /// The same admittance expressed in another frame.
     ///
     /// Parameters
     /// ----------
     /// a_from_b : array_like, (4, 4)
-    ///     This one is in frame b.
+    ///     Pose of frame b, in which this admittance is expressed, in frame a (m).
     ///
     /// Returns
     /// -------
     /// Admittance
+    ///     In frame a.
     ///
     /// Raises
     /// ------

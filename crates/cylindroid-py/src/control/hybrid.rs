@@ -1,4 +1,4 @@
-//! Hybrid control: some motions in position, the wrenches that do no work on them in force.
+//! Hybrid position/force control: the classes `HybridController` and `HybridCommand`.
 
 use cylindroid::Twist;
 use cylindroid::control::{HybridCommand, HybridController, HybridInput};
@@ -10,29 +10,29 @@ use crate::error::Result;
 use crate::screws::PyProjector;
 use crate::table;
 
-/// Hybrid control: some motions of a tool are controlled in position, the wrenches that do no work
-/// on them in force.
+/// Hybrid position/force control: some motions of a tool are controlled in position, and the
+/// wrenches that do no work on them in force.
 ///
-/// Everything is in one frame, whichever: that of the projector, the admittance, the twists and the
-/// wrenches. For a servo it has the axes of the world and its origin at the tool.
+/// Projector, admittance, twists and wrenches must be expressed in one common frame, which is
+/// arbitrary. For a servo it has world axes and its origin at the tool.
 ///
 /// Parameters
 /// ----------
 /// gain : float
-///     Of the twist error [1/s].
+///     Gain of the twist error [1/s].
 /// admittance : Admittance
-///     How the tool gives way to the wrench error; times the stiffness of the contact and dt below
-///     2 [1/s].
+///     Gain of the wrench error; its product with the contact stiffness and dt must be below 2.
 ///
 /// Raises
 /// ------
 /// InvalidOptionError
+///     For a gain that is not positive and finite.
 ///
 /// Notes
 /// -----
 /// Donelan and Selig, Hyperbolic pseudoinverses for kinematics in the Euclidean group, section 6.3.
-/// The command does not depend on the frame, where selecting rows of a task frame (Raibert and
-/// Craig 1981) mixes metres and radians.
+/// The command is independent of the frame, whereas a selection of rows in a task frame (Raibert
+/// and Craig 1981) mixes metres and radians.
 ///
 /// Examples
 /// --------
@@ -53,18 +53,19 @@ pub(crate) struct PyHybridController {
     inner: HybridController,
 }
 
-/// What hybrid control commands.
+/// The command of a hybrid controller: a twist and its position and force components.
 ///
 /// Attributes
 /// ----------
 /// twist : ndarray, (6,)
-///     Of the tool: the sum of the two parts [m/s, rad/s].
+///     The twist of the tool, the sum of both components [m/s, rad/s].
 /// position_part : ndarray, (6,)
-///     Of the twist error and the feed-forward, in the motions controlled in position.
+///     Twist error and feed-forward, projected onto the motions controlled in position.
 /// force_part : ndarray, (6,)
-///     Of the wrench error, along what the projector drops.
+///     Admittance of the wrench error, in the complement of these motions.
 /// wrench_error : ndarray, (6,)
-///     What counts of desired less measured: the part that does no work on those motions.
+///     Desired minus measured wrench, without the component that does work on the motions
+///     controlled in position [N, N m].
 #[pyclass(frozen, name = "HybridCommand", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyHybridCommand {
@@ -79,19 +80,19 @@ impl PyHybridController {
         Ok(Self { inner: HybridController::new(gain, admittance.inner)? })
     }
 
-    /// The twist of this step.
+    /// The hybrid position/force command of this step.
     ///
     /// Parameters
     /// ----------
     /// projector : Projector
-    ///     On the motions controlled in position.
+    ///     The projector onto the motions controlled in position.
     /// error : array_like, (6,)
-    ///     From the tool to its target, see `screw_to` [m, rad].
+    ///     Displacement from the tool to its target, see `screw_to` [m, rad].
     /// desired, measured : array_like, (6,)
-    ///     Wrenches that the tool shall exert and exerts on its surroundings, force first: the
-    ///     negative of what a sensor in the wrist reads.
+    ///     Desired and measured wrench of the tool on its environment, force first [N, N m]: the
+    ///     negative of the reading of a wrist sensor.
     /// feed_forward : array_like, (6,), optional
-    ///     The twist of the target.
+    ///     The twist of the target [m/s, rad/s]. Default: zero.
     ///
     /// Returns
     /// -------
@@ -119,16 +120,17 @@ impl PyHybridController {
         Ok(PyHybridCommand { inner: self.inner.command(&projector.inner, &input)? })
     }
 
-    /// The same law seen from another frame.
+    /// The same controller expressed in another frame.
     ///
     /// Parameters
     /// ----------
     /// a_from_b : array_like, (4, 4)
-    ///     This one is in frame b.
+    ///     Pose of frame b, in which this controller is expressed, in frame a (m).
     ///
     /// Returns
     /// -------
     /// HybridController
+    ///     In frame a.
     ///
     /// Raises
     /// ------

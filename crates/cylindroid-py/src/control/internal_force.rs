@@ -1,4 +1,4 @@
-//! Internal forces of cooperating arms, hands and over-actuated mechanisms.
+//! Internal force control of cooperating arms, hands and over-actuated mechanisms.
 
 use cylindroid::control::{InternalForceCommand, InternalForceController};
 use pyo3::prelude::*;
@@ -8,20 +8,21 @@ use crate::closed::PyConstraint;
 use crate::error::Result;
 use crate::table;
 
-/// The squeeze on an object, independent of its motion: velocities of the actuated joints that
-/// bring the internal torques to a set-point and leave the object where it is.
+/// Internal force control of a grasp or an over-actuated mechanism: velocities of the actuated
+/// joints that bring the internal torques to a set-point without moving the object.
 ///
 /// Parameters
 /// ----------
 /// gain : float
-///     The internal torques go to their set-point as exp(-gain t) [1/s]; times dt below 2.
+///     The error of the internal torques decays as exp(-gain t) [1/s]; gain * dt must be below 2.
 /// stiffness : array_like, (a,)
-///     Of each actuated joint, controlled in position or velocity and elastic like a spring
+///     Stiffness of each actuated joint, which is controlled in position or velocity and compliant
 ///     [N m/rad or N/m].
 ///
 /// Raises
 /// ------
 /// InvalidOptionError
+///     For a gain or stiffness that is not positive and finite.
 ///
 /// Notes
 /// -----
@@ -43,14 +44,14 @@ pub(crate) struct PyInternalForceController {
     inner: InternalForceController,
 }
 
-/// Velocities to add to those of the actuated joints.
+/// The command of internal force control: joint velocities to add to those of the motion.
 ///
 /// Attributes
 /// ----------
 /// joint_velocities : ndarray, (a,)
-///     [rad/s or m/s]
+///     Velocities of the actuated joints [rad/s or m/s].
 /// internal, error : ndarray, (a,)
-///     The internal part of the measured torques, and of desired less measured ones [N m or N].
+///     Internal component of the measured torques, and of desired minus measured ones [N m or N].
 #[pyclass(frozen, name = "InternalForceCommand", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyInternalForceCommand {
@@ -65,16 +66,16 @@ impl PyInternalForceController {
         Ok(Self { inner: InternalForceController::new(gain, stiffness.vector("stiffness")?)? })
     }
 
-    /// The joint velocities of this step.
+    /// The joint velocities of this step that regulate the internal forces.
     ///
     /// Parameters
     /// ----------
     /// constraint : Constraint
-    ///     Of the mechanism where it is now.
+    ///     The velocity constraint of the current configuration.
     /// desired, measured : array_like, (a,)
-    ///     Torques as the joints exert them, in the order of `constraint.actuated`; only their
-    ///     internal part counts. For a squeeze t at the contacts (a column of
-    ///     `Constraint.internal_forces`) the desired ones are `-Ja.T @ t`.
+    ///     Desired and measured torques exerted by the joints, in the order of
+    ///     `constraint.actuated` [N m or N]; only their internal component is used. For internal
+    ///     contact forces t (a column of `Constraint.internal_forces`), desired is `-Ja.T @ t`.
     ///
     /// Returns
     /// -------

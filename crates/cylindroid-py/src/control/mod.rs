@@ -1,5 +1,5 @@
-//! Control laws for tools in contact, and for tools that a person moves as well: the twist (or the
-//! joint velocities) to command. A servo carries it out.
+//! Control laws: admittance, hybrid, shared and internal force control. They compute the twist (or
+//! the joint velocities) that a servo executes.
 
 mod admittance;
 mod hybrid;

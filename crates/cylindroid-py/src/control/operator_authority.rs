@@ -1,4 +1,4 @@
-//! The class `OperatorAuthority`: how much of an operator's twist an arm near its limits can take.
+//! The class `OperatorAuthority`: scale of an operator's twist near joint limits.
 
 use cylindroid::control::{AuthorityTimes, OperatorAuthority};
 use pyo3::prelude::*;
@@ -7,35 +7,39 @@ use crate::error::{Failure, Result};
 use crate::servo::PyServo;
 use crate::table;
 
-/// How much of an operator's twist an arm near its limits can take without losing what the robot
-/// keeps: nothing at first, less after every step that limits slowed or bent, more after any other.
+/// Authority of an operator in shared control: the scale of the operator's twist at which an arm
+/// near its limits still performs the robot's part of the task.
+///
+/// It starts at zero, falls after every step in which limits scaled the motion or changed its
+/// direction, and rises after all others.
 ///
 /// Parameters
 /// ----------
 /// dt : float
-///     Between two steps (s).
+///     Time between steps (s).
 /// fall : float
-///     In which the share falls to 1/e at limits (s): what the joints need to brake.
+///     Time in which it falls to 1/e at limits (s): the braking time of the joints.
 /// rise : float
-///     In which it rises from nothing to all (s): what they need to gain speed, or more.
+///     Time in which it rises from 0 to 1 (s): at least the time in which the joints accelerate.
 ///
 /// Attributes
 /// ----------
 /// value : float
-///     The share, in [0, 1]: `law.command(projector, error, share.value * operator)`.
+///     The authority, in [0, 1]: `law.command(projector, error, authority.value * operator)`.
 ///
 /// Raises
 /// ------
 /// InvalidOptionError
+///     For times that are not positive and finite.
 ///
 /// Examples
 /// --------
 /// >>> import cylindroid as cy
 /// >>> robot = cy.load("panda")
-/// >>> servo, share = cy.Servo(robot), cy.OperatorAuthority(0.001, fall=0.1, rise=0.5)
-/// >>> rates = servo.step(robot.home, robot.fk(robot.home))
-/// >>> share.update(servo)
-/// >>> share.value
+/// >>> servo, authority = cy.Servo(robot), cy.OperatorAuthority(0.001, fall=0.1, rise=0.5)
+/// >>> qd = servo.step(robot.home, robot.fk(robot.home))
+/// >>> authority.update(servo)
+/// >>> authority.value
 /// 0.002
 #[pyclass(name = "OperatorAuthority", module = "cylindroid")]
 #[derive(Debug)]
@@ -56,12 +60,12 @@ impl PyOperatorAuthority {
         self.inner.get()
     }
 
-    /// Learns what became of the last step.
+    /// Updates the authority after a step of the servo.
     ///
     /// Parameters
     /// ----------
     /// servo : Servo
-    ///     After its step.
+    ///     The servo, after its step.
     ///
     /// Raises
     /// ------

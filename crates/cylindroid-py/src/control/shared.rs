@@ -1,4 +1,4 @@
-//! Shared control: a robot keeps some motions of its tool, an operator has the others.
+//! Shared control: the classes `SharedController` and `SharedCommand`.
 
 use cylindroid::Twist;
 use cylindroid::control::{SharedCommand, SharedController, SharedInput};
@@ -9,28 +9,29 @@ use crate::error::Result;
 use crate::screws::PyProjector;
 use crate::table;
 
-/// Shared control: a robot keeps some motions of its tool, an operator has the others.
+/// Shared control: the robot controls some motions of its tool, an operator the others.
 ///
-/// Everything is in one frame, whichever. For a servo it has the axes of the world and its origin
-/// at the tool.
+/// Projector and twists must be expressed in one common frame, which is arbitrary. For a servo it
+/// has world axes and its origin at the tool.
 ///
 /// Parameters
 /// ----------
 /// gain : float
-///     Of the twist error [1/s].
+///     Gain of the twist error [1/s].
 ///
 /// Raises
 /// ------
 /// InvalidOptionError
+///     For a gain that is not positive and finite.
 ///
 /// Notes
 /// -----
 /// Donelan and Selig, Hyperbolic pseudoinverses for kinematics in the Euclidean group, section 6.3.
-/// Near limits pass on the share of the operator that `OperatorAuthority` gives.
+/// Near joint limits, scale the operator's twist by `OperatorAuthority`.
 ///
 /// Examples
 /// --------
-/// An operator slides a tool along a plane, and pushes into it in vain:
+/// An operator slides a tool along a plane; motions into the plane are not executed:
 ///
 /// >>> import numpy as np
 /// >>> import cylindroid as cy
@@ -47,13 +48,14 @@ pub(crate) struct PySharedController {
     inner: SharedController,
 }
 
-/// What shared control commands.
+/// The command of shared control: a twist and the components of robot and operator.
 ///
 /// Attributes
 /// ----------
 /// twist : ndarray, (6,)
-///     Of the tool: the sum of the two parts [m/s, rad/s].
+///     The twist of the tool, the sum of both components [m/s, rad/s].
 /// robot_part, operator_part : ndarray, (6,)
+///     The component of the robot and that of the operator [m/s, rad/s].
 #[pyclass(frozen, name = "SharedCommand", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PySharedCommand {
@@ -68,18 +70,19 @@ impl PySharedController {
         Ok(Self { inner: SharedController::new(gain)? })
     }
 
-    /// The twist of this step.
+    /// The shared control command of this step.
     ///
     /// Parameters
     /// ----------
     /// projector : Projector
-    ///     On the operator's motions, along the robot's.
+    ///     The projector onto the operator's motions, along the robot's.
     /// error : array_like, (6,)
-    ///     From the tool to a pose that the robot shall keep, any of them; see `screw_to` [m, rad].
+    ///     Displacement from the tool to any pose that satisfies the robot's part of the task, see
+    ///     `screw_to` [m, rad].
     /// operator : array_like, (6,)
-    ///     The twist that the operator wants [m/s, rad/s].
+    ///     The twist commanded by the operator [m/s, rad/s].
     /// feed_forward : array_like, (6,), optional
-    ///     The twist of what the robot keeps to. Default: it rests.
+    ///     The twist of the robot's target [m/s, rad/s]. Default: zero.
     ///
     /// Returns
     /// -------

@@ -1,4 +1,4 @@
-//! The class `CartesianMove`.
+//! The class `CartesianMove`: a Cartesian trajectory, time-scaled within bounds.
 
 use cylindroid::control::{CartesianBounds, CartesianMove};
 use pyo3::prelude::*;
@@ -8,16 +8,18 @@ use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::table;
 
-/// A frame moving along a path by the fastest time law that keeps every bound.
+/// A Cartesian trajectory: a path with the fastest time law within bounds of speed, acceleration
+/// and jerk.
 ///
 /// Parameters
 /// ----------
 /// path : CartesianPath
 /// speed, acceleration, jerk : float or (float, float), optional
-///     Bounds of translation and rotation [m/s, rad/s; /s^2; /s^3]. Defaults: (0.25, 1), (1, 4),
-///     no bound on the jerk: a trapezoidal velocity.
+///     Bounds of translation and rotation [m/s, rad/s; m/s^2, rad/s^2; m/s^3, rad/s^3]; a single
+///     number bounds translations. Defaults: (0.25, 1), (1, 4), and no bound on the jerk, which
+///     gives a trapezoidal velocity profile.
 /// duration : float, optional
-///     Slows the move down to end then (s).
+///     Slows the move down to this duration (s). Default: the shortest.
 ///
 /// Attributes
 /// ----------
@@ -28,11 +30,11 @@ use crate::table;
 /// Raises
 /// ------
 /// InvalidOptionError
-///     For bounds that are NaN, zero or negative, a duration that is too short.
+///     For bounds that are NaN, zero or negative, and a duration shorter than the shortest.
 ///
 /// Notes
 /// -----
-/// Drive a servo along it with `Servo.simulate(q, move)`.
+/// `Servo.simulate(q, move)` simulates a servo that tracks the move.
 #[pyclass(frozen, name = "CartesianMove", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyCartesianMove {
@@ -69,23 +71,23 @@ impl PyCartesianMove {
         PyCartesianPath { inner: *self.inner.path() }
     }
 
-    /// Pose and twist at a time; at rest before 0 and after the duration.
+    /// Pose and twist of the trajectory at a time; at rest before 0 and after the duration.
     ///
     /// Parameters
     /// ----------
     /// t : array_like, () or (N,)
-    ///     (s).
+    ///     Time (s).
     ///
     /// Returns
     /// -------
     /// (ndarray, ndarray)
-    ///     Poses, (4, 4) or (N, 4, 4), and twists, (6,) or (N, 6): linear first, world axes, at
-    ///     the moving origin.
+    ///     Poses `world_from_tool`, (4, 4) or (N, 4, 4) (m), and twists, (6,) or (N, 6): linear
+    ///     first, world axes, at the moving origin [m/s, rad/s].
     ///
     /// Raises
     /// ------
     /// NotFiniteError
-    ///     For a time that is NaN.
+    ///     For a NaN time.
     #[pyo3(signature = (t))]
     fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<(Array<'py>, Array<'py>)> {
         let (t, count) = times("t", &t)?;
@@ -102,17 +104,18 @@ impl PyCartesianMove {
         Ok((poses, twists))
     }
 
-    /// Target and feed-forward of a servo of period `dt` at time `t`, for `Servo.step`.
+    /// Target pose and feed-forward twist of a servo with period `dt`, for `Servo.step`.
     ///
     /// Parameters
     /// ----------
     /// t, dt : float
-    ///     (s).
+    ///     Time and period (s).
     ///
     /// Returns
     /// -------
     /// (ndarray, ndarray)
-    ///     The pose now, (4, 4), and the constant twist that leads to that of the next step, (6,).
+    ///     The pose at `t`, (4, 4) (m), and the constant twist to the pose at `t + dt`, (6,):
+    ///     linear first, world axes, at the moving origin [m/s, rad/s].
     #[pyo3(signature = (t, dt))]
     fn target<'py>(&self, py: Python<'py>, t: f64, dt: f64) -> Result<(Array<'py>, Array<'py>)> {
         let target = self.inner.target(t, dt);

@@ -1,4 +1,4 @@
-//! The class `JointMove`.
+//! The class `JointMove`: a joint-space trajectory.
 
 use cylindroid::control::{JointDefaults, JointMove, JointSample};
 use pyo3::prelude::*;
@@ -9,30 +9,33 @@ use crate::error::Result;
 use crate::mechanism::PyMechanism;
 use crate::table;
 
-/// All joints moving straight to another configuration, starting and stopping together.
+/// A joint-space trajectory: all joints move straight to another configuration, starting and
+/// stopping together.
 ///
 /// Parameters
 /// ----------
 /// mechanism : Mechanism
-///     Its velocity and acceleration limits are kept, and its position limits.
+///     Its position, velocity and acceleration limits are respected.
 /// q, to : array_like, (n,)
-///     From and to [rad or m].
+///     Initial and final configuration [rad or m].
 /// speed, acceleration, jerk : float or (float, float), optional
-///     Of joints without limits of their own: those that slide and those that turn [m/s, rad/s;
-///     /s^2; /s^3]. Defaults: (0.25, 1), (1, 4), no bound on the jerk, which is that of all.
+///     Bounds of prismatic and revolute joints [m/s, rad/s; m/s^2, rad/s^2; m/s^3, rad/s^3]: of
+///     speed and acceleration for joints without limits of their own, of the jerk for all joints.
+///     Defaults: (0.25, 1), (1, 4), and no bound on the jerk.
 /// duration : float, optional
-///     Slows the move down to end then (s).
+///     Slows the move down to this duration (s). Default: the shortest.
 ///
 /// Attributes
 /// ----------
 /// duration : float
-///     (s)
+///     Time from rest to rest (s).
 ///
 /// Raises
 /// ------
 /// DimensionError, NotFiniteError
 /// InvalidOptionError
-///     For ends outside limits, and spherical or free joints that have no straight way.
+///     For configurations outside the limits, and for motions of spherical or free joints without
+///     a straight joint-space path.
 #[pyclass(frozen, name = "JointMove", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyJointMove {
@@ -68,22 +71,22 @@ impl PyJointMove {
         self.inner.law().duration()
     }
 
-    /// Positions and velocities at a time; at rest before 0 and after the duration.
+    /// Configuration and joint velocities at a time; at rest before 0 and after the duration.
     ///
     /// Parameters
     /// ----------
     /// t : array_like, () or (N,)
-    ///     (s).
+    ///     Time (s).
     ///
     /// Returns
     /// -------
     /// (ndarray, ndarray)
-    ///     q and qd, (n,) or (N, n).
+    ///     q [rad or m] and joint velocities [rad/s or m/s], (n,) or (N, n).
     ///
     /// Raises
     /// ------
     /// NotFiniteError
-    ///     For a time that is NaN.
+    ///     For a NaN time.
     #[pyo3(signature = (t))]
     fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<(Array<'py>, Array<'py>)> {
         let (t, count) = times("t", &t)?;

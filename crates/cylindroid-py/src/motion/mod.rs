@@ -1,4 +1,4 @@
-//! Paths, moves and time laws.
+//! Trajectories: Cartesian paths, Cartesian and joint-space moves, time laws.
 
 mod cartesian_move;
 mod joint_move;
@@ -17,16 +17,15 @@ pub(crate) use joint_move::PyJointMove;
 pub(crate) use path::PyCartesianPath;
 pub(crate) use time_law::PyTimeLaw;
 
-/// Speeds and accelerations on a path where none are given, as on the command line.
+/// Default speed and acceleration of a path, the same as those of the command line.
 const SPEED: (f64, f64) = (0.25, 1.0);
 const ACCELERATION: (f64, f64) = (1.0, 4.0);
 
-/// Speed, acceleration and jerk as they are given: a number, or one for translations and one for
-/// rotations each.
+/// Arguments speed, acceleration and jerk, each a number or a pair (translation, rotation).
 type Given<'a, 'py> = [&'a Option<Numbers<'py>>; 3];
 
-/// Bounds of translations and rotations. A single number is that of translations, and of rotations
-/// as well if `of_both`; else those keep their default.
+/// Bounds of translation and rotation. A single number bounds translations, and also rotations if
+/// `of_both`; otherwise rotations keep their default.
 fn bounds(given: Given<'_, '_>, of_both: bool) -> Result<(KinematicBounds, KinematicBounds)> {
     let [speed, acceleration, jerk] = given;
     let of = |name, given: &Option<Numbers<'_>>, default: (f64, f64)| match given {
@@ -42,7 +41,8 @@ fn bounds(given: Given<'_, '_>, of_both: bool) -> Result<(KinematicBounds, Kinem
     ))
 }
 
-/// Numbers of an argument that may be one number or a vector of them; infinite ones are allowed.
+/// The values of an argument that is a number or a vector; infinite values are accepted, NaN is
+/// rejected.
 fn times<'a>(name: &'static str, of: &'a Numbers<'_>) -> Result<(&'a [f64], Option<usize>)> {
     let (values, count) = match *of.shape() {
         [] => (of.values(), None),

@@ -1,4 +1,4 @@
-//! The class `CartesianPath`.
+//! The class `CartesianPath`: lines, arcs and rotations of a frame.
 
 use cylindroid::Vec3;
 use cylindroid::control::{AxisRotation, CartesianPath};
@@ -9,16 +9,16 @@ use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::table;
 
-/// A path of a frame in space, over s from 0 to 1; from `line`, `circle` or `rotation`.
+/// A Cartesian path of a frame, over s from 0 to 1; created by `line`, `circle` or `rotation`.
 ///
 /// Attributes
 /// ----------
 /// length : float
-///     Of the path of the origin (m).
+///     Length of the path of the origin (m).
 /// angle : float
-///     Of the whole rotation (rad).
+///     Total angle of rotation (rad).
 /// radius : float
-///     Of the arc (m); infinite for a line.
+///     Radius of the arc (m); infinite for a line.
 ///
 /// Examples
 /// --------
@@ -36,7 +36,7 @@ pub(crate) struct PyCartesianPath {
 
 #[pymethods]
 impl PyCartesianPath {
-    /// Along the straight line between two poses, turning about the constant axis by at most pi.
+    /// A straight line between two poses, with a rotation about a constant axis by at most pi.
     ///
     /// Parameters
     /// ----------
@@ -50,20 +50,23 @@ impl PyCartesianPath {
     /// Raises
     /// ------
     /// NotFiniteError, InvalidOptionError
+    ///     For matrices that are not poses.
     #[staticmethod]
     #[pyo3(signature = (start, end))]
     fn line(start: Numbers<'_>, end: Numbers<'_>) -> Result<Self> {
         Ok(Self { inner: CartesianPath::line(start.pose("start")?, end.pose("end")?)? })
     }
 
-    /// Along the arc through a point.
+    /// A circular arc between two poses through an intermediate point.
     ///
     /// Parameters
     /// ----------
     /// start : array_like, (4, 4)
+    ///     `world_from_tool` (m).
     /// via : array_like, (3,)
-    ///     A point on the arc (m).
+    ///     A point on the arc, world axes (m).
     /// end : array_like, (4, 4)
+    ///     `world_from_tool` (m).
     ///
     /// Returns
     /// -------
@@ -72,7 +75,7 @@ impl PyCartesianPath {
     /// Raises
     /// ------
     /// NotFiniteError, InvalidOptionError
-    ///     Also for three points on one line.
+    ///     For matrices that are not poses, and for three collinear points.
     #[staticmethod]
     #[pyo3(signature = (start, via, end))]
     fn circle(start: Numbers<'_>, via: Numbers<'_>, end: Numbers<'_>) -> Result<Self> {
@@ -80,13 +83,14 @@ impl PyCartesianPath {
         Ok(Self { inner: CartesianPath::circle(start.pose("start")?, via, end.pose("end")?)? })
     }
 
-    /// Along the arc of a rotation about a fixed axis, the orientation carried along.
+    /// A rotation of position and orientation about a fixed axis.
     ///
     /// Parameters
     /// ----------
     /// start : array_like, (4, 4)
+    ///     `world_from_tool` (m).
     /// centre, axis : array_like, (3,)
-    ///     A point of the line (m) and its direction, world axes.
+    ///     A point of the axis (m) and its direction, world axes.
     /// angle : float
     ///     Angle, right-handed; more than one revolution is allowed (rad).
     ///
@@ -97,6 +101,7 @@ impl PyCartesianPath {
     /// Raises
     /// ------
     /// NotFiniteError, InvalidOptionError
+    ///     For a matrix that is not a pose, and for a zero axis.
     #[staticmethod]
     #[pyo3(signature = (start, centre, axis, angle))]
     fn rotation(
@@ -128,21 +133,22 @@ impl PyCartesianPath {
         self.inner.radius()
     }
 
-    /// The pose at s.
+    /// The pose at the path coordinate s.
     ///
     /// Parameters
     /// ----------
     /// s : array_like, () or (N,)
-    ///     Clamped to [0, 1].
+    ///     Path coordinate, clamped to [0, 1].
     ///
     /// Returns
     /// -------
     /// ndarray, (4, 4) or (N, 4, 4)
+    ///     `world_from_tool` (m).
     ///
     /// Raises
     /// ------
     /// NotFiniteError
-    ///     For an s that is NaN.
+    ///     For a NaN coordinate.
     #[pyo3(signature = (s))]
     fn pose<'py>(&self, py: Python<'py>, s: Numbers<'py>) -> Result<Array<'py>> {
         let (s, count) = times("s", &s)?;
@@ -153,16 +159,23 @@ impl PyCartesianPath {
         })
     }
 
-    /// How far a measured pose is off this path.
+    /// Deviation of a measured pose from this path.
     ///
     /// Parameters
     /// ----------
     /// pose : array_like, (4, 4)
+    ///     `world_from_tool` (m).
     ///
     /// Returns
     /// -------
     /// (float, float, float)
-    ///     Distance to the path (m), angle to its orientation there (rad), and the nearest s.
+    ///     Distance to the nearest point of the path (m), angle to the orientation there (rad), and
+    ///     the path coordinate s of that point.
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError, InvalidOptionError
+    ///     For a matrix that is not a pose.
     #[pyo3(signature = (pose))]
     fn deviation(&self, pose: Numbers<'_>) -> Result<(f64, f64, f64)> {
         let d = self.inner.deviation(pose.pose("pose")?);

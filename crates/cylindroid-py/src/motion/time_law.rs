@@ -1,4 +1,4 @@
-//! The class `TimeLaw`.
+//! The class `TimeLaw`: trapezoidal and jerk-limited velocity profiles.
 
 use cylindroid::control::{KinematicBounds, TimeLaw};
 use pyo3::prelude::*;
@@ -7,26 +7,31 @@ use super::times;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 
-/// A motion of one coordinate from rest at 0 to rest at a distance, as fast as bounds allow.
+/// A time law (trapezoidal or jerk-limited velocity profile): the fastest motion of one coordinate
+/// from rest to rest within bounds.
 ///
 /// Parameters
 /// ----------
 /// distance : float
-///     Of either sign, in the unit u of the coordinate.
+///     Displacement, of either sign, in the unit u of the coordinate.
 /// velocity, acceleration : float
 ///     Bounds [u/s, u/s^2].
 /// jerk : float, optional
-///     [u/s^3]. Default: no bound, which gives a trapezoidal velocity.
+///     Bound [u/s^3]. Default: none, which gives a trapezoidal velocity profile.
 /// duration : float, optional
-///     Slows the motion down to end then (s).
+///     Slows the motion down to this duration (s). Default: the shortest.
 ///
 /// Attributes
 /// ----------
-/// duration, distance : float
+/// duration : float
+///     Time from rest to rest (s).
+/// distance : float
+///     Displacement [u].
 ///
 /// Raises
 /// ------
 /// InvalidOptionError, NotFiniteError
+///     For bounds that are not positive, and a duration shorter than the shortest.
 ///
 /// Examples
 /// --------
@@ -68,21 +73,22 @@ impl PyTimeLaw {
         self.inner.distance()
     }
 
-    /// Position, velocity, acceleration and jerk at a time.
+    /// Position, velocity, acceleration and jerk of the time law at a time.
     ///
     /// Parameters
     /// ----------
     /// t : array_like, () or (N,)
-    ///     (s).
+    ///     Time (s).
     ///
     /// Returns
     /// -------
     /// ndarray, (4,) or (N, 4)
+    ///     [u, u/s, u/s^2, u/s^3].
     ///
     /// Raises
     /// ------
     /// NotFiniteError
-    ///     For a time that is NaN.
+    ///     For a NaN time.
     #[pyo3(signature = (t))]
     fn at<'py>(&self, py: Python<'py>, t: Numbers<'py>) -> Result<Array<'py>> {
         let (t, count) = times("t", &t)?;

@@ -22,7 +22,8 @@ pub(crate) use motion_result::PyMotionResult;
 pub(crate) use stall::PyStall;
 pub(crate) use trajectory::PyTrajectory;
 
-/// A Cartesian controller of one frame: from joint positions and a target pose to joint velocities.
+/// A Cartesian servo (resolved-rate control) of one frame: computes joint velocities from joint
+/// positions and a target pose.
 ///
 /// It never violates a position, velocity or acceleration limit, stays bounded at singularities,
 /// and reports why it stalls. Closed chains are controlled at their reference through their
@@ -36,7 +37,7 @@ pub(crate) use trajectory::PyTrajectory;
 /// tool : array_like, (4, 4), optional
 ///     `frame_from_tool`, a tool point fixed to the frame.
 /// gain : float or (float, float), optional
-///     Of position and orientation error [1/s]; gain * dt below 2. Default: 5.
+///     Gain of position and orientation errors [1/s]; gain * dt must be below 2. Default: 5.
 /// dt : float, optional
 ///     Time between steps (s). Default: 0.001.
 /// tolerance_position, tolerance_orientation : float, optional
@@ -48,7 +49,7 @@ pub(crate) use trajectory::PyTrajectory;
 /// length : float, optional
 ///     Characteristic length that scales linear rows (m). Default: that of the mechanism, `reach`.
 /// joint_weights : array_like, (n,), optional
-///     A large weight keeps a joint still.
+///     Weights of joint velocities; a large one keeps a joint almost at rest. Default: 1.
 /// secondary : str, list of str or dict, optional
 ///     Secondary tasks in the null space of the primary one, by name (see below), or 'none'; a dict
 ///     gives for each name a gain or a dict of parameters. Default: limit avoidance for redundant
@@ -56,22 +57,22 @@ pub(crate) use trajectory::PyTrajectory;
 /// posture : array_like, (n,), optional
 ///     The configuration of the secondary task 'posture'. Default: home.
 /// null_space : str
-///     The null space they may use: 'exact' never disturbs the task, 'retained' also lets them
-///     through directions that the inverse cut.
+///     The null space of secondary tasks: 'exact' never disturbs the primary task, 'retained' also
+///     contains the directions truncated by the inverse.
 /// task : str, optional
 ///     'pose', 'position', 'orientation', 'pointing' (position and direction of the tool's z axis),
 ///     or components like 'x,y,rz'. Default: the pose, in the plane for planar closed chains.
 /// task_axes : str, optional
 ///     'world' or 'local', the axes of the components.
 /// inverse : str
-///     How the Jacobian is inverted: a name of `inverse_methods`, which lists parameters, units and
-///     defaults: 'truncated', ... (see `inverse`); for arms that cannot realise all of a motion
+///     The inverse of the Jacobian: a name of `inverse_methods`, which lists parameters, units and
+///     defaults: 'truncated', ... (see `inverse`); for arms with fewer than six joints also
 ///     'hyperbolic' (h), 'hyperbolic-damped' (h, mu), 'hyperbolic-gram' (h, lam), 'oblique'
 ///     (give_up).
 /// give_up : list of str or array_like, (k, 6), optional
-///     Motions of the tool, in its axes, that may be given up: names like 'rz', or twists as rows.
+///     Motions that 'oblique' may discard, in tool axes: names like 'rz', or twists as rows.
 /// fallback : str, optional
-///     The inverse used where that one does not exist or enlarges motions too much. Default:
+///     The inverse used if the requested one does not exist or enlarges motions too much. Default:
 ///     none, the arm stops.
 /// **parameters : float
 ///     Parameters of the inverse: `damping=0.05`, `h=0.1`, `mu=0.01`, ...
@@ -138,7 +139,7 @@ pub(crate) struct PyServo {
 }
 
 impl PyServo {
-    /// What the last step did.
+    /// The result of the last step.
     pub(crate) fn last(&self) -> Option<&Step> {
         self.last.as_ref()
     }
@@ -213,14 +214,14 @@ impl PyServo {
         Ok(Self { inner: Servo::new(robot, options)?, last: None })
     }
 
-    /// One step: the joint velocities to command from now until the next step.
+    /// One control step: the joint velocities to command until the next step.
     ///
     /// Parameters
     /// ----------
     /// q : array_like, (n,)
-    ///     Where the joints are [rad or m].
+    ///     The measured configuration [rad or m].
     /// target : array_like, (4, 4)
-    ///     `world_from_tool` as it should be (m).
+    ///     The desired `world_from_tool` (m).
     /// secondary : array_like, (n,), optional
     ///     Secondary joint velocities, projected onto the null space of the task.
     /// feed_forward : array_like, (6,), optional
@@ -229,14 +230,14 @@ impl PyServo {
     /// Returns
     /// -------
     /// ndarray, (n,)
-    ///     Rates [rad/s or m/s].
+    ///     Joint velocities [rad/s or m/s].
     ///
     /// Raises
     /// ------
     /// DimensionError, NotFiniteError
-    ///     The servo stays as it was.
+    ///     The state of the servo is unchanged.
     /// InvalidOptionError
-    ///     For a target that is no pose, or open loops.
+    ///     For a target that is not a pose, or open loops.
     #[pyo3(signature = (q, target, secondary = None, feed_forward = None))]
     fn step<'py>(
         &mut self,
@@ -265,16 +266,18 @@ impl PyServo {
         Ok(arrays::vector(py, self.inner.joint_velocities()))
     }
 
-    /// `q` moved by the joint velocities of the last step, for simulation.
+    /// Integrates the joint velocities of the last step over `dt`, for simulation.
     ///
     /// Parameters
     /// ----------
     /// q : array_like, (n,)
+    ///     The configuration before the step [rad or m].
     ///
     /// Returns
     /// -------
     /// ndarray, (n,)
-    ///     After `dt` seconds; passive joints of a closed chain go where the loops are closed.
+    ///     The configuration after `dt` seconds; passive joints of a closed chain are corrected to
+    ///     close the loops.
     ///
     /// Raises
     /// ------
@@ -288,7 +291,7 @@ impl PyServo {
         Ok(arrays::vector(py, &next))
     }
 
-    /// Forgets the last joint velocities and target: the joints stand still.
+    /// Resets the servo: no last target, joints at rest.
     fn reset(&mut self) {
         self.inner.reset();
         self.last = None;

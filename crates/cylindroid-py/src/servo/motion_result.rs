@@ -8,16 +8,18 @@ use super::{PyStall, PyTrajectory};
 use crate::arrays::{self, Array};
 use crate::table::{self, Table};
 
-/// The result of a motion.
+/// The result of a simulated motion of a servo.
 ///
 /// Attributes
 /// ----------
 /// reached : bool
+///     True if the target was reached within tolerance.
 /// reason : str
 ///     'reached', the name of the stall, or 'time-limit'.
 /// stall : Stall or None
+///     The reason of a stall, if there was one.
 /// q : ndarray, (n,)
-///     The last configuration.
+///     The last configuration [rad or m].
 /// position_error, orientation_error : float
 ///     At the end (m, rad).
 /// steps : int
@@ -30,7 +32,9 @@ use crate::table::{self, Table};
 /// no_inverse : str or None
 ///     The reason why the requested inverse did not exist, at its first occurrence.
 /// steps_without_inverse : int
+///     Number of steps in which it did not exist.
 /// trajectory : Trajectory or None
+///     Every step, if recorded.
 #[pyclass(frozen, name = "MotionResult", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyMotionResult {

@@ -22,9 +22,9 @@ impl PyServo {
     /// Parameters
     /// ----------
     /// q : array_like, (n,)
-    ///     The initial configuration.
+    ///     The initial configuration [rad or m].
     /// target : array_like, (4, 4), or CartesianMove
-    ///     A pose, or a motion of the target.
+    ///     The pose `world_from_tool` (m), or a moving target.
     /// duration : float
     ///     Time limit (s).
     /// record : bool
@@ -74,8 +74,8 @@ impl PyServo {
         Ok(PyMotionResult { outcome, trajectory, mechanism })
     }
 
-    /// A configuration within the limits that reaches a target, if one is found: for
-    /// reconfiguration when the servo, moving straight towards the target, stalls.
+    /// Searches for a configuration within the limits that reaches a target, for reconfiguration
+    /// when the servo stalls on its straight path.
     ///
     /// Parameters
     /// ----------

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::arrays::{self, Array};
 use crate::table;
 
-/// The reason why a servo makes no progress towards its target.
+/// A stall: the reason why a servo makes no progress towards its target.
 ///
 /// Attributes
 /// ----------
@@ -15,13 +15,14 @@ use crate::table;
 ///     'out-of-reach', 'limits', 'singular', 'too-few-joints', 'no-inverse', 'projected',
 ///     'type-ii' or 'slow'.
 /// message : str
-///     The meaning, with values.
+///     An explanation, with values.
 /// joints : list of str
 ///     The joints at their limits.
 /// direction : ndarray or None
 ///     The remaining error (or the uncontrolled motion) as a unit vector in the task.
 /// distance, length : float or None
-///     Out of reach: from the first joint to the target, and the stretched chain from there (m).
+///     For 'out-of-reach': the distance from the first joint to the target, and the length of the
+///     stretched chain from there (m).
 #[pyclass(frozen, name = "Stall", module = "cylindroid")]
 #[derive(Debug, Clone)]
 pub(crate) struct PyStall {

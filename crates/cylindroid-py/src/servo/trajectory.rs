@@ -1,4 +1,4 @@
-//! The class `Trajectory`: every step of a motion.
+//! The class `Trajectory`: the recorded steps of a simulated motion.
 
 use cylindroid::control::TrajectorySample;
 use pyo3::prelude::*;
@@ -7,17 +7,23 @@ use crate::arrays::{self, Array};
 use crate::error::Result;
 use crate::table;
 
-/// Every step of a motion.
+/// The recorded trajectory of a simulated motion: configuration, velocities, pose and errors of
+/// each step.
 ///
 /// Attributes
 /// ----------
 /// time : ndarray, (S,)
-///     Since the start (s).
-/// q, joint_velocities : ndarray, (S, n)
-///     Before each step, and as commanded by it.
+///     Time since the start (s).
+/// q : ndarray, (S, n)
+///     The configuration before each step [rad or m].
+/// joint_velocities : ndarray, (S, n)
+///     The joint velocities commanded by each step [rad/s or m/s].
 /// pose : ndarray, (S, 4, 4)
-///     `world_from_tool` (m).
-/// position_error, orientation_error, singular_ratio : ndarray, (S,)
+///     `world_from_tool` before each step (m).
+/// position_error, orientation_error : ndarray, (S,)
+///     Errors before each step, in the components of the task (m, rad).
+/// singular_ratio : ndarray, (S,)
+///     Smallest singular value of the scaled task Jacobian over the largest.
 #[pyclass(frozen, name = "Trajectory", module = "cylindroid")]
 #[derive(Debug, Default)]
 pub(crate) struct PyTrajectory {
@@ -30,7 +36,7 @@ pub(crate) struct PyTrajectory {
 }
 
 impl PyTrajectory {
-    /// None yet, of `n` coordinates.
+    /// An empty trajectory of `n` coordinates.
     pub(super) fn of(n: usize) -> Self {
         Self { n, ..Self::default() }
     }
