@@ -10,7 +10,8 @@ mod screws;
 mod shared;
 mod view;
 pub(crate) use closed::{
-    AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, StaticsArgs,
+    AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, MobilityArgs,
+    StaticsArgs,
 };
 pub(crate) use ik::IkArgs;
 pub(crate) use move_to::{
@@ -73,7 +74,7 @@ pub(crate) enum Command {
     Assemble(Box<AssembleArgs>),
     /// Mobility of a mechanism: degrees of freedom, redundant and idle motions, overconstraint
     #[command(long_about = closed::MOBILITY, after_long_help = closed::MOBILITY_EXAMPLES)]
-    Mobility(Box<ClosedArgs>),
+    Mobility(Box<MobilityArgs>),
     /// Manipulability: transmission of motion and force from actuated joints to a reference frame
     #[command(long_about = closed::MANIPULABILITY, after_long_help = closed::MANIPULABILITY_EXAMPLES)]
     Manipulability(Box<ManipulabilityArgs>),

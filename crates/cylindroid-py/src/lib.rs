@@ -31,7 +31,8 @@ mod _core {
         PyAssembly, PyAssemblyModes, PyBranch, PyConstraint, PyContactForces, PyContinuationResult,
         PyDirection, PyFingerContact, PyFiniteMobility, PyGradient, PyGraspQuality,
         PyJointMobility, PyJointTorques, PyLoopClosureError, PyManipulability, PyMobility,
-        PyPolytope, PySingularity, PySpectrum, grasp::grasp_quality,
+        PyModeMeeting, PyOperationMode, PyOperationModes, PyPolytope, PySingularity, PySpectrum,
+        grasp::grasp_quality,
     };
     #[pymodule_export]
     use crate::control::{

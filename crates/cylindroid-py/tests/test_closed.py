@@ -449,3 +449,12 @@ def test_joints_from_either_link_have_one_meaning():
     pose = forward.fk(q, "a")
     np.testing.assert_allclose(reversed.fk(q, "a"), np.linalg.inv(pose), atol=1e-15)
     assert [j.reversed for m in (forward, reversed) for j in m.joints] == [False, True]
+
+
+def test_operation_modes():
+    found = cy.load("five-bar").operation_modes(starts=6)
+    assert len(found) == 1 and (found.starts, found.closed, found.undecided) == (6, 6, 0)
+    mode = found.modes[0]
+    assert (mode.dimension, mode.dof, mode.order, mode.found) == (2, 2, 2, 6)
+    assert mode.through and mode.q.shape == (4,) and mode.counts["idle"] == 0
+    assert found.meetings == [] and mode.screw_class == "IIB"

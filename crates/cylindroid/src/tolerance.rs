@@ -324,6 +324,14 @@ pub const MATRIX_STEP: f64 = 1e-3;
 /// difference of two assemblies [-].
 pub const SAME_ASSEMBLY: f64 = 1e-6;
 
+/// Largest distance between the signatures of two isolated assemblies that count as one if they
+/// move to first order: a search comes only that near to a contact of high order [-].
+pub const SAME_SHAKY: f64 = 0.05;
+
+/// Smallest ratio of the singular values kept at which an assembly from a restart has a clear rank
+/// [-]: at a singular configuration the position of an assembly is accurate to the root of rounding.
+pub const CLEAR_SAMPLE: f64 = 1e-5;
+
 /// Links that a trial step by 0.05 moves by less than this have come back to where they were, in
 /// lengths over the reach and in angle [-]: the assembly is a double root, and no motion leaves it.
 pub const TRIAL_MOVED: f64 = 1e-3;

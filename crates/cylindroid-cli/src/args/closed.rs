@@ -15,13 +15,16 @@ Counts are ranks at this configuration, printed with their gap, the Gruebler-Kut
 and the finite mobility (first-order motions that extend to finite motions). The configuration is \
 compared with other closed configurations of the mechanism: at a singularity, the blocked wrench \
 and the motions lost or gained are given as screws in the world frame. The counts assume closed \
-loops and contacts; the loop-closure error is printed.";
+loops and contacts; the loop-closure error is printed. With --modes, the operation modes of the \
+mechanism are searched instead: components of its closed configurations with their dimension and \
+counts, and where they meet.";
 
 pub(crate) const MOBILITY_EXAMPLES: &str = "\
 Examples:
   cylindroid mobility stewart
   cylindroid mobility five-bar --actuated q1,q5
-  cylindroid mobility ur5e --q zero";
+  cylindroid mobility ur5e --q zero
+  cylindroid mobility delta --modes 64";
 
 pub(crate) const MANIPULABILITY: &str = "\
 Manipulability: transmission of motion and force from the actuated joints to the reference frame
@@ -54,6 +57,23 @@ pub(crate) struct ClosedArgs {
     /// Characteristic length [m] [default: that of the model, see `info`]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MobilityArgs {
+    #[command(flatten)]
+    pub(crate) closed: ClosedArgs,
+
+    /// Search for operation modes from this many starts: the configuration with all its branches,
+    /// then random restarts within limits. Modes may be missed, and one mode may comprise several
+    /// components with equal counts
+    #[arg(long, value_name = "STARTS", allow_negative_numbers = true)]
+    pub(crate) modes: Option<usize>,
+
+    /// Seed of the random restarts of --modes
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "modes")]
+    #[arg(allow_negative_numbers = true)]
+    pub(crate) seed: u64,
 }
 
 pub(crate) const ASSEMBLE: &str = "\

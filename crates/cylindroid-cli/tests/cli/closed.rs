@@ -98,6 +98,17 @@ fn objects_are_moved() {
 
 /// Two circles meet in two points; a Stewart platform has mirror pairs; motions are said.
 #[test]
+fn operation_modes_are_listed() {
+    let report = json(&["mobility", "five-bar", "--modes", "6"], 0);
+    let mode = &report["modes"][0];
+    assert_eq!((&mode["dimension"], &mode["found"]), (&2.into(), &6.into()));
+    assert_eq!((&mode["class"], &mode["through"]), (&"IIB".into(), &true.into()));
+    assert_eq!(report["meetings"].as_array().unwrap().len(), 0);
+    let table = text(&["mobility", "five-bar", "--modes", "6"]);
+    assert!(table.contains("1 operation mode from 6 of 6 starts"), "{table}");
+}
+
+#[test]
 fn modes_are_listed() {
     let report = json(&["assemble", "five-bar", "--hold", "q1,q2", "--modes", "20"], 0);
     let modes = report["modes"].as_array().unwrap();

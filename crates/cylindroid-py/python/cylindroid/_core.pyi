@@ -41,6 +41,9 @@ __all__ = [
     "Margin",
     "Mechanism",
     "Mobility",
+    "ModeMeeting",
+    "OperationMode",
+    "OperationModes",
     "OperatorAuthority",
     "MotionResult",
     "PointDirection",
@@ -602,6 +605,13 @@ class Mechanism:
         starts: int = 64,
         seed: int = 0,
     ) -> AssemblyModes: ...
+    def operation_modes(
+        self,
+        q: ArrayLike | None = None,
+        starts: int = 64,
+        seed: int = 0,
+        reference: str | None = None,
+    ) -> OperationModes: ...
     def track_path(
         self,
         start: ArrayLike,
@@ -802,6 +812,52 @@ class PointDirection:
     def along(self) -> _Array | None: ...
     @property
     def still(self) -> _Array: ...
+
+@final
+class ModeMeeting:
+    @property
+    def q(self) -> _Array: ...
+    @property
+    def modes(self) -> list[int]: ...
+    @property
+    def dof(self) -> int: ...
+    @property
+    def counts(self) -> dict[str, int]: ...
+
+@final
+class OperationMode:
+    @property
+    def dimension(self) -> int: ...
+    @property
+    def dof(self) -> int: ...
+    @property
+    def counts(self) -> dict[str, int]: ...
+    @property
+    def order(self) -> int: ...
+    @property
+    def screw_class(self) -> str: ...
+    @property
+    def q(self) -> _Array: ...
+    @property
+    def found(self) -> int: ...
+    @property
+    def through(self) -> bool: ...
+
+@final
+class OperationModes:
+    @property
+    def modes(self) -> list[OperationMode]: ...
+    @property
+    def meetings(self) -> list[ModeMeeting]: ...
+    @property
+    def starts(self) -> int: ...
+    @property
+    def closed(self) -> int: ...
+    @property
+    def undecided(self) -> int: ...
+    @property
+    def unseen_probability(self) -> float: ...
+    def __len__(self) -> int: ...
 
 @final
 class Polytope:

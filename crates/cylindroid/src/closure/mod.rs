@@ -51,6 +51,9 @@ pub use position::continuation::{
 pub use position::load::{load, load_file, load_text};
 pub use singularity::diagnosis::Diagnosis;
 pub use singularity::generic_mobility::GenericMobility;
+pub use singularity::operation_modes::{
+    ModeMeeting, OperationMode, OperationModes, operation_modes,
+};
 pub(crate) use singularity::singularity_types::Excess;
 pub use singularity::singularity_types::{Singularities, SingularityDistances};
 pub use singularity::verdict::{LocalStructure, Verdict};

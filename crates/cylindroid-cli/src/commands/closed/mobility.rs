@@ -3,13 +3,14 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::closure::{Diagnosis, JointMobility, Mobility, MobilityCounts};
+use cylindroid::closure::{Diagnosis, JointMobility, Mobility, MobilityCounts, ModeOptions};
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
+use super::operation_modes;
 use super::singularity::{self, FiniteJson, SingularityJson};
 use super::{HeadJson, Posed, list};
-use crate::args::ClosedArgs;
+use crate::args::MobilityArgs;
 use crate::commands::shared::Style;
 use crate::output::{self, Align, number};
 
@@ -58,11 +59,15 @@ struct JointJson<'a> {
 }
 
 pub(crate) fn run(
-    args: &ClosedArgs,
+    args: &MobilityArgs,
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
-    let posed = Posed::new(args)?;
+    let posed = Posed::new(&args.closed)?;
+    if let Some(starts) = args.modes {
+        let options = ModeOptions { starts, seed: args.seed };
+        return operation_modes::run(&posed, options, style, out);
+    }
     let (mobility, diagnosis) = find(&posed)?;
     match style {
         Style::Json => output::json(out, &describe(&posed, &mobility, &diagnosis))?,

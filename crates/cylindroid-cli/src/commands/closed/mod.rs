@@ -5,6 +5,7 @@ pub(super) mod grasp;
 pub(crate) mod manipulability;
 mod measured;
 pub(crate) mod mobility;
+mod operation_modes;
 pub(crate) mod singularity;
 pub(super) mod statics;
 

@@ -46,7 +46,7 @@ struct DistancesJson {
 }
 
 #[derive(Debug, Serialize)]
-struct CountsJson {
+pub(super) struct CountsJson {
     rank: usize,
     idle: usize,
     redundancy: usize,

@@ -15,11 +15,11 @@
 //! Checked  tests/it/closure/finite.rs
 
 use crate::closure::position::coordinates::column_scale;
+use crate::closure::position::initial_guesses::by_name;
 use crate::closure::position::loop_closure::LoopClosure;
 use crate::error::Result;
 use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm};
 use crate::model::Mechanism;
-use crate::scalar::uniform;
 use crate::tolerance::{LOOP_ROUNDING, POSITION_ROUNDING};
 
 /// Maximum number of Newton steps: four are usual.
@@ -193,12 +193,4 @@ impl<'a> LyapunovSchmidt<'a> {
         }
         Ok(None)
     }
-}
-
-/// A random number in (-1, 1) that belongs to a name.
-fn by_name(name: &str, number: u64) -> f64 {
-    // FNV-1a.
-    let hash = |h: u64, byte: u8| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    let mut seed = name.bytes().fold(0xcbf2_9ce4_8422_2325, hash) ^ number.wrapping_mul(0x9e37);
-    2.0 * uniform(&mut seed) - 1.0
 }

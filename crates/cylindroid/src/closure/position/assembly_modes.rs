@@ -33,7 +33,7 @@ use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY, TRIAL_MOVED};
 /// Length of the trial step along a self-motion [rad, or reaches].
 const TRIAL: f64 = 0.05;
 
-/// Options of the search for assembly modes.
+/// Options of the search for assembly modes or operation modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModeOptions {
     /// Number of starts, the guess included; at least 1.
@@ -118,17 +118,11 @@ pub fn assembly_modes(
     prescribed: &[usize],
     options: ModeOptions,
 ) -> Result<AssemblyModes> {
-    if options.starts == 0 {
-        return Err(Error::InvalidOption {
-            option: "starts",
-            value: "0".to_owned(),
-            reason: "the guess is the first start, so at least 1 is needed".to_owned(),
-        });
-    }
+    check_starts(options)?;
     let first = assemble(mechanism, guess, prescribed)?;
     let free = free_places(mechanism, prescribed)?;
-    let mut seed = options.seed;
     let landmarks = Landmarks::of(mechanism);
+    let mut seed = options.seed;
     let mut search = Search { mechanism, prescribed, free: &free, landmarks, modes: Vec::new() };
     let guessed = search.places(guess)?;
     let mut closed = 0;
@@ -146,6 +140,17 @@ pub fn assembly_modes(
     let mut modes: Vec<Mode> = search.modes.into_iter().map(|seen| seen.mode).collect();
     modes.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     Ok(AssemblyModes { modes, first, starts: options.starts, closed })
+}
+
+pub(crate) fn check_starts(options: ModeOptions) -> Result<()> {
+    if options.starts > 0 {
+        return Ok(());
+    }
+    Err(Error::InvalidOption {
+        option: "starts",
+        value: "0".to_owned(),
+        reason: "the guess is the first start, so at least 1 is needed".to_owned(),
+    })
 }
 
 struct Search<'a> {

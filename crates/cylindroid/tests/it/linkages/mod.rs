@@ -4,6 +4,7 @@
 //! finite motion, kinds of singularity (C configuration space, I, II, III, P passive) and source.
 
 mod length;
+mod modes;
 mod published;
 mod views;
 
