@@ -27,10 +27,12 @@ mod goal;
 mod levenberg_marquardt;
 mod options;
 mod parallel_restarts;
+mod solution;
 mod solve;
 
 pub use analytic::{Analytic, AnalyticSolution, AnalyticSolutions, ArmGeometry, NotSolvable};
 pub use goal::{Goal, Task};
 pub use options::{Budget, IkOptions};
+pub use solution::{FoundBy, Solution};
 pub(crate) use solve::ITERATIONS_PER_RESTART;
-pub use solve::{FoundBy, Solution, Solver, solve, solve_distinct};
+pub use solve::{Solver, solve, solve_distinct};

@@ -22,6 +22,7 @@ use super::goal::Goal;
 use super::levenberg_marquardt::Problem;
 use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, LANES, MAX_COORDINATES, Restart, solve_batched};
+use super::solution::{FoundBy, Solution};
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
@@ -37,51 +38,28 @@ const PERTURBATION: f64 = 1.0;
 /// Solutions whose coordinates differ by less than this, up to full turns, are one [rad, lengths].
 const SAME_CONFIGURATION: f64 = 1e-3;
 
-/// The method that found a solution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum FoundBy {
-    /// Closed form: see [`Analytic`](super::Analytic).
-    Analytic,
-    /// Numerical solver with random restarts; also without success.
-    Numerical,
-}
-
-impl FoundBy {
-    /// The name: "analytic" or "numerical".
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Analytic => "analytic",
-            Self::Numerical => "numerical",
-        }
-    }
-}
-
-/// Result of inverse kinematics.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// True if all goals are reached within tolerance.
-    pub success: bool,
-    /// The configuration, all n coordinates; without success the closest one found.
-    pub q: Vec<f64>,
-    /// Largest position error of all goals, in the components of the task (m).
-    pub position_error: f64,
-    /// Largest orientation error of all goals, in the components of the task (rad).
-    pub orientation_error: f64,
-    /// The method that found it.
-    pub found_by: FoundBy,
-    /// Iterations over all restarts; an evaluation of the closed form counts as one.
-    pub iterations: usize,
-    /// Number of restarts, including evaluations of the closed form.
-    pub restarts: usize,
-    /// Proof that no solution exists: the distance of the target from the first joint, and the
-    /// length of the chain from there (m).
-    pub out_of_reach: Option<(f64, f64)>,
-}
-
-/// A solver for one mechanism and its end effectors, to be reused in a loop: restarts do not
-/// allocate; further calls allocate only the solutions and the workspace for the closest one.
+/// A solver of inverse kinematics for one mechanism and its end effectors, to be reused in a loop:
+/// restarts do not allocate; further calls allocate only the solutions and the workspace for the
+/// closest one.
+///
+/// ```
+/// use cylindroid::Vec3;
+/// use cylindroid::ik::{Goal, IkOptions, Solver};
+///
+/// // Points on a line, each solution the initial guess of the next.
+/// let robot = cylindroid::load("panda")?;
+/// let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
+/// let mut goal = Goal::pose(robot.tool(), robot.state(&q)?.pose(robot.tool()));
+/// let mut solver = Solver::new(&robot, &[goal], &IkOptions::default())?;
+/// for _ in 0..5 {
+///     goal.target.translation = goal.target.translation + Vec3::Z * 0.01;
+///     solver.set_initial_guess(&q)?;
+///     let found = solver.solve(&[goal])?;
+///     assert!(found.success);
+///     q = found.q;
+/// }
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Solver {
     problem: Problem,
@@ -156,7 +134,7 @@ pub fn solve_distinct(
 }
 
 impl Solver {
-    /// For goals of these end effectors and tasks.
+    /// A solver for goals with these end effectors and tasks; their targets may change.
     ///
     /// # Errors
     /// As [`solve`].
@@ -172,12 +150,22 @@ impl Solver {
 
     /// The closed form used by this solver, if any; of seven joints it locks one, whose value is
     /// sampled.
+    ///
+    /// ```
+    /// use cylindroid::ik::{Goal, IkOptions, Solver};
+    ///
+    /// // The wrist of a UR5e is not spherical, but three of its axes are parallel.
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let goal = Goal::pose(robot.tool(), robot.state(robot.home())?.pose(robot.tool()));
+    /// assert!(Solver::new(&robot, &[goal], &IkOptions::default())?.analytic().is_some());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     #[must_use]
     pub fn analytic(&self) -> Option<&Analytic> {
         self.formulas.as_ref().map(|f| &f.analytic)
     }
 
-    /// Sets the initial guess of the next call.
+    /// Sets the initial guess of the next call, clamped to the limits; see [`Solver`].
     ///
     /// # Errors
     /// A `q` of the wrong size or non-finite.
@@ -189,7 +177,7 @@ impl Solver {
     }
 
     /// A configuration that reaches `goals`, with the same end effectors and tasks as those of
-    /// [`Solver::new`].
+    /// [`Solver::new`]: the closest one if [`IkOptions::nearest`], otherwise the first one found.
     ///
     /// # Errors
     /// Goals of another number, end effector or task; non-finite values.
@@ -204,7 +192,19 @@ impl Solver {
         Ok(found.swap_remove(0))
     }
 
-    /// Several solutions: see [`solve_distinct`].
+    /// Up to `count` distinct solutions, the closest to the initial guess first: see
+    /// [`solve_distinct`].
+    ///
+    /// ```
+    /// use cylindroid::ik::{Goal, IkOptions, Solver};
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool());
+    /// let goals = [Goal::pose(robot.tool(), target)];
+    /// let mut solver = Solver::new(&robot, &goals, &IkOptions::default())?;
+    /// assert_eq!(solver.solve_distinct(&goals, 100)?.len(), 8);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Solver::solve`].

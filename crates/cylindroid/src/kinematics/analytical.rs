@@ -26,7 +26,18 @@ pub enum OrientationRates {
     RotationVector,
 }
 
-/// A Jacobian of position and angles, and its existence at this configuration.
+/// An analytical Jacobian: rates of position and of orientation coordinates, and its existence at
+/// this configuration.
+///
+/// ```text
+/// [dp/dt; dphi/dt] = [J_v; E(phi)^-1 J_w] qd,   omega = E(phi) dphi/dt
+/// ```
+///
+/// 6 x n, world axes, m/s and rad/s. det E is cos(pitch) for roll, pitch, yaw, -sin(beta) for z, y,
+/// z angles, and never zero for the rotation vector. Where E is singular, the rows of the angles
+/// are least-squares rates.
+///
+/// Source: Siciliano et al. 2009, section 3.6.
 #[doc(alias = "analytical Jacobian")]
 #[doc(alias = "Euler rates")]
 #[derive(Debug, Clone, PartialEq)]

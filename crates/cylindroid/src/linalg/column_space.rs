@@ -40,6 +40,14 @@ pub struct Cut {
 
 impl Cut {
     /// The cut of descending values at an absolute threshold.
+    ///
+    /// ```
+    /// use cylindroid::linalg::Cut;
+    ///
+    /// let cut = Cut::of(&[2.0, 1.0, 1e-12], 1e-9);
+    /// assert_eq!((cut.rank.rank, cut.kept, cut.dropped), (2, 1.0, 1e-12));
+    /// assert!(!cut.is_ambiguous());
+    /// ```
     #[must_use]
     pub fn of(values: &[f64], threshold: f64) -> Self {
         let rank = values.iter().take_while(|&&s| s > threshold).count();
@@ -61,7 +69,15 @@ impl Cut {
 }
 
 /// The column space (range) of a matrix: a rank with its gap, an orthonormal basis and its
-/// complement, for Jacobians and constraint matrices of one's own.
+/// complement.
+///
+/// ```text
+/// A = Q R P^T,  R = U S V^T:   Q U = [basis | complement],   m x r and m x (m - r)
+/// ```
+///
+/// Rows and columns of mixed units must be scaled first. The null space of A is the complement of
+/// the column space of A^T. Non-finite entries give rank 0.
+#[doc(alias = "range")]
 #[derive(Debug, Clone)]
 pub struct ColumnSpace {
     rows: usize,
@@ -173,6 +189,17 @@ impl ColumnSpace {
     }
 
     /// An orthonormal basis of the orthogonal complement, m x (m - r).
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::{ColumnSpace, Threshold};
+    ///
+    /// // The null space of A is the complement of the column space of its transpose.
+    /// let a = Matrix::from_rows(&[[1.0, 1.0, 0.0]]).unwrap();
+    /// let kernel = ColumnSpace::of(&a.transpose(), Threshold::Relative(1e-9)).complement();
+    /// assert_eq!((kernel.rows(), kernel.cols()), (3, 2));
+    /// assert!((0..2).all(|j| a.mul_vec(kernel.column(j))[0].abs() < 1e-15));
+    /// ```
     #[must_use]
     pub fn complement(&self) -> Matrix {
         self.columns(self.rank(), self.rows)

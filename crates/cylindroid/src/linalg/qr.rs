@@ -15,8 +15,14 @@
 use super::matrix::Matrix;
 use super::vector::dot_unrolled as dot;
 
-/// A QR decomposition; the reflections are stored below the diagonal of R. For orthonormal bases
-/// and complements of one's own twists and wrenches; `benches/peers` compares it with faer.
+/// A QR decomposition `A P = Q R` by Householder reflections, with or without column pivoting, for
+/// orthonormal bases and complements of twists and wrenches.
+///
+/// A: m x n, Q: m x m orthogonal (stored as reflections below the diagonal of R), R: k x n upper
+/// triangular, k = min(m, n), with a descending diagonal if pivoted. `benches/peers` compares it
+/// with faer.
+///
+/// Source: Golub & Van Loan, Matrix Computations, 4th ed., sections 5.2 and 5.4.2.
 #[derive(Debug, Clone)]
 pub struct Qr {
     packed: Matrix,
@@ -43,6 +49,21 @@ impl Qr {
     }
 
     /// Without pivoting: columns in their order.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::Qr;
+    ///
+    /// // The wrenches that do no work on two twists.
+    /// let twists = Matrix::from_fn(6, 2, |i, j| f64::from(u8::from(i == 2 + j)));
+    /// let qr = Qr::plain(twists);
+    /// assert_eq!((qr.basis().cols(), qr.complement().cols()), (2, 4));
+    /// let mut x = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+    /// qr.apply_transposed(&mut x); // in the span: the last entries of Q^T x vanish
+    /// assert!(x[2..].iter().all(|x| x.abs() < 1e-15));
+    /// qr.apply(&mut x);
+    /// assert!((x[2] - 1.0).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn plain(a: Matrix) -> Self {
         Self::decompose(a, false)

@@ -11,9 +11,14 @@ use super::matrix::Matrix;
 use super::svd::Svd;
 use super::vector::{dot, norm};
 
-/// The span of some right singular vectors. Its complement is the null space: for a Jacobian the
-/// joint velocities that leave the end effector at rest, onto which one's own secondary task is
-/// projected.
+/// The row space of a matrix: the span of right singular vectors. Its complement is the null space:
+/// for a Jacobian the joint velocities that leave the end effector at rest, onto which secondary
+/// tasks are projected.
+///
+/// ```text
+/// A = U S V^T (m x n):   row space V_r V_r^T,   null space projector 1 - V_r V_r^T
+/// ```
+#[doc(alias = "null space")]
 #[derive(Debug, Clone, Copy)]
 pub struct RowSpace<'a> {
     svd: &'a Svd,
@@ -44,7 +49,17 @@ impl<'a> RowSpace<'a> {
         Self { svd, kept: Kept::First(svd.machine_rank().rank) }
     }
 
-    /// The span of the first `rank` directions.
+    /// The span of the right singular vectors of the `rank` largest singular values.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::linalg::{RowSpace, Svd};
+    ///
+    /// // At rank 1, the direction of the small singular value belongs to the null space.
+    /// let svd = Svd::of(&Matrix::from_rows(&[[1.0, 0.0, 0.0], [0.0, 1e-9, 0.0]]).unwrap());
+    /// let rows = RowSpace::first(&svd, svd.rank(1e-6).rank);
+    /// assert_eq!((rows.rank(), rows.null_space_basis().cols()), (1, 2));
+    /// ```
     #[must_use]
     pub fn first(svd: &'a Svd, rank: usize) -> Self {
         Self { svd, kept: Kept::First(rank.min(svd.len())) }

@@ -12,8 +12,13 @@
 /// More sweeps than any matrix needs: the bound that makes the cost finite.
 const MAX_SWEEPS: usize = 30;
 
-/// The eigendecomposition of a symmetric matrix: the leading n x n block of an array. For the Gram
-/// matrices of pitch forms, which are indefinite; `benches/peers` compares it with faer.
+/// The eigendecomposition `A = V diag(values) V^T` of a symmetric matrix: the leading n x n block
+/// of an array. For the Gram matrices of pitch forms, which are indefinite; `benches/peers`
+/// compares it with faer.
+///
+/// Cyclic Jacobi rotations; only the upper triangle is read.
+///
+/// Source: Golub & Van Loan, Matrix Computations, 4th ed., section 8.5.3.
 #[doc(alias = "eigenvalues")]
 #[derive(Debug, Clone, Copy)]
 pub struct SymmetricEigen<const N: usize> {

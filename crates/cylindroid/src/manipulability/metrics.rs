@@ -50,6 +50,16 @@ impl Metrics {
 
     /// With W_u, symmetric and positive definite: an inertia matrix measures twists by energy.
     ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::manipulability::Metrics;
+    ///
+    /// let metrics = Metrics::UNIT.with_object(&Matrix::diagonal(&[4.0, 4.0, 1.0]))?;
+    /// assert!(metrics.is_dual()); // wrenches are measured by W_u^-1
+    /// assert!(Metrics::UNIT.with_object(&Matrix::diagonal(&[1.0, -1.0])).is_err());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A matrix that is not symmetric and positive definite.
     pub fn with_object(mut self, w: &Matrix) -> Result<Self> {
@@ -176,10 +186,30 @@ impl Metrics {
     /// that of the smallest twist with it, that of a task force is that of the wrench `T^T f`.
     /// Metrics of joints are unchanged.
     ///
+    /// ```text
+    /// W_u' = (T W_u^-1 T^T)^-1,   W_w' = T W_w T^T
+    /// ```
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::closure::{ClosedChain, MotionSpace};
+    /// use cylindroid::manipulability::{Manipulability, Metrics};
+    ///
+    /// // The position of the reference of a five-bar, two of the three components of its twist.
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let chain = ClosedChain::of(&five_bar.state(five_bar.home())?, None, None)?;
+    /// let position = Matrix::from_rows(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
+    /// let relation = MotionSpace::of(&chain.constraint).relation().task(&position)?;
+    /// let metrics = Metrics::characteristic_length(&chain.units, five_bar.reach())?;
+    /// let found = Manipulability::of(&relation, &metrics.for_task(&position)?)?;
+    /// assert_eq!(found.kinematic.values().len(), 2);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
     /// [`Relation::task`]: crate::closure::Relation::task
     ///
     /// # Errors
-    /// A map that has not a column for each component, is not finite, or has dependent rows.
+    /// A map of the wrong number of columns, with non-finite entries or with dependent rows.
     pub fn for_task(&self, map: &Matrix) -> Result<Self> {
         let unit = || Metric::diagonal("Wu", &vec![1.0; map.cols()]);
         let object = self.object.clone().map_or_else(unit, Ok)?;

@@ -1,9 +1,9 @@
 //! Joint transforms, and the poses of all links at a configuration.
 //!
-//! Formula  parent_from_child = parent_from_joint transform(q) joint_from_child, with the inverse of
-//!          the transform for reversed joints
-//! Why so   kinematics works on nodes and comes after the model; loaders need poses while they
-//!          still write the model, once for each file, so the plain product is enough here
+//! Formula  parent_from_child = parent_from_joint transform(q) joint_from_child, with the inverse
+//!          of the transform for reversed joints
+//! Why so   kinematics works on nodes and depends on the model; loaders need poses while they
+//!          write the model, once for each file, so the plain product is sufficient here
 //! Checked  tests/it/graph.rs::motion_* (against `State`), tests/formats/closed_file.rs
 
 use super::joint::JointKind;
@@ -12,8 +12,17 @@ use crate::spatial::{Pose, Rotation, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
 impl JointKind {
-    /// The pose of the joint frame moved by `q`, in the joint frame at zero. Missing coordinates
-    /// count as zero.
+    /// The joint transform: the pose of the joint frame moved by `q`, in the joint frame at zero.
+    /// Missing coordinates count as zero.
+    ///
+    /// ```text
+    /// parent_from_child = parent_from_joint transform(q) joint_from_child
+    /// ```
+    ///
+    /// Revolute `R(a, q)`; prismatic `T(q a)`; helical `T(pitch q a) R(a, q)`; cylindrical
+    /// `T(q0 a) R(a, q1)`; universal `R(a, q0) R(second, q1)`; spherical `exp(q)`; planar `q0`,
+    /// `q1` across and `q2` about the axis; free: translation, then rotation vector. a is the unit
+    /// `axis`; angles in rad, lengths in m, pitch in m/rad. Reversed joints use the inverse.
     ///
     /// ```
     /// use cylindroid::Vec3;

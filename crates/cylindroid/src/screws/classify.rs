@@ -18,7 +18,15 @@ use crate::linalg::{Matrix, Svd, SymmetricEigen};
 use crate::spatial::{Mat3, Rotation, Vec3};
 use crate::tolerance::{ORIGIN_DETERMINED, ZERO_AXIS};
 
-/// A quantity that decides a verdict.
+/// The margin of a classification: a quantity compared with the tolerance below which it counts as
+/// zero.
+///
+/// The quantities are the singular values of the 3 x k block of angular parts, which split a system
+/// into screws with orthonormal directions w_i and translations T; differences of the principal
+/// pitches, the eigenvalues of the symmetric part of A = (w_i . v_j); and angles between T and the
+/// w_i. A value close to its threshold is a narrow verdict.
+///
+/// Source: Gibson & Hunt 1990; Donelan & Selig, section 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margin {
     /// The compared quantity.

@@ -33,7 +33,8 @@ pub fn gram(j: &Matrix, h: f64) -> Result<Matrix> {
     Ok(Matrix::from_fn(twists.len(), twists.len(), |a, b| twists[a].pitch_form(twists[b], h)))
 }
 
-/// `det(J^T Q_h J)`: zero for more than six twists, which are dependent.
+/// The Gram determinant `det(J^T Q_h J)` of the pitch form, see [`gram`]: a polynomial in h whose
+/// zeros are the principal pitches; zero for more than six twists, which are dependent.
 ///
 /// ```
 /// use cylindroid::Matrix;
@@ -64,9 +65,19 @@ pub fn gram_determinant(j: &Matrix, h: f64) -> Result<f64> {
 }
 
 impl ScrewSystem {
-    /// `count` screws of a system of order two (of the reciprocal system for order four), from one
-    /// generator of the normal form to the other and on to the first again; empty for other
-    /// orders. Translations count with the characteristic length.
+    /// The cylindroid: `count` screws of a system of order two (of the reciprocal system for order
+    /// four), from one generator of the normal form to the other and on to the first again; empty
+    /// for other orders. Translations count with the characteristic length.
+    ///
+    /// ```text
+    /// s(t) = cos(t) s_1 + sin(t) s_2,  0 <= t < pi
+    /// z (x^2 + y^2) = (h_b - h_a) x y    (class IA: the surface swept by the axes)
+    /// ```
+    ///
+    /// s_1 and s_2 are the generators, h_a and h_b their pitches (m/rad); x, y, z in the canonical
+    /// frame.
+    ///
+    /// Source: Ball 1900, chapter II.
     ///
     /// ```
     /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
@@ -80,6 +91,7 @@ impl ScrewSystem {
     /// assert!(screws.len() == 16 && screws.iter().all(|s| s.pitch.abs() < 0.1 + 1e-12));
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    #[doc(alias = "cylindroid")]
     #[must_use]
     pub fn pencil(&self, count: usize) -> Vec<Screw> {
         let [a, b] = self.normal_form().twists()[..] else { return Vec::new() };

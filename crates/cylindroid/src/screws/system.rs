@@ -183,7 +183,7 @@ impl ScrewSystem {
         self.residual
     }
 
-    /// The quantities that decide the class.
+    /// The margins of the classification: the quantities that decide the class.
     #[must_use]
     pub fn margins(&self) -> &[Margin] {
         &self.margins

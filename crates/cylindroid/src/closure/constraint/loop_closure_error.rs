@@ -1,4 +1,4 @@
-//! The loop-closure error: how far the loops and contacts of a configuration are open.
+//! The loop-closure error: the residual of the loops and contacts of a configuration.
 //!
 //! Formula  the largest residual, in absolute value, over all rows (`constraint_rows.rs`)
 //! Units    m for forces, rad for moments
@@ -7,7 +7,14 @@
 use super::velocity_constraint::Unit;
 use crate::tolerance::CLOSED;
 
-/// How far loops and contacts are from being closed.
+/// The loop-closure error of a configuration: the largest violation of its loops and contacts.
+///
+/// ```text
+/// distance = max |r_i| over constraint rows of forces (m),   angle = max |r_i| over moments (rad)
+/// ```
+///
+/// r_i is the displacement of a loop joint or contact along (about) one of its constrained
+/// directions.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LoopClosureError {
     /// Largest violation along constrained directions (m).

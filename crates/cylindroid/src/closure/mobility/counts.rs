@@ -54,6 +54,16 @@ impl MobilityCounts {
 
     /// The generic counts of two configurations: the larger rank and the smaller of every other
     /// count. Folded over random configurations, it yields the generic counts of the mechanism.
+    ///
+    /// ```
+    /// use cylindroid::closure::MobilityCounts;
+    ///
+    /// // A singular configuration has lost a rank; the regular one is generic.
+    /// let regular =
+    ///     MobilityCounts { rank: 4, idle: 0, redundancy: 0, indeterminacy: 0, zero_torque: 0 };
+    /// let singular = MobilityCounts { rank: 3, indeterminacy: 1, zero_torque: 1, ..regular };
+    /// assert_eq!(singular.generic(regular), regular);
+    /// ```
     #[must_use]
     pub fn generic(self, other: Self) -> Self {
         Self {

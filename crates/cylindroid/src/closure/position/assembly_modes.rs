@@ -84,8 +84,8 @@ impl AssemblyModes {
         self.modes.iter().map(|m| m.self_motion_dof).max().unwrap_or(0)
     }
 
-    /// Good-Turing estimate of the probability that another closing start finds a new mode: the
-    /// fraction of closing starts whose mode was found only once. 1 if no start closed.
+    /// Good-Turing estimate of the probability that another closing start finds a new mode: n_1 /
+    /// N, with N closing starts and n_1 modes found only once (Good 1953). 1 if no start closed.
     #[must_use]
     #[doc(alias = "Good-Turing")]
     pub fn unseen_probability(&self) -> f64 {
@@ -98,7 +98,13 @@ impl AssemblyModes {
 }
 
 /// Searches for the assembly modes of `mechanism` with the `prescribed` coordinates (indices into
-/// `q`) at their values in `guess`.
+/// `q`) at their values in `guess`: assemblies from the guess and from random restarts within
+/// limits.
+///
+/// Two assemblies are the same mode if all joints and the reference frame coincide. If the
+/// prescribed coordinates leave a self-motion, assemblies form continua, and one is listed for all
+/// with the same landmarks that no self-motion moves. Modes may be missed, rarely found if their
+/// basin of attraction is small: [`AssemblyModes::unseen_probability`] estimates how probably.
 ///
 /// ```
 /// use cylindroid::closure::{ModeOptions, assembly_modes};

@@ -52,7 +52,9 @@ pub struct PathPoint {
     pub fraction: f64,
     /// The configuration, its loops closed.
     pub q: Vec<f64>,
-    /// Distance to the nearest singularity: 0 there, at most 1; infinite if there is none to reach.
+    /// Distance to the nearest singularity, 0 there, at most 1: the smallest generic singular value
+    /// over the largest, of the Jacobian of the loops with respect to the free coordinates.
+    /// Infinite if there is none to reach.
     pub distance: f64,
 }
 
@@ -125,16 +127,27 @@ impl fmt::Display for PathEnd {
     }
 }
 
-/// Moves the `prescribed` coordinates (indices into `q`) from their values in `start` straight to
-/// `goal`, while the others keep the loops closed: on the branch of the start, within position
-/// limits, and no nearer to a singularity than `options` permit (from a start that is nearer, only
-/// away from it). Angles move by the difference of their values, full turns included; spherical and
-/// free joints, which must be prescribed as a whole, along the screw to their goal.
+/// Path tracking by predictor-corrector continuation: moves the `prescribed` coordinates (indices
+/// into `q`) from their values in `start` straight to `goal`, while the others keep the loops
+/// closed.
 ///
-/// The start is assembled first, with the prescribed coordinates fixed. If free coordinates remain
-/// undetermined, they move by the least norm. Steps are limited so that the Jacobian of the loops
-/// changes by no more than half its smallest singular value: no singular configuration between two
-/// points is passed over.
+/// ```text
+/// r(h, f) = 0,  h(s) = h0 + s d:   predictor J_f f' = -J_h d,   corrector J_f df = -r
+/// step accepted if |J_f' - J_f| <= (s_min + s_min') / 2
+/// ```
+///
+/// h are the prescribed and f the free coordinates, r the residuals of the loops, s_min and s_min'
+/// the smallest generic singular values of J_f at both ends of a step, lengths divided by the
+/// reach. By Weyl's inequality no singular configuration between two points is passed over. The
+/// path stays on the branch of the start, within position limits, and no nearer to a singularity
+/// than `options` permit (from a start that is nearer, only away from it).
+///
+/// Angles move by the difference of their values, full turns included; spherical and free joints,
+/// which must be prescribed as a whole, along the screw to their goal. The start is assembled
+/// first, with the prescribed coordinates fixed. If free coordinates remain undetermined, they move
+/// by the least norm.
+///
+/// Source: Allgower & Georg 1990, chapters 3 and 6.
 ///
 /// ```
 /// use cylindroid::closure::{ContinuationOptions, PathEnd, track_path};
@@ -154,6 +167,7 @@ impl fmt::Display for PathEnd {
 /// coordinate or is repeated, or some but not all coordinates of a spherical or free joint; options
 /// out of range.
 #[doc(alias = "homotopy")]
+#[doc(alias = "predictor-corrector")]
 #[doc(alias = "continuation")]
 pub fn track_path(
     mechanism: &Mechanism,

@@ -21,7 +21,7 @@ use crate::model::Limits;
 use crate::scalar::clamp;
 use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
 
-/// Position of a coordinate and its last commanded velocity.
+/// State of a joint: the position of a coordinate and its last commanded velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointState {
     /// Position [rad or m].
@@ -31,7 +31,18 @@ pub struct JointState {
 }
 
 impl VelocityBounds {
-    /// The interval for the next step of `dt` seconds.
+    /// The velocity bounds of a joint for the next step of `dt` seconds, from its position,
+    /// velocity and acceleration limits.
+    ///
+    /// ```text
+    /// |v| <= V,   |v - v_before| <= A dt,   D(v) <= d
+    /// D = A dt^2 (k + 1) (k / 2 + f),   k = floor(x),  f = x - k,  x = v / (A dt)
+    /// ```
+    ///
+    /// d is the distance to the position limit, D the stopping distance of the discrete motion v,
+    /// v - A dt, v - 2 A dt, ... A joint that obeyed its bounds in the last step has a non-empty
+    /// interval in this one; a measured state that violates them gets the velocity closest to its
+    /// last one that moves it no further out.
     ///
     /// ```
     /// use cylindroid::control::{JointState, LimitKind, VelocityBounds};

@@ -20,7 +20,23 @@ use crate::screws::{NoInverse, ScaledProjector, ScrewOptions, ScrewSystem};
 use crate::spatial::{Pose, Rotation, Twist, Vec3};
 use crate::tolerance::GENERIC_RANK;
 
-/// The part of a motion that is realised; the rest is the discarded component.
+/// The projection of a task: the part of a twist that is realised; the rest is the discarded
+/// component.
+///
+/// ```text
+/// joint velocities = J+ P x
+///
+/// orthogonal          P = J J+ (scaled):              J+ P = J+
+/// hyperbolic          P = P_h, along the h-reciprocal twists:  J+ P = J+h
+/// damped hyperbolic   P_h with damping
+/// oblique             P along given twists
+/// ```
+///
+/// x is the twist [v / L; w] at the tool, J the scaled task Jacobian, P 6 x 6; pitches and dampings
+/// in m/rad. All but the orthogonal projection need a task of all six components. If P does not
+/// exist, or enlarges a twist too much, the servo uses the fallback; without one the arm stops.
+///
+/// Source: Donelan & Selig, Hyperbolic pseudoinverses for kinematics in the Euclidean group.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub enum TaskProjection {

@@ -46,7 +46,18 @@ pub struct VelocitiesAtPoint {
     pub reason: Option<NoInverse>,
 }
 
-/// The same twist inverted at the tool and at another reference point.
+/// Comparison of an inverse at two reference points: the same twist of the same tool, inverted at
+/// the tool's origin t and at another point p fixed to the tool.
+///
+/// ```text
+/// q'_t = J_t+ s_t,   q'_p = J_p+ s_p,   s_p = [v + w x (p - t); w],   J_p likewise
+/// ```
+///
+/// World axes; J is 6 x m for the m joints that move the tool, with linear rows divided by L if the
+/// inverse mixes lengths with angles. Hyperbolic inverses give the same joint velocities at every
+/// point, other inverses only if no component is discarded (rank 6 and no damping).
+///
+/// Source: Donelan & Selig, sections 1 and 5; Doty, Melchiorri & Bonivento 1993.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferencePointComparison {
     /// Indices in `q` of the joints that move the tool.

@@ -27,7 +27,15 @@ const TURN_ROUND: f64 = 4.0;
 /// possible [-].
 const POSSIBLE: f64 = 1e-4;
 
-/// The reason why the end effector makes no progress towards its target.
+/// A stall: the reason why the end effector makes no progress towards its target.
+///
+/// ```text
+/// e = |dp| / L + |angle|;   stalled if e has not fallen by 0.1 % of its minimum within 1 s
+/// ```
+///
+/// The window is suspended while a joint accelerates at its limit, and extended by 4 |v| / A, the
+/// time in which the slowest joint reverses from its velocity v. Lost directions are those cut by
+/// the inverse, or with a singular value below `tolerance::TRUNCATION` of the largest.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stall {
     /// No configuration reaches the target: it is too far away.

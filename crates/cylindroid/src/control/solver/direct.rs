@@ -24,7 +24,19 @@ pub(in crate::control) const MIN_SCALE: f64 = 0.05;
 /// [-]: the residual along directions cut by the inverse must not release any joint.
 pub(in crate::control) const RELEASE: f64 = 1e-3;
 
-/// The share of a task that the limits permit.
+/// Saturation: the share of a task that the velocity bounds of the joints permit.
+///
+/// ```text
+/// scaled              the largest s in [0, 1] with J q' = s x,  lower <= q' <= upper
+/// direction changed   min |J q' - x|,  lower <= q' <= upper   (bounded least squares, BVLS)
+/// ```
+///
+/// Joints at a bound are clamped one by one while the others can still perform the task. The
+/// direction changes only if no scaled motion is feasible.
+///
+/// Source: Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
+/// Parker 1995 (bounded-variable least squares).
+#[doc(alias = "BVLS")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Saturation {
     /// Scale of the realised task twist; 1 when no limit is active.

@@ -20,7 +20,13 @@ use crate::linalg::{RowSpace, Svd, norm};
 use crate::spatial::Twist;
 use crate::tolerance::UNACTUATED;
 
-/// The condition of a configuration for the task of a servo.
+/// The condition of a configuration for the task of a servo: singular values and weakest direction.
+///
+/// ```text
+/// J_task = U S V^T,   singular_ratio = s_min / s_max,   weakest = the column of U of s_min
+/// ```
+///
+/// J_task is the m x n Jacobian of the task, scaled as in the servo.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConditionReport {
     /// The servo's inverse of the scaled task Jacobian, with its report.
@@ -82,8 +88,9 @@ impl Servo {
         unknowns.saturating_sub(self.generic_rank)
     }
 
-    /// A basis of the self-motions at `q`, which leave the tool at rest: velocities of all n
-    /// coordinates [rad/s or m/s].
+    /// A basis of the self-motions at `q`, ker J_task, which leave the tool at rest: velocities of
+    /// all n coordinates [rad/s or m/s]. Each is scaled such that the fastest joint moves at its
+    /// velocity limit (1 rad/s or m/s without one), with a positive largest entry.
     ///
     /// ```
     /// use cylindroid::{ReferenceFrame, Servo, ServoOptions};
@@ -115,8 +122,8 @@ impl Servo {
         Ok(motions.map(upwards).collect())
     }
 
-    /// The self-motion at `q` closest to `last`, that of the previous step; `None` if none is left
-    /// of it.
+    /// The self-motion at `q` closest to `last`, that of the previous step: its projection onto ker
+    /// J_task, scaled as in [`Servo::self_motions`]; `None` if the projection vanishes.
     ///
     /// # Errors
     /// As [`Servo::step`]; a motion of the wrong size or non-finite.
