@@ -243,7 +243,7 @@ fn finite_motion_is_told_from_first_order() {
     assert_eq!((&folded["dof"], &folded["finite_dof"]), (&2.into(), &1.into()));
     assert_eq!(folded["finite"]["branches"].as_array().unwrap().len(), 2);
     assert_eq!(folded["finite"]["certain"], true);
-    assert!(text(&["mobility", &file("folded-parallelogram")]).contains("2 motions cross"));
+    assert!(text(&["mobility", &file("folded-parallelogram")]).contains("2 branches meet"));
     let pair = json(&["mobility", &file("stretched-pair")], 0);
     assert_eq!((&pair["dof"], &pair["finite_dof"]), (&1.into(), &0.into()));
     assert!(text(&["mobility", &file("stretched-pair")]).contains("shaky"));

@@ -175,7 +175,7 @@ impl Qr {
     }
 
     /// Number k of reflections.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.factors.len()
     }
 

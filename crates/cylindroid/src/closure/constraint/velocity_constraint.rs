@@ -163,6 +163,12 @@ impl Constraint {
         Ok(self)
     }
 
+    /// The same rows with other columns, of these scales.
+    pub(crate) fn with_columns(&self, blocks: ConstraintBlocks, column_scale: Vec<f64>) -> Self {
+        let (length, row_scale) = (self.length, self.row_scale.clone());
+        Self { blocks, length, row_scale, column_scale, vectors: Vec::new() }
+    }
+
     /// The same constraint, with the ranges of columns that are components of one vector.
     pub(crate) fn with_vectors(mut self, vectors: Vec<Range<usize>>) -> Self {
         self.vectors = vectors;

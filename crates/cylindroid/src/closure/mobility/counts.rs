@@ -2,8 +2,10 @@
 //!
 //! Checked  tests/it/closure/singularity.rs
 
+use super::compression::Compression;
 use super::motion_space::{MotionSpace, RowSelection};
 use super::relation::{Relation, RelationDimensions};
+use crate::closure::constraint::velocity_constraint::Constraint;
 
 /// The rows of actuated joints and object: a motion that vanishes on them is idle.
 pub(crate) const ACTUATED_AND_OBJECT: RowSelection =
@@ -73,6 +75,18 @@ impl MobilityCounts {
             indeterminacy: self.indeterminacy.min(other.indeterminacy),
             zero_torque: self.zero_torque.min(other.zero_torque),
         }
+    }
+
+    /// The counts of a constraint from those of its compression.
+    pub(crate) fn with_split_off(self, [actuated, passive]: [usize; 2]) -> Self {
+        Self { redundancy: self.redundancy + actuated, idle: self.idle + passive, ..self }
+    }
+
+    /// At one configuration, whatever the number of joints.
+    pub(crate) fn of_constraint(constraint: &Constraint) -> Self {
+        let compression = Compression::of(constraint);
+        let motions = MotionSpace::of(compression.constraint(constraint));
+        Self::of(&motions, &motions.relation()).with_split_off(compression.split_off())
     }
 
     /// True if the actuated joints depend on each other: they set fewer motions than their number

@@ -113,6 +113,11 @@ impl<'a> LyapunovSchmidt<'a> {
         self.cokernel.cols()
     }
 
+    /// True if there are no loops: every motion is a motion.
+    pub(crate) fn is_unconstrained(&self) -> bool {
+        self.range.rows() == 0
+    }
+
     /// K, scaled.
     pub(crate) fn kernel(&self) -> &Matrix {
         &self.kernel

@@ -8,6 +8,7 @@
 
 pub(crate) mod actuation_map;
 pub(crate) mod branches;
+pub(crate) mod compression;
 pub(crate) mod counts;
 pub(crate) mod finite_mobility;
 pub(crate) mod lyapunov_schmidt;

@@ -49,6 +49,12 @@ impl Ray {
         length: f64,
     ) -> Result<Self> {
         let mut points: Vec<RayPoint> = Vec::new();
+        if reduction.is_unconstrained() {
+            let x: Vec<f64> = direction.iter().map(|x| length * x).collect();
+            let end = reduction.step(&x)?;
+            points.extend(end.map(|p| RayPoint { q: p.q, distance: length, residual: 0.0 }));
+            return Ok(Self { points });
+        }
         let along = |s: f64| -> Vec<f64> { direction.iter().map(|x| s * x).collect() };
         let least = STEPS.0 * 0.5_f64.powi(HALVINGS);
         let mut step = STEPS.0;
@@ -123,7 +129,9 @@ impl Rays {
     /// In both senses of some directions.
     pub(crate) fn of(reduction: &LyapunovSchmidt<'_>) -> Result<Self> {
         let mut rays = Vec::new();
-        let several = if reduction.motions() == 1 { 1 } else { RAYS };
+        let single = reduction.motions() == 1 || reduction.dependent() == 0;
+        // On a manifold one generic direction shows as much as several.
+        let several = if single { 1 } else { RAYS };
         for number in 0..several {
             let d = reduction.direction(number);
             let back: Vec<f64> = d.iter().map(|x| -x).collect();

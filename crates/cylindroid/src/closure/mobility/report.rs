@@ -24,6 +24,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use super::compression::Compression;
 use super::motion_space::{MotionSpace, RowSelection};
 use super::relation::{Relation, RelationDimensions};
 use super::subspace::Subspace;
@@ -142,9 +143,51 @@ impl Mobility {
     /// ```
     #[must_use]
     pub fn of(constraint: &Constraint) -> Self {
-        let motions = MotionSpace::of(constraint);
+        let compression = Compression::of(constraint);
+        let inner = compression.constraint(constraint);
+        let motions = MotionSpace::of(inner);
         let relation = motions.relation();
-        Self::from_parts(constraint, &motions, &relation)
+        let report = Self::from_parts(inner, &motions, &relation);
+        if compression.is_trivial() {
+            report
+        } else {
+            report.expanded(constraint, &compression, motions.tolerance())
+        }
+    }
+
+    /// The report of `constraint`, from that of its compression.
+    fn expanded(
+        mut self,
+        constraint: &Constraint,
+        compression: &Compression,
+        tolerance: f64,
+    ) -> Self {
+        let [actuated, passive] = compression.split_off();
+        let inner = compression.constraint(constraint).column_scale();
+        let inverse: Vec<f64> = inner.iter().map(|s| 1.0 / s).collect();
+        let scaled = |space: &Subspace, with: [bool; 2]| {
+            compression.expanded(&space.basis.clone().scale_rows(&inverse), with)
+        };
+        let kernel = scaled(&self.dof, [true, true]);
+        let free = scaled(&self.indeterminacy, [false, true]);
+        let idle = scaled(&self.idle, [false, true]);
+        self.joints = joint_mobility(constraint, [&kernel, &free, &idle], tolerance);
+        let units = |motions: Matrix| motions.scale_rows(constraint.column_scale());
+        self.redundancy.basis = units(scaled(&self.redundancy, [true, false]));
+        for space in [&mut self.coordinate, &mut self.uncontrollable_object_motions] {
+            space.basis = units(scaled(space, [false, false]));
+        }
+        (self.dof.basis, self.indeterminacy.basis) = (units(kernel), units(free));
+        self.idle.basis = units(idle);
+        let torques = self.internal.basis.clone();
+        let own = &inner[..torques.rows()];
+        let torques = compression.expanded_torques(torques.scale_rows(own));
+        let scale = constraint.column_scale()[..torques.rows()].iter().map(|s| 1.0 / s);
+        self.internal.basis = torques.scale_rows(&scale.collect::<Vec<_>>());
+        self.relation.relation += actuated;
+        self.relation.redundancy += actuated;
+        self.gruebler_kutzbach += i64::try_from(actuated + passive).unwrap_or(i64::MAX);
+        self
     }
 
     /// From the motion space and the relation of this constraint.
@@ -153,7 +196,7 @@ impl Mobility {
         const A: RowSelection = RowSelection { actuated: true, passive: false, object: false };
         const P: RowSelection = RowSelection { actuated: false, passive: true, object: false };
         const U: RowSelection = RowSelection { actuated: false, passive: false, object: true };
-        let k = motions.dof();
+        let (k, kernel) = (motions.dof(), motions.kernel());
         let tolerance = Threshold::Absolute(motions.tolerance());
         let space = |(part, cut): &(Matrix, Cut)| Subspace {
             basis: motions.unscaled(&(motions.kernel() * part)),
@@ -195,7 +238,11 @@ impl Mobility {
                 overlap: (passive + object + both).saturating_sub(c),
             },
             mixed,
-            joints: joint_mobility(constraint, motions, &indeterminacy.0, &idle.0),
+            joints: joint_mobility(
+                constraint,
+                [kernel, &(kernel * &indeterminacy.0), &(kernel * &idle.0)],
+                motions.tolerance(),
+            ),
             redundancy: space(&redundancy),
             indeterminacy: space(&indeterminacy),
             idle: space(&idle),
@@ -225,30 +272,27 @@ impl Mobility {
     }
 }
 
+/// From scaled bases of all motions, of those with the actuated joints at rest, and of idle ones.
 fn joint_mobility(
     constraint: &Constraint,
-    motions: &MotionSpace,
-    indeterminate: &Matrix,
-    idle: &Matrix,
+    [all, free, idle]: [&Matrix; 3],
+    tolerance: f64,
 ) -> Vec<JointMobility> {
-    let kernel = motions.kernel();
-    let (free, idle) = (kernel * indeterminate, kernel * idle);
-    let tolerance = motions.tolerance();
     // The norm of a scalar's row, the largest singular value of a vector's rows.
     let norm = |of: &Matrix, rows: Range<usize>| match rows.len() {
         1 => of.row_norm(rows.start),
         _ => Svd::of(&of.rows_between(rows.start, rows.end)).values().next().unwrap_or(0.0),
     };
-    (0..motions.actuated() + motions.passive())
+    (0..constraint.actuated() + constraint.passive())
         .map(|i| {
             let rows = constraint.vector_of(i);
-            let share = norm(kernel, rows.clone());
-            let passive = i >= motions.actuated();
+            let share = norm(all, rows.clone());
+            let passive = i >= constraint.actuated();
             JointMobility {
                 share: share.min(1.0),
                 moves: share > tolerance,
-                free_of_actuators: passive && norm(&free, rows.clone()) > tolerance,
-                idle: passive && norm(&idle, rows) > tolerance,
+                free_of_actuators: passive && norm(free, rows.clone()) > tolerance,
+                idle: passive && norm(idle, rows) > tolerance,
             }
         })
         .collect()

@@ -27,6 +27,7 @@ use super::singularity_types::SingularityDistances;
 use super::verdict::Verdict;
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::constraint::velocity_constraint::Unit;
+use crate::closure::mobility::compression::Compression;
 use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::FiniteMobility;
 use crate::closure::mobility::motion_space::{MotionSpace, RowSelection};
@@ -101,10 +102,10 @@ impl Diagnosis {
         let mechanism = state.mechanism();
         let here = Configuration::of(state, reference, length)?;
         let length = here.chain.constraint.length();
-        let counts = MobilityCounts::of(&here.motions, &here.relation);
+        let counts = here.counts();
         let finite = FiniteMobility::of(state, Some(length))?;
         let generic = GenericMobility::around(state, reference, length, counts, &finite)?;
-        let verdict = Verdict::of(&counts, &finite, &generic, here.motions.sizes());
+        let verdict = Verdict::of(&counts, &finite, &generic, here.sizes());
         let distances = SingularityDistances::of(&counts, &here.motions, &here.relation)
             .against(verdict.excess());
         let beside: Vec<Configuration> = finite
@@ -113,16 +114,27 @@ impl Diagnosis {
             .map(|q| Configuration::of(&mechanism.state(q)?, reference, Some(length)))
             .collect::<Result<_>>()?;
         let mut separated = true;
-        let mut beyond = |space: &dyn Fn(&Configuration) -> Matrix, generic: usize| {
-            let (part, clear) = beyond(&space(&here), &beside, space, generic);
+        let mut beyond = |space: &dyn Fn(&Configuration) -> Matrix, now: usize, generic: usize| {
+            let (part, clear) = if now > generic {
+                beyond(&space(&here), &beside, space, generic)
+            } else {
+                (Matrix::zeros(0, 0), true)
+            };
             separated &= clear;
             part
         };
         let s = generic.counts;
-        let blocked = beyond(&Configuration::zero_torque, s.zero_torque);
-        let gained = beyond(&Configuration::indeterminate, s.indeterminacy);
-        let redundant = beyond(&Configuration::redundant, s.redundancy);
-        let idle = beyond(&Configuration::idle, s.idle);
+        let blocked = beyond(&Configuration::zero_torque, counts.zero_torque, s.zero_torque);
+        let gained = beyond(&Configuration::indeterminate, counts.indeterminacy, s.indeterminacy);
+        let (redundant, idle) = if here.compression.is_trivial() {
+            let redundant = beyond(&Configuration::redundant, counts.redundancy, s.redundancy);
+            (redundant, beyond(&Configuration::idle, counts.idle, s.idle))
+        } else {
+            let more = |now: usize, generic: usize| now.saturating_sub(generic);
+            let redundant = more(counts.redundancy, s.redundancy);
+            let idle = more(counts.idle, s.idle);
+            (not_felt(&here, &beside, true, redundant), not_felt(&here, &beside, false, idle))
+        };
         let point = state.pose(here.chain.reference).translation;
         let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { GENERIC_LIMIT };
         let (of_wrenches, of_gains) = (accuracy(s.zero_torque), accuracy(s.indeterminacy));
@@ -148,6 +160,7 @@ impl Diagnosis {
 /// A configuration with its spaces, orthonormal in scaled units.
 struct Configuration {
     chain: ClosedChain,
+    compression: Compression,
     motions: MotionSpace,
     relation: Relation,
 }
@@ -155,9 +168,39 @@ struct Configuration {
 impl Configuration {
     fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let chain = ClosedChain::of(state, reference, length)?;
-        let motions = MotionSpace::of(&chain.constraint);
+        let compression = Compression::of(&chain.constraint);
+        let motions = MotionSpace::of(compression.constraint(&chain.constraint));
         let relation = motions.relation();
-        Ok(Self { chain, motions, relation })
+        Ok(Self { chain, compression, motions, relation })
+    }
+
+    fn counts(&self) -> MobilityCounts {
+        let counts = MobilityCounts::of(&self.motions, &self.relation);
+        counts.with_split_off(self.compression.split_off())
+    }
+
+    /// Number of actuated joints, and of all columns of the constraint.
+    fn sizes(&self) -> [usize; 2] {
+        let constraint = &self.chain.constraint;
+        let actuated = constraint.actuated();
+        [actuated, actuated + constraint.passive() + constraint.object()]
+    }
+
+    /// The scaled motions of actuated (or passive) joints that are orthogonal to the redundant (or
+    /// idle) ones.
+    fn felt(&self, actuated: bool) -> Matrix {
+        let inner = self.compression.constraint(&self.chain.constraint);
+        let a = inner.actuated();
+        let own = if actuated {
+            let inverse: Vec<f64> = inner.column_scale()[..a].iter().map(|s| 1.0 / s).collect();
+            self.relation.motions().zero.scale_rows(&inverse)
+        } else {
+            let still = RowSelection { actuated: true, passive: false, object: true };
+            let idle = self.motions.kernel() * &self.motions.vanishing_coefficients(still).0;
+            idle.rows_between(a, a + inner.passive())
+        };
+        let space = ColumnSpace::of(&own, Threshold::Absolute(CLOSURE_BLOCK));
+        self.compression.orthogonal_to(actuated, space.basis())
     }
 
     fn size(&self, unit: Unit) -> f64 {
@@ -204,6 +247,26 @@ impl Configuration {
             space.column(j).iter().zip(units).map(|(x, u)| put(self.size(*u), *x)).collect()
         })
     }
+}
+
+/// The `extra` redundant (or idle) motions here that are felt nearby: the limit of what is felt
+/// there, without what is felt here.
+fn not_felt(
+    here: &Configuration,
+    beside: &[Configuration],
+    actuated: bool,
+    extra: usize,
+) -> Matrix {
+    let felt = here.felt(actuated);
+    if extra == 0 || beside.is_empty() {
+        return Matrix::zeros(felt.rows(), 0);
+    }
+    let near: Vec<Matrix> = beside.iter().map(|c| c.felt(actuated)).collect();
+    let near = Matrix::hstack(felt.rows(), &near.iter().collect::<Vec<_>>());
+    let along = &felt * &(&felt.transpose() * &near);
+    let rest =
+        Svd::of(&Matrix::from_fn(near.rows(), near.cols(), |i, j| near[(i, j)] - along[(i, j)]));
+    Matrix::from_fn(felt.rows(), extra.min(rest.len()), |i, j| rest.u(j)[i])
 }
 
 /// The part of `now` orthogonal to the limit of the neighbouring spaces, and true if the limit was

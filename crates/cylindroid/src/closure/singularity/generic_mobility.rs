@@ -18,7 +18,6 @@ use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::FiniteMobility;
 use crate::closure::mobility::lyapunov_schmidt::LyapunovSchmidt;
-use crate::closure::mobility::motion_space::MotionSpace;
 use crate::closure::mobility::rays::Rays;
 use crate::error::Result;
 use crate::kinematics::State;
@@ -105,6 +104,5 @@ impl GenericMobility {
 }
 
 fn counted(chain: &ClosedChain) -> MobilityCounts {
-    let motions = MotionSpace::of(&chain.constraint);
-    MobilityCounts::of(&motions, &motions.relation())
+    MobilityCounts::of_constraint(&chain.constraint)
 }

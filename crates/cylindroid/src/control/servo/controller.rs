@@ -314,7 +314,10 @@ impl Servo {
         let tolerance = self.options.tolerance;
         let (position_error, orientation_error) =
             (desired.error.linear.norm(), desired.error.angular.norm());
-        let scaled = position_error / self.options.length + orientation_error;
+        // Out of reach only the position decides: the orientation may creep on for minutes.
+        let out_of_reach = self.distance > self.length + self.offset_of_free_position();
+        let turning = if out_of_reach { 0.0 } else { orientation_error };
+        let scaled = position_error / self.options.length + turning;
         let near =
             position_error <= tolerance.position && orientation_error <= tolerance.orientation;
         let stalled = self.stall_detector.stalled(scaled, braking, self.options.dt);

@@ -10,6 +10,7 @@ mod graph;
 mod grasp;
 mod laws;
 mod linkage;
+mod long_chains;
 mod mobility;
 mod modes;
 mod reference;

@@ -1,0 +1,118 @@
+//! Mechanisms with many more joints than constraints: the compressed analysis is the plain one.
+
+use cylindroid::closure::{ClosedChain, Diagnosis, Mobility, MotionSpace, Subspace};
+use cylindroid::model::{JointKind, JointSpec, LoopJointSpec};
+use cylindroid::spatial::{Pose, Rotation, Vec3};
+use cylindroid::{Matrix, Mechanism};
+
+use crate::support::Random;
+
+/// A chain of `n` joints; every third passive, every eighth spherical if asked for; closed by a
+/// spherical joint to ground if asked for.
+fn chain(n: usize, passive: bool, spherical: bool, closed: bool) -> Mechanism {
+    let mut random = Random(5);
+    let mut b = Mechanism::builder("chain");
+    let mut tip = Pose::IDENTITY;
+    for i in 0..n {
+        let mut any = |size: f64| {
+            let mut x = || random.within(-size, size);
+            Vec3::new(x(), x(), x())
+        };
+        let place = Pose { rotation: Rotation::exp(any(1.5)), translation: any(0.3) };
+        tip = tip * place;
+        let kind = if spherical && i % 8 == 3 { JointKind::Spherical } else { JointKind::Revolute };
+        let parent = if i == 0 { "ground".to_owned() } else { format!("l{i}") };
+        b.joint(JointSpec {
+            parent_from_joint: place,
+            actuated: !(passive && i % 3 == 1),
+            ..JointSpec::new(&format!("q{i}"), kind, &parent, &format!("l{}", i + 1))
+        });
+    }
+    if closed {
+        b.loop_joint(LoopJointSpec {
+            link_b_from_joint: tip,
+            ..LoopJointSpec::new("loop", JointKind::Spherical, &format!("l{n}"), "ground")
+        });
+        b.reference("l40");
+    }
+    b.build().unwrap()
+}
+
+/// The largest entry of the part of `one` outside the span of `other`, both orthonormalised.
+fn outside(one: &Matrix, other: &Matrix) -> f64 {
+    use cylindroid::linalg::{ColumnSpace, Threshold};
+    let [a, b] = [one, other].map(|m| ColumnSpace::of(m, Threshold::Relative(1e-9)).basis());
+    let along = &b * &(&b.transpose() * &a);
+    let rest = Matrix::from_fn(a.rows(), a.cols(), |i, j| a[(i, j)] - along[(i, j)]);
+    rest.max_abs()
+}
+
+#[test]
+fn compressed_reports_are_the_plain_ones() {
+    for (n, passive, spherical, closed) in [
+        (80, false, false, false),
+        (100, true, false, false),
+        (75, true, true, false),
+        (120, true, true, true),
+        (260, true, false, true),
+    ] {
+        let what = format!("{n} passive {passive} spherical {spherical} closed {closed}");
+        let m = chain(n, passive, spherical, closed);
+        let state = m.state(m.home()).unwrap();
+        let constraint = ClosedChain::of(&state, None, None).unwrap().constraint;
+        let motions = MotionSpace::of(&constraint);
+        let plain = Mobility::from_parts(&constraint, &motions, &motions.relation());
+        let found = Mobility::of(&constraint);
+        assert_eq!(found.relation, plain.relation, "{what}");
+        assert_eq!(found.gruebler_kutzbach, plain.gruebler_kutzbach, "{what}");
+        assert_eq!(found.coordinate_kinds, plain.coordinate_kinds, "{what}");
+        let spaces = |m: &Mobility| -> Vec<Subspace> {
+            [
+                &m.dof,
+                &m.redundancy,
+                &m.indeterminacy,
+                &m.coordinate,
+                &m.idle,
+                &m.uncontrollable_object_motions,
+                &m.internal,
+                &m.zero_torque,
+                &m.hyperstatic,
+            ]
+            .map(Clone::clone)
+            .to_vec()
+        };
+        for (i, (a, b)) in spaces(&found).iter().zip(&spaces(&plain)).enumerate() {
+            assert_eq!(a.dimension(), b.dimension(), "{what}: space {i}");
+            assert_eq!(a.basis.rows(), b.basis.rows(), "{what}: space {i}");
+            assert!(outside(&a.basis, &b.basis) < 1e-8, "{what}: space {i}");
+        }
+        for (a, b) in found.joints.iter().zip(&plain.joints) {
+            assert!((a.share - b.share).abs() < 1e-9, "{what}: {a:?} {b:?}");
+            let same = (a.moves, a.free_of_actuators, a.idle);
+            assert_eq!(same, (b.moves, b.free_of_actuators, b.idle), "{what}");
+        }
+    }
+}
+
+/// Straight, a chain of a thousand joints is singular: pulled along its line no torque resists.
+#[test]
+fn a_thousand_joints_have_a_verdict() {
+    let mut b = Mechanism::builder("straight");
+    for i in 0..1000 {
+        let parent = if i == 0 { "ground".to_owned() } else { format!("l{i}") };
+        let x = if i == 0 { 0.0 } else { 0.1 };
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::X * x),
+            axis: [Vec3::Z, Vec3::Y][i % 2],
+            actuated: true,
+            ..JointSpec::new(&format!("q{i}"), JointKind::Revolute, &parent, &format!("l{}", i + 1))
+        });
+    }
+    let m = b.build().unwrap();
+    let found = Diagnosis::of(&m.state(m.home()).unwrap(), None, None).unwrap();
+    assert_eq!((found.verdict.dof(), found.verdict.finite_dof()), (1000, Some(1000)));
+    // The line: neither a pull along it nor a turn about it is felt.
+    assert_eq!((found.counts.zero_torque, found.generic.counts.zero_torque), (2, 0));
+    assert_eq!(found.blocked.len(), 2);
+    assert!(found.redundant.len() > 900, "{}", found.redundant.len());
+}
