@@ -213,7 +213,7 @@ fn singular_postures_are_named() {
         (&stewart["finite_dof"], &stewart["singularity"]["regular"]),
         (&6.into(), &true.into())
     );
-    assert!(stewart["singularity"]["compared_with"].as_u64().unwrap() > 3);
+    assert!(stewart["singularity"]["compared_with"].as_u64().unwrap() >= 2);
     let page = text(&["mobility", "stewart"]);
     assert!(
         page.contains("none: the configuration is regular") && page.contains("all of it"),
