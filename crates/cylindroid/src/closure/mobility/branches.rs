@@ -39,6 +39,9 @@ pub(crate) struct Tangent {
     /// Closed configurations on it a finite way off, and their distance.
     pub(crate) far: Vec<Vec<f64>>,
     pub(crate) tracked: f64,
+    /// Threshold for ranks there: on a branch that is shaky all along, positions are known to the
+    /// root of rounding only.
+    pub(crate) rank: f64,
 }
 
 /// The result of a search.
@@ -95,7 +98,7 @@ pub(crate) fn branches(
             (tangent.far, tangent.tracked) = (vec![q], tracked);
             sound &= tracked >= TRACKED_AT_LEAST;
         } else {
-            (tangent.far, tangent.tracked) = (vec![near.q], h);
+            (tangent.far, tangent.tracked, tangent.rank) = (vec![near.q], h, BRANCH_RANK * h);
         }
         tangents.push(tangent);
     }
@@ -227,8 +230,8 @@ fn tangent(
     let both = Matrix::hstack(x.len(), &sides.iter().collect::<Vec<_>>());
     let svd = Svd::of(&both);
     let directions = Matrix::from_fn(x.len(), dimension, |i, j| svd.u(j)[i]);
-    let (far, tracked) = (Vec::new(), 0.0);
-    Ok(Some(Tangent { dimension, directions, configurations, far, tracked }))
+    let (far, tracked, rank) = (Vec::new(), 0.0, CLOSURE_RANK);
+    Ok(Some(Tangent { dimension, directions, configurations, far, tracked, rank }))
 }
 
 /// A configuration of the branch far from the crossing, from `q` at the distance `h`, and its

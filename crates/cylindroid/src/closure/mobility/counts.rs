@@ -82,10 +82,11 @@ impl MobilityCounts {
         Self { redundancy: self.redundancy + actuated, idle: self.idle + passive, ..self }
     }
 
-    /// At one configuration, whatever the number of joints.
-    pub(crate) fn of_constraint(constraint: &Constraint) -> Self {
+    /// At one configuration, whatever the number of joints, with singular values of the constraint
+    /// at or below `threshold` times the largest counted as zero.
+    pub(crate) fn of_constraint(constraint: &Constraint, threshold: f64) -> Self {
         let compression = Compression::of(constraint);
-        let motions = MotionSpace::of(compression.constraint(constraint));
+        let motions = MotionSpace::with_threshold(compression.constraint(constraint), threshold);
         Self::of(&motions, &motions.relation()).with_split_off(compression.split_off())
     }
 

@@ -74,6 +74,8 @@ pub struct Branch {
     pub tracked: f64,
     /// Configurations on it, as far from this one as it was tracked.
     pub configurations: Vec<Vec<f64>>,
+    /// Relative threshold for ranks there.
+    pub(crate) rank: f64,
 }
 
 /// The finite mobility of a mechanism at a configuration.
@@ -185,6 +187,7 @@ impl FiniteMobility {
                 motions: reduction.unscaled(&(reduction.kernel() * &tangent.directions)),
                 tracked: tangent.tracked,
                 configurations: tangent.far,
+                rank: tangent.rank,
             });
             if report.neighbours.is_empty() {
                 report.neighbours = tangent.configurations;
@@ -220,7 +223,13 @@ impl FiniteMobility {
         }
         let motions = reduction.unscaled(reduction.kernel());
         let tracked = self.tracked;
-        self.branches.push(Branch { dimension: k, motions, tracked, configurations });
+        self.branches.push(Branch {
+            dimension: k,
+            motions,
+            tracked,
+            configurations,
+            rank: CLOSURE_RANK,
+        });
         let x = reduction.direction(0);
         for side in [FINITE_STEP * NEIGHBOUR_DISTANCE, -FINITE_STEP * NEIGHBOUR_DISTANCE] {
             let x: Vec<f64> = x.iter().map(|x| side * x).collect();

@@ -64,8 +64,9 @@ impl GenericMobility {
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let chain = ClosedChain::of(state, reference, length)?;
         let length = chain.constraint.length();
+        let counts = MobilityCounts::of_constraint(&chain.constraint, CLOSURE_RANK);
         let finite = FiniteMobility::of(state, Some(length))?;
-        Self::around(state, reference, length, counted(&chain), &finite)
+        Self::around(state, reference, length, counts, &finite)
     }
 
     /// The same for a configuration whose counts and finite mobility are known.
@@ -77,8 +78,9 @@ impl GenericMobility {
         finite: &FiniteMobility,
     ) -> Result<Self> {
         let mechanism = state.mechanism();
-        let at = |q: &Vec<f64>| -> Result<MobilityCounts> {
-            Ok(counted(&ClosedChain::of(&mechanism.state(q)?, reference, Some(length))?))
+        let at = |q: &Vec<f64>, rank: f64| -> Result<MobilityCounts> {
+            let chain = ClosedChain::of(&mechanism.state(q)?, reference, Some(length))?;
+            Ok(MobilityCounts::of_constraint(&chain.constraint, rank))
         };
         let mut generic = Self { counts, branches: Vec::new(), others: 0 };
         for branch in &finite.branches {
@@ -92,7 +94,7 @@ impl GenericMobility {
             };
             let mut own: Option<MobilityCounts> = None;
             for q in configurations {
-                let there = at(q)?;
+                let there = at(q, branch.rank)?;
                 own = Some(own.map_or(there, |own| own.generic(there)));
                 generic.others += 1;
             }
@@ -101,8 +103,4 @@ impl GenericMobility {
         generic.counts = generic.branches.iter().fold(counts, |all, branch| all.generic(*branch));
         Ok(generic)
     }
-}
-
-fn counted(chain: &ClosedChain) -> MobilityCounts {
-    MobilityCounts::of_constraint(&chain.constraint)
 }
