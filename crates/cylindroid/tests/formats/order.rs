@@ -170,12 +170,6 @@ fn results(m: &Mechanism, turned: &[String]) -> BTreeMap<String, Vec<f64>> {
     all
 }
 
-/// Six equal parallel rods stay parallel on their branch, which has its rank everywhere. The rotation
-/// that they resist to second order only is taken for a part of the branch in some orders.
-fn has_clear_verdict(path: &Path) -> bool {
-    !path.ends_with("six_parallel.toml")
-}
-
 /// The verdict at home, with its distances.
 fn verdict(m: &Mechanism) -> BTreeMap<String, Vec<f64>> {
     let found = Diagnosis::of(&m.state(m.home()).unwrap(), None, None).unwrap();
@@ -236,7 +230,7 @@ fn tables_in_any_order() {
         for i in 0..10 {
             let m = read(&shuffled(&text, &mut random), &path);
             assert_same(&what, &results(&m, &[]), &values);
-            if i == 0 && has_clear_verdict(&path) {
+            if i % 3 == 0 {
                 assert_same(&what, &verdict(&m), &judged);
             }
         }
@@ -255,7 +249,7 @@ fn joints_from_either_link() {
             let m = read(&other, &path);
             let what = format!("{} {names:?}", path.display());
             assert_same(&what, &results(&m, &names), &values);
-            if i == 0 && has_clear_verdict(&path) {
+            if i % 3 == 0 {
                 assert_same(&what, &verdict(&m), &judged);
             }
         }
