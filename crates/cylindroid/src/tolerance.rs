@@ -324,6 +324,10 @@ pub const MATRIX_STEP: f64 = 1e-3;
 /// difference of two assemblies [-].
 pub const SAME_ASSEMBLY: f64 = 1e-6;
 
+/// Second-order terms of the loops at or below it count as zero (scaled) [-]: differences of loops
+/// closed to rounding yield them to 1e-8.
+pub const SECOND_ORDER: f64 = 1e-6;
+
 /// Largest distance between the signatures of two isolated assemblies that count as one if they
 /// move to first order: a search comes only that near to a contact of high order [-].
 pub const SAME_SHAKY: f64 = 0.05;

@@ -96,7 +96,6 @@ fn objects_are_moved() {
     assert!(report["explanation"].as_str().unwrap().contains("type II"));
 }
 
-/// Two circles meet in two points; a Stewart platform has mirror pairs; motions are said.
 #[test]
 fn operation_modes_are_listed() {
     let report = json(&["mobility", "five-bar", "--modes", "6"], 0);
@@ -108,6 +107,7 @@ fn operation_modes_are_listed() {
     assert!(table.contains("1 operation mode from 6 of 6 starts"), "{table}");
 }
 
+/// Two circles meet in two points; a Stewart platform has mirror pairs; motions are said.
 #[test]
 fn modes_are_listed() {
     let report = json(&["assemble", "five-bar", "--hold", "q1,q2", "--modes", "20"], 0);

@@ -27,6 +27,10 @@ use crate::error::Result;
 /// contact_order : int or None
 ///     Power of the distance with which the loops open (2 for most shaky structures); None where
 ///     they stay closed, or where it differs between directions.
+/// second_order : str or None
+///     "prestress stable" (some self-stress stabilises all first-order motions, so that none is
+///     finite), "second-order rigid" (no motion that extends to second order was found) or
+///     "second-order flexible"; None where all first-order motions are finite.
 #[pyclass(frozen, name = "FiniteMobility", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyFiniteMobility {
@@ -79,6 +83,11 @@ impl PyFiniteMobility {
     #[getter]
     fn contact_order(&self) -> Option<u32> {
         self.inner.contact_order
+    }
+
+    #[getter]
+    fn second_order(&self) -> Option<&'static str> {
+        self.inner.second_order.as_ref().map(|s| s.rigidity.name())
     }
 
     fn __repr__(&self) -> String {

@@ -41,6 +41,7 @@ pub use mobility::motion_space::{MotionSpace, RowSelection};
 pub use mobility::reference_twists::frame_twists;
 pub use mobility::relation::{Relation, RelationBases, RelationDimensions};
 pub use mobility::report::{CoordinateKinds, JointMobility, Mobility, RankWarning};
+pub use mobility::second_order::{SecondOrder, SecondOrderRigidity};
 pub use mobility::subspace::Subspace;
 pub use position::assembly::{Assembly, assemble, recover_passive};
 pub use position::assembly_modes::{AssemblyModes, Mode, ModeOptions, assembly_modes};

@@ -64,6 +64,8 @@ pub(super) struct FiniteJson {
     tracked: f64,
     /// Power of the distance with which the loops open; null if they do not, or it differs.
     contact_order: Option<u32>,
+    /// "prestress stable", "second-order rigid" or "second-order flexible".
+    second_order: Option<&'static str>,
     branches: Vec<BranchJson>,
     /// Motions to first order that do not exist: rates of q.
     shaky: Vec<Vec<f64>>,
@@ -128,6 +130,7 @@ impl FiniteJson {
             structure: structure.name(),
             tracked: f.tracked,
             contact_order: f.contact_order,
+            second_order: f.second_order.as_ref().map(|s| s.rigidity.name()),
             branches: f.branches.iter().zip(&g.branches).map(branch).collect(),
             shaky: output::columns(&f.shaky),
         }

@@ -21,6 +21,7 @@ use std::fmt;
 use super::branches::branches;
 use super::lyapunov_schmidt::LyapunovSchmidt;
 use super::rays::Rays;
+use super::second_order::SecondOrder;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
@@ -113,6 +114,8 @@ pub struct FiniteMobility {
     /// The power of the distance with which the loops open: 2 for most shaky structures. `None`
     /// for finite motions, and if it differs between directions.
     pub contact_order: Option<u32>,
+    /// The second order; `None` if all first-order motions are finite, or if it is unknown.
+    pub second_order: Option<SecondOrder>,
     neighbours: Vec<Vec<f64>>,
 }
 
@@ -146,6 +149,7 @@ impl FiniteMobility {
             tracked: 0.0,
             residual: 0.0,
             contact_order: None,
+            second_order: None,
             neighbours: Vec::new(),
         };
         if !reduction.is_closed() {
@@ -167,6 +171,7 @@ impl FiniteMobility {
             return Ok(report);
         }
         report.contact_order = rays.power;
+        report.second_order = SecondOrder::of(&reduction)?;
         if k == 1 {
             report.evidence = MobilityEvidence::Opens;
             report.certain = rays.openness > CLEARLY_OPEN;

@@ -3,8 +3,8 @@
 //! `motion_space` is the kernel of the constraint, `relation` its projection on actuated joints and
 //! object; `report` counts the kinds of motion and force. Read these three first.
 //! `actuation_map` (from actuated to all joint velocities) and `reference_twists` serve control
-//! and screw systems. `lyapunov_schmidt`, `rays`, `branches` and `finite_mobility` go beyond first
-//! order.
+//! and screw systems. `lyapunov_schmidt`, `rays`, `branches`, `second_order` and `finite_mobility` go
+//! beyond first order.
 
 pub(crate) mod actuation_map;
 pub(crate) mod branches;
@@ -17,4 +17,5 @@ pub(crate) mod rays;
 pub(crate) mod reference_twists;
 pub(crate) mod relation;
 pub(crate) mod report;
+pub(crate) mod second_order;
 pub(crate) mod subspace;

@@ -20,6 +20,7 @@ use super::generic_mobility::GenericMobility;
 use super::singularity_types::Excess;
 use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::{FiniteMobility, MobilityEvidence};
+use crate::closure::mobility::second_order::SecondOrderRigidity;
 use crate::closure::singularity_kind::SingularityKind;
 
 /// The closed configurations around one of them.
@@ -89,6 +90,7 @@ pub struct Verdict {
     certain: bool,
     tracked: f64,
     contact_order: Option<u32>,
+    second_order: Option<SecondOrderRigidity>,
     excess: Excess,
     everywhere: Vec<SingularityKind>,
 }
@@ -123,6 +125,7 @@ impl Verdict {
             certain: finite.certain,
             tracked: finite.tracked,
             contact_order: finite.contact_order,
+            second_order: finite.second_order.as_ref().map(|s| s.rigidity),
             excess,
             everywhere: everywhere.into_iter().filter(|e| e.0).map(|e| e.1).collect(),
         }
@@ -199,7 +202,11 @@ impl Verdict {
                     Some(p) => format!(": the loops open with power {p} of the motion"),
                     None => String::new(),
                 };
-                format!("none: it moves to first order only (shaky){order}{unsure}")
+                let rigidity = match self.second_order {
+                    Some(rigidity) => format!(", {rigidity}"),
+                    None => String::new(),
+                };
+                format!("none: it moves to first order only (shaky){rigidity}{order}{unsure}")
             }
             LocalStructure::Shaky => {
                 format!("{dof} of {k}: the others exist to first order only (shaky){unsure}")

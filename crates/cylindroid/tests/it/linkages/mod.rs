@@ -6,6 +6,7 @@
 mod length;
 mod modes;
 mod published;
+mod second_order;
 mod views;
 
 use std::path::PathBuf;
