@@ -1,4 +1,4 @@
-//! What searches for a configuration are told.
+//! Arguments of inverse kinematics: targets, tolerances, budget.
 
 use cylindroid::Pose;
 use cylindroid::control::Task;
@@ -20,21 +20,21 @@ fn poses(target: &Numbers<'_>) -> Result<Many<Pose>> {
     Ok(Many::All(all.collect::<cylindroid::Result<_>>()?))
 }
 
-/// Frames and where each shall be.
+/// Target poses of one or several frames.
 pub(super) struct Targets {
-    /// One for each frame; what they aim at is in `poses`.
+    /// One for each frame; their targets are in `poses`.
     pub(super) goals: Vec<Goal>,
-    /// Of each frame as many.
+    /// The same number for each frame.
     poses: Vec<Many<Pose>>,
 }
 
 impl Targets {
-    /// How many things are asked for; `None` for one that is no batch.
+    /// The number of problems; `None` for a single one.
     pub(super) fn count(&self) -> Option<usize> {
         self.poses.first().and_then(Many::count)
     }
 
-    /// The goals of the i-th of them.
+    /// The goals of problem i.
     pub(super) fn at(&self, i: usize) -> Vec<Goal> {
         let aimed =
             |(goal, poses): (&Goal, &Many<Pose>)| Goal { target: poses.as_slice()[i], ..*goal };
@@ -42,7 +42,7 @@ impl Targets {
     }
 }
 
-/// What both searches are told.
+/// Arguments of both searches.
 pub(super) struct Search<'a, 'py> {
     pub(super) frame: Option<&'a str>,
     pub(super) tool: Option<Numbers<'py>>,

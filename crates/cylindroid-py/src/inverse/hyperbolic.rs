@@ -46,7 +46,7 @@ fn damping_of(mu: Option<f64>, lam: Option<f64>) -> Result<HyperbolicDamping> {
 /// Returns
 /// -------
 /// Inverse
-///     Where `exists` is false, `reason` says why and `matrix` is NaN.
+///     If `exists` is false, `reason` is the reason and `matrix` is NaN.
 ///
 /// Raises
 /// ------

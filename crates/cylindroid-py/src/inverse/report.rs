@@ -1,4 +1,4 @@
-//! The class `Inverse`: an inverse and what was done to get it.
+//! The class `Inverse`: the inverse of a Jacobian and its report.
 
 use cylindroid::inverse::{self, Inverse, Inverses};
 use cylindroid::linalg::Rank;
@@ -10,26 +10,27 @@ use crate::arrays::{self, Array, Many};
 use crate::error::Result;
 use crate::table::{self, Table};
 
-/// An inverse and what was done to get it; of a stack of Jacobians everything has its axis first.
+/// The inverse of a Jacobian and its report (rank, singular values, truncated directions). For a
+/// stack of Jacobians, every attribute has the axis of the stack first.
 ///
 /// Attributes
 /// ----------
 /// matrix : ndarray, (n, m) or (N, n, m)
-///     The inverse: qd = matrix @ task. NaN where none exists.
+///     The inverse: qd = matrix @ task. NaN if it does not exist.
 /// rank : int or ndarray of int, (N,)
 ///     Directions of which at least one half is realised.
 /// singular_values : ndarray, (k,) or (N, k)
-///     Of the (weighted) Jacobian, largest first.
+///     Singular values of the (weighted) Jacobian, largest first.
 /// threshold : float or ndarray, (N,)
 ///     The singular value below which a direction counts as dropped.
 /// gap : float or ndarray, (N,)
-///     Smallest singular value kept over the largest dropped: near 1 the rank is a matter of taste.
+///     Smallest singular value kept over the largest dropped: near 1 the rank is ambiguous.
 /// dropped : list of TruncatedDirection, or list of such lists
-///     The directions that the inverse gives up.
+///     The truncated directions.
 /// exists : bool or ndarray of bool, (N,)
-///     False where the method has no inverse for this Jacobian.
+///     False if the inverse does not exist for this Jacobian.
 /// reason : str or None, or list of them
-///     Why there is none.
+///     The reason why it does not exist.
 #[pyclass(frozen, name = "Inverse", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyInverse {

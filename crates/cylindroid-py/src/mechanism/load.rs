@@ -1,4 +1,4 @@
-//! Loading models, and what a loader reports.
+//! Loading of models, and the load report.
 
 use std::path::{Path, PathBuf};
 
@@ -97,31 +97,31 @@ pub(crate) fn parse(
     Ok(PyMechanism::new(inner, origin))
 }
 
-/// The models inside the package.
+/// The catalogue of built-in models.
 ///
 /// Returns
 /// -------
 /// list of (str, str, str)
-///     Name, what it is, where its numbers come from.
+///     Name, description and source of the parameters.
 #[pyfunction]
 pub(crate) fn catalogue() -> Vec<(&'static str, String, String)> {
     let entries = cylindroid::catalogue::entries();
     entries.into_iter().map(|e| (e.name, e.description, e.source)).collect()
 }
 
-/// What a loader read and what it did not use.
+/// A load report: the format and source of a model, and the ignored elements of its file.
 ///
 /// Attributes
 /// ----------
 /// format, source : str
 /// ignored : list of (int, str, str)
-///     Line (0 where it has none), what, and why.
+///     Line (0 if unknown), element or attribute, and reason.
 #[pyclass(frozen, get_all, name = "LoadReport", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyLoadReport {
     format: &'static str,
     source: String,
-    /// Line, what, why.
+    /// Line, element or attribute, reason.
     ignored: Vec<(usize, String, String)>,
 }
 

@@ -23,7 +23,7 @@ use crate::table::{self, Table};
 pub(crate) use joint::PyJoint;
 pub(crate) use load::PyLoadReport;
 
-/// A robot or mechanism, immutable; from `load` or `parse`.
+/// A robot or mechanism (immutable); created by `load` or `parse`.
 ///
 /// Attributes
 /// ----------
@@ -35,39 +35,40 @@ pub(crate) use load::PyLoadReport;
 /// units : list of str
 ///     'rad' or 'm' for each coordinate.
 /// frames : list of str
-///     Those of the links first, then named ones.
+///     Link frames first, then named frames.
 /// links : list of str
 /// joints : list of Joint
 /// contacts : list of str
 /// actuated : list of str
-///     The coordinates (and joints that close loops) that motors drive.
+///     The actuated coordinates and loop joints.
 /// lower, upper, velocity_limit, acceleration_limit, effort_limit : ndarray, (n,)
-///     Infinite where the file gives none [rad or m, /s, /s^2, N m or N].
+///     Infinite if the file has no limit [rad or m, /s, /s^2, N m or N].
 /// home : ndarray, (n,)
-///     The file's home configuration, else zero, and the middle of limits that exclude zero.
+///     The home configuration of the file, otherwise zero, or the middle of limits that exclude
+///     zero.
 /// tool : str
-///     The frame that is meant where none is named.
+///     The default frame.
 /// reference : str
-///     The frame whose motion is the goal of a closed chain.
+///     The reference frame of a closed chain: the frame of its task.
 /// reach : float
-///     Characteristic length (m): the longest way from the base to a frame along the links.
+///     Characteristic length (m): the extent at home of the joint axes and points.
 /// is_closed : bool
 ///     True if loops or contacts constrain q.
 /// dimension : int
-///     2 in the plane x-y, else 3.
+///     2 in the plane x-y, otherwise 3.
 /// report : LoadReport
-///     What was read and what was not used.
+///     The format, the source and the ignored elements of the file.
 #[pyclass(frozen, name = "Mechanism", module = "cylindroid")]
 #[derive(Debug, Clone)]
 pub(crate) struct PyMechanism {
     pub(crate) inner: Mechanism,
     /// For pickling.
     pub(crate) origin: Origin,
-    /// What `measures` has found of ordinary configurations.
+    /// Generic counts computed by `measures`.
     pub(crate) ordinary: Ordinary,
 }
 
-/// What a mechanism was read from.
+/// The source of a mechanism, for pickling.
 #[derive(Debug, Clone)]
 pub(crate) enum Origin {
     /// A name of the catalogue, or a path.
@@ -81,13 +82,12 @@ pub(crate) enum Origin {
 /// Drives, reference, bits of the length.
 type About = (Vec<usize>, FrameId, u64);
 
-/// Counts of ordinary configurations, which take up to tens of milliseconds to find and stay what they
-/// are.
+/// Cache of generic counts, whose computation takes up to tens of milliseconds.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Ordinary(Arc<Mutex<HashMap<About, MobilityCounts>>>);
 
 impl Ordinary {
-    /// The batch of a mechanism with these options, of what is known where that is enough.
+    /// The batch of a mechanism with these options, with cached generic counts if available.
     pub(crate) fn batch(
         &self,
         mechanism: &Mechanism,
@@ -138,7 +138,7 @@ impl PyMechanism {
         names.iter().map(place).collect()
     }
 
-    /// A vector that was given, else home.
+    /// The given vector, otherwise home.
     pub(crate) fn or_home<'a>(
         &'a self,
         name: &'static str,
@@ -280,7 +280,7 @@ impl PyMechanism {
         self.__copy__()
     }
 
-    /// What it was read from is pickled, and read again: of a file its absolute path.
+    /// Pickles the source, which is read again: for a file, its absolute path.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let package = py.import(intern!(py, "cylindroid"))?;
         Ok(match &self.origin {

@@ -73,8 +73,7 @@ impl PyScrewSystem {
         Ok(self.inner.existence(h).into())
     }
 
-    /// The projector on this system along its h-reciprocal one: no change of frame or unit alters
-    /// what it does.
+    /// The projector onto this system along its h-reciprocal system, independent of frame and unit.
     ///
     /// Parameters
     /// ----------
@@ -84,20 +83,20 @@ impl PyScrewSystem {
     /// Returns
     /// -------
     /// ndarray, (6, 6), or None
-    ///     On twists, linear part first; None where `existence(h)` says that there is none. On
-    ///     wrenches `1 - P.T` keeps what does no work on the system.
+    ///     P for twists, linear part first; None if it does not exist, see `existence(h)`.
+    ///     `1 - P.T` projects wrenches onto those that do no work on the system.
     #[pyo3(signature = (h))]
     fn projector<'py>(&self, py: Python<'py>, h: f64) -> Result<Option<Array<'py>>> {
         check_pitch(h)?;
         self.inner.projector(h).map(|p| arrays::matrix(py, &p.matrix())).transpose()
     }
 
-    /// The projector on this system along another; None where the two do not split the space.
+    /// The projector onto this system along another one; None if they are not complementary.
     ///
     /// Parameters
     /// ----------
     /// other : ScrewSystem
-    ///     Twists that may be given up.
+    ///     The complement: twists that may be discarded.
     ///
     /// Returns
     /// -------
@@ -112,8 +111,8 @@ impl PyScrewSystem {
         projector.map(|p| arrays::matrix(py, &p.matrix())).transpose()
     }
 
-    /// The largest factor by which the projector of pitch h enlarges a twist; infinite where there
-    /// is none.
+    /// The norm of the projector of pitch h: the largest factor by which it enlarges a twist;
+    /// infinite if it does not exist.
     ///
     /// Parameters
     /// ----------
@@ -128,13 +127,13 @@ impl PyScrewSystem {
         Ok(self.inner.projector_norm(h))
     }
 
-    /// The pitch at which the projector is smallest: advice for `h`.
+    /// The pitch that minimises the norm of the projector: a recommended `h`.
     ///
     /// Returns
     /// -------
     /// (float or None, float)
-    ///     The pitch [m/rad], infinite where the limit is best, None where no pitch has an
-    ///     inverse; and the size of the projector there.
+    ///     The pitch [m/rad], infinite if the limit is best, None if the projector exists for no
+    ///     pitch; and the norm of the projector.
     fn choose_pitch(&self, py: Python<'_>) -> (Option<f64>, f64) {
         let choice = py.detach(|| self.inner.choose_pitch());
         (choice.pitch, choice.norm)

@@ -8,7 +8,7 @@ use super::{PyScrew, PyScrewSystem, PyTransversals, scale_of};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 
-/// Whether lines are in involution: whether joints on them let a load through without feeling it.
+/// Involution test of lines: whether joints on them transmit some load without any joint torque.
 ///
 /// Parameters
 /// ----------
@@ -46,12 +46,12 @@ pub(crate) fn involution(
     Ok(PyInvolution { inner: screws::involution(&lines_of(&lines)?, &options)? })
 }
 
-/// What a set of lines has in common.
+/// The involution test of a set of lines: dependence, and a common null twist.
 ///
 /// Attributes
 /// ----------
 /// in_involution : bool
-///     True if the lines let a load through without feeling it, or are dependent.
+///     True if the lines are dependent, or their span contains a twist reciprocal to all of it.
 /// independent : bool
 ///     True if none of them is spanned by the others.
 /// null_twist : ndarray, (6,), or None

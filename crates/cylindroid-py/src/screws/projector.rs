@@ -9,30 +9,30 @@ use crate::arrays::{self, Array, Numbers};
 use crate::error::{Failure, Result};
 use crate::table;
 
-/// The projector on some motions of a body, along others: what no change of frame or unit alters.
+/// A projector onto a subspace of twists along a complement, independent of frame and units.
 ///
 /// Parameters
 /// ----------
 /// motions : array_like, (6, k)
-///     Twists that span them, as columns, linear part first.
+///     Twists that span the subspace, as columns, linear part first.
 /// along : float or array_like, (6, 6 - k)
-///     A pitch h [m/rad], or infinite for the limit: what is left out is h-reciprocal to all of
-///     them; or the twists that are left out.
+///     The complement: a pitch h [m/rad] (infinite for the limit) for the twists h-reciprocal to
+///     all motions, or twists that span it, as columns.
 /// length, center, noise : optional
-///     As `ScrewSystem`.
+///     As for `ScrewSystem`.
 ///
 /// Attributes
 /// ----------
 /// matrix : ndarray, (6, 6)
-///     P on twists; `1 - P.T` is what `constraint` does to wrenches.
+///     P for twists; `constraint` applies `1 - P.T` to wrenches.
 /// norm : float
-///     The largest factor by which a twist is enlarged: 1 for an orthogonal projector, large where
-///     motions and what is left out nearly meet.
+///     The largest factor by which a twist is enlarged: 1 for an orthogonal projector, large if
+///     subspace and complement nearly intersect.
 ///
 /// Raises
 /// ------
 /// InvalidOptionError
-///     Where there is no such projector, with the reason.
+///     If the projector does not exist, with the reason.
 /// DimensionError, NotFiniteError
 ///
 /// Notes
@@ -111,7 +111,7 @@ impl PyProjector {
         Ok(arrays::vector(py, &self.inner.motion(twist.twist("twist")?).to_array()))
     }
 
-    /// The rest of a twist: what is left out.
+    /// The discarded component of a twist, in the complement.
     ///
     /// Parameters
     /// ----------
@@ -167,7 +167,7 @@ impl PyProjector {
 /// Raises
 /// ------
 /// InvalidOptionError
-///     Where there is no such projector, with the reason.
+///     If the projector does not exist, with the reason.
 /// DimensionError, NotFiniteError
 #[pyfunction]
 #[pyo3(signature = (motions, along, length = None, center = None, noise = None))]
@@ -218,12 +218,13 @@ pub(crate) fn screw_to<'py>(
     Ok(arrays::vector(py, &twist.to_array()))
 }
 
-/// The adjoint of a pose: twists in frame b, seen from frame a; its inverse transpose moves
-/// wrenches.
+/// The adjoint of a pose: transforms twists from frame b to frame a; its inverse transpose does so
+/// for wrenches.
 ///
 /// Parameters
 /// ----------
 /// a_from_b : array_like, (4, 4)
+///     Pose of frame b in frame a (m).
 ///
 /// Returns
 /// -------

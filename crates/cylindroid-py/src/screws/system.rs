@@ -11,7 +11,8 @@ use crate::error::Result;
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
-/// The subspace of twists that a set of twists spans, with its class, principal screws and frame.
+/// A screw system: the subspace spanned by twists, with its Gibson-Hunt class, principal screws and
+/// canonical frame.
 ///
 /// Parameters
 /// ----------
@@ -20,7 +21,7 @@ use crate::table::{self, Table};
 /// length : float, optional
 ///     Characteristic length L (m): the reach of an arm. Default: 1.
 /// center : array_like, (3,), optional
-///     The point at which lengths are judged (m). Default: the one nearest to all axes.
+///     The reference point of rank decisions (m). Default: the point nearest to all axes.
 /// noise : float, optional
 ///     Error of the twists relative to their size. Default: rounding.
 ///
@@ -32,22 +33,22 @@ use crate::table::{self, Table};
 ///     Its class: 'IA', 'IA1', 'IB0', ...; 'h' or 'inf' for orders 1 and 5, '0' and '6'; systems of
 ///     order 4 and 5 carry the class of their reciprocal system.
 /// meaning : str
-///     What a system of this class consists of.
+///     A description of systems of this class.
 /// principal_pitches : ndarray
 ///     Pitches at which the hyperbolic pseudoinverse ceases to exist, largest first [m/rad].
 /// principal_screws : list of Screw
 /// canonical_pose : ndarray, (4, 4)
-///     The frame of the normal form, seen from the frame of the twists.
+///     The frame of the normal form, in the frame of the twists (m).
 /// pitches : ndarray
-///     Those of the normal form [m/rad].
+///     Pitches of the normal form [m/rad].
 /// slope : float or None
 ///     The p of classes IB, IB0 and IC.
 /// residual : float
 ///     Sine of the angle between the system and its normal form.
 /// margins : list of Margin
-///     The quantities that the class hangs on.
+///     The quantities that decide the class.
 /// ambiguous : bool
-///     True if one of them lies so near to its threshold that the verdict is a matter of taste.
+///     True if one of them is so near to its threshold that the class is numerically ambiguous.
 /// basis : ndarray, (6, rank)
 ///     Twists that span the system.
 /// gap, threshold : float
@@ -208,7 +209,7 @@ impl PyScrewSystem {
         self.inner.tolerance()
     }
 
-    /// The twists reciprocal to all of this system: what contacts along them do not hinder.
+    /// The reciprocal screw system: the screws of all wrenches that do no work on this system.
     ///
     /// Returns
     /// -------
