@@ -37,6 +37,7 @@ pub use constraint::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Un
 pub use mobility::actuation_map::ActuationMap;
 pub use mobility::counts::MobilityCounts;
 pub use mobility::finite_mobility::{Branch, FiniteMobility, MobilityEvidence};
+pub use mobility::limbs::{Limb, LimbScrews};
 pub use mobility::motion_space::{MotionSpace, RowSelection};
 pub use mobility::reference_twists::frame_twists;
 pub use mobility::relation::{Relation, RelationBases, RelationDimensions};
@@ -57,7 +58,9 @@ pub use singularity::operation_modes::{
 };
 pub(crate) use singularity::singularity_types::Excess;
 pub use singularity::singularity_types::{Singularities, SingularityDistances};
+pub use singularity::transmission::{ActuatorTransmission, Transmission};
 pub use singularity::verdict::{LocalStructure, Verdict};
+pub use singularity::zlatanov::ZlatanovType;
 pub use singularity_kind::SingularityKind;
 pub(crate) use statics::contact_forces::ContactForceSolver;
 pub use statics::contact_forces::{

@@ -24,8 +24,8 @@ pub(crate) struct ConstraintRow {
     pub(crate) point: Vec3,
     /// Index of its joint or contact: loop joints first, then contacts.
     pub(crate) pair: usize,
-    a: usize,
-    b: usize,
+    pub(crate) a: usize,
+    pub(crate) b: usize,
     pub(crate) unit: Unit,
     /// Index among the loop joints of one coordinate, if the row measures the rate of one.
     pub(crate) rate_of: Option<usize>,

@@ -90,6 +90,12 @@ impl MobilityCounts {
         Self::of(&motions, &motions.relation()).with_split_off(compression.split_off())
     }
 
+    /// h: dimension by which the possible velocities of the actuated joints fall short of all.
+    pub(crate) fn impossible_inputs(&self, [actuated, columns]: [usize; 2]) -> usize {
+        let free = columns.saturating_sub(self.rank).saturating_sub(self.idle);
+        actuated.saturating_sub(free.saturating_sub(self.indeterminacy))
+    }
+
     /// True if the actuated joints depend on each other: they set fewer motions than their number
     /// and that of the motions permit. At regular configurations, a fault of the architecture.
     pub(crate) fn lack_actuation(&self, [actuated, columns]: [usize; 2]) -> bool {

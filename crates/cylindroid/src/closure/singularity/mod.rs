@@ -4,10 +4,13 @@
 //! `singularity_types` compares the counts at hand with them (type I, II, III, configuration
 //! space, passive) and measures the distance to each type; `diagnosis` adds the motions lost and
 //! gained, as screws. Read them in this order. `operation_modes` searches for the modes of motion
-//! of a mechanism, with their counts.
+//! of a mechanism, with their counts; `zlatanov` states the six types of Zlatanov; `transmission`
+//! measures how well the limbs transmit motion and force.
 
 pub(crate) mod diagnosis;
 pub(crate) mod generic_mobility;
 pub(crate) mod operation_modes;
 pub(crate) mod singularity_types;
+pub(crate) mod transmission;
 pub(crate) mod verdict;
+pub(crate) mod zlatanov;

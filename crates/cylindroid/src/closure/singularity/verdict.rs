@@ -18,6 +18,7 @@ use std::fmt;
 
 use super::generic_mobility::GenericMobility;
 use super::singularity_types::Excess;
+use super::zlatanov::ZlatanovType;
 use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::{FiniteMobility, MobilityEvidence};
 use crate::closure::mobility::second_order::SecondOrderRigidity;
@@ -93,6 +94,7 @@ pub struct Verdict {
     second_order: Option<SecondOrderRigidity>,
     excess: Excess,
     everywhere: Vec<SingularityKind>,
+    zlatanov: Vec<ZlatanovType>,
 }
 
 impl Verdict {
@@ -116,7 +118,13 @@ impl Verdict {
         excess.folds = structure.is_singular();
         let everywhere =
             [(unactuated, SingularityKind::TypeII), (folded, SingularityKind::ConfigurationSpace)];
+        let zlatanov = match structure {
+            LocalStructure::Unknown => Vec::new(),
+            LocalStructure::ShakyRigid => vec![ZlatanovType::IncreasedInstantaneousMobility],
+            _ => ZlatanovType::of(now, &generic.counts, &generic.branches, sizes),
+        };
         Self {
+            zlatanov,
             dof: finite.infinitesimal,
             finite_dof: finite.finite,
             branches: finite.branches.len(),
@@ -170,6 +178,13 @@ impl Verdict {
     #[must_use]
     pub fn everywhere(&self) -> &[SingularityKind] {
         &self.everywhere
+    }
+
+    /// Zlatanov's types of its singularity; none for a regular configuration. Of a structure that
+    /// moves to first order only IIM is decided, where the loops are open nothing.
+    #[must_use]
+    pub fn zlatanov(&self) -> &[ZlatanovType] {
+        &self.zlatanov
     }
 
     /// True if nothing is singular here, and this is known.

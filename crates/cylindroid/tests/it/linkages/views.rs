@@ -2,7 +2,8 @@
 //! number is the same.
 
 use cylindroid::closure::{
-    ClosedChain, Diagnosis, FiniteMobility, Mobility, MobilityEvidence, MotionSpace,
+    ClosedChain, Diagnosis, FiniteMobility, LimbScrews, Mobility, MobilityEvidence, MotionSpace,
+    Transmission,
 };
 use cylindroid::spatial::{Rotation, Vec3};
 use cylindroid::{Mechanism, catalogue};
@@ -116,6 +117,24 @@ fn said(m: &Mechanism, length: f64) -> (Vec<String>, Vec<(String, f64)>) {
         numbers.push((format!("sine {i:02}"), sine));
         numbers.push((format!("tangent {i:02}"), sine / cosine));
     }
+    let screws = LimbScrews::of(&state, None, None).unwrap();
+    for limb in &screws.limbs {
+        let mut joints = limb.joints.clone();
+        joints.sort();
+        let classes = [&limb.twists, &limb.constraint, &limb.actuation]
+            .map(|s| format!("{}{}", s.order(), s.class()));
+        words.push(format!("{joints:?} {} {classes:?}", limb.serial));
+    }
+    if let Some(t) = Transmission::of(&screws, &found.generic) {
+        for a in &t.actuators {
+            words.push(format!("{} {} {}", a.name, a.input.is_some(), a.output.is_some()));
+            numbers.extend(a.input.map(|x| (format!("input {}", a.name), x)));
+            numbers.extend(a.output.map(|x| (format!("output {}", a.name), x)));
+        }
+        numbers.extend(t.local.map(|x| ("local".to_owned(), x)));
+        numbers.extend(t.constraint.map(|x| ("constraint".to_owned(), x)));
+    }
+    words.push(format!("{:?}", found.verdict.zlatanov()));
     words.sort();
     numbers.sort_by(|a, b| a.0.cmp(&b.0));
     (words, numbers)
