@@ -204,3 +204,55 @@ fn the_catalogue_looks_the_same_from_everywhere() {
         compare(name, &text, &[(1e-3, 100.0, false)], 1e-6);
     }
 }
+
+/// The text of a random mechanism: a platform on limbs of random joints, one limb or several.
+fn random_text(random: &mut Random) -> String {
+    let mut whole = |n: usize| (random.within(0.0, n as f64) as usize).min(n - 1);
+    let limbs = 2 + whole(3);
+    let shapes: Vec<Vec<usize>> =
+        (0..limbs).map(|_| (0..2 + whole(3)).map(|_| whole(6)).collect()).collect();
+    let mut text = "name = \"random\"\nreference = \"platform\"\n".to_owned();
+    let mut any = || random.within(-1.0, 1.0);
+    text += &format!("reference_point = [{}, {}, {}]\n", any(), any(), any());
+    for (limb, kinds) in shapes.iter().enumerate() {
+        for (i, kind) in kinds.iter().enumerate() {
+            let link = |i: usize| match i {
+                0 => "ground".to_owned(),
+                i if i == kinds.len() => "platform".to_owned(),
+                i => format!("l{limb}{i}"),
+            };
+            let (a, b) = (link(i), link(i + 1));
+            let names =
+                ["revolute", "prismatic", "cylindrical", "universal", "spherical", "helical"];
+            text += &format!(
+                "[[joint]]\nname = \"j{limb}{i}\"\ntype = \"{}\"\nbetween = [\"{a}\", \"{b}\"]\n",
+                names[*kind]
+            );
+            text += &format!("origin = [{}, {}, {}]\n", any(), any(), any());
+            let axis = Vec3::new(any(), any(), any());
+            let other = axis.cross(Vec3::new(any(), any(), any()));
+            let row = |v: Vec3| format!("[{}, {}, {}]", v.x, v.y, v.z);
+            match kind {
+                3 => text += &format!("axis = {}\naxis2 = {}\n", row(axis), row(other)),
+                4 => {}
+                5 => text += &format!("axis = {}\npitch = {}\n", row(axis), 0.2 * any()),
+                _ => text += &format!("axis = {}\n", row(axis)),
+            }
+            if (limb + i) % 3 != 1 && matches!(kind, 0 | 1 | 5) {
+                text += "actuated = true\n";
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn random_mechanisms_look_the_same_from_everywhere() {
+    let mut random = Random(23);
+    for round in 0..80 {
+        let text = random_text(&mut random);
+        let views = [(1.0, 100.0, true), (1e3, 100.0, false), (1e-3, 0.1, true)];
+        // Distances are known to rounding times the conditioning of the mechanism.
+        compare(&format!("random {round}"), &text, &views, 1e-8);
+    }
+}
