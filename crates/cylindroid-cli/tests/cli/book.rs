@@ -7,6 +7,8 @@
 //! `<!-- NAME.urdf -->` is a file that commands read. `cargo xtask book --outputs` writes what
 //! commands print into the pages.
 
+mod linkages;
+
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;

@@ -141,7 +141,9 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec!["five-bar", "--modes", "2"],
             vec!["five-bar", "--to", "q1=1", "--hold", "q1"],
         ],
-        "mobility" => vec![vec!["stewart"], vec![SLIDING]],
+        "mobility" => {
+            vec![vec!["stewart"], vec![SLIDING], vec!["five-bar", "--modes", "2"]]
+        }
         "manipulability" => vec![
             vec!["five-bar", "--polytope", "--gradient", "volume"],
             vec!["five-bar", "--configurations", "tests/data/five-bar.csv"],
