@@ -28,11 +28,11 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use crate::closed::{
-        PyAssembly, PyAssemblyModes, PyBranch, PyConstraint, PyContactForces, PyContinuationResult,
-        PyDirection, PyFingerContact, PyFiniteMobility, PyGradient, PyGraspQuality,
-        PyJointMobility, PyJointTorques, PyLoopClosureError, PyManipulability, PyMobility,
-        PyModeMeeting, PyOperationMode, PyOperationModes, PyPolytope, PySingularity, PySpectrum,
-        grasp::grasp_quality,
+        PyActuatorTransmission, PyAssembly, PyAssemblyModes, PyBranch, PyConstraint,
+        PyContactForces, PyContinuationResult, PyDirection, PyFingerContact, PyFiniteMobility,
+        PyGradient, PyGraspQuality, PyJointMobility, PyJointTorques, PyLimb, PyLoopClosureError,
+        PyManipulability, PyMobility, PyModeMeeting, PyOperationMode, PyOperationModes, PyPolytope,
+        PySingularity, PySpectrum, PyTransmission, grasp::grasp_quality,
     };
     #[pymodule_export]
     use crate::control::{

@@ -15,6 +15,7 @@ reference: ``'local'``, ``'world'`` or ``'local_world_aligned'``. Every q may be
 """
 
 from ._core import (
+    ActuatorTransmission,
     Admittance,
     Assembly,
     AssemblyModes,
@@ -40,6 +41,7 @@ from ._core import (
     JointMobility,
     JointMove,
     JointTorques,
+    Limb,
     LoadReport,
     LoopClosureError,
     Manipulability,
@@ -65,6 +67,7 @@ from ._core import (
     Stall,
     TimeLaw,
     Trajectory,
+    Transmission,
     Transversals,
     TruncatedDirection,
     __version__,
@@ -100,6 +103,7 @@ from ._errors import (
 )
 
 __all__ = [
+    "ActuatorTransmission",
     "Admittance",
     "Assembly",
     "AssemblyModes",
@@ -128,6 +132,7 @@ __all__ = [
     "JointMobility",
     "JointMove",
     "JointTorques",
+    "Limb",
     "LoadReport",
     "LoopClosureError",
     "Manipulability",
@@ -157,6 +162,7 @@ __all__ = [
     "Stall",
     "TimeLaw",
     "Trajectory",
+    "Transmission",
     "Transversals",
     "TruncatedDirection",
     "UnknownNameError",

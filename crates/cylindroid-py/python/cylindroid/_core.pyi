@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 _Array = NDArray[np.float64]
 
 __all__ = [
+    "ActuatorTransmission",
     "Admittance",
     "Assembly",
     "AssemblyModes",
@@ -35,6 +36,7 @@ __all__ = [
     "JointMobility",
     "JointMove",
     "JointTorques",
+    "Limb",
     "LoadReport",
     "LoopClosureError",
     "Manipulability",
@@ -60,6 +62,7 @@ __all__ = [
     "Stall",
     "TimeLaw",
     "Trajectory",
+    "Transmission",
     "Transversals",
     "TruncatedDirection",
     "__version__",
@@ -272,6 +275,45 @@ class FingerContact:
         torsion: float = 0.0,
         strength: float = 1.0,
     ) -> FingerContact: ...
+
+@final
+class Limb:
+    @property
+    def joints(self) -> list[str]: ...
+    @property
+    def actuated(self) -> list[str]: ...
+    @property
+    def serial(self) -> bool: ...
+    @property
+    def connectivity(self) -> int: ...
+    @property
+    def twists(self) -> ScrewSystem: ...
+    @property
+    def constraint(self) -> ScrewSystem: ...
+    @property
+    def actuation(self) -> ScrewSystem: ...
+
+@final
+class Transmission:
+    @property
+    def local(self) -> float | None: ...
+    @property
+    def constraint(self) -> float | None: ...
+    @property
+    def actuators(self) -> list[ActuatorTransmission]: ...
+
+@final
+class ActuatorTransmission:
+    @property
+    def name(self) -> str: ...
+    @property
+    def limb(self) -> int: ...
+    @property
+    def input(self) -> float | None: ...
+    @property
+    def output(self) -> float | None: ...
+    @property
+    def wrench(self) -> Screw | None: ...
 
 @final
 class FiniteMobility:
@@ -720,6 +762,10 @@ class Mechanism:
 @final
 class Mobility:
     @property
+    def limbs(self) -> list[Limb] | None: ...
+    @property
+    def transmission(self) -> Transmission | None: ...
+    @property
     def closure_error(self) -> LoopClosureError | None: ...
     @property
     def components(self) -> list[str]: ...
@@ -1064,6 +1110,8 @@ class SharedController:
 
 @final
 class Singularity:
+    @property
+    def zlatanov(self) -> list[str]: ...
     @property
     def compared_with(self) -> int: ...
     @property

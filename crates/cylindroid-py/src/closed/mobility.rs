@@ -2,11 +2,13 @@
 
 use std::sync::OnceLock;
 
-use cylindroid::closure::{Diagnosis, Mobility, Subspace};
+use cylindroid::closure::{Diagnosis, LimbScrews, Mobility, Subspace, Transmission};
 use pyo3::prelude::*;
 
 use super::object::object;
-use super::{PyConstraint, PyFiniteMobility, PyLoopClosureError, PySingularity};
+use super::{
+    PyConstraint, PyFiniteMobility, PyLimb, PyLoopClosureError, PySingularity, PyTransmission,
+};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Failure, Result};
 use crate::mechanism::PyMechanism;
@@ -55,6 +57,11 @@ use crate::table::{self, Table};
 ///     The motions beyond first order.
 /// finite_dof : int or None
 ///     Degrees of freedom of finite motion; None if unknown.
+/// limbs : list of Limb or None
+///     The limbs between ground and reference link; None for bare matrices.
+/// transmission : Transmission or None
+///     Transmission indices; None for bare matrices and where they are not defined: fewer than two
+///     limbs, structures, or another number of actuated joints than of freedoms of the platform.
 /// actuated, passive, components : list of str
 /// closure_error : LoopClosureError or None
 ///     Loop-closure error: the report is valid where the loops are closed.
@@ -129,6 +136,12 @@ impl PyMobility {
         let found =
             py.detach(|| Diagnosis::of(&origin.state, Some(origin.reference), Some(length)))?;
         Ok(Some(self.diagnosis.get_or_init(|| found)))
+    }
+
+    fn screws(&self, py: Python<'_>) -> Result<Option<LimbScrews>> {
+        let Some(origin) = &self.constraint.origin else { return Ok(None) };
+        let length = self.constraint.inner.length();
+        Ok(Some(py.detach(|| LimbScrews::of(&origin.state, Some(origin.reference), Some(length)))?))
     }
 
     fn basis<'py>(py: Python<'py>, of: &Subspace) -> Result<Array<'py>> {
@@ -276,6 +289,19 @@ impl PyMobility {
     #[getter]
     fn finite_dof(&self, py: Python<'_>) -> Result<Option<usize>> {
         Ok(self.diagnosis(py)?.and_then(|d| d.finite.finite))
+    }
+
+    #[getter]
+    fn limbs(&self, py: Python<'_>) -> Result<Option<Vec<PyLimb>>> {
+        Ok(self.screws(py)?.map(|s| s.limbs.iter().map(PyLimb::from).collect()))
+    }
+
+    #[getter]
+    fn transmission(&self, py: Python<'_>) -> Result<Option<PyTransmission>> {
+        let (Some(screws), Some(found)) = (self.screws(py)?, self.diagnosis(py)?) else {
+            return Ok(None);
+        };
+        Ok(Transmission::of(&screws, &found.generic).map(PyTransmission::from))
     }
 
     #[getter]

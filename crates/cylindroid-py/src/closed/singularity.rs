@@ -21,6 +21,9 @@ use crate::table::{self, Table};
 /// everywhere : list of str
 ///     The kinds that every configuration of the branch has (architecture singularities); empty
 ///     where the singularity is one of this configuration.
+/// zlatanov : list of str
+///     Zlatanov's types: 'RI', 'RO' (redundant input, output), 'II', 'IO' (impossible input,
+///     output), 'RPM' (redundant passive motion), 'IIM' (increased instantaneous mobility).
 /// structure : str
 ///     The closed configurations around this one: 'regular', 'bifurcation', 'cone', 'shaky',
 ///     'shaky-rigid', 'rigid' or 'unknown'.
@@ -68,6 +71,11 @@ impl PySingularity {
     #[getter]
     fn everywhere(&self) -> Vec<&'static str> {
         self.inner.verdict.everywhere().iter().map(|k| k.name()).collect()
+    }
+
+    #[getter]
+    fn zlatanov(&self) -> Vec<&'static str> {
+        self.inner.verdict.zlatanov().iter().map(|t| t.name()).collect()
     }
 
     #[getter]

@@ -7,6 +7,7 @@ use cylindroid::closure::{Diagnosis, JointMobility, Mobility, MobilityCounts, Mo
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
+use super::limbs::{LimbJson, Limbs, TransmissionJson};
 use super::operation_modes;
 use super::singularity::{self, FiniteJson, SingularityJson};
 use super::{HeadJson, Posed, list};
@@ -42,6 +43,9 @@ struct MobilityJson<'a> {
     /// Wrenches (force first) resisted without torques.
     zero_torque_basis: Vec<Vec<f64>>,
     joints: Vec<JointJson<'a>>,
+    limbs: Vec<LimbJson>,
+    /// Null where the indices are not defined.
+    transmission: Option<TransmissionJson>,
     /// Counts that hang on little, in words.
     ambiguous_ranks: Vec<String>,
 }
@@ -68,29 +72,35 @@ pub(crate) fn run(
         let options = ModeOptions { starts, seed: args.seed };
         return operation_modes::run(&posed, options, style, out);
     }
-    let (mobility, diagnosis) = find(&posed)?;
+    let (mobility, diagnosis, limbs) = find(&posed)?;
     match style {
-        Style::Json => output::json(out, &describe(&posed, &mobility, &diagnosis))?,
-        Style::Table => print(out, &posed, &mobility, &diagnosis)?,
+        Style::Json => output::json(out, &describe(&posed, &mobility, &diagnosis, &limbs))?,
+        Style::Table => print(out, &posed, &mobility, &diagnosis, &limbs)?,
     }
     Ok(ExitCode::SUCCESS)
 }
 
 /// The object of `--json`.
 pub(crate) fn report(posed: &Posed) -> anyhow::Result<Box<RawValue>> {
-    let (mobility, diagnosis) = find(posed)?;
-    Ok(to_raw_value(&describe(posed, &mobility, &diagnosis))?)
+    let (mobility, diagnosis, limbs) = find(posed)?;
+    Ok(to_raw_value(&describe(posed, &mobility, &diagnosis, &limbs))?)
 }
 
-fn find(posed: &Posed) -> cylindroid::Result<(Mobility, Diagnosis)> {
+fn find(posed: &Posed) -> cylindroid::Result<(Mobility, Diagnosis, Limbs)> {
     let chain = &posed.chain;
     let mobility = Mobility::of(&chain.constraint);
     let length = chain.constraint.length();
     let diagnosis = Diagnosis::of(&posed.state()?, Some(chain.reference), Some(length))?;
-    Ok((mobility, diagnosis))
+    let limbs = Limbs::of(posed, &diagnosis)?;
+    Ok((mobility, diagnosis, limbs))
 }
 
-fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJson<'a> {
+fn describe<'a>(
+    posed: &'a Posed,
+    m: &Mobility,
+    found: &Diagnosis,
+    limbs: &Limbs,
+) -> MobilityJson<'a> {
     let chain = &posed.chain;
     let names = chain.actuated.iter().chain(&chain.passive);
     MobilityJson {
@@ -122,6 +132,8 @@ fn describe<'a>(posed: &'a Posed, m: &Mobility, found: &Diagnosis) -> MobilityJs
                 idle: j.idle,
             })
             .collect(),
+        limbs: limbs.json(),
+        transmission: limbs.transmission(),
         ambiguous_ranks: m.ambiguous_ranks.iter().map(ToString::to_string).collect(),
     }
 }
@@ -131,6 +143,7 @@ fn print(
     posed: &Posed,
     m: &Mobility,
     found: &Diagnosis,
+    limbs: &Limbs,
 ) -> anyhow::Result<()> {
     output::pairs(out, posed.heading())?;
     writeln!(out)?;
@@ -150,6 +163,7 @@ fn print(
     output::pairs(out, lines)?;
     writeln!(out)?;
     counts(out, m, &found.generic.counts)?;
+    limbs.print(out)?;
     singularity::ways(out, posed, &found.finite)?;
     if !m.ambiguous_ranks.is_empty() {
         writeln!(out)?;

@@ -2,6 +2,7 @@
 
 pub(super) mod assemble;
 pub(super) mod grasp;
+mod limbs;
 pub(crate) mod manipulability;
 mod measured;
 pub(crate) mod mobility;

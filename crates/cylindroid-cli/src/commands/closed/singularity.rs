@@ -20,6 +20,8 @@ pub(super) struct SingularityJson {
     /// True if every configuration of the branch is singular, and the kinds that they all have.
     everywhere: bool,
     everywhere_kinds: Vec<String>,
+    /// Zlatanov's types: "RI", "RO", "II", "IO", "RPM", "IIM".
+    zlatanov: Vec<&'static str>,
     distances: DistancesJson,
     generic: CountsJson,
     /// Other closed configurations that the generic counts come from.
@@ -91,6 +93,7 @@ impl From<&Diagnosis> for SingularityJson {
             kinds: d.verdict.kinds().iter().map(ToString::to_string).collect(),
             everywhere: !everywhere.is_empty(),
             everywhere_kinds: everywhere.iter().map(ToString::to_string).collect(),
+            zlatanov: d.verdict.zlatanov().iter().map(|t| t.name()).collect(),
             distances: DistancesJson {
                 type_i: at.type_i,
                 type_ii: at.type_ii,
@@ -143,6 +146,7 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
     let branches = d.generic.branches.len();
     let mut lines = vec![
         ("singularity", d.verdict.to_string()),
+        ("types of Zlatanov", zlatanov(d)),
         (
             "compared with",
             match (d.generic.others, branches) {
@@ -188,6 +192,11 @@ pub(super) fn lines(posed: &Posed, d: &Diagnosis) -> Vec<(&'static str, String)>
     .collect();
     lines.push(("distances, 0 to 1", distances.join(", ")));
     lines
+}
+
+fn zlatanov(d: &Diagnosis) -> String {
+    let types: Vec<String> = d.verdict.zlatanov().iter().map(ToString::to_string).collect();
+    types.join(", ")
 }
 
 fn point(screw: &Screw, planar: bool) -> String {

@@ -92,7 +92,7 @@ pub(crate) struct LimbColumn {
     pub(crate) actuated: bool,
     /// Index into q, or n + index among loop joints with a rate.
     place: usize,
-    size: f64,
+    pub(crate) size: f64,
 }
 
 /// The velocity constraint of a limb with its platform.
@@ -102,6 +102,8 @@ pub(crate) struct LimbConstraint {
     /// Scaled; the columns of T last.
     matrix: Matrix,
     d: usize,
+    /// True if no loop of the limb itself constrains its coordinates.
+    open: bool,
 }
 
 impl LimbConstraint {
@@ -155,7 +157,7 @@ impl LimbConstraint {
             });
             (0..d).for_each(|t| matrix[(own.len() + t, k + t)] = 1.0);
         }
-        Self { columns, matrix, d }
+        Self { columns, matrix, d, open: own.is_empty() && carries }
     }
 
     /// The twists of the platform with the columns `locked` at rest, orthonormal, and the motions
@@ -165,6 +167,13 @@ impl LimbConstraint {
         let free: Vec<usize> = (0..k + self.d).filter(|&j| j >= k || !locked(j)).collect();
         let transposed =
             Matrix::from_fn(free.len(), self.matrix.rows(), |i, j| self.matrix[(j, free[i])]);
+        if self.open {
+            // Without loops the coordinates are independent: no kernel of all joints is needed.
+            let columns =
+                Matrix::from_fn(self.d, free.len() - self.d, |i, j| -self.matrix[(i, free[j])]);
+            let basis = ColumnSpace::of(&columns, Threshold::Relative(CLOSURE_RANK)).basis();
+            return LimbMotion { basis, twists: columns, rates: None };
+        }
         let space = ColumnSpace::of(&transposed, Threshold::Relative(CLOSURE_RANK));
         let kernel = space.complement();
         let kept = space.values().get(space.rank().wrapping_sub(1)).copied();
@@ -179,7 +188,7 @@ impl LimbConstraint {
             Some(i) => (0..kernel.cols()).map(|j| kernel[(i, j)] * self.columns[c].size).collect(),
             None => vec![0.0; kernel.cols()],
         });
-        LimbMotion { rates: rates.collect(), basis, twists }
+        LimbMotion { rates: Some(rates.collect()), basis, twists }
     }
 }
 
@@ -190,8 +199,9 @@ pub(crate) struct LimbMotion {
     pub(crate) basis: Matrix,
     /// Twists of the platform for each motion,
     pub(crate) twists: Matrix,
-    /// and for each column of the limb its rate in each motion.
-    pub(crate) rates: Vec<Vec<f64>>,
+    /// and for each column of the limb its rate in each motion; `None` if motion j is a scaled unit
+    /// rate of column j alone.
+    pub(crate) rates: Option<Vec<Vec<f64>>>,
 }
 
 fn columns(mechanism: &Mechanism, limb: &LimbEdges, length: f64) -> Vec<LimbColumn> {

@@ -17,11 +17,11 @@
 //! Checked  tests/it/closure/limbs.rs
 
 use super::limb_graph::{EdgeKind, LimbEdges, limbs};
-use super::limb_motion::{LimbConstraint, LimbMotion, PlatformCoordinates};
+use super::limb_motion::{LimbColumn, LimbConstraint, LimbMotion, PlatformCoordinates};
 use crate::closure::constraint::constraint_rows::constraint_rows;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::{ColumnSpace, Matrix, Threshold};
+use crate::linalg::{ColumnSpace, Matrix, Threshold, dot};
 use crate::model::{FrameId, Mechanism};
 use crate::screws::{ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3};
@@ -54,6 +54,7 @@ pub(crate) struct LimbSpace {
     pub(crate) constraint: Matrix,
     /// Centre of its joints at the platform.
     pub(crate) center: Vec3,
+    /// Its actuators; none if there is no other limb.
     pub(crate) actuators: Vec<Actuator>,
 }
 
@@ -121,9 +122,10 @@ impl LimbScrews {
         let mut all = Vec::new();
         let edges = limbs(mechanism, reference);
         let fixed = mechanism.frame_of(reference).slot == 0;
+        let several = edges.len() > 1;
         for limb in edges {
             let constraint = LimbConstraint::of(state, &limb, &rows, &platform);
-            all.push(Limb::of(state, limb, &constraint, &platform)?);
+            all.push(Limb::of(state, limb, &constraint, &platform, several)?);
         }
         let d = platform.d();
         let wrenches: Vec<&Matrix> = all.iter().map(|l| &l.space.constraint).collect();
@@ -148,6 +150,7 @@ impl Limb {
         edges: LimbEdges,
         constraint: &LimbConstraint,
         platform: &PlatformCoordinates,
+        several: bool,
     ) -> Result<Self> {
         let mechanism = state.mechanism();
         let motion = constraint.twists(&|_| false);
@@ -162,11 +165,16 @@ impl Limb {
         };
         let mut space =
             LimbSpace { constraint: wrenches, center, actuators: Vec::new(), edges, motion };
-        for (j, column) in constraint.columns.iter().enumerate().filter(|(_, c)| c.actuated) {
+        // The indices of transmission compare limbs.
+        let actuated = |c: &LimbColumn| several && c.actuated;
+        for (j, column) in constraint.columns.iter().enumerate().filter(|(_, c)| actuated(c)) {
             let others_free = constraint.twists(&|k| k == j);
             let wrench = beyond(platform, &others_free.basis, &space.constraint, center);
             let wrench = (wrench.cols() > 0).then(|| wrench.column(0).to_vec());
-            let power = wrench.as_deref().map_or(0.0, |w| space.power(platform, w, j));
+            let power = wrench.as_deref().map_or(0.0, |w| match &space.motion.rates {
+                Some(rates) => space.power(platform, w, &rates[j]),
+                None => platform.length * dot(w, space.motion.twists.column(j)) / column.size,
+            });
             space.actuators.push(Actuator {
                 name: column.name.clone(),
                 wrench,
@@ -177,7 +185,10 @@ impl Limb {
         }
         Ok(Self {
             joints: space.edges.edges.iter().map(names).collect(),
-            actuated: space.actuators.iter().map(|a| a.name.clone()).collect(),
+            actuated: {
+                let actuated = constraint.columns.iter().filter(|c| c.actuated);
+                actuated.map(|c| c.name.clone()).collect()
+            },
             serial: space.edges.serial,
             twists: platform.twist_system(&space.motion.basis)?,
             constraint: platform.wrench_system(&space.constraint)?,
@@ -188,9 +199,9 @@ impl Limb {
 }
 
 impl LimbSpace {
-    /// The power of a wrench that no motion with column `j` at rest needs, for a unit rate of it.
-    fn power(&self, platform: &PlatformCoordinates, wrench: &[f64], j: usize) -> f64 {
-        let rates = &self.motion.rates[j];
+    /// The power of a wrench that does no work while a column is at rest, for a unit rate of it;
+    /// `rates`: those of the column in all motions.
+    fn power(&self, platform: &PlatformCoordinates, wrench: &[f64], rates: &[f64]) -> f64 {
         let size: f64 = rates.iter().map(|x| x * x).sum();
         let powers = self.motion.twists.transpose().mul_vec(wrench);
         let along: f64 = powers.iter().zip(rates).map(|(p, r)| p * r).sum();
