@@ -33,7 +33,7 @@ pub const JACOBI_ORTHOGONAL: f64 = 4.0 * f64::EPSILON;
 /// Default relative threshold of the truncated inverse: `s_i <= eps * s_1` is cut [-].
 pub const TRUNCATION: f64 = 1e-3;
 
-/// Default damping [unit of the singular values, after scaling by the reach].
+/// Default damping [unit of the singular values, after scaling by the characteristic length].
 pub const DAMPING: f64 = 0.02;
 
 /// Default onset of variable damping, relative to the largest singular value [-].
@@ -68,8 +68,8 @@ pub const LIMIT_MET: f64 = 1e-12;
 /// component is positive, so that rounding does not choose the direction.
 pub const HALF_TURN: f64 = 1e-9;
 
-/// Positions are known to this fraction of the largest of them [-]: a few roundings of each joint on
-/// the way.
+/// Positions are known to this fraction of the largest of them [-]: a few roundings of each joint
+/// on the way.
 pub const POSITION_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Axes that pass a common point within this fraction of the extent of their joints meet there, so
@@ -92,8 +92,8 @@ pub const NEARLY_PARALLEL: f64 = 1e-6;
 /// characteristic length [-]: margins then depend on the frame to a similar fraction.
 pub const CENTER_FOUND: f64 = 1e-9;
 
-/// A screw system is the same from all points along a direction in which it changes by less than the
-/// root of this, relative to the others [-]: rounding, and what is far below [`FAR_AXIS`].
+/// A screw system is the same from all points along a direction in which it changes by less than
+/// the root of this, relative to the others [-]: rounding, and what is far below [`FAR_AXIS`].
 pub const FREE_TRANSLATION: f64 = 1e-10;
 
 /// The centre of a screw system is put nearest to the origin, where it is free, from less than this
@@ -125,8 +125,8 @@ pub const NOISE_RANK: f64 = 30.0;
 /// class to this multiple of its size [-].
 pub const NOISE_CLASS: f64 = 100.0;
 
-/// Noise of twists reaches their span times their conditioning; up to this one, thresholds cover it,
-/// and twists that are conditioned worse are flagged [-].
+/// Noise of twists reaches their span times their conditioning; up to this one, thresholds cover
+/// it, and twists that are conditioned worse are flagged [-].
 pub const NOISE_CONDITION: f64 = 5.0;
 
 /// A zero perturbed by noise stays below this fraction of the threshold that the noise raises [-]:
@@ -190,8 +190,8 @@ pub const GRASP_QUALITY: f64 = 1e-3;
 /// zero [-]: the rounding of a map that was moved between frames.
 pub const PASSIVE: f64 = 1e-9;
 
-/// Loops whose closure error is less than this times the reach, and less than this in angle (rad),
-/// are closed: far above rounding, far below manufacturing tolerances [-].
+/// Loops whose closure error is less than this times the characteristic length, and less than this
+/// in angle (rad), are closed: far above rounding, far below manufacturing tolerances [-].
 pub const CLOSED: f64 = 1e-10;
 
 /// Directions in which a constraint is weaker than this, relative to its strongest, are excluded
@@ -200,13 +200,13 @@ pub const CLOSED: f64 = 1e-10;
 pub const CORRECTION_RANK: f64 = 1e-6;
 
 /// A motion with less than this share in the actuated joints (of a motion of length one in units
-/// scaled by the reach) is no longer controlled by them: passive joints move a hundred times as
-/// fast as the actuators and multiply their errors and clearances as much [-].
+/// scaled by the characteristic length) is no longer controlled by them: passive joints move a
+/// hundred times as fast as the actuators and multiply their errors and clearances as much [-].
 pub const MIN_ACTUATED_SHARE: f64 = 1e-2;
 
-/// Loops whose closure error is less than this times the reach, and less than this in angle (rad),
-/// are closed by a servo during its motion, as measured configurations need; others must be
-/// assembled first.
+/// Loops whose closure error is less than this times the characteristic length, and less than this
+/// in angle (rad), are closed by a servo during its motion, as measured configurations need; others
+/// must be assembled first.
 pub const NEARLY_CLOSED: f64 = 1e-2;
 
 /// Joint velocities clamped at bounds that follow from each other, or contradict each other, by
@@ -269,17 +269,17 @@ pub const IK_POSITION: f64 = 1e-6;
 /// The same of the orientation (rad).
 pub const IK_ORIENTATION: f64 = 1e-6;
 
-/// Axes that are parallel within this angle (rad), or meet within this distance over the reach,
-/// count as such for formulas of inverse kinematics: files print 1.5708, which is 4e-6 off, and two
-/// Newton steps make 1e-10 of it and then rounding.
+/// Axes that are parallel within this angle (rad), or meet within this distance over the
+/// characteristic length, count as such for formulas of inverse kinematics: files print 1.5708,
+/// which is 4e-6 off, and two Newton steps make 1e-10 of it and then rounding.
 pub const ALIGNED_AXES: f64 = 1e-5;
 
 /// Axes that cross at an angle whose sine is below this have no point where they meet that formulas
 /// could rest on [-]: a hundred times the departures of [`ALIGNED_AXES`] would remain.
 pub const OBLIQUE_AXES: f64 = 1e-2;
 
-/// Axes that depart from their structure by no more than this have it to rounding [rad, reaches]:
-/// bases a hundred reaches from the origin leave less.
+/// Axes that depart from their structure by no more than this have it to rounding [rad,
+/// characteristic lengths]: bases a hundred reaches from the origin leave less.
 pub const ANALYTIC_EXACT: f64 = 1e-12;
 
 /// A turn is not determined where the arm that it would be read from is shorter than this, in
@@ -296,10 +296,10 @@ pub const NEARLY_SATISFIED: f64 = 1e-4;
 /// double root [-]; forward kinematics decides.
 pub const TANGENT_ROOT: f64 = 1e-9;
 
-/// An answer of formulas with errors below this needs no Newton step [rad, reaches].
+/// An answer of formulas with errors below this needs no Newton step [rad, characteristic lengths].
 pub const ANALYTIC_REFINED: f64 = 1e-12;
 
-/// One with larger errors than this is none [rad, reaches].
+/// One with larger errors than this is none [rad, characteristic lengths].
 pub const ANALYTIC_CONFIRMED: f64 = 1e-10;
 
 /// Answers of formulas whose angles differ by less than this, whole turns apart, are one (rad): far
@@ -319,9 +319,9 @@ pub const REPEATED: f64 = 1e-7;
 /// similar, about 1e-12.
 pub const MATRIX_STEP: f64 = 1e-3;
 
-/// Two assemblies whose joints differ by less than this, in lengths over the reach and in angle,
-/// are one: far above the rounding at the end of a search, 1e-8 at a double root, far below the
-/// difference of two assemblies [-].
+/// Two assemblies whose joints differ by less than this, in lengths over the characteristic length
+/// and in angle, are one: far above the rounding at the end of a search, 1e-8 at a double root, far
+/// below the difference of two assemblies [-].
 pub const SAME_ASSEMBLY: f64 = 1e-6;
 
 /// Second-order terms of the loops at or below it count as zero (scaled) [-]: differences of loops
@@ -333,11 +333,13 @@ pub const SECOND_ORDER: f64 = 1e-6;
 pub const SAME_SHAKY: f64 = 0.05;
 
 /// Smallest ratio of the singular values kept at which an assembly from a restart has a clear rank
-/// [-]: at a singular configuration the position of an assembly is accurate to the root of rounding.
+/// [-]: at a singular configuration the position of an assembly is accurate to the root of
+/// rounding.
 pub const CLEAR_SAMPLE: f64 = 1e-5;
 
 /// Links that a trial step by 0.05 moves by less than this have come back to where they were, in
-/// lengths over the reach and in angle [-]: the assembly is a double root, and no motion leaves it.
+/// lengths over the characteristic length and in angle [-]: the assembly is a double root, and no
+/// motion leaves it.
 pub const TRIAL_MOVED: f64 = 1e-3;
 
 /// Default least distance to a singularity on a way through closed configurations: smallest over

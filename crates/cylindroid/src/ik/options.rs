@@ -35,7 +35,7 @@ pub struct IkOptions {
     pub seed: u64,
     /// Limits of the computation.
     pub budget: Budget,
-    /// Characteristic length that divides positions (m); `None`: the reach.
+    /// Characteristic length that divides positions (m); `None`: that of the mechanism.
     pub length: Option<f64>,
 }
 

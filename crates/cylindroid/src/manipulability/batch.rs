@@ -34,7 +34,7 @@ use crate::tolerance::{CLEAR_DISTANCE, CLOSED, NEGLIGIBLE_SHARE};
 pub struct BatchOptions {
     /// The frame whose motion is the goal: the mechanism's reference by default.
     pub reference: Option<FrameId>,
-    /// Characteristic length (m): the reach by default.
+    /// Characteristic length (m): that of the mechanism by default.
     pub length: Option<f64>,
     /// Metrics of twists and joint velocities. Those of wrenches and torques are not used: the
     /// indices are those of motion.

@@ -24,7 +24,7 @@ const CENTER_STEPS: usize = 64;
 /// Options of screw systems: characteristic length, centre and noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScrewOptions {
-    /// The characteristic length L, in the unit of the twists' linear parts: the reach of an arm,
+    /// The characteristic length L, in the unit of the twists' linear parts: the `reach` of an arm,
     /// the size of a workspace.
     pub length: f64,
     /// The point at which lengths are measured; `None` for the point nearest to all axes.
@@ -173,7 +173,8 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
 /// directions nearly parallel to all axes, of the origin of the frame, not of the twists.
 ///
 /// Each step goes to the least-squares point of the axes of a basis that is orthonormal at the
-/// previous one and in which the angular parts are orthogonal: unique as long as the choice matters.
+/// previous one and in which the angular parts are orthogonal: unique as long as the choice
+/// matters.
 fn center_of(twists: &[Twist], start: Scale, turning: f64) -> Scale {
     let at = |scale: Scale| Span::of_independent(twists.iter().map(|t| scale.apply(*t)));
     let origin = Scale { center: Vec3::ZERO, ..start };

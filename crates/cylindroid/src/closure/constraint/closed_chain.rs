@@ -48,7 +48,7 @@ pub struct ClosedChain {
 }
 
 impl ClosedChain {
-    /// The constraint at `state`, for the mechanism's reference frame or another, with the reach as
+    /// The constraint at `state`, for the mechanism's reference frame or another, with its
     /// characteristic length or another (m).
     ///
     /// ```

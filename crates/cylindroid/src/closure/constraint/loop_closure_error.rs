@@ -33,8 +33,8 @@ impl LoopClosureError {
         *widest = widest.max(residual.abs());
     }
 
-    /// True up to `tolerance::CLOSED` of a length (m), mostly the reach, and in angle.
-    ///
+    /// True up to `tolerance::CLOSED` of a length (m), mostly the characteristic length, and in
+    /// angle.
     /// ```
     /// use cylindroid::closure::ClosedChain;
     ///

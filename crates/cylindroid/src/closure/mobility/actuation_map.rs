@@ -7,8 +7,8 @@
 //!          the loops to first order
 //! Shapes   C: t x (n + e), n coordinates of the tree, e actuated loop joints; M: (n + e) x p; D: a
 //!          x p, orthonormal in the weighted velocities of the a actuated joints
-//! Units    lengths are divided by the reach for every rank decision; rates in rad/s and m/s
-//!          outside
+//! Units    lengths are divided by the characteristic length for every rank decision; rates in
+//!          rad/s and m/s outside
 //! Valid    any mechanism; for a tree without passive joints M is W^(-1/2). Of all motions with the
 //!          same actuated rates, M y is the one with the least (scaled) passive motion
 //! Why so   every y satisfies the loop constraints, and the least |y| is the least weighted

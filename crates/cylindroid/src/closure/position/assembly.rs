@@ -5,7 +5,8 @@
 //!          residual decreases and multiplied by ten when it does not. Every step is clamped to the
 //!          position limits, and coordinates that push against a limit are left out of it
 //! Shapes   r: t rows, J: t x free coordinates
-//! Units    rows of lengths divided by the reach, columns of lengths multiplied by it
+//! Units    rows of lengths divided by the characteristic length, columns of lengths multiplied by
+//!          it
 //! Valid    any guess. The result is the last configuration with its loop-closure error. Near an
 //!          assembly the steps are Newton steps, and the residual falls to rounding. One assembly
 //!          is found, usually the nearest; there may be others, and failure to find one is not a
@@ -25,7 +26,7 @@ use crate::model::Mechanism;
 const MAX_STEPS: usize = 200;
 /// Initial damping, and the largest that is tried, relative to the largest singular value [-].
 const DAMPING: (f64, f64) = (1e-3, 1e8);
-/// Largest change of any coordinate in one step [rad, or reaches].
+/// Largest change of any coordinate in one step [rad, or characteristic lengths].
 const MAX_CHANGE: f64 = 0.5;
 
 /// The result of closing the loops from an initial guess.
@@ -33,7 +34,8 @@ const MAX_CHANGE: f64 = 0.5;
 pub struct Assembly {
     /// The configuration.
     pub q: Vec<f64>,
-    /// True if every loop and contact is closed to `tolerance::CLOSED` of the reach and in angle.
+    /// True if every loop and contact is closed to `tolerance::CLOSED` of the characteristic length
+    /// and in angle.
     pub closed: bool,
     /// How far loops and contacts are open.
     pub closure_error: LoopClosureError,
@@ -54,8 +56,8 @@ pub struct Assembly {
 /// ```
 ///
 /// Damped Gauss-Newton (Levenberg-Marquardt): r are the loop-closure residuals, J their Jacobian, l
-/// the damping; lengths are divided by the reach. Failure to close the loops is not a proof that no
-/// assembly exists.
+/// the damping; lengths are divided by the characteristic length. Failure to close the loops is not
+/// a proof that no assembly exists.
 ///
 /// ```
 /// use cylindroid::closure::assemble;

@@ -3,7 +3,7 @@
 //!
 //! Formula  assemblies from the guess and from random restarts within limits; two are the same mode
 //!          if all joints and the reference frame coincide (`configuration_signature.rs`)
-//! Units    none: lengths are divided by the reach
+//! Units    none: lengths are divided by the characteristic length
 //! Valid    any mechanism. Modes may be missed: they are found by random sampling, rarely if their
 //!          basin of attraction is small. The Good-Turing estimate (fraction of modes found exactly
 //!          once) estimates the probability that the next closing start yields a new one
@@ -30,7 +30,7 @@ use crate::scalar::uniform;
 use crate::spatial::Vec3;
 use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY, TRIAL_MOVED};
 
-/// Length of the trial step along a self-motion [rad, or reaches].
+/// Length of the trial step along a self-motion [rad, or characteristic lengths].
 const TRIAL: f64 = 0.05;
 
 /// Options of the search for assembly modes or operation modes.
@@ -56,8 +56,8 @@ pub struct Mode {
     pub assembly: Assembly,
     /// Number of starts that led to it.
     pub found: usize,
-    /// Distance from the guess: the largest displacement of a joint over the reach, or the largest
-    /// chord between unit axes [-].
+    /// Distance from the guess: the largest displacement of a joint over the characteristic length,
+    /// or the largest chord between unit axes [-].
     pub distance: f64,
     /// Degrees of freedom that the prescribed coordinates leave: zero for an isolated assembly.
     pub self_motion_dof: usize,

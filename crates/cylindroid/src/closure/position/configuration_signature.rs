@@ -5,7 +5,7 @@
 //!          of a joint or contact, d its axis or normal; also x and y of the reference frame, of
 //!          end links of branches and of free bodies, whose whole pose counts
 //! Shapes   signature: 3 values for each landmark; rates: 3 rows each, a column for each coordinate
-//! Units    none: L is the reach, rates per scaled coordinate
+//! Units    none: L is the characteristic length, rates per scaled coordinate
 //! Valid    any mechanism
 //! Why so   poses of all links would distinguish a rod between a universal and a spherical joint
 //!          from the same rod rotated about itself: 64 names for one configuration of a Stewart
@@ -140,8 +140,8 @@ pub(crate) fn link_poses(state: &State) -> Vec<Pose> {
     (0..mechanism.links().len()).map(|link| state.pose(mechanism.link_frame(link))).collect()
 }
 
-/// The largest displacement of a link between two configurations: distance over the reach, or
-/// angle.
+/// The largest displacement of a link between two configurations: distance over the characteristic
+/// length, or angle.
 pub(crate) fn max_displacement(a: &[Pose], b: &[Pose], mechanism: &Mechanism) -> f64 {
     a.iter().zip(b).fold(0.0, |most: f64, (a, b)| {
         let distance = (a.translation - b.translation).norm() / mechanism.reach();

@@ -33,7 +33,7 @@ const MAX_STEPS: usize = 20_000;
 /// Options of path tracking.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContinuationOptions {
-    /// Largest change of any coordinate in one step [rad, or reaches].
+    /// Largest change of any coordinate in one step [rad, or characteristic lengths].
     pub step: f64,
     /// Smallest accepted distance to a singularity [-], from 1e-5 to below 1.
     pub least_distance: f64,
@@ -106,7 +106,7 @@ pub struct PathSingularity {
     /// Distance to the singularity at the end of the path [-].
     pub distance: f64,
     /// The motion that is gained, as rates of all coordinates [rad/s or m/s], the prescribed ones
-    /// at rest; of unit norm with lengths divided by the reach, its sign arbitrary.
+    /// at rest; of unit norm with lengths divided by the characteristic length, its sign arbitrary.
     pub joint_velocities: Vec<f64>,
     /// The twist of the reference frame in this motion: at the frame's origin, world axes.
     pub twist: Twist,

@@ -1,6 +1,6 @@
 //! Subsets of coordinates: the free ones, changes of some of them, position limits.
 //!
-//! Units    changes have none: lengths are divided by the reach
+//! Units    changes have none: lengths are divided by the characteristic length
 //! Valid    any mechanism; rotation vectors and free bodies are changed as a whole
 //! Checked  tests/it/closure/assembly.rs, tests/it/closure/modes.rs
 
@@ -22,7 +22,7 @@ pub(crate) fn column_scale(mechanism: &Mechanism, i: usize, length: f64) -> f64 
     Unit::of(mechanism.coordinates()[i].kind).size(length)
 }
 
-/// The same with the reach as characteristic length.
+/// The same with the characteristic length of the mechanism.
 pub(crate) fn unit_of(mechanism: &Mechanism, i: usize) -> f64 {
     column_scale(mechanism, i, mechanism.reach())
 }

@@ -1,9 +1,9 @@
 //! Initial guesses: random restarts for assembly, reproducible on every run.
 //!
-//! Units    distances have none: lengths are divided by the reach
-//! Valid    any mechanism; guesses respect position limits, their loops are open. Random numbers are
-//!          drawn one after the other (`random`) or belong to the names of the coordinates, so that
-//!          the order of the joints does not change them (`random_by_name`)
+//! Units    distances have none: lengths are divided by the characteristic length
+//! Valid    any mechanism; guesses respect position limits, their loops are open. Random numbers
+//!          are drawn one after the other (`random`) or belong to the names of the coordinates, so
+//!          that the order of the joints does not change them (`random_by_name`)
 //! Source   Shoemake 1992 for rotations
 //! Checked  tests/it/closure/modes.rs, tests/it/closure/diagnosis.rs
 
@@ -26,8 +26,8 @@ pub(crate) fn perturbed(
     within_limits(mechanism, moved(mechanism, q, &all, &change), &all)
 }
 
-/// A random configuration within the limits: angles uniform in (-pi, pi], lengths up to the reach,
-/// rotations uniform.
+/// A random configuration within the limits: angles uniform in (-pi, pi], lengths up to the
+/// characteristic length, rotations uniform.
 pub(crate) fn random(
     mechanism: &Mechanism,
     guess: &[f64],

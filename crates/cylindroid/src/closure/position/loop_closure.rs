@@ -51,7 +51,7 @@ impl LoopClosure {
         Ok(Self { q: q.to_vec(), residuals, jacobian, residual_norm, closure_error })
     }
 
-    /// At `q`, with a column for each coordinate and the reach as characteristic length.
+    /// At `q`, with a column for each coordinate and the characteristic length of the mechanism.
     pub(crate) fn of(mechanism: &Mechanism, q: &[f64]) -> Result<Self> {
         let all: Vec<usize> = (0..mechanism.n()).collect();
         Self::at(mechanism, q, &all, mechanism.reach())

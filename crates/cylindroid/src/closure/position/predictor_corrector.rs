@@ -5,7 +5,7 @@
 //!          f' = -J_h d, corrector (Newton) J_f df = -r at h(s + ds), both of least norm at the
 //!          generic rank of the branch
 //! Shapes   J_f: loop-closure rows x free coordinates, J_h: the columns of the prescribed ones
-//! Units    none: lengths are divided by the reach (`loop_closure.rs`)
+//! Units    none: lengths are divided by the characteristic length (`loop_closure.rs`)
 //! Valid    a step is accepted if |J_f' - J_f| <= (s + s') / 2, with s and s' the smallest generic
 //!          singular values at its ends, and if the corrector moved less than half as far as the
 //!          predictor. By Weyl's inequality, s stays above a quarter of s + s' between the two
@@ -31,7 +31,7 @@ use crate::tolerance::{
 
 /// Maximum number of corrector steps: three are usual.
 const MAX_CORRECTIONS: usize = 12;
-/// Neighbours whose rank is computed, and their distance [rad, or reaches].
+/// Neighbours whose rank is computed, and their distance [rad, or characteristic lengths].
 const NEIGHBOURS: usize = 3;
 const NEIGHBOUR_DISTANCE: f64 = 0.05;
 

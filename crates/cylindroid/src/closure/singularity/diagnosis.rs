@@ -82,8 +82,8 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// At a configuration, for the mechanism's reference frame or another, with its reach as
-    /// characteristic length or another (m).
+    /// At a configuration, for the mechanism's reference frame or another, with its characteristic
+    /// length or another (m).
     ///
     /// ```
     /// use cylindroid::closure::{Diagnosis, SingularityKind};

@@ -6,20 +6,20 @@
 //!          mobility there. Two configurations belong to one mode if dimension, counts and the
 //!          class of the motions of the reference frame agree; isolated assemblies, if they
 //!          coincide (`configuration_signature.rs`)
-//! Units    none: lengths are divided by the reach
+//! Units    none: lengths are divided by the characteristic length
 //! Valid    certain: every configuration that is listed has its loops closed and the counts of its
 //!          mode, and modes that differ in dimension or counts share no component, since these are
 //!          constant on an analytic branch but for a subset of lower dimension. Not certain: modes
-//!          may be missed, and one mode may comprise several components, since agreement of the data
-//!          does not connect them (the assembly modes of a linkage are one operation mode). An
-//!          assembly from a restart whose rank is not clear, or that has several first-order motions
-//!          but no branch, is counted as undecided: where the loops are singular, an assembly is not
-//!          accurate enough
+//!          may be missed, and one mode may comprise several components, since agreement of the
+//!          data does not connect them (the assembly modes of a linkage are one operation mode). An
+//!          assembly from a restart whose rank is not clear, or that has several first-order
+//!          motions but no branch, is counted as undecided: where the loops are singular, an
+//!          assembly is not accurate enough
 //! Why so   a decomposition of the ideal of the loop equations would decide connection over the
 //!          complex numbers, and takes hours for a 3-UPU; its real components still have to be
 //!          sampled
-//! Source   Fanghella, Galletti & Giannotti 2006 (kinematotropic linkages); Walter & Husty 2008 (the
-//!          operation modes of a 3-UPU)
+//! Source   Fanghella, Galletti & Giannotti 2006 (kinematotropic linkages); Walter & Husty 2008
+//!          (the operation modes of a 3-UPU)
 //! Checked  tests/it/linkages/modes.rs
 
 use std::cmp::Reverse;

@@ -139,8 +139,8 @@ fn friction(
 
 impl WrenchSpace {
     /// At the origin of `object` in world axes, with moments divided by the distance to the
-    /// farthest of these fingers (by the reach of the mechanism if all are at the origin).
-    ///
+    /// farthest of these fingers (by the characteristic length of the mechanism if all are at the
+    /// origin).
     /// # Errors
     /// A frame of another mechanism.
     pub fn about(state: &State, object: FrameId, fingers: &[FingerContact]) -> Result<Self> {

@@ -89,8 +89,8 @@ pub struct ServoOptions {
 
 impl ServoOptions {
     /// The defaults for a mechanism: its tool, or the reference of a closed chain; complete poses
-    /// (x, y and rz in the plane); 1 kHz; gains of 5/s; the truncated inverse; the reach as
-    /// characteristic length.
+    /// (x, y and rz in the plane); 1 kHz; gains of 5/s; the truncated inverse; the characteristic
+    /// length of the mechanism.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
         let closed = mechanism.is_closed();

@@ -1,9 +1,10 @@
 //! Stall detection: when a servo makes no progress towards its target, and why.
 //!
 //! Formula  stalled when the error e = |dp| / L + |angle| (out of reach: |dp| / L) has not fallen
-//!          below (1 - share) of its minimum within the window. The window is suspended while a joint accelerates at its
-//!          limit, and is extended by 4 |v| / A, the time in which the weakest joint reverses from
-//!          its velocity v at the minimum (|v| / A to stop, then the way back)
+//!          below (1 - share) of its minimum within the window. The window is suspended while a
+//!          joint accelerates at its limit, and is extended by 4 |v| / A, the time in which the
+//!          weakest joint reverses from its velocity v at the minimum (|v| / A to stop, then the
+//!          way back)
 //! Causes   `OutOfReach`: the target is farther from the first joint than the length of the chain
 //!          (a proof); `Limits`/`Slow`: the error has a component along controllable directions,
 //!          and joints at their limits do / do not block it; `Singular`: the error lies along
@@ -78,7 +79,8 @@ pub enum Stall {
     /// A type II singularity is near, where the object of a closed chain would gain an uncontrolled
     /// motion: the servo stops before it.
     TypeII {
-        /// Actuated share of that motion, which has unit length in units scaled by the reach [-].
+        /// Actuated share of that motion, which has unit length in units scaled by the
+        /// characteristic length [-].
         share: f64,
         /// The motion as a unit vector in task space.
         direction: Vec<f64>,

@@ -5,7 +5,7 @@
 //!          wrapped into the joint limits, verified by forward kinematics and, if the geometry
 //!          deviates from the ideal one by rounding in the model file, refined by at most two
 //!          Newton steps
-//! Units    rad, m; position errors are compared relative to the reach
+//! Units    rad, m; position errors are compared relative to the characteristic length
 //! Valid    six revolute joints between the ground and the tool, without coupling, besides any
 //!          locked joints. Closer to a singular configuration than the square root of the deviation
 //!          of the axes, a solution may be missing
