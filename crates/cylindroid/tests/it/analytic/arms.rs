@@ -135,7 +135,7 @@ fn structure_does_not_depend_on_the_unit() {
     for (miss, expected) in [(0.0, true), (1e-6, true), (1e-3, false)] {
         for scale in [1e-3, 1.0, 1e3] {
             let mut points = o;
-            points[5] = points[5] + across * miss;
+            points[5] += across * miss;
             let axes: Vec<_> = h.into_iter().zip(points.map(|p| p * scale)).collect();
             let tool = Pose::from_translation((o[5] + Vec3::X * 0.1) * scale);
             let robot = arm(&axes, Pose::IDENTITY, tool, Limits::NONE);
