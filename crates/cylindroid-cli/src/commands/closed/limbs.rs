@@ -130,7 +130,10 @@ impl Limbs {
             };
             let joints = &limb.joints;
             let name = match &joints[..] {
-                [first, .., last] => format!("{first} to {last}"),
+                [first, .., last] if limb.serial => format!("{first} to {last}"),
+                [first, others @ ..] if !limb.serial => {
+                    format!("{first} and {} more joints", others.len())
+                }
                 _ => list(joints),
             };
             vec![
