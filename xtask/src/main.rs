@@ -31,7 +31,8 @@ cargo xtask <task>
   layers    checks that the library's modules import only those before them, that no files import
             one another in a circle, that headers name tests that exist, and that files are short;
             --circles lists every import of the circles, --checked only the headers
-  vectors   regenerates the reference vectors from Pinocchio and MuJoCo (needs Python and PyPI)
+  vectors   regenerates the reference vectors from Pinocchio, MuJoCo, Clarabel and Qhull (needs
+            Python and PyPI)
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   viewer-load [seconds]
             serves the viewer to 20 clients for a minute, and prints memory and lateness

@@ -82,7 +82,9 @@ pub(crate) fn vectors() -> Result<()> {
         "-r",
         "xtask/vectors/requirements.txt",
     ]))?;
-    for (script, folder) in [("pinocchio", "pinocchio"), ("closed_chain", "closed_chains")] {
+    for (script, folder) in
+        [("pinocchio", "pinocchio"), ("closed_chain", "closed_chains"), ("grasp", "grasps")]
+    {
         let script = format!("xtask/vectors/{script}_vectors.py");
         let folder = format!("crates/cylindroid/tests/vectors/{folder}");
         run(Command::new(&python).args([&script, "--out", &folder]))?;

@@ -161,6 +161,55 @@ fn random_pairs_and_triples() {
     }
 }
 
+/// Qualities by Clarabel and Qhull (`xtask/vectors/grasp_vectors.py`).
+#[test]
+fn qualities_of_other_solvers() {
+    let text = include_str!("../../vectors/grasps/quality.json");
+    let file: serde_json::Value = serde_json::from_str(text).unwrap();
+    let number = |v: &serde_json::Value| v.as_f64().unwrap();
+    let vec3 = |v: &serde_json::Value| Vec3::new(number(&v[0]), number(&v[1]), number(&v[2]));
+    let mut count = [0, 0];
+    for case in file["cases"].as_array().unwrap() {
+        let contacts: Vec<FingerContact> = case["contacts"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|c| {
+                let mu = number(&c["mu"]);
+                FingerContact {
+                    point: vec3(&c["point"]),
+                    normal: vec3(&c["normal"]),
+                    friction: match c["torsion"].as_f64() {
+                        Some(torsion) => Friction::Soft { mu, torsion },
+                        None => Friction::Hard { mu },
+                    },
+                    strength: number(&c["strength"]),
+                }
+            })
+            .collect();
+        let metric = if case["bound"] == "l1" { GraspMetric::L1 } else { GraspMetric::LInf };
+        let space = if case["planar"] == true { PLANE } else { SPACE };
+        let found = grasp_quality(&contacts, space, metric).unwrap();
+        let EpsilonQuality { lower, upper } = found.epsilon;
+        let what = format!("{case} {found:?}");
+        let closed = case["closed"] == true;
+        assert_eq!(found.closed, closed, "{what}");
+        count[usize::from(closed)] += 1;
+        if let (true, Some(epsilon)) = (closed, case["epsilon"].as_f64()) {
+            // Solvers stop at 1e-9.
+            assert!(lower <= epsilon + 1e-8 && epsilon <= upper + 1e-8, "{what}");
+            if space.planar {
+                assert!((upper - epsilon).abs() < 1e-9 && (lower - epsilon).abs() < 1e-9, "{what}");
+            }
+        }
+        if let (true, Some(inner)) = (closed, case["inner"].as_f64()) {
+            assert!(inner <= upper + 1e-9, "{what}");
+            assert!(lower <= number(&case["outer"]) + 1e-9, "{what}");
+        }
+    }
+    assert!(count[0] >= 4 && count[1] >= 20, "{count:?}");
+}
+
 /// Moved, rotated, scaled or reordered, a grasp has bounds of the same number.
 #[test]
 fn quality_does_not_depend_on_the_frame() {
