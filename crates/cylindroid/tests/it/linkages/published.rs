@@ -1,6 +1,6 @@
 //! The verdicts of the literature.
 
-use cylindroid::closure::{Diagnosis, LocalStructure, SingularityKind};
+use cylindroid::closure::{Diagnosis, FiniteMobility, LocalStructure, SingularityKind};
 
 use super::{folder, names, parsed, text};
 
@@ -79,6 +79,25 @@ fn singular_points_of_configuration_spaces() {
         assert_eq!(dimensions, branches, "{name}");
         if order.is_some() {
             assert_eq!(found.finite.contact_order, order, "{name}");
+        }
+    }
+}
+
+/// Branches are listed largest first, and what is said of the whole is said of the first.
+#[test]
+fn branches_are_listed_largest_first() {
+    for name in ["sarrus_folded", "kinematotropic_meet"] {
+        let m = parsed(&text(name), name);
+        let found = FiniteMobility::of(&m.state(m.home()).unwrap(), None).unwrap();
+        let dimensions: Vec<usize> = found.branches.iter().map(|b| b.dimension).collect();
+        assert_eq!(dimensions, [2, 1], "{name}");
+        assert_eq!(found.finite, Some(found.branches[0].dimension), "{name}");
+        assert_eq!(found.tracked, found.branches[0].tracked, "{name}");
+        for branch in &found.branches {
+            assert_eq!(branch.motions.cols(), branch.dimension, "{name}");
+            let there = m.state(&branch.configurations[0]).unwrap();
+            let mobility = FiniteMobility::of(&there, None).unwrap();
+            assert_eq!(mobility.finite, Some(branch.dimension), "{name}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Laws of the projectors, of systems made from systems, and of the choice of a pitch.
 
 use cylindroid::Matrix;
-use cylindroid::linalg::Svd;
+use cylindroid::linalg::{ColumnSpace, Svd, Threshold};
 use cylindroid::screws::{Class, NoInverse, ScrewOptions, ScrewSystem};
 use cylindroid::spatial::{Pose, Twist, Wrench};
 
@@ -167,6 +167,41 @@ fn infinite_pitch_is_the_limit() {
             assert_eq!(nearer < 1.1 * near, !grows, "{:?}: {near} {nearer}", case.form);
         }
     });
+}
+
+/// Of order five, P = 1 - m n^T / (n . m) with n normal to the system and Q_h m = n: the largest
+/// factor is |m| |n| / |n . m|, at the centre and over the length.
+#[test]
+fn norm_of_order_five() {
+    let mut random = Random(1613);
+    for _ in 0..50 {
+        let length = 10_f64.powf(random.within(-2.0, 2.0));
+        let center = random.vec3(2.0 * length);
+        let scaled = random.matrix(6, 5);
+        let twists: Vec<Twist> = (0..5)
+            .map(|j| {
+                let x: [f64; 6] = std::array::from_fn(|i| scaled[(i, j)]);
+                let t = Twist::from_array(x);
+                Twist { linear: t.linear * length, ..t }.at_point(-center)
+            })
+            .collect();
+        let options = ScrewOptions { center: Some(center), ..ScrewOptions::with_length(length) };
+        let system = ScrewSystem::of(&twists, &options).unwrap();
+        let normal = Twist::from_array(std::array::from_fn({
+            let n = ColumnSpace::of(&scaled, Threshold::Absolute(1e-9)).complement();
+            move |i| n[(i, 0)]
+        }));
+        let h = random.within(-2.0, 2.0);
+        let along = Twist {
+            linear: (normal.angular + normal.linear * (2.0 * h)) * 2.0,
+            angular: normal.linear * 2.0,
+        };
+        let product = |a: Twist, b: Twist| a.linear.dot(b.linear) + a.angular.dot(b.angular);
+        let [m, n] = [along, normal].map(|x| product(x, x).sqrt());
+        let expected = m * n / product(along, normal).abs();
+        let found = system.projector_norm(h * length);
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::*;
 use cylindroid::control::TaskProjection;
 use cylindroid::inverse::{self, HyperbolicDamping, HyperbolicOptions};
-use cylindroid::linalg::{Matrix, Metric};
+use cylindroid::linalg::{ColumnSpace, Matrix, Metric, Threshold};
 use cylindroid::screws::{Class, NoInverse, ScrewOptions};
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -214,6 +214,44 @@ fn a_projection_may_be_too_large() {
     });
     bold.step(&q, target).unwrap();
     assert_eq!(bold.no_inverse(), None);
+}
+
+/// The size of the projector that decides: |P|, Frobenius, at the tool and over the length. With five
+/// joints P = 1 - m n^T / (n . m), n normal to the motions and Q_h m = n, so that |P|^2 = 4 + (|m|
+/// |n| / n . m)^2.
+#[test]
+fn size_of_a_projection() {
+    let robot = youbot();
+    for (degrees, h) in [(25.0, 0.1), (60.0, -0.3), (89.0, 0.1)] {
+        let q = pitched(degrees);
+        let state = robot.state(&q).unwrap();
+        let (pose, length) = (state.pose(robot.tool()), robot.reach());
+        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+        let scaled = Matrix::from_fn(6, 5, |i, c| j[(i, c)] / if i < 3 { length } else { 1.0 });
+        let normal = ColumnSpace::of(&scaled, Threshold::Absolute(1e-9)).complement();
+        let n: [f64; 6] = std::array::from_fn(|i| normal[(i, 0)]);
+        let m: [f64; 6] =
+            std::array::from_fn(
+                |i| {
+                    if i < 3 { n[i + 3] + 2.0 * h / length * n[i] } else { n[i - 3] }
+                },
+            );
+        let dot = |a: &[f64; 6], b: &[f64; 6]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let expected = (4.0 + dot(&m, &m) * dot(&n, &n) / dot(&m, &n).powi(2)).sqrt();
+        for (factor, accepted) in [(0.999, false), (1.001, true)] {
+            let mut servo = servo(&robot, |o| {
+                o.projection = TaskProjection::Hyperbolic { h };
+                o.largest_projection = factor * expected;
+            });
+            servo.step(&q, Target { pose, feed_forward: TWIST }).unwrap();
+            assert_eq!(servo.no_inverse().is_none(), accepted, "{degrees} {expected}");
+            if let Some(NoInverse::TooLarge { norm }) = servo.no_inverse() {
+                assert!((norm / expected - 1.0).abs() < 1e-6, "{norm} {expected}");
+            } else {
+                assert!(accepted, "{:?}", servo.no_inverse());
+            }
+        }
+    }
 }
 
 /// With six independent joints every projection is the identity.
