@@ -87,6 +87,7 @@ pub struct Servo {
     active: Vec<Option<LimitKind>>,
     at_limit: Vec<usize>,
     stall_detector: StallDetector,
+    position_stall: StallDetector,
     last_target: Option<Pose>,
     distance: f64,
 }
@@ -181,6 +182,7 @@ impl Servo {
             approaches_type_ii: false,
             at_limit: Vec::with_capacity(n),
             stall_detector: StallDetector::new(),
+            position_stall: StallDetector::new(),
             last_target: None,
             distance: 0.0,
             chain,
@@ -310,17 +312,20 @@ impl Servo {
         if self.last_target != Some(target.pose) {
             self.last_target = Some(target.pose);
             self.stall_detector = StallDetector::new();
+            self.position_stall = StallDetector::new();
         }
         let tolerance = self.options.tolerance;
         let (position_error, orientation_error) =
             (desired.error.linear.norm(), desired.error.angular.norm());
-        // Out of reach only the position decides: the orientation may creep on for minutes.
-        let out_of_reach = self.distance > self.length + self.offset_of_free_position();
-        let turning = if out_of_reach { 0.0 } else { orientation_error };
-        let scaled = position_error / self.options.length + turning;
+        let scaled = position_error / self.options.length + orientation_error;
         let near =
             position_error <= tolerance.position && orientation_error <= tolerance.orientation;
-        let stalled = self.stall_detector.stalled(scaled, braking, self.options.dt);
+        // Out of reach it is enough that the position does not improve: the orientation may creep on
+        // for minutes.
+        let out_of_reach = self.distance > self.length + self.offset_of_free_position();
+        let dt = self.options.dt;
+        let far = self.position_stall.stalled(position_error, braking, dt) && out_of_reach;
+        let stalled = self.stall_detector.stalled(scaled, braking, dt) || far;
         let status = if near && self.settled(desired.feed_forward) {
             Status::Reached
         } else if stalled || self.is_stopped() {

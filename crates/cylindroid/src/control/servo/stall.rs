@@ -1,6 +1,6 @@
 //! Stall detection: when a servo makes no progress towards its target, and why.
 //!
-//! Formula  stalled when the error e = |dp| / L + |angle| (out of reach: |dp| / L) has not fallen
+//! Formula  stalled when the error e = |dp| / L + |angle| (or, out of reach, |dp|) has not fallen
 //!          below (1 - share) of its minimum within the window. The window is suspended while a
 //!          joint accelerates at its limit, and is extended by 4 |v| / A, the time in which the
 //!          weakest joint reverses from its velocity v at the minimum (|v| / A to stop, then the
