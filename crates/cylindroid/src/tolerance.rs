@@ -100,6 +100,10 @@ pub const FREE_TRANSLATION: f64 = 1e-10;
 /// many lengths away [-]: moments then keep thirteen digits.
 pub const FAR_ORIGIN: f64 = 10.0;
 
+/// The centre of a screw system, where it is free, may lie this many lengths away in another frame
+/// of which the origin is within a hundred lengths of the axes [-].
+pub const CENTER_FREEDOM: f64 = 200.0;
+
 /// Twists of which a unit has an angular part below this do not determine the centre of a screw
 /// system: their pitch, or their distance from the others, is a hundred thousand lengths [-].
 pub const FAR_AXIS: f64 = 1e-5;

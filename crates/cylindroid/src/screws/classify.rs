@@ -16,7 +16,7 @@ use super::class::Class;
 use super::span::{Span, angular, join, linear};
 use crate::linalg::{Matrix, Svd, SymmetricEigen};
 use crate::spatial::{Mat3, Rotation, Vec3};
-use crate::tolerance::{ORIGIN_DETERMINED, ZERO_AXIS};
+use crate::tolerance::{CENTER_FREEDOM, ORIGIN_DETERMINED, ZERO_AXIS};
 
 /// The margin of a classification: a quantity compared with the tolerance below which it counts as
 /// zero.
@@ -48,12 +48,20 @@ pub(crate) struct Classified {
     pub(crate) rotation: Rotation,
     pub(crate) origin: Vec3,
     pub(crate) margins: Vec<Margin>,
+    /// True if a quantity may lie on the other side of its threshold at another point at which the
+    /// centre may be.
+    pub(crate) depends_on_center: bool,
 }
 
 /// The screws of the system with orthonormal directions, and its translations.
 struct Split {
     screws: Vec<[f64; 6]>,
     translations: Vec<Vec3>,
+    /// The distance by which the centre may lie elsewhere; zero where translations have no angular
+    /// part beyond noise, or where the centre is not free.
+    way: f64,
+    /// The change of a translation's direction on this way.
+    turn: f64,
 }
 
 /// A verdict before the origin is known: axes, pitch along each of the first axes.
@@ -64,11 +72,15 @@ struct Verdict {
     axes: [Vec3; 3],
 }
 
-pub(crate) fn classify(span: &Span, tolerance: f64) -> Classified {
+/// `noise`: the angular part of a translation that noise may leave.
+pub(crate) fn classify(span: &Span, tolerance: f64, noise: f64) -> Classified {
     let mut margins = Vec::with_capacity(4);
-    let split = split(span, tolerance, &mut margins);
-    let mut is_zero = |quantity: &'static str, value: f64| {
+    let split = split(span, tolerance, noise, &mut margins);
+    let mut depends_on_center = false;
+    // A quantity and its change with the centre.
+    let mut is_zero = |quantity: &'static str, value: f64, change: f64| {
         margins.push(Margin { quantity, value, threshold: tolerance });
+        depends_on_center |= (value - tolerance).abs() < change;
         value <= tolerance
     };
     let verdict = match (span.k(), split.translations.as_slice()) {
@@ -90,17 +102,19 @@ pub(crate) fn classify(span: &Span, tolerance: f64) -> Classified {
         rotation: Rotation::assume(Mat3 { cols: verdict.axes }).renormalised(),
         origin,
         margins,
+        depends_on_center,
     }
 }
 
 /// Screws with orthonormal angular parts, then translations: the basis turned by the right
 /// singular vectors of its angular block.
-fn split(span: &Span, tolerance: f64, margins: &mut Vec<Margin>) -> Split {
+fn split(span: &Span, tolerance: f64, noise: f64, margins: &mut Vec<Margin>) -> Split {
     let k = span.k();
     // A row of zeros makes the block tall: the decomposition then has all right singular vectors.
     let block = Matrix::from_fn(4, k, |i, j| if i < 3 { span.vectors()[j][3 + i] } else { 0.0 });
     let svd = Svd::of(&block);
-    let mut split = Split { screws: Vec::with_capacity(k), translations: Vec::with_capacity(k) };
+    let (screws, translations) = (Vec::with_capacity(k), Vec::with_capacity(k));
+    let mut split = Split { screws, translations, way: 0.0, turn: 0.0 };
     for i in 0..k {
         let sigma = svd.value(i);
         let mut x = [0.0; 6];
@@ -117,6 +131,12 @@ fn split(span: &Span, tolerance: f64, margins: &mut Vec<Margin>) -> Split {
         } else {
             let t = linear(&x);
             split.translations.push(t * (1.0 / t.norm()));
+            if sigma > noise && !split.screws.is_empty() {
+                for e in span.free_translations(tolerance) {
+                    split.way = CENTER_FREEDOM;
+                    split.turn = split.turn.max(angular(&x).cross(e).norm() * split.way);
+                }
+            }
         }
     }
     split
@@ -161,9 +181,9 @@ fn one_screw(split: &Split) -> Verdict {
 
 const GAP: &str = "difference of principal pitches";
 
-fn two_screws(split: &Split, is_zero: &mut impl FnMut(&'static str, f64) -> bool) -> Verdict {
+fn two_screws(split: &Split, is_zero: &mut impl FnMut(&'static str, f64, f64) -> bool) -> Verdict {
     let (h, w) = principal(&split.screws);
-    if is_zero(GAP, h[0] - h[1]) {
+    if is_zero(GAP, h[0] - h[1], 0.0) {
         return along(Class::IIA, vec![0.5 * (h[0] + h[1])], None, w[0], w[1]);
     }
     along(Class::IA, vec![h[0], h[1]], None, w[0], w[1])
@@ -172,12 +192,12 @@ fn two_screws(split: &Split, is_zero: &mut impl FnMut(&'static str, f64) -> bool
 fn screw_and_translation(
     split: &Split,
     t: Vec3,
-    is_zero: &mut impl FnMut(&'static str, f64) -> bool,
+    is_zero: &mut impl FnMut(&'static str, f64, f64) -> bool,
 ) -> Verdict {
     let x = &split.screws[0];
     let w = angular(x);
     let lean = w.dot(t);
-    if is_zero("cosine of translation and axis", lean.abs()) {
+    if is_zero("cosine of translation and axis", lean.abs(), split.turn) {
         return along(Class::IIB, vec![pitch(x)], None, w, t);
     }
     let t = if lean < 0.0 { -t } else { t };
@@ -187,9 +207,12 @@ fn screw_and_translation(
     along(Class::IB, vec![], Some(slope), w, y)
 }
 
-fn three_screws(split: &Split, is_zero: &mut impl FnMut(&'static str, f64) -> bool) -> Verdict {
+fn three_screws(
+    split: &Split,
+    is_zero: &mut impl FnMut(&'static str, f64, f64) -> bool,
+) -> Verdict {
     let (h, w) = principal(&split.screws);
-    match (is_zero(GAP, h[0] - h[1]), is_zero(GAP, h[1] - h[2])) {
+    match (is_zero(GAP, h[0] - h[1], 0.0), is_zero(GAP, h[1] - h[2], 0.0)) {
         (true, true) => along(Class::IIA, vec![(h[0] + h[1] + h[2]) / 3.0], None, w[0], w[1]),
         (true, false) => along(Class::IA2, vec![h[2], 0.5 * (h[0] + h[1])], None, w[2], w[0]),
         (false, true) => along(Class::IA2, vec![h[0], 0.5 * (h[1] + h[2])], None, w[0], w[1]),
@@ -200,15 +223,17 @@ fn three_screws(split: &Split, is_zero: &mut impl FnMut(&'static str, f64) -> bo
 fn two_screws_and_translation(
     split: &Split,
     t: Vec3,
-    is_zero: &mut impl FnMut(&'static str, f64) -> bool,
+    is_zero: &mut impl FnMut(&'static str, f64, f64) -> bool,
 ) -> Verdict {
     let (a, b) = (&split.screws[0], &split.screws[1]);
     let n = angular(a).cross(angular(b));
     let n = n * (1.0 / n.norm());
     let in_plane = t - n * n.dot(t);
-    if is_zero("translation in the plane of the axes", in_plane.norm()) {
+    if is_zero("translation in the plane of the axes", in_plane.norm(), split.turn) {
         let (h, w) = principal(&split.screws);
-        if is_zero(GAP, h[0] - h[1]) {
+        // A screw changes by the translation times the way, and its pitch by the cosine of this.
+        let change = 2.0 * split.way * (in_plane.norm() + split.turn);
+        if is_zero(GAP, h[0] - h[1], change) {
             return along(Class::IIB, vec![0.5 * (h[0] + h[1])], None, w[0], w[1]);
         }
         return along(Class::IB3, vec![h[0], h[1]], None, w[0], w[1]);
@@ -226,11 +251,12 @@ fn screw_and_plane(
     split: &Split,
     t: Vec3,
     u: Vec3,
-    is_zero: &mut impl FnMut(&'static str, f64) -> bool,
+    is_zero: &mut impl FnMut(&'static str, f64, f64) -> bool,
 ) -> Verdict {
     let x = &split.screws[0];
     let w = angular(x);
-    if is_zero("axis in the plane of the translations", w.dot(t).hypot(w.dot(u))) {
+    if is_zero("axis in the plane of the translations", w.dot(t).hypot(w.dot(u)), 2.0 * split.turn)
+    {
         return along(Class::IIC, vec![pitch(x)], None, w, t);
     }
     let normal = t.cross(u);

@@ -175,8 +175,8 @@ impl Span {
     }
 
     /// Directions in which the origin of the twists may move without the span leaving itself, to
-    /// rounding: those of the translations that are symmetries of the system.
-    pub(crate) fn free_translations(&self) -> impl Iterator<Item = Vec3> {
+    /// rounding or to this angle: those of the translations that are symmetries of the system.
+    pub(crate) fn free_translations(&self, angle: f64) -> impl Iterator<Item = Vec3> + use<> {
         let mut a = [[0.0; 3]; 3];
         for x in self.vectors() {
             let change = [Vec3::X, Vec3::Y, Vec3::Z].map(|e| {
@@ -191,7 +191,8 @@ impl Span {
             }
         }
         let eigen = SymmetricEigen::of(a, 3);
-        let free = (0..3).filter(move |&i| eigen.values[i] <= FREE_TRANSLATION * eigen.values[0]);
+        let share = FREE_TRANSLATION.max(angle * angle);
+        let free = (0..3).filter(move |&i| eigen.values[i] <= share * eigen.values[0]);
         free.map(move |i| Vec3::from_array(eigen.vectors[i]))
     }
 

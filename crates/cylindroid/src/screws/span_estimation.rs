@@ -29,7 +29,12 @@ pub struct ScrewOptions {
     pub length: f64,
     /// The point at which lengths are measured; `None` for the point nearest to all axes.
     pub center: Option<Vec3>,
-    /// Error of the twists, relative to the size of each.
+    /// Error of the twists, relative to the size of each in this frame.
+    ///
+    /// A frame far from the axes makes moments large, and the same number then stands for a larger
+    /// error at the axes. From an origin at a distance d, the same error at the axes is this number
+    /// over `hypot(1, d / length)`. With a noise above rounding, the class of a system near a
+    /// threshold may still differ between frames.
     pub noise: f64,
 }
 
@@ -185,14 +190,15 @@ fn center_of(twists: &[Twist], start: Scale, turning: f64) -> Scale {
         sines.filter(|sine| 2.0 * FAR_ORIGIN * sine > 1.0).count()
     };
     let turns = at(start).largest_angular_part() > turning;
-    let near = start.center.norm() < 5.0 * FAR_ORIGIN * start.length;
+    // Of four twists some pure rotation is about any point: a start far away says nothing.
+    let near = twists.len() > 3 || start.center.norm() < 5.0 * FAR_ORIGIN * start.length;
     let shared = !turns || (near && near_axes(origin) >= near_axes(start).max(1));
     let first = if shared { origin } else { start };
     let near = stationary(twists, first, turning);
     // Where the system is the same at every point of a line or a plane, as far as can be told, it
     // is the point nearest to the origin; not from so far that the way costs digits.
     let center = at(near)
-        .free_translations()
+        .free_translations(0.0)
         .filter(|e| e.dot(near.center).abs() < FAR_ORIGIN * near.length)
         .fold(near.center, |c, e| c - e * e.dot(c));
     stationary(twists, Scale { center, ..near }, turning)

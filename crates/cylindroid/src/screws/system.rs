@@ -22,6 +22,7 @@ use super::span_estimation::{ScrewOptions, Tolerances, columns, six, spanned};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank};
 use crate::spatial::{Pose, Twist, Vec3};
+use crate::tolerance::NOISE_OF_ZERO;
 
 /// A screw system: a subspace of twists, with its Gibson-Hunt class, its principal screws and its
 /// canonical frame.
@@ -124,7 +125,7 @@ impl ScrewSystem {
             principal: vec![],
         };
         if small.k() > 0 {
-            let classified = classify(&small, tolerance.class);
+            let classified = classify(&small, tolerance.class, NOISE_OF_ZERO * tolerance.noise);
             system.form = NormalForm {
                 class: classified.class,
                 order: small.k(),
@@ -138,8 +139,9 @@ impl ScrewSystem {
             system.residual = residual(&small, &classified);
             system.principal = principal_screws(&system.form, system.canonical, k);
             margins.extend(classified.margins);
+            system.ambiguous = classified.depends_on_center;
         }
-        system.ambiguous =
+        system.ambiguous |=
             tolerance.narrow_rank || margins.iter().any(|m| tolerance.is_narrow(m.value));
         system.margins = margins;
         system

@@ -38,51 +38,66 @@ fn turned(random: &mut Random, twists: &[Twist]) -> Vec<Twist> {
     twists
 }
 
-/// 1000 systems of all classes, off by 1e-13 to 1e-3, with and without noise, from twelve bases each
-/// and in twelve frames.
+/// Systems of all classes, off by 1e-13 to 1e-3, with and without noise, from twelve bases each and
+/// in twelve frames.
 ///
 /// A threshold is the same for all bases, and what is compared with it departs by rounding: an
-/// orthogonal change of basis never changes the class. One of any conditioning, or of the frame,
+/// orthogonal change of basis does not change the class. One of any conditioning, or of the frame,
 /// may change the point at which the twists of a nearly degenerate system are compared; if that
-/// changes the class, all verdicts are flagged.
+/// changes the class, all verdicts are flagged. No constant was chosen on these seeds.
 #[test]
 fn verdict_does_not_depend_on_the_basis() {
-    let mut random = Random(1010);
     let mut changes = [0; 3];
-    for round in 0..1000 {
-        let (order, class) = CLASSES[round % CLASSES.len()];
-        let form = Form::random(&mut random, order, class);
-        let deviation = 10_f64.powf(random.within(-13.0, -3.0));
-        let noise = [f64::EPSILON, 1e-9][round / CLASSES.len() % 2];
-        let offset = random.within(0.0, 2.0);
-        let pose = Setting { offset, ..Setting::PLAIN }.pose(&mut random);
-        let here = placed(&near(&mut random, &form, deviation), pose);
-        let options = ScrewOptions { noise, ..ScrewOptions::default() };
-        let exact = ScrewOptions::default();
-        for (kind, changes) in changes.iter_mut().enumerate() {
-            let verdicts: Vec<((usize, Class), bool)> = (0..12)
-                .map(|_| {
-                    let (twists, options) = match kind {
-                        0 => (turned(&mut random, &here), options),
-                        1 => (mixed(&mut random, &here), options),
-                        // Noise is relative to the twists, which a motion makes larger: without.
-                        _ => {
-                            let turned = turned(&mut random, &here);
-                            moved(&mut random, &turned, exact)
-                        }
-                    };
-                    let system = ScrewSystem::of(&twists, &options).unwrap();
-                    ((system.order(), system.class()), system.is_ambiguous())
-                })
-                .collect();
-            if verdicts.iter().any(|v| v.0 != verdicts[0].0) {
-                *changes += 1;
-                let flagged = verdicts.iter().all(|v| v.1);
-                assert!(flagged, "{kind} {form:?} {deviation:.1e} {noise:.0e} {verdicts:?}");
+    for seed in [31, 32, 33] {
+        let mut random = Random(seed);
+        for round in 0..400 {
+            let here = NearThreshold::random(&mut random, round);
+            for (kind, changes) in changes.iter_mut().enumerate() {
+                let verdicts: Vec<_> = (0..12).map(|_| here.verdict(&mut random, kind)).collect();
+                if verdicts.iter().any(|v| v.0 != verdicts[0].0) {
+                    *changes += 1;
+                    let flagged = verdicts.iter().all(|v| v.1);
+                    assert!(flagged, "{seed} {round} {kind} {here:?} {verdicts:?}");
+                }
             }
         }
     }
-    assert!(changes[0] == 0 && changes[1] <= 2 && changes[2] <= 60, "{changes:?}");
+    assert!(changes[0] == 0 && changes[1] <= 4 && changes[2] <= 72, "{changes:?}");
+}
+
+/// A system near the threshold of a class.
+#[derive(Debug)]
+struct NearThreshold {
+    twists: Vec<Twist>,
+    options: ScrewOptions,
+}
+
+impl NearThreshold {
+    fn random(random: &mut Random, round: usize) -> Self {
+        let (order, class) = CLASSES[round % CLASSES.len()];
+        let form = Form::random(random, order, class);
+        let deviation = 10_f64.powf(random.within(-13.0, -3.0));
+        let noise = [f64::EPSILON, 1e-9][round / CLASSES.len() % 2];
+        let offset = random.within(0.0, 2.0);
+        let pose = Setting { offset, ..Setting::PLAIN }.pose(random);
+        let twists = placed(&near(random, &form, deviation), pose);
+        Self { twists, options: ScrewOptions { noise, ..ScrewOptions::default() } }
+    }
+
+    /// From another orthonormal basis, another basis, or in another frame.
+    fn verdict(&self, random: &mut Random, kind: usize) -> ((usize, Class), bool) {
+        let (twists, options) = match kind {
+            0 => (turned(random, &self.twists), self.options),
+            1 => (mixed(random, &self.twists), self.options),
+            // Noise is relative to the twists, which a motion makes larger: without.
+            _ => {
+                let turned = turned(random, &self.twists);
+                moved(random, &turned, ScrewOptions::default())
+            }
+        };
+        let system = ScrewSystem::of(&twists, &options).unwrap();
+        ((system.order(), system.class()), system.is_ambiguous())
+    }
 }
 
 /// Up to 100 lengths away, turned, in another unit.
