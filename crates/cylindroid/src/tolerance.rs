@@ -283,7 +283,7 @@ pub const ALIGNED_AXES: f64 = 1e-5;
 pub const OBLIQUE_AXES: f64 = 1e-2;
 
 /// Axes that depart from their structure by no more than this have it to rounding [rad,
-/// characteristic lengths]: bases a hundred reaches from the origin leave less.
+/// characteristic lengths]: bases a hundred such lengths from the origin leave less.
 pub const ANALYTIC_EXACT: f64 = 1e-12;
 
 /// A turn is not determined where the arm that it would be read from is shorter than this, in

@@ -1,25 +1,16 @@
 //! Operation modes: the components of the set of closed configurations, with their counts.
 
 use cylindroid::closure::{
-    MobilityCounts, ModeMeeting, ModeOptions, OperationMode, OperationModes, operation_modes,
+    ModeMeeting, ModeOptions, OperationMode, OperationModes, operation_modes,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use super::singularity::counts_of;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;
 use crate::table;
-
-fn counts_of<'py>(py: Python<'py>, counts: MobilityCounts) -> PyResult<Bound<'py, PyDict>> {
-    let all = PyDict::new(py);
-    all.set_item("rank", counts.rank)?;
-    all.set_item("idle", counts.idle)?;
-    all.set_item("redundancy", counts.redundancy)?;
-    all.set_item("indeterminacy", counts.indeterminacy)?;
-    all.set_item("zero_torque", counts.zero_torque)?;
-    Ok(all)
-}
 
 /// An operation mode: closed configurations of one dimension with equal counts.
 ///

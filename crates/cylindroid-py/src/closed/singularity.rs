@@ -1,6 +1,6 @@
 //! The class `Singularity`: the singularities of a configuration (type I, II, III).
 
-use cylindroid::closure::Diagnosis;
+use cylindroid::closure::{Diagnosis, MobilityCounts};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -56,6 +56,20 @@ impl From<&Diagnosis> for PySingularity {
     }
 }
 
+/// Counts by name.
+pub(super) fn counts_of<'py>(
+    py: Python<'py>,
+    counts: MobilityCounts,
+) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    all.set_item("rank", counts.rank)?;
+    all.set_item("idle", counts.idle)?;
+    all.set_item("redundancy", counts.redundancy)?;
+    all.set_item("indeterminacy", counts.indeterminacy)?;
+    all.set_item("zero_torque", counts.zero_torque)?;
+    Ok(all)
+}
+
 #[pymethods]
 impl PySingularity {
     #[getter]
@@ -101,14 +115,7 @@ impl PySingularity {
 
     #[getter]
     fn generic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let c = &self.inner.generic.counts;
-        let all = PyDict::new(py);
-        all.set_item("rank", c.rank)?;
-        all.set_item("idle", c.idle)?;
-        all.set_item("redundancy", c.redundancy)?;
-        all.set_item("indeterminacy", c.indeterminacy)?;
-        all.set_item("zero_torque", c.zero_torque)?;
-        Ok(all)
+        counts_of(py, self.inner.generic.counts)
     }
 
     #[getter]

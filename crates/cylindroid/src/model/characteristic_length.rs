@@ -15,7 +15,7 @@
 
 use std::sync::Arc;
 
-use super::joint::JointKind;
+use super::joint::{JointKind, JointLocus};
 use super::mechanism::Mechanism;
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::{COMMON_POINT, POSITION_ROUNDING};
@@ -86,15 +86,10 @@ impl Mechanism {
         let mut origins = vec![Vec3::ZERO];
         let mut joint = |frame: Pose, kind: JointKind, axis: Vec3| {
             origins.push(frame.translation);
-            let direction = match kind {
-                JointKind::Fixed | JointKind::Prismatic | JointKind::Planar | JointKind::Free => {
-                    return;
-                }
-                JointKind::Universal { .. } | JointKind::Spherical => None,
-                JointKind::Revolute
-                | JointKind::Continuous
-                | JointKind::Helical { .. }
-                | JointKind::Cylindrical => Some(frame.rotation * axis),
+            let direction = match kind.locus() {
+                JointLocus::Nowhere => return,
+                JointLocus::Center => None,
+                JointLocus::Axis => Some(frame.rotation * axis),
             };
             features.push(Feature { weight: 0.5, point: frame.translation, direction });
         };

@@ -53,7 +53,29 @@ pub enum JointKind {
     Free,
 }
 
+/// What a joint keeps in place, on both of its links.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum JointLocus {
+    /// A line: the point at which a file draws the joint on it means nothing.
+    Axis,
+    /// A point.
+    Center,
+    /// Neither: slides, planar and free joints have directions only.
+    Nowhere,
+}
+
 impl JointKind {
+    /// What it keeps in place.
+    pub(crate) const fn locus(self) -> JointLocus {
+        match self {
+            Self::Revolute | Self::Continuous | Self::Helical { .. } | Self::Cylindrical => {
+                JointLocus::Axis
+            }
+            Self::Universal { .. } | Self::Spherical => JointLocus::Center,
+            Self::Fixed | Self::Prismatic | Self::Planar | Self::Free => JointLocus::Nowhere,
+        }
+    }
+
     /// Number of coordinates.
     #[must_use]
     pub const fn dof(self) -> usize {

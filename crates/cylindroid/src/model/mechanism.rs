@@ -12,6 +12,7 @@ use super::loop_joint::LoopJoint;
 use super::node::{Node, NodeKind};
 use super::report::LoadReport;
 use crate::error::{Error, Result, all_finite};
+use crate::scalar::fnv1a;
 use crate::spatial::{Pose, Rotation, Twist, Vec3, exp};
 
 /// A robot or mechanism. Immutable; clones share the data.
@@ -110,10 +111,7 @@ pub struct FrameId {
 
 /// FNV-1a over the names, each terminated by a byte that no name contains.
 pub(super) fn frame_key(frames: &[Frame]) -> u64 {
-    let bytes = frames.iter().flat_map(|f| f.name.bytes().chain([0xff]));
-    bytes.fold(0xcbf2_9ce4_8422_2325, |key, byte| {
-        (key ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+    fnv1a(frames.iter().flat_map(|f| f.name.bytes().chain([0xff])))
 }
 
 impl Mechanism {

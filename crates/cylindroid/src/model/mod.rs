@@ -33,6 +33,7 @@ pub(crate) use closure_frames::CloseHome;
 pub use contact::{Contact, ContactKind, ContactSpec};
 pub use dimension::Dimension;
 pub use include::Inclusion;
+pub(crate) use joint::JointLocus;
 pub use joint::{Joint, JointKind, Limits, Mimic};
 pub use joint_spec::JointSpec;
 pub use link::{Geometry, Inertial, Link, Visual};

@@ -11,6 +11,7 @@ mod avx2;
 mod avx512;
 #[cfg(target_arch = "x86_64")]
 mod cpu;
+mod fnv1a;
 mod plain;
 mod simd;
 mod splitmix64;
@@ -23,6 +24,7 @@ pub(crate) use avx2::Lanes4;
 pub(crate) use avx512::Lanes8;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use cpu::{Avx2, Avx512};
+pub(crate) use fnv1a::fnv1a;
 pub(crate) use simd::{MAX_LANES, Simd, Simd4, SimdFloat};
 pub(crate) use splitmix64::uniform;
 pub(crate) use trig::sin_cos;

@@ -152,3 +152,18 @@ impl<'a> From<&'a Posed> for HeadJson<'a> {
         }
     }
 }
+
+/// Whether a search may have missed modes. `found`: number of starts that led to each.
+fn further_modes(found: impl Iterator<Item = usize>, unseen: f64) -> String {
+    let found: Vec<usize> = found.collect();
+    let once = found.iter().filter(|n| **n == 1).count();
+    match (found.len(), once) {
+        (0, _) => String::new(),
+        (_, 0) => "possible, but every mode was found more than once".to_owned(),
+        _ => format!(
+            "likely: {once} found only once; a further closing start finds a new mode with \
+             probability {}",
+            number(unseen)
+        ),
+    }
+}

@@ -8,10 +8,10 @@ use cylindroid::closure::{
 };
 use serde::Serialize;
 
-use super::Posed;
 use super::singularity::CountsJson;
+use super::{Posed, further_modes};
 use crate::commands::shared::{Style, answer};
-use crate::output::{self, Align, number};
+use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
 struct OperationModesJson<'a> {
@@ -116,16 +116,7 @@ fn print(out: &mut dyn Write, posed: &Posed, found: &OperationModes) -> anyhow::
     } else {
         format!("{modes} operation mode{plural} from {closed} of {starts} starts that closed")
     };
-    let once = found.modes.iter().filter(|m| m.found == 1).count();
-    let more = match (modes, once) {
-        (0, _) => String::new(),
-        (_, 0) => "possible, but every mode was found more than once".to_owned(),
-        _ => format!(
-            "likely: {once} found only once; a further closing start finds a new mode with \
-             probability {}",
-            number(found.unseen_probability())
-        ),
-    };
+    let more = further_modes(found.modes.iter().map(|m| m.found), found.unseen_probability());
     let undecided = match found.undecided {
         0 => String::new(),
         n => format!("{n} starts, which closed at or near a singular configuration"),

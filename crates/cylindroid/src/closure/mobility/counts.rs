@@ -98,8 +98,7 @@ impl MobilityCounts {
 
     /// True if the actuated joints depend on each other: they set fewer motions than their number
     /// and that of the motions permit. At regular configurations, a fault of the architecture.
-    pub(crate) fn lack_actuation(&self, [actuated, columns]: [usize; 2]) -> bool {
-        let free = columns.saturating_sub(self.rank).saturating_sub(self.idle);
-        self.indeterminacy > free.saturating_sub(actuated)
+    pub(crate) fn lack_actuation(&self, sizes: [usize; 2]) -> bool {
+        self.indeterminacy > 0 && self.impossible_inputs(sizes) > 0
     }
 }

@@ -73,10 +73,23 @@ pub struct Branch {
     /// Distance to which it was tracked with the loops closed to rounding [rad, or characteristic
     /// lengths].
     pub tracked: f64,
-    /// Configurations on it, as far from this one as it was tracked.
+    /// Configurations on it, as far from this one as it was tracked; none if the loop equations are
+    /// independent.
     pub configurations: Vec<Vec<f64>>,
     /// Relative threshold for ranks there.
     pub(crate) rank: f64,
+}
+
+impl Branch {
+    /// Configurations on it, a finite way off `state`: where the loop equations are independent,
+    /// the ends of rays.
+    pub(crate) fn far(&self, state: &State, length: f64) -> Result<Vec<Vec<f64>>> {
+        if !self.configurations.is_empty() {
+            return Ok(self.configurations.clone());
+        }
+        let reduction = LyapunovSchmidt::of(state.mechanism(), state.q(), length, CLOSURE_RANK)?;
+        Ok(Rays::of(&reduction)?.ends().cloned().collect())
+    }
 }
 
 /// The finite mobility of a mechanism at a configuration.
@@ -92,6 +105,8 @@ pub struct Branch {
 /// Source: Kuznetsov 1991; Mueller 2002 (kinematic tangent cone).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FiniteMobility {
+    /// True if the loops are closed here; otherwise nothing is known.
+    pub closed: bool,
     /// Number of first-order motions.
     pub infinitesimal: usize,
     /// Degrees of freedom of finite motion: those of the largest branch; `None` if unknown.
@@ -120,7 +135,7 @@ pub struct FiniteMobility {
 }
 
 impl FiniteMobility {
-    /// At a configuration, with the mechanism's reach as characteristic length or another (m).
+    /// At a configuration, with the characteristic length of the mechanism or another (m).
     ///
     /// ```
     /// use cylindroid::closure::FiniteMobility;
@@ -140,6 +155,7 @@ impl FiniteMobility {
         let reduction = LyapunovSchmidt::of(mechanism, state.q(), length, CLOSURE_RANK)?;
         let k = reduction.motions();
         let mut report = Self {
+            closed: reduction.is_closed(),
             infinitesimal: k,
             finite: None,
             branches: Vec::new(),
@@ -152,7 +168,7 @@ impl FiniteMobility {
             second_order: None,
             neighbours: Vec::new(),
         };
-        if !reduction.is_closed() {
+        if !report.closed {
             return Ok(report);
         }
         if k == 0 || reduction.dependent() == 0 {

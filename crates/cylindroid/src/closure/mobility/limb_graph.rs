@@ -13,7 +13,7 @@
 use std::collections::VecDeque;
 
 use crate::kinematics::State;
-use crate::model::{FrameId, JointKind, Mechanism};
+use crate::model::{FrameId, JointKind, JointLocus, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
 /// What an edge of the graph is, by its index in the mechanism.
@@ -228,16 +228,13 @@ impl Edge {
             }
         };
         let origin = frame.translation;
-        match kind {
-            JointKind::Universal { .. } | JointKind::Spherical => origin,
-            JointKind::Revolute
-            | JointKind::Continuous
-            | JointKind::Helical { .. }
-            | JointKind::Cylindrical => {
+        match kind.locus() {
+            JointLocus::Center => origin,
+            JointLocus::Axis => {
                 let axis = frame.rotation * axis;
                 origin + axis * (axis.dot(near - origin) / axis.dot(axis))
             }
-            _ => near,
+            JointLocus::Nowhere => near,
         }
     }
 }

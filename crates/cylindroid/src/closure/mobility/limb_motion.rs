@@ -12,7 +12,7 @@
 //! Checked  tests/it/closure/limbs.rs
 
 use super::limb_graph::{EdgeKind, LimbEdges};
-use crate::closure::constraint::constraint_rows::{ConstraintRow, joints_with_rate};
+use crate::closure::constraint::constraint_rows::{ConstraintRow, joints_with_rate, rate_unit};
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
@@ -230,8 +230,7 @@ fn columns(mechanism: &Mechanism, limb: &LimbEdges, length: f64) -> Vec<LimbColu
                         name: joint.name.clone(),
                         actuated: joint.actuated,
                         place: mechanism.n() + rate,
-                        size: crate::closure::constraint::constraint_rows::rate_unit(joint)
-                            .size(length),
+                        size: rate_unit(joint).size(length),
                     });
                 }
             }

@@ -22,7 +22,7 @@ use crate::closure::constraint::constraint_rows::constraint_rows;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold, dot};
-use crate::model::{FrameId, Mechanism};
+use crate::model::{FrameId, JointKind, Mechanism};
 use crate::screws::{ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::{CLOSURE_BLOCK, KERNEL_ROUNDING};
@@ -233,8 +233,8 @@ fn joint_twist(state: &State, edge: EdgeKind, name: &str, at: Vec3) -> Twist {
             let turn = Twist { linear: axis.cross(at - frame.translation), angular: axis };
             let slide = Twist { linear: axis, angular: Vec3::ZERO };
             match joint.kind {
-                crate::model::JointKind::Prismatic => slide,
-                crate::model::JointKind::Helical { pitch } => turn + slide * pitch,
+                JointKind::Prismatic => slide,
+                JointKind::Helical { pitch } => turn + slide * pitch,
                 _ => turn,
             }
         }

@@ -15,6 +15,7 @@
 
 use super::lyapunov_schmidt::{LyapunovSchmidt, ReducedPoint};
 use crate::error::Result;
+use crate::linalg::norm;
 use crate::tolerance::{CLEARLY_OPEN, TRACKED};
 
 /// First step, and the largest one.
@@ -70,7 +71,7 @@ impl Ray {
             };
             match next {
                 Some(ReducedPoint { q, residual, .. }) => {
-                    let residual = crate::linalg::norm(&residual);
+                    let residual = norm(&residual);
                     points.push(RayPoint { q, distance: here + step, residual });
                     step = (here + step).min(STEPS.1);
                 }

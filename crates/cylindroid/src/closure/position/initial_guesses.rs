@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::coordinates::{moved, within_limits};
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
-use crate::scalar::uniform;
+use crate::scalar::{fnv1a, uniform};
 use crate::spatial::Quaternion;
 
 /// `q` with a random perturbation of every coordinate by up to `amplitude`.
@@ -100,8 +100,6 @@ fn rotation([share, a, b]: [f64; 3]) -> [f64; 3] {
 
 /// A random number in (-1, 1) that belongs to a name.
 pub(crate) fn by_name(name: &str, number: u64) -> f64 {
-    // FNV-1a.
-    let hash = |h: u64, byte: u8| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    let mut seed = name.bytes().fold(0xcbf2_9ce4_8422_2325, hash) ^ number.wrapping_mul(0x9e37);
+    let mut seed = fnv1a(name.bytes()) ^ number.wrapping_mul(0x9e37);
     2.0 * uniform(&mut seed) - 1.0
 }

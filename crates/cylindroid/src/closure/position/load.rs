@@ -11,7 +11,7 @@ use std::path::Path;
 use super::assembly::{Assembly, assemble};
 use super::assembly_modes::{ModeOptions, assembly_modes};
 use crate::error::{Error, Result};
-use crate::model::{JointKind, LoopJoint, Mechanism, formats};
+use crate::model::{Dimension, JointKind, LoopJoint, Mechanism, formats};
 
 /// Loads a model: the name of a catalogue model, or the path of a file.
 ///
@@ -102,11 +102,15 @@ fn refuse(mechanism: &Mechanism, first: &Assembly, starts: usize) -> Result<Erro
             message: "its loops cannot be closed".to_owned(),
         });
     };
-    let mut open = format!("{} m", short(distance));
-    if !matches!(joint.kind, JointKind::Spherical)
-        && !matches!(mechanism.dimension(), crate::model::Dimension::Planar if joint.kind != JointKind::Fixed)
-    {
-        open += &format!(" and {} rad", short(angle));
+    // Three digits are enough to see how far something is open.
+    let mut open = format!("{distance:.3} m");
+    let turns = match joint.kind {
+        JointKind::Fixed => true,
+        JointKind::Spherical => false,
+        _ => mechanism.dimension() != Dimension::Planar,
+    };
+    if turns {
+        open += &format!(" and {angle:.3} rad");
     }
     let links = mechanism.links();
     let message = format!(
@@ -120,9 +124,4 @@ fn refuse(mechanism: &Mechanism, first: &Assembly, starts: usize) -> Result<Erro
         starts - 1
     );
     Ok(Error::Model { model: mechanism.name().to_owned(), culprit: joint.name.clone(), message })
-}
-
-/// Three digits are enough to see how far something is open.
-fn short(x: f64) -> String {
-    format!("{:.3}", x)
 }

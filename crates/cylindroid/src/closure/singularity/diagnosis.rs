@@ -34,7 +34,7 @@ use crate::closure::mobility::motion_space::{MotionSpace, RowSelection};
 use crate::closure::mobility::relation::Relation;
 use crate::error::Result;
 use crate::kinematics::State;
-use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold};
+use crate::linalg::{ColumnSpace, Matrix, Qr, Svd, Threshold, norm};
 use crate::model::FrameId;
 use crate::screws::{Line, Screw, ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3, Wrench};
@@ -126,15 +126,15 @@ impl Diagnosis {
         let s = generic.counts;
         let blocked = beyond(&Configuration::zero_torque, counts.zero_torque, s.zero_torque);
         let gained = beyond(&Configuration::indeterminate, counts.indeterminacy, s.indeterminacy);
-        let (redundant, idle) = if here.compression.is_trivial() {
-            let redundant = beyond(&Configuration::redundant, counts.redundancy, s.redundancy);
-            (redundant, beyond(&Configuration::idle, counts.idle, s.idle))
-        } else {
-            let more = |now: usize, generic: usize| now.saturating_sub(generic);
-            let redundant = more(counts.redundancy, s.redundancy);
-            let idle = more(counts.idle, s.idle);
-            (not_felt(&here, &beside, true, redundant), not_felt(&here, &beside, false, idle))
+        let mut unfelt = |actuated, now: usize, generic: usize, names: &[String]| {
+            let (shares, clear) = unfelt(&here, &beside, actuated, [now, generic]);
+            separated &= clear;
+            let shares = here.of_joints(actuated, &shares);
+            let moves = shares.iter().zip(names).filter(|(share, _)| **share > JOINT_AT_REST);
+            moves.map(|(_, name)| name.clone()).collect()
         };
+        let redundant = unfelt(true, counts.redundancy, s.redundancy, &here.chain.actuated);
+        let idle = unfelt(false, counts.idle, s.idle, &here.chain.passive);
         let point = state.pose(here.chain.reference).translation;
         let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { GENERIC_LIMIT };
         let (of_wrenches, of_gains) = (accuracy(s.zero_torque), accuracy(s.indeterminacy));
@@ -145,8 +145,8 @@ impl Diagnosis {
             blocked: screws(&wrenches.collect::<Vec<_>>(), length, of_wrenches)?,
             lost: screws(&lost.collect::<Vec<_>>(), length, of_wrenches)?,
             gained: screws(&gains.collect::<Vec<_>>(), length, of_gains)?,
-            redundant: movers(&redundant, &here.chain.actuated),
-            idle: movers(&idle, &here.chain.passive),
+            redundant,
+            idle,
             verdict,
             distances,
             counts,
@@ -203,6 +203,16 @@ impl Configuration {
         self.compression.orthogonal_to(actuated, space.basis())
     }
 
+    /// The share of the joint of each column: that of a single component of a vector, of a ball
+    /// joint say, depends on the axes.
+    fn of_joints(&self, actuated: bool, shares: &[f64]) -> Vec<f64> {
+        let constraint = &self.chain.constraint;
+        let first = if actuated { 0 } else { constraint.actuated() };
+        let joint = |i: usize| constraint.vector_of(first + i);
+        let share = |i| norm(&shares[joint(i).start - first..joint(i).end - first]);
+        (0..shares.len()).map(share).collect()
+    }
+
     fn size(&self, unit: Unit) -> f64 {
         unit.size(self.chain.constraint.length())
     }
@@ -224,18 +234,6 @@ impl Configuration {
         self.scaled(&self.relation.motions().infinite, &self.chain.units.object, false)
     }
 
-    fn redundant(&self) -> Matrix {
-        self.scaled(&self.relation.motions().zero, &self.chain.units.actuated, false)
-    }
-
-    fn idle(&self) -> Matrix {
-        let still = RowSelection { actuated: true, passive: false, object: true };
-        let all = self.motions.vanishing_on(still);
-        let a = self.motions.actuated();
-        let passive = all.rows_between(a, a + self.motions.passive());
-        self.scaled(&passive, &self.chain.units.passive, false)
-    }
-
     /// The columns with every entry multiplied by its scale.
     fn columns<'a>(
         &'a self,
@@ -249,24 +247,33 @@ impl Configuration {
     }
 }
 
-/// The `extra` redundant (or idle) motions here that are felt nearby: the limit of what is felt
-/// there, without what is felt here.
-fn not_felt(
+/// For each actuated (or passive) joint, its share in the redundant (or idle) motions that exceed
+/// the generic ones: those that are felt nearby and not here. False if they could not be separated
+/// from the generic ones. `now` and `generic`: numbers of such motions.
+fn unfelt(
     here: &Configuration,
     beside: &[Configuration],
     actuated: bool,
-    extra: usize,
-) -> Matrix {
+    [now, generic]: [usize; 2],
+) -> (Vec<f64>, bool) {
     let felt = here.felt(actuated);
-    if extra == 0 || beside.is_empty() {
-        return Matrix::zeros(felt.rows(), 0);
+    let rows = 0..felt.rows();
+    if now <= generic {
+        return (vec![0.0; rows.len()], true);
     }
     let near: Vec<Matrix> = beside.iter().map(|c| c.felt(actuated)).collect();
-    let near = Matrix::hstack(felt.rows(), &near.iter().collect::<Vec<_>>());
+    let near: Vec<&Matrix> = near.iter().filter(|m| m.cols() + generic == m.rows()).collect();
+    if generic == 0 || near.is_empty() {
+        let all = rows.map(|i| (1.0 - felt.row_norm(i).powi(2)).max(0.0).sqrt());
+        return (all.collect(), generic == 0);
+    }
+    let near = Matrix::hstack(felt.rows(), &near);
     let along = &felt * &(&felt.transpose() * &near);
     let rest =
         Svd::of(&Matrix::from_fn(near.rows(), near.cols(), |i, j| near[(i, j)] - along[(i, j)]));
-    Matrix::from_fn(felt.rows(), extra.min(rest.len()), |i, j| rest.u(j)[i])
+    let extra = (now - generic).min(rest.len());
+    let share = |i: usize| (0..extra).map(|j| rest.u(j)[i].powi(2)).sum::<f64>().sqrt();
+    (rows.map(share).collect(), true)
 }
 
 /// The part of `now` orthogonal to the limit of the neighbouring spaces, and true if the limit was
@@ -345,10 +352,4 @@ fn screws(twists: &[Twist], length: f64, accuracy: f64) -> Result<Vec<Screw>> {
         }
     };
     Ok(twists.into_iter().filter_map(of).collect())
-}
-
-/// The names of the coordinates that move.
-fn movers(motions: &Matrix, names: &[String]) -> Vec<String> {
-    let moves = |i: &usize| motions.row_norm(*i) > JOINT_AT_REST;
-    (0..names.len()).filter(moves).map(|i| names[i].clone()).collect()
 }

@@ -17,8 +17,6 @@
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::FiniteMobility;
-use crate::closure::mobility::lyapunov_schmidt::LyapunovSchmidt;
-use crate::closure::mobility::rays::Rays;
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::model::FrameId;
@@ -78,29 +76,24 @@ impl GenericMobility {
         finite: &FiniteMobility,
     ) -> Result<Self> {
         let mechanism = state.mechanism();
-        let at = |q: &Vec<f64>, rank: f64| -> Result<MobilityCounts> {
+        let at = |q: &[f64], rank: f64| -> Result<MobilityCounts> {
             let chain = ClosedChain::of(&mechanism.state(q)?, reference, Some(length))?;
             Ok(MobilityCounts::of_constraint(&chain.constraint, rank))
         };
         let mut generic = Self { counts, branches: Vec::new(), others: 0 };
         for branch in &finite.branches {
-            let rays;
-            let configurations: Vec<&Vec<f64>> = if branch.configurations.is_empty() {
-                let reduction = LyapunovSchmidt::of(mechanism, state.q(), length, CLOSURE_RANK)?;
-                rays = Rays::of(&reduction)?;
-                rays.ends().collect()
-            } else {
-                branch.configurations.iter().collect()
-            };
             let mut own: Option<MobilityCounts> = None;
-            for q in configurations {
-                let there = at(q, branch.rank)?;
+            for q in branch.far(state, length)? {
+                let there = at(&q, branch.rank)?;
                 own = Some(own.map_or(there, |own| own.generic(there)));
                 generic.others += 1;
             }
             generic.branches.push(own.unwrap_or(counts));
         }
-        generic.counts = generic.branches.iter().fold(counts, |all, branch| all.generic(*branch));
+        // Without those of the configuration: where branches meet, it may have fewer wrenches
+        // without torque than each of them.
+        let all = generic.branches.iter().copied().reduce(MobilityCounts::generic);
+        generic.counts = all.unwrap_or(counts);
         Ok(generic)
     }
 }

@@ -28,9 +28,7 @@ use super::generic_mobility::GenericMobility;
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::{FiniteMobility, MobilityEvidence};
-use crate::closure::mobility::lyapunov_schmidt::LyapunovSchmidt;
 use crate::closure::mobility::motion_space::MotionSpace;
-use crate::closure::mobility::rays::Ray;
 use crate::closure::position::assembly::assemble;
 use crate::closure::position::assembly_modes::{ModeOptions, check_starts};
 use crate::closure::position::configuration_signature::{
@@ -43,7 +41,7 @@ use crate::kinematics::State;
 use crate::model::{FrameId, Mechanism};
 use crate::screws::{Class, ScrewOptions, ScrewSystem};
 use crate::spatial::Vec3;
-use crate::tolerance::{CLEAR_SAMPLE, CLOSURE_RANK, SAME_ASSEMBLY, SAME_SHAKY, TRACKED};
+use crate::tolerance::{CLEAR_SAMPLE, SAME_ASSEMBLY, SAME_SHAKY};
 
 /// An operation mode.
 #[derive(Debug, Clone, PartialEq)]
@@ -243,11 +241,8 @@ impl Search<'_> {
         )?;
         let mut modes = Vec::new();
         for (i, branch) in finite.branches.iter().enumerate() {
-            let far = match branch.configurations.first() {
-                Some(far) => far.clone(),
-                None => self.far(q)?,
-            };
-            let mut there = self.sample(&far)?;
+            let far = branch.far(&here.state, self.length)?;
+            let mut there = self.sample(far.first().map_or(q, Vec::as_slice))?;
             there.counts = generic.branches[i];
             modes.push(self.add_branch(there, (branch.dimension, Some(i)), given)?);
         }
@@ -262,13 +257,6 @@ impl Search<'_> {
             self.meetings.push(ModeMeeting { configuration, modes, dof, counts });
         }
         Ok(())
-    }
-
-    /// A configuration in a generic direction from `q`.
-    fn far(&self, q: &[f64]) -> Result<Vec<f64>> {
-        let reduction = LyapunovSchmidt::of(self.mechanism, q, self.length, CLOSURE_RANK)?;
-        let ray = Ray::of(&reduction, &reduction.direction(0), TRACKED)?;
-        Ok(ray.points.last().map_or_else(|| q.to_vec(), |p| p.q.clone()))
     }
 
     fn mode(&self, at: &Sample, dimension: usize) -> Result<OperationMode> {

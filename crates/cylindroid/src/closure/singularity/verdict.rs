@@ -83,6 +83,7 @@ impl LocalStructure {
 /// The verdict on a configuration: its mobility, and the kinds of its singularity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
+    closed: bool,
     dof: usize,
     finite_dof: Option<usize>,
     branches: usize,
@@ -121,10 +122,11 @@ impl Verdict {
         let zlatanov = match structure {
             LocalStructure::Unknown => Vec::new(),
             LocalStructure::ShakyRigid => vec![ZlatanovType::IncreasedInstantaneousMobility],
-            _ => ZlatanovType::of(now, &generic.counts, &generic.branches, sizes),
+            _ => ZlatanovType::of(now, generic, unactuated, sizes),
         };
         Self {
             zlatanov,
+            closed: finite.closed,
             dof: finite.infinitesimal,
             finite_dof: finite.finite,
             branches: finite.branches.len(),
@@ -199,7 +201,7 @@ impl Verdict {
         let (dof, k) = (self.finite_dof.unwrap_or(0), self.dof);
         let unsure = if self.certain { "" } else { "; branches may have been missed" };
         match self.structure {
-            LocalStructure::Unknown if self.tracked == 0.0 => {
+            LocalStructure::Unknown if !self.closed => {
                 "unknown: the loops are open; close them first (`assemble`)".to_owned()
             }
             LocalStructure::Unknown => "unknown: no step converged".to_owned(),
@@ -245,7 +247,11 @@ impl fmt::Display for Verdict {
         }
         let kinds = self.kinds();
         if kinds.is_empty() {
-            return f.write_str("not decided: the loops are open");
+            return f.write_str(if self.closed {
+                "not decided: no step from this configuration converged"
+            } else {
+                "not decided: the loops are open"
+            });
         }
         for (i, kind) in kinds.iter().enumerate() {
             let separator = if i == 0 { "" } else { "; " };

@@ -21,6 +21,7 @@
 
 use std::fmt;
 
+use super::generic_mobility::GenericMobility;
 use crate::closure::mobility::counts::MobilityCounts;
 
 /// A type of singularity in the classification of Zlatanov, Fenton & Benhabib.
@@ -69,18 +70,16 @@ impl ZlatanovType {
         }
     }
 
-    /// Those of a configuration with the counts `now`, against those of its branches; `sizes`:
-    /// number of actuated joints, and of all columns of the constraint.
+    /// Those of a configuration with the counts `now`, against those of its branches, which may
+    /// all lack actuation; `sizes`: number of actuated joints, and of all columns of the constraint.
     pub(crate) fn of(
         now: &MobilityCounts,
-        generic: &MobilityCounts,
-        branches: &[MobilityCounts],
+        GenericMobility { counts: generic, branches, .. }: &GenericMobility,
+        unactuated: bool,
         sizes: [usize; 2],
     ) -> Vec<Self> {
         let lost = |counts: &MobilityCounts| counts.impossible_inputs(sizes);
         let least = branches.iter().map(lost).min().unwrap_or_else(|| lost(generic));
-        let unactuated =
-            !branches.is_empty() && branches.iter().all(|counts| counts.lack_actuation(sizes));
         let has = |of: &Self| match of {
             Self::RedundantInput => now.redundancy > generic.redundancy,
             Self::RedundantOutput => now.indeterminacy > generic.indeterminacy || unactuated,

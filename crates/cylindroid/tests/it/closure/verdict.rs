@@ -48,15 +48,9 @@ fn agrees(what: &str, found: &Diagnosis) {
 fn every_choice_of_actuators_has_one_verdict() {
     for name in ["four-bar", "five-bar", "3rrr", "watt", "delta"] {
         let m = catalogue::load(name).unwrap();
-        let joints: Vec<String> = m.joints().iter().map(|j| j.name.clone()).collect();
         let mut random = Random(3);
         for round in 0..24 {
-            let chosen: Vec<&str> = joints
-                .iter()
-                .filter(|_| random.within(0.0, 1.0) < 0.4)
-                .map(String::as_str)
-                .collect();
-            let Ok(m) = m.with_actuated(&chosen) else { continue };
+            let (chosen, Ok(m)) = with_random_actuators(&m, &mut random) else { continue };
             let q = if round % 2 == 0 { m.home().to_vec() } else { elsewhere(&m, &mut random) };
             let found = Diagnosis::of(&m.state(&q).unwrap(), None, None).unwrap();
             agrees(&format!("{name} {chosen:?} {q:?}"), &found);
@@ -64,8 +58,19 @@ fn every_choice_of_actuators_has_one_verdict() {
     }
 }
 
+/// The mechanism with a random choice of actuated joints, by name, if it is accepted.
+pub(super) fn with_random_actuators(
+    m: &Mechanism,
+    random: &mut Random,
+) -> (Vec<String>, cylindroid::Result<Mechanism>) {
+    let names = m.joints().iter().map(|j| j.name.clone());
+    let chosen: Vec<String> = names.filter(|_| random.within(0.0, 1.0) < 0.4).collect();
+    let with = m.with_actuated(&chosen);
+    (chosen, with)
+}
+
 /// A closed configuration nearby, or an open one.
-fn elsewhere(m: &Mechanism, random: &mut Random) -> Vec<f64> {
+pub(super) fn elsewhere(m: &Mechanism, random: &mut Random) -> Vec<f64> {
     let guess: Vec<f64> = m.home().iter().map(|x| x + random.within(-0.5, 0.5)).collect();
     assemble(m, &guess, &[]).unwrap().q
 }

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use cylindroid::closure::{Diagnosis, ZlatanovType, assemble};
+use cylindroid::closure::{Diagnosis, ZlatanovType};
 use cylindroid::{Mechanism, catalogue};
 
+use super::verdict::{elsewhere, with_random_actuators};
 use crate::support::Random;
 
 fn types(m: &Mechanism, q: &[f64]) -> Vec<&'static str> {
@@ -100,21 +101,9 @@ fn only_possible_combinations_occur() {
     let mut random = Random(5);
     for name in ["four-bar", "five-bar", "3rrr", "watt", "delta"] {
         let m = catalogue::load(name).unwrap();
-        let joints: Vec<String> = m.joints().iter().map(|j| j.name.clone()).collect();
         for round in 0..12 {
-            let chosen: Vec<&str> = joints
-                .iter()
-                .filter(|_| random.within(0.0, 1.0) < 0.4)
-                .map(String::as_str)
-                .collect();
-            let Ok(m) = m.with_actuated(&chosen) else { continue };
-            let q = if round % 2 == 0 {
-                m.home().to_vec()
-            } else {
-                let guess: Vec<f64> =
-                    m.home().iter().map(|x| x + random.within(-0.5, 0.5)).collect();
-                assemble(&m, &guess, &[]).unwrap().q
-            };
+            let (chosen, Ok(m)) = with_random_actuators(&m, &mut random) else { continue };
+            let q = if round % 2 == 0 { m.home().to_vec() } else { elsewhere(&m, &mut random) };
             check(&format!("{name} {chosen:?} {q:?}"), &m, &q);
         }
     }

@@ -3,8 +3,9 @@
 
 use cylindroid::closure::{
     ClosedChain, Diagnosis, FiniteMobility, LimbScrews, Mobility, MobilityEvidence, MotionSpace,
-    Transmission,
+    Transmission, assemble,
 };
+use cylindroid::model::CoordinateKind;
 use cylindroid::spatial::{Rotation, Vec3};
 use cylindroid::{Mechanism, catalogue};
 use toml::{Table, Value};
@@ -61,6 +62,7 @@ impl View {
         for kind in ["joint", "contact", "frame"] {
             let Some(rows) = table.get_mut(kind).and_then(Value::as_array_mut) else { continue };
             for row in rows.iter_mut().filter_map(Value::as_table_mut) {
+                let slides = row.get("type").and_then(Value::as_str) == Some("prismatic");
                 for (key, value) in row.iter_mut() {
                     match key.as_str() {
                         "origin" | "point" => self.apply(value, true),
@@ -71,6 +73,11 @@ impl View {
                             still.apply(value, true);
                         }
                         "pitch" => *value = Value::Float(value.as_float().unwrap() * self.scale),
+                        "limits" if slides => {
+                            for (_, limit) in value.as_table_mut().unwrap().iter_mut() {
+                                *limit = Value::Float(limit.as_float().unwrap() * self.scale);
+                            }
+                        }
                         _ => {}
                     }
                 }
@@ -135,9 +142,55 @@ fn said(m: &Mechanism, length: f64) -> (Vec<String>, Vec<(String, f64)>) {
         numbers.extend(t.constraint.map(|x| ("constraint".to_owned(), x)));
     }
     words.push(format!("{:?}", found.verdict.zlatanov()));
+    for (what, screws) in
+        [("blocked", &found.blocked), ("lost", &found.lost), ("gained", &found.gained)]
+    {
+        words.push(format!("{} {what}", screws.len()));
+    }
+    words.push(format!("redundant {:?} idle {:?}", sorted(&found.redundant), sorted(&found.idle)));
+    for (what, system) in [("twists", &screws.twists), ("constraint", &screws.constraint)] {
+        words.push(format!("{what} {}{}", system.order(), system.class()));
+    }
+    // Assembled from a guess by name, coordinate by coordinate.
+    let guess: Vec<f64> = m
+        .coordinates()
+        .iter()
+        .zip(m.home())
+        .map(|(c, q)| match c.kind {
+            CoordinateKind::Angle => q + 0.05 * (by_name(&c.name) - 0.5),
+            CoordinateKind::Length => q + 0.05 * length * (by_name(&c.name) - 0.5),
+            // Their components depend on the axes of the world.
+            _ => *q,
+        })
+        .collect();
+    let assembly = assemble(m, &guess, &[]).unwrap();
+    words.push(format!("closed {}", assembly.closed));
+    // At a singular point the nearest assembly is accurate to the root of rounding.
+    if assembly.closed && found.verdict.is_regular() {
+        for (c, q) in m.coordinates().iter().zip(&assembly.q) {
+            let unit = match c.kind {
+                CoordinateKind::Angle => 1.0,
+                CoordinateKind::Length => length,
+                _ => continue,
+            };
+            numbers.push((format!("assembled {}", c.name), q / unit));
+        }
+    }
     words.sort();
     numbers.sort_by(|a, b| a.0.cmp(&b.0));
     (words, numbers)
+}
+
+fn sorted(names: &[String]) -> Vec<&String> {
+    let mut names: Vec<&String> = names.iter().collect();
+    names.sort();
+    names
+}
+
+/// A number from 0 to 1 that belongs to a name.
+fn by_name(name: &str) -> f64 {
+    let sum = name.bytes().fold(7_u32, |sum, b| (sum * 31 + u32::from(b)) % 1009);
+    f64::from(sum) / 1009.0
 }
 
 /// The efficiencies in scaled units.
@@ -157,7 +210,9 @@ fn compare(name: &str, text: &str, views: &[(f64, f64, bool)], tolerance: f64) {
         let (seen_words, seen_numbers) = said(&parsed(&seen, name), scale);
         let what = format!("{name} scaled by {scale}, shuffled {shuffled}");
         assert_eq!(seen_words, words, "{what}");
-        for ((label, x), (_, y)) in numbers.iter().zip(&seen_numbers) {
+        assert_eq!(seen_numbers.len(), numbers.len(), "{what}");
+        for ((label, x), (seen_label, y)) in numbers.iter().zip(&seen_numbers) {
+            assert_eq!(label, seen_label, "{what}");
             let same = x == y || (x - y).abs() <= tolerance * x.abs().max(1e-3);
             // A mechanism whose axes all meet in one point has no length of its own.
             assert!(same || label == "length" && *x == 1.0, "{what}: {label} {x} {y}");

@@ -7,9 +7,9 @@ use cylindroid::closure::{AssemblyModes, Mode, ModeOptions, assembly_modes};
 use serde::Serialize;
 
 use super::job::{Job, open_by, q_line};
-use crate::commands::closed::ClosureErrorJson;
+use crate::commands::closed::{ClosureErrorJson, further_modes};
 use crate::commands::shared::{Style, answer};
-use crate::output::{self, Align, number};
+use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
 struct ModesJson<'a> {
@@ -95,16 +95,7 @@ fn print(out: &mut dyn Write, job: &Job<'_>, found: &AssemblyModes) -> anyhow::R
     } else {
         format!("{modes} mode{plural} from {closed} of {starts} starts that closed")
     };
-    let once = found.modes.iter().filter(|m| m.found == 1).count();
-    let more = match (modes, once) {
-        (0, _) => String::new(),
-        (_, 0) => "possible, but every mode was found more than once".to_owned(),
-        _ => format!(
-            "likely: {once} found only once; a further closing start finds a new mode with \
-             probability {}",
-            number(found.unseen_probability())
-        ),
-    };
+    let more = further_modes(found.modes.iter().map(|m| m.found), found.unseen_probability());
     let self_motion_dof = match found.self_motion_dof() {
         0 => String::new(),
         n => format!(
