@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use cylindroid::closure::{Diagnosis, LimbScrews, Mobility, Subspace, Transmission};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::object::object;
 use super::{
@@ -31,6 +32,9 @@ use crate::table::{self, Table};
 ///     Torques of actuated joints that balance each other.
 /// zero_torque : int
 ///     Wrenches on the reference frame resisted without torque.
+/// internal_forces : int
+///     dim ker G: forces in loops and contacts without a wrench on the reference frame. Depends on
+///     which joints are written as contacts; `internal` does not.
 /// hyperstatic : int
 ///     Forces in loops and contacts that equilibrium does not determine.
 /// idle : int
@@ -48,6 +52,15 @@ use crate::table::{self, Table};
 /// zero_torque_basis : ndarray, (d, zero_torque)
 ///     Wrenches, force first.
 /// hyperstatic_basis : ndarray, (t, hyperstatic)
+/// blocks : dict of str to ndarray, (a + p + d, k)
+///     The motions by what moves, rows as of `dof_basis` (equations 3 to 5 of the paper):
+///     'redundancy' (Gamma_r), 'idle' (Gamma_p,i), 'mixed' (Gamma_pu,i over Gamma_up,i),
+///     'uncontrollable' (Gamma_u,i), 'coordinate_passive' (Gamma_ap,c over Gamma_pa,c),
+///     'coordinate_both' (Gamma_apu,c, Gamma_pua,c, Gamma_upa,c), 'coordinate_object' (Gamma_au,c
+///     over Gamma_ua,c). The numbers of their columns add up to `dof` and `coordinate_overlap`.
+/// coordinate_overlap : int
+///     Motions that are in 'coordinate_passive' and in 'coordinate_object'.
+/// internal_forces_basis : ndarray, (t, internal_forces)
 /// joints : list of JointMobility
 /// ambiguous_ranks : list of str
 ///     Numerically ambiguous counts, in words.
@@ -166,9 +179,14 @@ impl PyMobility {
             ("idle", m.idle.dimension()),
             ("internal", m.internal.dimension()),
             ("zero_torque", m.zero_torque.dimension()),
+            ("internal_forces", m.internal_forces.dimension()),
             ("hyperstatic", m.hyperstatic.dimension()),
         ] {
             table.row(name, count.to_string());
+        }
+        for block in m.blocks() {
+            let name = format!("block {}", block.name);
+            table.row(&name, format!("{} ({})", block.motions.dimension(), block.symbol));
         }
         table.row("gruebler_kutzbach", m.gruebler_kutzbach.to_string());
         for joint in self.joints() {
@@ -256,6 +274,30 @@ impl PyMobility {
     #[getter]
     fn hyperstatic_basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
         Self::basis(py, &self.inner.hyperstatic)
+    }
+
+    #[getter]
+    fn internal_forces(&self) -> usize {
+        self.inner.internal_forces.dimension()
+    }
+
+    #[getter]
+    fn internal_forces_basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Self::basis(py, &self.inner.internal_forces)
+    }
+
+    #[getter]
+    fn blocks<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for block in self.inner.blocks() {
+            all.set_item(block.name, Self::basis(py, block.motions)?)?;
+        }
+        Ok(all)
+    }
+
+    #[getter]
+    fn coordinate_overlap(&self) -> usize {
+        self.inner.coordinate_kinds.overlap
     }
 
     #[getter]

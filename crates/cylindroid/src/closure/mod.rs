@@ -35,13 +35,15 @@ pub(crate) use constraint::closed_chain_batched::BatchedConstraintPlan;
 pub use constraint::loop_closure_error::LoopClosureError;
 pub use constraint::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
 pub use mobility::actuation_map::ActuationMap;
+pub use mobility::blocks::{CoordinateKinds, MotionBlock};
 pub use mobility::counts::MobilityCounts;
 pub use mobility::finite_mobility::{Branch, FiniteMobility, MobilityEvidence};
+pub use mobility::force_spaces::{internal_forces, structural_forces};
 pub use mobility::limbs::{Limb, LimbScrews};
 pub use mobility::motion_space::{MotionSpace, RowSelection};
 pub use mobility::reference_twists::frame_twists;
 pub use mobility::relation::{Relation, RelationBases, RelationDimensions};
-pub use mobility::report::{CoordinateKinds, JointMobility, Mobility, RankWarning};
+pub use mobility::report::{JointMobility, Mobility, RankWarning};
 pub use mobility::second_order::{SecondOrder, SecondOrderRigidity};
 pub use mobility::subspace::Subspace;
 pub use position::assembly::{Assembly, assemble, recover_passive};
@@ -63,9 +65,7 @@ pub use singularity::verdict::{LocalStructure, Verdict};
 pub use singularity::zlatanov::ZlatanovType;
 pub use singularity_kind::SingularityKind;
 pub(crate) use statics::contact_forces::ContactForceSolver;
-pub use statics::contact_forces::{
-    ContactForces, StaticLoad, contact_forces, internal_forces, structural_forces,
-};
+pub use statics::contact_forces::{ContactForces, StaticLoad, contact_forces};
 pub use statics::force_closure::{
     EpsilonQuality, FingerContact, Friction, GraspMetric, GraspQuality, WrenchSpace, grasp_quality,
 };

@@ -3,7 +3,9 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::closure::{Diagnosis, JointMobility, Mobility, MobilityCounts, ModeOptions};
+use cylindroid::closure::{
+    Diagnosis, JointMobility, Mobility, MobilityCounts, ModeOptions, MotionBlock,
+};
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
@@ -30,6 +32,8 @@ struct MobilityJson<'a> {
     coordinate: usize,
     internal: usize,
     zero_torque: usize,
+    /// dim ker G: forces of loop joints and contacts without a wrench on the reference frame.
+    internal_forces: usize,
     hyperstatic: usize,
     idle: usize,
     gruebler_kutzbach: i64,
@@ -42,12 +46,37 @@ struct MobilityJson<'a> {
     internal_basis: Vec<Vec<f64>>,
     /// Wrenches (force first) resisted without torques.
     zero_torque_basis: Vec<Vec<f64>>,
+    /// The motions by what moves (eqs. 3 to 5 of Bicchi and Prattichizzo).
+    blocks: Vec<BlockJson>,
+    /// Coordinate motions counted with the frame at rest and with passive joints at rest.
+    coordinate_overlap: usize,
     joints: Vec<JointJson<'a>>,
     limbs: Vec<LimbJson>,
     /// Null where the indices are not defined.
     transmission: Option<TransmissionJson>,
     /// Counts that hang on little, in words.
     ambiguous_ranks: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct BlockJson {
+    name: &'static str,
+    /// Of its columns in the paper.
+    symbol: &'static str,
+    count: usize,
+    /// Rows as of `dof_basis`.
+    basis: Vec<Vec<f64>>,
+}
+
+impl From<MotionBlock<'_>> for BlockJson {
+    fn from(block: MotionBlock<'_>) -> Self {
+        Self {
+            name: block.name,
+            symbol: block.symbol,
+            count: block.motions.dimension(),
+            basis: output::columns(&block.motions.basis),
+        }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -114,6 +143,7 @@ fn describe<'a>(
         coordinate: m.relation.coordinate,
         internal: m.internal.dimension(),
         zero_torque: m.zero_torque.dimension(),
+        internal_forces: m.internal_forces.dimension(),
         hyperstatic: m.hyperstatic.dimension(),
         idle: m.idle.dimension(),
         gruebler_kutzbach: m.gruebler_kutzbach,
@@ -122,6 +152,8 @@ fn describe<'a>(
         idle_basis: output::columns(&m.idle.basis),
         internal_basis: output::columns(&m.internal.basis),
         zero_torque_basis: output::columns(&m.zero_torque.basis),
+        blocks: m.blocks().map(BlockJson::from).into(),
+        coordinate_overlap: m.coordinate_kinds.overlap,
         joints: names
             .zip(&m.joints)
             .map(|(joint, j)| JointJson {
@@ -163,6 +195,7 @@ fn print(
     output::pairs(out, lines)?;
     writeln!(out)?;
     counts(out, m, &found.generic.counts)?;
+    blocks(out, m)?;
     limbs.print(out)?;
     singularity::ways(out, posed, &found.finite)?;
     if !m.ambiguous_ranks.is_empty() {
@@ -177,7 +210,7 @@ fn print(
 /// What is counted, here and in ordinary configurations.
 fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow::Result<()> {
     let r = &m.relation;
-    let rows: [(&str, usize, Option<usize>, &str); 7] = [
+    let rows: [(&str, usize, Option<usize>, &str); 8] = [
         (
             "coordinate",
             r.coordinate,
@@ -201,7 +234,13 @@ fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow
             "internal",
             m.internal.dimension(),
             None,
-            "torques of actuated joints in equilibrium (internal forces)",
+            "torques of actuated joints in equilibrium, without a wrench on the frame",
+        ),
+        (
+            "internal_forces",
+            m.internal_forces.dimension(),
+            None,
+            "forces in loops and contacts without a wrench on the frame (ker G)",
         ),
         (
             "zero_torque",
@@ -226,6 +265,31 @@ fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow
         let generic = generic.map_or_else(String::new, |n| n.to_string());
         vec![name.to_owned(), n.to_string(), generic, what.to_owned()]
     });
+    Ok(output::table(out, &columns, rows)?)
+}
+
+/// The motions by what moves.
+fn blocks(out: &mut dyn Write, m: &Mobility) -> anyhow::Result<()> {
+    writeln!(out)?;
+    let columns = [
+        ("motions by what moves", Align::Left),
+        ("symbol", Align::Left),
+        ("count", Align::Right),
+        ("moving", Align::Left),
+    ];
+    let row = |name: &str, symbol: &str, count: usize, meaning: &str| {
+        vec![name.to_owned(), symbol.to_owned(), count.to_string(), meaning.to_owned()]
+    };
+    let mut rows: Vec<_> = m
+        .blocks()
+        .iter()
+        .map(|b| row(b.name, b.symbol, b.motions.dimension(), b.meaning))
+        .collect();
+    let overlap = m.coordinate_kinds.overlap;
+    if overlap > 0 {
+        let text = "in coordinate_passive and coordinate_object: counted twice";
+        rows.push(row("overlap", "", overlap, text));
+    }
     Ok(output::table(out, &columns, rows)?)
 }
 

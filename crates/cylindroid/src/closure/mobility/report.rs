@@ -24,26 +24,14 @@
 use std::fmt;
 use std::ops::Range;
 
+use super::blocks::{CoordinateKinds, Parts};
 use super::compression::Compression;
+use super::force_spaces::{hyperstatic_forces, internal_forces};
 use super::motion_space::{MotionSpace, RowSelection};
 use super::relation::{Relation, RelationDimensions};
 use super::subspace::Subspace;
 use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::linalg::{ColumnSpace, Cut, Matrix, Svd, Threshold};
-
-/// Coordinate motions by what moves besides the actuated joints. A motion of the actuated joints
-/// that either passive joints or the object can compensate is counted in `passive` and in `object`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CoordinateKinds {
-    /// With passive joints only; the object may be at rest.
-    pub passive: usize,
-    /// With the object only; passive joints may be at rest.
-    pub object: usize,
-    /// Only with both.
-    pub both: usize,
-    /// Counted in `passive` and in `object`.
-    pub overlap: usize,
-}
 
 /// The mobility of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,16 +91,21 @@ pub struct Mobility {
     pub indeterminacy: Subspace,
     /// Motions orthogonal to both (scaled).
     pub coordinate: Subspace,
-    /// The coordinate motions by what moves.
+    /// The coordinate motions by what moves, see [`Mobility::blocks`].
     pub coordinate_kinds: CoordinateKinds,
     /// Motions of passive joints alone.
     pub idle: Subspace,
     /// Motions of the object alone, which neither actuated nor passive joints can influence.
     pub uncontrollable_object_motions: Subspace,
-    /// Number of indeterminate motions that involve both passive joints and object.
-    pub mixed: usize,
+    /// Motions of passive joints and object together, with the actuated joints at rest: orthogonal
+    /// (scaled) to idle and uncontrollable ones.
+    pub mixed: Subspace,
     /// Joint torques in equilibrium without a wrench on the object (active internal forces).
     pub internal: Subspace,
+    /// ker G: contact forces in equilibrium without a wrench on the object, whether or not joint
+    /// torques are needed for them ([`internal_forces`](super::super::internal_forces())). Their
+    /// number depends on the joints that are written as contacts; that of `internal` does not.
+    pub internal_forces: Subspace,
     /// Wrenches in equilibrium without joint torques.
     pub zero_torque: Subspace,
     /// Contact forces that equilibrium with torques and wrench does not determine.
@@ -174,7 +167,15 @@ impl Mobility {
         self.joints = joint_mobility(constraint, [&kernel, &free, &idle], tolerance);
         let units = |motions: Matrix| motions.scale_rows(constraint.column_scale());
         self.redundancy.basis = units(scaled(&self.redundancy, [true, false]));
-        for space in [&mut self.coordinate, &mut self.uncontrollable_object_motions] {
+        let kinds = &mut self.coordinate_kinds;
+        for space in [
+            &mut self.coordinate,
+            &mut self.uncontrollable_object_motions,
+            &mut self.mixed,
+            &mut kinds.passive,
+            &mut kinds.object,
+            &mut kinds.both,
+        ] {
             space.basis = units(scaled(space, [false, false]));
         }
         (self.dof.basis, self.indeterminacy.basis) = (units(kernel), units(free));
@@ -207,18 +208,16 @@ impl Mobility {
         let [joints_only, uncontrollable_object_motions] =
             motions.vanishing_on_rows_and_complement(U);
         let (r, i) = (redundancy.0.cols(), indeterminacy.0.cols());
-        let (i_p, i_u) = (idle.0.cols(), uncontrollable_object_motions.0.cols());
         let c = k.saturating_sub(r + i);
-        let passive = joints_only.0.cols().saturating_sub(r + i_p);
-        let object = object_only.0.cols().saturating_sub(r + i_u);
-        let mixed = i.saturating_sub(i_p + i_u);
-        // Without mixed motions nothing is counted twice.
-        let both = if mixed == 0 {
-            c.saturating_sub(passive + object)
-        } else {
-            let all = Matrix::hstack(k, &[&joints_only.0, &object_only.0, &indeterminacy.0]);
-            k - ColumnSpace::of(&all, tolerance).rank()
+        let parts = Parts {
+            redundancy: &redundancy.0,
+            idle: &idle.0,
+            uncontrollable: &uncontrollable_object_motions.0,
+            indeterminacy: &indeterminacy.0,
+            object_only: &object_only.0,
+            joints_only: &joints_only.0,
         };
+        let (coordinate_kinds, mixed) = parts.blocks(motions, c);
         let coordinate = if r + i == 0 {
             Subspace { basis: motions.basis(), cut: motions.cut() }
         } else {
@@ -231,12 +230,7 @@ impl Mobility {
         let mut report = Self {
             dof: Subspace { basis: motions.basis(), cut: motions.cut() },
             coordinate,
-            coordinate_kinds: CoordinateKinds {
-                passive,
-                object,
-                both,
-                overlap: (passive + object + both).saturating_sub(c),
-            },
+            coordinate_kinds,
             mixed,
             joints: joint_mobility(
                 constraint,
@@ -248,6 +242,7 @@ impl Mobility {
             idle: space(&idle),
             uncontrollable_object_motions: space(&uncontrollable_object_motions),
             internal: Subspace { basis: internal, cut: joint_rank },
+            internal_forces: internal_forces(constraint),
             zero_torque: Subspace { basis: structural, cut: object_rank },
             hyperstatic: hyperstatic_forces(constraint, motions),
             relation: relation.dimensions(),
@@ -296,16 +291,4 @@ fn joint_mobility(
             }
         })
         .collect()
-}
-
-/// ker G and ker J^T: contact forces that equilibrium does not determine.
-fn hyperstatic_forces(constraint: &Constraint, motions: &MotionSpace) -> Subspace {
-    let basis = if motions.hyperstatic() == 0 {
-        Matrix::zeros(constraint.rows(), 0)
-    } else {
-        let scaled = constraint.scaled_transpose().transpose();
-        let space = ColumnSpace::of(&scaled, Threshold::Relative(motions.threshold()));
-        space.complement().scale_rows(constraint.row_scale())
-    };
-    Subspace { basis, cut: motions.cut() }
 }

@@ -14,10 +14,8 @@
 
 use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::closure::mobility::motion_space::MotionSpace;
-use crate::closure::mobility::subspace::Subspace;
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, Metric, Svd, Threshold, dot, norm};
-use crate::tolerance::CLOSURE_RANK;
+use crate::linalg::{Metric, Svd, dot, norm};
 
 /// A static load: joint torques and a wrench on the object.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -131,39 +129,4 @@ impl<'a> ContactForceSolver<'a> {
         let size = norm(&target);
         Ok(ContactForces { forces, unbalanced: if size > 0.0 { norm(&left) / size } else { 0.0 } })
     }
-}
-
-/// ker G: contact forces without a wrench on the object (internal forces). They require joint
-/// torques unless they are hyperstatic.
-///
-/// ```
-/// use cylindroid::closure::{ClosedChain, internal_forces, structural_forces};
-///
-/// // Two arms squeeze their common object; no force is without joint torques.
-/// let arms = cylindroid::load("two-arm")?;
-/// let chain = ClosedChain::of(&arms.state(arms.home())?, None, None)?;
-/// assert!(internal_forces(&chain.constraint).dimension() > 0);
-/// assert_eq!(structural_forces(&chain.constraint).dimension(), 0);
-/// # Ok::<(), cylindroid::Error>(())
-/// ```
-#[must_use]
-#[doc(alias = "squeeze forces")]
-pub fn internal_forces(constraint: &Constraint) -> Subspace {
-    let joints = constraint.actuated() + constraint.passive();
-    kernel_of_columns(constraint, joints, joints + constraint.object())
-}
-
-/// ker J^T: contact forces without torques at any joint (structural forces, reactions).
-#[must_use]
-#[doc(alias = "constraint forces")]
-#[doc(alias = "reactions")]
-pub fn structural_forces(constraint: &Constraint) -> Subspace {
-    kernel_of_columns(constraint, 0, constraint.actuated() + constraint.passive())
-}
-
-/// Contact forces that do no work on columns `from..to` of the constraint.
-fn kernel_of_columns(constraint: &Constraint, from: usize, to: usize) -> Subspace {
-    let columns = constraint.scaled_transpose().rows_between(from, to).transpose();
-    let space = ColumnSpace::of(&columns, Threshold::Relative(CLOSURE_RANK));
-    Subspace { basis: space.complement().scale_rows(constraint.row_scale()), cut: space.cut() }
 }

@@ -1,7 +1,9 @@
 //! Mobility where it is known by hand.
 
 use cylindroid::Matrix;
-use cylindroid::closure::{Constraint, ConstraintBlocks, Mobility, MotionSpace, RowSelection};
+use cylindroid::closure::{
+    Constraint, ConstraintBlocks, Mobility, MotionSpace, RowSelection, Subspace,
+};
 use cylindroid::spatial::Vec3;
 
 use super::case::{case, cases};
@@ -24,12 +26,13 @@ fn a_motion_counted_twice_is_no_coordinate_motion() {
     let m = Mobility::of(&constraint);
     assert_eq!((m.dof.dimension(), m.redundancy.dimension()), (3, 0));
     assert_eq!(
-        (m.indeterminacy.dimension(), m.uncontrollable_object_motions.dimension(), m.mixed),
-        (2, 1, 1)
+        [&m.indeterminacy, &m.uncontrollable_object_motions, &m.mixed].map(Subspace::dimension),
+        [2, 1, 1]
     );
     assert_eq!(m.coordinate.dimension(), 1);
-    let kinds = m.coordinate_kinds;
-    assert_eq!((kinds.passive, kinds.object, kinds.both, kinds.overlap), (1, 1, 0, 1));
+    let kinds = &m.coordinate_kinds;
+    let counts = [&kinds.passive, &kinds.object, &kinds.both].map(Subspace::dimension);
+    assert_eq!((counts, kinds.overlap), ([1, 1, 0], 1));
     let r = m.relation;
     assert_eq!((r.coordinate, r.redundancy, r.indeterminacy), (0, 1, 2));
 }

@@ -2,6 +2,7 @@ mod actuation_map;
 mod any_matrices;
 mod assembly;
 mod bad_input;
+mod blocks;
 pub(crate) mod case;
 mod continuation;
 mod diagnosis;

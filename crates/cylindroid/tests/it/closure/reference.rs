@@ -1,6 +1,6 @@
 //! The counts of the reference mechanisms, in any frame, unit and basis, wherever contacts are drawn.
 
-use cylindroid::closure::{Mobility, MotionSpace, internal_forces, structural_forces};
+use cylindroid::closure::{Mobility, MotionSpace, structural_forces};
 
 use super::case::{Anew, Case, Problem, cases, described_anew};
 
@@ -8,7 +8,7 @@ use super::case::{Anew, Case, Problem, cases, described_anew};
 fn check(case: &Case, problem: &Problem) {
     let constraint = &problem.constraint;
     let m = Mobility::of(constraint);
-    let kinds = m.coordinate_kinds;
+    let kinds = &m.coordinate_kinds;
     let got = [
         ("actuated", constraint.actuated()),
         ("passive", constraint.passive()),
@@ -20,12 +20,12 @@ fn check(case: &Case, problem: &Problem) {
         ("indeterminacy", m.indeterminacy.dimension()),
         ("ind_passive", m.idle.dimension()),
         ("ind_object", m.uncontrollable_object_motions.dimension()),
-        ("ind_mixed", m.mixed),
-        ("coord_ap", kinds.passive),
-        ("coord_au", kinds.object),
-        ("coord_apu", kinds.both),
+        ("ind_mixed", m.mixed.dimension()),
+        ("coord_ap", kinds.passive.dimension()),
+        ("coord_au", kinds.object.dimension()),
+        ("coord_apu", kinds.both.dimension()),
         ("coord_overlap", kinds.overlap),
-        ("ker_G", internal_forces(constraint).dimension()),
+        ("ker_G", m.internal_forces.dimension()),
         ("ker_JT", structural_forces(constraint).dimension()),
         ("hyperstatic", m.hyperstatic.dimension()),
         ("rel_dim", m.relation.relation),
