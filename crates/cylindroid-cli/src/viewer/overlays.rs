@@ -136,7 +136,7 @@ fn principal(system: &ScrewSystem) -> Shown {
     Shown::System(SystemJson {
         order: system.order(),
         gibson_hunt: system.class().name(),
-        meaning: system.class().meaning(),
+        meaning: system.normal_form().meaning(),
         ambiguous: system.is_ambiguous(),
         principal_pitches: system.principal_pitches(),
         screws: system.principal_screws().iter().map(Into::into).collect(),
@@ -157,7 +157,7 @@ fn reciprocal(system: &ScrewSystem) -> Shown {
     Shown::Reciprocal(ReciprocalJson {
         order: 6 - system.order(),
         gibson_hunt: system.reciprocal().class().name(),
-        meaning: system.reciprocal().class().meaning(),
+        meaning: system.reciprocal().normal_form().meaning(),
         screws: reciprocal_screws(system).iter().map(Into::into).collect(),
     })
 }

@@ -141,7 +141,7 @@ impl PyScrewSystem {
 
     #[getter]
     fn meaning(&self) -> &'static str {
-        self.inner.class().meaning()
+        self.inner.normal_form().meaning()
     }
 
     #[getter]
@@ -301,7 +301,7 @@ impl PyScrewSystem {
         let s = &self.inner;
         let mut table = Table::new(&format!("ScrewSystem of order {}", s.order()));
         let of = if matches!(s.order(), 4 | 5) { "reciprocal system: " } else { "" };
-        table.row("class", format!("{}, {of}{}", s.class(), s.class().meaning()));
+        table.row("class", format!("{}, {of}{}", s.class(), s.normal_form().meaning()));
         table.row("principal pitches", table::list(&s.principal_pitches()));
         table.row("origin", table::list(&s.canonical_pose().translation.to_array()));
         if s.is_ambiguous() {

@@ -42,6 +42,7 @@ pub use mobility::force_spaces::{internal_forces, structural_forces};
 pub use mobility::limbs::{Limb, LimbScrews};
 pub use mobility::motion_space::{MotionSpace, RowSelection};
 pub use mobility::reference_twists::frame_twists;
+pub(crate) use mobility::relation::check_components;
 pub use mobility::relation::{Relation, RelationBases, RelationDimensions};
 pub use mobility::report::{JointMobility, Mobility, RankWarning};
 pub use mobility::second_order::{SecondOrder, SecondOrderRigidity};

@@ -24,6 +24,7 @@
 mod batch;
 mod closed_chain_batched;
 mod efficiency;
+mod ellipsoid;
 mod gradient;
 mod index;
 mod inertia;
@@ -32,6 +33,7 @@ mod polytope;
 
 pub use batch::{BatchOptions, ManipulabilityBatch};
 pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
+pub use ellipsoid::{Ellipsoid, EllipsoidView};
 pub(crate) use gradient::log_volume_slope;
 pub use gradient::{Goal, Gradient, Measure, gradient};
 pub use index::Index;

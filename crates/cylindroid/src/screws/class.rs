@@ -9,6 +9,7 @@
 use std::fmt;
 
 use crate::spatial::{Twist, Vec3};
+use crate::tolerance::SCREW_CLASS;
 
 /// The Gibson-Hunt class of a screw system, invariant under rigid motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -78,14 +79,14 @@ impl Class {
             Self::H => "one screw of finite pitch",
             Self::Inf => "one translation",
             Self::IA => "two screws of different pitches that cross at right angles: a cylindroid",
-            Self::IB => "parallel screws of all pitches, with a translation that leans on them",
+            Self::IB => "parallel screws of all pitches, and a translation not across their axes",
             Self::IIA => "screws of one pitch in all directions through a point",
             Self::IIB => "screws of one pitch, and the translation across their axes",
             Self::IIC => "the translations of a plane",
             Self::IA1 => "three screws of different pitches that cross at right angles",
             Self::IA2 => "three screws that cross at right angles, two of one pitch",
             Self::IB0 => {
-                "screws of one pitch in parallel planes, and a translation that leans on them"
+                "screws of one pitch in parallel planes, and a translation not across the planes"
             }
             Self::IB3 => "two screws of different pitches, and the translation across both",
             Self::IC => "parallel screws, and two translations not both across them",
@@ -123,6 +124,42 @@ pub struct NormalForm {
 }
 
 impl NormalForm {
+    /// The composition of a system of this form: [`Class::meaning`] with the direction of the
+    /// translation, which the slope decides in classes IB and IB0.
+    ///
+    /// ```
+    /// use cylindroid::screws::{ScrewOptions, ScrewSystem};
+    /// use cylindroid::{Twist, Vec3};
+    ///
+    /// let rotation = |angular| Twist { linear: Vec3::ZERO, angular };
+    /// let slide = |linear| Twist { linear, angular: Vec3::ZERO };
+    /// let meaning = |translation| {
+    ///     let twists = [rotation(Vec3::X), slide(translation)];
+    ///     let system = ScrewSystem::of(&twists, &ScrewOptions::default())?;
+    ///     Ok::<_, cylindroid::Error>(system.normal_form().meaning())
+    /// };
+    /// assert_eq!(meaning(Vec3::X)?, "screws of all pitches on one axis");
+    /// assert!(meaning(Vec3::new(1.0, 0.5, 0.0))?.ends_with("oblique to their axes"));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    #[must_use]
+    pub fn meaning(&self) -> &'static str {
+        let leans = self.slope.is_some_and(|p| p.abs() > SCREW_CLASS);
+        match (self.class, leans) {
+            (Class::IB, false) => "screws of all pitches on one axis",
+            (Class::IB, true) => {
+                "parallel screws of all pitches, and a translation oblique to their axes"
+            }
+            (Class::IB0, false) => {
+                "screws of one pitch in parallel planes, and a translation in these planes"
+            }
+            (Class::IB0, true) => {
+                "screws of one pitch in parallel planes, and a translation oblique to the planes"
+            }
+            (class, _) => class.meaning(),
+        }
+    }
+
     /// The generators of the form in its own frame.
     #[must_use]
     pub fn twists(&self) -> Vec<Twist> {

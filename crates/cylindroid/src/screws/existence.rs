@@ -293,6 +293,10 @@ impl ScrewSystem {
                 (pitch, smallest) = (refined, norm(refined));
             }
         }
+        // Nor is a minimum at zero worth its rounding.
+        if norm(0.0) <= smallest * (1.0 + 1e-6) {
+            (pitch, smallest) = (0.0, norm(0.0));
+        }
         if norm_at_infinity <= smallest * (1.0 + 1e-6) {
             (pitch, smallest) = (f64::INFINITY, norm_at_infinity);
         }

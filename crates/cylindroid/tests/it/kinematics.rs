@@ -445,3 +445,49 @@ fn screws_of_closing_joints() {
     }
     assert!(looked > 20, "{looked}");
 }
+
+/// Where a joint moves its child, its twist is that of its axis: from the child's side as from the
+/// parent's, also behind frames of their own and for joints that are written backwards.
+#[test]
+fn joint_axes_are_those_of_the_joint_twists() {
+    let mut random = Random(38);
+    let mut seen = 0;
+    for robot in robots() {
+        let state = robot.state(&random.q(&robot)).unwrap();
+        let mut twists = Matrix::zeros(6, robot.n());
+        state.joint_twists_into(&mut twists);
+        for (joint, axis) in robot.joints().iter().zip(state.joint_axes()) {
+            let sides = [axis.on_parent, axis.on_child];
+            let single = joint.mimic.is_none() && joint.coordinates.len() == 1;
+            for line in sides.into_iter().filter(|_| single) {
+                assert!((line.direction.norm() - 1.0).abs() < 1e-14);
+                let column: [f64; 6] = twists.column(joint.coordinates.start).try_into().unwrap();
+                let twist = Twist::from_array(column);
+                let expected = match joint.kind {
+                    JointKind::Revolute => line.twist(),
+                    JointKind::Prismatic => Twist { linear: line.direction, angular: Vec3::ZERO },
+                    _ => continue,
+                };
+                assert_close(&joint.name, &twist.to_array(), &expected.to_array(), 1e-12);
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 100, "{seen}");
+}
+
+/// Loop joints stand where the file puts them; on both links where the loop is closed.
+#[test]
+fn joint_axes_of_loops() {
+    let expected = [("five-bar", [2.0, 0.0, 0.0]), ("four-bar", [2.0, 0.0, 0.0])];
+    for (name, point) in expected {
+        let robot = catalogue::load(name).unwrap();
+        let axes = robot.state(robot.home()).unwrap().loop_joint_axes();
+        assert_eq!(axes.len(), 1);
+        for line in [axes[0].on_parent, axes[0].on_child] {
+            let line_point = line.point.to_array();
+            assert_close(name, &line_point, &point, 1e-12);
+            assert_eq!(line.direction, Vec3::Z);
+        }
+    }
+}

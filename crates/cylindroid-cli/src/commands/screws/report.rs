@@ -169,7 +169,7 @@ fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
         gap: system.rank().gap,
         threshold: system.rank().threshold,
         gibson_hunt: system.class().name(),
-        meaning: system.class().meaning(),
+        meaning: system.normal_form().meaning(),
         principal_pitches: system.principal_pitches(),
         principal_screws: system.principal_screws().iter().map(Into::into).collect(),
         normal_form: NormalFormJson {
@@ -334,7 +334,7 @@ fn order(system: &ScrewSystem, count: usize) -> String {
 fn class(system: &ScrewSystem) -> String {
     let (class, order) = (system.class(), system.order());
     let of = if matches!(order, 4 | 5) { "reciprocal to " } else { "" };
-    format!("{class}: {of}{}", class.meaning())
+    format!("{class}: {of}{}", system.normal_form().meaning())
 }
 
 fn principal(system: &ScrewSystem) -> String {
@@ -358,7 +358,7 @@ fn verdict(system: &ScrewSystem) -> String {
     let scale = format!(
         "at length {} m and center {} m",
         number(system.length()),
-        output::entries(&system.center().to_array())
+        output::entries(&system.center().to_array().map(clean))
     );
     if !system.is_ambiguous() {
         return format!("clear, {scale}");

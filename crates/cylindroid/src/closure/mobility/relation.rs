@@ -244,6 +244,52 @@ impl Relation {
         ))
     }
 
+    /// The relation between actuated joints and some components of the object's twist while the
+    /// other components are zero, as if a guide blocked them: the section of the motions. Its
+    /// forces are the projection of the wrenches, since the guide takes the other components.
+    ///
+    /// ```text
+    /// {(qd_a, v) : (qd_a, u) in R,  u_i = v_i for the components,  u_j = 0 for the others}
+    /// ```
+    ///
+    /// [`Relation::task`] leaves the other components free instead.
+    ///
+    /// # Errors
+    /// A component that does not exist, or is given twice; none.
+    pub fn section(&self, components: &[usize]) -> Result<Self> {
+        check_components(components, self.object())?;
+        let columns = self.cs.len();
+        let twist = &self.scale.twist;
+        let size: Vec<f64> = (0..self.object()).map(|i| twist.row_norm(i)).collect();
+        let object = Matrix::from_fn(self.object(), columns, |i, j| {
+            let along = |l| twist[(i, l)] * self.cs.y[(l, j)];
+            (0..twist.cols()).map(along).sum::<f64>() * self.cs.sines[j] / size[i]
+        });
+        let rows = |chosen: &[usize]| {
+            Matrix::from_fn(chosen.len(), columns, |i, j| object[(chosen[i], j)])
+        };
+        let others: Vec<usize> = (0..self.object()).filter(|i| !components.contains(i)).collect();
+        let permitted = if others.is_empty() || columns == 0 {
+            Matrix::identity(columns)
+        } else {
+            let blocked = rows(&others).transpose();
+            ColumnSpace::of(&blocked, Threshold::Absolute(self.tolerance)).complement()
+        };
+        let joint =
+            Matrix::from_fn(self.joints(), columns, |i, j| self.cs.x[(i, j)] * self.cs.cosines[j]);
+        let span = Matrix::vstack(
+            permitted.cols(),
+            &[&(&joint * &permitted), &(&rows(components) * &permitted)],
+        );
+        let scale: Vec<f64> = components.iter().map(|&i| size[i]).collect();
+        Ok(Self::from_scaled(
+            span,
+            self.joint_scale.clone(),
+            ObjectScale::diagonal(&scale),
+            self.tolerance,
+        ))
+    }
+
     fn finite(&self) -> std::ops::Range<usize> {
         self.infinite..self.cs.len() - self.zero
     }
@@ -313,6 +359,18 @@ impl Relation {
             object: object * &kinds.object,
         }
     }
+}
+
+/// Refuses components that do not exist or are given twice.
+pub(crate) fn check_components(components: &[usize], of: usize) -> Result<()> {
+    let twice = |i: usize| components[..i].contains(&components[i]);
+    let reason = match components.iter().position(|c| *c >= of) {
+        Some(i) => format!("component {} does not exist; there are {of}", components[i]),
+        None if components.is_empty() => "choose one component at least".to_owned(),
+        None if (0..components.len()).any(twice) => "a component is given twice".to_owned(),
+        None => return Ok(()),
+    };
+    Err(Error::InvalidOption { option: "components", value: format!("{components:?}"), reason })
 }
 
 /// The equilibrium of a wrench.

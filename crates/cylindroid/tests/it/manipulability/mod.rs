@@ -1,4 +1,5 @@
 mod batch;
+mod ellipsoid;
 mod gradient;
 mod metrics;
 mod polytope;

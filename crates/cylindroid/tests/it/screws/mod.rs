@@ -7,6 +7,7 @@ mod forms;
 mod geometry;
 mod invariance;
 mod laws;
+mod pitch_conics;
 mod point_direction;
 mod projectors;
 mod sample;
