@@ -82,9 +82,12 @@ pub(crate) fn vectors() -> Result<()> {
         "-r",
         "xtask/vectors/requirements.txt",
     ]))?;
-    for (script, folder) in
-        [("pinocchio", "pinocchio"), ("closed_chain", "closed_chains"), ("grasp", "grasps")]
-    {
+    for (script, folder) in [
+        ("pinocchio", "pinocchio"),
+        ("closed_chain", "closed_chains"),
+        ("grasp", "grasps"),
+        ("pitch_form", "pitch_forms"),
+    ] {
         let script = format!("xtask/vectors/{script}_vectors.py");
         let folder = format!("crates/cylindroid/tests/vectors/{folder}");
         run(Command::new(&python).args([&script, "--out", &folder]))?;

@@ -121,6 +121,10 @@ pub const SCREW_RANK: f64 = 1e-12;
 /// characteristic length, sines of angles [-].
 pub const SCREW_CLASS: f64 = 1e-8;
 
+/// Rank of a stiffness or inertia matrix, relative to its largest eigenvalue at its centre and
+/// length: a few thousand roundings of its entries [-].
+pub const STIFFNESS_RANK: f64 = 1e-12;
+
 /// Noise of the twists, at the centre, raises the threshold of the rank to this multiple of its
 /// size [-]. This factor and the next were found by experiment over all classes in random frames.
 pub const NOISE_RANK: f64 = 30.0;

@@ -3,12 +3,15 @@
 mod bases;
 mod classes;
 mod curve;
+mod eigenscrews;
 mod forms;
 mod geometry;
+mod hyperbolic_svd;
 mod invariance;
 mod laws;
 mod pitch_conics;
 mod point_direction;
 mod projectors;
 mod sample;
+mod signature;
 mod vectors;
