@@ -263,6 +263,25 @@ fn values_vanish_as_a_root() {
     assert_close("isotropic", svd.left.column(0), j.column(0), 1e-15);
 }
 
+/// With the Klein form on both sides, A* A = Q_0^-1 A^T Q_0 A has the simple negative eigenvalues -1
+/// and -4: a symmetric B with B^2 = A* A would have a real eigenvalue of square -1.
+#[test]
+fn a_map_of_twists_without_polar_decomposition() {
+    // Columns: the screws of pitch 1 and -1 along each axis; orthonormal in the Klein form.
+    let screws = Matrix::from_fn(6, 6, |i, j| {
+        let (axis, sign) = (j / 2, if j % 2 == 0 { 1.0 } else { -1.0 });
+        if i == axis { sign } else { f64::from(u8::from(i == axis + 3)) }
+    });
+    let signs = Matrix::diagonal(&[1.0, -1.0, 1.0, -1.0, 1.0, -1.0]);
+    let form = &(&screws.transpose() * &form_matrix(0.0)) * &screws;
+    assert_matrix("form", &form, &signs, 0.0);
+    let mut a = Matrix::identity(6);
+    (a[(0, 0)], a[(1, 1)], a[(1, 0)], a[(0, 1)]) = (0.0, 0.0, 1.0, 2.0);
+    let square = &(&(&signs * &a.transpose()) * &signs) * &a;
+    let expected = Matrix::diagonal(&[-1.0, -4.0, 1.0, 1.0, 1.0, 1.0]);
+    assert_matrix("A* A", &square, &expected, 0.0);
+}
+
 /// numpy's unsymmetric eigensolver: xtask/vectors/pitch_form_vectors.py.
 #[test]
 fn values_and_factors_of_numpy() {

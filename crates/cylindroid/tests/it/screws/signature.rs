@@ -96,3 +96,24 @@ fn signatures_of_no_pitch_and_no_system() {
     assert_eq!(none.signature(0.0), Signature::default());
     assert_eq!(Signature { positive: 2, negative: 1, zero: 0 }.to_string(), "(2, 1, 0)");
 }
+
+/// A tenth of the distance to a principal pitch: ten times the projector, for every class that has
+/// one, also where pitches coincide.
+#[test]
+fn poles_are_simple() {
+    let mut random = Random(178);
+    for (order, class) in CLASSES
+        .into_iter()
+        .filter(|(order, class)| always_reciprocal(*class, *order) == 0 && *class != Class::IB)
+    {
+        let form = Form::random(&mut random, order, class);
+        let pose = Setting::PLAIN.pose(&mut random);
+        let twists = spanning(&mut random, &form.basis(), order, pose, &Setting::PLAIN);
+        let system = ScrewSystem::of(&twists, &ScrewOptions::default()).unwrap();
+        for h in pitches(&form) {
+            let norm = |d: f64| system.projector_norm(h + d);
+            let ratio = norm(1e-5) / norm(1e-4);
+            assert!((ratio - 10.0).abs() < 0.1, "{form:?}: {ratio}");
+        }
+    }
+}
