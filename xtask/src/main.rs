@@ -7,6 +7,7 @@ mod instructions;
 mod layers;
 mod models;
 mod python;
+mod python_names;
 mod shell;
 mod steps;
 mod viewer;
@@ -20,7 +21,7 @@ cargo xtask <task>
 
   test      sets up what tests need, then every check and test (this is the whole CI)
   ci        the same
-  quick     formatting, layers, lints: what to run before a push
+  quick     formatting, layers, names in Python, lints: what to run before a push
   setup     fetches the robot files that tests read (from PyPI, once)
   python    builds the Python package, installs and tests it (needs Python 3 and PyPI)
   viewer    builds the viewer's page (needs Node.js with npm); --test drives it in Chromium against
@@ -31,6 +32,9 @@ cargo xtask <task>
   layers    checks that the library's modules import only those before them, that no files import
             one another in a circle, that headers name tests that exist, and that files are short;
             --circles lists every import of the circles, --checked only the headers
+  python-names
+            checks that every public function of the library has a name in Python, or a line in
+            crates/cylindroid-py/names.txt with another name or the reason why not
   vectors   regenerates the reference vectors from Pinocchio, MuJoCo, Clarabel and Qhull (needs
             Python and PyPI)
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
@@ -65,6 +69,7 @@ fn run() -> Result<()> {
         Some("viewer") => viewer::task(std::env::args().nth(2).as_deref()),
         Some("book") => book::task(std::env::args().nth(2).as_deref()),
         Some("layers") => layers::task(std::env::args().nth(2).as_deref()),
+        Some("python-names") => python_names::check(),
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),
         Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),

@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use crate::shell::{cargo, documentation, root, run};
-use crate::{book, layers, models, python, viewer};
+use crate::{book, layers, models, python, python_names, viewer};
 
 fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
     println!("== {name}");
@@ -16,10 +16,11 @@ fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
     Ok(())
 }
 
-/// Formatting, layers, lints.
+/// Formatting, layers, names in Python, lints.
 pub(crate) fn quick() -> Result<()> {
     step("format", || run(&mut cargo(&["fmt", "--all", "--check"])))?;
     step("layers", layers::check)?;
+    step("names in Python", python_names::check)?;
     step("library without features", || {
         let library = ["clippy", "--quiet", "--package", "cylindroid", "--no-default-features"];
         run(cargo(&library).args(["--", "-D", "warnings"]))

@@ -22,7 +22,8 @@ pub(crate) use screws::ScrewsArgs;
 pub(crate) use shared::{ConfigurationArgs, FrameArgs};
 pub(crate) use view::ViewArgs;
 
-use crate::values::Joints;
+use self::inverses::NamedInverseArgs;
+use crate::values::{Joints, Motion};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -32,6 +33,15 @@ Examples:
   cylindroid screws youbot
 
 Exit codes: 0 success, 1 negative answer (target not reached, loops or grasp not closed), 2 error.";
+
+const JACOBIAN_EXAMPLES: &str = "\
+Examples:
+  cylindroid jacobian ur5e --twist 0.1,0,0,0,0,0.2 --eps 1e-3 --length 0.8
+  cylindroid jacobian youbot --twist 0.05,0,0,0,0.1,0 --inverse hyperbolic --h 0.1
+  cylindroid jacobian five-bar --twist x
+
+The inverse is printed if --twist, --inverse or a parameter of an inverse is given. In a closed \
+chain its joint velocities keep the loops closed, with the least motion of the actuated joints.";
 
 /// Computes the kinematics and capabilities of robots and mechanisms, and controls them in
 /// Cartesian space.
@@ -58,8 +68,9 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Forward kinematics: the pose of a frame, world_from_frame
     Fk(FkArgs),
-    /// The Jacobian of a frame, its singular values and rank
-    Jacobian(JacobianArgs),
+    /// The Jacobian of a frame, its singular values, rank and inverse
+    #[command(after_long_help = JACOBIAN_EXAMPLES)]
+    Jacobian(Box<JacobianArgs>),
     /// Inverse kinematics: configurations that bring a frame to a target, within all limits
     #[command(long_about = ik::ABOUT, after_long_help = ik::EXAMPLES)]
     Ik(Box<IkArgs>),
@@ -129,6 +140,20 @@ pub(crate) struct JacobianArgs {
     /// format as for --q, joints that are not named are at rest
     #[arg(long, value_name = "VELOCITIES", allow_hyphen_values = true)]
     pub(crate) velocities: Option<Joints>,
+
+    /// Characteristic length that divides the linear rows for singular values, rank and inverse [m]
+    /// [default: that of the model]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) length: Option<f64>,
+
+    /// Print the inverse and the joint velocities for this twist `vx,vy,vz,wx,wy,wz` [m/s, rad/s],
+    /// or for 1 m/s or 1 rad/s along x, y, z, rx, ry or rz; point and axes are those of --reference
+    #[arg(long, value_name = "TWIST", allow_hyphen_values = true, conflicts_with = "analytical")]
+    #[arg(help_heading = "Inverse")]
+    pub(crate) twist: Option<Motion>,
+
+    #[command(flatten, next_help_heading = "Inverse")]
+    pub(crate) inverse: NamedInverseArgs,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -18,6 +18,7 @@ mod options;
 mod parameter_tables;
 mod screws;
 mod servo;
+mod spatial;
 mod table;
 mod threads;
 
@@ -32,7 +33,7 @@ mod _core {
         PyContactForces, PyContinuationResult, PyDirection, PyFingerContact, PyFiniteMobility,
         PyGradient, PyGraspQuality, PyJointMobility, PyJointTorques, PyLimb, PyLoopClosureError,
         PyManipulability, PyMobility, PyModeMeeting, PyOperationMode, PyOperationModes, PyPolytope,
-        PySingularity, PySpectrum, PyTransmission, grasp::grasp_quality,
+        PySingularity, PySpectrum, PyTransmission, PyTransmittedWrench, grasp::grasp_quality,
     };
     #[pymodule_export]
     use crate::control::{
@@ -62,6 +63,10 @@ mod _core {
     #[pymodule_export]
     use crate::parameter_tables::{inverse_methods, secondary_tasks};
     #[pymodule_export]
+    use crate::screws::forms::{
+        gram, gram_determinant, killing, klein, lowered, pitch_form, raised, wrench_pitch_form,
+    };
+    #[pymodule_export]
     use crate::screws::involution::involution;
     #[pymodule_export]
     use crate::screws::projector::{adjoint, projector, screw_to};
@@ -69,10 +74,16 @@ mod _core {
     use crate::screws::transversals::transversals;
     #[pymodule_export]
     use crate::screws::{
-        PyExistence, PyInvolution, PyMargin, PyProjector, PyScrew, PyScrewSystem, PyTransversals,
+        PyErrorFormZeros, PyExistence, PyInvolution, PyMargin, PyProjector, PyScrew, PyScrewSystem,
+        PyTransversals,
     };
     #[pymodule_export]
     use crate::servo::{PyMotionResult, PyServo, PyStall, PyTrajectory};
+    #[pymodule_export]
+    use crate::spatial::{
+        bracket, coadjoint, error_to, exp, exp_derivative, log, log_derivative,
+        rotation_exp_derivative, rotation_log_derivative, velocity_conversion,
+    };
 
     use super::*;
 

@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
+use cylindroid::Method;
 use cylindroid::control::NamedInverse;
 use cylindroid::inverse::Parameter;
+
+use crate::values::Motion;
 
 /// A flag, and whose it is.
 #[derive(Debug)]
@@ -49,7 +52,7 @@ pub(crate) fn option(parameter: &str) -> Option<&'static str> {
 }
 
 /// The help of `--inverse`.
-pub(crate) fn help() -> String {
+fn help() -> String {
     let names = |partial: bool| {
         let all = NamedInverse::all().filter(|i| i.is_partial == partial);
         let named = all.map(|i| {
@@ -61,10 +64,38 @@ pub(crate) fn help() -> String {
     };
     format!(
         "Inverse of the Jacobian: {}; for arms with fewer than six joints, frame- and \
-         unit-invariant: {}",
+         unit-invariant: {} [default: {}]",
         names(false),
-        names(true)
+        names(true),
+        Method::default().name()
     )
+}
+
+/// An inverse with its parameters.
+#[derive(Debug, Args)]
+pub(crate) struct NamedInverseArgs {
+    #[arg(long, value_name = "NAME", help = help())]
+    pub(crate) inverse: Option<String>,
+
+    #[command(flatten)]
+    pub(crate) parameters: Parameters,
+
+    /// A motion of the tool, in its axes, that may be given up: x, y, z, rx, ry, rz, or a twist
+    /// `vx,vy,vz,wx,wy,wz`; as often as the arm lacks joints to six (oblique)
+    #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
+    pub(crate) give_up: Vec<Motion>,
+}
+
+impl NamedInverseArgs {
+    /// Its name.
+    pub(crate) fn name(&self) -> &str {
+        self.inverse.as_deref().unwrap_or(Method::default().name())
+    }
+
+    /// True if any of the options was given.
+    pub(crate) fn is_given(&self) -> bool {
+        self.inverse.is_some() || !self.parameters.0.is_empty() || !self.give_up.is_empty()
+    }
 }
 
 /// Values of parameters by name, those that were given.

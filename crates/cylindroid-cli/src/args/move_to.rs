@@ -6,8 +6,9 @@ use clap::{Args, ValueEnum};
 use cylindroid::control::SecondaryTask;
 use cylindroid::inverse::Parameter;
 
-use super::{ConfigurationArgs, FrameArgs, inverses};
-use crate::values::{Joints, Motion, Named, Numbers, Pair};
+use super::inverses::NamedInverseArgs;
+use super::{ConfigurationArgs, FrameArgs};
+use crate::values::{Joints, Named, Numbers, Pair};
 
 pub(crate) const ABOUT: &str = "\
 Cartesian control: move a frame to a target and report whether and how it was reached
@@ -207,16 +208,8 @@ fn secondary_help() -> String {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Inverse")]
 pub(crate) struct InverseArgs {
-    #[arg(long, value_name = "NAME", default_value = "truncated", help = inverses::help())]
-    pub(crate) inverse: String,
-
     #[command(flatten)]
-    pub(crate) parameters: inverses::Parameters,
-
-    /// A motion of the tool, in its axes, that may be given up: x, y, z, rx, ry, rz, or a twist
-    /// `vx,vy,vz,wx,wy,wz`; as often as the arm lacks joints to six (oblique)
-    #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
-    pub(crate) give_up: Vec<Motion>,
+    pub(crate) named: NamedInverseArgs,
 
     /// Inverse used where the chosen one does not exist or enlarges motions too much: `truncated`,
     /// `hyperbolic-damped`, `hyperbolic-gram`, `hyperbolic`, `oblique` [default: none, the arm

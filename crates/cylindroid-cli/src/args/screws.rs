@@ -14,13 +14,15 @@ For the joint twists of a robot at a configuration, for the motions that the loo
 chain permit its reference or another frame, or for twists read from a file: order and \
 Gibson-Hunt class of the screw system they span, principal pitches and screws, canonical frame, \
 reciprocal system, the pitches h at which a hyperbolic pseudoinverse exists, the pitch with the \
-smallest projector norm, and whether the joint axes are in involution. The results are independent \
+smallest projector norm, and whether the joint axes are in involution. With --h, the hyperbolic \
+pseudoinverse and its projectors; with --twist, the joint velocities and the error form. The results are independent \
 of the reference frame and of the unit of length.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   cylindroid screws youbot
   cylindroid screws youbot --q 0.4,0.6,0.9,0.5,0.2 --h 0.1 --plot screws.svg
+  cylindroid screws youbot --h 0.1 --h inf --twist 0.05,0.02,0,0.2,0.1,0.1
   cylindroid screws axes.csv --length 0.5 --noise 1e-6
 
 Instead of a model, a file of twists (.csv or .json) can be given: six numbers per twist, the \
@@ -48,10 +50,17 @@ pub(crate) struct ScrewsArgs {
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
     pub(crate) noise: Option<f64>,
 
-    /// Pitch at which the existence of the hyperbolic inverse is checked [m/rad]; `inf` is allowed;
-    /// repeatable
+    /// Pitch of the hyperbolic pseudoinverse [m/rad], `inf` for the limit; repeatable. Prints its
+    /// existence, the inverse, the projectors of twists and wrenches, the Gram determinant and the
+    /// h-reciprocal system
     #[arg(long, value_name = "H", allow_hyphen_values = true)]
     pub(crate) h: Vec<f64>,
+
+    /// Also compute the joint velocities for this twist at the pitches of --h, and the pitches at
+    /// which its error form vanishes; at the origin of the world, world axes (of a file: in its frame
+    /// and order) [m/s, rad/s]
+    #[arg(long, value_name = "VX,VY,VZ,WX,WY,WZ", allow_hyphen_values = true)]
+    pub(crate) twist: Option<Numbers<6>>,
 
     /// Also compute the joint velocities that move this point of the controlled frame along
     /// --direction; world axes [m]

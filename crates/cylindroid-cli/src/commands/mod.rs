@@ -4,6 +4,7 @@ pub(crate) mod closed;
 mod fk;
 mod ik;
 pub(crate) mod info;
+pub(crate) mod inverse_selection;
 mod jacobian;
 mod models;
 pub(crate) mod move_to;

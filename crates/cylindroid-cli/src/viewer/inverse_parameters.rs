@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::messages::{Complaint, MethodChoice};
 use crate::args::InverseArgs;
-use crate::args::inverses::Parameters;
+use crate::args::inverses::{NamedInverseArgs, Parameters};
 use crate::commands::move_to::inverse;
 
 /// The parameters of the inverse of this name except the pitch, with their defaults.
@@ -92,5 +92,7 @@ fn arguments(
         given.insert(known, *value);
     }
     let inverse = name.to_owned();
-    Ok(InverseArgs { inverse, parameters: Parameters(given), give_up: Vec::new(), fallback })
+    let parameters = Parameters(given);
+    let named = NamedInverseArgs { inverse: Some(inverse), parameters, give_up: Vec::new() };
+    Ok(InverseArgs { named, fallback })
 }

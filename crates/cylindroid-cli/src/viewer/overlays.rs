@@ -15,7 +15,7 @@ use super::json::PoseJson;
 use super::measures::Measures;
 use super::names::Overlay;
 use super::session::Session;
-use crate::commands::screws::report::reciprocal_screws;
+use crate::commands::screws::basis_screws::basis_screws;
 use crate::output::ScrewJson;
 
 /// Number of rulings of a cylindroid.
@@ -158,7 +158,7 @@ fn reciprocal(system: &ScrewSystem) -> Shown {
         order: 6 - system.order(),
         gibson_hunt: system.reciprocal().class().name(),
         meaning: system.reciprocal().normal_form().meaning(),
-        screws: reciprocal_screws(system).iter().map(Into::into).collect(),
+        screws: basis_screws(&system.reciprocal()).iter().map(Into::into).collect(),
     })
 }
 

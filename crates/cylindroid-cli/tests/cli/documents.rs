@@ -107,6 +107,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
         "jacobian" => vec![
             vec!["ur5e", "--velocities", "shoulder_pan_joint=0.1"],
             vec!["ur5e", "--analytical", "zyz"],
+            vec!["youbot", "--twist", "x", "--eps", "1e-6"],
         ],
         "ik" => vec![with(&["panda"], &UP), vec!["panda", "--to", "2,0,0.5"]],
         "move" => vec![
@@ -133,6 +134,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
         "screws" => {
             vec![
                 vec!["youbot", "--h", "0.1", "--point", "0.4,0.2,0.2", "--direction", "0,0,1"],
+                vec!["youbot", "--h", "0.1", "--twist", "0,0,1,0,1,0"],
                 vec!["delta"],
             ]
         }

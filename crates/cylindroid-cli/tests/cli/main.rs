@@ -7,6 +7,7 @@ mod book;
 mod closed;
 mod documents;
 mod ik;
+mod inverses;
 mod measured;
 mod motion;
 mod screws;

@@ -16,9 +16,9 @@ fn a_five_joint_arm() {
     assert!(numbers(&report["principal_pitches"])[0].abs() < 1e-12);
     assert_eq!((&report["ambiguous"], &report["invertible"]), (&false.into(), &true.into()));
     let exists: Vec<bool> =
-        report["existence"].as_array().unwrap().iter().map(|e| e["exists"] == true).collect();
+        report["inverses"].as_array().unwrap().iter().map(|e| e["exists"] == true).collect();
     assert_eq!(exists, [true, false, true]);
-    assert!(report["existence"][1]["reason"].as_str().unwrap().contains("principal pitch 0 m/rad"));
+    assert!(report["inverses"][1]["reason"].as_str().unwrap().contains("principal pitch 0 m/rad"));
     // The horizontal line parallel to the pitch axes, through the crossing of axes 1 and 5.
     let reciprocal = &report["reciprocal"][0];
     assert!(numbers(&reciprocal["point"])[..2].iter().all(|x| x.abs() < 1e-12));

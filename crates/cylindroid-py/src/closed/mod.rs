@@ -20,6 +20,7 @@ mod polytope;
 mod singularity;
 mod spectrum;
 mod statics;
+mod transmitted;
 
 use pyo3::prelude::*;
 
@@ -42,6 +43,7 @@ pub(crate) use polytope::PyPolytope;
 pub(crate) use singularity::PySingularity;
 pub(crate) use spectrum::{PyDirection, PySpectrum};
 pub(crate) use statics::{PyContactForces, PyJointTorques};
+pub(crate) use transmitted::PyTransmittedWrench;
 
 impl PyMechanism {
     /// The constraints at one or many configurations.

@@ -1,10 +1,10 @@
 //! Whether the hyperbolic pseudoinverse of a screw system exists, and its projectors.
 
-use cylindroid::Error;
 use cylindroid::screws::Existence;
 use pyo3::prelude::*;
 
 use super::PyScrewSystem;
+use super::pitch::check_pitch;
 use crate::arrays::{self, Array};
 use crate::error::Result;
 use crate::table;
@@ -46,13 +46,6 @@ impl PyExistence {
             Some(reason) => format!("<does not exist: {reason}>"),
         }
     }
-}
-
-fn check_pitch(h: f64) -> Result<()> {
-    if h.is_nan() {
-        return Err(Error::NotFinite { what: "pitch h".into(), value: h }.into());
-    }
-    Ok(())
 }
 
 #[pymethods]

@@ -1,8 +1,11 @@
 //! Screws, screw systems, lines in involution.
 
+mod error_form;
 mod existence;
+pub(crate) mod forms;
 pub(crate) mod involution;
 mod lines;
+mod pitch;
 pub(crate) mod projector;
 mod screw;
 mod system;
@@ -14,7 +17,9 @@ use cylindroid::screws::ScrewOptions;
 use crate::arrays::Numbers;
 use crate::error::Result;
 
+pub(crate) use error_form::PyErrorFormZeros;
 pub(crate) use existence::PyExistence;
+pub(crate) use forms::finite_twist;
 pub(crate) use involution::PyInvolution;
 pub(crate) use projector::PyProjector;
 pub(crate) use screw::{PyScrew, screw_list};

@@ -24,7 +24,9 @@ use crate::table;
 /// Attributes
 /// ----------
 /// matrix : ndarray, (6, 6)
-///     P for twists; `constraint` applies `1 - P.T` to wrenches.
+///     P for twists.
+/// constraint_matrix : ndarray, (6, 6)
+///     `1 - P.T`, the matrix of `constraint` for wrenches, force first.
 /// norm : float
 ///     The largest factor by which a twist is enlarged: 1 for an orthogonal projector, large if
 ///     subspace and complement nearly intersect.
@@ -86,6 +88,11 @@ impl PyProjector {
     #[getter]
     fn matrix<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
         arrays::matrix(py, &self.inner.matrix())
+    }
+
+    #[getter]
+    fn constraint_matrix<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        arrays::matrix(py, &self.inner.constraint_matrix())
     }
 
     #[getter]

@@ -5,6 +5,7 @@ use cylindroid::screws::{self, ScrewSystem};
 use cylindroid::{Error, Twist};
 use pyo3::prelude::*;
 
+use super::pitch::check_pitch;
 use super::{PyScrew, scale_of, screw_list};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
@@ -223,14 +224,19 @@ impl PyScrewSystem {
     /// Parameters
     /// ----------
     /// h : float
-    ///     [m/rad]
+    ///     [m/rad], or infinite for the form at infinity.
     ///
     /// Returns
     /// -------
     /// ScrewSystem
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For a NaN.
     #[pyo3(signature = (h))]
     fn h_reciprocal(&self, h: f64) -> Result<Self> {
-        Error::check_finite("h", &[h])?;
+        check_pitch(h)?;
         Ok(Self { inner: self.inner.h_reciprocal(h) })
     }
 
@@ -277,6 +283,41 @@ impl PyScrewSystem {
         let entries = twist.entries::<6>("twist")?;
         Error::check_finite("twist", &entries)?;
         Ok(self.inner.sine_to(Twist::from_array(entries)))
+    }
+
+    /// The sine of the largest angle between a twist of this system and another system.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : ScrewSystem
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     Zero if this system lies in the other.
+    #[pyo3(signature = (other))]
+    fn sine_to_system(&self, other: PyRef<'_, Self>) -> f64 {
+        self.inner.sine_to_system(&other.inner)
+    }
+
+    /// The screws of a two-system (of the reciprocal system for order four): its cylindroid.
+    ///
+    /// Parameters
+    /// ----------
+    /// count : int
+    ///
+    /// Returns
+    /// -------
+    /// list of Screw
+    ///     `count` screws, from one generator of the normal form to the other and on to the first;
+    ///     empty for systems of other orders.
+    ///
+    /// Notes
+    /// -----
+    /// Ball 1900, chapter II.
+    #[pyo3(signature = (count))]
+    fn pencil(&self, count: usize) -> Vec<PyScrew> {
+        screw_list(&self.inner.pencil(count))
     }
 
     /// Whether a twist belongs to the system, to the tolerance of its class.

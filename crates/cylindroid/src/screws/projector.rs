@@ -105,6 +105,36 @@ impl Projector {
         p
     }
 
+    /// P*: the 6 x 6 matrix of [`Projector::constraint`] on wrenches (force first) in the frame of
+    /// the system.
+    ///
+    /// ```text
+    /// P* = 1 - P^T
+    /// ```
+    ///
+    /// ```
+    /// use cylindroid::screws::{Line, ScrewOptions, ScrewSystem};
+    /// use cylindroid::Vec3;
+    ///
+    /// // No wrench that remains has a moment about the axis of a revolute joint along z.
+    /// let revolute = Line { point: Vec3::ZERO, direction: Vec3::Z };
+    /// let system = ScrewSystem::of(&[revolute.twist()], &ScrewOptions::default())?;
+    /// let remaining = system.projector(0.1).unwrap().constraint_matrix();
+    /// assert!((0..6).all(|column| remaining[(5, column)].abs() < 1e-15));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    #[must_use]
+    pub fn constraint_matrix(&self) -> Matrix {
+        let mut p = Matrix::zeros(6, 6);
+        for j in 0..6 {
+            let mut unit = [0.0; 6];
+            unit[j] = 1.0;
+            let image = self.constraint(Wrench::from_array(unit));
+            p.column_mut(j).copy_from_slice(&image.to_array());
+        }
+        p
+    }
+
     /// The largest factor by which a twist is enlarged, at the centre and length of the system: 1
     /// for an orthogonal projector, large where the two systems nearly intersect.
     #[must_use]

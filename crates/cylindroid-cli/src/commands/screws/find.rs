@@ -4,6 +4,7 @@ use cylindroid::inverse::{PointDirection, point_direction};
 use cylindroid::screws::{Involution, Line, Screw, ScrewOptions, ScrewSystem, involution};
 use cylindroid::{Result, Vec3};
 
+use super::hyperbolic::{Asked, AtPitch};
 use super::twists::Twists;
 use crate::args::ScrewsArgs;
 
@@ -17,6 +18,10 @@ pub(super) struct Found {
     pub(super) involution: Option<Involution>,
     /// The joint velocities that move the point along the direction, if both are given.
     pub(super) point: Option<PointDirection>,
+    /// At the pitches of --h.
+    pub(super) pitches: Vec<AtPitch>,
+    /// With --twist.
+    pub(super) asked: Option<Asked>,
 }
 
 pub(super) fn find(twists: Twists, args: &ScrewsArgs) -> Result<Found> {
@@ -39,7 +44,12 @@ pub(super) fn find(twists: Twists, args: &ScrewsArgs) -> Result<Found> {
         )?),
         _ => None,
     };
-    Ok(Found { twists, system, screws, involution, point })
+    let asked = args.twist.map(|t| Asked::of(&system, Twists::in_order(args, t.0))).transpose()?;
+    let matrix = twists.matrix();
+    let twist = asked.as_ref().map(|a| a.twist);
+    let at = |h: &f64| AtPitch::find(&matrix, (&system, options), *h, twist);
+    let pitches = args.h.iter().map(at).collect::<Result<_>>()?;
+    Ok(Found { twists, system, screws, involution, point, pitches, asked })
 }
 
 /// The axes of the screws of pitch zero, to the tolerance of the system.

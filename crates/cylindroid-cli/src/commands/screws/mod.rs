@@ -1,8 +1,11 @@
 //! `screws`: the screw system of the joint twists and its hyperbolic inverses.
 
+pub(crate) mod basis_screws;
 mod find;
+mod hyperbolic;
 mod involution;
-pub(crate) mod report;
+mod report;
+mod tables;
 mod twists;
 
 use std::io::Write;
@@ -25,6 +28,9 @@ pub(crate) fn run(
     if let Some(path) = &args.plot {
         plot::check(path)?;
     }
+    if let Some(twist) = &args.twist {
+        cylindroid::Error::check_finite("--twist", &twist.0)?;
+    }
     for h in &args.h {
         if h.is_nan() {
             return Err(cylindroid::Error::NotFinite { what: "--h".into(), value: *h }.into());
@@ -34,7 +40,7 @@ pub(crate) fn run(
     if let Some(path) = &args.plot {
         plot::screws::draw(&found.twists.title(), &found.twists.matrix(), &found.system, path)?;
     }
-    report::write(&found, &args.h, style, out)?;
+    report::write(&found, style, out)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -44,5 +50,5 @@ pub(crate) fn report(
     of: EndEffector,
     args: &ScrewsArgs,
 ) -> anyhow::Result<Box<RawValue>> {
-    report::raw(&find(Twists::of(state, of)?, args)?, &args.h)
+    report::raw(&find(Twists::of(state, of)?, args)?)
 }

@@ -2,15 +2,17 @@
 
 use std::io::Write;
 
-use cylindroid::Twist;
 use cylindroid::Wrench;
 use cylindroid::inverse::PointDirection;
-use cylindroid::screws::{Existence, Involution, Screw, ScrewSystem};
+use cylindroid::screws::{Involution, ScrewSystem};
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
+use super::basis_screws::basis_screws;
 use super::find::Found;
+use super::hyperbolic::{AskedJson, AtPitchJson};
 use super::involution::{clean, involution};
+use super::tables;
 use super::twists::Twists;
 use crate::commands::closed::ClosureErrorJson;
 use crate::commands::shared::Style;
@@ -55,8 +57,11 @@ struct ScrewsJson<'a> {
     /// False if no pitch has a hyperbolic inverse.
     invertible: bool,
     choice: ChoiceJson,
-    /// At the pitches of --h.
-    existence: Vec<ExistenceJson>,
+    /// At the pitches of --h: existence, matrices, h-reciprocal systems, velocities.
+    inverses: Vec<AtPitchJson>,
+    /// With --twist.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    twist: Option<AskedJson>,
     involution: Option<InvolutionJson>,
     /// With --point.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -99,18 +104,6 @@ struct ChoiceJson {
 }
 
 #[derive(Debug, Serialize)]
-struct ExistenceJson {
-    /// [m/rad]; null for infinity.
-    h: f64,
-    exists: bool,
-    margin: f64,
-    threshold: f64,
-    /// Norm of the projector; null if it does not exist.
-    norm: f64,
-    reason: Option<String>,
-}
-
-#[derive(Debug, Serialize)]
 struct InvolutionJson {
     /// Number of twists of zero pitch.
     lines: usize,
@@ -136,24 +129,19 @@ struct LineJson {
     direction: [f64; 3],
 }
 
-pub(super) fn write(
-    found: &Found,
-    pitches: &[f64],
-    style: Style,
-    out: &mut dyn Write,
-) -> anyhow::Result<()> {
+pub(super) fn write(found: &Found, style: Style, out: &mut dyn Write) -> anyhow::Result<()> {
     match style {
-        Style::Json => output::json(out, &describe(found, pitches)),
-        Style::Table => print(out, found, pitches),
+        Style::Json => output::json(out, &describe(found)),
+        Style::Table => print(out, found),
     }
 }
 
 /// The JSON object.
-pub(super) fn raw(found: &Found, pitches: &[f64]) -> anyhow::Result<Box<RawValue>> {
-    Ok(to_raw_value(&describe(found, pitches))?)
+pub(super) fn raw(found: &Found) -> anyhow::Result<Box<RawValue>> {
+    Ok(to_raw_value(&describe(found))?)
 }
 
-fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
+fn describe(found: &Found) -> ScrewsJson<'_> {
     let (twists, system) = (&found.twists, &found.system);
     let (form, choice) = (system.normal_form(), system.choose_pitch());
     let robot = twists.robot.as_ref();
@@ -187,7 +175,7 @@ fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
         ambiguous: system.is_ambiguous(),
         length: system.length(),
         center: system.center().to_array(),
-        reciprocal: reciprocal_screws(system).iter().map(Into::into).collect(),
+        reciprocal: basis_screws(&system.reciprocal()).iter().map(Into::into).collect(),
         invertible: choice.pitch.is_some(),
         choice: ChoiceJson {
             pitch: choice.pitch.filter(|h| h.is_finite()),
@@ -195,19 +183,14 @@ fn describe<'a>(found: &'a Found, pitches: &[f64]) -> ScrewsJson<'a> {
             norm: choice.norm,
             norm_at_infinity: choice.norm_at_infinity,
         },
-        existence: pitches.iter().map(|&h| existence_json(system, h)).collect(),
+        inverses: found.pitches.iter().map(|at| at.json(found.asked.is_some())).collect(),
+        twist: found.asked.as_ref().map(Into::into),
         involution: found.involution.as_ref().map(involution_json),
         point: found
             .point
             .as_ref()
             .map(|p| PointJson { along: p.along.clone(), still: output::columns(&p.still) }),
     }
-}
-
-fn existence_json(system: &ScrewSystem, h: f64) -> ExistenceJson {
-    let Existence { exists, margin, threshold, reason } = system.existence(h);
-    let norm = system.projector_norm(h);
-    ExistenceJson { h, exists, margin, threshold, norm, reason: reason.map(|r| r.to_string()) }
 }
 
 fn involution_json(i: &Involution) -> InvolutionJson {
@@ -231,20 +214,7 @@ fn involution_json(i: &Involution) -> InvolutionJson {
     }
 }
 
-/// The principal screws if they span the reciprocal system, otherwise a basis.
-pub(crate) fn reciprocal_screws(system: &ScrewSystem) -> Vec<Screw> {
-    let reciprocal = system.reciprocal();
-    let form = reciprocal.normal_form();
-    let generators = form.twists();
-    let twists: Vec<Twist> = if form.order == reciprocal.order() && !generators.is_empty() {
-        generators.into_iter().map(|t| reciprocal.canonical_pose().adjoint(t)).collect()
-    } else {
-        reciprocal.basis()
-    };
-    twists.into_iter().filter_map(Screw::of).collect()
-}
-
-fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<()> {
+fn print(out: &mut dyn Write, found: &Found) -> anyhow::Result<()> {
     let (twists, system) = (&found.twists, &found.system);
     let robot = twists.robot.as_ref();
     let pose = system.canonical_pose();
@@ -280,30 +250,32 @@ fn print(out: &mut dyn Write, found: &Found, pitches: &[f64]) -> anyhow::Result<
     }
     let named =
         twists.names.iter().map(String::as_str).zip(found.screws.iter().map(Option::as_ref));
-    screws(out, "twist", named)?;
+    tables::screws(out, "twist", named)?;
     let principal = system.principal_screws();
     if !principal.is_empty() {
         writeln!(out)?;
         writeln!(out, "Principal screws")?;
-        let names: Vec<String> = (1..=principal.len()).map(|i| i.to_string()).collect();
-        screws(out, "", names.iter().map(String::as_str).zip(principal.iter().map(Some)))?;
+        tables::numbered(out, principal)?;
     }
-    let reciprocal = reciprocal_screws(system);
+    let reciprocal = basis_screws(&system.reciprocal());
     if !matches!(reciprocal.len(), 0 | 6) {
         writeln!(out)?;
         writeln!(out, "Reciprocal system: forces along these screws do no work")?;
-        let names: Vec<String> = (1..=reciprocal.len()).map(|i| i.to_string()).collect();
-        screws(out, "", names.iter().map(String::as_str).zip(reciprocal.iter().map(Some)))?;
+        tables::numbered(out, &reciprocal)?;
     }
     if let Some(p) = &found.point {
         writeln!(out)?;
         point(out, &twists.names, p)?;
     }
-    if !pitches.is_empty() {
+    if !found.pitches.is_empty() {
         writeln!(out)?;
-        existence(out, system, pitches)?;
+        tables::existence(out, &found.pitches)?;
     }
-    Ok(())
+    for at in &found.pitches {
+        tables::matrices(out, &twists.names, at)?;
+    }
+    let Some(asked) = &found.asked else { return Ok(()) };
+    tables::velocities(out, &twists.names, asked, &found.pitches, twists.is_of_loops())
 }
 
 fn frame_of(found: &Found) -> &'static str {
@@ -409,36 +381,6 @@ fn inverse(system: &ScrewSystem) -> String {
     )
 }
 
-fn screws<'a>(
-    out: &mut dyn Write,
-    name: &str,
-    rows: impl Iterator<Item = (&'a str, Option<&'a Screw>)>,
-) -> anyhow::Result<()> {
-    let columns = [
-        (name, Align::Left),
-        ("pitch [m/rad]", Align::Right),
-        ("x [m]", Align::Right),
-        ("y [m]", Align::Right),
-        ("z [m]", Align::Right),
-        ("direction", Align::Left),
-    ];
-    let rows = rows.map(|(name, screw)| {
-        let Some(s) = screw else {
-            let blank = ["-"; 4].map(str::to_owned);
-            return [vec![name.to_owned()], blank.to_vec(), vec!["zero".to_owned()]].concat();
-        };
-        let point = if s.is_translation() {
-            ["-"; 3].map(str::to_owned).to_vec()
-        } else {
-            s.axis.point.to_array().map(|x| number(clean(x))).to_vec()
-        };
-        let pitch = if s.is_translation() { "slides".to_owned() } else { number(clean(s.pitch)) };
-        let direction = output::entries(&s.axis.direction.to_array());
-        [vec![name.to_owned(), pitch], point, vec![direction]].concat()
-    });
-    Ok(output::table(out, &columns, rows)?)
-}
-
 /// Joint velocities: every motion along the direction is the first row times a speed plus the rest.
 fn point(out: &mut dyn Write, names: &[String], p: &PointDirection) -> anyhow::Result<()> {
     let mut columns = vec![("joint velocities [rad/s or m/s]", Align::Left)];
@@ -453,26 +395,5 @@ fn point(out: &mut dyn Write, names: &[String], p: &PointDirection) -> anyhow::R
         None => writeln!(out, "No joint velocities move the point along this direction.")?,
     }
     rows.extend(output::columns(&p.still).iter().map(|rates| cells("point at rest", rates)));
-    Ok(output::table(out, &columns, rows)?)
-}
-
-fn existence(out: &mut dyn Write, system: &ScrewSystem, pitches: &[f64]) -> anyhow::Result<()> {
-    let columns = [
-        ("h [m/rad]", Align::Right),
-        ("inverse", Align::Left),
-        ("margin", Align::Right),
-        ("|P_h|", Align::Right),
-        ("why", Align::Left),
-    ];
-    let rows = pitches.iter().map(|&h| {
-        let e = existence_json(system, h);
-        vec![
-            if h.is_infinite() { "infinity".to_owned() } else { number(h) },
-            if e.exists { "exists" } else { "none" }.to_owned(),
-            number(e.margin),
-            number(e.norm),
-            e.reason.unwrap_or_default(),
-        ]
-    });
     Ok(output::table(out, &columns, rows)?)
 }

@@ -47,21 +47,21 @@ impl Twists {
                 reason: "a file of twists has no frames; omit the option".to_owned(),
             });
         }
-        let twist = |row: [f64; 6]| {
-            let [a, b, c, d, e, f] = row;
-            let (first, second) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
-            let (linear, angular) =
-                if args.angular_first { (second, first) } else { (first, second) };
-            Twist { linear, angular }
-        };
         Ok(Self {
             robot: None,
             file: args.configuration.model.clone(),
             names: (1..=rows.len()).map(|i| i.to_string()).collect(),
-            twists: rows.into_iter().map(twist).collect(),
+            twists: rows.into_iter().map(|row| Self::in_order(args, row)).collect(),
             closure_error: None,
             length: 1.0,
         })
+    }
+
+    /// A twist from its numbers in the order of the options.
+    pub(super) fn in_order(args: &ScrewsArgs, [a, b, c, d, e, f]: [f64; 6]) -> Twist {
+        let (first, second) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
+        let (linear, angular) = if args.angular_first { (second, first) } else { (first, second) };
+        Twist { linear, angular }
     }
 
     fn of_robot(args: &ScrewsArgs) -> Result<Self> {

@@ -4,11 +4,12 @@
 //! in `controller/stages.rs`. A stage calls `task_space` (scaling), `projection` and `secondary`
 //! (primary and secondary task), `coupled` (closed chains), `approach` and `limits` (braking), then
 //! the solver; `stall` reports why there is no progress. `named_inverse` lists the inverses for the
-//! front ends, `reference_point` compares them.
+//! front ends, `inverse_choice` computes one for a single Jacobian, `reference_point` compares them.
 
 mod approach;
 mod controller;
 mod coupled;
+mod inverse_choice;
 mod limits;
 mod named_inverse;
 mod options;
@@ -21,11 +22,12 @@ mod task_space;
 
 pub use controller::Servo;
 pub use controller::condition::ConditionReport;
+pub use inverse_choice::InverseChoice;
 pub use limits::JointState;
 pub use named_inverse::{InverseSelection, NamedInverse};
 pub use options::{PoseTolerance, SecondaryNullSpace, ServoGains, ServoOptions, SpeedLimit};
 pub use projection::TaskProjection;
-pub use reference_point::{InverseChoice, ReferencePointComparison, VelocitiesAtPoint};
+pub use reference_point::{ReferencePointComparison, VelocitiesAtPoint};
 pub use secondary::SecondaryTask;
 pub use stall::Stall;
 pub use step::{Status, Step, Target};

@@ -8,6 +8,7 @@
 //!          be given and is missing; a fallback for a method, which needs none
 //! Checked  tests/it/parameters.rs
 
+use super::inverse_choice::InverseChoice;
 use super::options::ServoOptions;
 use super::projection::TaskProjection;
 use crate::error::{Error, Result};
@@ -185,14 +186,38 @@ impl InverseSelection<'_> {
         let chosen = NamedInverse::named(self.name)?;
         let fallback = self.fallback.map(|name| self.find_fallback(&chosen, name)).transpose()?;
         self.refuse_foreign(&chosen, fallback.as_ref())?;
-        let method =
-            if chosen.is_partial { Method::default() } else { Method::named(chosen.name)? };
-        let method = self.with_values(method)?;
+        let method = self.method_of(&chosen)?;
         let projection = self.projection(&chosen)?;
         let fallback = fallback.map(|f| self.projection(&f)).transpose()?;
         options.method = method;
         (options.projection, options.fallback) = (projection, fallback);
         Ok(())
+    }
+
+    /// The inverse for single Jacobians, with the characteristic length in m; a fallback, which
+    /// belongs to a servo, is not part of it.
+    ///
+    /// ```
+    /// use cylindroid::ReferenceFrame;
+    /// use cylindroid::control::InverseSelection;
+    ///
+    /// let robot = cylindroid::load("youbot")?;
+    /// let state = robot.state(&[0.4, 0.6, 0.9, 0.5, 0.2])?;
+    /// let parameters = vec![("h", 0.1)];
+    /// let selection = InverseSelection { name: "hyperbolic", parameters, ..Default::default() };
+    /// let choice = selection.choice(robot.reach())?;
+    /// assert!(choice.inverse(&state, robot.tool(), ReferenceFrame::World, None)?.exists);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`InverseSelection::apply`]; a length that is not positive.
+    pub fn choice(&self, length: f64) -> Result<InverseChoice> {
+        Error::check_positive("length", length)?;
+        let chosen = NamedInverse::named(self.name)?;
+        self.refuse_foreign(&chosen, None)?;
+        let method = self.method_of(&chosen)?;
+        Ok(InverseChoice { method, projection: self.projection(&chosen)?, length })
     }
 
     /// The method of this name with these parameters.
@@ -204,6 +229,15 @@ impl InverseSelection<'_> {
         let method = Method::named(self.name)?;
         self.refuse_foreign(&NamedInverse::named(self.name)?, None)?;
         self.with_values(method)
+    }
+
+    /// Its own method, or the default one beside a projection.
+    fn method_of(&self, chosen: &NamedInverse) -> Result<Method> {
+        self.with_values(if chosen.is_partial {
+            Method::default()
+        } else {
+            Method::named(chosen.name)?
+        })
     }
 
     fn with_values(&self, mut method: Method) -> Result<Method> {

@@ -12,28 +12,13 @@
 //! Source   Donelan & Selig, sections 1 and 5; Doty, Melchiorri & Bonivento 1993
 //! Checked  tests/it/servo/reference_point.rs
 
-use super::projection::TaskProjection;
+use super::inverse_choice::InverseChoice;
 use crate::error::{Error, Result};
-use crate::inverse::{
-    HyperbolicDamping, HyperbolicOptions, Inverse, Method, hyperbolic_with, oblique,
-    selectively_damped,
-};
 use crate::kinematics::{Chain, EndEffector, ReferenceFrame, State};
 use crate::linalg::{Matrix, norm};
-use crate::screws::{NoInverse, ScrewOptions};
+use crate::screws::NoInverse;
 use crate::spatial::{Pose, Twist, Vec3};
 use crate::tolerance::SAME_RATES;
-
-/// An inverse as chosen in [`ServoOptions`](super::ServoOptions): method, projection and length.
-#[derive(Debug, Clone, PartialEq)]
-pub struct InverseChoice {
-    /// The method near singularities.
-    pub method: Method,
-    /// The part of a motion that is realised; the method is used only if it is orthogonal.
-    pub projection: TaskProjection,
-    /// Characteristic length (m).
-    pub length: f64,
-}
 
 /// The inverse of a twist for one reference point.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,8 +104,6 @@ impl InverseChoice {
         }
         Error::check_finite("twist", &asked.to_array())?;
         Error::check_finite("point", &point.to_array())?;
-        Error::check_positive("length", self.length)?;
-        self.projection.check()?;
         let pose = state.pose(tool);
         let coordinates = Chain::new(mechanism, tool).coordinates().to_vec();
         let at = |p: Vec3| self.at_point(state, (tool, pose), &coordinates, asked, p);
@@ -146,8 +129,13 @@ impl InverseChoice {
         let there = EndEffector { frame_from_tool: tool.frame_from_tool * moved, ..tool };
         let all = state.jacobian(there, ReferenceFrame::LocalWorldAligned);
         let j = Matrix::from_fn(6, coordinates.len(), |i, k| all[(i, coordinates[k])]);
-        let twist = asked.at_point(p - pose.translation).to_array();
-        let (inverse, twist) = self.inverse(&j, twist, (pose, p))?;
+        let twist = asked.at_point(p - pose.translation);
+        let at_p = |t: Twist, from| match from {
+            ReferenceFrame::Local => pose.adjoint(t).at_point(p),
+            ReferenceFrame::World => t.at_point(p),
+            ReferenceFrame::LocalWorldAligned => t.at_point(p - pose.translation),
+        };
+        let inverse = self.of_matrix(&j, Some(twist), at_p)?;
         if !inverse.exists {
             return Ok(VelocitiesAtPoint {
                 joint_velocities: None,
@@ -155,56 +143,10 @@ impl InverseChoice {
                 reason: inverse.reason,
             });
         }
-        let rates = inverse.matrix.mul_vec(&twist);
+        let rates = inverse.matrix.mul_vec(&twist.to_array());
         let done = j.mul_vec(&rates);
         let done = Twist::from_array(std::array::from_fn(|i| done[i]));
         let done = done.at_point(pose.translation - p);
         Ok(VelocitiesAtPoint { joint_velocities: Some(rates), achieved: Some(done), reason: None })
-    }
-
-    /// The inverse at the reference point `p`, and the twist in the units that it takes.
-    fn inverse(
-        &self,
-        j: &Matrix,
-        twist: [f64; 6],
-        (pose, p): (Pose, Vec3),
-    ) -> Result<(Inverse, [f64; 6])> {
-        let options = |damping| HyperbolicOptions {
-            scale: ScrewOptions::with_length(self.length),
-            damping,
-            ..HyperbolicOptions::default()
-        };
-        let found = match &self.projection {
-            TaskProjection::Orthogonal => {
-                let scale = |i: usize| if i < 3 { 1.0 / self.length } else { 1.0 };
-                let scaled = j.clone().scale_rows(&std::array::from_fn::<f64, 6, _>(scale));
-                let twist = std::array::from_fn(|i| twist[i] * scale(i));
-                let inverse = match self.method {
-                    Method::SelectivelyDamped { max_joint_velocity } => {
-                        selectively_damped(&scaled, &twist, max_joint_velocity)?
-                    }
-                    method => method.inverse(&scaled)?,
-                };
-                return Ok((inverse, twist));
-            }
-            TaskProjection::Hyperbolic { h } => {
-                hyperbolic_with(j, *h, &options(HyperbolicDamping::None))?
-            }
-            TaskProjection::DampedHyperbolic { h, damping } => {
-                hyperbolic_with(j, *h, &options(*damping))?
-            }
-            TaskProjection::Oblique { complement, reference } => {
-                let at_p = |t: Twist| match reference {
-                    ReferenceFrame::Local => pose.adjoint(t).at_point(p),
-                    ReferenceFrame::World => t.at_point(p),
-                    ReferenceFrame::LocalWorldAligned => t.at_point(p - pose.translation),
-                };
-                let given_up: Vec<[f64; 6]> =
-                    complement.iter().map(|t| at_p(*t).to_array()).collect();
-                let complement = Matrix::from_fn(6, given_up.len(), |i, k| given_up[k][i]);
-                oblique(j, &complement, &options(HyperbolicDamping::None))?
-            }
-        };
-        Ok((found, twist))
     }
 }

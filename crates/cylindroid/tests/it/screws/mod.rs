@@ -4,6 +4,7 @@ mod bases;
 mod classes;
 mod curve;
 mod eigenscrews;
+mod error_form;
 mod forms;
 mod geometry;
 mod hyperbolic_svd;

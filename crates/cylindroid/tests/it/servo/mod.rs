@@ -3,6 +3,7 @@
 mod condition;
 mod hybrid;
 mod internal_force;
+mod inverse_choice;
 mod limits;
 mod object;
 mod projection;

@@ -1,7 +1,7 @@
 //! The examples of the paper, and a Jacobian without full rank.
 
 use cylindroid::inverse::{self, HyperbolicDamping, HyperbolicOptions};
-use cylindroid::screws::{Class, NoInverse, ScrewOptions, ScrewSystem};
+use cylindroid::screws::{Class, ErrorFormZeros, NoInverse, ScrewOptions, ScrewSystem};
 use cylindroid::spatial::Vec3;
 
 use super::{
@@ -31,6 +31,8 @@ fn examples_1_and_4() {
         assert_matrix("v", &v, &plain(&case["v_for_s"]), 1e-12);
         let rest = column(&s, 0) - column(&(&j * &v), 0);
         assert!((rest.pitch_form(rest, h) - number(&case["Phi_half"])).abs() < 1e-12);
+        let error = system.error_form(column(&s, 0), h).unwrap();
+        assert!((error - number(&case["Phi_half"])).abs() < 1e-12);
 
         let damped = inverse::hyperbolic_with(
             &j,
@@ -44,7 +46,16 @@ fn examples_1_and_4() {
         let expected = rates(&case["damped_Lambda_I"]);
         assert_matrix("damped", &damped.matrix, &expected, scaled_tolerance(&expected, 1e-12));
     }
+    // Phi_h = -9 (80 h^2 + 64 h - 25) / (1600 h).
+    let ErrorFormZeros::At(zeros) = system.error_form_zeros(column(&s, 0)).unwrap() else {
+        panic!("two zeros");
+    };
+    let root = 3.0 * 21_f64.sqrt();
+    assert_eq!(zeros.len(), 2);
+    assert!((zeros[0] - (-8.0 + root) / 20.0).abs() < 1e-13, "{zeros:?}");
+    assert!((zeros[1] - (-8.0 - root) / 20.0).abs() < 1e-13, "{zeros:?}");
     // h = 0 is the principal pitch.
+    assert!(system.error_form(column(&s, 0), 0.0).is_none());
     let none = inverse::hyperbolic(&j, 0.0).unwrap();
     assert!(!none.exists && none.matrix[(0, 0)].is_nan());
     assert!(

@@ -1,13 +1,16 @@
-//! `jacobian`: the Jacobian of a frame, its singular values, rank and time derivative.
+//! `jacobian`: the Jacobian of a frame, its singular values, rank, time derivative and inverse.
+
+mod inverse;
 
 use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::kinematics::OrientationRates;
 use cylindroid::linalg::{Metric, Rank, Svd};
-use cylindroid::{Matrix, ReferenceFrame};
+use cylindroid::{Error, Matrix, ReferenceFrame};
 use serde::Serialize;
 
+use self::inverse::InverseJson;
 use crate::args::{Angles, JacobianArgs, ReferenceName};
 use crate::commands::shared::{Style, configuration, end_effector};
 use crate::output;
@@ -31,7 +34,7 @@ struct JacobianJson<'a> {
     /// Last singular value counted over the first one not counted; null where nothing was left
     /// out but exact zeros.
     gap: f64,
-    /// Characteristic length of the linear rows: the reach [m].
+    /// Characteristic length of the linear rows [m].
     length: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     analytical: Option<AnalyticalJson>,
@@ -40,6 +43,8 @@ struct JacobianJson<'a> {
     /// d matrix / dt at these joint velocities.
     #[serde(skip_serializing_if = "Option::is_none")]
     derivative: Option<Vec<Vec<f64>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inverse: Option<InverseJson>,
 }
 
 #[derive(Debug, Serialize)]
@@ -81,7 +86,9 @@ pub(crate) fn run(
         .as_ref()
         .map(|r| state.jacobian_dot(r, end_effector, reference))
         .transpose()?;
-    let length = robot.reach();
+    let length = args.length.unwrap_or(robot.reach());
+    Error::check_positive("--length", length)?;
+    let found = inverse::find(args, &state, end_effector, (reference, &matrix), length)?;
     let (singular_values, rank) = scaled_singular_values(&matrix, length)?;
 
     let report = JacobianJson {
@@ -99,6 +106,7 @@ pub(crate) fn run(
         analytical,
         joint_velocities,
         derivative: derivative.map(|d| d.to_rows()),
+        inverse: found,
     };
     match style {
         Style::Json => output::json(out, &report)?,
@@ -181,7 +189,8 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
             ),
         ],
     )?;
-    Ok(())
+    let Some(found) = &report.inverse else { return Ok(()) };
+    inverse::print(out, found, &report.joint_names, &rows)
 }
 
 fn rank_text(report: &JacobianJson<'_>) -> String {
