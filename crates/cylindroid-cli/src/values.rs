@@ -121,6 +121,11 @@ impl ByName {
         self.named.iter().rev().find(|(n, _)| n == name).map(|(_, x)| *x).or(self.all)
     }
 
+    /// The names with a number of their own.
+    pub(crate) fn named(&self) -> impl Iterator<Item = &(String, f64)> {
+        self.named.iter()
+    }
+
     /// Rejects names that are not among `known`.
     pub(crate) fn check(&self, what: &'static str, known: &[&str]) -> cylindroid::Result<()> {
         match self.named.iter().find(|(name, _)| !known.contains(&name.as_str())) {

@@ -30,10 +30,11 @@ mod _core {
     #[pymodule_export]
     use crate::closed::{
         PyActuatorTransmission, PyAssembly, PyAssemblyModes, PyBranch, PyConstraint,
-        PyContactForces, PyContinuationResult, PyDirection, PyFingerContact, PyFiniteMobility,
-        PyGradient, PyGraspQuality, PyJointMobility, PyJointTorques, PyLimb, PyLoopClosureError,
-        PyManipulability, PyMobility, PyModeMeeting, PyOperationMode, PyOperationModes, PyPolytope,
-        PySingularity, PySpectrum, PyTransmission, PyTransmittedWrench, grasp::grasp_quality,
+        PyContactForces, PyContinuationResult, PyDeflection, PyDirection, PyFingerContact,
+        PyFiniteMobility, PyGradient, PyGraspQuality, PyJointMobility, PyJointTorques, PyLimb,
+        PyLoopClosureError, PyManipulability, PyMobility, PyModeMeeting, PyOperationMode,
+        PyOperationModes, PyPolytope, PySingularity, PySpectrum, PyStiffness, PyTransmission,
+        PyTransmittedWrench, grasp::grasp_quality,
     };
     #[pymodule_export]
     use crate::control::{

@@ -157,6 +157,10 @@ pub const CLOSURE_RANK: f64 = 1e-9;
 /// block of rounding errors has size 1e-15 [-].
 pub const CLOSURE_BLOCK: f64 = 1e-9;
 
+/// Principal compliances of an elastic part below this times its largest are rigid directions: the
+/// rounding of a matrix that is zero there [-].
+pub const RIGID: f64 = 1e-13;
+
 /// A kernel is accurate to this times the conditioning of its matrix (largest over smallest kept
 /// singular value): smaller entries of its blocks are not significant [-].
 pub const KERNEL_ROUNDING: f64 = 64.0 * f64::EPSILON;

@@ -155,6 +155,12 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wtau: Option<Weights>,
 
+    /// Weights of the forces in loop joints and contacts, for the efficiencies of internal forces:
+    /// a number for all, `name=number` for some; for moments divided by the square of the
+    /// characteristic length. A compliance [m/N] measures them by elastic energy [default: 1]
+    #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
+    pub(crate) wt: Option<ByName>,
+
     /// Components of the motion that matter, of x, y, z, rx, ry, rz (in the plane x, y, rz)
     #[arg(long, value_name = "COMPONENTS", value_delimiter = ',')]
     pub(crate) task: Vec<String>,
@@ -188,7 +194,7 @@ pub(crate) struct ManipulabilityArgs {
     /// distances to singularities and measures of motion as numbers. A first line of CSV names the
     /// columns, in any order; other columns are ignored, as in the files of `move --out`
     #[arg(long, value_name = "FILE", conflicts_with_all = [
-        "q", "degrees", "ww", "wtau", "task", "task_map", "polytope", "torque_limits", "gradient",
+        "q", "degrees", "ww", "wtau", "wt", "task", "task_map", "polytope", "torque_limits", "gradient",
         "plot",
     ])]
     pub(crate) configurations: Option<PathBuf>,
@@ -235,7 +241,7 @@ pub(crate) enum MeasureName {
 }
 
 pub(crate) const STATICS: &str = "\
-Joint torques in equilibrium with a wrench, structural forces, and forces in loops and contacts
+Joint torques in equilibrium with a wrench, forces in loops and contacts, stiffness and deflection
 
 The wrench acts on the reference frame from outside, at its origin and in world axes: N, then N m. \
 The torques are exerted by the actuators in equilibrium: for every motion, torques times joint \
@@ -247,7 +253,8 @@ pub(crate) const STATICS_EXAMPLES: &str = "\
 Examples:
   cylindroid statics panda --wrench 0,0,-10,0,0,0
   cylindroid statics five-bar --actuated q1,q5 --wrench 3,-1,0.2
-  cylindroid statics two-arm --wrench 0,0,-9.81,0,0,0 --compliance 1e-6";
+  cylindroid statics two-arm --wrench 0,0,-9.81,0,0,0 --compliance 1e-6
+  cylindroid statics stewart --wrench 0,0,-1000,0,0,0 --stiffness 2e7";
 
 #[derive(Debug, Args)]
 pub(crate) struct StaticsArgs {
@@ -261,6 +268,13 @@ pub(crate) struct StaticsArgs {
     /// Metric of the torque norm: weights of the actuated joints, or a file
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wtau: Option<Weights>,
+
+    /// Stiffness of joints along their motion [N m/rad or N/m], of the drives of actuated joints and
+    /// of springs in passive ones: a number for all actuated joints, `name=number` for some. With it,
+    /// or with `[[elasticity]]` in the file, stiffness and compliance at the reference frame, their
+    /// eigenscrews and the deflection under the wrench are printed too
+    #[arg(long, value_name = "N/M", allow_hyphen_values = true)]
+    pub(crate) stiffness: Option<ByName>,
 
     /// Compliance of loop joints and contacts [m/N] for elastic forces: a number for all,
     /// `name=number` for some; for moments it is divided by the square of the characteristic

@@ -1,7 +1,8 @@
 //! The class `Manipulability`: kinematic and force efficiencies.
 
 use cylindroid::Error;
-use cylindroid::manipulability::{Index, Manipulability};
+use cylindroid::linalg::Metric;
+use cylindroid::manipulability::{Index, Manipulability, Spectrum, internal_force_manipulability};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
@@ -24,6 +25,10 @@ use crate::table::{self, Table};
 ///     Wrenches exerted per torque of the actuated joints: zero for internal torques.
 /// passive_force : Spectrum
 ///     Wrenches resisted per torque: infinite for those resisted by the structure alone.
+/// internal_force : Spectrum
+///     Forces in loops and contacts without a wrench on the object, per torque of the actuated
+///     joints: what they can squeeze. `object` of a direction is a force for each row of the
+///     constraint (`Constraint.matrix`); infinite are hyperstatic forces.
 /// metric : str
 ///     The preset of metrics: 'unit', 'length' or 'limits'.
 /// actuated, components : list of str
@@ -32,6 +37,7 @@ use crate::table::{self, Table};
 #[derive(Debug)]
 pub(crate) struct PyManipulability {
     inner: Manipulability,
+    internal_force: Spectrum,
     name: String,
     metric: String,
     actuated: Vec<String>,
@@ -41,8 +47,13 @@ pub(crate) struct PyManipulability {
 impl PyManipulability {
     fn of(constraint: &PyConstraint, question: &Question) -> Result<Self> {
         let relation = constraint.relation(question.map.as_ref())?;
+        let metrics = question.metrics(constraint)?;
+        let torque = metrics.torque.clone().or_else(|| metrics.joint.as_ref().map(Metric::dual));
+        let force = question.contact_metric(constraint)?;
+        let bare = &constraint.inner;
         Ok(Self {
-            inner: Manipulability::of(&relation, &question.metrics(constraint)?)?,
+            inner: Manipulability::of(&relation, &metrics)?,
+            internal_force: internal_force_manipulability(bare, torque.as_ref(), force.as_ref())?,
             name: constraint.name(),
             metric: question.preset.clone(),
             actuated: constraint.actuated.clone(),
@@ -66,6 +77,11 @@ impl PyManipulability {
     #[getter]
     fn passive_force(&self) -> PySpectrum {
         PySpectrum { inner: self.inner.passive_force(), what: "passive force" }
+    }
+
+    #[getter]
+    fn internal_force(&self) -> PySpectrum {
+        PySpectrum { inner: self.internal_force.clone(), what: "internal force" }
     }
 
     #[getter]
@@ -117,7 +133,8 @@ impl PyManipulability {
         table.row("metric", &self.metric);
         table.row("actuated", table::names(&self.actuated));
         table.row("object", table::names(&self.components));
-        for spectrum in [self.kinematic(), self.active_force(), self.passive_force()] {
+        let active = [self.active_force(), self.internal_force()];
+        for spectrum in [self.kinematic(), self.passive_force()].into_iter().chain(active) {
             table.row(spectrum.what, spectrum.words());
         }
         table
@@ -130,14 +147,14 @@ impl PyConstraint {
     ///
     /// Parameters
     /// ----------
-    /// task, Wu, Wq, Ww, Wtau, metric
+    /// task, Wu, Wq, Ww, Wtau, Wt, metric
     ///     As for `Mechanism.manipulability`.
     ///
     /// Returns
     /// -------
     /// Manipulability
     #[pyo3(signature = (task = None, Wu = None, Wq = None, Ww = None, Wtau = None,
-        metric = "unit"))]
+        Wt = None, metric = "unit"))]
     #[expect(non_snake_case, reason = "the field's names")]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn manipulability(
@@ -148,10 +165,12 @@ impl PyConstraint {
         Wq: Option<Numbers<'_>>,
         Ww: Option<Numbers<'_>>,
         Wtau: Option<Numbers<'_>>,
+        Wt: Option<Numbers<'_>>,
         metric: &str,
     ) -> Result<PyManipulability> {
         let weights = [&Wu, &Wq, &Ww, &Wtau].map(Option::as_ref);
         let question = Question::about(self, task.as_ref(), weights, metric)?;
+        let question = question.with_contact_metric(Wt.as_ref())?;
         py.detach(|| PyManipulability::of(self, &question))
     }
 }
@@ -174,6 +193,10 @@ impl PyMechanism {
     /// Wu, Wq, Ww, Wtau : array_like, square or their diagonals, optional
     ///     Metrics of twists (or the task), joint velocities, wrenches and torques, symmetric and
     ///     positive definite. Defaults: the preset `metric`; the duals for wrenches and torques.
+    /// Wt : array_like, (t,) or (t, t), optional
+    ///     Metric of the forces of the rows of the constraint, for `internal_force`; a compliance
+    ///     measures them by twice their elastic energy. Default: the identity, with the preset
+    ///     'unit'; otherwise moments are divided by the characteristic length.
     /// metric : str
     ///     'unit' (m and rad, unscaled), 'length' (lengths divided by the characteristic length),
     ///     'limits' (as 'length', with joint velocities divided by their limits).
@@ -200,7 +223,7 @@ impl PyMechanism {
     /// >>> len(k.finite), k.zeros, k.infinite
     /// (2, 0, 0)
     #[pyo3(signature = (q = None, actuated = None, reference = None, task = None, Wu = None,
-        Wq = None, Ww = None, Wtau = None, metric = "unit", length = None))]
+        Wq = None, Ww = None, Wtau = None, Wt = None, metric = "unit", length = None))]
     #[expect(non_snake_case, reason = "the field's names")]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn manipulability<'py>(
@@ -214,6 +237,7 @@ impl PyMechanism {
         Wq: Option<Numbers<'py>>,
         Ww: Option<Numbers<'py>>,
         Wtau: Option<Numbers<'py>>,
+        Wt: Option<Numbers<'py>>,
         metric: &str,
         length: Option<f64>,
     ) -> Result<Bound<'py, PyAny>> {
@@ -223,6 +247,7 @@ impl PyMechanism {
         };
         let weights = [&Wu, &Wq, &Ww, &Wtau].map(Option::as_ref);
         let question = Question::about(like, task.as_ref(), weights, metric)?;
+        let question = question.with_contact_metric(Wt.as_ref())?;
         let reports = py.detach(|| all.try_map(|c| PyManipulability::of(c, &question)))?;
         Ok(object(py, reports)?)
     }

@@ -1,6 +1,7 @@
 //! Metrics of twists and joint velocities, and limits of actuated joints, from Python arguments.
 
 use cylindroid::closure::{Unit, Units};
+use cylindroid::linalg::Metric;
 use cylindroid::manipulability::Metrics;
 use cylindroid::{Error, Matrix};
 use pyo3::prelude::*;
@@ -17,6 +18,8 @@ pub(super) struct Question {
     pub(super) preset: String,
     /// Metrics that override those of the preset.
     given: Metrics,
+    /// Of contact forces.
+    contact: Option<Metric>,
 }
 
 impl Question {
@@ -46,7 +49,28 @@ impl Question {
             wrench: of("Ww", wrench)?,
             torque: of("Wtau", torque)?,
         };
-        Ok(Self { map, components, preset: preset.to_owned(), given })
+        Ok(Self { map, components, preset: preset.to_owned(), given, contact: None })
+    }
+
+    /// With a metric of contact forces, Wt.
+    pub(super) fn with_contact_metric(mut self, given: Option<&Numbers<'_>>) -> Result<Self> {
+        self.contact = given.map(|w| w.metric("Wt")).transpose()?;
+        Ok(self)
+    }
+
+    /// The metric of contact forces: with a preset other than 'unit', moments are divided by the
+    /// characteristic length.
+    pub(super) fn contact_metric(&self, constraint: &PyConstraint) -> Result<Option<Metric>> {
+        if self.contact.is_some() || self.preset == "unit" {
+            return Ok(self.contact.clone());
+        }
+        let length = constraint.inner.length();
+        let weight = |unit: &Unit| match unit {
+            Unit::Length => 1.0,
+            Unit::Angle => (length * length).recip(),
+        };
+        let weights: Vec<f64> = constraint.units.rows.iter().map(weight).collect();
+        Ok(Some(Metric::diagonal("Wt", &weights)?))
     }
 
     /// The metrics for this constraint.

@@ -20,6 +20,7 @@ mod polytope;
 mod singularity;
 mod spectrum;
 mod statics;
+mod stiffness;
 mod transmitted;
 
 use pyo3::prelude::*;
@@ -43,6 +44,7 @@ pub(crate) use polytope::PyPolytope;
 pub(crate) use singularity::PySingularity;
 pub(crate) use spectrum::{PyDirection, PySpectrum};
 pub(crate) use statics::{PyContactForces, PyJointTorques};
+pub(crate) use stiffness::{PyDeflection, PyStiffness};
 pub(crate) use transmitted::PyTransmittedWrench;
 
 impl PyMechanism {

@@ -25,7 +25,7 @@ use crate::table;
 #[pyclass(frozen, name = "TransmittedWrench", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyTransmittedWrench {
-    inner: TransmittedWrench,
+    pub(super) inner: TransmittedWrench,
 }
 
 #[pymethods]

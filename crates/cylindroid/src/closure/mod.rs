@@ -67,9 +67,11 @@ pub use singularity::zlatanov::ZlatanovType;
 pub use singularity_kind::SingularityKind;
 pub(crate) use statics::contact_forces::ContactForceSolver;
 pub use statics::contact_forces::{ContactForces, StaticLoad, contact_forces};
+pub(crate) use statics::elastic_chain::ElasticChain;
 pub use statics::force_closure::{
     EpsilonQuality, FingerContact, Friction, GraspMetric, GraspQuality, WrenchSpace, grasp_quality,
 };
 pub use statics::grasp_contacts::{ContactProperties, grasp_contacts};
+pub(crate) use statics::internal_force_relation::internal_force_relation;
 pub use statics::joint_torques::{JointTorques, joint_torques};
 pub use statics::transmitted_wrenches::{TransmittedWrench, row_compliance, transmitted_wrenches};

@@ -153,6 +153,12 @@ impl Metric {
         (diagonal.fold(0.0, f64::max) / smallest).max(1.0)
     }
 
+    /// The lower triangular factor L, with positive diagonal.
+    #[must_use]
+    pub fn lower(&self) -> &Matrix {
+        &self.l
+    }
+
     /// Size n of the metric.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -89,7 +89,11 @@ impl Spectrum {
         })
     }
 
-    fn of(parts: RelationBases, joint: Option<&Metric>, object: Option<&Metric>) -> Self {
+    pub(super) fn of(
+        parts: RelationBases,
+        joint: Option<&Metric>,
+        object: Option<&Metric>,
+    ) -> Self {
         let principal = Principal::of(parts, joint, object);
         Self {
             finite: principal.directions(joint, object),

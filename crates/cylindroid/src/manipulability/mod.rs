@@ -28,8 +28,10 @@ mod ellipsoid;
 mod gradient;
 mod index;
 mod inertia;
+mod internal_force;
 mod metrics;
 mod polytope;
+mod stiffness;
 
 pub use batch::{BatchOptions, ManipulabilityBatch};
 pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
@@ -38,5 +40,7 @@ pub(crate) use gradient::log_volume_slope;
 pub use gradient::{Goal, Gradient, Measure, gradient};
 pub use index::Index;
 pub use inertia::body_inertia;
+pub use internal_force::internal_force_manipulability;
 pub use metrics::Metrics;
 pub use polytope::{Polytope, force_polytope, force_range, velocity_polytope, velocity_range};
+pub use stiffness::{Deflection, PartDeflection, Stiffness};

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use super::contact::{Contact, ContactSpec};
 use super::dimension::Dimension;
+use super::elasticity::Elasticity;
 use super::flatten::FlatMechanism;
 use super::joint::Joint;
 use super::joint_spec::JointSpec;
@@ -52,6 +53,7 @@ pub struct Builder {
     tool: Option<String>,
     reference: Option<String>,
     by_name: bool,
+    pub(super) elasticity: Elasticity,
     report: LoadReport,
 }
 
@@ -71,6 +73,7 @@ impl Builder {
             tool: None,
             reference: None,
             by_name: false,
+            elasticity: Elasticity::default(),
             report: LoadReport { format: "builder", ..LoadReport::default() },
         }
     }
@@ -427,9 +430,11 @@ impl Builder {
                 tool: id(tool),
                 reach: 1.0,
                 far: 0.0,
+                elasticity: self.elasticity,
                 report: self.report,
             }),
         };
+        mechanism.check_elasticity()?;
         Ok(mechanism.measured())
     }
 }

@@ -5,6 +5,7 @@
 
 use super::builder::Builder;
 use super::contact::ContactSpec;
+use super::elasticity::ElasticKind;
 use super::joint::{JointKind, Mimic};
 use super::joint_spec::JointSpec;
 use super::link::Link;
@@ -136,6 +137,16 @@ impl Builder {
                 link_b_from_contact: contact.link_b_from_contact,
                 friction: contact.friction,
             });
+        }
+        for element in &robot.elasticity().elements {
+            let mut element = element.clone();
+            element.name = how.prefixed(&element.name);
+            if let ElasticKind::Joint(body) | ElasticKind::Link(body) = &mut element.kind
+                && let Some((link, _)) = &mut body.frame
+            {
+                *link = how.prefixed(link);
+            }
+            self.elasticity.elements.push(element);
         }
         // The frames of the links come with the links.
         for frame in robot.frames().iter().skip(robot.links().len()) {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::contact::Contact;
 use super::dimension::Dimension;
+use super::elasticity::Elasticity;
 use super::joint::{Joint, Limits};
 use super::link::Link;
 use super::loop_joint::LoopJoint;
@@ -41,6 +42,7 @@ pub(super) struct Data {
     pub(super) tool: FrameId,
     pub(super) reach: f64,
     pub(super) far: f64,
+    pub(super) elasticity: Elasticity,
     pub(super) report: LoadReport,
 }
 

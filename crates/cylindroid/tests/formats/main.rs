@@ -7,6 +7,7 @@ mod catalogue;
 mod closed_file;
 mod closures;
 mod dh;
+mod elasticity;
 mod fk;
 mod lax;
 mod load;

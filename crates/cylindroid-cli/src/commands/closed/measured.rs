@@ -1,15 +1,15 @@
 //! What commands measure with: metrics, tasks and limits from the command line.
 
-use cylindroid::closure::Relation;
+use cylindroid::closure::{Relation, row_compliance};
 use cylindroid::linalg::{Interval, Metric};
 use cylindroid::manipulability::Metrics;
 use cylindroid::model::Limits;
-use cylindroid::{Error, Matrix, Result};
+use cylindroid::{Error, Matrix, Result, State};
 
 use super::Posed;
 use crate::args::{ManipulabilityArgs, MetricName};
 use crate::number_file;
-use crate::values::Weights;
+use crate::values::{ByName, Weights};
 
 /// The components of the motion that matter.
 pub(super) struct Task {
@@ -130,6 +130,21 @@ pub(super) fn metrics(
         metrics.torque = Some(metric("--wtau", w, joints)?);
     }
     Ok(metrics)
+}
+
+/// The metric of the forces of all rows, from weights of loop joints and contacts (1 by default).
+pub(super) fn contact_metric(
+    posed: &Posed,
+    state: &State,
+    weights: Option<&ByName>,
+) -> Result<Metric> {
+    let closings = posed.closings();
+    if let Some(weights) = weights {
+        weights.check("loop joint or contact", &closings)?;
+    }
+    let of = |name: &&str| weights.and_then(|w| w.of(name)).unwrap_or(1.0);
+    let all: Vec<f64> = closings.iter().map(of).collect();
+    row_compliance(state, &posed.chain, &all)
 }
 
 /// What actuators are limited in.

@@ -9,6 +9,7 @@ pub(crate) mod mobility;
 mod operation_modes;
 pub(crate) mod singularity;
 pub(super) mod statics;
+mod stiffness;
 
 use cylindroid::closure::{ClosedChain, LoopClosureError};
 use cylindroid::model::{FrameId, Mechanism};

@@ -10,7 +10,8 @@ use cylindroid::closure::{
 use cylindroid::{Error, Result};
 use serde::Serialize;
 
-use super::{HeadJson, Posed, measured};
+use super::stiffness::StiffnessJson;
+use super::{HeadJson, Posed, measured, stiffness};
 use crate::args::StaticsArgs;
 use crate::commands::shared::Style;
 use crate::output::{self, Align};
@@ -38,6 +39,8 @@ struct StaticsJson<'a> {
     hyperstatic: Vec<Vec<TransmittedWrenchJson>>,
     /// Wrenches resisted without torques.
     zero_torque_basis: Vec<Vec<f64>>,
+    /// With elastic joints and links; null where nothing is elastic.
+    stiffness: Option<StiffnessJson>,
 }
 
 #[derive(Debug, Serialize)]
@@ -47,7 +50,7 @@ struct InternalJson {
 }
 
 #[derive(Debug, Serialize)]
-struct TransmittedWrenchJson {
+pub(super) struct TransmittedWrenchJson {
     /// Loop joint or contact.
     name: String,
     /// Where it is [m].
@@ -157,6 +160,7 @@ fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> 
         internal,
         hyperstatic,
         zero_torque_basis: output::columns(&mobility.zero_torque.basis),
+        stiffness: stiffness::find(posed, args.stiffness.as_ref(), wrench)?,
     })
 }
 
@@ -192,21 +196,28 @@ fn print(out: &mut dyn Write, posed: &Posed, report: &StaticsJson<'_>) -> anyhow
         cells
     });
     output::table(out, &columns, joints)?;
-    if report.forces.is_empty() {
-        return Ok(());
+    if !report.forces.is_empty() {
+        let title = if report.elastic { "elastic forces" } else { "least forces" };
+        forces(out, title, &report.forces)?;
     }
-    let title = if report.elastic { "elastic forces" } else { "least forces" };
-    forces(out, title, &report.forces)?;
-    for (i, internal) in report.internal.iter().enumerate() {
+    let shown = report.internal.iter().filter(|h| !h.forces.is_empty());
+    for (i, internal) in shown.enumerate() {
         forces(out, &format!("with internal {}", i + 1), &internal.forces)?;
     }
     for (i, undetermined) in report.hyperstatic.iter().enumerate() {
         forces(out, &format!("undetermined {}", i + 1), undetermined)?;
     }
+    if let Some(found) = &report.stiffness {
+        stiffness::print(out, posed, report.components, found)?;
+    }
     Ok(())
 }
 
-fn forces(out: &mut dyn Write, title: &str, all: &[TransmittedWrenchJson]) -> anyhow::Result<()> {
+pub(super) fn forces(
+    out: &mut dyn Write,
+    title: &str,
+    all: &[TransmittedWrenchJson],
+) -> anyhow::Result<()> {
     writeln!(out)?;
     let right = ["fx", "fy", "fz", "mx", "my", "mz", "normal", "tangential"];
     let mut columns = vec![(title, Align::Left)];

@@ -1,7 +1,9 @@
 mod batch;
 mod ellipsoid;
 mod gradient;
+mod internal_force;
 mod metrics;
 mod polytope;
 mod reference;
 mod serial;
+mod stiffness;

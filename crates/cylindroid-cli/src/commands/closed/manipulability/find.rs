@@ -1,16 +1,16 @@
 //! What `manipulability` computes.
 
-use cylindroid::closure::{MotionSpace, Relation};
-use cylindroid::linalg::Interval;
+use cylindroid::closure::{MotionSpace, Relation, TransmittedWrench, transmitted_wrenches};
+use cylindroid::linalg::{Interval, Metric};
 use cylindroid::manipulability::{
-    Goal, Gradient, Manipulability, Measure, Polytope, force_polytope, force_range, gradient,
-    velocity_polytope, velocity_range,
+    Goal, Gradient, Manipulability, Measure, Metrics, Polytope, Spectrum, force_polytope,
+    force_range, gradient, internal_force_manipulability, velocity_polytope, velocity_range,
 };
 use cylindroid::{Error, Result};
 
 use super::Posed;
 use super::measured::{self, Quantity, Task};
-use crate::args::{ManipulabilityArgs, MeasureName};
+use crate::args::{ManipulabilityArgs, MeasureName, MetricName};
 
 /// What was found.
 pub(super) struct Found {
@@ -21,6 +21,8 @@ pub(super) struct Found {
     /// Options that replace a part of it.
     pub(super) own: Vec<&'static str>,
     pub(super) efficiencies: Manipulability,
+    /// Of internal forces: torques and forces of rows.
+    pub(super) internal: InternalForces,
     /// Of velocity and of force, or why not.
     pub(super) polytopes: Option<[Reached; 2]>,
     pub(super) gradient: Option<(Measure, Gradient)>,
@@ -28,6 +30,14 @@ pub(super) struct Found {
 
 /// What limits allow, or in words what is missing.
 pub(super) type Reached = std::result::Result<Bounded, String>;
+
+/// Efficiencies of internal forces, with the wrenches in loops and contacts of each direction and of
+/// each hyperstatic force.
+pub(super) struct InternalForces {
+    pub(super) spectrum: Spectrum,
+    pub(super) forces: Vec<Vec<TransmittedWrench>>,
+    pub(super) hyperstatic: Vec<Vec<TransmittedWrench>>,
+}
 
 /// What is reached within the limits of the actuators.
 pub(super) struct Bounded {
@@ -43,6 +53,7 @@ pub(super) fn find(posed: Posed, args: &ManipulabilityArgs) -> Result<Found> {
     let relation = MotionSpace::of(&posed.chain.constraint).relation();
     let relation = measured::of_task(relation, task.as_ref())?;
     let efficiencies = Manipulability::of(&relation, &metrics)?;
+    let internal = internal_forces(&posed, args, &metrics)?;
     let asked = args.polytope || args.velocity_limits.is_some() || args.torque_limits.is_some();
     let polytopes = if asked { Some(polytopes(&posed, &relation, args)?) } else { None };
     let gradient = match args.gradient {
@@ -70,10 +81,31 @@ pub(super) fn find(posed: Posed, args: &ManipulabilityArgs) -> Result<Found> {
         ("wq", args.wq.is_some()),
         ("ww", args.ww.is_some()),
         ("wtau", args.wtau.is_some()),
+        ("wt", args.wt.is_some()),
     ];
     let own = given.into_iter().filter(|g| g.1).map(|g| g.0).collect();
     let metric = args.metric.name();
-    Ok(Found { posed, components, metric, own, efficiencies, polytopes, gradient })
+    Ok(Found { posed, components, metric, own, efficiencies, internal, polytopes, gradient })
+}
+
+fn internal_forces(
+    posed: &Posed,
+    args: &ManipulabilityArgs,
+    metrics: &Metrics,
+) -> Result<InternalForces> {
+    let (state, chain) = (posed.state()?, &posed.chain);
+    let force = match &args.wt {
+        None if args.metric == MetricName::Unit => None,
+        given => Some(measured::contact_metric(posed, &state, given.as_ref())?),
+    };
+    let torque = metrics.torque.clone().or_else(|| metrics.joint.as_ref().map(Metric::dual));
+    let spectrum =
+        internal_force_manipulability(&chain.constraint, torque.as_ref(), force.as_ref())?;
+    let wrenches = |t: &[f64]| transmitted_wrenches(&state, chain, t);
+    let forces = spectrum.finite.iter().map(|d| wrenches(&d.object)).collect::<Result<_>>()?;
+    let columns = (0..spectrum.infinite.cols()).map(|j| wrenches(spectrum.infinite.column(j)));
+    let hyperstatic = columns.collect::<Result<_>>()?;
+    Ok(InternalForces { spectrum, forces, hyperstatic })
 }
 
 fn polytopes(

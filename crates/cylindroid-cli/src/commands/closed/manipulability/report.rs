@@ -2,13 +2,15 @@
 
 use std::io::Write;
 
+use cylindroid::closure::TransmittedWrench;
 use cylindroid::linalg::Interval;
 use cylindroid::manipulability::{Direction, Gradient, Index, Spectrum};
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
 use super::super::HeadJson;
-use super::find::{Bounded, Found, Reached};
+use super::super::statics::TransmittedWrenchJson;
+use super::find::{Bounded, Found, InternalForces, Reached};
 use crate::commands::shared::Style;
 use crate::output::{self, Align, number};
 
@@ -24,6 +26,8 @@ struct ManipulabilityJson<'a> {
     kinematic: SpectrumJson,
     active_force: SpectrumJson,
     passive_force: SpectrumJson,
+    /// Forces in loops and contacts without a wrench on the frame, for torques of the actuators.
+    internal_force: InternalForceJson,
     indices: IndicesJson,
     measures: MeasuresJson,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -132,6 +136,38 @@ struct SpectrumJson {
 }
 
 #[derive(Debug, Serialize)]
+struct InternalForceJson {
+    /// Largest first: squared forces over squared torques.
+    finite: Vec<f64>,
+    infinite: usize,
+    directions: Vec<InternalDirectionJson>,
+    /// Forces that need no torque (hyperstatic), as transmitted wrenches.
+    infinite_directions: Vec<Vec<TransmittedWrenchJson>>,
+}
+
+#[derive(Debug, Serialize)]
+struct InternalDirectionJson {
+    /// Torques of the actuated joints.
+    joint: Vec<f64>,
+    forces: Vec<TransmittedWrenchJson>,
+}
+
+impl From<&InternalForces> for InternalForceJson {
+    fn from(found: &InternalForces) -> Self {
+        let all = |w: &Vec<TransmittedWrench>| w.iter().cloned().map(Into::into).collect();
+        let finite = found.spectrum.finite.iter().zip(&found.forces);
+        Self {
+            finite: found.spectrum.values(),
+            infinite: found.spectrum.infinite.cols(),
+            directions: finite
+                .map(|(d, w)| InternalDirectionJson { joint: d.joint.clone(), forces: all(w) })
+                .collect(),
+            infinite_directions: found.hyperstatic.iter().map(all).collect(),
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
 struct DirectionJson {
     joint: Vec<f64>,
     object: Vec<f64>,
@@ -203,6 +239,7 @@ fn describe(found: &Found) -> ManipulabilityJson<'_> {
         kinematic: (&m.kinematic).into(),
         active_force: (&m.active_force()).into(),
         passive_force: (&m.passive_force()).into(),
+        internal_force: (&found.internal).into(),
         indices: IndicesJson {
             kinematic: values(Index::Kinematic),
             active_kinematic: values(Index::ActiveKinematic),
@@ -237,6 +274,7 @@ fn print(found: &Found, out: &mut dyn Write) -> anyhow::Result<()> {
         writeln!(out)?;
         efficiencies(found, name, spectrum, out)?;
     }
+    internal_forces(found, out)?;
     writeln!(out)?;
     indices(found, out)?;
     if let Some([velocity, force]) = &found.polytopes {
@@ -276,6 +314,34 @@ fn efficiencies(
         output::columns(&spectrum.zeros).into_iter().map(|q| row("zero".to_owned(), &q, &[]));
     output::table(out, &columns, infinite.chain(finite).chain(zeros).collect::<Vec<_>>())?;
     Ok(())
+}
+
+/// Torques and the normal forces (or forces) that they cause, where something can be squeezed.
+fn internal_forces(found: &Found, out: &mut dyn Write) -> anyhow::Result<()> {
+    let InternalForces { spectrum, forces, hyperstatic } = &found.internal;
+    if spectrum.finite.is_empty() && hyperstatic.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    let actuated = &found.posed.chain.actuated;
+    let closings = found.posed.closings();
+    let titles: Vec<String> = closings.iter().map(|c| format!("|f|, |m| at {c}")).collect();
+    let mut columns = vec![("internal force", Align::Left)];
+    columns.extend(actuated.iter().chain(&titles).map(|n| (n.as_str(), Align::Right)));
+    let row = |what: String, torques: Option<&[f64]>, forces: &[TransmittedWrench]| {
+        let mut cells = vec![what];
+        let torque = |i: usize| output::entries(&[torques.map_or(0.0, |t| t[i])]);
+        cells.extend((0..actuated.len()).map(torque));
+        let size = |w: &TransmittedWrench| {
+            output::entries(&[w.wrench.force.norm(), w.wrench.moment.norm()])
+        };
+        cells.extend(forces.iter().map(size));
+        cells
+    };
+    let infinite = hyperstatic.iter().map(|w| row("infinite".to_owned(), None, w));
+    let finite = spectrum.values().into_iter().zip(&spectrum.finite).zip(forces);
+    let finite = finite.map(|((value, d), w)| row(number(value), Some(&d.joint), w));
+    Ok(output::table(out, &columns, infinite.chain(finite).collect::<Vec<_>>())?)
 }
 
 fn indices(found: &Found, out: &mut dyn Write) -> anyhow::Result<()> {

@@ -3,7 +3,7 @@
 //!
 //! Keys     name, description, source, dimension (2 or 3), reference, reference_point, home, tool;
 //!          `[[joint]]`, or `[dh]` with convention, rows, base, flange; `[[link]]`, `[[contact]]`,
-//!          `[[robot]]`, `[[frame]]`, `[[closure]]`
+//!          `[[robot]]`, `[[frame]]`, `[[closure]]`, `[[elasticity]]`
 //! Units    m, rad, N, N m; pitch in m/rad
 //! Valid    any connected graph. Home is q = 0, for included robots their start configuration; a
 //!          joint between links that are already connected is a loop joint
@@ -14,6 +14,7 @@ mod arm;
 mod body;
 mod closure;
 mod contact;
+mod elasticity;
 mod names;
 mod parse;
 mod robot;
@@ -37,7 +38,7 @@ use crate::error::Result;
 use crate::model::{CloseHome, Dimension, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "name",
     "description",
     "source",
@@ -52,6 +53,7 @@ const KEYS: [&str; 15] = [
     "frame",
     "contact",
     "closure",
+    "elasticity",
     "robot",
 ];
 
@@ -100,6 +102,13 @@ pub(in crate::model) fn describe(
     tree::write(&mut world, &joints, &contacts, reference.map(|r| (r, point)))?;
     contact::write(&mut world, &contacts);
     body::write(&file, &mut world, &brought)?;
+    let of_joints = joints.iter().map(|j| (j.name, j.between[0], j.origin));
+    let of_contacts = contacts.iter().map(|c| (c.name, c.between[0], Some(c.point)));
+    let parts: Vec<_> = of_joints.chain(of_contacts).collect();
+    elasticity::write(&file, &mut world, |name| {
+        let part = parts.iter().find(|p| p.0 == name);
+        part.map(|(_, link, origin)| ((*link).to_owned(), *origin))
+    })?;
 
     for frame in file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])? {
         let name = frame.required_string("name")?;

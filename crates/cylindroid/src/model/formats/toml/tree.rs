@@ -38,7 +38,7 @@ const KEYS: [&str; 10] =
 /// A joint as read from the file.
 pub(super) struct JointEntry<'t> {
     table: Table<'t>,
-    name: &'t str,
+    pub(super) name: &'t str,
     kind: JointKind,
     pub(super) between: [&'t str; 2],
     pub(super) origin: Option<Vec3>,

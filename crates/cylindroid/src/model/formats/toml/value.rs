@@ -130,6 +130,26 @@ impl<'t> Table<'t> {
         array.iter().map(read).collect::<Result<_>>().map(Some)
     }
 
+    /// A list of finite numbers as one row, or a list of such lists as rows.
+    pub(super) fn number_rows(&self, key: &str) -> Result<Vec<Vec<f64>>> {
+        let array = self.array(key)?.unwrap_or_default();
+        let read = |entry: &Spanned<DeValue<'_>>| {
+            number(entry.get_ref()).filter(|x| x.is_finite()).ok_or_else(|| {
+                let message = format!("an entry of {key} is not a finite number");
+                self.source.error(entry.span(), message, "give numbers, or rows of numbers")
+            })
+        };
+        let is_row = |entry: &Spanned<DeValue<'_>>| matches!(entry.get_ref(), DeValue::Array(_));
+        if !array.iter().any(is_row) {
+            return Ok(vec![array.iter().map(read).collect::<Result<_>>()?]);
+        }
+        let row = |entry: &'t Spanned<DeValue<'t>>| match entry.get_ref() {
+            DeValue::Array(row) => row.iter().map(read).collect::<Result<_>>(),
+            _ => read(entry).map(|x| vec![x]),
+        };
+        array.iter().map(row).collect()
+    }
+
     /// A vector of three numbers.
     pub(super) fn vec3(&self, key: &str) -> Result<Option<Vec3>> {
         let Some(numbers) = self.numbers(key)? else { return Ok(None) };
