@@ -131,6 +131,14 @@ pub(crate) fn figures() -> Result<()> {
         &["move", "panda", "--to", to, "--rpy", rpy, "--plot", "docs/move-panda.svg"][..],
         &["screws", "youbot", "--frame", "arm_link_2", "--plot", "docs/screws-youbot.svg"],
         &[
+            "screws",
+            "docs/three-lines.csv",
+            "--length",
+            "0.5",
+            "--plot",
+            "docs/conics-three-lines.svg",
+        ],
+        &[
             "manipulability",
             "five-bar",
             "--actuated",

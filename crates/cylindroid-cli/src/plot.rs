@@ -1,7 +1,9 @@
 //! The motion of `move` as an SVG: joints, pose error and singular value ratio over time.
 
+mod conics;
 pub(crate) mod ellipses;
 mod fine;
+mod labels;
 pub(crate) mod screws;
 mod skeleton;
 

@@ -30,11 +30,11 @@ mod _core {
     #[pymodule_export]
     use crate::closed::{
         PyActuatorTransmission, PyAssembly, PyAssemblyModes, PyBranch, PyConstraint,
-        PyContactForces, PyContinuationResult, PyDeflection, PyDirection, PyFingerContact,
-        PyFiniteMobility, PyGradient, PyGraspQuality, PyJointMobility, PyJointTorques, PyLimb,
-        PyLoopClosureError, PyManipulability, PyMobility, PyModeMeeting, PyOperationMode,
-        PyOperationModes, PyPolytope, PySingularity, PySpectrum, PyStiffness, PyTransmission,
-        PyTransmittedWrench, grasp::grasp_quality,
+        PyContactForces, PyContinuationResult, PyDeflection, PyDirection, PyEllipsoid,
+        PyFingerContact, PyFiniteMobility, PyGradient, PyGraspQuality, PyJointMobility,
+        PyJointTorques, PyLimb, PyLoopClosureError, PyManipulability, PyMobility, PyModeMeeting,
+        PyOperationMode, PyOperationModes, PyPolytope, PySingularity, PySpectrum, PyStiffness,
+        PyTransmission, PyTransmittedWrench, grasp::grasp_quality,
     };
     #[pymodule_export]
     use crate::control::{
@@ -75,8 +75,8 @@ mod _core {
     use crate::screws::transversals::transversals;
     #[pymodule_export]
     use crate::screws::{
-        PyErrorFormZeros, PyExistence, PyInvolution, PyMargin, PyProjector, PyScrew, PyScrewSystem,
-        PyTransversals,
+        PyErrorFormZeros, PyExistence, PyInvolution, PyMargin, PyPitchConics, PyProjector, PyScrew,
+        PyScrewSystem, PyTransversals,
     };
     #[pymodule_export]
     use crate::servo::{PyMotionResult, PyServo, PyStall, PyTrajectory};

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use cylindroid::manipulability::EllipsoidView;
 
 use super::ConfigurationArgs;
 use crate::values::Joints;
@@ -37,6 +38,7 @@ without input.";
 pub(crate) const MANIPULABILITY_EXAMPLES: &str = "\
 Examples:
   cylindroid manipulability five-bar --actuated q2,q4 --plot ellipses.svg
+  cylindroid manipulability five-bar --plot ellipses.svg --view section
   cylindroid manipulability panda --metric limits --task x,y,z --polytope
   cylindroid manipulability stewart --metric length --gradient smallest
   cylindroid manipulability stewart --configurations configurations.csv --json";
@@ -200,9 +202,31 @@ pub(crate) struct ManipulabilityArgs {
     pub(crate) configurations: Option<PathBuf>,
 
     /// Draw the mechanism with its ellipses of velocity and force and, where limits are known,
-    /// polytopes; projections of the linear part for mechanisms in space
-    #[arg(long, value_name = "FILE.svg", conflicts_with_all = ["task", "task_map"])]
+    /// polytopes: in the plane, in the three planes of space, or in two or three components of
+    /// --task. The drawn numbers are added to the output
+    #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
+
+    /// Components that are not drawn in a plane of --plot: free (`projection`) or zero (`section`)
+    #[arg(long, value_name = "NAME", default_value = "projection", requires = "plot")]
+    pub(crate) view: ViewName,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ViewName {
+    /// The other components are free
+    Projection,
+    /// The other components are zero
+    Section,
+}
+
+impl ViewName {
+    pub(crate) const fn view(self) -> EllipsoidView {
+        match self {
+            Self::Projection => EllipsoidView::Projection,
+            Self::Section => EllipsoidView::Section,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

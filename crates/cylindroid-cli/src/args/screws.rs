@@ -75,8 +75,8 @@ pub(crate) struct ScrewsArgs {
     #[arg(long)]
     pub(crate) angular_first: bool,
 
-    /// Draw the Gram determinant and the projector norm over the pitch, and the cylindroid of a
-    /// two-system
+    /// Draw the Gram determinant and the projector norm over the pitch, the cylindroid of a
+    /// two-system, and the conics of equal pitch of a three-system
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
 }

@@ -1,14 +1,18 @@
-//! A screw system as an SVG: Gram determinant and projector norm over the pitch, and the cylindroid
-//! of a two-system.
+//! A screw system as an SVG: Gram determinant and projector norm over the pitch, the cylindroid of a
+//! two-system, and the conics of a three-system.
 
 use std::ops::Range;
 use std::path::Path;
 
 use cylindroid::screws::{Line, Screw, ScrewSystem, gram_determinant};
-use cylindroid::{Matrix, Pose, Result, Vec3};
+use cylindroid::{Matrix, Pose, Result, Twist, Vec3};
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::fine::{Fine, at, px};
+use super::conics::conics;
+use super::fine::{Fine, px};
+use super::labels::{Area as Box, Labels};
 use super::{Area, COLOURS, Drawn, FONT, TICK, builder, save, titled};
 use crate::output::number;
 
@@ -24,19 +28,25 @@ const LARGEST: f64 = 1e3;
 /// Number of screws of a cylindroid.
 const SCREWS: usize = 72;
 
-/// Draws a system spanned by the columns of `jacobian`.
+/// Draws a system spanned by the columns of `jacobian`, which have these names.
 pub(crate) fn draw(
     title: &str,
-    jacobian: &Matrix,
+    (names, jacobian): (&[String], &Matrix),
     system: &ScrewSystem,
     path: &Path,
 ) -> Result<()> {
-    save(path, |svg| panels(title, jacobian, system, svg))
+    save(path, |svg| panels(title, (names, jacobian), system, svg))
 }
 
-fn panels(title: &str, jacobian: &Matrix, system: &ScrewSystem, svg: &mut String) -> Drawn {
+fn panels(
+    title: &str,
+    (names, jacobian): (&[String], &Matrix),
+    system: &ScrewSystem,
+    svg: &mut String,
+) -> Drawn {
     let pencil = system.pencil(SCREWS);
-    let tall = if pencil.is_empty() { 0 } else { TALL };
+    let plane = system.pitch_conics();
+    let tall = if pencil.is_empty() && plane.is_none() { 0 } else { TALL };
     let root = Fine::new(svg, (WIDTH, px(40) + 2 * HEIGHT + tall)).into_drawing_area();
     root.fill(&WHITE)?;
     let root = titled(&root, title, 20)?;
@@ -47,6 +57,12 @@ fn panels(title: &str, jacobian: &Matrix, system: &ScrewSystem, svg: &mut String
     size(&middle, system, &range)?;
     if !pencil.is_empty() {
         cylindroid(&rest, system, &pencil)?;
+    }
+    if let Some(plane) = plane {
+        let twist = |j: usize| Twist::from_array(std::array::from_fn(|i| jacobian[(i, j)]));
+        let twists: Vec<(String, Twist)> =
+            names.iter().cloned().enumerate().map(|(j, name)| (name, twist(j))).collect();
+        conics(&rest, system, &plane, &twists)?;
     }
     root.present()?;
     drop((top, bottom, middle, rest, root));
@@ -111,15 +127,44 @@ fn determinant(
         [(range.start, 0.0), (range.end, 0.0)],
         BLACK.mix(0.5).stroke_width(1),
     ))?;
-    chart.draw_series(LineSeries::new(values, COLOURS[0].stroke_width(2)))?;
+    chart.draw_series(LineSeries::new(values.iter().copied(), COLOURS[0].stroke_width(2)))?;
     let principal = system.principal_pitches();
-    chart.draw_series(principal.iter().map(|&h| Circle::new((h, 0.0), 5, COLOURS[1].filled())))?;
-    chart.draw_series(principal.iter().map(|&h| {
-        let text = format!("h = {}", number(if h.abs() < 1e-12 { 0.0 } else { h }));
-        // Towards the middle, where the curve is lower.
-        let shift = if h > 0.0 { at(-90, -18) } else { at(8, -18) };
-        EmptyElement::at((h, 0.0)) + Text::new(text, shift, (FONT, 14).into_font())
-    }))?;
+    let name = |h: f64| format!("h = {}", label(h, system.length()));
+    let named: Vec<_> = principal.iter().map(|&h| ((h, 0.0), name(h))).collect();
+    let zero = [(range.start, 0.0), (range.end, 0.0)];
+    marks(&mut chart, &[&values, &zero], &named)
+}
+
+/// Points with their names, which do not touch the curves.
+fn marks<Y: Ranged<ValueType = f64>>(
+    chart: &mut ChartContext<'_, Fine<'_>, Cartesian2d<RangedCoordf64, Y>>,
+    curves: &[&[(f64, f64)]],
+    named: &[((f64, f64), String)],
+) -> Drawn {
+    const SIZE: u32 = 14;
+    let pixels = |p: &(f64, f64)| {
+        let (x, y) = chart.backend_coord(p);
+        (f64::from(x) / 100.0, f64::from(y) / 100.0)
+    };
+    let (x, y) = chart.plotting_area().get_pixel_range();
+    let side = |r: std::ops::Range<i32>| (f64::from(r.start) / 100.0, f64::from(r.end) / 100.0);
+    let mut labels = Labels::new(Box { x: side(x), y: side(y) });
+    for curve in curves {
+        labels.avoid_line(&curve.iter().map(pixels).collect::<Vec<_>>());
+    }
+    let points: Vec<(f64, f64)> = named.iter().map(|(p, _)| pixels(p)).collect();
+    points.iter().for_each(|p| labels.avoid_box(Box::around(*p, (6.0, 6.0))));
+    chart.draw_series(named.iter().map(|(p, _)| Circle::new(*p, 5, COLOURS[1].filled())))?;
+    let area = chart.plotting_area().strip_coord_spec();
+    let (left, top) = area.get_base_pixel();
+    for ((_, text), point) in named.iter().zip(points) {
+        let (x, y) = labels.place(text, point, f64::from(SIZE));
+        let place = ((x * 100.0).round() as i32 - left, (y * 100.0).round() as i32 - top);
+        let style = TextStyle::from((FONT, SIZE).into_font())
+            .color(&BLACK)
+            .pos(Pos::new(HPos::Center, VPos::Center));
+        area.draw(&Text::new(text.clone(), place, style))?;
+    }
     Ok(())
 }
 
@@ -149,15 +194,15 @@ fn size(area: &Area<'_>, system: &ScrewSystem, range: &Range<f64>) -> Drawn {
         chart.draw_series([Text::new(text, middle, style)])?;
         return Ok(());
     }
-    chart.draw_series(LineSeries::new(norms, COLOURS[2].stroke_width(2)))?;
+    chart.draw_series(LineSeries::new(norms.iter().copied(), COLOURS[2].stroke_width(2)))?;
     let choice = system.choose_pitch();
-    let proposed = choice.pitch.filter(|h| range.contains(h));
-    chart.draw_series(proposed.map(|h| Circle::new((h, choice.norm), 5, COLOURS[1].filled())))?;
-    chart.draw_series(proposed.map(|h| {
-        let text = format!("smallest: h = {}", number(h));
-        EmptyElement::at((h, choice.norm)) + Text::new(text, at(8, -18), (FONT, 14).into_font())
-    }))?;
-    Ok(())
+    let named: Vec<_> = choice
+        .pitch
+        .filter(|h| range.contains(h))
+        .map(|h| ((h, choice.norm), format!("smallest: h = {}", label(h, system.length()))))
+        .into_iter()
+        .collect();
+    marks(&mut chart, &[&norms], &named)
 }
 
 /// The axes of the screws of a two-system, in its canonical frame, coloured by pitch.
@@ -181,8 +226,8 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
     let of = if system.order() == 4 { "the reciprocal system" } else { "the system" };
     let caption = format!(
         "axes of {of} in its canonical frame [m]: pitch from {} (blue) to {} (orange) m/rad",
-        number(low),
-        number(high)
+        label(low, system.length()),
+        label(high, system.length())
     );
     let area = titled(area, &caption, 15)?;
     let cube = -half..half;
@@ -232,7 +277,7 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
 }
 
 /// From blue over grey to orange.
-fn blend(share: f64) -> RGBColor {
+pub(super) fn blend(share: f64) -> RGBColor {
     let stops = [(31.0, 119.0, 180.0), (150.0, 150.0, 150.0), (214.0, 95.0, 0.0)];
     let (i, t) = if share < 0.5 { (0, 2.0 * share) } else { (1, 2.0 * share - 1.0) };
     let (a, b) = (stops[i], stops[i + 1]);

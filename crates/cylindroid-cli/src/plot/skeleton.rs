@@ -23,6 +23,21 @@ pub(crate) struct Spot {
     pub(crate) actuated: bool,
 }
 
+/// A body that contacts hold and no joint guides.
+#[derive(Debug, Clone)]
+pub(crate) struct Held {
+    pub(crate) name: String,
+    /// Where it is held, and the reference point if it is on the body.
+    pub(crate) points: Vec<Vec3>,
+}
+
+impl Held {
+    pub(crate) fn middle(&self) -> Vec3 {
+        let sum = self.points.iter().fold(Vec3::ZERO, |sum, p| sum + *p);
+        sum * (1.0 / self.points.len().max(1) as f64)
+    }
+}
+
 /// Points of links and joints in world (m).
 #[derive(Debug, Clone)]
 pub(crate) struct Skeleton {
@@ -31,6 +46,7 @@ pub(crate) struct Skeleton {
     /// What slides, from one link to the other.
     pub(crate) slides: Vec<[Vec3; 2]>,
     pub(crate) spots: Vec<Spot>,
+    pub(crate) objects: Vec<Held>,
     /// Points attached to the ground.
     pub(crate) bases: Vec<Vec3>,
 }
@@ -67,8 +83,13 @@ impl Skeleton {
         let near = 1e-6 * mechanism.reach();
         let mut points = Points { of: vec![Vec::new(); poses.len()], near };
         let mut sliders = Vec::new();
-        let mut skeleton =
-            Self { links: Vec::new(), slides: Vec::new(), spots: Vec::new(), bases: Vec::new() };
+        let mut skeleton = Self {
+            links: Vec::new(),
+            slides: Vec::new(),
+            spots: Vec::new(),
+            objects: Vec::new(),
+            bases: Vec::new(),
+        };
         for joint in mechanism.joints() {
             // A free body hangs on nothing that could be drawn.
             if matches!(joint.kind, JointKind::Free | JointKind::Planar) {
@@ -136,9 +157,23 @@ impl Skeleton {
                 skeleton.spots[i].point = (*a + *b) * 0.5;
             }
         }
-        let moving =
-            points.of.into_iter().zip(&ground).filter(|(p, ground)| !**ground && p.len() > 1);
-        skeleton.links = moving.map(|(p, _)| p).collect();
+        let guided = |i: usize| {
+            let is_bond = |kind: JointKind| !matches!(kind, JointKind::Free | JointKind::Planar);
+            mechanism.joints().iter().any(|j| is_bond(j.kind) && (j.parent == i || j.child == i))
+                || mechanism.loops().iter().any(|l| l.a == i || l.b == i)
+        };
+        let touched = |i: usize| mechanism.contacts().iter().any(|c| c.a == i || c.b == i);
+        for (i, points) in points.of.into_iter().enumerate() {
+            if ground[i] || points.is_empty() {
+                continue;
+            }
+            if touched(i) && !guided(i) {
+                let name = mechanism.links()[i].name.clone();
+                skeleton.objects.push(Held { name, points });
+            } else if points.len() > 1 {
+                skeleton.links.push(points);
+            }
+        }
         Ok(skeleton)
     }
 

@@ -10,6 +10,7 @@ mod ik;
 mod inverses;
 mod measured;
 mod motion;
+mod pictures;
 mod screws;
 mod shape;
 mod statics;

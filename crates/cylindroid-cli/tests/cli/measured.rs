@@ -1,4 +1,4 @@
-//! `manipulability`: metrics, tasks, indices, polytopes, gradients, plots.
+//! `manipulability`: metrics, tasks, indices, polytopes, gradients.
 
 use std::fs;
 
@@ -182,35 +182,6 @@ fn inertia_measures() {
     assert!(difference(&numbers(&report["kinematic"]["finite"]), &[2.6]) < 1e-12);
     let text = refused(&["manipulability", "panda", "--metric", "inertia"]);
     assert!(text.contains("has no mass"), "{text}");
-}
-
-/// Drawn for planar and spatial ones, in singular poses, with and without limits.
-#[test]
-fn plots() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("e.svg");
-    let path = file.to_str().unwrap();
-    let drawn = |arguments: &[&str]| {
-        text(&[&["manipulability"], arguments, &["--plot", path]].concat());
-        let svg = fs::read_to_string(&file).unwrap();
-        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{arguments:?}");
-        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{arguments:?}");
-        svg
-    };
-    let five = drawn(&["five-bar", "--actuated", "q2,q4"]);
-    assert!(five.contains("semi-axes of the velocity ellipse 1.18 and 0.425 m/s"), "{five}");
-    assert!(five.contains("q3") && !five.contains("within the limits"));
-    assert!(drawn(&["five-bar"]).contains("within the limits of the joint torques"));
-    // Stretched out: a line of velocities, and forces that need no torque.
-    let line = drawn(&["3r", "--q", "0,0,0"]);
-    assert!(line.contains("no velocity"), "{line}");
-    assert!(line.contains("need no"), "{line}");
-    for model in ["panda", "stewart", "delta", "two-arm", "four-bar", "watt", "3rrr"] {
-        drawn(&[model]);
-    }
-    assert!(refused(&with(&["--plot", "e.png"])).contains(".svg"));
-    let clash = refused(&with(&["--plot", path, "--task", "x"]));
-    assert!(clash.contains("--task"), "{clash}");
 }
 
 /// Rows of a file, its columns by name and in any order, are what single calls say.

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import Mechanism, Screw, ScrewSystem, Spectrum, Trajectory
+from ._conics import conics
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +24,7 @@ ROUNDING = 1e-9
 # Larger components leave the plane: of a unit direction, or of a pitch (m/rad).
 PLANAR = 1e-6
 
-__all__ = ["cylindroid", "ellipsoid", "frame", "mechanism", "screws", "trajectory"]
+__all__ = ["conics", "cylindroid", "ellipsoid", "frame", "mechanism", "screws", "trajectory"]
 
 
 def _pyplot() -> Any:
@@ -109,7 +110,8 @@ def _labels(ax: Any, labels: list[tuple[str, list[NDArray[Any]]]]) -> None:
 
         corner, at = min(candidates, key=overlap)
         taken.append(np.array([corner, corner + extent]))
-        ax.text(*at, text)
+        # On white, so that no line strikes it through.
+        ax.text(*at, text, bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1}, zorder=5)
 
 
 def frame(pose: ArrayLike, ax: Any = None, size: float = 0.1, name: str | None = None) -> Any:
@@ -148,8 +150,20 @@ def frame(pose: ArrayLike, ax: Any = None, size: float = 0.1, name: str | None =
     return ax
 
 
+def _polygon(points: NDArray[Any]) -> NDArray[Any]:
+    """The points of a link in the order of their angle about the middle; two are a line."""
+    if len(points) < 3:
+        return points
+    away = points - points.mean(0)
+    first, second = np.linalg.svd(away)[2][:2]
+    order = np.argsort(np.arctan2(away @ second, away @ first))
+    return points[[*order, order[0]]]
+
+
 def mechanism(robot: Mechanism, q: ArrayLike | None = None, ax: Any = None) -> Any:
-    """Links as lines between the frames of joints, and the tool.
+    """Links as lines between their joints, loop joints included, and the tool.
+
+    Filled points are actuated joints, hollow ones passive.
 
     Parameters
     ----------
@@ -165,16 +179,42 @@ def mechanism(robot: Mechanism, q: ArrayLike | None = None, ax: Any = None) -> A
     """
     ax = _axes(ax, space=ax is None and robot.dimension == 3)
     d = 3 if _is_spatial(ax) else 2
-    poses = robot.fk_all(robot.home if q is None else q)
-    at = dict(zip(robot.frames, poses[:, :d, 3]))
-    for joint in robot.joints:
-        ends = np.array([at[joint.parent], at[joint.child]])
-        ax.plot(*ends.T, color="0.3", lw=3, solid_capstyle="round")
-    moving = np.array([at[joint.child] for joint in robot.joints if joint.coordinates])
-    if len(moving):
-        style = {"depthshade": False} if d == 3 else {"zorder": 3}
-        ax.scatter(*moving.T, color="tab:orange", **style)
-    return frame(poses[robot.frames.index(robot.tool)], ax, 0.1 * robot.reach)
+    q = robot.home if q is None else q
+    # A free body is bound by nothing that could be drawn.
+    joints = [(i, j) for i, j in enumerate(robot.joints) if j.kind not in ("free", "planar")]
+    on_parent, on_child = (robot.joint_axes(q, side)[:, 0, :d] for side in ("parent", "child"))
+    moving = {joint.child for joint in robot.joints if not joint.closes_loop}
+    near = 1e-6 * robot.reach
+    points: dict[str, list[NDArray[Any]]] = {}
+    for i, joint in joints:
+        for link, point in ((joint.parent, on_parent[i]), (joint.child, on_child[i])):
+            known = points.setdefault(link, [])
+            if all(np.linalg.norm(point - p) > near for p in known):
+                known.append(point)
+        if np.linalg.norm(on_parent[i] - on_child[i]) > near:  # a slide, or a loop that is open
+            ax.plot(*np.transpose([on_parent[i], on_child[i]]), color="0.5", lw=2)
+    for link, of_link in points.items():
+        if link in moving and len(of_link) > 1:
+            line = _polygon(np.array(of_link))
+            ax.plot(*line.T, color="0.3", lw=3, solid_capstyle="round", label=f"_{link}")
+    shown = [(i, j) for i, j in joints if j.coordinates or j.mimic or j.closes_loop]
+    for actuated, fill in ((True, "tab:orange"), (False, "white")):
+        places = np.array([on_parent[i] for i, j in shown if j.actuated == actuated])
+        if len(places):
+            style = {"depthshade": False} if d == 3 else {"zorder": 3}
+            label = "_actuated" if actuated else "_passive"
+            ax.scatter(*places.T, color=fill, edgecolors="tab:orange", label=label, **style)
+    return frame(robot.fk(q), ax, 0.1 * robot.reach)
+
+
+_UNITS = {"velocity": ("m/s", "rad/s"), "force": ("N", "N m")}
+
+
+def _unit(component: str, quantity: str) -> str:
+    """The unit of a component; none for those of a task map."""
+    if component in ("x", "y", "z"):
+        return _UNITS[quantity][0]
+    return _UNITS[quantity][1] if component in ("rx", "ry", "rz") else ""
 
 
 def ellipsoid(
@@ -183,27 +223,32 @@ def ellipsoid(
     ax: Any = None,
     *,
     scale: float = 1.0,
-    components: str = "linear",
+    components: str | list[str] | None = None,
+    view: str = "projection",
     **style: Any,
 ) -> Any:
     """The ellipsoid of velocities or forces for inputs of norm one.
 
-    Pass the spectrum of a task (``robot.manipulability(q, task="x,y,z").kinematic`` or
-    ``.active_force``): an ellipse for two components, an ellipsoid for three. The axes are those of
-    the world (the twist is taken at the reference frame's origin). The
-    ellipsoid is flat along directions of zero efficiency; infinite ones are drawn as dashed lines.
+    An ellipse for two components, an ellipsoid for three. The components that are not drawn are free
+    or zero, which the legend says. The axes are those of the world (the twist is taken at the
+    reference frame's origin). The ellipsoid is flat along directions of zero efficiency; along
+    infinite ones it is a strip or a cylinder without end.
 
     Parameters
     ----------
     spectrum : Spectrum
+        Of a task (``robot.manipulability(q, task="x,y,z").kinematic``) or of the whole twist.
     centre : array_like, (2,) or (3,), optional
         Usually ``robot.fk(q)[:3, 3]`` (m). Default: the origin.
     ax : matplotlib axes, optional
         3-D ones for three components.
     scale : float
         Metres per unit of velocity or force.
-    components : str
-        'linear' or 'angular': the three components of a full twist or wrench to draw.
+    components : str or list of str, optional
+        Two or three of ``spectrum.components``: 'x,y'; 'linear' or 'angular' for all of a kind.
+        Default: those of a task of two or three, otherwise the linear ones.
+    view : str
+        'projection' (the other components are free) or 'section' (they are zero).
     **style
         Passed to matplotlib, for example ``color``.
 
@@ -211,48 +256,92 @@ def ellipsoid(
     -------
     The axes.
     """
-    axes = spectrum.semi_axes
-    infinite = spectrum.infinite_directions.T
-    d = axes.shape[0]
-    if d == 6:
-        rows = {"linear": slice(0, 3), "angular": slice(3, 6)}.get(components)
-        if rows is None:
-            raise ValueError(f"components = {components!r}: 'linear' or 'angular'")
-        # The projection of the ellipsoid onto these components: the SVD of their block.
-        u, s, _ = np.linalg.svd(axes[rows], full_matrices=False)
-        axes, infinite, d = u * s, infinite[rows], 3
-    if d not in (2, 3):
+    known = spectrum.components
+    linear = [c for c in known if c in ("x", "y", "z")]
+    angular = [c for c in known if c in ("rx", "ry", "rz")]
+    if components is None:
+        pure = not (linear and angular)
+        components = known if len(known) <= 3 and (pure or len(known) == 2) else linear
+    elif isinstance(components, str):
+        components = {"linear": linear, "angular": angular}.get(components, components.split(","))
+    if len(components) not in (2, 3):
         raise ValueError(
-            f"an ellipsoid of {d} components cannot be drawn: choose a task of two or three"
+            f"an ellipsoid of {len(components)} components cannot be drawn: choose two or three of "
+            f"{', '.join(known)}"
         )
+    seen = spectrum.ellipsoid(components, view)
+    axes, d = scale * seen.semi_axes, len(components)
     ax = _axes(ax, space=d == 3)
     middle = np.zeros(d) if centre is None else np.asarray(centre, dtype=float)[:d]
-    style = {"color": "tab:blue"} | style
-    turn = np.linspace(0, 2 * np.pi, 73)
-    if d == 2:
-        ball = np.array([np.cos(turn), np.sin(turn)])
-        outline = middle[:, None] + scale * axes @ ball[: axes.shape[1]]
-        ax.plot(*outline, **style)
-        ax.set(xlabel="x", ylabel="y")
+    state = "free" if view == "projection" else "zero"
+    others = f" ({view}: {', '.join(seen.others)} {state})" if seen.others else ""
+    style = {"color": "tab:blue", "label": seen.quantity + others} | style
+    size = np.linalg.norm(axes, axis=0).max() if axes.size else scale
+    if seen.unbounded.size:
+        _unbounded(ax, middle, axes, 3 * size * seen.unbounded)
+    ball = _ball(axes.shape[1])
+    surface = middle.reshape(-1, *[1] * (ball.ndim - 1)) + np.tensordot(axes, ball, 1)
+    if ball.ndim == 2:
+        ax.plot(*surface, **style)
     else:
-        rise = np.linspace(0, np.pi, 37)[:, None]
-        ball = np.array(
-            [np.sin(rise) * np.cos(turn), np.sin(rise) * np.sin(turn), np.cos(rise) + 0 * turn]
-        )
-        surface = np.tensordot(scale * axes, ball[: axes.shape[1]], 1)
-        ax.plot_surface(*(middle[:, None, None] + surface), **({"alpha": 0.3, "lw": 0} | style))
+        ax.plot_surface(*surface, **({"alpha": 0.3, "lw": 0} | style))
     for axis in axes.T:
-        ends = middle[:, None] + scale * np.outer(axis, [-1, 1])
-        ax.plot(*ends, color="0.2", lw=1)
-    reach = 2 * scale * (np.linalg.norm(axes, axis=0).max() if axes.size else 1.0)
-    for direction in infinite.T:
-        size = np.linalg.norm(direction)
-        if size > 0:
-            ends = middle[:, None] + reach * np.outer(direction / size, [-1, 1])
-            ax.plot(*ends, color="tab:red", lw=1, ls="--")
+        ax.plot(*(middle[:, None] + np.outer(axis, [-1, 1])), color="0.2", lw=1)
+    units = {_unit(c, seen.quantity) for c in components}
     if d == 3:
         _equal(ax)
+    if centre is None or len(units) > 1 or not set(components) <= {"x", "y", "z"}:
+        names = [f"{c} ({_unit(c, seen.quantity)})".removesuffix(" ()") for c in components]
+        ax.set(**dict(zip(("xlabel", "ylabel", "zlabel"), names)))
+    if d == 2 and len(units) > 1:
+        ax.set_aspect("auto")
+    ax.legend(fontsize="small")
     return ax
+
+
+def _ball(k: int) -> NDArray[Any]:
+    """Points of the unit sphere of k dimensions, up to three."""
+    turn = np.linspace(0, 2 * np.pi, 73)
+    if k < 2:
+        return np.array([[-1.0, 1.0]]) if k else np.zeros((0, 1))
+    if k == 2:
+        return np.array([np.cos(turn), np.sin(turn)])
+    rise = np.linspace(0, np.pi, 37)[:, None]
+    return np.array(
+        [np.sin(rise) * np.cos(turn), np.sin(rise) * np.sin(turn), np.cos(rise) + 0 * turn]
+    )
+
+
+def _unbounded(
+    ax: Any, middle: NDArray[Any], axes: NDArray[Any], reach: NDArray[Any]
+) -> None:
+    """What has no end along the rows of `reach`: a line, a strip, a cylinder or a slab."""
+    style = {"color": "tab:red", "label": "without end"}
+    rim = axes @ _ball(axes.shape[1]) if axes.size else np.zeros((len(middle), 1))
+    along = np.array([-1.0, 1.0])
+    if len(middle) == 2 and len(reach) == 1:
+        for side in rim.T[[0, -1]] if axes.shape[1] else rim.T:
+            ax.plot(*(middle + side + np.outer(along, reach[0])).T, lw=1.5, **style)
+            style = {"color": "tab:red", "label": "_strip"}
+        if axes.shape[1]:
+            corners = [middle + s * axes[:, 0] + t * reach[0] for s, t in
+                       ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            ax.fill(*np.transpose(corners), color="tab:red", alpha=0.15, lw=0)
+    elif len(middle) == 2:
+        corners = [middle + s * reach[0] + t * reach[1] for s, t in
+                   ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        ax.fill(*np.transpose(corners), alpha=0.15, lw=0, **style)
+    elif len(reach) == 1 and rim.shape[1] == 1:
+        ax.plot(*(middle + np.outer(along, reach[0])).T, lw=3, **style)
+    elif len(reach) == 1:
+        tube = (middle[:, None] + rim)[:, :, None] + reach[0][:, None, None] * along
+        ax.plot_surface(*tube, alpha=0.15, lw=0, **style)
+    else:
+        s, t = np.meshgrid(along, along)
+        for side in rim.T:
+            slab = (middle + side)[:, None, None] + reach[0][:, None, None] * s
+            ax.plot_surface(*(slab + reach[1][:, None, None] * t), alpha=0.15, lw=0, **style)
+            style = {"color": "tab:red", "label": "_slab"}
 
 
 def screws(

@@ -45,6 +45,10 @@ pub(crate) struct PyManipulability {
 }
 
 impl PyManipulability {
+    fn spectrum(&self, inner: Spectrum, what: &'static str) -> PySpectrum {
+        PySpectrum { inner, what, components: self.components.clone() }
+    }
+
     fn of(constraint: &PyConstraint, question: &Question) -> Result<Self> {
         let relation = constraint.relation(question.map.as_ref())?;
         let metrics = question.metrics(constraint)?;
@@ -66,22 +70,27 @@ impl PyManipulability {
 impl PyManipulability {
     #[getter]
     fn kinematic(&self) -> PySpectrum {
-        PySpectrum { inner: self.inner.kinematic.clone(), what: "kinematic" }
+        self.spectrum(self.inner.kinematic.clone(), "kinematic")
     }
 
     #[getter]
     fn active_force(&self) -> PySpectrum {
-        PySpectrum { inner: self.inner.active_force(), what: "active force" }
+        self.spectrum(self.inner.active_force(), "active force")
     }
 
     #[getter]
     fn passive_force(&self) -> PySpectrum {
-        PySpectrum { inner: self.inner.passive_force(), what: "passive force" }
+        self.spectrum(self.inner.passive_force(), "passive force")
     }
 
     #[getter]
     fn internal_force(&self) -> PySpectrum {
-        PySpectrum { inner: self.internal_force.clone(), what: "internal force" }
+        let components = (1..=self.internal_force.infinite.rows()).map(|i| format!("t{i}"));
+        PySpectrum {
+            inner: self.internal_force.clone(),
+            what: "internal force",
+            components: components.collect(),
+        }
     }
 
     #[getter]

@@ -27,11 +27,16 @@ use crate::table;
 ///     Product of the roots of the finite efficiencies; of a serial arm Yoshikawa's index.
 /// anisotropy : float or None
 ///     Largest over smallest finite efficiency.
+/// components : list of str
+///     Names of the entries of twists (wrenches), or of the task.
+/// quantity : str
+///     'velocity' or 'force'.
 #[pyclass(frozen, name = "Spectrum", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PySpectrum {
     pub(super) inner: Spectrum,
     pub(super) what: &'static str,
+    pub(super) components: Vec<String>,
 }
 
 #[pymethods]
@@ -79,6 +84,16 @@ impl PySpectrum {
     #[getter]
     fn anisotropy(&self) -> Option<f64> {
         self.inner.anisotropy()
+    }
+
+    #[getter]
+    fn components(&self) -> Vec<String> {
+        self.components.clone()
+    }
+
+    #[getter]
+    pub(super) fn quantity(&self) -> &'static str {
+        if self.what == "kinematic" { "velocity" } else { "force" }
     }
 
     fn __repr__(&self) -> String {

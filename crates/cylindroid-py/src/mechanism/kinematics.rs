@@ -127,6 +127,58 @@ impl PyMechanism {
         })
     }
 
+    /// The axes of all joints in the world, loop joints included, in the order of `joints`.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// side : str
+    ///     'parent' or 'child': the link that carries the joint frame. The two differ along the axis
+    ///     of a joint that slides, and by the closure error of a loop joint.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (J, 2, 3) or (N, J, 2, 3)
+    ///     The origin of the joint frame (m) and the unit direction of the axis.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     For a q of the wrong size or with an entry that is not finite.
+    /// UnknownNameError
+    ///     For another side.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> r = cy.load("five-bar")
+    /// >>> r.joints[-1].name, r.joints[-1].closes_loop
+    /// ('q5', True)
+    /// >>> r.joint_axes(r.home)[-1, 0]
+    /// array([2., 0., 0.])
+    #[pyo3(signature = (q, side = "parent"))]
+    fn joint_axes<'py>(&self, py: Python<'py>, q: Numbers<'py>, side: &str) -> Result<Array<'py>> {
+        let on_parent = match side {
+            "parent" => true,
+            "child" => false,
+            _ => return Err(Error::unknown("side", side, ["parent", "child"]).into()),
+        };
+        let rows = Rows::of(&self.inner, "q", &q)?;
+        let mut state = self.inner.state(self.inner.home())?;
+        let count = self.inner.joints().len() + self.inner.loops().len();
+        arrays::written_rows(py, rows.count, &[count, 2, 3], |i, out| {
+            state.set(rows.row(i))?;
+            let axes = state.joint_axes().into_iter().chain(state.loop_joint_axes());
+            for (axis, out) in axes.zip(out.chunks_exact_mut(6)) {
+                let line = if on_parent { axis.on_parent } else { axis.on_child };
+                out[..3].copy_from_slice(&line.point.to_array());
+                out[3..].copy_from_slice(&line.direction.to_array());
+            }
+            Ok(())
+        })
+    }
+
     /// The Jacobian: twist of the frame = J @ qd, linear rows first.
     ///
     /// Parameters

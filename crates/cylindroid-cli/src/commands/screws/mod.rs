@@ -38,7 +38,9 @@ pub(crate) fn run(
     }
     let found = find(Twists::read(args)?, args)?;
     if let Some(path) = &args.plot {
-        plot::screws::draw(&found.twists.title(), &found.twists.matrix(), &found.system, path)?;
+        let matrix = found.twists.matrix();
+        let twists = (found.twists.names.as_slice(), &matrix);
+        plot::screws::draw(&found.twists.title(), twists, &found.system, path)?;
     }
     report::write(&found, style, out)?;
     Ok(ExitCode::SUCCESS)

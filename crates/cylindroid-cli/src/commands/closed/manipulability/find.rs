@@ -3,14 +3,16 @@
 use cylindroid::closure::{MotionSpace, Relation, TransmittedWrench, transmitted_wrenches};
 use cylindroid::linalg::{Interval, Metric};
 use cylindroid::manipulability::{
-    Goal, Gradient, Manipulability, Measure, Metrics, Polytope, Spectrum, force_polytope,
-    force_range, gradient, internal_force_manipulability, velocity_polytope, velocity_range,
+    EllipsoidView, Goal, Gradient, Manipulability, Measure, Metrics, Polytope, Spectrum,
+    force_polytope, force_range, gradient, internal_force_manipulability, velocity_polytope,
+    velocity_range,
 };
 use cylindroid::{Error, Result};
 
 use super::Posed;
 use super::measured::{self, Quantity, Task};
 use crate::args::{ManipulabilityArgs, MeasureName, MetricName};
+use crate::plot::ellipses::PlaneShapes;
 
 /// What was found.
 pub(super) struct Found {
@@ -26,6 +28,12 @@ pub(super) struct Found {
     /// Of velocity and of force, or why not.
     pub(super) polytopes: Option<[Reached; 2]>,
     pub(super) gradient: Option<(Measure, Gradient)>,
+    /// Between the actuated joints and the components.
+    pub(super) relation: Relation,
+    /// True if the components are those of a task.
+    pub(super) task: bool,
+    /// With --plot.
+    pub(super) drawn: Option<(EllipsoidView, Vec<PlaneShapes>)>,
 }
 
 /// What limits allow, or in words what is missing.
@@ -72,6 +80,7 @@ pub(super) fn find(posed: Posed, args: &ManipulabilityArgs) -> Result<Found> {
             Some((measure, gradient(&posed.state()?, goal, &metrics, measure)?))
         }
     };
+    let is_task = task.is_some();
     let components = match task {
         Some(task) => task.names,
         None => posed.components().iter().map(|c| (*c).to_owned()).collect(),
@@ -85,7 +94,19 @@ pub(super) fn find(posed: Posed, args: &ManipulabilityArgs) -> Result<Found> {
     ];
     let own = given.into_iter().filter(|g| g.1).map(|g| g.0).collect();
     let metric = args.metric.name();
-    Ok(Found { posed, components, metric, own, efficiencies, internal, polytopes, gradient })
+    Ok(Found {
+        posed,
+        components,
+        metric,
+        own,
+        efficiencies,
+        internal,
+        polytopes,
+        gradient,
+        relation,
+        task: is_task,
+        drawn: None,
+    })
 }
 
 fn internal_forces(

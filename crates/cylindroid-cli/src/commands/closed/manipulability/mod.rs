@@ -1,6 +1,7 @@
 //! `manipulability`: efficiencies of motion and force, indices, polytopes, gradients.
 
 mod configurations;
+mod drawn;
 mod find;
 mod report;
 
@@ -10,8 +11,7 @@ use std::process::ExitCode;
 use serde_json::value::RawValue;
 
 use self::find::find;
-use super::Posed;
-use super::measured::{self, Quantity};
+use super::{Posed, measured};
 use crate::args::ManipulabilityArgs;
 use crate::commands::shared::Style;
 use crate::plot;
@@ -27,18 +27,20 @@ pub(crate) fn run(
     if let Some(path) = &args.plot {
         plot::check(path)?;
     }
-    let found = find(Posed::new(&args.closed)?, args)?;
+    let mut found = find(Posed::new(&args.closed)?, args)?;
     if let Some(path) = &args.plot {
-        let [rates, torques] = [Quantity::Rate, Quantity::Torque];
+        let planes = drawn::planes(&found, args)?;
         let drawing = plot::ellipses::Drawing {
             state: &found.posed.state()?,
             chain: &found.posed.chain,
-            metrics: &measured::metrics(&found.posed, args, None)?,
+            components: &found.components,
+            task: found.task,
             metric: found.metric,
-            velocity_limits: rates.limits(&found.posed, args).ok(),
-            torque_limits: torques.limits(&found.posed, args).ok(),
+            view: args.view.view(),
+            planes: &planes,
         };
         plot::ellipses::draw(&drawing, path)?;
+        found.drawn = Some((args.view.view(), planes));
     }
     report::write(&found, style, out)?;
     Ok(ExitCode::SUCCESS)

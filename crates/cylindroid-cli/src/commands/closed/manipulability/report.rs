@@ -10,6 +10,7 @@ use serde_json::value::{RawValue, to_raw_value};
 
 use super::super::HeadJson;
 use super::super::statics::TransmittedWrenchJson;
+use super::drawn::{self, DrawnJson};
 use super::find::{Bounded, Found, InternalForces, Reached};
 use crate::commands::shared::Style;
 use crate::output::{self, Align, number};
@@ -34,6 +35,9 @@ struct ManipulabilityJson<'a> {
     polytope: Option<PolytopesJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     gradient: Option<GradientJson>,
+    /// With --plot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drawn: Option<DrawnJson>,
 }
 
 /// The values of the six indices, largest first; null is infinite.
@@ -251,6 +255,7 @@ fn describe(found: &Found) -> ManipulabilityJson<'_> {
         measures: MeasuresJson { kinematic: (&m.kinematic).into(), force: (&m.force).into() },
         polytope,
         gradient,
+        drawn: DrawnJson::of(found),
     }
 }
 
@@ -284,6 +289,10 @@ fn print(found: &Found, out: &mut dyn Write) -> anyhow::Result<()> {
     if let Some((measure, gradient)) = &found.gradient {
         writeln!(out)?;
         slope(found, measure.name(), gradient, out)?;
+    }
+    if found.drawn.is_some() {
+        writeln!(out)?;
+        drawn::print(found, out)?;
     }
     Ok(())
 }
