@@ -246,6 +246,7 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
         .configure_axes()
         .light_grid_style(BLACK.mix(0.06))
         .max_light_lines(2)
+        .tick_size(TICK)
         .label_style((FONT, 12))
         .x_labels(5)
         .y_labels(5)
