@@ -31,7 +31,10 @@ pub(super) fn mechanism(
             for p in &points {
                 chart.draw_series([Circle::new(*p, width / 2, colour.filled())])?;
             }
-            chart.draw_series([closed(&points, colour.stroke_width(width))])?;
+            // One by one: corners of a path would be pointed.
+            for (p, q) in points.iter().zip(points.iter().cycle().skip(1)) {
+                chart.draw_series([PathElement::new([*p, *q], colour.stroke_width(width))])?;
+            }
         }
         if points.len() > 2 {
             chart.draw_series([Polygon::new(points, OBJECT.filled())])?;

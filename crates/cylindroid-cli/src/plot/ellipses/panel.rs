@@ -81,10 +81,9 @@ pub(super) fn panel(area: &DrawingArea<Fine<'_>, Shift>, shown: &Panel<'_>) -> D
     let resisted = shown.block.resisted(shown.plane);
     let other = if shown.block.force { COLOURS[2] } else { COLOURS[3] };
     let strips = resisted.unwrap_or(shape);
-    for d in &strips.endless {
-        strip(&mut chart, shown, (strips, *d), inside, other)?;
-    }
-    if strips.endless.len() > 1 {
+    if let [d] = strips.endless[..] {
+        strip(&mut chart, shown, (strips, d), inside, other)?;
+    } else if strips.endless.len() > 1 {
         let all = [(x.start, y.start), (x.end, y.start), (x.end, y.end), (x.start, y.end)];
         chart.draw_series([Polygon::new(all.to_vec(), other.mix(0.1).filled())])?;
     }
