@@ -237,3 +237,12 @@ fn extent(lines: &[Line]) -> (f64, f64) {
         (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) }
 }
+
+/// From blue over grey to orange.
+fn blend(share: f64) -> RGBColor {
+    let stops = [(31.0, 119.0, 180.0), (150.0, 150.0, 150.0), (214.0, 95.0, 0.0)];
+    let (i, t) = if share < 0.5 { (0, 2.0 * share) } else { (1, 2.0 * share - 1.0) };
+    let (a, b) = (stops[i], stops[i + 1]);
+    let mix = |x: f64, y: f64| (x + t * (y - x)).round() as u8;
+    RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}

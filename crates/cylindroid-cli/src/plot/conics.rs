@@ -1,5 +1,5 @@
-//! The conics of a three-system in the plane of its screws: the pencil over the pitch, the principal
-//! ones, and the given twists as points.
+//! The conics of a three-system in the plane of its screws: the pencil over the pitch, the
+//! principal ones, and the given twists as points.
 //!
 //! The chart shows homogeneous coordinates (x1, x2, x3) as barycentric ones of a triangle, whose
 //! corners are the generators: a projective map, in which conics stay conics and lines lines.
@@ -12,8 +12,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::fine::{Fine, at, px};
 use super::labels::{Area as Box, Labels};
-use super::screws::blend;
-use super::{Area, COLOURS, Drawn, FONT, titled};
+use super::{Area, COLOURS, Drawn, FONT, blend, titled};
 use crate::output::number;
 
 /// Conics of the pencil between two principal pitches.

@@ -2,6 +2,7 @@
 //! in the plane x-y, or for mechanisms in space in the three planes of the world. A task of other
 //! components is drawn in axes of its own.
 
+mod chart;
 mod legend;
 mod mechanism;
 mod panel;

@@ -1,5 +1,5 @@
-//! A screw system as an SVG: Gram determinant and projector norm over the pitch, the cylindroid of a
-//! two-system, and the conics of a three-system.
+//! A screw system as an SVG: Gram determinant and projector norm over the pitch, the cylindroid of
+//! a two-system, and the conics of a three-system.
 
 use std::ops::Range;
 use std::path::Path;
@@ -13,7 +13,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::conics::conics;
 use super::fine::{Fine, px};
 use super::labels::{Area as Box, Labels};
-use super::{Area, COLOURS, Drawn, FONT, TICK, builder, save, titled};
+use super::{Area, COLOURS, Drawn, FONT, TICK, blend, builder, save, titled};
 use crate::output::number;
 
 /// Width, and height of a panel.
@@ -275,13 +275,4 @@ fn cylindroid(area: &Area<'_>, system: &ScrewSystem, pencil: &[Screw]) -> Drawn 
         }
     }
     Ok(())
-}
-
-/// From blue over grey to orange.
-pub(super) fn blend(share: f64) -> RGBColor {
-    let stops = [(31.0, 119.0, 180.0), (150.0, 150.0, 150.0), (214.0, 95.0, 0.0)];
-    let (i, t) = if share < 0.5 { (0, 2.0 * share) } else { (1, 2.0 * share - 1.0) };
-    let (a, b) = (stops[i], stops[i + 1]);
-    let mix = |x: f64, y: f64| (x + t * (y - x)).round() as u8;
-    RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }

@@ -8,8 +8,9 @@
 //!          depend on units
 //! Valid    any spectrum, also flat and unbounded ellipsoids; a section of a flat one may be zero
 //! Why so   the projection leaves the other components free and the section fixes them at zero, so
-//!          the two are different ellipses; a figure must name the one that it draws. Duality exchanges them: the projection of the velocity
-//!          ellipsoid is the polar of the section of the force ellipsoid
+//!          the two are different ellipses; a figure must name the one that it draws. Duality
+//!          exchanges them: the projection of the velocity ellipsoid is the polar of the section of
+//!          the force ellipsoid
 //! Source   Yoshikawa 1985; Bicchi & Prattichizzo 1998, section 3
 //! Checked  tests/it/manipulability/ellipsoid.rs
 

@@ -9,7 +9,7 @@ use super::super::fine::{Fine, at};
 use super::super::labels::{Area, Labels, Pixel};
 use super::super::skeleton::{Mark, Skeleton};
 use super::super::{Drawn, FONT};
-use super::panel::{Chart, Panel, Point, closed, in_pixels};
+use super::chart::{Chart, Point, closed, in_pixels};
 
 const DARK: RGBColor = RGBColor(60, 60, 60);
 const LINK: RGBColor = RGBColor(120, 120, 120);
@@ -117,15 +117,19 @@ fn hull(mut points: Vec<Point>) -> Vec<Point> {
 }
 
 /// Names beside the joints and on the object, where they touch neither lines nor one another.
-pub(super) fn names(chart: &mut Chart<'_, '_>, shown: &Panel<'_>, rims: &[Vec<Point>]) -> Drawn {
-    let skeleton = shown.skeleton;
+pub(super) fn names(
+    chart: &mut Chart<'_, '_>,
+    skeleton: &Skeleton,
+    flat: impl Fn(Vec3) -> Point,
+    rims: &[Vec<Point>],
+) -> Drawn {
     let (x, y) = chart.plotting_area().get_pixel_range();
     let side = |r: std::ops::Range<i32>| (f64::from(r.start) / 100.0, f64::from(r.end) / 100.0);
     let mut labels = Labels::new(Area { x: side(x), y: side(y) });
     let pixels =
         |points: &[Point]| -> Vec<Pixel> { points.iter().map(|p| in_pixels(chart, *p)).collect() };
     for link in &skeleton.links {
-        let points: Vec<Point> = link.iter().chain(link.first()).map(|p| shown.flat(*p)).collect();
+        let points: Vec<Point> = link.iter().chain(link.first()).map(|p| flat(*p)).collect();
         labels.avoid_line(&pixels(&points));
     }
     for rim in rims {
@@ -134,18 +138,18 @@ pub(super) fn names(chart: &mut Chart<'_, '_>, shown: &Panel<'_>, rims: &[Vec<Po
         labels.avoid_line(&line);
     }
     let spots: Vec<Pixel> =
-        skeleton.spots.iter().map(|s| in_pixels(chart, shown.flat(s.point))).collect();
+        skeleton.spots.iter().map(|s| in_pixels(chart, flat(s.point))).collect();
     for spot in &spots {
         labels.avoid_box(Area::around(*spot, (6.0, 6.0)));
     }
     for base in &skeleton.bases {
-        let (x, y) = in_pixels(chart, shown.flat(*base));
+        let (x, y) = in_pixels(chart, flat(*base));
         labels.avoid_box(Area { x: (x - 10.0, x + 10.0), y: (y, y + 16.0) });
     }
     let objects: Vec<(&str, Pixel)> = skeleton
         .objects
         .iter()
-        .map(|o| (o.name.as_str(), in_pixels(chart, shown.flat(o.middle()))))
+        .map(|o| (o.name.as_str(), in_pixels(chart, flat(o.middle()))))
         .collect();
     let half = 0.5 * f64::from(BODY);
     objects.iter().for_each(|(_, at)| labels.avoid_box(Area::around(*at, (half, half))));

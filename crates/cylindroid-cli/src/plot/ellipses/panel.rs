@@ -5,13 +5,12 @@ use std::f64::consts::TAU;
 
 use cylindroid::Vec3;
 use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::super::fine::{Fine, px};
-use super::super::labels::Pixel;
 use super::super::skeleton::Skeleton;
 use super::super::{COLOURS, Drawn, FONT, TICK};
+use super::chart::{Chart, Point, closed};
 use super::mechanism::{mechanism, names};
 use super::shapes::{Block, PlaneShapes, Region, Scales, Shape};
 use crate::output::number;
@@ -29,9 +28,6 @@ pub(super) struct Panel<'a> {
     pub(super) metre: [f64; 2],
 }
 
-pub(super) type Chart<'a, 'b> =
-    ChartContext<'a, Fine<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-pub(super) type Point = (f64, f64);
 type Range = std::ops::Range<f64>;
 
 const MARGIN: u32 = 10;
@@ -103,15 +99,9 @@ pub(super) fn panel(area: &DrawingArea<Fine<'_>, Shift>, shown: &Panel<'_>) -> D
     if shown.in_world() && wide && shown.skeleton.spots.len() <= NAMED {
         let mut rims = vec![rim];
         rims.extend(shown.block.region(shown.plane).map(|r| shown.stretched(r, inside)));
-        names(&mut chart, shown, &rims)?;
+        names(&mut chart, shown.skeleton, |p| shown.flat(p), &rims)?;
     }
     Ok(())
-}
-
-/// A point of the chart in the whole drawing [px].
-pub(super) fn in_pixels(chart: &Chart<'_, '_>, p: Point) -> Pixel {
-    let (x, y) = chart.backend_coord(&p);
-    (f64::from(x) / 100.0, f64::from(y) / 100.0)
 }
 
 impl Panel<'_> {
@@ -224,11 +214,6 @@ impl Panel<'_> {
         };
         (range(x, 0.5 * w * self.metre[0]), range(y, 0.5 * h * self.metre[1]))
     }
-}
-
-pub(super) fn closed(points: &[Point], style: ShapeStyle) -> PathElement<Point> {
-    let rim: Vec<Point> = points.iter().chain(points.first()).copied().collect();
-    PathElement::new(rim, style)
 }
 
 /// The part of a convex polygon within the panel.
