@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write forward kinematics and Jacobian reference vectors with Pinocchio.
+"""Write forward kinematics, Jacobian and mass matrix reference vectors with Pinocchio.
 
     python3 -m venv VENV
     VENV/bin/pip install -r xtask/vectors/requirements.txt
@@ -18,6 +18,9 @@ names, and `dot_*` is the derivative of each along `qd`, given for the first fra
 configuration. `reach` is the largest distance of a listed frame from the origin. At a
 configuration labelled "singular" the smallest of six singular values of the tip's Jacobian is
 below 1e-6 (checked here): not always zero to rounding, as URDFs write pi / 2 as 1.5708.
+
+`mass_matrix` is the lower triangle, row by row, of the mass matrix (kg, kg m, kg m^2) at the
+first configuration, by the composite-rigid-body algorithm; links without <inertial> have no mass.
 
 Mimic joints: the numbers come from a model built without mimic, where every joint is free. A
 mimic joint is put at multiplier * leader + offset, and its column times the multiplier is
@@ -153,6 +156,17 @@ class Robot:
     def pose(self, link):
         return self.data.oMf[self.frame(link)].homogeneous[:3]
 
+    def mass_matrix(self, q):
+        """In the independent joints, from the model without mimic."""
+        full = np.zeros(self.model.nq)
+        for name, angle in zip(self.columns, self.scale @ q + self.offset):
+            joint = self.joint(name)
+            values = [angle] if joint.nq == 1 else [math.cos(angle), math.sin(angle)]
+            full[joint.idx_q : joint.idx_q + joint.nq] = values
+        upper = np.triu(pin.crba(self.model, self.model.createData(), full))
+        whole = upper + upper.T - np.diag(np.diag(upper))
+        return self.scale.T @ whole @ self.scale
+
     def jacobian(self, link, reference, function=pin.getFrameJacobian):
         return function(self.model, self.data, self.frame(link), reference) @ self.scale
 
@@ -273,6 +287,10 @@ def vectors(name, urdf):
             jacobians.append(entry)
         records.append({"label": label, "q": numbers(q), "qd": numbers(qd),
                         "poses": poses, "jacobians": jacobians})
+        if number == 0:
+            mass = robot.mass_matrix(q)
+            assert not np.any(robot.model.armature), "rotor inertias are not in the vectors"
+            records[-1]["mass_matrix"] = numbers(mass[np.tril_indices(len(q))])
     print(f"{name}: {len(robot.joints)} joints, {robot.mimics} mimic, {len(links)} of "
           f"{len(robot.links)} links, {len(records)} cases, derivatives to {error:.0e}", mimic)
     return {"reach": reach, "joints": robot.joints, "configurations": records}

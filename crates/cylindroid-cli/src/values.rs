@@ -55,9 +55,11 @@ impl FromStr for List {
     }
 }
 
-/// A matrix: numbers on its diagonal, or the name of a file of rows (.csv, .json).
+/// A matrix: numbers on its diagonal, the name of a file of rows (.csv, .json), or `inertia`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Weights {
+    /// That of the mechanism at the configuration.
+    Inertia,
     Diagonal(Vec<f64>),
     File(PathBuf),
 }
@@ -66,6 +68,9 @@ impl FromStr for Weights {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim() == "inertia" {
+            return Ok(Self::Inertia);
+        }
         let path = Path::new(text.trim());
         if path.extension().is_some_and(|e| e == "csv" || e == "json") {
             return Ok(Self::File(path.to_owned()));

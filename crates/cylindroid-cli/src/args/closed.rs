@@ -41,6 +41,7 @@ Examples:
   cylindroid manipulability five-bar --plot ellipses.svg --view section
   cylindroid manipulability panda --metric limits --task x,y,z --polytope
   cylindroid manipulability stewart --metric length --gradient smallest
+  cylindroid manipulability ur5.urdf --metric length --wq inertia
   cylindroid manipulability stewart --configurations configurations.csv --json";
 
 #[derive(Debug, Args)]
@@ -144,7 +145,8 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wu: Option<Weights>,
 
-    /// Metric of the velocities of the actuated joints, likewise
+    /// Metric of the velocities of the actuated joints, likewise; `inertia`: twice the kinetic energy
+    /// of the whole mechanism, from the masses of the model
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) wq: Option<Weights>,
 

@@ -231,7 +231,7 @@ class Constraint:
         self,
         task: str | Sequence[str] | ArrayLike | None = None,
         Wu: ArrayLike | None = None,
-        Wq: ArrayLike | None = None,
+        Wq: ArrayLike | str | None = None,
         Ww: ArrayLike | None = None,
         Wtau: ArrayLike | None = None,
         Wt: ArrayLike | None = None,
@@ -681,6 +681,8 @@ class Mechanism:
         reference: str = "local_world_aligned",
         tool: ArrayLike | None = None,
     ) -> _Array: ...
+    def mass_matrix(self, q: ArrayLike) -> _Array: ...
+    def actuated_inertia(self, q: ArrayLike) -> _Array: ...
     def jacobian_dot(
         self,
         q: ArrayLike,
@@ -772,7 +774,7 @@ class Mechanism:
         reference: str | None = None,
         task: str | Sequence[str] | ArrayLike | None = None,
         Wu: ArrayLike | None = None,
-        Wq: ArrayLike | None = None,
+        Wq: ArrayLike | str | None = None,
         Ww: ArrayLike | None = None,
         Wtau: ArrayLike | None = None,
         Wt: ArrayLike | None = None,

@@ -6,7 +6,7 @@ use cylindroid::manipulability::{Index, Manipulability, Spectrum, internal_force
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use super::metrics::Question;
+use super::metrics::{JointMetric, Question};
 use super::object::object;
 use super::{PyConstraint, PySpectrum};
 use crate::arrays::{self, Array, Numbers};
@@ -171,14 +171,16 @@ impl PyConstraint {
         py: Python<'_>,
         task: Option<Bound<'_, PyAny>>,
         Wu: Option<Numbers<'_>>,
-        Wq: Option<Numbers<'_>>,
+        Wq: Option<JointMetric<'_>>,
         Ww: Option<Numbers<'_>>,
         Wtau: Option<Numbers<'_>>,
         Wt: Option<Numbers<'_>>,
         metric: &str,
     ) -> Result<PyManipulability> {
-        let weights = [&Wu, &Wq, &Ww, &Wtau].map(Option::as_ref);
+        let joints = JointMetric::numbers(Wq.as_ref());
+        let weights = [Wu.as_ref(), joints, Ww.as_ref(), Wtau.as_ref()];
         let question = Question::about(self, task.as_ref(), weights, metric)?;
+        let question = question.with_joint_metric(Wq.as_ref())?;
         let question = question.with_contact_metric(Wt.as_ref())?;
         py.detach(|| PyManipulability::of(self, &question))
     }
@@ -202,6 +204,7 @@ impl PyMechanism {
     /// Wu, Wq, Ww, Wtau : array_like, square or their diagonals, optional
     ///     Metrics of twists (or the task), joint velocities, wrenches and torques, symmetric and
     ///     positive definite. Defaults: the preset `metric`; the duals for wrenches and torques.
+    ///     Wq = 'inertia': twice the kinetic energy of the mechanism (`actuated_inertia`).
     /// Wt : array_like, (t,) or (t, t), optional
     ///     Metric of the forces of the rows of the constraint, for `internal_force`; a compliance
     ///     measures them by twice their elastic energy. Default: the identity, with the preset
@@ -243,7 +246,7 @@ impl PyMechanism {
         reference: Option<&str>,
         task: Option<Bound<'py, PyAny>>,
         Wu: Option<Numbers<'py>>,
-        Wq: Option<Numbers<'py>>,
+        Wq: Option<JointMetric<'py>>,
         Ww: Option<Numbers<'py>>,
         Wtau: Option<Numbers<'py>>,
         Wt: Option<Numbers<'py>>,
@@ -254,8 +257,10 @@ impl PyMechanism {
         let Some(like) = all.as_slice().first() else {
             return Ok(PyList::empty(py).into_any());
         };
-        let weights = [&Wu, &Wq, &Ww, &Wtau].map(Option::as_ref);
+        let joints = JointMetric::numbers(Wq.as_ref());
+        let weights = [Wu.as_ref(), joints, Ww.as_ref(), Wtau.as_ref()];
         let question = Question::about(like, task.as_ref(), weights, metric)?;
+        let question = question.with_joint_metric(Wq.as_ref())?;
         let question = question.with_contact_metric(Wt.as_ref())?;
         let reports = py.detach(|| all.try_map(|c| PyManipulability::of(c, &question)))?;
         Ok(object(py, reports)?)

@@ -20,6 +20,25 @@ pub(super) struct Question {
     given: Metrics,
     /// Of contact forces.
     contact: Option<Metric>,
+    /// True if joint velocities are measured by the inertia of the mechanism.
+    joint_inertia: bool,
+}
+
+/// A metric of joint velocities: numbers, or 'inertia'.
+#[derive(Debug, FromPyObject)]
+pub(super) enum JointMetric<'py> {
+    Name(String),
+    Numbers(Numbers<'py>),
+}
+
+impl<'py> JointMetric<'py> {
+    /// The numbers, if there are any.
+    pub(super) fn numbers(given: Option<&Self>) -> Option<&Numbers<'py>> {
+        match given? {
+            Self::Numbers(numbers) => Some(numbers),
+            Self::Name(_) => None,
+        }
+    }
 }
 
 impl Question {
@@ -49,7 +68,18 @@ impl Question {
             wrench: of("Ww", wrench)?,
             torque: of("Wtau", torque)?,
         };
-        Ok(Self { map, components, preset: preset.to_owned(), given, contact: None })
+        Ok(Self { map, components, preset: preset.to_owned(), given, contact: None, joint_inertia: false })
+    }
+
+    /// With the inertia of the mechanism as the metric of joint velocities, if that is asked for.
+    pub(super) fn with_joint_metric(mut self, given: Option<&JointMetric<'_>>) -> Result<Self> {
+        if let Some(JointMetric::Name(name)) = given {
+            if name != "inertia" {
+                return Err(Error::unknown("metric of joint velocities", name, ["inertia"]).into());
+            }
+            self.joint_inertia = true;
+        }
+        Ok(self)
     }
 
     /// With a metric of contact forces, Wt.
@@ -82,6 +112,13 @@ impl Question {
             if self.preset == "limits" {
                 metrics = metrics.with_velocity_limits(&limits(constraint, false)?)?;
             }
+        }
+        if self.joint_inertia {
+            let Some(origin) = &constraint.origin else {
+                let reason = "bare matrices have no masses; give a matrix";
+                return Err(Failure::option("Wq", "inertia", reason));
+            };
+            metrics = metrics.with_joint_inertia(&origin.state)?;
         }
         let given = self.given.clone();
         Ok(Metrics {

@@ -1,7 +1,8 @@
 //! Forward kinematics, Jacobians in three frames, their derivatives.
 //!
 //! [`State`] is all frames of a mechanism at one `q`; that it exists proves that forward kinematics
-//! ran. [`Chain`] is the short way for a control loop: only the joints that move one end effector.
+//! ran; [`MassMatrix`] is their inertia. [`Chain`] is the short way for a control loop: only the
+//! joints that move one end effector.
 
 mod analytical;
 mod batch;
@@ -12,6 +13,7 @@ mod hessian;
 mod jacobian;
 mod joint_axes;
 mod joint_screws;
+mod mass_matrix;
 mod serial;
 pub(crate) mod serial_batched;
 mod serial_single;
@@ -24,5 +26,6 @@ pub use chain::Chain;
 pub use conversion::velocity_conversion;
 pub use jacobian::ReferenceFrame;
 pub use joint_axes::JointAxis;
+pub use mass_matrix::MassMatrix;
 pub(crate) use serial::Serial;
 pub use state::{EndEffector, State};

@@ -328,6 +328,11 @@ impl State {
         })
     }
 
+    /// The poses of all moving frames, the ground first.
+    pub(super) fn slots(&self) -> &[AlignedPose] {
+        &self.slots
+    }
+
     pub(crate) fn tip(&self, of: EndEffector) -> Tip<'_> {
         let frame = self.mechanism.frame_of(of.frame);
         Tip {

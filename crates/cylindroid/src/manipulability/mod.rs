@@ -21,6 +21,7 @@
 //!
 //! [`Relation`]: crate::closure::Relation
 
+mod actuated_inertia;
 mod batch;
 mod closed_chain_batched;
 mod efficiency;
@@ -33,6 +34,7 @@ mod metrics;
 mod polytope;
 mod stiffness;
 
+pub use actuated_inertia::actuated_inertia;
 pub use batch::{BatchOptions, ManipulabilityBatch};
 pub use efficiency::{Direction, Manipulability, Pair, Spectrum};
 pub use ellipsoid::{Ellipsoid, EllipsoidView};

@@ -18,6 +18,7 @@ mod inverse_batch;
 mod kinematics;
 mod linkages;
 mod manipulability;
+mod mass_matrix;
 mod model;
 mod parameters;
 mod pinocchio;

@@ -78,6 +78,7 @@ fn check(robot: &Mechanism, data: &Value) {
             found.unwrap_or_else(|| panic!("{name}: no coordinate {j}"))
         })
         .collect();
+    let mut mass_matrices = 0;
     // Relative to the robot's size; rotations count 1.
     let tolerance = 1e-12 * data["reach"].as_f64().unwrap().max(1.0);
     for configuration in data["configurations"].as_array().unwrap() {
@@ -85,6 +86,21 @@ fn check(robot: &Mechanism, data: &Value) {
         let q = permuted(&numbers(&configuration["q"]), &places);
         let rates = permuted(&numbers(&configuration["qd"]), &places);
         let state = robot.state(&q).unwrap();
+        if let Some(lower) = configuration.get("mass_matrix") {
+            let (lower, got) = (numbers(lower), state.mass_matrix());
+            let (n, mut rest) = (places.len(), lower.iter());
+            let mut expected = Matrix::zeros(n, n);
+            for i in 0..n {
+                for j in 0..=i {
+                    let entry = *rest.next().unwrap();
+                    expected[(places[i], places[j])] = entry;
+                    expected[(places[j], places[i])] = entry;
+                }
+            }
+            let what = format!("{label}, mass matrix");
+            assert_matrix(&what, &got, &expected, 1e-12 * expected.max_abs().max(1.0));
+            mass_matrices += 1;
+        }
         for (frame, pose) in configuration["poses"].as_object().unwrap() {
             let got = state.pose(robot.frame(frame).unwrap()).to_matrix();
             let what = format!("{label}, {frame}");
@@ -105,6 +121,7 @@ fn check(robot: &Mechanism, data: &Value) {
             }
         }
     }
+    assert_eq!(mass_matrices, 1, "{name}");
 }
 
 /// Every URDF of the package loads, but for two files that are no robots; what was ignored is said.

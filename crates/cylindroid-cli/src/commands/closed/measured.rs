@@ -62,6 +62,13 @@ pub(super) fn metric(
         ),
     };
     match weights {
+        Weights::Inertia => Err(Error::InvalidOption {
+            option,
+            value: "inertia".to_owned(),
+            reason: "only velocities of actuated joints (--wq) are measured by the inertia of the \
+                     mechanism; give weights, or for twists --metric inertia"
+                .to_owned(),
+        }),
         Weights::Diagonal(list) if list.len() == names.len() => Metric::diagonal(option, list),
         Weights::Diagonal(list) => Err(wrong(list.len())),
         Weights::File(path) => {
@@ -120,8 +127,10 @@ pub(super) fn metrics(
     if let Some(w) = &args.wu {
         metrics.object = Some(metric("--wu", w, &components)?);
     }
-    if let Some(w) = &args.wq {
-        metrics.joint = Some(metric("--wq", w, joints)?);
+    match &args.wq {
+        None => {}
+        Some(Weights::Inertia) => metrics = metrics.with_joint_inertia(&posed.state()?)?,
+        Some(w) => metrics.joint = Some(metric("--wq", w, joints)?),
     }
     if let Some(w) = &args.ww {
         metrics.wrench = Some(metric("--ww", w, &components)?);

@@ -150,6 +150,14 @@ impl ActuationMap {
         (0..self.motions.cols()).map(along).collect()
     }
 
+    /// D: the velocities of the actuated joints (tree, then loop joints) per unit of y, weighted.
+    pub(crate) fn actuated_rows(&self) -> Matrix {
+        Matrix::from_fn(self.actuators.len(), self.motions.cols(), |i, j| {
+            let (place, root) = self.actuators[i];
+            root * self.motions[(place, j)]
+        })
+    }
+
     /// The joint velocities `M y`: those of the n coordinates, then of the e actuated loop joints
     /// [rad/s or m/s]; they satisfy the loop constraints.
     #[must_use]

@@ -13,6 +13,7 @@ use crate::args::{ManipulabilityArgs, MetricName};
 use crate::commands::shared::Style;
 use crate::number_file;
 use crate::output::{self, Align, number};
+use crate::values::Weights;
 
 #[derive(Debug, Serialize)]
 struct ConfigurationsJson<'a> {
@@ -46,6 +47,15 @@ pub(super) fn run(
                 "it is another one in every configuration; use unit, length or limits, or give \
                      --wu, for --configurations"
                     .to_owned(),
+        }
+        .into());
+    }
+    if args.wq == Some(Weights::Inertia) {
+        return Err(Error::InvalidOption {
+            option: "--wq",
+            value: "inertia".to_owned(),
+            reason: "it is another one in every configuration; give weights for --configurations"
+                .to_owned(),
         }
         .into());
     }
