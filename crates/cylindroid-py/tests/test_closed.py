@@ -540,3 +540,38 @@ def test_blocks_of_the_motions_add_up():
         np.testing.assert_allclose(
             m.constraint(m.home).G @ report.internal_forces_basis, 0, atol=1e-9
         )
+
+
+def test_inertia_is_a_metric_of_joint_velocities(robot_files):
+    """One option and the matrix of its own give the same, and so does the formula by numpy."""
+    m = cy.load(str(robot_files / "ur_description/urdf/ur5_robot.urdf"))
+    q = np.array([0.3, -1.1, 1.4, 0.2, 1.0, 0.4])
+    M = m.mass_matrix(q)
+    np.testing.assert_allclose(M, M.T)
+    np.testing.assert_allclose(m.actuated_inertia(q), M, atol=1e-12)
+    assert m.mass_matrix(np.stack([q, 0 * q])).shape == (2, m.n, m.n)
+    found = m.manipulability(q, Wq="inertia").kinematic.finite
+    np.testing.assert_allclose(found, m.manipulability(q, Wq=M).kinematic.finite, rtol=1e-9)
+    J = m.jacobian(q)
+    expected = np.sort(np.linalg.eigvals(J @ np.linalg.solve(M, J.T)).real)[::-1]
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+    with pytest.raises(cy.ModelError, match="without mass"):
+        cy.load("ur5e").manipulability(Wq="inertia")
+    with pytest.raises(cy.UnknownNameError):
+        m.manipulability(q, Wq="mass")
+
+
+def test_inertia_weighted_hyperbolic_inverse(robot_files):
+    """Four joints: of all joint velocities with the projected twist, those of least energy."""
+    m = cy.load(str(robot_files / "ur_description/urdf/ur5_robot.urdf"))
+    q = np.array([0.3, -1.1, 1.4, 0.2, 1.0, 0.4])
+    M, J = m.mass_matrix(q), m.jacobian(q, reference="world")
+    inverse = cy.hyperbolic(J, 0.1, joint_metric=M)
+    assert inverse.exists
+    np.testing.assert_allclose(inverse.matrix @ J, np.eye(m.n), atol=1e-7)
+    redundant = np.hstack([J[:, :4], J[:, :1] + J[:, 1:2]])
+    W = np.eye(5) + np.ones((5, 5))
+    inverse = cy.hyperbolic(redundant, 0.1, joint_metric=W)
+    if inverse.exists:
+        null = np.array([1, 1, 0, 0, -1.0])
+        np.testing.assert_allclose(null @ W @ inverse.matrix, 0, atol=1e-8)

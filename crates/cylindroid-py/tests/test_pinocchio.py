@@ -68,6 +68,11 @@ def compare(path, robot, model, count=3):
         (f, r): robot.jacobian(Q, f, reference=r) for f in frames for r in references
     }
     scale = max(1.0, robot.reach)
+    try:
+        masses = robot.mass_matrix(Q)
+    except cy.ModelError as error:
+        assert "without mass" in str(error)
+        masses = None
     worst = 0.0
     for i, q in enumerate(Q):
         theirs = pin.neutral(model)
@@ -87,6 +92,11 @@ def compare(path, robot, model, count=3):
                 value if joint.nq == 1 else [np.cos(value), np.sin(value)]
             )
             columns[joint.idx_v, place] = factor
+        if masses is not None and model.nv > 0:
+            upper = np.triu(pin.crba(model, model.createData(), theirs))
+            mass = columns.T @ (upper + upper.T - np.diag(np.diag(upper))) @ columns
+            size = max(1.0, np.abs(mass).max())
+            worst = max(worst, np.abs(masses[i] - mass).max() / size)
         pin.computeJointJacobians(model, data, theirs)
         pin.updateFramePlacements(model, data)
         for f in frames:

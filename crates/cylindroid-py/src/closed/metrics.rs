@@ -68,7 +68,14 @@ impl Question {
             wrench: of("Ww", wrench)?,
             torque: of("Wtau", torque)?,
         };
-        Ok(Self { map, components, preset: preset.to_owned(), given, contact: None, joint_inertia: false })
+        Ok(Self {
+            map,
+            components,
+            preset: preset.to_owned(),
+            given,
+            contact: None,
+            joint_inertia: false,
+        })
     }
 
     /// With the inertia of the mechanism as the metric of joint velocities, if that is asked for.
