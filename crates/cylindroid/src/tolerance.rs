@@ -157,6 +157,10 @@ pub const CLOSURE_RANK: f64 = 1e-9;
 /// block of rounding errors has size 1e-15 [-].
 pub const CLOSURE_BLOCK: f64 = 1e-9;
 
+/// Smallest weight of a joint by inertia, over the largest: a joint through the centres of point
+/// masses moves none, and would take all of a motion [-].
+pub const LEAST_INERTIA: f64 = 1e-6;
+
 /// Principal compliances of an elastic part below this times its largest are rigid directions: the
 /// rounding of a matrix that is zero there [-].
 pub const RIGID: f64 = 1e-13;

@@ -19,6 +19,7 @@ pub(super) mod condition;
 mod stages;
 
 use super::coupled::Coupled;
+use super::inertia_weights::InertiaWeights;
 use super::limits::BrakingMargin;
 use super::options::ServoOptions;
 use super::projection::{StepProjection, TaskFrame};
@@ -80,6 +81,7 @@ pub struct Servo {
     hessian: Vec<Matrix>,
     /// Closed chains only.
     coupled: Option<Box<Coupled>>,
+    inertia: Option<Box<InertiaWeights>>,
     /// True if the last step stopped before a type II singularity.
     approaches_type_ii: bool,
 
@@ -143,6 +145,10 @@ impl Servo {
         } else {
             None
         };
+        let inertia = match options.inertia_weights {
+            true => Some(Box::new(InertiaWeights::new(mechanism)?)),
+            false => None,
+        };
         let rates = limits.len();
         // The unknowns: joint velocities, or actuated motions.
         let unknowns = coupled.as_ref().map_or(n, |c| c.actuated_joints());
@@ -179,6 +185,7 @@ impl Servo {
             rates: vec![0.0; mechanism.n().max(rates)],
             active: vec![None; rates],
             coupled,
+            inertia,
             approaches_type_ii: false,
             at_limit: Vec::with_capacity(n),
             stall_detector: StallDetector::new(),
@@ -209,6 +216,11 @@ impl Servo {
                     }
                 }
                 self.chain.set(&q);
+                if let Some(inertia) = &mut self.inertia
+                    && inertia.weigh(&q, &self.chain, &mut self.space, None).is_err()
+                {
+                    return 0;
+                }
                 self.space.load(&self.chain, &mut self.task);
                 Svd::of(&self.task).rank(GENERIC_RANK).rank
             })

@@ -68,6 +68,12 @@ impl Coupled {
         })
     }
 
+    /// Replaces the weights of all coordinates.
+    pub(super) fn set_weights(&mut self, weights: impl Iterator<Item = f64>) {
+        self.weights.clear();
+        self.weights.extend(weights);
+    }
+
     /// Number of actuated joints: the size of y.
     pub(super) fn actuated_joints(&self) -> usize {
         self.actuated

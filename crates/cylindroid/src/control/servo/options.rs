@@ -77,6 +77,9 @@ pub struct ServoOptions {
     /// A weight for each coordinate of the mechanism (a large weight keeps it still); empty for
     /// none.
     pub joint_weights: Vec<f64>,
+    /// Weights from the masses of the model in place of `joint_weights`: the diagonal of the mass
+    /// matrix, evaluated at the configuration of every step.
+    pub inertia_weights: bool,
     /// Largest speeds of the end effector.
     pub speed: SpeedLimit,
     /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
@@ -111,6 +114,7 @@ impl ServoOptions {
             largest_projection: tolerance::MAX_PROJECTION_NORM,
             length: mechanism.reach(),
             joint_weights: Vec::new(),
+            inertia_weights: false,
             speed: SpeedLimit { linear: f64::INFINITY, angular: f64::INFINITY },
             acceleration: f64::INFINITY,
             secondary: Vec::new(),
@@ -205,6 +209,13 @@ impl ServoOptions {
             }
         }
         self.task.check()?;
+        if self.inertia_weights && !self.joint_weights.is_empty() {
+            return Err(Error::InvalidOption {
+                option: "joint weights",
+                value: "inertia".to_owned(),
+                reason: "weights are given too; keep one of them".to_owned(),
+            });
+        }
         if !self.joint_weights.is_empty() {
             mechanism.check_q("joint weights", &self.joint_weights)?;
             for &w in &self.joint_weights {

@@ -2,6 +2,7 @@
 
 mod condition;
 mod hybrid;
+mod inertia;
 mod internal_force;
 mod inverse_choice;
 mod limits;

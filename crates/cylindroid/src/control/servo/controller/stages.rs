@@ -90,6 +90,9 @@ impl Servo {
     /// Computes the task Jacobian with respect to the joints, or to the actuated motions of a
     /// closed chain.
     pub(super) fn load_jacobian(&mut self, q: &[f64]) -> Result<()> {
+        if let Some(inertia) = &mut self.inertia {
+            inertia.weigh(q, &self.chain, &mut self.space, self.coupled.as_deref_mut())?;
+        }
         let Some(coupled) = &mut self.coupled else {
             self.space.load(&self.chain, &mut self.task);
             return Ok(());
