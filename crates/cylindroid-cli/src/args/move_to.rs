@@ -8,7 +8,7 @@ use cylindroid::inverse::Parameter;
 
 use super::inverses::NamedInverseArgs;
 use super::{ConfigurationArgs, FrameArgs};
-use crate::values::{Joints, Named, Numbers, Pair};
+use crate::values::{Joints, Named, Numbers, Pair, Weights};
 
 pub(crate) const ABOUT: &str = "\
 Cartesian control: move a frame to a target and report whether and how it was reached
@@ -177,6 +177,12 @@ pub(crate) struct ServoArgs {
     /// [m] [default: that of the model]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,
+
+    /// Weights of joint velocities, one for each coordinate: a large one keeps a joint almost at
+    /// rest. `inertia`: the diagonal of the mass matrix, at the configuration of every step
+    /// [default: 1]
+    #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
+    pub(crate) joint_weights: Option<Weights>,
 
     #[arg(long, value_name = "NAME[=GAIN][,PARAMETER=VALUE]|none", help = secondary_help())]
     pub(crate) secondary: Vec<Named>,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{ConfigurationArgs, FrameArgs};
-use crate::values::Numbers;
+use crate::values::{Numbers, Weights};
 
 pub(crate) const ABOUT: &str = "\
 The screw system of the joints: class, pitches, frame, and which inverses exist
@@ -55,6 +55,12 @@ pub(crate) struct ScrewsArgs {
     /// h-reciprocal system
     #[arg(long, value_name = "H", allow_hyphen_values = true)]
     pub(crate) h: Vec<f64>,
+
+    /// Metric of joint velocities for the inverse of --h: weights, or a .csv or .json file with the
+    /// rows of a symmetric positive definite matrix, or `inertia`: the mass matrix of the model. Of
+    /// redundant joints it selects the velocities of least norm
+    #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true, requires = "h")]
+    pub(crate) joint_metric: Option<Weights>,
 
     /// Also compute the joint velocities for this twist at the pitches of --h, and the pitches at
     /// which its error form vanishes; at the origin of the world, world axes (of a file: in its frame

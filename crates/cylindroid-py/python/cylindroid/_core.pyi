@@ -1147,7 +1147,7 @@ class Servo:
         speed: float | tuple[float, float] | ArrayLike | None = None,
         acceleration: float | None = None,
         length: float | None = None,
-        joint_weights: ArrayLike | None = None,
+        joint_weights: ArrayLike | str | None = None,
         secondary: str | Sequence[str] | dict[str, float | dict[str, float]] | None = None,
         posture: ArrayLike | None = None,
         null_space: str = "exact",

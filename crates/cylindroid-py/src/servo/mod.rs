@@ -7,7 +7,7 @@ mod status;
 mod trajectory;
 
 use cylindroid::control::{InverseSelection, Step, Target};
-use cylindroid::{Servo, ServoOptions, Twist};
+use cylindroid::{Error, Servo, ServoOptions, Twist};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -48,8 +48,9 @@ pub(crate) use trajectory::PyTrajectory;
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
 /// length : float, optional
 ///     Characteristic length that scales linear rows (m). Default: that of the mechanism, `reach`.
-/// joint_weights : array_like, (n,), optional
-///     Weights of joint velocities; a large one keeps a joint almost at rest. Default: 1.
+/// joint_weights : array_like, (n,), or 'inertia', optional
+///     Weights of joint velocities; a large one keeps a joint almost at rest. Default: 1. 'inertia':
+///     the diagonal of the mass matrix, at the configuration of every step.
 /// secondary : str, list of str or dict, optional
 ///     Secondary tasks in the null space of the primary one, by name (see below), or 'none'; a dict
 ///     gives for each name a gain or a dict of parameters. Default: limit avoidance for redundant
@@ -138,6 +139,13 @@ pub(crate) struct PyServo {
     last: Option<Step>,
 }
 
+/// Weights of joint velocities: numbers, or 'inertia'.
+#[derive(Debug, FromPyObject)]
+enum JointWeights<'py> {
+    Name(String),
+    Numbers(Numbers<'py>),
+}
+
 impl PyServo {
     /// The result of the last step.
     pub(crate) fn last(&self) -> Option<&Step> {
@@ -165,7 +173,7 @@ impl PyServo {
         speed: Option<Numbers<'_>>,
         acceleration: Option<f64>,
         length: Option<f64>,
-        joint_weights: Option<Numbers<'_>>,
+        joint_weights: Option<JointWeights<'_>>,
         secondary: Option<Bound<'_, PyAny>>,
         posture: Option<Numbers<'_>>,
         null_space: &str,
@@ -196,8 +204,15 @@ impl PyServo {
         set(&mut options.tolerance.orientation, tolerance_orientation);
         set(&mut options.acceleration, acceleration);
         set(&mut options.length, length);
-        if let Some(weights) = &joint_weights {
-            options.joint_weights = weights.vector("joint_weights")?.to_vec();
+        match &joint_weights {
+            None => {}
+            Some(JointWeights::Name(name)) if name == "inertia" => options.inertia_weights = true,
+            Some(JointWeights::Name(name)) => {
+                return Err(Error::unknown("weights", name, ["inertia"]).into());
+            }
+            Some(JointWeights::Numbers(weights)) => {
+                options.joint_weights = weights.vector("joint_weights")?.to_vec();
+            }
         }
         options.null_space = options::null_space(null_space)?;
         options.task = options::task(robot, task, task_axes, options.task)?;

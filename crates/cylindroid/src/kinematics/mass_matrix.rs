@@ -134,9 +134,13 @@ impl MassMatrix {
             });
             tip.for_each_column(body.center, |depth, c, twist| {
                 for &(own, momentum) in &own[..count] {
+                    // Pairs of coordinates of one joint come twice, in both orders.
+                    if depth == 0 && own > c {
+                        continue;
+                    }
                     let entry = twist.power(momentum);
                     out[(own, c)] += entry;
-                    if depth > 0 {
+                    if depth > 0 || own != c {
                         out[(c, own)] += entry;
                     }
                 }

@@ -47,7 +47,7 @@ impl Task {
 }
 
 /// The metric that a user gave for these `names`, of the size that fits them.
-pub(super) fn metric(
+pub(in crate::commands) fn metric(
     option: &'static str,
     weights: &Weights,
     names: &[impl AsRef<str>],

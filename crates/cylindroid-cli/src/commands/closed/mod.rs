@@ -4,7 +4,7 @@ pub(super) mod assemble;
 pub(super) mod grasp;
 mod limbs;
 pub(crate) mod manipulability;
-mod measured;
+pub(super) mod measured;
 pub(crate) mod mobility;
 mod operation_modes;
 pub(crate) mod singularity;

@@ -201,9 +201,14 @@ fn square(
 ) -> anyhow::Result<()> {
     let mut columns = vec![(name, Align::Left)];
     columns.extend(components.iter().map(|c| (*c, Align::Right)));
-    let rows = components.iter().zip(matrix).map(|(c, row)| {
-        let cells = row.iter().map(|x| output::entries(&[*x]));
-        std::iter::once((*c).to_owned()).chain(cells).collect()
+    /// Entries below this times the roots of their diagonals are rounding.
+    const DUST: f64 = 1e-12;
+    let rows = components.iter().enumerate().map(|(i, c)| {
+        let cell = |j: usize| {
+            let (x, size) = (matrix[i][j], matrix[i][i] * matrix[j][j]);
+            output::entries(&[if x * x <= DUST * DUST * size { 0.0 } else { x }])
+        };
+        std::iter::once((*c).to_owned()).chain((0..matrix.len()).map(cell)).collect()
     });
     Ok(output::table(out, &columns, rows)?)
 }

@@ -12,7 +12,7 @@ use super::bounds::{joint_defaults, path_bounds};
 use super::inverse;
 use crate::args::{MoveArgs, NullSpaceName, PathArgs, ServoArgs};
 use crate::commands::shared::{all_actuated, configuration, end_effector, load, within_limits};
-use crate::values::Named;
+use crate::values::{Named, Weights};
 
 /// What is to be done.
 #[derive(Debug)]
@@ -67,7 +67,7 @@ impl Job {
         options.end_effector = end_effector(&robot, &args.frame)?;
         let (task, controlled) = task(&args.target, &robot)?;
         options.task = task;
-        apply(&args.servo, &mut options);
+        apply(&args.servo, &mut options)?;
         inverse::apply(&args.inverse, &start, &robot, &mut options)?;
         options.secondary = secondary(&args.servo.secondary, &robot, &options, &start)?;
         // Before the target is looked at: a broken option is the clearer message.
@@ -127,7 +127,7 @@ fn no_loops(robot: &Mechanism) -> Result<()> {
     })
 }
 
-fn apply(args: &ServoArgs, options: &mut ServoOptions) {
+fn apply(args: &ServoArgs, options: &mut ServoOptions) -> Result<()> {
     if let Some(gain) = args.gain {
         let orientation = gain.angular.unwrap_or(gain.linear);
         options.gain = ServoGains { position: gain.linear, orientation };
@@ -142,10 +142,24 @@ fn apply(args: &ServoArgs, options: &mut ServoOptions) {
     set(&mut options.tolerance.orientation, args.tolerance_orientation);
     set(&mut options.acceleration, args.acceleration);
     set(&mut options.length, args.length);
+    match &args.joint_weights {
+        None => {}
+        Some(Weights::Inertia) => options.inertia_weights = true,
+        Some(Weights::Diagonal(weights)) => options.joint_weights.clone_from(weights),
+        Some(Weights::File(path)) => {
+            return Err(Error::InvalidOption {
+                option: "--joint-weights",
+                value: path.display().to_string(),
+                reason: "a servo weights single joints; give a list of weights, or inertia"
+                    .to_owned(),
+            });
+        }
+    }
     options.null_space = match args.null_space {
         NullSpaceName::Exact => SecondaryNullSpace::Exact,
         NullSpaceName::Retained => SecondaryNullSpace::Retained,
     };
+    Ok(())
 }
 
 fn secondary(

@@ -1,10 +1,11 @@
 //! What `screws` computes.
 
-use cylindroid::inverse::{PointDirection, point_direction};
+use cylindroid::inverse::{HyperbolicOptions, PointDirection, point_direction};
 use cylindroid::screws::{Involution, Line, Screw, ScrewOptions, ScrewSystem, involution};
 use cylindroid::{Result, Vec3};
 
 use super::hyperbolic::{Asked, AtPitch};
+use super::joint_metric;
 use super::twists::Twists;
 use crate::args::ScrewsArgs;
 
@@ -47,7 +48,15 @@ pub(super) fn find(twists: Twists, args: &ScrewsArgs) -> Result<Found> {
     let asked = args.twist.map(|t| Asked::of(&system, Twists::in_order(args, t.0))).transpose()?;
     let matrix = twists.matrix();
     let twist = asked.as_ref().map(|a| a.twist);
-    let at = |h: &f64| AtPitch::find(&matrix, (&system, options), *h, twist);
+    let metric = args.joint_metric.as_ref().map(|w| joint_metric::of(&twists, w)).transpose()?;
+    let at = |h: &f64| {
+        let options = HyperbolicOptions {
+            scale: options,
+            joint_metric: metric.clone(),
+            ..HyperbolicOptions::default()
+        };
+        AtPitch::find(&matrix, (&system, &options), *h, twist)
+    };
     let pitches = args.h.iter().map(at).collect::<Result<_>>()?;
     Ok(Found { twists, system, screws, involution, point, pitches, asked })
 }

@@ -2,9 +2,7 @@
 //! h-reciprocal system, and joint velocities and error form of a twist.
 
 use cylindroid::inverse::{HyperbolicOptions, hyperbolic_with};
-use cylindroid::screws::{
-    ErrorFormZeros, Existence, Screw, ScrewOptions, ScrewSystem, gram, gram_determinant,
-};
+use cylindroid::screws::{ErrorFormZeros, Existence, Screw, ScrewSystem, gram, gram_determinant};
 use cylindroid::{Matrix, Result, Twist};
 use serde::Serialize;
 
@@ -64,12 +62,11 @@ impl Asked {
 impl AtPitch {
     pub(super) fn find(
         jacobian: &Matrix,
-        (system, scale): (&ScrewSystem, ScrewOptions),
+        (system, options): (&ScrewSystem, &HyperbolicOptions),
         h: f64,
         twist: Option<Twist>,
     ) -> Result<Self> {
-        let options = HyperbolicOptions { scale, ..HyperbolicOptions::default() };
-        let inverse = hyperbolic_with(jacobian, h, &options)?;
+        let inverse = hyperbolic_with(jacobian, h, options)?;
         let projector = system.projector(h).filter(|_| inverse.exists);
         let velocities = twist.zip(projector.as_ref()).map(|(twist, projector)| Velocities {
             joint_velocities: inverse.matrix.mul_vec(&twist.to_array()),

@@ -4,6 +4,7 @@ pub(crate) mod basis_screws;
 mod find;
 mod hyperbolic;
 mod involution;
+mod joint_metric;
 mod report;
 mod tables;
 mod twists;

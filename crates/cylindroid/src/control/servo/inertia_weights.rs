@@ -6,8 +6,8 @@
 //! Valid    mechanisms whose moving bodies have masses; in closed chains M is that of the spanning
 //!          tree. The diagonal of M, not all of it: the limits of joints stay boxes in the weighted
 //!          velocities
-//! Why so   of joint velocities with the same twist those of least energy, but for the coupling of
-//!          joints; allocates nothing
+//! Why so   of joint velocities with the same twist those of least sum of M_ii qd_i^2: energy
+//!          without the coupling of joints; allocates nothing
 //! Source   Khatib 1987 for inertia as the weight of redundancy
 //! Checked  tests/it/servo/inertia.rs, tests/allocation.rs
 
