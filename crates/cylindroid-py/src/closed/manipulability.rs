@@ -142,8 +142,12 @@ impl PyManipulability {
         table.row("metric", &self.metric);
         table.row("actuated", table::names(&self.actuated));
         table.row("object", table::names(&self.components));
-        let active = [self.active_force(), self.internal_force()];
-        for spectrum in [self.kinematic(), self.passive_force()].into_iter().chain(active) {
+        let mut all = vec![self.kinematic(), self.active_force(), self.passive_force()];
+        let internal = self.internal_force();
+        if internal.inner.finite.len() + internal.inner.infinite.cols() > 0 {
+            all.push(internal);
+        }
+        for spectrum in all {
             table.row(spectrum.what, spectrum.words());
         }
         table
