@@ -1,5 +1,6 @@
 //! The class `Mechanism`: a model and its kinematics.
 
+mod inertia;
 mod joint;
 mod kinematics;
 mod limits;
