@@ -11,7 +11,9 @@ use cylindroid::control::{
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
 use cylindroid::kinematics::{Chain, KinematicsBatch};
+use cylindroid::model::{Inertial, JointKind, JointSpec, Link};
 use cylindroid::screws::{Complement, Projector, ScrewOptions};
+use cylindroid::spatial::Mat3;
 use cylindroid::{
     Matrix, Mechanism, Pose, ReferenceFrame, Servo, ServoOptions, Twist, Vec3, catalogue,
 };
@@ -147,6 +149,41 @@ fn formulas_allocate_nothing() {
         });
         assert!(counted == 0 && answers > 100, "{name}: {counted} allocations, {answers} answers");
     }
+}
+
+/// Weights by inertia, with the mass matrix of every step.
+#[test]
+fn inertia_allocates_nothing() {
+    let mut builder = Mechanism::builder("arm");
+    let inertial = Inertial {
+        mass: 2.0,
+        link_from_inertia: Pose::from_translation(Vec3::X * 0.2),
+        inertia: Mat3::from_rows([[0.1, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.3]]),
+    };
+    for i in 0..4 {
+        let [parent, child] = [i, i + 1].map(|k| format!("l{k}"));
+        builder.link(Link { inertial: Some(inertial), ..Link::named(&child) });
+        builder.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::X * 0.4),
+            ..JointSpec::new(&format!("q{i}"), JointKind::Revolute, &parent, &child)
+        });
+    }
+    let arm = builder.build().unwrap();
+    let options =
+        ServoOptions { inertia_weights: true, task: Task::POSITION, ..ServoOptions::new(&arm) };
+    let mut servo = Servo::new(&arm, options).unwrap();
+    let mut q = vec![0.3, 0.8, -0.5, 0.9];
+    let start = arm.state(&q).unwrap().pose(arm.tool());
+    let target = Pose { translation: start.translation + Vec3::new(0.01, 0.02, 0.0), ..start };
+    let mut moved = 0.0;
+    let counted = count(|| {
+        for _ in 0..200 {
+            servo.step(&q, target).unwrap();
+            servo.advance(&mut q);
+            moved += servo.joint_velocities()[1].abs();
+        }
+    });
+    assert!(counted == 0 && moved > 0.0, "{counted} allocations");
 }
 
 /// Five joints: every projection does something.
