@@ -31,10 +31,11 @@ mod _core {
     use crate::closed::{
         PyActuatorTransmission, PyAssembly, PyAssemblyModes, PyBranch, PyConstraint,
         PyContactForces, PyContinuationResult, PyDeflection, PyDirection, PyEllipsoid,
-        PyFingerContact, PyFiniteMobility, PyGradient, PyGraspQuality, PyJointMobility,
-        PyJointTorques, PyLimb, PyLoopClosureError, PyManipulability, PyMobility, PyModeMeeting,
-        PyOperationMode, PyOperationModes, PyPolytope, PySingularity, PySpectrum, PyStiffness,
-        PyTransmission, PyTransmittedWrench, grasp::grasp_quality,
+        PyFingerContact, PyFiniteMobility, PyGradient, PyGraspMobility, PyGraspQuality,
+        PyJointMobility, PyJointTorques, PyLimb, PyLoopClosureError, PyManipulability, PyMobility,
+        PyModeMeeting, PyOperationMode, PyOperationModes, PyPolytope, PySingularity, PySpectrum,
+        PyStiffness, PyTransmission, PyTransmittedWrench, grasp::grasp_quality,
+        grasp_mobility::grasp_mobility,
     };
     #[pymodule_export]
     use crate::control::{

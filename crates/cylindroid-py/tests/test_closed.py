@@ -256,6 +256,35 @@ def test_grasps():
         cy.grasp_quality(three, metric="all")
 
 
+def test_immobilisation():
+    def fingers(degrees, **curvature):
+        out = [np.array([np.cos(a), np.sin(a), 0]) for a in np.radians(degrees)]
+        return [cy.FingerContact(p, -p, **curvature) for p in out]
+
+    triangle = cy.grasp_mobility(fingers([30, 150, 270]), planar=True)
+    assert triangle.immobile is True and triangle.immobilisation == "immobile to second order"
+    assert (triangle.first_order_mobility, triangle.second_order_mobility) == (1, 0)
+    assert triangle.equilibria.shape == (3, 1) and triangle.free_motions.shape == (3, 1)
+    np.testing.assert_allclose(triangle.forces, 1 / 3)
+    np.testing.assert_allclose(triangle.curvatures, [-1])
+    assert triangle.escape is None and not triangle.ambiguous
+    assert "definite" in triangle.explanation and "second order" in repr(triangle)
+    disc = cy.grasp_mobility(fingers([30, 150, 270], object_curvature=1), planar=True)
+    assert disc.immobile is None and disc.second_order_mobility == 1
+    ellipse = cy.grasp_mobility(fingers([90, 270], object_curvature=0.25), planar=True)
+    assert ellipse.immobile is False
+    velocity, acceleration = ellipse.escape
+    assert velocity.shape == acceleration.shape == (3,)
+    side = cy.grasp_mobility(fingers([90]), point=[0, 1, 0])
+    assert side.second_order_mobility is None and len(side.forces) == 0
+    # A cylinder about z between two fingers slides along z, to second order.
+    tube = fingers([0, 180], object_curvature=([1.0, 0.0], [0, 1, 0]), finger_curvature=10)
+    assert cy.grasp_mobility(tube).first_order_mobility == 5
+    for bad in (float("nan"), ([1.0, 0.0], [1, 0, 0])):
+        with pytest.raises(cy.InvalidOptionError, match="curvature"):
+            cy.grasp_mobility(fingers([0, 180], object_curvature=bad))
+
+
 @pytest.mark.parametrize("name", CLOSED)
 def test_assembly(name):
     r = cy.load(name)
@@ -334,6 +363,7 @@ def test_the_grasp_of_a_mechanism():
     assert r.grasp_quality().epsilon == pytest.approx(r.grasp_quality(mu=0.5).epsilon)
     assert not r.grasp_quality(mu=0.0).closed
     assert r.grasp_quality(metric="linf", strength=2.0).closed
+    assert r.grasp_mobility().equilibria.shape[1] >= 1
 
 
 HAND = """

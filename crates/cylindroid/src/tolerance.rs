@@ -340,6 +340,14 @@ pub const MATRIX_STEP: f64 = 1e-3;
 /// below the difference of two assemblies [-].
 pub const SAME_ASSEMBLY: f64 = 1e-6;
 
+/// Normal forces below this fraction of their sum are zero, and wrenches of this size (scaled) are
+/// balanced [-]: ten times the geometry given to ten digits of [`CLOSURE_RANK`].
+pub const EQUILIBRIUM: f64 = 1e-8;
+
+/// Curvatures of two bodies whose sum is this small, relative to their sizes, are those of
+/// conforming bodies, which touch along a line or face [-].
+pub const CONFORMING: f64 = 1e-9;
+
 /// Second-order terms of the loops at or below it count as zero (scaled) [-]: differences of loops
 /// closed to rounding yield them to 1e-8.
 pub const SECOND_ORDER: f64 = 1e-6;

@@ -310,12 +310,15 @@ pub(crate) struct StaticsArgs {
 }
 
 pub(crate) const GRASP: &str = "\
-Force closure of a grasp with friction, and its quality
+Force closure of a grasp with friction, its quality, and immobilisation without friction
 
 The quality epsilon (Ferrari and Canny) is the norm of the smallest wrench that the fingers cannot \
 resist, in its worst direction, given between certified bounds; moments are divided by the \
 characteristic length. Fingers push along their normals, into the object. Contacts must be points: \
-point_frictionless, hard_finger, soft_finger. Exit code 0 for force closure, 1 otherwise.";
+point_frictionless, hard_finger, soft_finger.\n\n\
+Without friction, fixed fingers immobilise the object to first order (form closure), or to second \
+order by the curvatures of both bodies (Rimon and Burdick), which the file gives; a contact without \
+curvature is a sharp finger on a flat face. Exit code 0 for force closure, 1 otherwise.";
 
 pub(crate) const GRASP_EXAMPLES: &str = "\
 Examples:

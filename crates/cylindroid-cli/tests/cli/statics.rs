@@ -140,3 +140,43 @@ fn grasps_that_are_none() {
     let text = refused(&["grasp", file.to_str().unwrap(), "--torsion", "0.01"]);
     assert!(text.contains("no coefficient of friction"), "{text}");
 }
+
+/// A triangle between three fingers: flat edges, a disc, and an object that overlaps.
+#[test]
+fn immobilisation() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("plate.toml");
+    let contact = |name: &str, degrees: f64, curvature: &str| {
+        let (s, c) = degrees.to_radians().sin_cos();
+        format!(
+            "[[contact]]\nname = \"{name}\"\ntype = \"point_frictionless\"\n\
+             between = [\"ground\", \"plate\"]\npoint = [{c}, {s}]\nnormal = [{}, {}]\n{curvature}\n",
+            -c, -s
+        )
+    };
+    let write = |curvature: &str| {
+        let contacts = [("a", 30.0), ("b", 150.0), ("c", 270.0)]
+            .map(|(name, degrees)| contact(name, degrees, curvature));
+        let head = "dimension = 2\nreference = \"plate\"\nreference_point = [0, 0]\n";
+        fs::write(&file, head.to_owned() + &contacts.concat()).unwrap();
+        file.to_str().unwrap()
+    };
+    for (curvature, verdict, value) in [
+        ("", "immobile to second order", -1.0),
+        ("curvature = [inf, 0]", "immobile to second order", -1.0),
+        ("curvature = [2, 0]", "immobile to second order", -1.5),
+        ("curvature = [4.0, 1.0]", "undecided: higher order", 0.0),
+        ("curvature = [inf, 3]", "mobile", 2.0),
+    ] {
+        let report = &json(&["grasp", write(curvature)], 1)["immobilisation"];
+        assert_eq!(report["verdict"], verdict, "{curvature}");
+        assert_eq!(report["first_order_mobility"], 1);
+        assert!((numbers(&report["curvatures"])[0] - value).abs() < 1e-12, "{report}");
+        assert_eq!(report["escape"].is_object(), verdict == "mobile");
+    }
+    let output = cylindroid(&["grasp", write("curvature = [inf, 0.5]")]);
+    let table = String::from_utf8_lossy(&output.stdout);
+    assert!(table.contains("immobile to second order") && table.contains("sharp"), "{table}");
+    let text = refused(&["grasp", write("curvature = [1, -2]")]);
+    assert!(text.contains("sum to -1 1/m") && text.contains("line_frictionless"), "{text}");
+}

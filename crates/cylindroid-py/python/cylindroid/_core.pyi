@@ -28,6 +28,7 @@ __all__ = [
     "FingerContact",
     "FiniteMobility",
     "Gradient",
+    "GraspMobility",
     "GraspQuality",
     "HybridCommand",
     "HybridController",
@@ -82,6 +83,7 @@ __all__ = [
     "exp_derivative",
     "gram",
     "gram_determinant",
+    "grasp_mobility",
     "grasp_quality",
     "hyperbolic",
     "inverse",
@@ -339,6 +341,8 @@ class FingerContact:
         mu: float = 0.0,
         torsion: float = 0.0,
         strength: float = 1.0,
+        finger_curvature: float | tuple[Sequence[float], Sequence[float]] = ...,
+        object_curvature: float | tuple[Sequence[float], Sequence[float]] = 0.0,
     ) -> FingerContact: ...
 
 @final
@@ -439,6 +443,31 @@ class Gradient:
     def value(self) -> float | None: ...
     @property
     def multiplicity(self) -> int: ...
+
+@final
+class GraspMobility:
+    @property
+    def immobilisation(self) -> str: ...
+    @property
+    def immobile(self) -> bool | None: ...
+    @property
+    def explanation(self) -> str: ...
+    @property
+    def first_order_mobility(self) -> int: ...
+    @property
+    def second_order_mobility(self) -> int | None: ...
+    @property
+    def equilibria(self) -> _Array: ...
+    @property
+    def forces(self) -> _Array: ...
+    @property
+    def free_motions(self) -> _Array: ...
+    @property
+    def curvatures(self) -> _Array: ...
+    @property
+    def escape(self) -> tuple[_Array, _Array] | None: ...
+    @property
+    def ambiguous(self) -> bool: ...
 
 @final
 class GraspQuality:
@@ -804,6 +833,11 @@ class Mechanism:
         Wq: ArrayLike | None = None,
         metric: str = "unit",
     ) -> Gradient: ...
+    def grasp_mobility(
+        self,
+        q: ArrayLike | None = None,
+        reference: str | None = None,
+    ) -> GraspMobility: ...
     def grasp_quality(
         self,
         q: ArrayLike | None = None,
@@ -1421,6 +1455,11 @@ def exp(twist: ArrayLike) -> _Array: ...
 def exp_derivative(twist: ArrayLike) -> _Array: ...
 def gram(J: ArrayLike, h: float) -> _Array: ...
 def gram_determinant(J: ArrayLike, h: float) -> float: ...
+def grasp_mobility(
+    contacts: Sequence[FingerContact],
+    point: ArrayLike | None = None,
+    planar: bool = False,
+) -> GraspMobility: ...
 def grasp_quality(
     contacts: Sequence[FingerContact],
     point: ArrayLike | None = None,

@@ -5,8 +5,10 @@ use cylindroid::closure::{
     self, ContactProperties, EpsilonQuality, FingerContact, Friction, GraspMetric, GraspQuality,
     WrenchSpace, grasp_contacts,
 };
+use cylindroid::model::ContactCurvature;
 use pyo3::prelude::*;
 
+use super::grasp_mobility::Curvature;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;
@@ -27,22 +29,32 @@ use crate::table;
 ///     Largest moment about the normal over the normal force (m); 0 for a hard finger.
 /// strength : float
 ///     Largest normal force (N), for the metric 'linf'.
+/// finger_curvature, object_curvature : float, or (principal, direction)
+///     Curvature of each body at the point (1/m), for `grasp_mobility`: positive for a convex body,
+///     negative for a concave one, `inf` for a sharp point; or two principal curvatures and the
+///     direction of the first. Default: a sharp finger on a flat face.
 #[pyclass(frozen, name = "FingerContact", module = "cylindroid")]
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PyFingerContact {
-    inner: FingerContact,
+    pub(crate) inner: FingerContact,
 }
 
 #[pymethods]
 impl PyFingerContact {
     #[new]
-    #[pyo3(signature = (point, normal, mu = 0.0, torsion = 0.0, strength = 1.0))]
+    #[pyo3(signature = (point, normal, mu = 0.0, torsion = 0.0, strength = 1.0,
+        finger_curvature = Curvature::Uniform(f64::INFINITY),
+        object_curvature = Curvature::Uniform(0.0)))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    #[expect(clippy::needless_pass_by_value, reason = "arguments of Python are values")]
     fn new(
         point: Numbers<'_>,
         normal: Numbers<'_>,
         mu: f64,
         torsion: f64,
         strength: f64,
+        finger_curvature: Curvature,
+        object_curvature: Curvature,
     ) -> Result<Self> {
         let friction = match (mu, torsion) {
             (0.0, 0.0) => Friction::None,
@@ -54,6 +66,10 @@ impl PyFingerContact {
             normal: Vec3::from_array(normal.entries("normal")?),
             friction,
             strength,
+            curvature: ContactCurvature {
+                finger: finger_curvature.surface(),
+                object: object_curvature.surface(),
+            },
         };
         Ok(Self { inner })
     }

@@ -72,6 +72,7 @@ pub use statics::force_closure::{
     EpsilonQuality, FingerContact, Friction, GraspMetric, GraspQuality, WrenchSpace, grasp_quality,
 };
 pub use statics::grasp_contacts::{ContactProperties, grasp_contacts};
+pub use statics::grasp_mobility::{Escape, GraspMobility, Immobilisation, grasp_mobility};
 pub(crate) use statics::internal_force_relation::internal_force_relation;
 pub use statics::joint_torques::{JointTorques, joint_torques};
 pub use statics::transmitted_wrenches::{TransmittedWrench, row_compliance, transmitted_wrenches};

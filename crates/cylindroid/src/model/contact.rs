@@ -5,10 +5,11 @@
 
 use std::collections::BTreeMap;
 
+use super::curvature::ContactCurvature;
 use super::dimension::Dimension;
 use super::loop_joint::ends;
 use crate::error::{Error, Result};
-use crate::spatial::Pose;
+use crate::spatial::{Pose, Vec3};
 
 /// The kind of a contact: the relative motions that it constrains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,6 +57,11 @@ impl ContactKind {
         }
     }
 
+    /// True for contacts in a point.
+    pub(crate) const fn is_point(self) -> bool {
+        matches!(self, Self::PointFrictionless | Self::HardFinger | Self::SoftFinger)
+    }
+
     /// The kind of a name.
     ///
     /// ```
@@ -91,6 +97,8 @@ pub struct Contact {
     pub link_b_from_contact: Pose,
     /// Coefficient of friction [-], where the file gives one.
     pub friction: Option<f64>,
+    /// Curvature of both links, in the axes of the contact frame, where the file gives it.
+    pub curvature: Option<ContactCurvature>,
 }
 
 /// The specification of a contact for the builder; links by name.
@@ -110,11 +118,14 @@ pub struct ContactSpec {
     pub link_b_from_contact: Pose,
     /// Coefficient of friction [-], not negative.
     pub friction: Option<f64>,
+    /// Curvature of both links (of the first one as the finger), in the axes of the contact frame;
+    /// for point contacts.
+    pub curvature: Option<ContactCurvature>,
 }
 
 impl ContactSpec {
-    /// A contact at the origins of both links, with its normal along z and no coefficient of
-    /// friction.
+    /// A contact at the origins of both links, with its normal along z, without a coefficient
+    /// of friction and without curvature.
     ///
     /// ```
     /// use cylindroid::Mechanism;
@@ -137,6 +148,7 @@ impl ContactSpec {
             link_a_from_contact: Pose::IDENTITY,
             link_b_from_contact: Pose::IDENTITY,
             friction: None,
+            curvature: None,
         }
     }
 
@@ -155,6 +167,20 @@ impl ContactSpec {
                 "the friction of contact '{name}' must be finite and not negative"
             ));
         }
+        if let Some(curvature) = self.curvature {
+            if !self.kind.is_point() {
+                return Err(format!(
+                    "contact '{name}' is {}: only a point contact (point_frictionless, \
+                     hard_finger, soft_finger) has a curvature; leave it out",
+                    self.kind.name()
+                ));
+            }
+            // In the plane, directions do not count.
+            let planar = dimension == Dimension::Planar;
+            curvature
+                .check(if planar { Vec3::Y } else { Vec3::Z }, planar)
+                .map_err(|message| format!("contact '{name}': {message}"))?;
+        }
         if dimension == Dimension::Planar && self.kind == ContactKind::PlaneFrictionless {
             return Err(format!(
                 "contact '{name}' is plane_frictionless, which the plane x-y does not have; \
@@ -169,6 +195,7 @@ impl ContactSpec {
             link_a_from_contact: self.link_a_from_contact,
             link_b_from_contact: self.link_b_from_contact,
             friction: self.friction,
+            curvature: self.curvature,
         })
     }
 }

@@ -136,6 +136,7 @@ impl Builder {
                 link_a_from_contact: contact.link_a_from_contact,
                 link_b_from_contact: contact.link_b_from_contact,
                 friction: contact.friction,
+                curvature: contact.curvature,
             });
         }
         for element in &robot.elasticity().elements {

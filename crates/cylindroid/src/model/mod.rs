@@ -10,6 +10,7 @@ mod characteristic_length;
 mod closure_frames;
 mod constraint_wrenches;
 mod contact;
+mod curvature;
 mod depth_first;
 mod dimension;
 mod elasticity;
@@ -32,6 +33,7 @@ pub use builder::Builder;
 #[cfg(feature = "formats")]
 pub(crate) use closure_frames::CloseHome;
 pub use contact::{Contact, ContactKind, ContactSpec};
+pub use curvature::{ContactCurvature, SurfaceCurvature};
 pub use dimension::Dimension;
 pub use elasticity::{ElasticBody, ElasticElement, ElasticKind, Elasticity};
 pub use include::Inclusion;

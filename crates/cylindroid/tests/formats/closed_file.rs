@@ -127,7 +127,7 @@ fn several_loops_and_all_spatial_kinds_close() {
     assert!(m.loops().iter().all(|l| (l.axis.norm() - 1.0).abs() < 1e-15));
 }
 
-const FINGERS: &str = "\
+pub(crate) const FINGERS: &str = "\
 dimension = 2
 reference = \"box\"
 reference_point = [0.5, 1]

@@ -6,6 +6,7 @@ mod broken;
 mod catalogue;
 mod closed_file;
 mod closures;
+mod contact_curvature;
 mod dh;
 mod elasticity;
 mod fk;

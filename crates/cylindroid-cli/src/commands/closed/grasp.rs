@@ -1,17 +1,18 @@
-//! `grasp`: force closure of the contacts on an object.
+//! `grasp`: force closure of the contacts on an object, and its mobility without friction.
 
 use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::closure::{
     ContactProperties, FingerContact, GraspMetric, GraspQuality, WrenchSpace, grasp_contacts,
-    grasp_quality,
+    grasp_mobility, grasp_quality,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, FrameId, Result};
 use serde::Serialize;
 
 use crate::args::GraspArgs;
+use crate::commands::closed::immobilisation::{CurvatureJson, ImmobilisationJson};
 use crate::commands::shared::{Style, answer, configuration};
 use crate::output::{self, Align, number};
 use crate::values::components;
@@ -33,6 +34,7 @@ struct GraspJson<'a> {
     /// Characteristic length [m].
     length: f64,
     contacts: Vec<ContactJson<'a>>,
+    immobilisation: ImmobilisationJson<'a>,
 }
 
 #[derive(Debug, Serialize)]
@@ -54,6 +56,7 @@ struct ContactJson<'a> {
     torsion: Option<f64>,
     /// Largest normal force [N]; null where all share 1 N.
     strength: Option<f64>,
+    curvature: CurvatureJson,
 }
 
 pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
@@ -76,6 +79,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         None => GraspMetric::L1,
     };
     let quality = grasp_quality(&fingers, space, metric)?;
+    let mobility = grasp_mobility(&fingers, space)?;
     let contacts = places.iter().zip(&fingers).map(|(&i, finger)| {
         let contact = &mechanism.contacts()[i];
         ContactJson {
@@ -86,6 +90,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
             mu: finger.friction.mu(),
             torsion: finger.friction.torsion(),
             strength: args.strength.is_some().then_some(finger.strength),
+            curvature: CurvatureJson::of(finger),
         }
     });
     let report = GraspJson {
@@ -99,6 +104,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         weakest: &quality.weakest,
         length: space.length,
         contacts: contacts.collect(),
+        immobilisation: ImmobilisationJson::of(&mobility),
     };
     match style {
         Style::Json => output::json(out, &report)?,
@@ -164,21 +170,18 @@ fn print(
         "linf" => "Q-infinity: each normal force at most the finger's strength",
         _ => "Q1: the normal forces sum to 1 N",
     };
-    output::pairs(
-        out,
-        [
-            ("model", report.model.to_owned()),
-            ("object frame", report.frame.to_owned()),
-            ("q [rad or m]", output::entries(report.q)),
-            ("result", result),
-            (
-                "epsilon [N]",
-                format!("{} to {}", number(quality.epsilon.lower), number(quality.epsilon.upper)),
-            ),
-            ("metric", metric.to_owned()),
-            ("length [m]", number(report.length)),
-        ],
-    )?;
+    let epsilon = [quality.epsilon.lower, quality.epsilon.upper].map(number).join(" to ");
+    let mut pairs = vec![
+        ("model", report.model.to_owned()),
+        ("object frame", report.frame.to_owned()),
+        ("q [rad or m]", output::entries(report.q)),
+        ("result", result),
+        ("epsilon [N]", epsilon),
+        ("metric", metric.to_owned()),
+        ("length [m]", number(report.length)),
+    ];
+    pairs.extend(report.immobilisation.pairs());
+    output::pairs(out, pairs)?;
     writeln!(out)?;
     let mut columns = vec![("weakest direction", Align::Left)];
     columns.extend(report.components.iter().map(|c| (*c, Align::Right)));
@@ -186,6 +189,7 @@ fn print(
     let row = std::iter::once("moments over the length".to_owned()).chain(cells).collect();
     output::table(out, &columns, [row])?;
     writeln!(out)?;
+    report.immobilisation.print(out, report.components)?;
     let columns = [
         ("contact", Align::Left),
         ("kind", Align::Left),
@@ -194,9 +198,12 @@ fn print(
         ("mu", Align::Right),
         ("torsion [m]", Align::Right),
         ("strength [N]", Align::Right),
+        ("finger [1/m]", Align::Right),
+        ("object [1/m]", Align::Right),
     ];
     let given = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), number);
     let rows = report.contacts.iter().map(|c| {
+        let [finger, object] = c.curvature.cells();
         vec![
             c.name.to_owned(),
             c.kind.to_owned(),
@@ -205,6 +212,8 @@ fn print(
             number(c.mu),
             given(c.torsion),
             given(c.strength),
+            finger,
+            object,
         ]
     });
     Ok(output::table(out, &columns, rows)?)

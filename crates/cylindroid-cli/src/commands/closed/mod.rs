@@ -2,6 +2,7 @@
 
 pub(super) mod assemble;
 pub(super) mod grasp;
+mod immobilisation;
 mod limbs;
 pub(crate) mod manipulability;
 pub(super) mod measured;

@@ -12,8 +12,9 @@
 //!          of the convex hull of (x^T H_w x)_w, |x| = 1, by Gilbert's algorithm: a definite form is
 //!          a proof (if it exists, it is found unless it is nearly singular). A motion that extends
 //!          is searched from many starts: one found is a proof (to 1e-6), none found is not.
-//!          Contacts of a model have no curvature: they are frictionless points on planes, so that
-//!          second-order immobilisation of a grasped object (Rimon & Burdick 1998) is not decided
+//!          Contacts are points of the second link on planes of the first and hold from both sides;
+//!          `statics/grasp_mobility.rs` decides immobilisation by fingers that only push, with the
+//!          curvature of both bodies
 //! Why so   the definite form is a semidefinite program, for which the few self-stresses of a
 //!          linkage need no solver
 //! Source   Connelly & Whiteley 1996 (prestress stability implies second-order rigidity, and this

@@ -18,7 +18,7 @@
 use super::smallest_support::{Search, Smallest, Vector, smallest_support};
 use crate::error::{Error, Result};
 use crate::linalg::{Hull, HullGoal, HullOptions, Qr, dot, norm};
-use crate::model::Dimension;
+use crate::model::{ContactCurvature, Dimension};
 use crate::spatial::Vec3;
 use crate::tolerance::{GRASP_QUALITY, HULL, MAX_FACETS, MAX_SIMPLICES, ORTHONORMAL};
 
@@ -74,6 +74,30 @@ pub struct FingerContact {
     pub friction: Friction,
     /// Largest normal force (N), used by [`GraspMetric::LInf`].
     pub strength: f64,
+    /// Curvature of finger and object, in world axes, used by
+    /// [`grasp_mobility`](super::grasp_mobility).
+    pub curvature: ContactCurvature,
+}
+
+impl FingerContact {
+    /// Refuses a normal that is no unit vector, non-finite values, and contacts outside the plane.
+    pub(super) fn check(&self, space: WrenchSpace) -> Result<()> {
+        let (point, normal) = (self.point, self.normal);
+        for (name, value) in [("contact point", point), ("contact normal", normal)] {
+            Error::check_finite(name, &value.to_array())?;
+        }
+        if (normal.norm() - 1.0).abs() > ORTHONORMAL {
+            return Err(refuse(
+                "normal",
+                normal.norm(),
+                "it must be a unit vector; divide it by its length",
+            ));
+        }
+        if space.planar && (normal.z.abs() > ORTHONORMAL || point.z.abs() > ORTHONORMAL) {
+            return Err(refuse("normal", normal.z, "a planar contact must lie in the plane z = 0"));
+        }
+        Ok(())
+    }
 }
 
 /// The norm of the normal forces that is bounded in Ferrari and Canny's quality measures.
@@ -153,6 +177,7 @@ pub struct GraspQuality {
 /// ```
 /// use cylindroid::closure::{FingerContact, Friction, GraspMetric, WrenchSpace, grasp_quality};
 /// use cylindroid::Vec3;
+/// use cylindroid::model::ContactCurvature;
 ///
 /// // Two hard fingers press a disc between them.
 /// let finger = |x: f64| FingerContact {
@@ -160,6 +185,7 @@ pub struct GraspQuality {
 ///     normal: Vec3::new(-x, 0.0, 0.0),
 ///     friction: Friction::Hard { mu: 0.5 },
 ///     strength: 1.0,
+///     curvature: ContactCurvature::default(),
 /// };
 /// let space = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar: true };
 /// let quality = grasp_quality(&[finger(-1.0), finger(1.0)], space, GraspMetric::L1)?;
@@ -293,20 +319,8 @@ struct Finger {
 
 impl Finger {
     fn new(contact: &FingerContact, space: WrenchSpace, metric: GraspMetric) -> Result<Self> {
-        let FingerContact { point, normal, friction, strength } = *contact;
-        for (name, value) in [("contact point", point), ("contact normal", normal)] {
-            Error::check_finite(name, &[value.x, value.y, value.z])?;
-        }
-        if (normal.norm() - 1.0).abs() > ORTHONORMAL {
-            return Err(refuse(
-                "normal",
-                normal.norm(),
-                "it must be a unit vector; divide it by its length",
-            ));
-        }
-        if space.planar && (normal.z.abs() > ORTHONORMAL || point.z.abs() > ORTHONORMAL) {
-            return Err(refuse("normal", normal.z, "a planar contact must lie in the plane z = 0"));
-        }
+        contact.check(space)?;
+        let FingerContact { point, normal, friction, strength, .. } = *contact;
         if metric == GraspMetric::LInf {
             Error::check_positive("strength", strength)?;
         }

@@ -96,8 +96,15 @@ pub fn grasp_contacts(
                 culprit: contact.name.clone(),
                 message,
             })?;
-        let finger =
-            FingerContact { point: at.translation, normal, friction, strength: known.strength };
+        let curvature = contact.curvature.unwrap_or_default();
+        let curvature = if sign > 0.0 { curvature } else { curvature.exchanged() };
+        let finger = FingerContact {
+            point: at.translation,
+            normal,
+            friction,
+            strength: known.strength,
+            curvature: curvature.rotated(at.rotation),
+        };
         fingers.push((place, finger));
     }
     Ok(fingers)

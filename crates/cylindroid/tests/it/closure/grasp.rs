@@ -4,7 +4,9 @@ use cylindroid::closure::{
     ContactProperties, EpsilonQuality, FingerContact, Friction, GraspMetric, GraspQuality,
     WrenchSpace, grasp_contacts, grasp_quality,
 };
-use cylindroid::model::{ContactKind, ContactSpec, Dimension, JointKind, JointSpec};
+use cylindroid::model::{
+    ContactCurvature, ContactKind, ContactSpec, Dimension, JointKind, JointSpec,
+};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
 use cylindroid::tolerance::GRASP_QUALITY;
 use cylindroid::{Error, Mechanism};
@@ -16,7 +18,8 @@ const SPACE: WrenchSpace = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar:
 
 fn finger(point: [f64; 3], normal: [f64; 3], friction: Friction) -> FingerContact {
     let vec3 = |v: [f64; 3]| Vec3::new(v[0], v[1], v[2]);
-    FingerContact { point: vec3(point), normal: vec3(normal), friction, strength: 1.0 }
+    let curvature = ContactCurvature::default();
+    FingerContact { point: vec3(point), normal: vec3(normal), friction, strength: 1.0, curvature }
 }
 
 fn quality(contacts: &[FingerContact], space: WrenchSpace) -> GraspQuality {
@@ -184,6 +187,7 @@ fn qualities_of_other_solvers() {
                         None => Friction::Hard { mu },
                     },
                     strength: number(&c["strength"]),
+                    curvature: ContactCurvature::default(),
                 }
             })
             .collect();
@@ -263,7 +267,9 @@ fn opposed(random: &mut Random, count: usize) -> Vec<FingerContact> {
         })
         .collect();
     let friction = Friction::Soft { mu: random.within(0.2, 1.0), torsion: random.within(0.0, 1.0) };
-    let contact = |(point, normal)| FingerContact { point, normal, friction, strength: 1.0 };
+    let curvature = ContactCurvature::default();
+    let contact =
+        |(point, normal)| FingerContact { point, normal, friction, strength: 1.0, curvature };
     points.into_iter().map(contact).collect()
 }
 

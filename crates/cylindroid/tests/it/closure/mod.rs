@@ -9,6 +9,7 @@ mod diagnosis;
 mod finite;
 mod graph;
 mod grasp;
+mod grasp_mobility;
 mod laws;
 mod limbs;
 mod linkage;

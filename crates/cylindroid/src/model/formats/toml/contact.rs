@@ -1,21 +1,26 @@
 //! The `[[contact]]` tables of a mechanism file: a point, a normal, a tangent, in world axes at
-//! home.
+//! home, and the curvature of both bodies.
 //!
 //! Formula  world_from_contact = [x y z | point], z = normal, x = tangent less its part along the
 //!          normal, y = z x x
 //! Valid    the normal is optional for contacts independent of it (hard_finger, complete), the
-//!          tangent for all but line contacts; in the plane the tangent follows from the normal
-//! Checked  tests/formats/closed_file.rs::contacts_*
+//!          tangent for all but line contacts; in the plane the tangent follows from the normal.
+//!          A curvature is a number, or in space a table of two principal curvatures and the
+//!          direction of the first, for point contacts with a normal
+//! Checked  tests/formats/closed_file.rs::contacts_*, tests/formats/contact_curvature.rs
 
 use super::names::GROUND;
-use super::value::Table;
+use super::value::{NumberOrTable, Table};
 use super::world::World;
 use crate::error::{Error, Result};
-use crate::model::{ContactKind, ContactSpec};
+use crate::model::{ContactCurvature, ContactKind, ContactSpec, SurfaceCurvature};
 use crate::spatial::{Mat3, Pose, Rotation, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
-const KEYS: [&str; 7] = ["name", "type", "between", "point", "normal", "tangent", "friction"];
+const KEYS: [&str; 8] =
+    ["name", "type", "between", "point", "normal", "tangent", "friction", "curvature"];
+const POINTS: [ContactKind; 3] =
+    [ContactKind::PointFrictionless, ContactKind::HardFinger, ContactKind::SoftFinger];
 
 /// A contact as read from the file.
 pub(super) struct ContactEntry<'t> {
@@ -26,6 +31,7 @@ pub(super) struct ContactEntry<'t> {
     pub(super) point: Vec3,
     axes: Rotation,
     friction: Option<f64>,
+    curvature: Option<ContactCurvature>,
 }
 
 /// The `[[contact]]` tables.
@@ -48,7 +54,56 @@ fn read(table: Table<'_>, planar: bool) -> Result<ContactEntry<'_>> {
     let point = table.vector("point", planar)?.ok_or_else(|| table.missing("point"))?;
     let axes = axes(&table, kind, planar)?;
     let friction = table.number("friction")?;
-    Ok(ContactEntry { name, kind, between, point, axes, friction, table })
+    let curvature = curvature(&table, kind, axes, planar)?;
+    Ok(ContactEntry { name, kind, between, point, axes, friction, curvature, table })
+}
+
+/// The curvature of both links, in the axes of the contact frame.
+fn curvature(
+    table: &Table<'_>,
+    kind: ContactKind,
+    axes: Rotation,
+    planar: bool,
+) -> Result<Option<ContactCurvature>> {
+    let keys = ["principal", "direction"];
+    let Some(entries) = table.numbers_or_tables("curvature", "curvature", &keys)? else {
+        return Ok(None);
+    };
+    if !POINTS.contains(&kind) {
+        let message = format!("a contact of type {} has no curvature", kind.name());
+        let help = format!(
+            "leave it out; only contacts in a point have one: {}",
+            POINTS.map(ContactKind::name).join(", ")
+        );
+        return Err(table.refuse("curvature", message, help));
+    }
+    if !table.has("normal") {
+        let message = "a contact with a curvature needs a normal";
+        return Err(table.refuse("curvature", message, "write normal = [...]"));
+    }
+    let Ok([finger, object]) = <[NumberOrTable<'_>; 2]>::try_from(entries) else {
+        let message = "curvature does not consist of two entries";
+        let help = "give the curvatures of the first and of the second link [1/m], \
+                    curvature = [100, 0]";
+        return Err(table.refuse("curvature", message, help));
+    };
+    let read = |entry: NumberOrTable<'_>| match entry {
+        NumberOrTable::Number(curvature) => Ok(SurfaceCurvature::uniform(curvature)),
+        NumberOrTable::Table(own) if planar => {
+            let message = "in the plane a curvature is one number";
+            Err(own.refuse("principal", message, "write curvature = [100, 0]"))
+        }
+        NumberOrTable::Table(own) => {
+            let principal = own.two_bounds("principal")?.ok_or_else(|| own.missing("principal"))?;
+            let direction = own.vec3("direction")?.ok_or_else(|| own.missing("direction"))?;
+            Ok(SurfaceCurvature { principal, direction }.rotated(axes.inverse()))
+        }
+    };
+    let curvature = ContactCurvature { finger: read(finger)?, object: read(object)? };
+    let normal = if planar { Vec3::Y } else { Vec3::Z };
+    let refuse = |message| table.refuse("curvature", message, "correct the curvatures");
+    curvature.check(normal, planar).map_err(refuse)?;
+    Ok(Some(curvature))
 }
 
 fn axes(table: &Table<'_>, kind: ContactKind, planar: bool) -> Result<Rotation> {
@@ -129,6 +184,7 @@ pub(super) fn write(world: &mut World<'_>, contacts: &[ContactEntry<'_>]) {
             link_a_from_contact,
             link_b_from_contact,
             friction: contact.friction,
+            curvature: contact.curvature,
         });
     }
 }

@@ -23,6 +23,12 @@ pub(super) struct Table<'t> {
     pub(super) span: Range<usize>,
 }
 
+/// An entry of a list.
+pub(super) enum NumberOrTable<'t> {
+    Number(f64),
+    Table(Table<'t>),
+}
+
 impl<'t> Table<'t> {
     /// A table with these keys and no others.
     pub(super) fn new(
@@ -148,6 +154,36 @@ impl<'t> Table<'t> {
             _ => read(entry).map(|x| vec![x]),
         };
         array.iter().map(row).collect()
+    }
+
+    /// Two numbers, which may be infinite.
+    pub(super) fn two_bounds(&self, key: &str) -> Result<Option<[f64; 2]>> {
+        let Some(array) = self.array(key)? else { return Ok(None) };
+        let read: Vec<f64> = array.iter().filter_map(|entry| number(entry.get_ref())).collect();
+        let found = <[f64; 2]>::try_from(read).ok().filter(|_| array.len() == 2);
+        let wrong = || self.refuse(key, format!("{key} is not a list of two numbers"), "give two");
+        found.map(Some).ok_or_else(wrong)
+    }
+
+    /// A list of numbers, which may be infinite, and tables with these keys.
+    pub(super) fn numbers_or_tables(
+        &self,
+        key: &str,
+        what: &'static str,
+        keys: &[&str],
+    ) -> Result<Option<Vec<NumberOrTable<'t>>>> {
+        let Some(array) = self.array(key)? else { return Ok(None) };
+        let read = |entry: &'t Spanned<DeValue<'t>>| match entry.get_ref() {
+            DeValue::Table(map) => {
+                Self::new(self.source, what, map, entry.span(), keys).map(NumberOrTable::Table)
+            }
+            value => number(value).map(NumberOrTable::Number).ok_or_else(|| {
+                let message = format!("an entry of {key} is neither a number nor a table");
+                let help = format!("give numbers, or tables of {}", keys.join(", "));
+                self.source.error(entry.span(), message, help)
+            }),
+        };
+        array.iter().map(read).collect::<Result<_>>().map(Some)
     }
 
     /// A vector of three numbers.
