@@ -342,7 +342,7 @@ class FingerContact:
         torsion: float = 0.0,
         strength: float = 1.0,
         finger_curvature: float | tuple[Sequence[float], Sequence[float]] = ...,
-        object_curvature: float | tuple[Sequence[float], Sequence[float]] = 0.0,
+        object_curvature: float | tuple[Sequence[float], Sequence[float]] = ...,
     ) -> FingerContact: ...
 
 @final
