@@ -45,7 +45,6 @@ impl PyFingerContact {
     #[pyo3(signature = (point, normal, mu = 0.0, torsion = 0.0, strength = 1.0,
         finger_curvature = Curvature::Uniform(f64::INFINITY),
         object_curvature = Curvature::Uniform(0.0)))]
-    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     #[expect(clippy::needless_pass_by_value, reason = "arguments of Python are values")]
     fn new(
         point: Numbers<'_>,

@@ -257,8 +257,8 @@ fn equilibria_are_extreme() {
             let forces = found.equilibria.column(j);
             let mut sums = [Vec3::ZERO; 2];
             for (touch, &force) in touches.iter().zip(forces) {
-                sums[0] = sums[0] + touch.normal * force;
-                sums[1] = sums[1] + touch.point.cross(touch.normal) * force;
+                sums[0] += touch.normal * force;
+                sums[1] += touch.point.cross(touch.normal) * force;
             }
             assert!(sums.iter().all(|s| s.norm() < 1e-9), "{sums:?}");
             assert!((forces.iter().sum::<f64>() - 1.0).abs() < 1e-12);
