@@ -8,7 +8,7 @@ use cylindroid::closure::{
 use cylindroid::model::ContactCurvature;
 use pyo3::prelude::*;
 
-use super::grasp_mobility::Curvature;
+use super::curvature::Curvature;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;

@@ -4,32 +4,12 @@ use cylindroid::Vec3;
 use cylindroid::closure::{
     self, ContactProperties, FingerContact, GraspMobility, WrenchSpace, grasp_contacts,
 };
-use cylindroid::model::SurfaceCurvature;
 use pyo3::prelude::*;
 
 use super::grasp::PyFingerContact;
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;
-
-/// A curvature: one number for all directions, or two principal curvatures and the direction of the
-/// first.
-#[derive(Debug, FromPyObject)]
-pub(crate) enum Curvature {
-    Uniform(f64),
-    Principal(([f64; 2], [f64; 3])),
-}
-
-impl Curvature {
-    pub(crate) fn surface(&self) -> SurfaceCurvature {
-        match self {
-            Self::Uniform(curvature) => SurfaceCurvature::uniform(*curvature),
-            Self::Principal((principal, direction)) => {
-                SurfaceCurvature { principal: *principal, direction: Vec3::from_array(*direction) }
-            }
-        }
-    }
-}
 
 /// Mobility of an object between fixed frictionless fingers, to second order.
 ///

@@ -6,6 +6,7 @@ mod assembly;
 mod assembly_modes;
 mod constraint;
 mod continuation;
+mod curvature;
 mod ellipsoid;
 mod finite_mobility;
 mod gradient;

@@ -10,7 +10,7 @@
 //!          Without data, a finger is a sharp point and an object is flat
 //! Why so   principal curvatures instead of a matrix: those of sharp edges are infinite
 //! Source   Rimon & Burdick 1998, part I, section III
-//! Checked  tests/it/closure/grasp_mobility.rs::curvatures_*
+//! Checked  tests/it/closure/grasp_mobility/mod.rs::curvatures_*
 
 use crate::spatial::{Rotation, Vec3};
 use crate::tolerance::{CONFORMING, ZERO_AXIS};

@@ -13,7 +13,7 @@
 //! Why so   the paraboloids determine the second order of the distance exactly, since the slopes
 //!          are of first order in t and the gap of second order
 //! Source   Rimon & Burdick 1998, part I (second derivatives of the distance in configuration space)
-//! Checked  tests/it/closure/grasp_mobility.rs::gaps_*
+//! Checked  tests/it/closure/grasp_mobility/mod.rs::gaps_*
 
 use super::force_closure::{FingerContact, WrenchSpace};
 use crate::linalg::{Matrix, Qr, dot};

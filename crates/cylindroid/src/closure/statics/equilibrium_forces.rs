@@ -8,7 +8,7 @@
 //! Valid    up to [`MAX_CONTACTS`] contacts and [`MAX_EDGES`] edges
 //! Why so   a few dozen edges at most in practice: two pairs of opposite fingers have two
 //! Source   Motzkin et al. 1953; combinatorial test of neighbours Fukuda & Prodon 1996
-//! Checked  tests/it/closure/grasp_mobility.rs::equilibria_*
+//! Checked  tests/it/closure/grasp_mobility/mod.rs::equilibria_*
 
 use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold, dot};
 use crate::tolerance::{CLOSURE_RANK, EQUILIBRIUM};

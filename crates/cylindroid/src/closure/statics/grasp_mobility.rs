@@ -15,7 +15,7 @@
 //!          order, but often by their curvature
 //! Source   Rimon & Burdick 1998, parts I and II; first order: Reuleaux 1875. The mobility indices
 //!          m1 and m2 of part II are `first_order_mobility` and `second_order_mobility`
-//! Checked  tests/it/closure/grasp_mobility.rs
+//! Checked  tests/it/closure/grasp_mobility/mod.rs
 
 use std::fmt;
 

@@ -12,7 +12,7 @@
 //!          motion that opens all gaps is, so that both may be missed
 //! Why so   for each motion forces of its own may suffice, but a common form is a proof
 //! Source   Rimon & Burdick 1998, part II; Connelly & Whiteley 1996 (prestress stability)
-//! Checked  tests/it/closure/grasp_mobility.rs
+//! Checked  tests/it/closure/grasp_mobility/mod.rs
 
 use super::separating_direction::separating_direction;
 use crate::linalg::{Matrix, SymmetricEigen, dot, norm};

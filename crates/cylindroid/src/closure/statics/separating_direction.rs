@@ -7,7 +7,7 @@
 //!          hull, or nearer to it than the steps resolve
 //! Why so   it moves with the vectors when they are rotated, unlike the vertex of a linear program
 //! Source   Mitchell, Demyanov & Malozemov 1974
-//! Checked  tests/it/closure/grasp_mobility.rs::escapes_*
+//! Checked  tests/it/closure/grasp_mobility/mod.rs::escapes_*
 
 use crate::linalg::dot;
 use crate::scalar::clamp;
