@@ -26,12 +26,7 @@ struct Picture {
 
 fn attribute<'a>(line: &'a str, name: &str) -> &'a str {
     let start = format!(" {name}=\"");
-    line.split_once(&start)
-        .unwrap_or_else(|| panic!("{name} in {line}"))
-        .1
-        .split_once('"')
-        .unwrap()
-        .0
+    line.split_once(&start).unwrap().1.split_once('"').unwrap().0
 }
 
 /// The line through the first and the last tick: value = slope * position + offset.
@@ -91,7 +86,7 @@ impl Picture {
     /// The scale that the legend gives for ellipses, in a unit per metre.
     fn scale(&self, unit: &str) -> f64 {
         let end = format!("\u{a0}{unit}\u{a0}per\u{a0}m");
-        let line = self.svg.lines().find(|l| l.contains(&end)).unwrap_or_else(|| panic!("{end}"));
+        let line = self.svg.lines().find(|l| l.contains(&end)).unwrap();
         line.split_once(&end).unwrap().0.rsplit('\u{a0}').next().unwrap().parse().unwrap()
     }
 }
@@ -201,7 +196,7 @@ fn ellipses_have_the_numbers_of_the_report_in_space() {
 fn at_of(model: &str) -> [f64; 3] {
     let pose = json(&["fk", model], 0);
     let position = pose["position"].as_array().or_else(|| pose["pose"]["position"].as_array());
-    let position = position.unwrap_or_else(|| panic!("{pose}"));
+    let position = position.unwrap();
     [0, 1, 2].map(|i| position[i].as_f64().unwrap())
 }
 
