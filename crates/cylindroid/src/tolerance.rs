@@ -398,6 +398,10 @@ pub const SAME_RATES: f64 = 1e-9;
 /// what it holds is then for the analysis of one configuration to say.
 pub const CROSSED_AXES: f64 = 1e-6;
 
+/// Smallest singular value of the loops at a crossing of branches that interpolation found, over the
+/// largest: interpolation is accurate to ten digits [-].
+pub const CROSSED: f64 = 1e-9;
+
 /// A distance to a singularity above this is clear without a rank decision: a hundred thousand
 /// times [`CLOSURE_RANK`] and [`CLOSURE_BLOCK`], and far above the effect of rounding at that
 /// distance, 1e-11 [-].

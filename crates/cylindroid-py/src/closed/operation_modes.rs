@@ -29,7 +29,7 @@ use crate::table;
 /// q : ndarray, (n,)
 ///     A configuration of it.
 /// found : int
-///     Number of starts that led to it.
+///     Number of starts that led to it; 0 if only a meeting did.
 /// through : bool
 ///     True if the given configuration lies on it.
 #[pyclass(frozen, name = "OperationMode", module = "cylindroid")]
@@ -97,6 +97,8 @@ impl PyOperationMode {
 ///     Degrees of freedom to first order.
 /// counts : dict of str to int
 ///     As those of `OperationMode`; what exceeds them is gained.
+/// others : list of ndarray, (n,)
+///     Other configurations found in which branches of the same modes meet with the same counts.
 #[pyclass(frozen, name = "ModeMeeting", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyModeMeeting {
@@ -123,6 +125,11 @@ impl PyModeMeeting {
     #[getter]
     fn counts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         counts_of(py, self.inner.counts)
+    }
+
+    #[getter]
+    fn others<'py>(&self, py: Python<'py>) -> Vec<Array<'py>> {
+        self.inner.others.iter().map(|q| arrays::vector(py, q)).collect()
     }
 
     fn __repr__(&self) -> String {

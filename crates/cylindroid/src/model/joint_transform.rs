@@ -62,7 +62,7 @@ impl JointKind {
 
 impl Mechanism {
     /// The pose of every link in the root, for a `q` that was checked.
-    pub(super) fn link_poses(&self, q: &[f64]) -> Vec<Pose> {
+    pub(crate) fn link_poses(&self, q: &[f64]) -> Vec<Pose> {
         let joints = self.joints();
         // Mimic joints may follow one another, in any order of the tree.
         let value = |start: usize| {

@@ -55,6 +55,8 @@ struct MeetingJson<'a> {
     modes: &'a [usize],
     dof: usize,
     counts: CountsJson,
+    /// Other configurations in which the same modes meet.
+    others: &'a [Vec<f64>],
 }
 
 pub(super) fn run(
@@ -92,6 +94,7 @@ fn describe<'a>(
         modes: &m.modes,
         dof: m.dof,
         counts: m.counts.into(),
+        others: &m.others,
     };
     OperationModesJson {
         model: posed.mechanism.name(),
@@ -132,13 +135,32 @@ fn print(out: &mut dyn Write, posed: &Posed, found: &OperationModes) -> anyhow::
         indices.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(", ")
     };
     for meeting in &found.meetings {
+        let others = match meeting.others.len() {
+            0 => String::new(),
+            1 => " and another configuration".to_owned(),
+            n => format!(" and {n} other configurations"),
+        };
+        let mut modes = meeting.modes.clone();
+        modes.sort_unstable();
+        let gains: Vec<String> = modes
+            .chunk_by(|a, b| a == b)
+            .map(|m| {
+                format!(
+                    "{} more than on mode {}",
+                    meeting.dof.saturating_sub(found.modes[m[0]].dof),
+                    m[0] + 1
+                )
+            })
+            .collect();
         lines.push((
             "branches meet",
             format!(
-                "of modes {}, at {}: {} degrees of freedom to first order",
-                names(&meeting.modes),
+                "of mode{} {}, at {}{others}: {} degrees of freedom to first order, {}",
+                if modes.len() == 1 { "" } else { "s" },
+                names(&modes),
                 super::q_in_words(&meeting.configuration),
-                meeting.dof
+                meeting.dof,
+                gains.join(", ")
             ),
         ));
     }

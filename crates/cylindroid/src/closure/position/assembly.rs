@@ -14,7 +14,7 @@
 //! Source   Levenberg 1944, Marquardt 1963; the rows: `constraint_rows.rs`
 //! Checked  tests/it/closure/assembly.rs
 
-use super::coordinates::{at_limit, columns, free_places, moved, within_limits};
+use super::coordinates::{at_limit, columns, free_places, largest_change, moved, within_limits};
 use super::loop_closure::LoopClosure;
 use crate::closure::constraint::loop_closure_error::LoopClosureError;
 use crate::error::Result;
@@ -26,7 +26,7 @@ use crate::model::Mechanism;
 const MAX_STEPS: usize = 200;
 /// Initial damping, and the largest that is tried, relative to the largest singular value [-].
 const DAMPING: (f64, f64) = (1e-3, 1e8);
-/// Largest change of any coordinate in one step [rad, or characteristic lengths].
+/// Largest change of a joint in one step [rad, or characteristic lengths].
 const MAX_CHANGE: f64 = 0.5;
 
 /// The result of closing the loops from an initial guess.
@@ -150,7 +150,11 @@ fn damped_step(
     let mut jacobian = here.jacobian.clone();
     let mut places = free.to_vec();
     loop {
-        let change = damped_change(&jacobian, &here.residuals, damping);
+        let mut change = damped_change(&jacobian, &here.residuals, damping);
+        let largest = largest_change(mechanism, &places, &change);
+        if largest > MAX_CHANGE {
+            change.iter_mut().for_each(|c| *c *= MAX_CHANGE / largest);
+        }
         let q = moved(mechanism, &here.q, &places, &change);
         let blocked = |i: usize| {
             let (before, l) = (here.q[i], mechanism.coordinates()[i].limits);
@@ -170,10 +174,5 @@ fn damped_change(jacobian: &Matrix, residuals: &[f64], damping: f64) -> Vec<f64>
     let svd = Svd::of(jacobian);
     let l = damping * svd.values().next().unwrap_or(0.0);
     let gain = |_, s| if s > 0.0 { -damp(s, l) } else { 0.0 };
-    let mut change = svd.apply_gains(residuals, gain);
-    let largest = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-    if largest > MAX_CHANGE {
-        change.iter_mut().for_each(|c| *c *= MAX_CHANGE / largest);
-    }
-    change
+    svd.apply_gains(residuals, gain)
 }

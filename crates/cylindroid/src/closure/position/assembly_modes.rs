@@ -19,14 +19,13 @@ use std::f64::consts::TAU;
 
 use super::assembly::{Assembly, assemble};
 use super::configuration_signature::{Landmarks, link_poses, max_displacement, signature_distance};
-use super::coordinates::{at_limit, columns, free_places, moved, within_limits};
-use super::initial_guesses::random;
+use super::coordinates::{at_limit, columns, free_places, largest_change, moved, within_limits};
+use super::initial_guesses::{by_name, random};
 use super::loop_closure::LoopClosure;
 use crate::closure::constraint::velocity_constraint::kernel_tolerance;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
 use crate::model::{CoordinateKind, JointKind, Mechanism};
-use crate::scalar::uniform;
 use crate::spatial::Vec3;
 use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY, TRIAL_MOVED};
 
@@ -128,7 +127,6 @@ pub fn assembly_modes(
     let first = assemble(mechanism, guess, prescribed)?;
     let free = free_places(mechanism, prescribed)?;
     let landmarks = Landmarks::of(mechanism);
-    let mut seed = options.seed;
     let mut search = Search { mechanism, prescribed, free: &free, landmarks, modes: Vec::new() };
     let guessed = search.places(guess)?;
     let mut closed = 0;
@@ -136,7 +134,8 @@ pub fn assembly_modes(
         let found = if start == 0 {
             first.clone()
         } else {
-            assemble(mechanism, &random(mechanism, guess, &free, &mut seed), prescribed)?
+            let restart = [options.seed, start as u64];
+            assemble(mechanism, &random(mechanism, guess, &free, restart), prescribed)?
         };
         if found.closed {
             closed += 1;
@@ -218,10 +217,11 @@ impl Search<'_> {
             return Ok(isolated);
         }
         let before = link_poses(&mechanism.state(q)?);
-        let mut seed = 0;
-        let weights: Vec<f64> = (0..kernel.cols()).map(|_| uniform(&mut seed) - 0.5).collect();
-        let along = kernel.mul_vec(&weights);
-        let most = along.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        // A motion that does not depend on the basis.
+        let names = self.free.iter().map(|&i| &mechanism.coordinates()[i].name);
+        let weights: Vec<f64> = names.map(|name| by_name(name, 0)).collect();
+        let along = kernel.mul_vec(&kernel.transpose().mul_vec(&weights));
+        let most = largest_change(mechanism, self.free, &along);
         for step in [TRIAL / most, -TRIAL / most] {
             let change: Vec<f64> = along.iter().map(|x| step * x).collect();
             let guess =

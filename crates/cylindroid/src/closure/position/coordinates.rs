@@ -6,8 +6,8 @@
 
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::{Error, Result};
-use crate::linalg::Matrix;
-use crate::model::{Mechanism, NodeKind};
+use crate::linalg::{Matrix, norm};
+use crate::model::{CoordinateKind, Mechanism, NodeKind};
 use crate::scalar::clamp;
 use crate::tolerance::AT_LIMIT;
 
@@ -83,6 +83,22 @@ pub(crate) fn moved(
         }
     }
     next
+}
+
+/// The largest scaled change of a coordinate; of the components of a vector the root of their mean
+/// square, which does not depend on the axes.
+pub(crate) fn largest_change(mechanism: &Mechanism, places: &[usize], change: &[f64]) -> f64 {
+    let vector = |&i: &usize| {
+        let c = &mechanism.coordinates()[i];
+        (c.kind != CoordinateKind::Angle).then_some((c.joint, c.kind))
+    };
+    let (mut largest, mut rest) = (0.0_f64, change);
+    for group in places.chunk_by(|a, b| vector(a).is_some() && vector(a) == vector(b)) {
+        let (own, others) = rest.split_at(group.len());
+        largest = largest.max(norm(own) / (own.len() as f64).sqrt());
+        rest = others;
+    }
+    largest
 }
 
 /// Some coordinates clamped to their position limits.

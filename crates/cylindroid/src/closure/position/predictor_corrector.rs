@@ -18,7 +18,7 @@
 //! Checked  tests/it/closure/continuation.rs
 
 use super::assembly::assemble;
-use super::coordinates::{columns, moved, unit_of, within_limits};
+use super::coordinates::{columns, largest_change, moved, unit_of, within_limits};
 use super::initial_guesses::perturbed;
 use super::loop_closure::LoopClosure;
 use crate::error::Result;
@@ -32,7 +32,7 @@ use crate::tolerance::{
 /// Maximum number of corrector steps: three are usual.
 const MAX_CORRECTIONS: usize = 12;
 /// Neighbours whose rank is computed, and their distance [rad, or characteristic lengths].
-const NEIGHBOURS: usize = 3;
+const NEIGHBOURS: u64 = 3;
 const NEIGHBOUR_DISTANCE: f64 = 0.05;
 
 /// A configuration with closed loops.
@@ -103,9 +103,8 @@ impl<'a> PathTracker<'a> {
     fn generic_rank(&self) -> Result<usize> {
         let rank = |q: &[f64]| -> Result<usize> { Ok(self.at(q)?.svd.rank(CLOSURE_RANK).rank) };
         let mut most = rank(&self.from)?;
-        let mut seed = 0;
-        for _ in 0..NEIGHBOURS {
-            let guess = perturbed(self.mechanism, &self.from, NEIGHBOUR_DISTANCE, &mut seed);
+        for number in 0..NEIGHBOURS {
+            let guess = perturbed(self.mechanism, &self.from, NEIGHBOUR_DISTANCE, number);
             let near = assemble(self.mechanism, &guess, &[])?;
             if near.closed {
                 most = most.max(rank(&near.q)?);
@@ -159,9 +158,10 @@ impl<'a> PathTracker<'a> {
         (follow, possible)
     }
 
-    /// The largest change of any coordinate over the whole path, at this tangent.
+    /// The largest change of a joint over the whole path, at this tangent.
     pub(crate) fn speed(&self, tangent: &[f64]) -> f64 {
-        self.direction.iter().chain(tangent).fold(0.0, |m: f64, x| m.max(x.abs()))
+        let prescribed = largest_change(self.mechanism, self.prescribed, &self.direction);
+        prescribed.max(largest_change(self.mechanism, &self.free, tangent))
     }
 
     /// The point at the end of a step.

@@ -5,13 +5,16 @@
 //!          (`finite_mobility.rs`), and assemblies from random restarts, each with the finite
 //!          mobility there. Two configurations belong to one mode if dimension, counts and the
 //!          class of the motions of the reference frame agree; isolated assemblies, if they
-//!          coincide (`configuration_signature.rs`)
+//!          coincide (`configuration_signature.rs`). Walks along the modes find where they meet
+//!          others (`crossings.rs`), and modes that no restart found
 //! Units    none: lengths are divided by the characteristic length
 //! Valid    certain: every configuration that is listed has its loops closed and the counts of its
 //!          mode, and modes that differ in dimension or counts share no component, since these are
 //!          constant on an analytic branch but for a subset of lower dimension. Not certain: modes
 //!          may be missed, and one mode may comprise several components, since agreement of the
-//!          data does not connect them (the assembly modes of a linkage are one operation mode). An
+//!          data does not connect them (the assembly modes of a linkage are one operation mode).
+//!          Meetings may be missed: walks along each mode (`crossings.rs`) find those that lie across
+//!          their way. An
 //!          assembly from a restart whose rank is not clear, or that has several first-order
 //!          motions but no branch, is counted as undecided: where the loops are singular, an
 //!          assembly is not accurate enough
@@ -24,6 +27,7 @@
 
 use std::cmp::Reverse;
 
+use super::crossings::crossings;
 use super::generic_mobility::GenericMobility;
 use crate::closure::constraint::closed_chain::ClosedChain;
 use crate::closure::mobility::counts::MobilityCounts;
@@ -34,7 +38,7 @@ use crate::closure::position::assembly_modes::{ModeOptions, check_starts};
 use crate::closure::position::configuration_signature::{
     Landmarks, link_poses, signature_distance,
 };
-use crate::closure::position::initial_guesses::random_by_name;
+use crate::closure::position::initial_guesses::random;
 use crate::closure::position::loop_closure::LoopClosure;
 use crate::error::Result;
 use crate::kinematics::State;
@@ -42,6 +46,10 @@ use crate::model::{FrameId, Mechanism};
 use crate::screws::{Class, ScrewOptions, ScrewSystem};
 use crate::spatial::Vec3;
 use crate::tolerance::{CLEAR_SAMPLE, SAME_ASSEMBLY, SAME_SHAKY};
+
+/// Maximum number of modes to walk along, and of meetings to search.
+const MAX_WALKED: usize = 16;
+const MAX_MEETINGS: usize = 32;
 
 /// An operation mode.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +67,7 @@ pub struct OperationMode {
     pub class: Class,
     /// A configuration of it.
     pub configuration: Vec<f64>,
-    /// Number of starts that led to it.
+    /// Number of starts that led to it; 0 if only a meeting did.
     pub found: usize,
     /// The branches through the given configuration that belong to it: indices into
     /// [`FiniteMobility::branches`].
@@ -80,6 +88,9 @@ pub struct ModeMeeting {
     pub dof: usize,
     /// The counts there: what exceeds those of a mode is gained.
     pub counts: MobilityCounts,
+    /// Other configurations that were found in which branches of the same modes meet, with the same
+    /// counts: further points of a set of meetings, or isolated ones.
+    pub others: Vec<Vec<f64>>,
 }
 
 /// The result of a search for operation modes.
@@ -87,7 +98,8 @@ pub struct ModeMeeting {
 pub struct OperationModes {
     /// The modes found, those of largest dimension first. There may be others.
     pub modes: Vec<OperationMode>,
-    /// The configurations found in which branches meet, the given one first if it is one.
+    /// The configurations found in which branches meet, the given one first if it is one: at
+    /// restarts, and on walks along each mode.
     pub meetings: Vec<ModeMeeting>,
     /// Number of starts.
     pub starts: usize,
@@ -151,6 +163,7 @@ pub fn operation_modes(
         given: places,
         modes: Vec::new(),
         meetings: Vec::new(),
+        meeting_places: Vec::new(),
         undecided: 0,
     };
     let mut closed = 0;
@@ -158,20 +171,23 @@ pub fn operation_modes(
         let given = start == 0;
         if given && LoopClosure::of(mechanism, q)?.is_closed(length) {
             closed += 1;
-            search.add(q, true, false)?;
+            search.add(q, Origin::Given)?;
             continue;
         }
         let guess = if given {
             q.to_vec()
         } else {
-            random_by_name(mechanism, q, &all, [options.seed, start as u64])
+            random(mechanism, q, &all, [options.seed, start as u64])
         };
         let found = assemble(mechanism, &guess, &[])?;
         if found.closed {
             closed += 1;
-            search.add(&found.q, given, !found.at_limit.is_empty())?;
+            let at_limit = !found.at_limit.is_empty();
+            let origin = if given { Origin::Given } else { Origin::Restart { at_limit } };
+            search.add(&found.q, origin)?;
         }
     }
+    search.walk()?;
     let undecided = search.undecided;
     let (modes, meetings) = search.sorted();
     Ok(OperationModes { modes, meetings, starts: options.starts, closed, undecided })
@@ -192,7 +208,20 @@ struct Search<'a> {
     given: Vec<Vec3>,
     modes: Vec<Known>,
     meetings: Vec<ModeMeeting>,
+    /// The signatures of the meetings.
+    meeting_places: Vec<Vec<Vec3>>,
     undecided: usize,
+}
+
+/// Where a configuration comes from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    /// The given one, or the assembly next to it.
+    Given,
+    /// A random restart; at a limit counts may not be generic.
+    Restart { at_limit: bool },
+    /// A walk along a mode.
+    Walk,
 }
 
 /// A configuration with its counts.
@@ -212,15 +241,41 @@ impl Search<'_> {
         Ok(Sample { state, chain, motions, counts })
     }
 
-    /// The modes through the closed configuration `q`: the given one, or one from a restart.
-    /// `special`: it lies at a limit, where counts may not be generic.
-    fn add(&mut self, q: &[f64], given: bool, special: bool) -> Result<()> {
+    /// Walks along every mode, also along those that walks find.
+    fn walk(&mut self) -> Result<()> {
+        let mut walked = 0;
+        while walked < self.modes.len().min(MAX_WALKED) {
+            let mode = &self.modes[walked].mode;
+            walked += 1;
+            if mode.dimension == 0 || mode.dof > mode.dimension {
+                continue;
+            }
+            for q in crossings(self.mechanism, &mode.configuration.clone(), self.length)? {
+                let places = self.landmarks.at(&link_poses(&self.mechanism.state(&q)?));
+                let same =
+                    |known: &Vec<Vec3>| signature_distance(&places, known, |_| true) <= SAME_SHAKY;
+                if self.meeting_places.len() < MAX_MEETINGS && !self.meeting_places.iter().any(same)
+                {
+                    self.add(&q, Origin::Walk)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The modes through the closed configuration `q`.
+    fn add(&mut self, q: &[f64], origin: Origin) -> Result<()> {
+        let given = origin == Origin::Given;
+        let restart = matches!(origin, Origin::Restart { .. });
         let here = self.sample(q)?;
         let finite = FiniteMobility::of(&here.state, Some(self.length))?;
         let clear = here.counts.rank == 0 || here.motions.regularity() > CLEAR_SAMPLE;
         let clear = clear && here.motions.dof() == finite.infinitesimal;
         let searched = finite.branches.is_empty() && finite.evidence == MobilityEvidence::Search;
-        if finite.finite.is_none() || !given && (!clear || searched) {
+        if origin == Origin::Walk && finite.branches.len() < 2 {
+            return Ok(()); // nothing is known to meet there
+        }
+        if finite.finite.is_none() || restart && (!clear || searched) {
             self.undecided += 1;
             return Ok(());
         }
@@ -228,8 +283,8 @@ impl Search<'_> {
             self.add_isolated(here, given)?;
             return Ok(());
         }
-        if finite.is_ordinary() && !given && !special {
-            self.add_branch(here, (finite.infinitesimal, None), given)?;
+        if finite.is_ordinary() && origin == (Origin::Restart { at_limit: false }) {
+            self.add_branch(here, (finite.infinitesimal, None), origin)?;
             return Ok(());
         }
         let generic = GenericMobility::around(
@@ -239,24 +294,50 @@ impl Search<'_> {
             here.counts,
             &finite,
         )?;
-        let mut modes = Vec::new();
+        let mut samples = Vec::new();
         for (i, branch) in finite.branches.iter().enumerate() {
             let far = branch.far(&here.state, self.length)?;
             let mut there = self.sample(far.first().map_or(q, Vec::as_slice))?;
             there.counts = generic.branches[i];
-            modes.push(self.add_branch(there, (branch.dimension, Some(i)), given)?);
+            samples.push((there, (branch.dimension, Some(i))));
+        }
+        let contradicts = |(there, (dimension, _)): &(Sample, (usize, Option<usize>))| {
+            there.motions.dof() < *dimension
+        };
+        if origin == Origin::Walk && samples.iter().any(contradicts) {
+            return Ok(()); // not accurate enough to tell the branches apart
+        }
+        let mut modes = Vec::new();
+        for (there, branch) in samples {
+            modes.push(self.add_branch(there, branch, origin)?);
         }
         // One start each.
         for (i, mode) in modes.iter().enumerate() {
-            if modes[..i].contains(mode) {
+            if modes[..i].contains(mode) && origin != Origin::Walk {
                 self.modes[*mode].mode.found -= 1;
             }
         }
         let (configuration, dof, counts) = (q.to_vec(), here.motions.dof(), here.counts);
         if modes.len() > 1 {
-            self.meetings.push(ModeMeeting { configuration, modes, dof, counts });
+            self.meeting_places.push(self.landmarks.at(&link_poses(&here.state)));
+            let others = Vec::new();
+            self.meet(ModeMeeting { configuration, modes, dof, counts, others });
         }
         Ok(())
+    }
+
+    fn meet(&mut self, meeting: ModeMeeting) {
+        let sorted = |m: &ModeMeeting| {
+            let mut modes = m.modes.clone();
+            modes.sort_unstable();
+            modes
+        };
+        let modes = sorted(&meeting);
+        let same = |m: &&mut ModeMeeting| m.counts == meeting.counts && sorted(m) == modes;
+        match self.meetings.iter_mut().find(same) {
+            Some(known) => known.others.push(meeting.configuration),
+            None => self.meetings.push(meeting),
+        }
     }
 
     fn mode(&self, at: &Sample, dimension: usize) -> Result<OperationMode> {
@@ -279,9 +360,10 @@ impl Search<'_> {
         &mut self,
         at: Sample,
         (dimension, branch): (usize, Option<usize>),
-        given: bool,
+        origin: Origin,
     ) -> Result<usize> {
-        let mode = self.mode(&at, dimension)?;
+        let found = usize::from(origin != Origin::Walk);
+        let mode = OperationMode { found, ..self.mode(&at, dimension)? };
         let same = |known: &Known| {
             let m = &known.mode;
             m.dimension == dimension
@@ -290,7 +372,7 @@ impl Search<'_> {
         };
         let place = match self.modes.iter().position(same) {
             Some(place) => {
-                self.modes[place].mode.found += 1;
+                self.modes[place].mode.found += found;
                 place
             }
             None => {
@@ -298,7 +380,7 @@ impl Search<'_> {
                 self.modes.len() - 1
             }
         };
-        if given {
+        if origin == Origin::Given {
             let mode = &mut self.modes[place].mode;
             mode.through = true;
             mode.branches.extend(branch);

@@ -69,14 +69,15 @@ fn what_cannot_be_assembled_is_not() {
 }
 
 /// Limits in all legs, arms or joints, guesses anywhere within them: coordinates that push against
-/// theirs do not hold up the others. (Cut to the limits alone, 1, 35 and 29 of these 60 closed.)
+/// theirs do not hold up the others. (Cut to the limits alone, 1, 35 and 29 of 60 closed. Of 1000
+/// starts of the two arms 93 to 94 % close, with every draw that was tried.)
 #[test]
 fn limits_do_not_hold_up_the_search() {
-    for name in ["stewart", "delta", "two-arm"] {
+    for (name, least) in [("stewart", 200), ("delta", 198), ("two-arm", 180)] {
         let mechanism = catalogue::load(name).unwrap();
-        let options = ModeOptions { starts: 60, seed: 0 };
+        let options = ModeOptions { starts: 200, seed: 0 };
         let found = assembly_modes(&mechanism, mechanism.home(), &[], options).unwrap();
-        assert!(found.closed >= 59, "{name}: {}", found.closed);
+        assert!(found.closed >= least, "{name}: {}", found.closed);
         let within = |m: &Mode| mechanism.outside_limits(&m.assembly.q).next().is_none();
         assert!(found.modes.iter().all(within));
     }

@@ -7,6 +7,8 @@ mod length;
 mod modes;
 mod published;
 mod second_order;
+mod servo;
+mod view;
 mod views;
 
 use std::path::PathBuf;
