@@ -221,6 +221,10 @@ impl Problem {
 
     /// Clamps `q` to the limits.
     pub(super) fn clamp(&self, q: &mut [f64]) {
+        // Also coordinates that do not move the end effectors: the configuration has all of them.
+        for (x, c) in q.iter_mut().zip(self.mechanism.coordinates()) {
+            *x = clamp(*x, c.limits.lower, c.limits.upper);
+        }
         for (i, &c) in self.coordinates.iter().enumerate() {
             q[c] = clamp(q[c], self.lower[i], self.upper[i]);
         }

@@ -246,7 +246,9 @@ impl Solver {
                     solver.wrap_angles(q);
                     solver.approach_start(q);
                     solver.add(&mut solutions, q, FoundBy::Numerical);
-                } else if best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared) {
+                } else if errors.squared.is_finite()
+                    && best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared)
+                {
                     best = Some((q.to_vec(), errors));
                 }
             };
@@ -400,8 +402,13 @@ impl Solver {
         restarts.iter().map(|r| r.steps).sum()
     }
 
-    /// Adds a solution unless it is already known.
+    /// Adds a solution unless it is already known. The only way to success: all coordinates finite
+    /// and within their limits, all errors within tolerance.
     fn add(&mut self, solutions: &mut Vec<Candidate>, q: &[f64], found_by: FoundBy) {
+        let within = self.problem.mechanism.outside_limits(q).next().is_none();
+        if !within || !q.iter().all(|x| x.is_finite()) {
+            return;
+        }
         let errors = self.problem.evaluate(q);
         let known = solutions.iter().any(|other| self.is_same(&other.q, q));
         if !known && is_reached(errors, &self.options) {

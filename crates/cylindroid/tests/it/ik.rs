@@ -372,3 +372,63 @@ fn bad_requests_are_named() {
     let there = Pose::from_translation(Vec3::new(1.0, 0.0, 0.0));
     assert!(!solve(&panda, &[Goal::pose(base, there)], &options).unwrap().success);
 }
+
+/// Limits near the largest number, whose arithmetic overflows: no success with NaN.
+#[test]
+fn limits_that_overflow_are_no_success() {
+    let robot = from_text(
+        r#"
+        name = "arm"
+        reference = "hand"
+        reference_point = [1.0, 0.2, 0.3]
+        [[joint]]
+        name = "swing"
+        type = "revolute"
+        between = ["ground", "link"]
+        origin = [0.0, 0.0, 0.3]
+        axis = [0, 0, 1]
+        limits = { lower = -3.0, upper = 3.0 }
+        [[joint]]
+        name = "screw"
+        type = "helical"
+        between = ["link", "hand"]
+        origin = [0.5, 0.0, 0.3]
+        axis = [0, 1, 0]
+        pitch = 0.01
+        limits = { lower = 1e308 }
+        "#,
+    );
+    let at = Pose::from_translation(Vec3::new(0.9, 0.3, 0.3));
+    for task in [Task::POSITION, Task::POSE] {
+        let goal = Goal { task, ..Goal::pose(robot.tool(), at) };
+        let found = solve(&robot, &[goal], &IkOptions::default()).unwrap();
+        assert!(!found.success && found.q.iter().all(|x| x.is_finite()), "{found:?}");
+    }
+}
+
+/// Joints that do not move the end effector are within their limits too.
+#[test]
+fn other_joints_are_within_their_limits() {
+    let robot = from_text(
+        r#"
+        name = "two arms"
+        tool = "hand"
+        home = [0.0, 0.0]
+        [[joint]]
+        name = "arm"
+        type = "revolute"
+        between = ["ground", "hand"]
+        axis = [0, 0, 1]
+        limits = { lower = -1.0, upper = 1.0 }
+        [[joint]]
+        name = "other"
+        type = "revolute"
+        between = ["ground", "finger"]
+        axis = [0, 0, 1]
+        limits = { lower = 0.5, upper = 1.0 }
+        "#,
+    );
+    let pose = robot.state(&[0.3, 0.7]).unwrap().pose(robot.tool());
+    let found = solve(&robot, &[Goal::pose(robot.tool(), pose)], &IkOptions::default()).unwrap();
+    assert!(found.success && robot.outside_limits(&found.q).next().is_none(), "{found:?}");
+}

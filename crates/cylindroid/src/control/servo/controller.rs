@@ -152,6 +152,17 @@ impl Servo {
         let rates = limits.len();
         // The unknowns: joint velocities, or actuated motions.
         let unknowns = coupled.as_ref().map_or(n, |c| c.actuated_joints());
+        if unknowns == 0 {
+            return Err(Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: String::new(),
+                message: format!(
+                    "no joint of '{}' is actuated, so nothing can drive it: mark joints with \
+                     `actuated = true`, or choose them (--actuated, `with_actuated`)",
+                    mechanism.name()
+                ),
+            });
+        }
         let hessian = if options.secondary.iter().any(SecondaryTask::needs_hessian) {
             vec![Matrix::zeros(6, n); n]
         } else {

@@ -303,3 +303,33 @@ fn an_object_must_be_steered() {
     let none = catalogue::load("stewart").unwrap().with_actuated::<&str>(&[]).unwrap();
     assert!(Servo::new(&none, ServoOptions::new(&none)).is_err());
 }
+
+/// A rigid loop whose joints are all passive: nothing to drive.
+#[test]
+fn a_mechanism_without_actuated_joints_is_refused() {
+    let text = r#"
+        name = "triangle"
+        dimension = 2
+        reference = "b"
+        [[joint]]
+        name = "q1"
+        type = "revolute"
+        between = ["ground", "a"]
+        origin = [0, 0]
+        [[joint]]
+        name = "q2"
+        type = "revolute"
+        between = ["a", "b"]
+        origin = [0, 1]
+        [[joint]]
+        name = "q3"
+        type = "revolute"
+        between = ["b", "ground"]
+        origin = [1, 0]
+    "#;
+    let triangle =
+        cylindroid::model::formats::toml::parse(text, std::path::Path::new("triangle.toml"))
+            .unwrap();
+    let error = Servo::new(&triangle, ServoOptions::new(&triangle)).unwrap_err().to_string();
+    assert!(error.contains("no joint of 'triangle' is actuated"), "{error}");
+}
