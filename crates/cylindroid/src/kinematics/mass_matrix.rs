@@ -178,6 +178,7 @@ impl State {
 
 impl Mechanism {
     /// Links that move and have no mass, nor has any link fixed to them: the first of each body.
+    #[must_use]
     pub fn massless_bodies(&self) -> Vec<&str> {
         let slot = |i: usize| self.frame_of(self.link_frame(i)).slot;
         let links = self.links();
