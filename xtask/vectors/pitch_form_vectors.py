@@ -7,7 +7,7 @@
 numpy's general (unsymmetric) eigensolver, where the library uses factors and Jacobi rotations:
 `squares` are the nonzero eigenvalues of J M^-1 J^T Q_h, a 6 x 6 matrix; the polar factors come
 from N = M^-1 J^T Q_h J by its eigenvectors, H = (N^2)^(1/4) and E = sign N, and W = J H^+. The
-values of stiffness matrices are the eigenvalues of Q_h^-1 K. Twists and wrenches are linear first;
+values of stiffness matrices are the eigenvalues of (2 Q_h)^-1 K. Twists and wrenches are linear first;
 matrices are lists of rows.
 """
 
@@ -63,7 +63,7 @@ def stiffness(rng, rank):
     springs = rng.normal(size=(6, rank))
     k = springs @ springs.T
     h = rng.normal()
-    values = np.linalg.eigvals(np.linalg.solve(form(h), k))
+    values = np.linalg.eigvals(np.linalg.solve(2 * form(h), k))
     assert np.abs(np.imag(values)).max() < 1e-9
     values = sorted(np.real(values), key=abs)[6 - rank :]
     return {"stiffness": k.tolist(), "h": h, "values": sorted(values, reverse=True)}

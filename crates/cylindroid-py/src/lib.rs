@@ -51,6 +51,8 @@ mod _core {
     #[pymodule_export]
     use crate::inverse::hyperbolic::{hyperbolic, oblique};
     #[pymodule_export]
+    use crate::inverse::hyperbolic_svd::{PyHyperbolicSvd, hyperbolic_svd};
+    #[pymodule_export]
     use crate::inverse::pinv::pinv;
     #[pymodule_export]
     use crate::inverse::point_direction::point_direction;
@@ -65,6 +67,8 @@ mod _core {
     #[pymodule_export]
     use crate::parameter_tables::{inverse_methods, secondary_tasks};
     #[pymodule_export]
+    use crate::screws::eigenscrews::eigenscrews;
+    #[pymodule_export]
     use crate::screws::forms::{
         gram, gram_determinant, killing, klein, lowered, pitch_form, raised, wrench_pitch_form,
     };
@@ -76,8 +80,8 @@ mod _core {
     use crate::screws::transversals::transversals;
     #[pymodule_export]
     use crate::screws::{
-        PyErrorFormZeros, PyExistence, PyInvolution, PyMargin, PyPitchConics, PyProjector, PyScrew,
-        PyScrewSystem, PyTransversals,
+        PyEigenscrews, PyErrorFormZeros, PyExistence, PyInvolution, PyMargin, PyPitchConics,
+        PyProjector, PyScrew, PyScrewSystem, PyTransversals,
     };
     #[pymodule_export]
     use crate::servo::{PyMotionResult, PyServo, PyStall, PyTrajectory};

@@ -127,3 +127,38 @@ def test_involution():
         cy.involution(np.array([[0, 0, 1, 0, 0, 1.0]]).T)
     with pytest.raises(cy.InvalidOptionError, match="points and directions"):
         cy.involution(np.zeros((2, 5)))
+
+
+def test_hyperbolic_svd():
+    robot = cy.load("youbot")
+    J = robot.jacobian(robot.home)
+    Q = np.block([[np.zeros((3, 3)), np.eye(3)], [np.eye(3), -0.2 * np.eye(3)]]) / 2
+    metric = np.diag([1.0, 2.0, 3.0, 4.0, 5.0])
+    svd = cy.hyperbolic_svd(J, 0.1, np.diag(metric))
+    expected = np.sort(np.linalg.eigvals(np.linalg.solve(metric, J.T @ Q @ J)).real)[::-1]
+    np.testing.assert_allclose(svd.squares, expected, atol=1e-12)
+    np.testing.assert_allclose(svd.left @ np.diag(svd.values) @ svd.right.T @ metric, J, atol=1e-12)
+    np.testing.assert_allclose(svd.isometry @ svd.stretch, J, atol=1e-12)
+    np.testing.assert_allclose(svd.isometry.T @ Q @ svd.isometry, metric @ svd.signs, atol=1e-11)
+    assert svd.polar == "signed" and svd.reason is None
+    system = cy.ScrewSystem(J)
+    assert svd.signature == system.signature(0.1)
+    none = cy.hyperbolic_svd(np.eye(6)[:, :3], 0.1)
+    assert none.polar == "none" and none.signature == (0, 0, 3) and none.isometry is None
+    assert "never" in none.reason or "no hyperbolic" in none.reason
+    with pytest.raises(cy.NotFiniteError):
+        cy.hyperbolic_svd(J, np.inf)
+
+
+def test_eigenscrews():
+    rng = np.random.default_rng(3)
+    R = rng.normal(size=(6, 6))
+    K, h = R @ R.T, 0.3
+    found = cy.eigenscrews(K, h)
+    D = np.block([[np.zeros((3, 3)), np.eye(3)], [np.eye(3), -2 * h * np.eye(3)]])
+    np.testing.assert_allclose(K @ found.twists, D @ found.twists * found.eigenvalues, atol=1e-9)
+    springs = found.wrenches @ np.diag(np.abs(found.eigenvalues)) @ found.wrenches.T
+    np.testing.assert_allclose(springs, K, atol=1e-9)
+    assert found.kind == "definite" and sum(found.eigenvalues > 0) == 3
+    assert np.isclose(found.spring_pitch, np.trace(K[:3, 3:]) / np.trace(K[:3, :3]))
+    assert cy.eigenscrews(-K).kind == "indefinite"

@@ -161,3 +161,24 @@ fn joint_velocities_of_closed_chains() {
     assert_eq!(fixed["inverse"]["rank"], 0);
     assert!(numbers(&fixed["inverse"]["realised"]).iter().all(|x| *x == 0.0));
 }
+
+/// Example 1 of Donelan and Selig, class IB0 with the principal pitch zero: one square of each sign
+/// and one that changes its own.
+#[test]
+fn hyperbolic_singular_values_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("example1.csv");
+    fs::write(&file, "1,0,0,0,-1,0.5\n0,0,1,0,0,0\n0,0,1,-2,1,0\n").unwrap();
+    let arguments = ["--angular-first", "--h", "-0.3", "--h", "0", "--h", "0.3", "--h", "inf"];
+    let all = [&["screws", file.to_str().unwrap()][..], &arguments].concat();
+    let found = json(&all, 0);
+    let at = |i: usize| &found["inverses"][i]["hyperbolic_svd"];
+    assert_eq!(at(0)["signature"], serde_json::json!([2, 1, 0]));
+    assert_eq!((&at(1)["polar"], &at(1)["squares"][1]), (&"none".into(), &0.0.into()));
+    assert_eq!(at(2)["signature"], serde_json::json!([1, 2, 0]));
+    assert_eq!(at(2)["polar"], "signed");
+    let product: f64 =
+        at(2)["squares"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).product();
+    assert!((product - 0.3).abs() < 1e-12); // det J^T Q_h J = h
+    assert!(at(3).is_null());
+}

@@ -22,6 +22,7 @@ __all__ = [
     "ContinuationResult",
     "Deflection",
     "Direction",
+    "Eigenscrews",
     "Ellipsoid",
     "ErrorFormZeros",
     "Existence",
@@ -32,6 +33,7 @@ __all__ = [
     "GraspQuality",
     "HybridCommand",
     "HybridController",
+    "HyperbolicSvd",
     "InternalForceCommand",
     "InternalForceController",
     "Inverse",
@@ -48,10 +50,10 @@ __all__ = [
     "Mechanism",
     "Mobility",
     "ModeMeeting",
+    "MotionResult",
     "OperationMode",
     "OperationModes",
     "OperatorAuthority",
-    "MotionResult",
     "PitchConics",
     "PointDirection",
     "Polytope",
@@ -78,6 +80,7 @@ __all__ = [
     "catalogue",
     "coadjoint",
     "damped",
+    "eigenscrews",
     "error_to",
     "exp",
     "exp_derivative",
@@ -86,6 +89,7 @@ __all__ = [
     "grasp_mobility",
     "grasp_quality",
     "hyperbolic",
+    "hyperbolic_svd",
     "inverse",
     "inverse_methods",
     "involution",
@@ -321,6 +325,21 @@ class ErrorFormZeros:
     def defined(self) -> bool: ...
 
 @final
+class Eigenscrews:
+    @property
+    def eigenvalues(self) -> _Array: ...
+    @property
+    def screws(self) -> list[Screw]: ...
+    @property
+    def twists(self) -> _Array: ...
+    @property
+    def wrenches(self) -> _Array: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def spring_pitch(self) -> float | None: ...
+
+@final
 class Existence:
     @property
     def margin(self) -> float: ...
@@ -501,6 +520,29 @@ class HybridController:
         feed_forward: ArrayLike | None = None,
     ) -> HybridCommand: ...
     def seen_from(self, a_from_b: ArrayLike) -> HybridController: ...
+
+@final
+class HyperbolicSvd:
+    @property
+    def squares(self) -> _Array: ...
+    @property
+    def values(self) -> _Array: ...
+    @property
+    def left(self) -> _Array: ...
+    @property
+    def right(self) -> _Array: ...
+    @property
+    def signature(self) -> tuple[int, int, int]: ...
+    @property
+    def polar(self) -> str: ...
+    @property
+    def reason(self) -> str | None: ...
+    @property
+    def isometry(self) -> _Array | None: ...
+    @property
+    def stretch(self) -> _Array | None: ...
+    @property
+    def signs(self) -> _Array | None: ...
 
 @final
 class InternalForceCommand:
@@ -1157,6 +1199,7 @@ class ScrewSystem:
     def h_reciprocal(self, h: float) -> ScrewSystem: ...
     def error_form(self, twist: ArrayLike, h: float) -> float | None: ...
     def error_form_zeros(self, twist: ArrayLike) -> ErrorFormZeros: ...
+    def signature(self, h: float) -> tuple[int, int, int]: ...
     def sum(self, other: ScrewSystem) -> ScrewSystem: ...
     def intersection(self, other: ScrewSystem) -> ScrewSystem: ...
     def sine_to(self, twist: ArrayLike) -> float: ...
@@ -1452,6 +1495,7 @@ def bracket(a: ArrayLike, b: ArrayLike) -> _Array: ...
 def catalogue() -> list[tuple[str, str, str]]: ...
 def coadjoint(a_from_b: ArrayLike) -> _Array: ...
 def damped(J: ArrayLike, damping: float) -> Inverse: ...
+def eigenscrews(K: ArrayLike, h: float = 0.0) -> Eigenscrews: ...
 def error_to(pose: ArrayLike, target: ArrayLike) -> _Array: ...
 def exp(twist: ArrayLike) -> _Array: ...
 def exp_derivative(twist: ArrayLike) -> _Array: ...
@@ -1480,6 +1524,14 @@ def hyperbolic(
     mu: float | None = None,
     lam: float | None = None,
 ) -> Inverse: ...
+def hyperbolic_svd(
+    J: ArrayLike,
+    h: float,
+    joint_metric: ArrayLike | None = None,
+    length: float | None = None,
+    center: ArrayLike | None = None,
+    noise: float | None = None,
+) -> HyperbolicSvd: ...
 def inverse(
     J: ArrayLike,
     method: str = "truncated",

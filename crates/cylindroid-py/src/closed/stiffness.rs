@@ -29,10 +29,10 @@ use crate::table;
 /// cholesky : ndarray, (d, d), or None
 ///     Lower triangular L with `K = L @ L.T`.
 /// eigenscrews : list of (float, Screw), or None
-///     Solutions of `K s = l Q s` with the matrix Q of the pitch form of h = 0, half that of the
-///     screw inner product: l [N/rad] and screw in the world. l is twice the eigenstiffness of
-///     Patterson and Lipkin: the force for a rotation by 2 rad. If K is positive definite, three are
-///     positive and three negative. None in the plane, and where K is None.
+///     Solutions of `K s = x D s` with the matrix D of the screw inner product (Patterson and
+///     Lipkin): eigenvalue x [N/rad], the force for a rotation by 1 rad, and screw in the world. If
+///     K is positive definite, three are positive and three negative. None in the plane, and where
+///     K is None.
 /// free : ndarray, (n, d)
 ///     Twists without deflection, as rows.
 /// rigid : ndarray, (n, d)
@@ -88,7 +88,7 @@ impl PyStiffness {
     #[getter]
     fn eigenscrews(&self) -> Option<Vec<(f64, PyScrew)>> {
         let all = self.inner.eigenscrews()?;
-        let one = |e: &Eigenscrew| Some((e.value, PyScrew::from(&e.screw()?)));
+        let one = |e: &Eigenscrew| Some((e.eigenvalue, PyScrew::from(&e.screw()?)));
         Some(all.screws.iter().filter_map(one).collect())
     }
 

@@ -3,6 +3,7 @@
 pub(crate) mod by_name;
 pub(crate) mod damped;
 pub(crate) mod hyperbolic;
+pub(crate) mod hyperbolic_svd;
 mod of_mechanism;
 pub(crate) mod pinv;
 pub(crate) mod point_direction;

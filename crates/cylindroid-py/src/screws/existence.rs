@@ -1,5 +1,6 @@
 //! Whether the hyperbolic pseudoinverse of a screw system exists, and its projectors.
 
+use cylindroid::Error;
 use cylindroid::screws::Existence;
 use pyo3::prelude::*;
 
@@ -64,6 +65,25 @@ impl PyScrewSystem {
     fn existence(&self, h: f64) -> Result<PyExistence> {
         check_pitch(h)?;
         Ok(self.inner.existence(h).into())
+    }
+
+    /// The signature of the form of pitch h on the system.
+    ///
+    /// Parameters
+    /// ----------
+    /// h : float
+    ///     [m/rad], finite.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of (int, int, int)
+    ///     Numbers of positive, negative and zero eigenvalues of the Gram matrix of any basis. The
+    ///     inverse exists if the last is zero.
+    #[pyo3(signature = (h))]
+    fn signature(&self, h: f64) -> Result<(usize, usize, usize)> {
+        Error::check_finite("h", &[h])?;
+        let s = self.inner.signature(h);
+        Ok((s.positive, s.negative, s.zero))
     }
 
     /// The projector onto this system along its h-reciprocal system, independent of frame and unit.

@@ -1,5 +1,6 @@
 //! Screws, screw systems, lines in involution.
 
+pub(crate) mod eigenscrews;
 mod error_form;
 mod existence;
 pub(crate) mod forms;
@@ -18,6 +19,7 @@ use cylindroid::screws::ScrewOptions;
 use crate::arrays::Numbers;
 use crate::error::Result;
 
+pub(crate) use eigenscrews::PyEigenscrews;
 pub(crate) use error_form::PyErrorFormZeros;
 pub(crate) use existence::PyExistence;
 pub(crate) use forms::finite_twist;

@@ -1,8 +1,9 @@
 //! Eigenscrews of a stiffness or inertia matrix in a pitch form.
 //!
-//! Formula  K s_i = l_i Q_h s_i,  s_i^T Q_h s_j = sign(l_i) [i = j];  K = sum |l_i| W_i W_i^T with
-//!          W_i = Q_h s_i: parallel springs of stiffness |l_i| along the wrenches W_i
-//!          computed from K = R R^T:  R^T Q_h^-1 R y_i = l_i y_i,  s_i ~ Q_h^-1 R y_i
+//! Formula  K s_i = l_i D_h s_i with D_h = 2 Q_h,  s_i^T D_h s_j = sign(l_i) [i = j];
+//!          K = sum |l_i| W_i W_i^T with W_i = D_h s_i: parallel springs of stiffness |l_i| along
+//!          the wrenches W_i
+//!          computed from K = R R^T:  R^T D_h^-1 R y_i = l_i y_i,  s_i ~ D_h^-1 R y_i
 //! Shapes   K: 6 x 6, symmetric, takes twists to wrenches (both linear part first)
 //! Units    h in m/rad; of a stiffness in N/m, N/rad and N m/rad, l_i in N/rad
 //! Valid    K positive definite: three l_i positive and three negative at every finite h, each
@@ -10,10 +11,10 @@
 //!          of its image that are h-reciprocal to all of it. The l_i do not change with the frame
 //! Fails    on a matrix that is not 6 x 6, finite and symmetric. An indefinite K may have complex
 //!          eigenvalues and fewer eigenvectors: `kind` says so, and there are no eigenscrews
-//! Why so   by the factor R and not by Q_h^-1 K, which is not symmetric, nor by K^-1: semidefinite
+//! Why so   by the factor R and not by D_h^-1 K, which is not symmetric, nor by K^-1: semidefinite
 //!          matrices need no case of their own
-//! Source   Ball 1900, chapter IX (principal screws of inertia); Patterson & Lipkin 1993, whose
-//!          form is 2 Q_0 and eigenvalues are l_i / 2; Huang & Schimmels 2000 (decomposition)
+//! Source   Ball 1900, chapter IX (principal screws of inertia); Patterson & Lipkin 1993 (h = 0);
+//!          Huang & Schimmels 2000 (decomposition)
 //! Checked  tests/it/screws/eigenscrews.rs
 
 use super::screw::Screw;
@@ -28,7 +29,7 @@ use crate::tolerance::{NEARLY_PARALLEL, SCREW_CLASS, STIFFNESS_RANK};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum EigenscrewKind {
-    /// Positive definite: six, three of positive and three of negative value.
+    /// Positive definite: six, three of positive and three of negative eigenvalue.
     Definite,
     /// Positive semidefinite: as many as the rank.
     Semidefinite {
@@ -66,11 +67,12 @@ impl EigenscrewKind {
 /// One eigenscrew: see [`eigenscrews`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Eigenscrew {
-    /// l: positive or negative, never zero.
-    pub value: f64,
-    /// s, with `<s, s>_h` the sign of the value.
+    /// l, positive or negative, never zero: of a stiffness in N/rad, the force along the screw for
+    /// 1 rad about it.
+    pub eigenvalue: f64,
+    /// s, with `2 <s, s>_h` the sign of the eigenvalue.
     pub twist: Twist,
-    /// `Q_h s`: the wrench of the spring, which the twist s deflects by one.
+    /// `2 Q_h s`: the wrench of the spring, which the twist s deflects by one.
     pub wrench: Wrench,
 }
 
@@ -85,7 +87,7 @@ impl Eigenscrew {
 /// The eigenscrews of a symmetric matrix: see [`eigenscrews`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Eigenscrews {
-    /// Positive values first, each sign by falling size.
+    /// Positive eigenvalues first, each sign by falling size.
     pub screws: Vec<Eigenscrew>,
     /// Whether there are six, fewer or none.
     pub kind: EigenscrewKind,
@@ -98,12 +100,12 @@ pub struct Eigenscrews {
 /// The eigenscrews of a stiffness (or inertia) matrix in the form of pitch `h`.
 ///
 /// ```text
-/// K s = l Q_h s,   <s, s>_h = sign l,   K = sum |l_i| (Q_h s_i)(Q_h s_i)^T
+/// K s = l D_h s,   s^T D_h s = sign l,   K = sum |l_i| (D_h s_i)(D_h s_i)^T,   D_h = 2 Q_h
 /// ```
 ///
 /// `stiffness` is 6 x 6, symmetric, linear part first: it takes a twist to a wrench at the origin
 /// of its frame, with the blocks `K_ff` (N/m), `K_fm` (N/rad) and `K_mm` (N m/rad). `h` is in
-/// m/rad, finite. The values do not change with the frame. For `h = 0` they are twice the
+/// m/rad, finite. The eigenvalues do not change with the frame. For `h = 0` they are the
 /// eigenstiffnesses of Patterson and Lipkin, and the eigenscrews of the inertia of a body are
 /// Ball's principal screws of inertia.
 ///
@@ -170,11 +172,11 @@ pub fn eigenscrews(stiffness: &Matrix, h: f64) -> Result<Eigenscrews> {
     let positive = 0..signature.positive;
     let negative = (rank - signature.negative..rank).rev();
     for i in positive.chain(negative) {
-        let value = reduced.values[i] / scale.length;
+        let eigenvalue = reduced.values[i] / (2.0 * scale.length);
         let sum = factor.iter().zip(reduced.vectors[i]).fold(Wrench::ZERO, |s, (w, y)| s + *w * y);
-        let size = (scale.length * reduced.values[i].abs()).sqrt();
+        let size = (2.0 * scale.length * reduced.values[i].abs()).sqrt();
         let twist = scale.undo(&(sum.raised(ratio) * (1.0 / size)).to_array());
-        found.screws.push(Eigenscrew { value, twist, wrench: twist.lowered(h) });
+        found.screws.push(Eigenscrew { eigenvalue, twist, wrench: twist.lowered(h) * 2.0 });
     }
     found.kind = match (rank, signature.zero) {
         (6, _) => EigenscrewKind::Definite,

@@ -42,8 +42,8 @@ pub(super) struct StiffnessJson {
 
 #[derive(Debug, Serialize)]
 struct EigenscrewJson {
-    /// Twice the force for a rotation by 1 rad [N/rad].
-    value: f64,
+    /// The force along the screw for a rotation by 1 rad about it [N/rad].
+    eigenvalue: f64,
     point: [f64; 3],
     direction: [f64; 3],
     /// [m/rad]
@@ -102,7 +102,7 @@ fn describe(found: &Stiffness, bent: Deflection) -> StiffnessJson {
             let one = |e: &Eigenscrew| {
                 let screw = e.screw()?;
                 Some(EigenscrewJson {
-                    value: e.value,
+                    eigenvalue: e.eigenvalue,
                     point: screw.axis.point.to_array(),
                     direction: screw.axis.direction.to_array(),
                     pitch: screw.pitch,
@@ -148,14 +148,14 @@ pub(super) fn print(
     if let Some(screws) = &report.eigenscrews {
         writeln!(out)?;
         let columns = [
-            ("eigenscrew l [N/rad]", Align::Right),
+            ("eigenscrew [N/rad]", Align::Right),
             ("pitch [m/rad]", Align::Right),
             ("direction", Align::Left),
             ("through", Align::Left),
         ];
         let rows = screws.iter().map(|s| {
             vec![
-                number(s.value),
+                number(s.eigenvalue),
                 number(s.pitch),
                 output::entries(&s.direction),
                 output::entries(&s.point),

@@ -1,7 +1,7 @@
 //! The hyperbolic pseudoinverse of `screws` at each pitch: inverse, projectors, Gram determinant,
 //! h-reciprocal system, and joint velocities and error form of a twist.
 
-use cylindroid::inverse::{HyperbolicOptions, hyperbolic_with};
+use cylindroid::inverse::{HyperbolicOptions, HyperbolicSvd, hyperbolic_svd, hyperbolic_with};
 use cylindroid::screws::{ErrorFormZeros, Existence, Screw, ScrewSystem, gram, gram_determinant};
 use cylindroid::{Matrix, Result, Twist};
 use serde::Serialize;
@@ -19,6 +19,8 @@ pub(super) struct AtPitch {
     /// m x m.
     pub(super) gram: Matrix,
     pub(super) determinant: f64,
+    /// For a finite pitch.
+    pub(super) svd: Option<HyperbolicSvd>,
     pub(super) matrices: Option<Matrices>,
     pub(super) reciprocal: Vec<Screw>,
     /// For the twist, if one is given and the inverse exists.
@@ -79,6 +81,15 @@ impl AtPitch {
             norm: system.projector_norm(h),
             gram: gram(jacobian, h)?,
             determinant: gram_determinant(jacobian, h)?,
+            svd: match h.is_finite() {
+                true => Some(hyperbolic_svd(
+                    jacobian,
+                    h,
+                    &options.scale,
+                    options.joint_metric.as_ref(),
+                )?),
+                false => None,
+            },
             matrices: projector.map(|p| Matrices {
                 inverse: inverse.matrix,
                 projector: p.matrix(),
@@ -104,6 +115,8 @@ pub(super) struct AtPitchJson {
     /// J^T Q_h J
     gram: Vec<Vec<f64>>,
     gram_determinant: f64,
+    /// null for an infinite pitch.
+    hyperbolic_svd: Option<SvdJson>,
     /// J+h: a row for each twist, six columns, linear first.
     inverse: Option<Vec<Vec<f64>>>,
     /// P_h on twists, linear first.
@@ -115,6 +128,16 @@ pub(super) struct AtPitchJson {
     /// With --twist; null if the inverse does not exist.
     #[serde(skip_serializing_if = "Option::is_none")]
     velocities: Option<Option<VelocitiesJson>>,
+}
+
+#[derive(Debug, Serialize)]
+struct SvdJson {
+    /// Signed squares of the hyperbolic singular values.
+    squares: Vec<f64>,
+    /// Numbers of positive, negative and zero ones.
+    signature: [usize; 3],
+    /// `positive`, `negative`, `signed` or `none`.
+    polar: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -159,6 +182,11 @@ impl AtPitch {
             reason: self.existence.reason.map(|r| r.to_string()),
             gram: self.gram.to_rows(),
             gram_determinant: self.determinant,
+            hyperbolic_svd: self.svd.as_ref().map(|svd| SvdJson {
+                squares: svd.squares.clone(),
+                signature: [svd.signature.positive, svd.signature.negative, svd.signature.zero],
+                polar: svd.verdict.name(),
+            }),
             inverse: rows(|m| &m.inverse),
             projector: rows(|m| &m.projector),
             constraint_projector: rows(|m| &m.constraint),

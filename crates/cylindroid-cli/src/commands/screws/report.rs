@@ -270,6 +270,7 @@ fn print(out: &mut dyn Write, found: &Found) -> anyhow::Result<()> {
     if !found.pitches.is_empty() {
         writeln!(out)?;
         tables::existence(out, &found.pitches)?;
+        tables::singular_values(out, &found.pitches)?;
     }
     for at in &found.pitches {
         tables::matrices(out, &twists.names, at)?;

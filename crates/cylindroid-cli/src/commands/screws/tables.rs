@@ -71,6 +71,30 @@ pub(super) fn existence(out: &mut dyn Write, pitches: &[AtPitch]) -> anyhow::Res
     Ok(output::table(out, &columns, rows)?)
 }
 
+/// A row for each finite pitch: signed squares of the hyperbolic singular values.
+pub(super) fn singular_values(out: &mut dyn Write, pitches: &[AtPitch]) -> anyhow::Result<()> {
+    let columns = [
+        ("h [m/rad]", Align::Right),
+        ("signed squares", Align::Left),
+        ("signature", Align::Left),
+        ("polar decomposition", Align::Left),
+    ];
+    let finite = || pitches.iter().filter_map(|at| Some((at.h, at.svd.as_ref()?)));
+    if finite().next().is_none() {
+        return Ok(());
+    }
+    writeln!(out, "\nHyperbolic singular values of the twists")?;
+    let rows = finite().map(|(h, svd)| {
+        vec![
+            pitch(h),
+            output::entries(&svd.squares),
+            svd.signature.to_string(),
+            svd.verdict.description().to_owned(),
+        ]
+    });
+    Ok(output::table(out, &columns, rows)?)
+}
+
 /// The matrices and the h-reciprocal system of one pitch.
 pub(super) fn matrices(out: &mut dyn Write, names: &[String], at: &AtPitch) -> anyhow::Result<()> {
     let h =

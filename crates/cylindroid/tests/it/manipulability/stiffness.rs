@@ -377,15 +377,15 @@ fn stiffness_moves_with_the_mechanism() {
         close("inverse", &(&there * &compliance), &Matrix::identity(6), 1e-8);
         let (x, y) = (a.eigenscrews().unwrap(), b.eigenscrews().unwrap());
         for (x, y) in x.screws.iter().zip(&y.screws) {
-            assert!((x.value - y.value).abs() < 1e-8 * x.value.abs(), "{x:?} {y:?}");
+            assert!((x.eigenvalue - y.eigenvalue).abs() < 1e-8 * x.eigenvalue.abs(), "{x:?} {y:?}");
             let (x, y) = (x.screw().unwrap(), y.screw().unwrap());
             assert!((x.pitch - y.pitch).abs() < 1e-7, "{x:?} {y:?}");
         }
     }
 }
 
-/// K s = l Q_0 s for each, three positive with positive pitch and three negative: a twist of 1 rad
-/// gives half of l as a force on the same screw.
+/// K s = 2 l Q_0 s for each, three positive with positive pitch and three negative: a twist of 1 rad
+/// gives l as a force on the same screw.
 #[test]
 fn eigenscrews_solve_their_equation() {
     let stewart = load("stewart");
@@ -395,17 +395,17 @@ fn eigenscrews_solve_their_equation() {
     assert_eq!(all.len(), 6);
     for (i, e) in all.iter().enumerate() {
         let pitch = e.screw().unwrap().pitch;
-        assert_eq!((e.value > 0.0, pitch > 0.0), (i < 3, i < 3));
+        assert_eq!((e.eigenvalue > 0.0, pitch > 0.0), (i < 3, i < 3));
         let s = e.twist.at_point(found.point).to_array();
         let wrench = k.mul_vec(&s);
         for j in 0..6 {
-            let expected = 0.5 * e.value * s[(j + 3) % 6];
+            let expected = e.eigenvalue * s[(j + 3) % 6];
             assert!((wrench[j] - expected).abs() < 1e-8 * k.max_abs(), "{i}: {wrench:?}");
         }
     }
     // The sum of the forces per angle is twice the trace of the coupling block.
     let coupling: f64 = (0..3).map(|i| k[(i, i + 3)]).sum();
-    let sum: f64 = all.iter().map(|e| 0.5 * e.value).sum();
+    let sum: f64 = all.iter().map(|e| e.eigenvalue).sum();
     assert!((sum - 2.0 * coupling).abs() < 1e-8 * k.max_abs());
 }
 

@@ -28,7 +28,7 @@ fn random_stiffness(random: &mut Random, rank: usize) -> Matrix {
 }
 
 fn values(found: &Eigenscrews) -> Vec<f64> {
-    let mut values: Vec<f64> = found.screws.iter().map(|e| e.value).collect();
+    let mut values: Vec<f64> = found.screws.iter().map(|e| e.eigenvalue).collect();
     values.sort_by(|a, b| b.total_cmp(a));
     values
 }
@@ -39,7 +39,7 @@ fn moved(k: &Matrix, pose: Pose) -> Matrix {
     &(&inverse.transpose() * k) * &inverse
 }
 
-/// K s = l Q_h s, <s_i, s_j>_h = sign(l_i) [i = j], K = sum |l| W W^T.
+/// K s = l D_h s, s_i^T D_h s_j = sign(l_i) [i = j] with D_h = 2 Q_h, K = sum |l| W W^T.
 #[test]
 fn eigenscrews_make_the_matrix() {
     let mut random = Random(181);
@@ -51,13 +51,13 @@ fn eigenscrews_make_the_matrix() {
             let mut sum = Matrix::zeros(6, 6);
             for (i, a) in found.screws.iter().enumerate() {
                 let image = k.mul_vec(&a.twist.to_array());
-                let expected = (a.wrench * a.value).to_array();
-                assert_close("K s", &image, &expected, 1e-9 * a.value.abs().max(1.0));
+                let expected = (a.wrench * a.eigenvalue).to_array();
+                assert_close("K s", &image, &expected, 1e-9 * a.eigenvalue.abs().max(1.0));
                 for (j, b) in found.screws.iter().enumerate() {
-                    let sign = if i == j { a.value.signum() } else { 0.0 };
-                    assert!((a.twist.pitch_form(b.twist, h) - sign).abs() < 1e-7);
+                    let sign = if i == j { a.eigenvalue.signum() } else { 0.0 };
+                    assert!((2.0 * a.twist.pitch_form(b.twist, h) - sign).abs() < 1e-7);
                 }
-                let one = springs(&[a.wrench * a.value.abs().sqrt()]);
+                let one = springs(&[a.wrench * a.eigenvalue.abs().sqrt()]);
                 sum = Matrix::from_fn(6, 6, |r, c| sum[(r, c)] + one[(r, c)]);
             }
             assert_matrix("K", &sum, &k, 1e-9);
@@ -70,7 +70,7 @@ fn eigenscrews_make_the_matrix() {
     }
 }
 
-/// Three of each sign for a definite matrix, rising with h; their sum is 4 h tr K_ff + 4 tr K_fm.
+/// Three of each sign for a definite matrix, rising with h; their sum is 2 h tr K_ff + 2 tr K_fm.
 #[test]
 fn three_positive_and_three_negative_that_rise_with_the_pitch() {
     let mut random = Random(182);
@@ -84,7 +84,7 @@ fn three_positive_and_three_negative_that_rise_with_the_pitch() {
             assert!(all[2] > 0.0 && all[3] < 0.0);
             let sum: f64 = all.iter().sum();
             assert!(
-                (sum - 4.0 * h * trace(0, 0) - 4.0 * trace(0, 3)).abs() < 1e-9 * sum.abs().max(1.0)
+                (sum - 2.0 * h * trace(0, 0) - 2.0 * trace(0, 3)).abs() < 1e-9 * sum.abs().max(1.0)
             );
             if let Some(before) = &before {
                 assert!(all.iter().zip(before).all(|(a, b)| a > b), "{all:?} after {before:?}");
@@ -110,7 +110,7 @@ fn frames_change_nothing() {
 }
 
 /// Ball's principal screws of inertia: on the principal axes through the centre of mass, of the
-/// pitches h +- sqrt(h^2 + r^2), with the values 2 m p.
+/// pitches h +- sqrt(h^2 + r^2), with the eigenvalues m p.
 #[test]
 fn principal_screws_of_inertia() {
     let mut random = Random(184);
@@ -132,7 +132,7 @@ fn principal_screws_of_inertia() {
             let screw = e.screw().unwrap();
             let near = |(p, _): &&(f64, Vec3)| (screw.pitch - p).abs() < 1e-9;
             let (pitch, axis) = expected.iter().find(near).expect("a pitch");
-            assert!((e.value - 2.0 * mass * pitch).abs() < 1e-9);
+            assert!((e.eigenvalue - mass * pitch).abs() < 1e-9);
             assert!(screw.axis.direction.cross(*axis).norm() < 1e-7);
             assert!((screw.axis.nearest(pose.translation) - pose.translation).norm() < 1e-7);
         }
@@ -201,7 +201,7 @@ fn springs_of_one_pitch() {
 }
 
 /// The eigenscrews of a serial arm's stiffness are the hyperbolic singular vectors of its Jacobian
-/// in the metric of joint stiffness, and the values the inverses of the squares.
+/// in the metric of joint stiffness, and the eigenvalues half the inverses of the squares.
 #[test]
 fn stiffness_of_an_arm() {
     let mut random = Random(186);
@@ -214,13 +214,13 @@ fn stiffness_of_an_arm() {
     let k = &(&inverse.transpose() * &Matrix::diagonal(&stiffness)) * &inverse;
     let symmetric = Matrix::from_fn(6, 6, |i, l| 0.5 * (k[(i, l)] + k[(l, i)]));
     let found = eigenscrews(&symmetric, 0.25).unwrap();
-    let mut expected: Vec<f64> = svd.squares.iter().map(|g| 1.0 / g).collect();
+    let mut expected: Vec<f64> = svd.squares.iter().map(|g| 0.5 / g).collect();
     expected.sort_by(|a, b| b.total_cmp(a));
     let size = expected.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     assert_close("values", &values(&found), &expected, 1e-9 * size);
 }
 
-/// f = v on x, y, z and m = -w, w, w: the values on x are +-2i at h = 0. A spring along a line is
+/// f = v on x, y, z and m = -w, w, w: the eigenvalues on x are +-i at h = 0. A spring along a line is
 /// reciprocal to itself.
 #[test]
 fn matrices_without_six_eigenscrews() {
@@ -233,7 +233,7 @@ fn matrices_without_six_eigenscrews() {
     assert_eq!((found.screws.len(), found.kind.name()), (0, "defective"));
     let found = eigenscrews(&line, 0.5).unwrap();
     assert_eq!(found.kind, EigenscrewKind::Semidefinite { rank: 1 });
-    assert!((found.screws[0].value - 2.0).abs() < 1e-12);
+    assert!((found.screws[0].eigenvalue - 1.0).abs() < 1e-12);
     let torsion = eigenscrews(&Matrix::diagonal(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]), 0.0).unwrap();
     assert_eq!(torsion.kind, EigenscrewKind::Defective { rank: 3, missing: 3 });
     assert_eq!(torsion.spring_pitch, None);
@@ -241,14 +241,14 @@ fn matrices_without_six_eigenscrews() {
     assert_eq!(none.kind, EigenscrewKind::Semidefinite { rank: 0 });
 }
 
-/// K Q_h^-1 has the complex pair that the verdict speaks of: (Q_h^-1 K)^2 = -4 on a plane.
+/// The complex pair that the verdict speaks of: (D_0^-1 K)^2 = -1 on a plane.
 #[test]
 fn an_indefinite_matrix_may_have_complex_values() {
     let k = Matrix::diagonal(&[1.0, 1.0, 1.0, -1.0, 1.0, 1.0]);
-    let operator = &(&form_matrix(0.0) * &Matrix::diagonal(&[4.0; 6])) * &k;
+    let operator = &(&form_matrix(0.0) * &Matrix::diagonal(&[2.0; 6])) * &k;
     let twice = &operator * &operator;
-    assert_close("v", twice.column(0), &[-4.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0.0);
-    assert_close("w", twice.column(3), &[0.0, 0.0, 0.0, -4.0, 0.0, 0.0], 0.0);
+    assert_close("v", twice.column(0), &[-1.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0.0);
+    assert_close("w", twice.column(3), &[0.0, 0.0, 0.0, -1.0, 0.0, 0.0], 0.0);
 }
 
 #[test]

@@ -6,3 +6,4 @@ mod control;
 mod pages;
 mod paper_order;
 mod screws;
+mod sources;
