@@ -129,7 +129,7 @@ impl Walk {
         public: bool,
     ) -> Result<()> {
         let name = item.ident.to_string();
-        let (inside, below) = (folder.join(&name), [modules, &[name.clone()]].concat());
+        let (inside, below) = (folder.join(&name), [modules, std::slice::from_ref(&name)].concat());
         if let Some((_, items)) = &item.content {
             return self.module(items, &inside, &below, public);
         }
