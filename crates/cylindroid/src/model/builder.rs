@@ -165,6 +165,12 @@ impl Builder {
         })
     }
 
+    /// Adds elastic parts; [`Builder::build`] checks their names.
+    pub fn elasticity(&mut self, elasticity: Elasticity) -> &mut Self {
+        self.elasticity.elements.extend(elasticity.elements);
+        self
+    }
+
     /// Builds the mechanism.
     ///
     /// # Errors

@@ -14,6 +14,7 @@ mod curvature;
 mod depth_first;
 mod dimension;
 mod elasticity;
+mod elasticity_check;
 mod flatten;
 pub mod formats;
 mod include;

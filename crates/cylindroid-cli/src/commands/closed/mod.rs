@@ -11,6 +11,7 @@ mod operation_modes;
 pub(crate) mod singularity;
 pub(super) mod statics;
 mod stiffness;
+mod transmitted_wrench;
 
 use cylindroid::closure::{ClosedChain, LoopClosureError};
 use cylindroid::model::{FrameId, Mechanism};

@@ -4,14 +4,15 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::closure::{
-    Mobility, MotionSpace, StaticLoad, TransmittedWrench, contact_forces, joint_torques,
-    row_compliance, transmitted_wrenches,
+    Mobility, MotionSpace, StaticLoad, contact_forces, joint_torques, row_compliance,
+    transmitted_wrenches,
 };
 use cylindroid::{Error, Result};
 use serde::Serialize;
 
 use super::stiffness::StiffnessJson;
-use super::{HeadJson, Posed, measured, stiffness};
+use super::transmitted_wrench::TransmittedWrenchJson;
+use super::{HeadJson, Posed, measured, stiffness, transmitted_wrench};
 use crate::args::StaticsArgs;
 use crate::commands::shared::Style;
 use crate::output::{self, Align};
@@ -47,34 +48,6 @@ struct StaticsJson<'a> {
 struct InternalJson {
     torques: Vec<f64>,
     forces: Vec<TransmittedWrenchJson>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct TransmittedWrenchJson {
-    /// Loop joint or contact.
-    name: String,
-    /// Where it is [m].
-    point: [f64; 3],
-    /// Of its first link on its second [N], world axes.
-    force: [f64; 3],
-    /// About the point [N m].
-    moment: [f64; 3],
-    /// Of contacts: the force along the normal, positive where it pushes, and across it [N].
-    normal: Option<f64>,
-    tangential: Option<f64>,
-}
-
-impl From<TransmittedWrench> for TransmittedWrenchJson {
-    fn from(t: TransmittedWrench) -> Self {
-        Self {
-            point: t.point.to_array(),
-            force: t.wrench.force.to_array(),
-            moment: t.wrench.moment.to_array(),
-            normal: t.normal,
-            tangential: t.tangential(),
-            name: t.name,
-        }
-    }
 }
 
 pub(crate) fn run(
@@ -198,35 +171,17 @@ fn print(out: &mut dyn Write, posed: &Posed, report: &StaticsJson<'_>) -> anyhow
     output::table(out, &columns, joints)?;
     if !report.forces.is_empty() {
         let title = if report.elastic { "elastic forces" } else { "least forces" };
-        forces(out, title, &report.forces)?;
+        transmitted_wrench::forces(out, title, &report.forces)?;
     }
     let shown = report.internal.iter().filter(|h| !h.forces.is_empty());
     for (i, internal) in shown.enumerate() {
-        forces(out, &format!("with internal {}", i + 1), &internal.forces)?;
+        transmitted_wrench::forces(out, &format!("with internal {}", i + 1), &internal.forces)?;
     }
     for (i, undetermined) in report.hyperstatic.iter().enumerate() {
-        forces(out, &format!("undetermined {}", i + 1), undetermined)?;
+        transmitted_wrench::forces(out, &format!("undetermined {}", i + 1), undetermined)?;
     }
     if let Some(found) = &report.stiffness {
         stiffness::print(out, posed, report.components, found)?;
     }
     Ok(())
-}
-
-pub(super) fn forces(
-    out: &mut dyn Write,
-    title: &str,
-    all: &[TransmittedWrenchJson],
-) -> anyhow::Result<()> {
-    writeln!(out)?;
-    let right = ["fx", "fy", "fz", "mx", "my", "mz", "normal", "tangential"];
-    let mut columns = vec![(title, Align::Left)];
-    columns.extend(right.map(|n| (n, Align::Right)));
-    let rows = all.iter().map(|t| {
-        let numbers = t.force.iter().chain(&t.moment).map(|x| output::entries(&[*x]));
-        let contact = [t.normal, t.tangential]
-            .map(|x| x.map_or_else(|| "-".to_owned(), |x| output::entries(&[x])));
-        std::iter::once(t.name.clone()).chain(numbers).chain(contact).collect()
-    });
-    Ok(output::table(out, &columns, rows)?)
 }

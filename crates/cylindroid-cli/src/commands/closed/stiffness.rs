@@ -8,7 +8,7 @@ use cylindroid::{Matrix, Result};
 use serde::Serialize;
 
 use super::Posed;
-use super::statics::TransmittedWrenchJson;
+use super::transmitted_wrench::TransmittedWrenchJson;
 use crate::output::{self, Align, number};
 use crate::values::ByName;
 
@@ -188,7 +188,7 @@ pub(super) fn print(
             0 => "forces with elasticity".to_owned(),
             n => format!("forces with elasticity ({n} undetermined)"),
         };
-        super::statics::forces(out, &title, &report.forces)?;
+        super::transmitted_wrench::forces(out, &title, &report.forces)?;
     }
     Ok(())
 }

@@ -24,7 +24,6 @@
 //! Checked  tests/it/closure/blocks.rs, tests/it/closure/reference.rs
 
 use super::motion_space::MotionSpace;
-use super::report::Mobility;
 use super::subspace::Subspace;
 use crate::linalg::{ColumnSpace, Cut, Matrix, Threshold};
 
@@ -41,76 +40,6 @@ pub struct CoordinateKinds {
     pub both: Subspace,
     /// Counted in `passive` and in `object`.
     pub overlap: usize,
-}
-
-/// A block of the motions, see [`Mobility::blocks`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotionBlock<'a> {
-    /// Its name in reports.
-    pub name: &'static str,
-    /// The symbol of its columns in eqs. 3 to 5.
-    pub symbol: &'static str,
-    /// Its motions (q_a, q_p, u).
-    pub motions: &'a Subspace,
-    /// The motions in words.
-    pub meaning: &'static str,
-}
-
-impl Mobility {
-    /// The blocks of eqs. 3 to 5 in their order. Their numbers add up to the degrees of freedom and
-    /// the overlap of [`CoordinateKinds`].
-    ///
-    /// ```
-    /// use cylindroid::closure::{ClosedChain, Mobility};
-    ///
-    /// // The legs of this platform cannot spin; six coordinate motions need the passive joints.
-    /// let stewart = cylindroid::load("stewart")?;
-    /// let chain = ClosedChain::of(&stewart.state(stewart.home())?, None, None)?;
-    /// let mobility = Mobility::of(&chain.constraint);
-    /// let counts = mobility.blocks().map(|block| (block.name, block.motions.dimension()));
-    /// assert_eq!(counts.iter().map(|(_, n)| n).sum::<usize>(), mobility.dof.dimension());
-    /// assert!(counts.contains(&("coordinate_both", 6)));
-    /// # Ok::<(), cylindroid::Error>(())
-    /// ```
-    #[must_use]
-    pub fn blocks(&self) -> [MotionBlock<'_>; 7] {
-        let kinds = &self.coordinate_kinds;
-        let block = |name, symbol, motions, meaning| MotionBlock { name, symbol, motions, meaning };
-        [
-            block("redundancy", "Gamma_r", &self.redundancy, "actuated joints alone"),
-            block("idle", "Gamma_p,i", &self.idle, "passive joints alone"),
-            block(
-                "mixed",
-                "Gamma_pu,i, Gamma_up,i",
-                &self.mixed,
-                "passive joints and reference frame, with actuated joints at rest",
-            ),
-            block(
-                "uncontrollable",
-                "Gamma_u,i",
-                &self.uncontrollable_object_motions,
-                "reference frame alone, with all joints at rest",
-            ),
-            block(
-                "coordinate_passive",
-                "Gamma_ap,c, Gamma_pa,c",
-                &kinds.passive,
-                "actuated and passive joints, with the reference frame at rest",
-            ),
-            block(
-                "coordinate_both",
-                "Gamma_apu,c, Gamma_pua,c, Gamma_upa,c",
-                &kinds.both,
-                "actuated and passive joints and reference frame together",
-            ),
-            block(
-                "coordinate_object",
-                "Gamma_au,c, Gamma_ua,c",
-                &kinds.object,
-                "actuated joints and reference frame, with passive joints at rest",
-            ),
-        ]
-    }
 }
 
 /// The parts of a kernel from which blocks are made, as coefficients of its columns.

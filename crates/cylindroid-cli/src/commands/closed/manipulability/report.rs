@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
 use super::super::HeadJson;
-use super::super::statics::TransmittedWrenchJson;
+use super::super::transmitted_wrench::TransmittedWrenchJson;
 use super::drawn::{self, DrawnJson};
 use super::find::{Bounded, Found, InternalForces, Reached};
 use crate::commands::shared::Style;
