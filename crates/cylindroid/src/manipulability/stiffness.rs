@@ -95,7 +95,7 @@ pub struct Deflection {
     pub torques: Vec<f64>,
     /// Wrenches in loop joints and contacts. If forces are undetermined, those of least norm.
     pub forces: Vec<TransmittedWrench>,
-    /// Elastic energy [J].
+    /// Elastic energy (J).
     pub energy: f64,
 }
 

@@ -75,7 +75,7 @@ pub struct FingerContact {
     /// Largest normal force (N), used by [`GraspMetric::LInf`].
     pub strength: f64,
     /// Curvature of finger and object, in world axes, used by
-    /// [`grasp_mobility`](super::grasp_mobility).
+    /// [`grasp_mobility`](super::super::grasp_mobility()).
     pub curvature: ContactCurvature,
 }
 

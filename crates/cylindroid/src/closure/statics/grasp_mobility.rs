@@ -177,7 +177,7 @@ pub struct GraspMobility {
 /// ```
 ///
 /// # Errors
-/// Contacts that [`grasp_quality`](super::grasp_quality) refuses; curvatures whose sum is not
+/// Contacts that [`grasp_quality`](super::super::grasp_quality()) refuses; curvatures whose sum is not
 /// positive in all directions; too many contacts.
 #[doc(alias = "immobilization")]
 #[doc(alias = "form closure")]
