@@ -41,7 +41,7 @@ Examples:
   cylindroid manipulability five-bar --plot ellipses.svg --view section
   cylindroid manipulability panda --metric limits --task x,y,z --polytope
   cylindroid manipulability stewart --metric length --gradient smallest
-  cylindroid manipulability ur5.urdf --metric length --wq inertia
+  cylindroid manipulability path/to/ur5_robot.urdf --metric length --wq inertia
   cylindroid manipulability stewart --configurations configurations.csv --json";
 
 #[derive(Debug, Args)]

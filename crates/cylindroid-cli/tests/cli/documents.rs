@@ -149,6 +149,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
         "manipulability" => vec![
             vec!["five-bar", "--polytope", "--gradient", "volume"],
             vec!["five-bar", "--configurations", "tests/data/five-bar.csv"],
+            vec!["five-bar", "--plot", concat!(env!("CARGO_TARGET_TMPDIR"), "/documents.svg")],
         ],
         "statics" => vec![
             vec![GRASP, "--wrench", "0,0,-9,0,0,0"],

@@ -63,7 +63,7 @@ impl PolarKind {
         match self {
             Self::Positive => "all squares are positive; the inverse minimises its error",
             Self::Negative => "all squares are negative; the inverse maximises its error",
-            Self::Signed => "squares of both signs; the error of the inverse is a saddle",
+            Self::Signed => "squares of both signs; the inverse is a saddle of its error",
             Self::None { .. } => {
                 "no decomposition; motions of the system are h-reciprocal to all of it"
             }

@@ -75,7 +75,7 @@ impl State {
             .collect()
     }
 
-    fn link_pose(&self, link: usize) -> Pose {
+    pub(crate) fn link_pose(&self, link: usize) -> Pose {
         self.pose(self.mechanism().link_frame(link))
     }
 }

@@ -36,7 +36,8 @@ use crate::linalg::{Matrix, Metric};
 ///
 /// # Errors
 /// Moving bodies without a mass, by name; motions without kinetic energy (masses or inertias of
-/// zero); an actuated loop joint of several coordinates.
+/// zero); loops that permit no motion of the actuated joints; an actuated loop joint of several
+/// coordinates.
 pub fn actuated_inertia(state: &State) -> Result<Matrix> {
     let mechanism = state.mechanism();
     mechanism.check_masses()?;
@@ -66,6 +67,15 @@ pub fn actuated_inertia(state: &State) -> Result<Matrix> {
     Metric::new("inertia", &reduced).map_err(refuse)?;
     let d = map.actuated_rows();
     let p = reduced.cols();
+    if p == 0 && d.rows() > 0 {
+        return Err(Error::Model {
+            model: mechanism.name().to_owned(),
+            culprit: mechanism.name().to_owned(),
+            message: "the loops permit no motion of the actuated joints, so they have no inertia; \
+                      choose other actuated joints, or give weights"
+                .to_owned(),
+        });
+    }
     let mean = (0..p).map(|i| reduced[(i, i)]).sum::<f64>() / p.max(1) as f64;
     let within = &(&d * &reduced) * &d.transpose();
     let projector = &d * &d.transpose();

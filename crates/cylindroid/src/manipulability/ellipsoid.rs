@@ -4,8 +4,8 @@
 //!          rows of the chosen components; A and B are reduced to principal semi-axes and an
 //!          orthonormal basis of the unbounded directions
 //! Shapes   A: d x k, B: d x i; k' semi-axes and i' directions of the chosen components
-//! Units    of the components; each component has its own scale inside, so that ranks do not
-//!          depend on units
+//! Units    of the components; each component has its own scale inside, so that ranks depend on
+//!          units only where a component is below 1e-9 of the largest: it counts as at rest
 //! Valid    any spectrum, also flat and unbounded ellipsoids; a section of a flat one may be zero
 //! Why so   the projection leaves the other components free and the section fixes them at zero, so
 //!          the two are different ellipses; a figure must name the one that it draws. Duality

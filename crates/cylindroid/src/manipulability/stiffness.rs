@@ -159,7 +159,8 @@ impl Stiffness {
     }
 
     /// The stiffness matrix at another point and in other axes: those of `world_from_frame`, which
-    /// is fixed to the body of the reference frame.
+    /// is fixed to the body of the reference frame; in the plane with z as its z axis. Shape and
+    /// units as of [`Stiffness::stiffness`].
     ///
     /// ```text
     /// K' = Ad^T K Ad

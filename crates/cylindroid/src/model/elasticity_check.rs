@@ -5,6 +5,8 @@
 use super::elasticity::{ElasticElement, ElasticKind, Elasticity};
 use super::mechanism::Mechanism;
 use crate::error::{Error, Result};
+use crate::linalg::{Matrix, SymmetricEigen};
+use crate::tolerance::RIGID;
 
 impl Elasticity {
     /// Refuses names that the mechanism does not have, and values without meaning.
@@ -51,6 +53,20 @@ impl ElasticElement {
                         return refuse("it is fixed; give a compliance instead".to_owned());
                     }
                 }
+                let mut own = mechanism
+                    .coordinates()
+                    .iter()
+                    .filter(|c| mechanism.joints()[c.joint].name == name)
+                    .map(|c| c.kind.is_length());
+                if let Some(first) = own.next()
+                    && own.any(|length| length != first)
+                {
+                    return refuse(
+                        "it has angles and lengths, whose stiffnesses have different units; name \
+                         its coordinates one by one"
+                            .to_owned(),
+                    );
+                }
                 let coordinates = mechanism.coordinates().iter().map(|c| c.name.as_str());
                 let known: Vec<&str> = tree.chain(loops).chain(coordinates).collect();
                 return if known.contains(&name) {
@@ -93,8 +109,28 @@ impl ElasticElement {
         if !c.is_finite() || c.max_difference(&c.transpose()) > 1e-9 * c.max_abs() {
             return refuse("the compliance must be finite and symmetric".to_owned());
         }
+        let [largest, least] = extremes(c, mechanism.reach());
+        if least < -RIGID * largest.max(-least) {
+            return refuse("the compliance must be positive semidefinite".to_owned());
+        }
         Ok(())
     }
+}
+
+/// Largest and least eigenvalue of a compliance, with lengths divided by `length`.
+fn extremes(compliance: &Matrix, length: f64) -> [f64; 2] {
+    let d = compliance.rows();
+    // x, y, z and three rotations, or x, y and one.
+    let linear = if d == 6 { 3 } else { 2 };
+    let size = |i: usize| if i < linear { length } else { 1.0 };
+    let mut scaled = [[0.0; 6]; 6];
+    for (i, row) in scaled.iter_mut().enumerate().take(d) {
+        for (j, entry) in row.iter_mut().enumerate().take(d) {
+            *entry = compliance[(i, j)] / (size(i) * size(j));
+        }
+    }
+    let values = SymmetricEigen::of(scaled, d).values;
+    [values[0], values[d - 1]]
 }
 
 impl Mechanism {

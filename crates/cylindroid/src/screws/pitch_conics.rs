@@ -87,6 +87,9 @@ impl PitchConics {
     /// The kind of the conic of pitch `h`.
     #[must_use]
     pub fn kind(&self, h: f64) -> ConicKind {
+        if h.is_nan() {
+            return ConicKind::Empty; // no screw has this pitch
+        }
         let (_, [plus, minus]) = self.eigen(h);
         match (plus + minus, plus.min(minus)) {
             (3, 0) => ConicKind::Empty,
@@ -99,7 +102,7 @@ impl PitchConics {
     }
 
     /// Points of the conic of pitch `h`, as closed curves of unit vectors x: a regular conic is one
-    /// curve of `count` points, a line half a great circle, a point a single vector. Empty and
+    /// curve of `count` points and the first again, a line half a great circle, a point a single vector. Empty and
     /// whole conics have none.
     ///
     /// ```

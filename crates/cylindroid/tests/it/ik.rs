@@ -418,12 +418,14 @@ fn other_joints_are_within_their_limits() {
         name = "arm"
         type = "revolute"
         between = ["ground", "hand"]
+        origin = [0, 0, 0]
         axis = [0, 0, 1]
         limits = { lower = -1.0, upper = 1.0 }
         [[joint]]
         name = "other"
         type = "revolute"
         between = ["ground", "finger"]
+        origin = [0, 0, 0]
         axis = [0, 0, 1]
         limits = { lower = 0.5, upper = 1.0 }
         "#,

@@ -306,7 +306,14 @@ fn joints(posed: &Posed, mobility: &[JointMobility]) -> [(&'static str, String);
     let all = moving.len() == names.len();
     let with_drives_at_rest = those(&|j| j.free_of_actuators);
     [
-        ("joints that move", if all { format!("all {}", names.len()) } else { list(&moving) }),
+        (
+            "joints that move",
+            match names.len() {
+                0 => "none".to_owned(),
+                n if all => format!("all {n}"),
+                _ => list(&moving),
+            },
+        ),
         ("locked by geometry", some(those(&|j| !j.moves))),
         (
             "with actuators at rest",

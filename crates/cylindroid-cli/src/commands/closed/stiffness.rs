@@ -1,10 +1,11 @@
 //! Stiffness, compliance and deflection, as a part of `statics`.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 
 use cylindroid::manipulability::{Deflection, Stiffness};
 use cylindroid::screws::Eigenscrew;
-use cylindroid::{Matrix, Result};
+use cylindroid::{Error, Matrix, Result};
 use serde::Serialize;
 
 use super::Posed;
@@ -71,8 +72,19 @@ pub(super) fn find(
             .flatten()
             .map(String::as_str)
             .chain(mechanism.joints().iter().map(|j| j.name.as_str()))
+            .collect::<BTreeSet<_>>()
+            .into_iter()
             .collect();
         given.check("joint", &known)?;
+        if chain.actuated.is_empty() && given.named().next().is_none() {
+            return Err(Error::InvalidOption {
+                option: "--stiffness",
+                value: "one number".to_owned(),
+                reason: "it is that of the actuated joints, and there are none; name the joints, \
+                         as in --stiffness hinge=100"
+                    .to_owned(),
+            });
+        }
         for name in &chain.actuated {
             if let Some(k) = given.of(name) {
                 elasticity.stiffness(name, k);
@@ -132,18 +144,15 @@ pub(super) fn print(
     components: &[&str],
     report: &StiffnessJson,
 ) -> anyhow::Result<()> {
-    for (name, matrix) in [("stiffness", &report.matrix), ("compliance", &report.compliance)] {
-        writeln!(out)?;
-        match matrix {
-            Some(matrix) => square(out, name, components, matrix)?,
-            None if name == "stiffness" => {
-                writeln!(out, "stiffness: none, {} wrenches deflect nothing", report.rigid.len())?;
-            }
-            None => {
-                let free = report.free.len();
-                writeln!(out, "compliance: none, {free} motions are free of deflection")?;
-            }
-        }
+    writeln!(out)?;
+    match &report.matrix {
+        Some(matrix) => square(out, "stiffness [N, N m per m, rad]", components, matrix)?,
+        None => writeln!(out, "stiffness: none, some wrenches deflect nothing")?,
+    }
+    writeln!(out)?;
+    match &report.compliance {
+        Some(matrix) => square(out, "compliance [m, rad per N, N m]", components, matrix)?,
+        None => writeln!(out, "compliance: none, some motions meet no resistance")?,
     }
     if let Some(screws) = &report.eigenscrews {
         writeln!(out)?;
@@ -170,10 +179,19 @@ pub(super) fn print(
         let cells = values.iter().map(|x| output::entries(&[*x]));
         std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
     };
-    let mut rows = vec![row("of the frame", &report.deflection)];
-    rows.extend(report.rigid.iter().map(|w| row("rigid for the wrench", w)));
-    rows.extend(report.free.iter().map(|u| row("free motion", u)));
-    output::table(out, &columns, rows)?;
+    output::table(out, &columns, vec![row("of the frame", &report.deflection)])?;
+    for (title, basis) in [
+        ("wrenches that deflect nothing (basis) [N, N m]", &report.rigid),
+        ("motions without resistance (basis) [m, rad]", &report.free),
+    ] {
+        if basis.is_empty() {
+            continue;
+        }
+        writeln!(out)?;
+        columns[0].0 = title;
+        let rows = basis.iter().enumerate().map(|(i, x)| row(&(i + 1).to_string(), x));
+        output::table(out, &columns, rows)?;
+    }
     writeln!(out)?;
     let rows = report.parts.iter().map(|p| vec![p.name.clone(), output::entries(&p.deflection)]);
     let columns = [("elastic part", Align::Left), ("deflection [m, rad]", Align::Left)];

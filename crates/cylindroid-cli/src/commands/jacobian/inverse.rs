@@ -17,7 +17,7 @@ pub(super) struct InverseJson {
     name: String,
     /// The parameters that were given.
     parameters: BTreeMap<&'static str, f64>,
-    exists: bool,
+    pub(super) exists: bool,
     reason: Option<String>,
     /// A row for each coordinate, six columns, linear first; null if it does not exist.
     matrix: Option<Vec<Vec<f64>>>,
@@ -118,7 +118,7 @@ pub(super) fn print(
         .iter()
         .map(|d| {
             let share = number(output::without_rounding(d.filter_factor));
-            format!("({}), realised to {share}", output::entries(&d.direction))
+            format!("({}), filter factor {share}", output::entries(&d.direction))
         })
         .collect();
     output::pairs(
@@ -154,7 +154,7 @@ pub(super) fn print(
     writeln!(out)?;
     let mut columns = vec![("twist", Align::Left)];
     columns.extend(components.iter().map(|name| (*name, Align::Right)));
-    Ok(output::table(out, &columns, [row("asked", twist), row("realised", realised)])?)
+    Ok(output::table(out, &columns, [row("requested", twist), row("realised", realised)])?)
 }
 
 fn parameters(given: &BTreeMap<&'static str, f64>) -> String {

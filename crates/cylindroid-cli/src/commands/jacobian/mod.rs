@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use self::inverse::InverseJson;
 use crate::args::{Angles, JacobianArgs, ReferenceName};
-use crate::commands::shared::{Style, configuration, end_effector};
+use crate::commands::shared::{Style, answer, configuration, end_effector};
 use crate::output;
 
 #[derive(Debug, Serialize)]
@@ -112,7 +112,7 @@ pub(crate) fn run(
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &report)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(answer(report.inverse.as_ref().is_none_or(|inverse| inverse.exists)))
 }
 
 fn orientation_rates(angles: Angles) -> (OrientationRates, &'static str) {

@@ -243,13 +243,14 @@ impl Search<'_> {
 
     /// Walks along every mode, also along those that walks find.
     fn walk(&mut self) -> Result<()> {
-        let mut walked = 0;
-        while walked < self.modes.len().min(MAX_WALKED) {
-            let mode = &self.modes[walked].mode;
-            walked += 1;
+        let (mut next, mut walked) = (0, 0);
+        while next < self.modes.len() && walked < MAX_WALKED {
+            let mode = &self.modes[next].mode;
+            next += 1;
             if mode.dimension == 0 || mode.dof > mode.dimension {
                 continue;
             }
+            walked += 1;
             for q in crossings(self.mechanism, &mode.configuration.clone(), self.length)? {
                 let places = self.landmarks.at(&link_poses(&self.mechanism.state(&q)?));
                 let same =
@@ -297,7 +298,11 @@ impl Search<'_> {
         let mut samples = Vec::new();
         for (i, branch) in finite.branches.iter().enumerate() {
             let far = branch.far(&here.state, self.length)?;
-            let mut there = self.sample(far.first().map_or(q, Vec::as_slice))?;
+            let Some(far) = far.first() else {
+                self.undecided += usize::from(origin != Origin::Walk);
+                return Ok(());
+            };
+            let mut there = self.sample(far)?;
             there.counts = generic.branches[i];
             samples.push((there, (branch.dimension, Some(i))));
         }

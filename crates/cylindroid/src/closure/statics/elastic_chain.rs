@@ -82,8 +82,8 @@ impl ElasticChain {
                     }
                     Matrix::identity(columns.len())
                 }
-                ElasticKind::Joint(body) => builder.joint(element, body)?,
-                ElasticKind::Link(body) => builder.link(element, body)?,
+                ElasticKind::Joint(body) => builder.joint(element, body),
+                ElasticKind::Link(body) => builder.link(element, body),
             };
             let columns = from..builder.elastic.len();
             parts.push(ElasticPart { name: element.name.clone(), columns, directions });
@@ -144,37 +144,31 @@ impl Columns<'_> {
         self.stiffness.push(stiffness);
     }
 
-    fn joint(&mut self, element: &ElasticElement, body: &ElasticBody) -> Result<Matrix> {
+    fn joint(&mut self, element: &ElasticElement, body: &ElasticBody) -> Matrix {
         let mechanism = self.state.mechanism();
         if let Some(joint) = mechanism.joints().iter().find(|j| j.name == element.name) {
-            let frame = self.link_pose(joint.parent) * joint.parent_from_joint;
-            return self.beyond(element, body, joint.child, frame);
+            let frame = self.state.link_pose(joint.parent) * joint.parent_from_joint;
+            return self.beyond(body, joint.child, frame);
         }
         let loops = mechanism.loops().iter().map(|l| (&l.name, l.a, l.link_a_from_joint));
         let contacts = mechanism.contacts().iter().map(|c| (&c.name, c.a, c.link_a_from_contact));
         let Some((pair, (_, a, link_from_joint))) =
             loops.chain(contacts).enumerate().find(|(_, (name, ..))| **name == element.name)
         else {
-            return Ok(Matrix::zeros(0, 0)); // checked before
+            return Matrix::zeros(0, 0); // checked before
         };
-        let frame = self.link_pose(a) * link_from_joint;
-        self.body(element, body, frame, |row| if row.pair == pair { -1.0 } else { 0.0 }, 0.0)
+        let frame = self.state.link_pose(a) * link_from_joint;
+        self.body(body, frame, |row| if row.pair == pair { -1.0 } else { 0.0 }, 0.0)
     }
 
-    fn link(&mut self, element: &ElasticElement, body: &ElasticBody) -> Result<Matrix> {
+    fn link(&mut self, element: &ElasticElement, body: &ElasticBody) -> Matrix {
         let links = self.state.mechanism().links();
         let link = links.iter().position(|l| l.name == element.name).unwrap_or(0);
-        self.beyond(element, body, link, self.link_pose(link))
+        self.beyond(body, link, self.state.link_pose(link))
     }
 
     /// A deflection that moves everything from `link` on.
-    fn beyond(
-        &mut self,
-        element: &ElasticElement,
-        body: &ElasticBody,
-        link: usize,
-        frame: Pose,
-    ) -> Result<Matrix> {
+    fn beyond(&mut self, body: &ElasticBody, link: usize, frame: Pose) -> Matrix {
         let mechanism = self.state.mechanism();
         let mut moved = vec![false; mechanism.links().len()];
         moved[link] = true;
@@ -183,34 +177,29 @@ impl Columns<'_> {
         }
         let sign = |link: usize| if moved[link] { 1.0 } else { 0.0 };
         let reference = sign(mechanism.frame_of(self.chain.reference).link);
-        self.body(element, body, frame, |row| sign(row.b) - sign(row.a), reference)
-    }
-
-    fn link_pose(&self, link: usize) -> Pose {
-        self.state.pose(self.state.mechanism().link_frame(link))
+        self.body(body, frame, |row| sign(row.b) - sign(row.a), reference)
     }
 
     /// The deflections of a compliance matrix at `frame` (or at its own), which move the second link
     /// of a row relative to the first by `sign`, and the reference link by `reference`.
     fn body(
         &mut self,
-        element: &ElasticElement,
         body: &ElasticBody,
         frame: Pose,
         sign: impl Fn(&ConstraintRow) -> f64,
         reference: f64,
-    ) -> Result<Matrix> {
+    ) -> Matrix {
         let mechanism = self.state.mechanism();
         let frame = match &body.frame {
             None => frame,
             Some((link, pose)) => {
                 let place = mechanism.links().iter().position(|l| l.name == *link).unwrap_or(0);
-                self.link_pose(place) * *pose
+                self.state.link_pose(place) * *pose
             }
         };
         let components = mechanism.dimension().components();
         let object = self.state.pose(self.chain.reference).translation;
-        let (directions, stiffness) = self.principal(element, body)?;
+        let (directions, stiffness) = self.principal(body);
         for (j, k) in stiffness.iter().enumerate() {
             let mut twist = [0.0; 6];
             components.iter().zip(directions.column(j)).for_each(|(&c, x)| twist[c] = *x);
@@ -231,15 +220,11 @@ impl Columns<'_> {
             self.units.push(Unit::Angle);
             self.stiffness.push(*k);
         }
-        Ok(directions)
+        directions
     }
 
     /// Principal twists of a compliance in scaled coordinates, and their stiffness.
-    fn principal(
-        &self,
-        element: &ElasticElement,
-        body: &ElasticBody,
-    ) -> Result<(Matrix, Vec<f64>)> {
+    fn principal(&self, body: &ElasticBody) -> (Matrix, Vec<f64>) {
         let d = body.compliance.rows();
         let length = self.chain.constraint.length();
         let scale: Vec<f64> = self.chain.units.object.iter().map(|u| u.size(length)).collect();
@@ -251,15 +236,8 @@ impl Columns<'_> {
         }
         let eigen = SymmetricEigen::of(scaled, d);
         let largest = eigen.values[0].max(0.0);
-        if eigen.values[..d].iter().any(|v| *v < -RIGID * largest.max(-eigen.values[d - 1])) {
-            return Err(Error::InvalidOption {
-                option: "elasticity",
-                value: element.name.clone(),
-                reason: "the compliance must be positive semidefinite".to_owned(),
-            });
-        }
         let soft = eigen.values[..d].iter().take_while(|v| **v > RIGID * largest).count();
         let directions = Matrix::from_fn(d, soft, |i, j| scale[i] * eigen.vectors[j][i]);
-        Ok((directions, eigen.values[..soft].iter().map(|v| v.recip()).collect()))
+        (directions, eigen.values[..soft].iter().map(|v| v.recip()).collect())
     }
 }

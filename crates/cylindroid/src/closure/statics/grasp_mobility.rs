@@ -177,8 +177,8 @@ pub struct GraspMobility {
 /// ```
 ///
 /// # Errors
-/// Contacts that [`grasp_quality`](super::super::grasp_quality()) refuses; curvatures whose sum is not
-/// positive in all directions; too many contacts.
+/// Contacts that [`grasp_quality`](super::super::grasp_quality()) refuses; curvatures whose sum
+/// is not positive in all directions; too many contacts.
 #[doc(alias = "immobilization")]
 #[doc(alias = "form closure")]
 pub fn grasp_mobility(contacts: &[FingerContact], space: WrenchSpace) -> Result<GraspMobility> {
@@ -267,6 +267,11 @@ fn along_axes(motions: &Matrix, values: &[f64]) -> Matrix {
     Matrix::from_fn(d, m, |i, j| found[j][i])
 }
 
+/// Mobile if there is an escape.
+fn proved_by(escape: Option<&Escape>) -> Immobilisation {
+    escape.map_or(Immobilisation::NotProved, |_| Immobilisation::Mobile)
+}
+
 struct Analysis {
     gaps: Vec<ContactGap>,
     /// Of the results.
@@ -298,11 +303,12 @@ impl Analysis {
             ambiguous: self.ambiguous || (space.cut().is_ambiguous() && !pressing.is_empty()),
         };
         if self.edges.is_empty() {
-            report.immobilisation = Immobilisation::Mobile;
             report.free_motions = self.twists(&kernel);
             let rates: Vec<Vec<f64>> = self.gaps.iter().map(|g| g.gradient.clone()).collect();
-            report.escape =
-                separating_direction(&rates).map(|velocity| self.escape(&velocity, &vec![0.0; d]));
+            let any = || (0..d).map(|i| if i == 0 { 1.0 } else { 0.0 }).collect();
+            let velocity = if k == 0 { Some(any()) } else { separating_direction(&rates) };
+            report.escape = velocity.map(|velocity| self.escape(&velocity, &vec![0.0; d]));
+            report.immobilisation = proved_by(report.escape.as_ref());
             return report;
         }
         // Forms relative to the largest of the pressing contacts, which is not zero: those on the
@@ -340,14 +346,17 @@ impl Analysis {
             Immobilisation::FirstOrder
         } else if combination.largest < -SECOND_ORDER {
             Immobilisation::SecondOrder
-        } else if let Some(y) = curvature.opening(&combination) {
-            let velocity = kernel.mul_vec(&y);
-            report.escape = self.second_order_escape(&velocity, &presses);
-            Immobilisation::Mobile
-        } else if combination.largest <= SECOND_ORDER {
-            Immobilisation::HigherOrder
         } else {
-            Immobilisation::NotProved
+            match curvature.opening(&combination) {
+                Some((least, y)) if least > SECOND_ORDER => {
+                    let velocity = kernel.mul_vec(&y);
+                    report.escape = self.second_order_escape(&velocity, &presses);
+                    proved_by(report.escape.as_ref())
+                }
+                // Along this motion all gaps stay closed to second order.
+                Some((least, _)) if least >= -SECOND_ORDER => Immobilisation::HigherOrder,
+                _ => Immobilisation::NotProved,
+            }
         };
         report
     }

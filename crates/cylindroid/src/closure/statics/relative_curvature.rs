@@ -7,15 +7,16 @@
 //! Shapes   H_r: m x m, m <= 6
 //! Units    none (scaled)
 //! Valid    motions in the cone W y >= 0, W of the contacts that press in no equilibrium: products of
-//!          two of their rows are added to the forms with positive weights. One or two forms are
-//!          decided exactly; for more, forces that block all motions at once are searched, and a
-//!          motion that opens all gaps is, so that both may be missed
+//!          two of their rows are added to the forms with positive weights. Whether one form, or two
+//!          without walls, block all motions is decided exactly; for more, forces that do are
+//!          searched, and so is the motion that opens the gaps most: both may be missed
 //! Why so   for each motion forces of its own may suffice, but a common form is a proof
 //! Source   Rimon & Burdick 1998, part II; Connelly & Whiteley 1996 (prestress stability)
 //! Checked  tests/it/closure/grasp_mobility/mod.rs
 
 use super::separating_direction::separating_direction;
 use crate::linalg::{Matrix, SymmetricEigen, dot, norm};
+use crate::scalar::uniform;
 use crate::tolerance::SECOND_ORDER;
 
 /// Steps of the search for weights, of the search for two, and random motions tried.
@@ -122,8 +123,9 @@ impl RelativeCurvature {
         best
     }
 
-    /// A unit motion within the walls along which all forms are positive.
-    pub(super) fn opening(&self, combination: &Combination) -> Option<Vec<f64>> {
+    /// The unit motion found along which the least of all forms and walls is largest, with that
+    /// value: positive where it opens all gaps.
+    pub(super) fn opening(&self, combination: &Combination) -> Option<(f64, Vec<f64>)> {
         let m = self.motions();
         let edges = self.forms.len();
         let one = |r: usize| (0..edges).map(|i| if i == r { 1.0 } else { 0.0 }).collect();
@@ -143,13 +145,8 @@ impl RelativeCurvature {
                 starts.push(starts[i].iter().zip(&starts[j]).map(|(a, b)| a + b).collect());
             }
         }
-        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            #[allow(clippy::cast_precision_loss)] // 53 bits
-            let share = (state >> 11) as f64 / (1_u64 << 53) as f64;
-            2.0 * share - 1.0
-        };
+        let mut seed = 0;
+        let mut random = || 2.0 * uniform(&mut seed) - 1.0;
         starts.extend((0..TRIED).map(|_| (0..m).map(|_| random()).collect()));
         let mut best: Option<(f64, Vec<f64>)> = None;
         let improve = |y: Vec<f64>, best: &mut Option<(f64, Vec<f64>)>| {
@@ -174,7 +171,7 @@ impl RelativeCurvature {
             let next = y.iter().map(|y| y + step * random()).collect();
             step *= if improve(next, &mut best) { 1.5 } else { 0.93 };
         }
-        best.filter(|(value, _)| *value > SECOND_ORDER).map(|(_, y)| y)
+        best
     }
 
     /// Smallest of all forms and walls at a unit motion.
@@ -205,10 +202,11 @@ mod tests {
         let combination = curvature.blocking();
         assert!((combination.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
         let opening = curvature.opening(&combination);
-        if let Some(y) = &opening {
-            assert!(curvature.least(y) > 0.0);
-        }
-        (combination.largest < -SECOND_ORDER, opening.is_some())
+        let opens = opening.is_some_and(|(value, y)| {
+            assert_eq!(curvature.least(&y), value);
+            value > SECOND_ORDER
+        });
+        (combination.largest < -SECOND_ORDER, opens)
     }
 
     #[test]

@@ -51,8 +51,14 @@ impl InertiaWeights {
         self.state.set(q)?;
         self.evaluator.evaluate(&self.state, &mut self.mass);
         let n = self.mass.rows();
-        let largest = (0..n).fold(f64::MIN_POSITIVE, |most, i| self.mass[(i, i)].max(most));
-        let weight = |c: usize| self.mass[(c, c)].max(LEAST_INERTIA * largest);
+        // Of masses [kg] and of moments of inertia [kg m^2], each by themselves.
+        let mut largest = [f64::MIN_POSITIVE; 2];
+        let coordinates = self.state.mechanism().coordinates();
+        let kind = |c: usize| usize::from(coordinates[c].kind.is_length());
+        for c in 0..n {
+            largest[kind(c)] = largest[kind(c)].max(self.mass[(c, c)]);
+        }
+        let weight = |c: usize| self.mass[(c, c)].max(LEAST_INERTIA * largest[kind(c)]);
         for (column, &c) in space.columns.iter_mut().zip(chain.coordinates()) {
             if *column != 0.0 {
                 *column = 1.0 / weight(c).sqrt();

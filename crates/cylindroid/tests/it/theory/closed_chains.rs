@@ -1,8 +1,9 @@
-//! Errata C1 to C9 of docs/theory/closed-chains.md: Bicchi & Prattichizzo, manipulability of
+//! Errata C1 to C10 of docs/theory/closed-chains.md: Bicchi & Prattichizzo, manipulability of
 //! cooperating robots with passive joints.
 
 use cylindroid::Matrix;
 use cylindroid::closure::{Constraint, ConstraintBlocks, Mobility};
+use cylindroid::linalg::Metric;
 use cylindroid::manipulability::{Manipulability, Metrics};
 use cylindroid::model::{Dimension, JointKind};
 use cylindroid::spatial::Vec3;
@@ -172,4 +173,17 @@ fn erratum_projector_of_appendix_b() {
     assert_close("efficiency", &m.kinematic.values(), &[4.0 / 3.0], 1e-14);
     let best = &m.kinematic.finite[0].joint;
     assert!((best[0] - 3.0 * best[1]).abs() < 1e-14, "{best:?}");
+}
+
+/// C10: a slide of unit lever pushes with F on a spring of stiffness k, which gives way by F / k: twice
+/// the energy is F^2 / k.
+#[test]
+fn erratum_weight_of_wrenches_is_a_compliance() {
+    let slide = Constraint::serial(&rows(&[&[1.0]])).unwrap();
+    let (k, f) = (50.0, 3.0);
+    let twice_the_energy = k * (f / k) * (f / k);
+    let compliance = Metric::diagonal("Ww", &[1.0 / k]).unwrap();
+    let metrics = Metrics { wrench: Some(compliance), ..Metrics::UNIT };
+    let force = weighted(&slide, &metrics).force.values();
+    assert_close("energy", &[force[0] * f * f], &[twice_the_energy], 1e-14);
 }

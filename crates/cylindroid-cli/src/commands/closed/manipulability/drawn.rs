@@ -166,7 +166,7 @@ pub(super) fn print(found: &Found, out: &mut dyn Write) -> anyhow::Result<()> {
              another metric."
         }
         (false, _) => {
-            "The semi-axes are not the roots of the efficiencies: these are those of all components \
+            "The semi-axes are not the roots of the efficiencies, which refer to all components \
              together."
         }
     };

@@ -1,6 +1,7 @@
 //! Grasps whose mobility is published or known in closed form.
 
-use cylindroid::closure::Immobilisation;
+use cylindroid::closure::{FingerContact, Immobilisation, grasp_mobility};
+use cylindroid::model::SurfaceCurvature;
 use cylindroid::spatial::Vec3;
 
 use super::bodies::{Surface, Touch};
@@ -156,4 +157,33 @@ fn fingers_that_press_in_no_equilibrium() {
     let held = around(&in_plane(&[30.0, 150.0, 270.0], 1.0), POINT, Surface::Flat);
     let more = [held, vec![touches[2]]].concat();
     assert_found(&mobility(&more, PLANE), Immobilisation::SecondOrder, (1, 0));
+}
+
+/// Six sharp fingers on the axes, around a body whose principal curvatures lie across: the best
+/// combination of the three equilibria vanishes on two motions, and yet each motion is blocked by
+/// one of them. Not proved immobile, and nothing else is claimed.
+#[test]
+fn no_motion_is_claimed_to_keep_the_gaps_closed() {
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    let outward: Vec<Vec3> = axes.iter().flat_map(|&a| [a, -a]).collect();
+    let mut contacts: Vec<FingerContact> =
+        around(&outward, POINT, Surface::Ball(1.0)).iter().map(Touch::contact).collect();
+    for (i, contact) in contacts.iter_mut().enumerate() {
+        let (j, k) = (axes[(i / 2 + 1) % 3], axes[(i / 2 + 2) % 3]);
+        contact.curvature.object =
+            SurfaceCurvature { principal: [1.2, 0.4], direction: (j + k) * 0.5_f64.sqrt() };
+    }
+    let found = grasp_mobility(&contacts, SPACE).unwrap();
+    assert_eq!(found.immobilisation, Immobilisation::NotProved, "{found:?}");
+    assert_eq!(found.first_order_mobility, 3);
+}
+
+/// Without fingers the object is mobile, and there is an escape.
+#[test]
+fn without_fingers_the_object_is_mobile() {
+    for space in [PLANE, SPACE] {
+        let found = grasp_mobility(&[], space).unwrap();
+        assert_eq!(found.immobilisation, Immobilisation::Mobile);
+        assert!(found.escape.is_some());
+    }
 }
