@@ -265,6 +265,35 @@ impl HyperbolicDamping {
     }
 }
 
+/// `J^T Q_h J` on the row space of J, in scaled units and in joint coordinates in which the metric is
+/// the identity.
+pub(super) struct RowSpaceGram {
+    /// Of J in these coordinates.
+    pub(super) svd: Svd,
+    /// J times its right singular vectors: as many as the rank.
+    pub(super) twists: Vec<Twist>,
+    /// Of the Gram matrix of these twists.
+    pub(super) eigen: SymmetricEigen<6>,
+}
+
+impl RowSpaceGram {
+    /// `h`: scaled.
+    pub(super) fn of(j: &Matrix, weights: &Weights, system: &ScrewSystem, h: f64) -> Result<Self> {
+        let svd = Svd::of(&weights.apply(&system.scaled(j))?);
+        let twists: Vec<Twist> = (0..system.order())
+            .map(|i| Twist::from_array(std::array::from_fn(|r| svd.u(i)[r] * svd.value(i))))
+            .collect();
+        let mut gram = [[0.0; 6]; 6];
+        for (row, a) in gram.iter_mut().zip(&twists) {
+            for (x, b) in row.iter_mut().zip(&twists) {
+                *x = a.pitch_form(*b, h);
+            }
+        }
+        let eigen = SymmetricEigen::of(gram, twists.len());
+        Ok(Self { svd, twists, eigen })
+    }
+}
+
 /// `V diag(gain(g)) V^T J^T Q_h` over the eigenvalues g of `J^T Q_h J` on the row space of J, in
 /// joint coordinates that the metric makes orthonormal.
 fn damped(
@@ -283,19 +312,9 @@ fn damped(
     }
     damping.check()?;
     let weights = Weights { joint: metric.cloned(), task: None };
-    let svd = Svd::of(&weights.apply(&system.scaled(j))?);
     let k = system.order();
     let h = h / system.length();
-    let twists: Vec<Twist> = (0..k)
-        .map(|i| Twist::from_array(std::array::from_fn(|r| svd.u(i)[r] * svd.value(i))))
-        .collect();
-    let mut gram = [[0.0; 6]; 6];
-    for (row, a) in gram.iter_mut().zip(&twists) {
-        for (x, b) in row.iter_mut().zip(&twists) {
-            *x = a.pitch_form(*b, h);
-        }
-    }
-    let eigen = SymmetricEigen::of(gram, k);
+    let RowSpaceGram { svd, twists, eigen } = RowSpaceGram::of(j, &weights, system, h)?;
     // What rounding leaves of a zero would be divided by the square of a small mu.
     let rounding =
         tolerance::MACHINE_RANK * svd.values().next().unwrap_or(0.0).powi(2) * (1.0 + h.abs());

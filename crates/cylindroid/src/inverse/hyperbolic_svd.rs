@@ -19,11 +19,11 @@
 //!          proofs for pitch forms: docs/theory/hyperbolic-svd.md
 //! Checked  tests/it/screws/hyperbolic_svd.rs
 
+use super::hyperbolic::RowSpaceGram;
 use super::weighted::Weights;
 use crate::error::{Error, Result};
-use crate::linalg::{Matrix, Metric, Svd, SymmetricEigen};
+use crate::linalg::{Matrix, Metric};
 use crate::screws::{NoInverse, ScrewOptions, ScrewSystem, Signature};
-use crate::spatial::Twist;
 
 /// Whether a Jacobian has a polar decomposition in a pitch form, and of which kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -184,18 +184,8 @@ pub fn hyperbolic_svd(
     Error::check_finite("matrix", j.as_slice())?;
     let system = ScrewSystem::of_columns(j, scale)?;
     let weights = Weights { joint: joint_metric.cloned(), task: None };
-    let svd = Svd::of(&weights.apply(&system.scaled(j))?);
     let (m, k, length) = (j.cols(), system.order(), system.length());
-    let twists: Vec<Twist> = (0..k)
-        .map(|i| Twist::from_array(std::array::from_fn(|r| svd.u(i)[r] * svd.value(i))))
-        .collect();
-    let mut gram = [[0.0; 6]; 6];
-    for (row, a) in gram.iter_mut().zip(&twists) {
-        for (x, b) in row.iter_mut().zip(&twists) {
-            *x = a.pitch_form(*b, h / length);
-        }
-    }
-    let eigen = SymmetricEigen::of(gram, k);
+    let RowSpaceGram { svd, eigen, .. } = RowSpaceGram::of(j, &weights, &system, h / length)?;
     let signature = system.signature(h);
     let squares: Vec<f64> =
         (0..k).map(|i| (signature.sign(i) * eigen.values[i]).max(0.0) * length).collect();

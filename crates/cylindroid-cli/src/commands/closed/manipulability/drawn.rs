@@ -63,9 +63,9 @@ fn pairs(found: &Found) -> Result<Vec<[usize; 2]>> {
         _ if linear.len() > 1 => linear,
         _ => {
             return Err(Error::InvalidOption {
-                option: "--plot",
+                option: "--task",
                 value: found.components.join(","),
-                reason: "a figure has two or three components; choose them with --task".to_owned(),
+                reason: "--plot draws two or three components".to_owned(),
             });
         }
     };

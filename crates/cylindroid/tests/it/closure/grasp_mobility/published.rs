@@ -118,7 +118,7 @@ fn grasps_that_do_not_immobilise() {
         let found = mobility(&side, PLANE);
         assert_eq!(found.immobilisation, Immobilisation::Mobile);
         assert_eq!((found.first_order_mobility, found.second_order_mobility), (3, None));
-        assert_eq!(found.escape.is_some(), count > 0);
+        assert!(found.escape.is_some());
     }
 }
 
@@ -176,14 +176,4 @@ fn no_motion_is_claimed_to_keep_the_gaps_closed() {
     let found = grasp_mobility(&contacts, SPACE).unwrap();
     assert_eq!(found.immobilisation, Immobilisation::NotProved, "{found:?}");
     assert_eq!(found.first_order_mobility, 3);
-}
-
-/// Without fingers the object is mobile, and there is an escape.
-#[test]
-fn without_fingers_the_object_is_mobile() {
-    for space in [PLANE, SPACE] {
-        let found = grasp_mobility(&[], space).unwrap();
-        assert_eq!(found.immobilisation, Immobilisation::Mobile);
-        assert!(found.escape.is_some());
-    }
 }
