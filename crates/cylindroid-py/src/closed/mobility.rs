@@ -2,7 +2,9 @@
 
 use std::sync::OnceLock;
 
-use cylindroid::closure::{Diagnosis, LimbScrews, Mobility, Subspace, Transmission};
+use cylindroid::closure::{
+    Diagnosis, LimbScrews, Mobility, Subspace, Transmission, internal_forces,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -179,7 +181,7 @@ impl PyMobility {
             ("idle", m.idle.dimension()),
             ("internal", m.internal.dimension()),
             ("zero_torque", m.zero_torque.dimension()),
-            ("internal_forces", m.internal_forces.dimension()),
+            ("internal_forces", self.internal_forces()),
             ("hyperstatic", m.hyperstatic.dimension()),
         ] {
             table.row(name, count.to_string());
@@ -278,12 +280,12 @@ impl PyMobility {
 
     #[getter]
     fn internal_forces(&self) -> usize {
-        self.inner.internal_forces.dimension()
+        internal_forces(&self.constraint.inner).dimension()
     }
 
     #[getter]
     fn internal_forces_basis<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
-        Self::basis(py, &self.inner.internal_forces)
+        Self::basis(py, &internal_forces(&self.constraint.inner))
     }
 
     #[getter]

@@ -4,7 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::closure::{
-    Diagnosis, JointMobility, Mobility, MobilityCounts, ModeOptions, MotionBlock,
+    Constraint, Diagnosis, JointMobility, Mobility, MobilityCounts, ModeOptions, MotionBlock,
+    internal_forces,
 };
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
@@ -143,7 +144,7 @@ fn describe<'a>(
         coordinate: m.relation.coordinate,
         internal: m.internal.dimension(),
         zero_torque: m.zero_torque.dimension(),
-        internal_forces: m.internal_forces.dimension(),
+        internal_forces: internal_forces(&chain.constraint).dimension(),
         hyperstatic: m.hyperstatic.dimension(),
         idle: m.idle.dimension(),
         gruebler_kutzbach: m.gruebler_kutzbach,
@@ -194,7 +195,7 @@ fn print(
     lines.extend(joints(posed, &m.joints));
     output::pairs(out, lines)?;
     writeln!(out)?;
-    counts(out, m, &found.generic.counts)?;
+    counts(out, &posed.chain.constraint, m, &found.generic.counts)?;
     blocks(out, m)?;
     limbs.print(out)?;
     singularity::ways(out, posed, &found.finite)?;
@@ -208,7 +209,12 @@ fn print(
 }
 
 /// What is counted, here and in ordinary configurations.
-fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow::Result<()> {
+fn counts(
+    out: &mut dyn Write,
+    constraint: &Constraint,
+    m: &Mobility,
+    generic: &MobilityCounts,
+) -> anyhow::Result<()> {
     let r = &m.relation;
     let rows: [(&str, usize, Option<usize>, &str); 8] = [
         (
@@ -238,7 +244,7 @@ fn counts(out: &mut dyn Write, m: &Mobility, generic: &MobilityCounts) -> anyhow
         ),
         (
             "internal_forces",
-            m.internal_forces.dimension(),
+            internal_forces(constraint).dimension(),
             None,
             "forces in loops and contacts without a wrench on the frame (ker G)",
         ),

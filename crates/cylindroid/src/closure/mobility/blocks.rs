@@ -64,16 +64,23 @@ impl Parts<'_> {
         };
         // The motions of `all` orthogonal to the columns of `without`, which lie in its span.
         let within = |all: &Matrix, without: &[&Matrix]| {
+            if all.cols() == 0 || without.iter().all(|m| m.cols() == 0) {
+                return space(all, Cut::of(&[], motions.tolerance())); // nothing to decide
+            }
             let without = &all.transpose() * &Matrix::hstack(k, without);
-            let others = ColumnSpace::of(&without, tolerance);
+            let others = ColumnSpace::cut_of(without, tolerance);
             space(&(all * &others.complement()), others.cut())
         };
         let passive = within(self.joints_only, &[self.redundancy, self.idle]);
         let object = within(self.object_only, &[self.redundancy, self.uncontrollable]);
         let mixed = within(self.indeterminacy, &[self.idle, self.uncontrollable]);
         let others = [self.joints_only, self.object_only, self.indeterminacy];
-        let others = ColumnSpace::of(&Matrix::hstack(k, &others), tolerance);
-        let both = space(&others.complement(), others.cut());
+        let both = if others.iter().all(|m| m.cols() == 0) {
+            Subspace { basis: motions.basis(), cut: motions.cut() }
+        } else {
+            let others = ColumnSpace::cut_of(Matrix::hstack(k, &others), tolerance);
+            space(&others.complement(), others.cut())
+        };
         let counted = passive.dimension() + object.dimension() + both.dimension();
         let overlap = counted.saturating_sub(c);
         (CoordinateKinds { passive, object, both, overlap }, mixed)

@@ -46,7 +46,7 @@ pub fn structural_forces(constraint: &Constraint) -> Subspace {
 /// Contact forces that do no work on columns `from..to` of the constraint.
 fn kernel_of_columns(constraint: &Constraint, from: usize, to: usize) -> Subspace {
     let columns = constraint.scaled_transpose().rows_between(from, to).transpose();
-    let space = ColumnSpace::of(&columns, Threshold::Relative(CLOSURE_RANK));
+    let space = ColumnSpace::cut_of(columns, Threshold::Relative(CLOSURE_RANK));
     Subspace { basis: space.complement().scale_rows(constraint.row_scale()), cut: space.cut() }
 }
 
@@ -56,7 +56,7 @@ pub(super) fn hyperstatic_forces(constraint: &Constraint, motions: &MotionSpace)
         Matrix::zeros(constraint.rows(), 0)
     } else {
         let scaled = constraint.scaled_transpose().transpose();
-        let space = ColumnSpace::of(&scaled, Threshold::Relative(motions.threshold()));
+        let space = ColumnSpace::cut_of(scaled, Threshold::Relative(motions.threshold()));
         space.complement().scale_rows(constraint.row_scale())
     };
     Subspace { basis, cut: motions.cut() }

@@ -26,7 +26,7 @@ use std::ops::Range;
 
 use super::blocks::{CoordinateKinds, Parts};
 use super::compression::Compression;
-use super::force_spaces::{hyperstatic_forces, internal_forces};
+use super::force_spaces::hyperstatic_forces;
 use super::motion_space::{MotionSpace, RowSelection};
 use super::relation::{Relation, RelationDimensions};
 use super::subspace::Subspace;
@@ -100,12 +100,10 @@ pub struct Mobility {
     /// Motions of passive joints and object together, with the actuated joints at rest: orthogonal
     /// (scaled) to idle and uncontrollable ones.
     pub mixed: Subspace,
-    /// Joint torques in equilibrium without a wrench on the object (active internal forces).
+    /// Joint torques in equilibrium without a wrench on the object (active internal forces). The
+    /// contact forces without a wrench, ker G, are those of
+    /// [`internal_forces`](super::super::internal_forces()).
     pub internal: Subspace,
-    /// ker G: contact forces in equilibrium without a wrench on the object, whether or not joint
-    /// torques are needed for them ([`internal_forces`](super::super::internal_forces())). Their
-    /// number depends on the joints that are written as contacts; that of `internal` does not.
-    pub internal_forces: Subspace,
     /// Wrenches in equilibrium without joint torques.
     pub zero_torque: Subspace,
     /// Contact forces that equilibrium with torques and wrench does not determine.
@@ -255,7 +253,6 @@ impl Mobility {
             idle: space(&idle),
             uncontrollable_object_motions: space(&uncontrollable_object_motions),
             internal: Subspace { basis: internal, cut: joint_rank },
-            internal_forces: internal_forces(constraint),
             zero_torque: Subspace { basis: structural, cut: object_rank },
             hyperstatic: hyperstatic_forces(constraint, motions),
             relation: relation.dimensions(),

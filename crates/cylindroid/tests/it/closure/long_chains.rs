@@ -75,7 +75,6 @@ fn compressed_reports_are_the_plain_ones() {
                 &m.coordinate_kinds.object,
                 &m.coordinate_kinds.both,
                 &m.mixed,
-                &m.internal_forces,
                 &m.idle,
                 &m.uncontrollable_object_motions,
                 &m.internal,

@@ -1,6 +1,6 @@
 //! The counts of the reference mechanisms, in any frame, unit and basis, wherever contacts are drawn.
 
-use cylindroid::closure::{Mobility, MotionSpace, structural_forces};
+use cylindroid::closure::{Mobility, MotionSpace, internal_forces, structural_forces};
 
 use super::case::{Anew, Case, Problem, cases, described_anew};
 
@@ -25,7 +25,7 @@ fn check(case: &Case, problem: &Problem) {
         ("coord_au", kinds.object.dimension()),
         ("coord_apu", kinds.both.dimension()),
         ("coord_overlap", kinds.overlap),
-        ("ker_G", m.internal_forces.dimension()),
+        ("ker_G", internal_forces(constraint).dimension()),
         ("ker_JT", structural_forces(constraint).dimension()),
         ("hyperstatic", m.hyperstatic.dimension()),
         ("rel_dim", m.relation.relation),
