@@ -348,9 +348,20 @@ pub const EQUILIBRIUM: f64 = 1e-8;
 /// conforming bodies, which touch along a line or face [-].
 pub const CONFORMING: f64 = 1e-9;
 
-/// Second-order terms of the loops at or below it count as zero (scaled) [-]: differences of loops
-/// closed to rounding yield them to 1e-8.
+/// Second-order terms of loops and of contact gaps at or below it count as zero (scaled) [-]:
+/// differences of loops closed to rounding yield them to 1e-8.
 pub const SECOND_ORDER: f64 = 1e-6;
+
+/// Eigenvalues of scaled second-order forms this close are equal [-]; also the least difference of
+/// length at which one of several directions counts as the longest.
+pub const EQUAL_CURVATURES: f64 = 1e-6;
+
+/// A sum of unit motions below it has no direction [-].
+pub const CANCELLED: f64 = 1e-9;
+
+/// The largest share of its largest entry by which a matrix and its transpose may differ for it to
+/// be symmetric [-]: matrices typed with ten digits pass.
+pub const SYMMETRIC: f64 = 1e-9;
 
 /// Largest distance between the signatures of two isolated assemblies that count as one if they
 /// move to first order: a search comes only that near to a contact of high order [-].

@@ -41,7 +41,7 @@ impl PyMechanism {
         let (mut evaluator, mut mass) = (MassMatrix::new(&self.inner), Matrix::zeros(n, n));
         arrays::written_rows(py, rows.count, &[n, n], |i, out| {
             state.set(rows.row(i))?;
-            evaluator.evaluate(&state, &mut mass);
+            evaluator.evaluate(&state, &mut mass)?;
             arrays::put_rows(&mass, out);
             Ok(())
         })

@@ -75,6 +75,7 @@ impl State {
             .collect()
     }
 
+    /// The pose of a link in the world.
     pub(crate) fn link_pose(&self, link: usize) -> Pose {
         self.pose(self.mechanism().link_frame(link))
     }

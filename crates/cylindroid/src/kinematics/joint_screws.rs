@@ -51,8 +51,8 @@ impl State {
     pub fn loop_screws(&self, closing: usize) -> Vec<Screw> {
         let mechanism = self.mechanism();
         let Some(joint) = mechanism.loops().get(closing) else { return Vec::new() };
-        let on_a: Pose = self.pose(mechanism.link_frame(joint.a)) * joint.link_a_from_joint;
-        let on_b: Pose = self.pose(mechanism.link_frame(joint.b)) * joint.link_b_from_joint;
+        let on_a: Pose = self.link_pose(joint.a) * joint.link_a_from_joint;
+        let on_b: Pose = self.link_pose(joint.b) * joint.link_b_from_joint;
         let origin = on_a.translation;
         let axis = on_a.rotation * joint.axis;
         let turn = |direction: Vec3| Twist { linear: origin.cross(direction), angular: direction };

@@ -19,8 +19,8 @@ use super::jacobian::Tip;
 use super::state::State;
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
-use crate::model::Mechanism;
-use crate::spatial::{Mat3, Pose, Twist, Vec3, Wrench};
+use crate::model::{Mechanism, Node};
+use crate::spatial::{AlignedPose, Mat3, Pose, Twist, Vec3, Wrench};
 
 /// Mass, centre of mass and inertia about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,7 +83,7 @@ impl Body {
 /// let pendulum = builder.build()?;
 /// let mut mass_matrix = MassMatrix::new(&pendulum);
 /// let mut out = Matrix::zeros(1, 1);
-/// mass_matrix.evaluate(&pendulum.state(&[0.3])?, &mut out);
+/// mass_matrix.evaluate(&pendulum.state(&[0.3])?, &mut out)?;
 /// assert!((out[(0, 0)] - 2.0 * 0.25).abs() < 1e-15);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
@@ -111,13 +111,20 @@ impl MassMatrix {
 
     /// M at `state`, a state of the mechanism of [`MassMatrix::new`].
     ///
-    /// # Panics
-    /// If `out` is not n x n.
-    pub fn evaluate(&mut self, state: &State, out: &mut Matrix) {
+    /// # Errors
+    /// A state of a mechanism with another number of moving bodies; an `out` that is not n x n.
+    pub fn evaluate(&mut self, state: &State, out: &mut Matrix) -> Result<()> {
         let n = state.mechanism().n();
-        assert_eq!((out.rows(), out.cols()), (n, n), "shape of the mass matrix");
-        out.as_mut_slice().fill(0.0);
         let (nodes, slots) = (state.mechanism().nodes(), state.slots());
+        Error::check_len("bodies of the state", self.bodies.len(), slots.len())?;
+        Error::check_len("rows of the mass matrix", n, out.rows())?;
+        Error::check_len("columns of the mass matrix", n, out.cols())?;
+        self.fill(nodes, slots, out);
+        Ok(())
+    }
+
+    fn fill(&mut self, nodes: &[Node], slots: &[AlignedPose], out: &mut Matrix) {
+        out.as_mut_slice().fill(0.0);
         for ((composite, body), slot) in self.composites.iter_mut().zip(&self.bodies).zip(slots) {
             *composite = body.moved(slot.pose());
         }
@@ -171,7 +178,7 @@ impl State {
     pub fn mass_matrix(&self) -> Matrix {
         let n = self.mechanism().n();
         let mut out = Matrix::zeros(n, n);
-        MassMatrix::new(self.mechanism()).evaluate(self, &mut out);
+        MassMatrix::new(self.mechanism()).fill(self.mechanism().nodes(), self.slots(), &mut out);
         out
     }
 }

@@ -6,6 +6,7 @@ use std::fmt;
 use std::ops::{Index, IndexMut, Mul};
 
 use super::vector::dot;
+use crate::tolerance::SYMMETRIC;
 
 /// A dense `rows x cols` matrix, stored by columns.
 #[derive(Clone, PartialEq, Default)]
@@ -276,6 +277,11 @@ impl Matrix {
             data: self.data.iter().zip(&other.data).map(|(a, b)| a - b).collect(),
         }
         .max_abs()
+    }
+
+    /// True if it equals its transpose to [`SYMMETRIC`] of its largest entry.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        self.max_difference(&self.transpose()) <= SYMMETRIC * self.max_abs()
     }
 
     /// True if no entry is NaN or infinite.

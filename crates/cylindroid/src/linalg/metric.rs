@@ -62,7 +62,7 @@ impl Metric {
         if n != m.cols() || !m.is_finite() {
             return Err(refuse("a metric must be a square matrix of finite numbers"));
         }
-        if m.max_difference(&m.transpose()) > 1e-9 * m.max_abs() {
+        if !m.is_symmetric() {
             return Err(refuse("a metric must be symmetric; use (M + M^T) / 2"));
         }
         let mut l = Matrix::zeros(n, n);

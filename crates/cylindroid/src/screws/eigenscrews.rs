@@ -134,7 +134,7 @@ pub fn eigenscrews(stiffness: &Matrix, h: f64) -> Result<Eigenscrews> {
     Error::check_len("rows of the stiffness", 6, stiffness.rows())?;
     Error::check_len("columns of the stiffness", 6, stiffness.cols())?;
     Error::check_finite("stiffness", stiffness.as_slice())?;
-    if stiffness.max_difference(&stiffness.transpose()) > 1e-9 * stiffness.max_abs() {
+    if !stiffness.is_symmetric() {
         return Err(Error::InvalidOption {
             option: "stiffness",
             value: "6 x 6 matrix".to_owned(),

@@ -14,7 +14,7 @@
 //! Checked  tests/it/screws/pitch_conics.rs
 
 use super::system::ScrewSystem;
-use crate::linalg::SymmetricEigen;
+use crate::linalg::{SymmetricEigen, norm};
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::SCREW_CLASS;
 
@@ -50,8 +50,8 @@ impl ConicKind {
     }
 }
 
-/// The pencil of pitch conics of a three-system: the screws of each pitch in the projective plane of
-/// its screws.
+/// The pencil of pitch conics of a three-system: the screws of each pitch in the projective plane
+/// of its screws.
 ///
 /// ```text
 /// twist B x,   pitch x^T K x / x^T W x,   conic of pitch h: x^T (K - h W) x = 0
@@ -102,8 +102,8 @@ impl PitchConics {
     }
 
     /// Points of the conic of pitch `h`, as closed curves of unit vectors x: a regular conic is one
-    /// curve of `count` points and the first again, a line half a great circle, a point a single vector. Empty and
-    /// whole conics have none.
+    /// curve of `count` points and the first again, a line half a great circle, a point a single
+    /// vector. Empty and whole conics have none.
     ///
     /// ```
     /// use cylindroid::screws::{ConicKind, Screw, ScrewOptions, ScrewSystem};
@@ -125,7 +125,7 @@ impl PitchConics {
         let (eigen, signature) = self.eigen(h);
         let [e0, e1, e2] = eigen.vectors;
         let unit = |x: [f64; 3]| {
-            let size = x.iter().map(|a| a * a).sum::<f64>().sqrt();
+            let size = norm(&x);
             x.map(|a| a / size)
         };
         let sum = |a: f64, u: [f64; 3], b: f64, v: [f64; 3], c: f64, w: [f64; 3]| {
@@ -188,8 +188,8 @@ impl PitchConics {
             let along: f64 = v.iter().zip(&right).map(|(a, b)| a * b).sum::<f64>() / value;
             x.iter_mut().zip(v).for_each(|(x, v)| *x += along * v);
         }
-        let size = x.iter().map(|a| a * a).sum::<f64>().sqrt();
-        (size > SCREW_CLASS * dot(&goal, &goal).sqrt()).then(|| x.map(|a| a / size))
+        let size = norm(&x);
+        (size > SCREW_CLASS * norm(&goal)).then(|| x.map(|a| a / size))
     }
 
     /// Eigenvalues and vectors of `K - h W` in units of the length, and how many are positive and

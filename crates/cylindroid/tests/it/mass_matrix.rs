@@ -78,7 +78,7 @@ fn joints_of_every_kind() {
         let mut out = Matrix::zeros(m.n(), m.n());
         for _ in 0..5 {
             let state = m.state(&random.q(&m)).unwrap();
-            evaluator.evaluate(&state, &mut out);
+            evaluator.evaluate(&state, &mut out).unwrap();
             assert_matrix("links", &out, &sum_of_links(&state), 1e-10 * out.max_abs());
             assert_eq!(out.max_difference(&out.transpose()), 0.0);
             let qd = random.vector(m.n());
@@ -87,6 +87,18 @@ fn joints_of_every_kind() {
             assert_eq!(out, state.mass_matrix());
         }
     }
+}
+
+#[test]
+fn a_wrong_shape_or_another_mechanism_is_an_error() {
+    let (zoo, arm) = (zoo(), cylindroid::load("ur5e").unwrap());
+    let mut evaluator = MassMatrix::new(&zoo);
+    let state = zoo.state(zoo.home()).unwrap();
+    let error = evaluator.evaluate(&state, &mut Matrix::zeros(zoo.n(), 1)).unwrap_err();
+    assert!(error.to_string().contains("columns of the mass matrix"), "{error}");
+    let foreign = arm.state(arm.home()).unwrap();
+    let error = evaluator.evaluate(&foreign, &mut Matrix::zeros(arm.n(), arm.n())).unwrap_err();
+    assert!(error.to_string().contains("bodies of the state"), "{error}");
 }
 
 /// Kinetic energy by finite differences of the positions of three point masses on each link.

@@ -154,7 +154,7 @@ pub(crate) fn constraint_rows(
     state: &State,
 ) -> Result<(Vec<ConstraintRow>, Vec<&LoopJoint>, LoopClosureError)> {
     let mechanism = state.mechanism();
-    let pose = |link| state.pose(mechanism.link_frame(link));
+    let pose = |link| state.link_pose(link);
     let (mut rows, mut rates) = (Vec::new(), 0);
     for (place, constraints) in pair_constraints(mechanism).enumerate() {
         let constraints = constraints?;

@@ -208,7 +208,7 @@ impl Edge {
     fn point(&self, state: &State, near: Vec3, body: usize) -> Vec3 {
         let mechanism = state.mechanism();
         let first = self.bodies[0] == body;
-        let pose = |link| state.pose(mechanism.link_frame(link));
+        let pose = |link| state.link_pose(link);
         let sides = |a: Pose, b: Pose| if first { a } else { b };
         let (frame, kind, axis) = match self.kind {
             EdgeKind::Joint(i) => {

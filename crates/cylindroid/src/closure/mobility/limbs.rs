@@ -21,7 +21,7 @@ use super::limb_motion::{LimbColumn, LimbConstraint, LimbMotion, PlatformCoordin
 use crate::closure::constraint::constraint_rows::constraint_rows;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::{ColumnSpace, Matrix, Threshold, dot};
+use crate::linalg::{ColumnSpace, Matrix, Threshold, dot, norm};
 use crate::model::{FrameId, JointKind, Mechanism};
 use crate::screws::{ScrewOptions, ScrewSystem};
 use crate::spatial::{Twist, Vec3};
@@ -202,9 +202,9 @@ impl LimbSpace {
     /// The power of a wrench that does no work while a column is at rest, for a unit rate of it;
     /// `rates`: those of the column in all motions.
     fn power(&self, platform: &PlatformCoordinates, wrench: &[f64], rates: &[f64]) -> f64 {
-        let size: f64 = rates.iter().map(|x| x * x).sum();
+        let size = dot(rates, rates);
         let powers = self.motion.twists.transpose().mul_vec(wrench);
-        let along: f64 = powers.iter().zip(rates).map(|(p, r)| p * r).sum();
+        let along = dot(&powers, rates);
         if size > 0.0 { platform.length * along / size } else { 0.0 }
     }
 }
@@ -228,7 +228,7 @@ fn joint_twist(state: &State, edge: EdgeKind, name: &str, at: Vec3) -> Twist {
         }
         EdgeKind::Loop(i) => {
             let joint = &mechanism.loops()[i];
-            let frame = state.pose(mechanism.link_frame(joint.a)) * joint.link_a_from_joint;
+            let frame = state.link_pose(joint.a) * joint.link_a_from_joint;
             let axis = frame.rotation * joint.axis;
             let turn = Twist { linear: axis.cross(at - frame.translation), angular: axis };
             let slide = Twist { linear: axis, angular: Vec3::ZERO };
@@ -264,7 +264,7 @@ fn beyond(
     let columns: Vec<Vec<f64>> = (0..at_center.cols())
         .map(|j| {
             let column = at_center.column(j);
-            let size = column.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let size = norm(column);
             column.iter().map(|x| x / size).collect()
         })
         .collect();

@@ -137,7 +137,7 @@ impl Landmarks {
 /// The poses of all links.
 pub(crate) fn link_poses(state: &State) -> Vec<Pose> {
     let mechanism = state.mechanism();
-    (0..mechanism.links().len()).map(|link| state.pose(mechanism.link_frame(link))).collect()
+    (0..mechanism.links().len()).map(|link| state.link_pose(link)).collect()
 }
 
 /// The largest displacement of a link between two configurations: distance over the characteristic

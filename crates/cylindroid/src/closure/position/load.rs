@@ -81,8 +81,8 @@ fn close_home(mechanism: &Mechanism) -> Result<Mechanism> {
 fn refuse(mechanism: &Mechanism, first: &Assembly, starts: usize) -> Result<Error> {
     let state = mechanism.state(&first.q)?;
     let gap = |l: &LoopJoint| {
-        let on_a = state.pose(mechanism.link_frame(l.a)) * l.link_a_from_joint;
-        let on_b = state.pose(mechanism.link_frame(l.b)) * l.link_b_from_joint;
+        let on_a = state.link_pose(l.a) * l.link_a_from_joint;
+        let on_b = state.link_pose(l.b) * l.link_b_from_joint;
         let (a, b) = (on_a.rotation * l.axis, on_b.rotation * l.axis);
         let angle = match l.kind {
             JointKind::Fixed => on_a.rotation.angle_to(on_b.rotation),

@@ -77,7 +77,7 @@ pub fn grasp_contacts(
     let mechanism = state.mechanism();
     mechanism.check_frame(object)?;
     let link = mechanism.frame_of(object).link;
-    let world_from_link = state.pose(mechanism.link_frame(link));
+    let world_from_link = state.link_pose(link);
     let mut fingers = Vec::new();
     for (place, contact) in mechanism.contacts().iter().enumerate() {
         let (link_from_contact, sign): (Pose, f64) = if contact.b == link {

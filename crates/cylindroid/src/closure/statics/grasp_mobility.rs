@@ -27,7 +27,7 @@ use super::separating_direction::separating_direction;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold, dot, norm};
 use crate::spatial::Vec3;
-use crate::tolerance::{CLOSED, CLOSURE_RANK, SECOND_ORDER};
+use crate::tolerance::{CLOSED, CLOSURE_RANK, EQUAL_CURVATURES, SECOND_ORDER};
 
 /// The verdict on the mobility of a grasped object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -237,7 +237,7 @@ fn along_axes(motions: &Matrix, values: &[f64]) -> Matrix {
     let mut found: Vec<Vec<f64>> = Vec::new();
     let mut from = 0;
     while from < m {
-        let equal = |value: &&f64| (values[from] - **value).abs() <= SECOND_ORDER;
+        let equal = |value: &&f64| (values[from] - **value).abs() <= EQUAL_CURVATURES;
         let to = from + values[from..].iter().take_while(equal).count();
         for _ in from..to {
             // Projections of the axes, without the motions found.
@@ -256,7 +256,7 @@ fn along_axes(motions: &Matrix, values: &[f64]) -> Matrix {
             let mut best = (0.0, vec![0.0; d]);
             for rest in (0..d).map(remaining) {
                 let size = norm(&rest);
-                if size > best.0 + SECOND_ORDER {
+                if size > best.0 + EQUAL_CURVATURES {
                     best = (size, rest);
                 }
             }

@@ -17,9 +17,11 @@
 use super::separating_direction::separating_direction;
 use crate::linalg::{Matrix, SymmetricEigen, dot, norm};
 use crate::scalar::uniform;
-use crate::tolerance::SECOND_ORDER;
+use crate::tolerance::{CANCELLED, SECOND_ORDER};
 
 /// Steps of the search for weights, of the search for two, and random motions tried.
+/// No form leaves the combination for good: its weight may grow again.
+const LEAST_WEIGHT: f64 = 1e-30;
 const STEPS: u32 = 500;
 const HALVINGS: usize = 80;
 const TRIED: usize = 200;
@@ -113,7 +115,7 @@ impl RelativeCurvature {
             }
             let rate = 1.0 / f64::from(step).sqrt();
             let steps = weights.iter_mut().zip(&values);
-            steps.for_each(|(w, value)| *w = (*w * (-rate * value / size).exp()).max(1e-30));
+            steps.for_each(|(w, value)| *w = (*w * (-rate * value / size).exp()).max(LEAST_WEIGHT));
             let sum: f64 = weights.iter().sum();
             weights.iter_mut().for_each(|w| *w /= sum);
             if keep(at(&weights), &mut best) {
@@ -151,7 +153,7 @@ impl RelativeCurvature {
         let mut best: Option<(f64, Vec<f64>)> = None;
         let improve = |y: Vec<f64>, best: &mut Option<(f64, Vec<f64>)>| {
             let size = norm(&y);
-            if size > 1e-9 {
+            if size > CANCELLED {
                 let y: Vec<f64> = y.iter().map(|y| y / size).collect();
                 let value = self.least(&y);
                 if best.as_ref().is_none_or(|b| value > b.0) {

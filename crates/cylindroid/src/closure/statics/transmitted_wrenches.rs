@@ -87,7 +87,7 @@ pub fn transmitted_wrenches(
     Error::check_finite("contact forces", forces)?;
     let mechanism = state.mechanism();
     let rows = pairs(state, chain)?;
-    let pose = |link: usize| state.pose(mechanism.link_frame(link));
+    let pose = |link: usize| state.link_pose(link);
     let sum = |place: usize, point: Vec3| {
         let own = rows.iter().zip(forces).filter(|(row, _)| row.pair == place);
         own.fold(Wrench::ZERO, |sum, (row, t)| sum + row.wrench.at_point(point - row.point) * *t)

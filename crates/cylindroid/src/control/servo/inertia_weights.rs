@@ -49,7 +49,7 @@ impl InertiaWeights {
         coupled: Option<&mut Coupled>,
     ) -> Result<()> {
         self.state.set(q)?;
-        self.evaluator.evaluate(&self.state, &mut self.mass);
+        self.evaluator.evaluate(&self.state, &mut self.mass)?;
         let n = self.mass.rows();
         // Of masses [kg] and of moments of inertia [kg m^2], each by themselves.
         let mut largest = [f64::MIN_POSITIVE; 2];
