@@ -8,10 +8,13 @@ const { visit } = browserOfFile();
 test("toggling actuated joints of the five-bar shows the numbers of manipulability", () =>
   visit(["five-bar"], async (page) => {
     await openPanel(page, "capability");
+    let squeezes = 0;
     for (const [toggle, actuated] of /** @type {[string, string][]} */ ([["", "q1,q2"], ["q5", "q1,q2,q5"], ["q2", "q1,q5"]])) {
       if (toggle) await page.locator(`[data-actuator="${toggle}"]`).click();
       const wanted = await cylindroid("manipulability", "five-bar", "--actuated", actuated);
-      for (const kind of ["kinematic", "active_force", "passive_force"]) {
+      for (const kind of ["kinematic", "active_force", "passive_force", "internal_force"]) {
+        if (kind === "internal_force" && wanted[kind].finite.length === 0) continue;
+        squeezes += Number(kind === "internal_force");
         const values = JSON.stringify(wanted[kind].finite);
         await page.waitForFunction(([name, text]) => {
           const shown = document.querySelector(`[data-efficiency="${name}"]`)?.getAttribute("data-values");
@@ -23,6 +26,8 @@ test("toggling actuated joints of the five-bar shows the numbers of manipulabili
     }
     const actuated = (await scene(page)).actuators.filter((actuator) => actuator.actuated).map((actuator) => actuator.name);
     assert.deepEqual(actuated.sort(), ["q1", "q5"]);
+    assert.equal(squeezes, 1, "only with three actuated joints");
+    assert.equal(await page.locator('[data-efficiency="internal_force"]').count(), 0);
     await picture(page, "five-bar-manipulability");
   }, { width: 1280, height: 720 }));
 

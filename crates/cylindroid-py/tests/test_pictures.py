@@ -174,3 +174,59 @@ def test_conics_of_a_three_system(plot, tmp_path):
         plot.conics(cy.ScrewSystem(twists[:, :2]))
     for other in (np.eye(6)[:, :3], np.eye(6)[:, 3:], np.eye(6)[:, [0, 1, 5]], np.eye(6)[:, [0, 3, 4]]):
         plot.conics(cy.ScrewSystem(other))
+
+
+def test_contacts_and_held_bodies_are_drawn(plot):
+    r = cy.load("two-arm")
+    assert r.contact_links == [("left/flange", "box"), ("right/flange", "box")]
+    points = r.contact_points(r.home)
+    assert r.contact_points([r.home] * 3).shape == (3, 2, 2, 3)
+    np.testing.assert_allclose(points[:, 0], points[:, 1], atol=1e-9)
+    assert cy.load("five-bar").contact_points(cy.load("five-bar").home).shape == (0, 2, 3)
+    ax = plot.mechanism(r)
+    (diamonds,) = (c for c in ax.collections if c.get_label() == "_contacts")
+    np.testing.assert_allclose(np.transpose(diamonds._offsets3d), points[:, 1], atol=1e-12)
+    (body,) = (line for line in ax.lines if line.get_label() == "_box")
+    np.testing.assert_allclose(np.transpose(body.get_data_3d()), points[:, 1], atol=1e-12)
+
+
+def three_fingers(dimension):
+    text = f'name = "hand"\ndimension = {dimension}\nreference = "disc"\n'
+    for i, turn in enumerate(np.deg2rad([90, 210, 330])):
+        at = [float(np.cos(turn)), float(np.sin(turn)), 0.0][:dimension]
+        text += f"""
+[[joint]]
+name = "push{i}"
+type = "prismatic"
+between = ["ground", "finger{i}"]
+origin = {[2 * x for x in at]}
+axis = {[-x for x in at]}
+actuated = true
+[[contact]]
+name = "tip{i}"
+type = "hard_finger"
+between = ["finger{i}", "disc"]
+point = {at}
+normal = {[-x for x in at]}
+"""
+    return cy.parse(text, "toml")
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_held_body_is_filled_between_its_contacts(plot, dimension):
+    r = three_fingers(dimension)
+    ax = plot.mechanism(r)
+    if dimension == 2:
+        (polygon,) = ax.patches
+        corners = polygon.get_xy()
+    else:
+        (body,) = (c for c in ax.collections if type(c).__name__ == "Poly3DCollection")
+        corners = np.squeeze(faces_of(body))
+    expected = r.contact_points(r.home)[:, 1, :dimension]
+    assert {tuple(c) for c in corners.round(12)} == {tuple(c) for c in expected.round(12)}
+    assert not [line for line in ax.lines if line.get_label() == "_disc" and line.get_linewidth() < 5]
+    # Each finger reaches from its joint to its contact.
+    for i, contact in enumerate(expected):
+        (finger,) = (line for line in ax.lines if line.get_label() == f"_finger{i}")
+        ends = np.transpose(finger.get_data_3d() if dimension == 3 else finger.get_data())
+        np.testing.assert_allclose(ends, [2 * contact, contact], atol=1e-12)

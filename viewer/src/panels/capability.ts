@@ -8,6 +8,7 @@ const KINDS: [string, string][] = [
   ["kinematic", "motion"],
   ["active_force", "active force"],
   ["passive_force", "passive force"],
+  ["internal_force", "internal force"],
 ];
 const MEASURES = ["volume", "largest", "smallest", "anisotropy"];
 
@@ -18,11 +19,13 @@ export function capabilityPanel(): Watch {
     fail: (sentence) => fill(made.body, empty(sentence)),
     show(report) {
       made.note(`metric ${String(report["metric"] ?? "")}`);
-      const parts = KINDS.map(([key, words]) => {
+      const all = KINDS.map(([key, words]) => {
         const part = objectIn(report, key);
         const finite = listIn(part, "finite").filter((value) => typeof value === "number");
         return { key, words, finite, infinite: numberIn(part, "infinite") ?? 0, zeros: numberIn(part, "zeros") ?? 0 };
       });
+      // Most mechanisms have nothing to squeeze.
+      const parts = all.filter(({ key, finite, infinite }) => key !== "internal_force" || finite.length + infinite > 0);
       const columns = parts.map(({ finite, infinite, zeros }) => [
         ...Array.from({ length: infinite }, () => "∞"), ...finite.map((value) => short(value, 4)), ...Array.from({ length: zeros }, () => "0"),
       ]);

@@ -38,7 +38,7 @@ pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
     let mechanism = drawing.state.mechanism();
     let frame = mechanism.frame_of(drawing.chain.reference);
     let reference = drawing.state.pose(drawing.chain.reference).translation;
-    let skeleton = Skeleton::new(drawing.state, (frame.link, reference))?;
+    let skeleton = Skeleton::new(drawing.state, (frame.link, reference));
     let title = format!(
         "{}: velocity and force at '{}', actuated: {}",
         mechanism.name(),
@@ -75,21 +75,24 @@ fn figure(
     let room = if alone { ALONE.0 } else { WIDTH } - 40;
     let legends = blocks.each_ref().map(|b| b.legend(size, room));
     let lines = legends.iter().map(|l| l.iter().map(|e| e.lines.len()).sum::<usize>()).max();
+    let of_block = |block| {
+        let scales = Block::scales(block, size);
+        move |plane| Panel {
+            block,
+            plane,
+            skeleton,
+            reference,
+            scales,
+            size: (width, height),
+            metre: [0.0; 2],
+        }
+    };
     // A metre is as long in every panel.
     let metre = blocks
         .iter()
         .flat_map(|block| {
-            let scales = block.scales(size);
-            let panel = move |plane| Panel {
-                block,
-                plane,
-                skeleton,
-                reference,
-                scales,
-                size: (width, height),
-                metre: [0.0; 2],
-            };
-            planes.iter().map(move |plane| panel(plane).needs())
+            let of_plane = of_block(block);
+            planes.iter().map(move |plane| of_plane(plane).needs())
         })
         .fold([0.0; 2], |[a, b]: [f64; 2], [x, y]| [a.max(x), b.max(y)]);
     let captions = blocks
@@ -116,17 +119,9 @@ fn figure(
         let (charts, notes) = below.split_vertically(px(height));
         let count = planes.len();
         let (charts, notes) = (charts.split_evenly((1, count)), notes.split_evenly((1, count)));
+        let of_plane = of_block(block);
         for (j, plane) in planes.iter().enumerate() {
-            let scales = block.scales(size);
-            let own = Panel {
-                block,
-                plane,
-                skeleton,
-                reference,
-                scales,
-                size: (width, height),
-                metre: [0.0; 2],
-            };
+            let own = of_plane(plane);
             // Axes of the quantity itself have a scale of their own in every panel.
             let metre = if drawing.in_world() { metre } else { own.needs() };
             let shown = Panel { metre, ..own };

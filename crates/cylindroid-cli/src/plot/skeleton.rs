@@ -1,7 +1,7 @@
 //! A mechanism as lines through its joints: what a picture shows of it.
 
-use cylindroid::model::{Joint, JointKind};
-use cylindroid::{Pose, Result, State, Vec3};
+use cylindroid::model::JointKind;
+use cylindroid::{State, Vec3};
 
 /// How a joint is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,17 +71,13 @@ fn slides(kind: JointKind) -> bool {
 
 impl Skeleton {
     /// Of a mechanism; `reference` is a point on the link of that index.
-    pub(crate) fn new(state: &State, (link, reference): (usize, Vec3)) -> Result<Self> {
+    pub(crate) fn new(state: &State, (link, reference): (usize, Vec3)) -> Self {
         let mechanism = state.mechanism();
-        let poses: Vec<Pose> = mechanism
-            .links()
-            .iter()
-            .map(|l| Ok(state.pose(mechanism.frame(&l.name)?)))
-            .collect::<Result<_>>()?;
+        let count = mechanism.links().len();
         let is_child = |i: usize| mechanism.joints().iter().any(|j| j.child == i);
-        let ground: Vec<bool> = (0..poses.len()).map(|i| !is_child(i)).collect();
+        let ground: Vec<bool> = (0..count).map(|i| !is_child(i)).collect();
         let near = 1e-6 * mechanism.reach();
-        let mut points = Points { of: vec![Vec::new(); poses.len()], near };
+        let mut points = Points { of: vec![Vec::new(); count], near };
         let mut sliders = Vec::new();
         let mut skeleton = Self {
             links: Vec::new(),
@@ -90,22 +86,20 @@ impl Skeleton {
             objects: Vec::new(),
             bases: Vec::new(),
         };
-        for joint in mechanism.joints() {
+        for (joint, axis) in mechanism.joints().iter().zip(state.joint_axes()) {
             // A free body hangs on nothing that could be drawn.
             if matches!(joint.kind, JointKind::Free | JointKind::Planar) {
                 continue;
             }
-            let Joint { parent, child, .. } = *joint;
-            let a = (poses[parent] * joint.parent_from_joint).translation;
-            let b = (poses[child] * joint.joint_from_child.inverse()).translation;
-            points.add(parent, a);
-            points.add(child, b);
-            if ground[parent] {
+            let (a, b) = (axis.on_parent.point, axis.on_child.point);
+            points.add(joint.parent, a);
+            points.add(joint.child, b);
+            if ground[joint.parent] {
                 skeleton.bases.push(a);
             }
             if joint.kind.dof() > 0 {
                 if slides(joint.kind) {
-                    sliders.push((skeleton.spots.len(), parent));
+                    sliders.push((skeleton.spots.len(), joint.parent));
                 }
                 skeleton.joint([a, b], joint.kind, near, |mark| Spot {
                     name: joint.name.clone(),
@@ -115,9 +109,8 @@ impl Skeleton {
                 });
             }
         }
-        for joint in mechanism.loops() {
-            let a = (poses[joint.a] * joint.link_a_from_joint).translation;
-            let b = (poses[joint.b] * joint.link_b_from_joint).translation;
+        for (joint, axis) in mechanism.loops().iter().zip(state.loop_joint_axes()) {
+            let (a, b) = (axis.on_parent.point, axis.on_child.point);
             points.add(joint.a, a);
             points.add(joint.b, b);
             skeleton.joint([a, b], joint.kind, near, |mark| Spot {
@@ -130,9 +123,9 @@ impl Skeleton {
                 skeleton.bases.push(a);
             }
         }
-        for contact in mechanism.contacts() {
-            let point = (poses[contact.b] * contact.link_b_from_contact).translation;
-            points.add(contact.a, (poses[contact.a] * contact.link_a_from_contact).translation);
+        for (contact, [on_first, point]) in mechanism.contacts().iter().zip(state.contact_points())
+        {
+            points.add(contact.a, on_first);
             points.add(contact.b, point);
             skeleton.spots.push(Spot {
                 name: contact.name.clone(),
@@ -174,7 +167,7 @@ impl Skeleton {
                 skeleton.links.push(points);
             }
         }
-        Ok(skeleton)
+        skeleton
     }
 
     fn joint(&mut self, ends: [Vec3; 2], kind: JointKind, near: f64, spot: impl Fn(Mark) -> Spot) {

@@ -24,6 +24,8 @@ ROUNDING = 1e-9
 # Larger components leave the plane: of a unit direction, or of a pitch (m/rad).
 PLANAR = 1e-6
 
+_BODY = "burlywood"
+
 __all__ = ["conics", "cylindroid", "ellipsoid", "frame", "mechanism", "screws", "trajectory"]
 
 
@@ -160,10 +162,25 @@ def _polygon(points: NDArray[Any]) -> NDArray[Any]:
     return points[[*order, order[0]]]
 
 
-def mechanism(robot: Mechanism, q: ArrayLike | None = None, ax: Any = None) -> Any:
-    """Links as lines between their joints, loop joints included, and the tool.
+def _body(ax: Any, points: NDArray[Any], label: str) -> None:
+    """A held body: filled between its points, with round corners."""
+    style = {"color": _BODY, "solid_capstyle": "round", "solid_joinstyle": "round"}
+    ax.plot(*points.T, lw=14, label=label, **style)
+    if len(points) < 3:
+        return
+    if _is_spatial(ax):
+        from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
-    Filled points are actuated joints, hollow ones passive.
+        ax.add_collection3d(Poly3DCollection([points], color=_BODY))
+    else:
+        ax.fill(*points.T, color=_BODY, lw=0)
+
+
+def mechanism(robot: Mechanism, q: ArrayLike | None = None, ax: Any = None) -> Any:
+    """Links as lines between their joints, loop joints included, contacts, held bodies, and the tool.
+
+    Filled points are actuated joints, hollow ones passive; diamonds are contacts. A body that is
+    touched by contacts and guided by no joint is filled between its contacts.
 
     Parameters
     ----------
@@ -185,25 +202,41 @@ def mechanism(robot: Mechanism, q: ArrayLike | None = None, ax: Any = None) -> A
     on_parent, on_child = (robot.joint_axes(q, side)[:, 0, :d] for side in ("parent", "child"))
     moving = {joint.child for joint in robot.joints if not joint.closes_loop}
     near = 1e-6 * robot.reach
+    contacts = robot.contact_points(q)[:, :, :d]
     points: dict[str, list[NDArray[Any]]] = {}
+
+    def add(link: str, point: NDArray[Any]) -> None:
+        known = points.setdefault(link, [])
+        if all(np.linalg.norm(point - p) > near for p in known):
+            known.append(point)
+
     for i, joint in joints:
-        for link, point in ((joint.parent, on_parent[i]), (joint.child, on_child[i])):
-            known = points.setdefault(link, [])
-            if all(np.linalg.norm(point - p) > near for p in known):
-                known.append(point)
+        add(joint.parent, on_parent[i])
+        add(joint.child, on_child[i])
         if np.linalg.norm(on_parent[i] - on_child[i]) > near:  # a slide, or a loop that is open
             ax.plot(*np.transpose([on_parent[i], on_child[i]]), color="0.5", lw=2)
+    for links, ends in zip(robot.contact_links, contacts):
+        for link, point in zip(links, ends):
+            add(link, point)
+    guided = {link for _, joint in joints for link in (joint.parent, joint.child)}
+    touched = {link for links in robot.contact_links for link in links}
     for link, of_link in points.items():
-        if link in moving and len(of_link) > 1:
+        if link in touched - guided and link in moving:
+            _body(ax, _polygon(np.array(of_link)), f"_{link}")
+        elif link in moving and len(of_link) > 1:
             line = _polygon(np.array(of_link))
             ax.plot(*line.T, color="0.3", lw=3, solid_capstyle="round", label=f"_{link}")
+    style = {"depthshade": False} if d == 3 else {"zorder": 3}
     shown = [(i, j) for i, j in joints if j.coordinates or j.mimic or j.closes_loop]
     for actuated, fill in ((True, "tab:orange"), (False, "white")):
         places = np.array([on_parent[i] for i, j in shown if j.actuated == actuated])
         if len(places):
-            style = {"depthshade": False} if d == 3 else {"zorder": 3}
             label = "_actuated" if actuated else "_passive"
             ax.scatter(*places.T, color=fill, edgecolors="tab:orange", label=label, **style)
+    if len(contacts):
+        ax.scatter(
+            *contacts[:, 1].T, marker="D", color="white", edgecolors="0.3", label="_contacts", **style
+        )
     return frame(robot.fk(q), ax, 0.1 * robot.reach)
 
 

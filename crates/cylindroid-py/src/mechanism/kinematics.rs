@@ -179,6 +179,46 @@ impl PyMechanism {
         })
     }
 
+    /// The points of all contacts in the world, in the order of `contacts`.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,) or (N, n)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (c, 2, 3) or (N, c, 2, 3)
+    ///     The point on the first and on the second link of `contact_links` (m); the two differ by
+    ///     the closure error.
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     For a q of the wrong size or with an entry that is not finite.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> r = cy.load("two-arm")
+    /// >>> r.contact_links
+    /// [('left/flange', 'box'), ('right/flange', 'box')]
+    /// >>> r.contact_points(r.home)[:, 1].mean(0).round(3)
+    /// array([0.64 , 0.092, 0.437])
+    #[pyo3(signature = (q))]
+    fn contact_points<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
+        let rows = Rows::of(&self.inner, "q", &q)?;
+        let mut state = self.inner.state(self.inner.home())?;
+        arrays::written_rows(py, rows.count, &[self.inner.contacts().len(), 2, 3], |i, out| {
+            state.set(rows.row(i))?;
+            for (points, out) in state.contact_points().iter().zip(out.chunks_exact_mut(6)) {
+                out[..3].copy_from_slice(&points[0].to_array());
+                out[3..].copy_from_slice(&points[1].to_array());
+            }
+            Ok(())
+        })
+    }
+
     /// The Jacobian: twist of the frame = J @ qd, linear rows first.
     ///
     /// Parameters

@@ -40,6 +40,8 @@ pub(crate) use load::PyLoadReport;
 /// links : list of str
 /// joints : list of Joint
 /// contacts : list of str
+/// contact_links : list of tuple of str
+///     The first and the second link of each contact, a finger and the object.
 /// actuated : list of str
 ///     The actuated coordinates and loop joints.
 /// lower, upper, velocity_limit, acceleration_limit, effort_limit : ndarray, (n,)
@@ -188,6 +190,12 @@ impl PyMechanism {
     #[getter]
     fn contacts(&self) -> Vec<&str> {
         self.inner.contacts().iter().map(|c| c.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn contact_links(&self) -> Vec<(&str, &str)> {
+        let link = |i: usize| self.inner.links()[i].name.as_str();
+        self.inner.contacts().iter().map(|c| (link(c.a), link(c.b))).collect()
     }
 
     #[getter]

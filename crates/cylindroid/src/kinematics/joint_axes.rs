@@ -1,13 +1,14 @@
-//! Where joints stand in the world: the axes of joints of the tree and of loop joints.
+//! Where joints and contacts stand in the world: the axes of joints of the tree and of loop joints,
+//! the points of contacts.
 //!
 //! Formula  world_from_joint = world_from_parent * parent_from_joint on the parent, world_from_child
 //!          * child_from_joint on the child; the axis is that of the joint frame
-//! Shapes   a line for each side of a joint
+//! Shapes   a line for each side of a joint, a point for each side of a contact
 //! Units    m; unit directions
 //! Frame    world
 //! Valid    any joint; a joint without an axis (spherical, fixed) has the z axis of its frame. The
 //!          second axis of a universal joint is in its kind
-//! Checked  tests/it/kinematics.rs::joint_axes_*
+//! Checked  tests/it/kinematics.rs::joint_axes_*, contact_points_*
 
 use super::State;
 use crate::screws::Line;
@@ -71,6 +72,33 @@ impl State {
                 let on_first = self.link_pose(j.a) * j.link_a_from_joint;
                 let on_second = self.link_pose(j.b) * j.link_b_from_joint;
                 JointAxis::of(on_first, on_second, j.axis)
+            })
+            .collect()
+    }
+
+    /// The points of all contacts in the world (m), on the first link and on the second, in the order
+    /// of [`Mechanism::contacts`]; the two differ by the closure error.
+    ///
+    /// ```
+    /// // Two arms hold a box on opposite sides; its reference point is in the middle.
+    /// let arms = cylindroid::load("two-arm")?;
+    /// let state = arms.state(arms.home())?;
+    /// let [left, right] = [state.contact_points()[0], state.contact_points()[1]];
+    /// let middle = (left[1] + right[1]) * 0.5;
+    /// assert!((middle - state.pose(arms.reference()).translation).norm() < 1e-12);
+    /// assert!((left[0] - left[1]).norm() < 1e-9);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// [`Mechanism::contacts`]: crate::model::Mechanism::contacts
+    #[must_use]
+    pub fn contact_points(&self) -> Vec<[Vec3; 2]> {
+        let contacts = self.mechanism().contacts().iter();
+        contacts
+            .map(|c| {
+                let on_first = self.link_pose(c.a) * c.link_a_from_contact;
+                let on_second = self.link_pose(c.b) * c.link_b_from_contact;
+                [on_first.translation, on_second.translation]
             })
             .collect()
     }

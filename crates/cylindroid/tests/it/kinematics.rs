@@ -491,3 +491,30 @@ fn joint_axes_of_loops() {
         }
     }
 }
+
+/// The points of a contact are the origins of its frame on both links: where the file puts them at
+/// home, apart by what an arm moves away from the object.
+#[test]
+fn contact_points_are_on_both_links() {
+    let arms = catalogue::load("two-arm").unwrap();
+    let home = arms.state(arms.home()).unwrap().contact_points();
+    let expected = [
+        [0.6493270295546051, 0.08286898348524677, 0.4299287984986484],
+        [0.6303848612170696, 0.10087677428332403, 0.44362934996003023],
+    ];
+    assert_eq!(home.len(), 2);
+    for (points, expected) in home.iter().zip(expected) {
+        for point in points {
+            assert_close("two-arm", &point.to_array(), &expected, 1e-12);
+        }
+    }
+    let mut q = arms.home().to_vec();
+    q[0] += 0.3;
+    let moved = arms.state(&q).unwrap().contact_points();
+    let turned = Pose::rotation_about(Vec3::Z, 0.3) * home[0][0];
+    assert_close("left arm", &moved[0][0].to_array(), &turned.to_array(), 1e-12);
+    assert_close("box", &moved[0][1].to_array(), &expected[0], 1e-12);
+    assert!(
+        catalogue::load("panda").unwrap().state(&[0.0; 7]).unwrap().contact_points().is_empty()
+    );
+}
