@@ -6,6 +6,7 @@
 mod args;
 mod commands;
 mod diagnostic;
+mod flags;
 mod number_file;
 mod output;
 mod plot;
@@ -42,7 +43,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Cli::command().print_help()?;
         return Ok(ExitCode::SUCCESS);
     }
-    let cli = match Cli::try_parse_from(words) {
+    let cli = match Cli::try_parse_from(&words) {
         Ok(cli) => cli,
         Err(message) => {
             // clap prints help and version to stdout with exit code 0.
@@ -51,7 +52,7 @@ fn run() -> anyhow::Result<ExitCode> {
         }
     };
     let mut out = BufWriter::new(io::stdout().lock());
-    let code = commands::run(&cli, &mut out)?;
+    let code = commands::run(&cli, &mut out).map_err(|error| flags::named(error, &words))?;
     out.flush()?;
     Ok(code)
 }

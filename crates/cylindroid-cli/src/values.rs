@@ -126,6 +126,11 @@ impl ByName {
         self.named.iter().rev().find(|(n, _)| n == name).map(|(_, x)| *x).or(self.all)
     }
 
+    /// All numbers, of names or of all.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.all.into_iter().chain(self.named.iter().map(|(_, x)| *x))
+    }
+
     /// The names with a number of their own.
     pub(crate) fn named(&self) -> impl Iterator<Item = &(String, f64)> {
         self.named.iter()

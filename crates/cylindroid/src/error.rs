@@ -65,11 +65,11 @@ pub enum Error {
     },
 
     /// An argument outside its domain.
-    #[error("{option} = {value} cannot be used: {reason}")]
+    #[error("{option}{}: {reason}", refused(value))]
     InvalidOption {
         /// The argument or option.
         option: &'static str,
-        /// Its value as text.
+        /// Its value as text, empty if it is missing.
         value: String,
         /// The reason, and an alternative.
         reason: String,
@@ -179,6 +179,10 @@ fn nearest(name: &str, known: impl IntoIterator<Item: AsRef<str>>) -> Vec<String
 
 fn offer(similar: &[String]) -> String {
     if similar.is_empty() { String::new() } else { format!("; nearest: {}", similar.join(", ")) }
+}
+
+fn refused(value: &str) -> String {
+    if value.is_empty() { " is missing".to_owned() } else { format!(" = {value} cannot be used") }
 }
 
 fn hint_text(hint: &str) -> String {

@@ -1,5 +1,7 @@
 //! From `--inverse`, its parameters and `--give-up` to a selection of the library.
 
+use std::collections::BTreeMap;
+
 use cylindroid::closure::frame_twists;
 use cylindroid::control::{InverseSelection, NamedInverse};
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
@@ -20,6 +22,13 @@ pub(crate) fn selection<'a>(
         complement: args.give_up.iter().map(|m| Twist::from_array(m.0)).collect(),
         fallback,
     }
+}
+
+/// All parameters of the chosen inverse: those given, and the defaults of the others.
+pub(crate) fn parameters_in_effect(args: &NamedInverseArgs) -> Result<BTreeMap<&'static str, f64>> {
+    let given = &args.parameters.0;
+    let own = NamedInverse::named(args.name())?.parameters.iter();
+    Ok(own.map(|p| (p.name, given.get(p.name).copied().unwrap_or(p.default))).collect())
 }
 
 /// Names options as they are typed.
@@ -72,7 +81,7 @@ pub(crate) fn check_pitch(
     // `--h` has no default, since it is a real choice; but there is advice.
     Err(Error::InvalidOption {
         option: "--h",
-        value: "missing".to_owned(),
+        value: String::new(),
         reason: format!(
             "the inverse '{name}' needs a pitch in m/rad, of the order of the arm's length; {}",
             advice().unwrap_or_default()

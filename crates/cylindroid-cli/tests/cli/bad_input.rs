@@ -18,9 +18,12 @@ fn refused_move(more: &[&str], message: &str) {
 #[test]
 fn unknown_names_offer_the_nearest() {
     refused(&["info", "pandas"], "nearest: panda");
-    refused(&["fk", "panda", "--frame", "hand"], "no frame named 'hand'; nearest: hand_tcp");
-    refused(&["fk", "panda", "--q", "panda_joint9=1"], "no joint named 'panda_joint9'");
-    refused_move(&["--inverse", "damp"], "nearest: damped");
+    refused(
+        &["fk", "panda", "--frame", "hand"],
+        "--frame: no frame named 'hand'; nearest: hand_tcp",
+    );
+    refused(&["fk", "panda", "--q", "panda_joint9=1"], "--q: no joint named 'panda_joint9'");
+    refused_move(&["--inverse", "damp"], "--inverse: no inverse named 'damp'; nearest: damped");
     refused_move(&["--secondary", "center"], "nearest: centring");
     refused_move(&["--task", "x,y,yaw"], "no task or task component named 'yaw'");
 }
@@ -48,15 +51,15 @@ fn targets_must_be_finite_and_complete() {
 #[test]
 fn servo_options_must_make_a_controller() {
     refused_move(&["--gain", "3000"], "gain * dt = 3 must be below 2");
-    refused_move(&["--gain", "5,0"], "orientation gain = 0");
-    refused_move(&["--dt", "-1e-3"], "dt = -0.001");
-    refused_move(&["--length", "nan"], "length = NaN");
+    refused_move(&["--gain", "5,0"], "--gain (orientation) = 0");
+    refused_move(&["--dt", "-1e-3"], "--dt = -0.001");
+    refused_move(&["--length", "nan"], "--length = NaN");
     refused_move(&["--time-limit", "0"], "--time-limit = 0");
-    refused_move(&["--tolerance-position", "0"], "position tolerance = 0");
-    refused_move(&["--speed", "0"], "linear speed = 0");
+    refused_move(&["--tolerance-position", "0"], "--tolerance-position = 0");
+    refused_move(&["--speed", "0"], "--speed (linear) = 0");
     refused_move(&["--damping", "0.1"], "the inverse 'truncated' has no such parameter but eps");
-    refused_move(&["--eps", "1"], "eps = 1 cannot be used");
-    refused_move(&["--acceleration-linear", "0", "--line"], "acceleration bound = 0");
+    refused_move(&["--eps", "1"], "--eps = 1 cannot be used");
+    refused_move(&["--acceleration-linear", "0", "--line"], "--acceleration-linear = 0");
 }
 
 #[test]
@@ -74,6 +77,31 @@ fn pictures_that_cannot_be_written() {
         let command = [command, &["--plot", "/no/such/folder/e.svg"]].concat();
         refused(&command, "cannot write /no/such/folder/e.svg");
     }
+}
+
+/// The flag that was typed, whatever the library calls its value.
+#[test]
+fn errors_name_the_flag() {
+    let wrench = ["statics", "stewart", "--wrench", "0,0,1,0,0,0"];
+    let statics = |more: &[&str], message: &str| refused(&[&wrench, more].concat(), message);
+    statics(&["--stiffness", "-5"], "--stiffness = -5 cannot be used: it must be positive");
+    statics(&["--compliance", "-1"], "--compliance = -1");
+    refused(&["statics", "stewart", "--wrench", "0,nan,1,0,0,0"], "--wrench[1] is not finite");
+    refused(&["manipulability", "five-bar", "--task", ".."], "--task: no component named '..'");
+    refused(&["manipulability", "five-bar", "--task", "x,x"], "--task = 2 x 3 map of rank 1");
+    let limits = ["manipulability", "five-bar", "--polytope", "--velocity-limits", "1"];
+    refused(&limits, "--velocity-limits has 1 entries, expected 2");
+    refused(&["jacobian", "ur5e", "--velocities", "1,2"], "--velocities has 2 entries");
+    refused(&["jacobian", "youbot", "--inverse", "hyperbolic"], "--h is missing: the inverse");
+    refused(
+        &["jacobian", "youbot", "--inverse", "hyperbolic-damped", "--h", "1"],
+        "--mu is missing",
+    );
+    refused(&["assemble", "five-bar", "--modes", "0"], "--modes = 0");
+    refused(&["screws", "youbot", "--center", "nan,0,0"], "--center[0] is not finite");
+    refused_move(&["--joint-weights", "1,1"], "--joint-weights has 2 entries");
+    refused_move(&["--line", "--acceleration-angular", "-1"], "--acceleration-angular = -1");
+    refused_move(&["--secondary", "foo=1"], "--secondary: no secondary task named 'foo'");
 }
 
 /// Options that would do nothing, and lists with nothing in them.

@@ -117,6 +117,16 @@ fn joint_velocities_of_a_jacobian() {
     assert!(difference(&numbers(&inverse["joint_velocities"]), &velocities) < 1e-12);
     let shown = text(&["jacobian", "ur5e", "--twist", "x"]);
     assert!(shown.contains("Joint velocities for the twist"), "{shown}");
+    // All parameters in effect, defaults too.
+    assert!(shown.contains("parameters          eps 0.001"), "{shown}");
+    let filtering = ["jacobian", "ur5e", "--inverse", "numerical-filtering", "--damping", "0.5"];
+    let report = json(&filtering, 0);
+    assert_eq!(report["inverse"]["parameters"]["damping"], 0.5);
+    let shown = text(&filtering);
+    for name in ["onset", "filter"] {
+        assert!(report["inverse"]["parameters"][name].is_f64(), "{report}");
+        assert!(shown.contains(&format!("{name} ")), "{shown}");
+    }
 
     // Of five joints the joint velocities depend on the length; the hyperbolic ones do not.
     let youbot = ["jacobian", "youbot", "--q", BELOW, "--twist", TWIST];

@@ -158,7 +158,7 @@ fn task_units(constraint: &PyConstraint, map: Option<&Matrix>) -> Result<Units> 
 pub(super) fn limits(constraint: &PyConstraint, torque: bool) -> Result<Vec<f64>> {
     let what = if torque { "effort" } else { "velocity" };
     let Some(origin) = &constraint.origin else {
-        return Err(Failure::option("limits", "missing", "bare matrices have none; give them"));
+        return Err(Failure::option("limits", "", "bare matrices have none; give them"));
     };
     let mechanism = origin.state.mechanism();
     let limit = |name: &String| {

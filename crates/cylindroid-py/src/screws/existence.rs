@@ -146,7 +146,9 @@ impl PyScrewSystem {
     /// -------
     /// (float or None, float)
     ///     The pitch [m/rad], infinite if the limit is best, None if the projector exists for no
-    ///     pitch; and the norm of the projector.
+    ///     pitch; and the norm of the projector. Where the norm decreases as `|h|` grows and the
+    ///     limit does not exist, no pitch is best: the largest searched is returned, 1000
+    ///     characteristic lengths.
     fn choose_pitch(&self, py: Python<'_>) -> (Option<f64>, f64) {
         let choice = py.detach(|| self.inner.choose_pitch());
         (choice.pitch, choice.norm)

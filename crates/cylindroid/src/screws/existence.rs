@@ -157,6 +157,9 @@ pub struct PitchChoice {
     pub curve: Vec<(f64, f64)>,
     /// |P_inf|; infinite where the limit does not exist.
     pub norm_at_infinity: f64,
+    /// False if no pitch has the smallest norm: it decreases up to the largest pitches searched,
+    /// 1000 characteristic lengths, and P_inf does not exist.
+    pub attained: bool,
 }
 
 /// Pitches beyond this many characteristic lengths are taken for infinite.
@@ -268,7 +271,8 @@ impl ScrewSystem {
         });
         let Some(&best) = minima.first() else {
             let pitch = norm_at_infinity.is_finite().then_some(f64::INFINITY);
-            return PitchChoice { pitch, norm: norm_at_infinity, curve, norm_at_infinity };
+            let norm = norm_at_infinity;
+            return PitchChoice { pitch, norm, curve, norm_at_infinity, attained: true };
         };
         let (mut pitch, mut smallest) = curve[best];
         for i in minima {
@@ -300,8 +304,11 @@ impl ScrewSystem {
         if norm_at_infinity <= smallest * (1.0 + 1e-6) {
             (pitch, smallest) = (f64::INFINITY, norm_at_infinity);
         }
+        let last = curve.len() - 1;
+        let ends = [(curve[0], curve[1]), (curve[last], curve[last - 1])];
+        let attained = !ends.iter().any(|(end, inner)| pitch == end.0 && end.1 < inner.1);
         curve.retain(|(h, _)| h.abs() <= 10.0 * length);
-        PitchChoice { pitch: Some(pitch), norm: smallest, curve, norm_at_infinity }
+        PitchChoice { pitch: Some(pitch), norm: smallest, curve, norm_at_infinity, attained }
     }
 }
 

@@ -511,7 +511,7 @@ fn contact_points_are_on_both_links() {
     let mut q = arms.home().to_vec();
     q[0] += 0.3;
     let moved = arms.state(&q).unwrap().contact_points();
-    let turned = Pose::rotation_about(Vec3::Z, 0.3) * home[0][0];
+    let turned = Rotation::about_z(0.3) * home[0][0];
     assert_close("left arm", &moved[0][0].to_array(), &turned.to_array(), 1e-12);
     assert_close("box", &moved[0][1].to_array(), &expected[0], 1e-12);
     assert!(

@@ -76,6 +76,7 @@ pub(super) fn find(
             .into_iter()
             .collect();
         given.check("joint", &known)?;
+        given.numbers().try_for_each(|k| Error::check_positive("--stiffness", k))?;
         if chain.actuated.is_empty() && given.named().next().is_none() {
             return Err(Error::InvalidOption {
                 option: "--stiffness",

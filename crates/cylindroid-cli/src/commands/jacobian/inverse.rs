@@ -9,13 +9,13 @@ use cylindroid::{EndEffector, Error, ReferenceFrame, Result, State, Twist};
 use serde::Serialize;
 
 use crate::args::JacobianArgs;
-use crate::commands::inverse_selection::{as_typed, check_pitch, selection};
+use crate::commands::inverse_selection::{as_typed, check_pitch, parameters_in_effect, selection};
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]
 pub(super) struct InverseJson {
     name: String,
-    /// The parameters that were given.
+    /// The parameters in effect, defaults included.
     parameters: BTreeMap<&'static str, f64>,
     pub(super) exists: bool,
     reason: Option<String>,
@@ -91,7 +91,7 @@ pub(super) fn find(
         inverse;
     Ok(Some(InverseJson {
         name: args.inverse.name().to_owned(),
-        parameters: args.inverse.parameters.0.clone(),
+        parameters: parameters_in_effect(&args.inverse)?,
         exists,
         reason: reason.map(|r| r.to_string()),
         matrix: exists.then(|| matrix.to_rows()),

@@ -101,6 +101,8 @@ struct ChoiceJson {
     norm: f64,
     /// null if there is no limit.
     norm_at_infinity: f64,
+    /// False if the norm decreases as |h| grows beyond this pitch.
+    attained: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -182,6 +184,7 @@ fn describe(found: &Found) -> ScrewsJson<'_> {
             at_infinity: choice.pitch == Some(f64::INFINITY),
             norm: choice.norm,
             norm_at_infinity: choice.norm_at_infinity,
+            attained: choice.attained,
         },
         inverses: found.pitches.iter().map(|at| at.json(found.asked.is_some())).collect(),
         twist: found.asked.as_ref().map(Into::into),
@@ -366,6 +369,14 @@ fn inverse(system: &ScrewSystem) -> String {
         [] => "for every finite h".to_owned(),
         ref pitches => format!("for every h except {} m/rad", output::entries(pitches)),
     };
+    if !choice.attained {
+        return format!(
+            "exists {but}; the projector norm decreases as |h| grows (|P| = {} at h = {} m/rad), \
+             and the limit at infinity does not exist",
+            number(choice.norm),
+            number(pitch)
+        );
+    }
     let h = if pitch.is_infinite() {
         "infinity".to_owned()
     } else {

@@ -326,7 +326,7 @@ impl InverseSelection<'_> {
             let Some(value) = self.value(parameter.name) else {
                 return Err(Error::InvalidOption {
                     option: parameter.name,
-                    value: "missing".to_owned(),
+                    value: String::new(),
                     reason: format!(
                         "the inverse '{}' needs this parameter, in {}: try {}",
                         inverse.name, parameter.unit, parameter.default

@@ -3,7 +3,7 @@
 use cylindroid::Matrix;
 use cylindroid::linalg::{ColumnSpace, Svd, Threshold};
 use cylindroid::screws::{Class, NoInverse, ScrewOptions, ScrewSystem};
-use cylindroid::spatial::{Pose, Twist, Wrench};
+use cylindroid::spatial::{Pose, Twist, Vec3, Wrench};
 
 use super::laws::{Case, adjoint_matrix, cases, form_matrix};
 use super::sample::{CLASSES, Form, Setting, matrix, system};
@@ -229,6 +229,11 @@ fn the_chosen_pitch_is_the_best() {
             Some(h) => assert_eq!(choice.norm, s.projector_norm(h)),
             None => assert_eq!(choice.norm, f64::INFINITY),
         }
+        if !choice.attained {
+            let h = choice.pitch.unwrap();
+            assert!(h.is_finite() && choice.norm_at_infinity.is_infinite());
+            assert!(s.projector_norm(2.0 * h) < choice.norm, "{:?} {h}", case.form);
+        }
     });
     // Two directions of one pitch: nothing is as small as the limit. The limit of a rotation and a
     // translation that leans does not exist.
@@ -240,11 +245,21 @@ fn the_chosen_pitch_is_the_best() {
             0,
             &Setting::PLAIN,
         );
-        assert!(a.choose_pitch().pitch.unwrap().is_finite());
+        let choice = a.choose_pitch();
+        assert!(choice.pitch.unwrap().is_finite() && choice.attained);
         let form = Form { pitches: vec![0.0], ..Form::random(&mut Random(1), 3, Class::IIA) };
         let (b, ..) = system(&mut random, &form, 0, &Setting::PLAIN);
-        assert_eq!(b.choose_pitch().pitch, Some(f64::INFINITY));
+        let choice = b.choose_pitch();
+        assert!(choice.pitch == Some(f64::INFINITY) && choice.attained);
     }
+    // Example 2 of Donelan & Selig: |P_h| falls to 1 as |h| grows, and P_inf does not exist.
+    let arm = [
+        Twist { linear: Vec3::ZERO, angular: Vec3::Z },
+        Twist { linear: Vec3::ZERO, angular: Vec3::X },
+        Twist { linear: Vec3::Z * -0.4, angular: Vec3::X },
+    ];
+    let choice = ScrewSystem::of(&arm, &ScrewOptions::default()).unwrap().choose_pitch();
+    assert!(!choice.attained && choice.norm_at_infinity.is_infinite());
 }
 
 #[test]
