@@ -3,7 +3,7 @@
 //!
 //! A ```` ```sh ```` block may be followed by a ```` ```text ```` block, which is what its commands
 //! print. A comment `# exit code 1` at the end of a command announces a negative answer, and
-//! `| head -n N` keeps the first lines. A block that begins with the comment `# NAME.toml` or
+//! `| head -n N` or `| tail -n N` keeps the first or last lines. A block that begins with the comment `# NAME.toml` or
 //! `<!-- NAME.urdf -->` is a file that commands read. `cargo xtask book --outputs` writes what
 //! commands print into the pages.
 
@@ -83,17 +83,28 @@ fn file_name(first: &str) -> Option<&str> {
 struct Line<'a> {
     arguments: &'a str,
     code: i32,
-    /// `| head -n N`.
-    head: usize,
+    /// `| head -n N` or `| tail -n N`.
+    kept: Kept,
+}
+
+enum Kept {
+    All,
+    Head(usize),
+    Tail(usize),
 }
 
 fn command(line: &str) -> Option<Line<'_>> {
     let typed = line.strip_prefix("cylindroid ")?;
     let (typed, comment) = typed.split_once("  #").unwrap_or((typed, ""));
-    let (arguments, head) = typed.split_once(" | head -n ").unwrap_or((typed, ""));
-    let head = if head.is_empty() { usize::MAX } else { head.trim().parse().unwrap() };
+    let (arguments, pipe) = typed.split_once(" | ").unwrap_or((typed, ""));
+    let kept = match pipe.trim().split_once(" -n ") {
+        None => Kept::All,
+        Some(("head", n)) => Kept::Head(n.parse().unwrap()),
+        Some(("tail", n)) => Kept::Tail(n.parse().unwrap()),
+        Some(_) => panic!("{line}: | head -n N or | tail -n N"),
+    };
     let code = i32::from(comment.contains("exit code 1"));
-    Some(Line { arguments: arguments.trim(), code, head })
+    Some(Line { arguments: arguments.trim(), code, kept })
 }
 
 fn run(line: &Line<'_>, folder: &Path, page: &Path) -> String {
@@ -115,8 +126,14 @@ fn run(line: &Line<'_>, folder: &Path, page: &Path) -> String {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(line.code), "{place}: {stderr}");
     let printed = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<&str> = printed.lines().collect();
+    let lines = match line.kept {
+        Kept::All => &lines[..],
+        Kept::Head(n) => &lines[..n.min(lines.len())],
+        Kept::Tail(n) => &lines[lines.len().saturating_sub(n)..],
+    };
     let mut kept = String::new();
-    for line in printed.lines().take(line.head) {
+    for line in lines {
         writeln!(kept, "{}", line.trim_end()).unwrap();
     }
     kept

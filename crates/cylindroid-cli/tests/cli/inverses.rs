@@ -118,7 +118,7 @@ fn joint_velocities_of_a_jacobian() {
     let shown = text(&["jacobian", "ur5e", "--twist", "x"]);
     assert!(shown.contains("Joint velocities for the twist"), "{shown}");
     // All parameters in effect, defaults too.
-    assert!(shown.contains("parameters          eps 0.001"), "{shown}");
+    assert!(shown.contains("parameters  eps 0.001"), "{shown}");
     let filtering = ["jacobian", "ur5e", "--inverse", "numerical-filtering", "--damping", "0.5"];
     let report = json(&filtering, 0);
     assert_eq!(report["inverse"]["parameters"]["damping"], 0.5);
