@@ -19,6 +19,7 @@
 //! |---|---|
 //! | load or build a robot or mechanism | [`load`], [`catalogue`], [`model::Builder`], [`Mechanism`] |
 //! | compute forward kinematics and Jacobians | [`State`]; in a loop [`kinematics::Chain`]; for many configurations [`kinematics::KinematicsBatch`] |
+//! | find distances between links and to obstacles | [`collision::CollisionModel`] |
 //! | solve inverse kinematics | [`ik::solve`], [`ik::Solver`]; in closed form [`ik::Analytic`] |
 //! | control an end effector or an object in Cartesian space | [`Servo`], [`ServoOptions`]; whole motions with [`control::simulate`] |
 //! | plan time laws and paths | [`control::TimeLaw`], [`control::CartesianMove`], [`control::JointMove`] |
@@ -40,7 +41,7 @@
 //! # Layers
 //!
 //! The modules form one line, each imports only those before it: `error, tolerance, scalar, linalg,
-//! spatial, screws, inverse, model, kinematics, closure, manipulability, ik, control`.
+//! spatial, screws, inverse, model, kinematics, collision, closure, manipulability, ik, control`.
 //!
 //! # Features
 //!
@@ -50,6 +51,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp_const))]
 
 pub mod closure;
+pub mod collision;
 pub mod control;
 pub mod error;
 pub mod ik;

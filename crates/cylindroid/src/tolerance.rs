@@ -421,3 +421,25 @@ pub const CLEAR_DISTANCE: f64 = 1e-4;
 /// A share of a motion below this is zero, without a rank decision: a thousandth of
 /// [`CLOSURE_BLOCK`], and above rounding [-].
 pub const NEGLIGIBLE_SHARE: f64 = 1e-12;
+
+/// Two segments are parallel where the squared sine of their angle is below this [-]: along a common
+/// part of length l the distance then changes by less than 1e-12 l.
+pub const PARALLEL_SEGMENTS: f64 = 1e-24;
+
+/// Points nearer than this (m) have no direction from one to the other: rounding of coordinates of
+/// some metres; the normal is then taken from the shapes.
+pub const ZERO_SEPARATION: f64 = 1e-14;
+
+/// Share by which the radius of a fitted capsule exceeds that of the smallest circle, against
+/// rounding [-].
+pub const CAPSULE_ENLARGED: f64 = 1e-12;
+
+/// Default distance above which a pair of shapes counts as one that never touches (m).
+pub const NEVER_NEAR: f64 = 0.02;
+
+/// Upper less lower bound of the distance of two convex cores at which the search ends, relative to
+/// the sum of their radii [-]: some hundred roundings.
+pub const GJK_GAP: f64 = 1e-13;
+
+/// The same for the depth of cores that overlap [-]: curved ones come near it with a hundred facets.
+pub const DEPTH_GAP: f64 = 1e-8;

@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::source::{files, text_of};
 
 /// The line. A module that is not written yet keeps its place.
-const LINE: [&str; 15] = [
+const LINE: [&str; 16] = [
     "error",
     "tolerance",
     "scalar",
@@ -17,6 +17,7 @@ const LINE: [&str; 15] = [
     "inverse",
     "model",
     "kinematics",
+    "collision",
     "closure",
     "manipulability",
     "ik",

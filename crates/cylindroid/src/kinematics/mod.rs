@@ -25,6 +25,7 @@ pub use batch::KinematicsBatch;
 pub use chain::Chain;
 pub use conversion::velocity_conversion;
 pub use jacobian::ReferenceFrame;
+pub(crate) use jacobian::Tip;
 pub use joint_axes::JointAxis;
 pub use mass_matrix::MassMatrix;
 pub(crate) use serial::Serial;

@@ -329,7 +329,7 @@ impl State {
     }
 
     /// The poses of all moving frames, the ground first.
-    pub(super) fn slots(&self) -> &[AlignedPose] {
+    pub(crate) fn slots(&self) -> &[AlignedPose] {
         &self.slots
     }
 

@@ -1,4 +1,4 @@
-//! Links, with the shapes and masses of the file (kept as data: kinematics does not use them).
+//! Links, with the shapes and masses of the file (kept as data: kinematics does not use them, `collision` does).
 
 use std::path::PathBuf;
 
@@ -25,8 +25,8 @@ impl Link {
     }
 }
 
-/// A shape fixed to a link.
-#[derive(Debug, Clone, PartialEq)]
+/// A shape fixed to a link; by default a sphere without extent.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Visual {
     /// Its name, often empty.
     pub name: String,
@@ -66,6 +66,18 @@ pub enum Geometry {
         /// Radius.
         radius: f64,
     },
+    /// An ellipsoid (m).
+    Ellipsoid {
+        /// Semi-axes along x, y, z.
+        radii: Vec3,
+    },
+    /// The half-space z <= 0, whose surface is the plane z = 0.
+    HalfSpace,
+    /// The convex hull of points.
+    ConvexHull {
+        /// The points (m).
+        points: Vec<Vec3>,
+    },
     /// A mesh in a file of its own.
     Mesh {
         /// The name in the model file (`package://...`).
@@ -75,6 +87,12 @@ pub enum Geometry {
         /// Scale along x, y, z.
         scale: Vec3,
     },
+}
+
+impl Default for Geometry {
+    fn default() -> Self {
+        Self::Sphere { radius: 0.0 }
+    }
 }
 
 /// Mass and moments of inertia of a link.

@@ -1,0 +1,30 @@
+//! The gradient of a distance.
+//!
+//! Formula  row_j = normal . (column_j of b at point_b - column_j of a at point_a), linear parts of
+//!          the Jacobians; joints that move both bodies have no share
+//! Shapes   n entries, for joint velocities
+//! Units    m/s for each unit of joint velocity
+//! Valid    where closest points and normal are unique; elsewhere the gradient of one branch
+//! Why so   at closest points the sliding of the points along both surfaces is across the normal,
+//!          so that only the velocities of the bodies remain
+//! Source   Faverjon & Tournassoud 1987
+//! Checked  tests/collision/gradient.rs
+
+use super::scene::NearPair;
+use crate::kinematics::{State, Tip};
+use crate::spatial::Vec3;
+
+/// The gradient of the distance of a pair over all coordinates, into `row` (n entries).
+pub(super) fn gradient_into(state: &State, near: &NearPair, row: &mut [f64]) {
+    row.fill(0.0);
+    let mechanism = state.mechanism();
+    let tip = |link: Option<usize>| link.map(|l| state.tip(mechanism.link_frame(l).into()));
+    let (a, b) = (tip(near.link_a), tip(near.link_b));
+    let shared = a.as_ref().zip(b.as_ref()).map_or(0, |(a, b)| a.common_slot(b));
+    let mut add = |tip: Option<Tip<'_>>, point: Vec3, normal: Vec3| {
+        let Some(tip) = tip else { return };
+        tip.for_each_column_above(shared, point, |_, c, t| row[c] += normal.dot(t.linear));
+    };
+    add(a, near.point_a, -near.normal);
+    add(b, near.point_b, near.normal);
+}

@@ -1,0 +1,29 @@
+//! Geometry of links and obstacles: distances, closest points, normals and their gradients.
+//!
+//! Read in this order: `convex.rs` (shapes), `closed_form.rs` and `gjk.rs` (distance of a
+//! pair), `pairs.rs` and `sampling.rs` (the pairs that are watched), `model.rs`
+//! ([`CollisionModel`]).
+
+mod body;
+mod capsule_fit;
+mod closed_form;
+#[cfg(feature = "formats")]
+mod collada;
+mod convex;
+mod distance;
+mod gjk;
+mod gradient;
+mod hull;
+mod mesh;
+mod model;
+mod options;
+mod pairs;
+mod sampling;
+mod scene;
+mod simplex;
+
+pub use body::Body;
+pub use distance::{Separation, distance};
+pub use model::CollisionModel;
+pub use options::{CollisionOptions, MeshShape};
+pub use scene::{NearPair, Pair};

@@ -1,0 +1,61 @@
+//! The pairs of shapes that can collide: not of one rigid body, not of neighbours.
+//!
+//! Valid    neighbours are rigid bodies that a joint of the tree or of a loop connects, other than a
+//!          free one, and the two bodies of a contact
+//! Why so   rigid bodies, not links: a flange that is fixed to a link is no neighbour but a part of it
+//! Checked  tests/collision/pairs.rs
+
+use super::body::Body;
+use super::convex::Core;
+use super::scene::Pair;
+use crate::error::{Error, Result};
+use crate::model::{JointKind, Mechanism};
+
+/// All pairs of shapes of links that can move relative to one another and are neither neighbours
+/// nor disabled.
+pub(super) fn candidates(
+    mechanism: &Mechanism,
+    bodies: &[Body],
+    disabled: &[[String; 2]],
+) -> Result<Vec<Pair>> {
+    let link = |name: &String| {
+        let links = mechanism.links();
+        let found = links.iter().position(|l| l.name == *name);
+        found.ok_or_else(|| Error::unknown("link", name, links.iter().map(|l| l.name.as_str())))
+    };
+    let mut apart: Vec<(usize, usize)> = Vec::new();
+    for [a, b] in disabled {
+        apart.push(ordered(link(a)?, link(b)?));
+    }
+    apart.sort_unstable();
+    // The slot of the body is that of its last joint; a joint of several coordinates has more slots.
+    let slot = |link: usize| mechanism.frames()[link].slot;
+    let tree = mechanism.joints().iter().map(|j| (j.kind, j.parent, j.child));
+    let loops = mechanism.loops().iter().map(|l| (l.kind, l.a, l.b));
+    let joined = tree.chain(loops).filter(|(kind, ..)| *kind != JointKind::Free);
+    let joined = joined.map(|(_, a, b)| (a, b));
+    let touching = mechanism.contacts().iter().map(|c| (c.a, c.b));
+    let mut neighbours: Vec<(usize, usize)> =
+        joined.chain(touching).map(|(a, b)| ordered(slot(a), slot(b))).collect();
+    neighbours.sort_unstable();
+
+    let is_half_space = |body: &Body| matches!(body.convex.core, Core::HalfSpace);
+    let mut pairs = Vec::new();
+    for (a, first) in bodies.iter().enumerate() {
+        for (b, second) in bodies.iter().enumerate().skip(a + 1) {
+            let links = first.link.zip(second.link).map(|(a, b)| ordered(a, b));
+            let rigid = first.slot == second.slot;
+            let near = neighbours.binary_search(&ordered(first.slot, second.slot)).is_ok();
+            let off = links.is_some_and(|l| apart.binary_search(&l).is_ok());
+            let planes = is_half_space(first) && is_half_space(second);
+            if !(rigid || near || off || planes) {
+                pairs.push(Pair { a, b });
+            }
+        }
+    }
+    Ok(pairs)
+}
+
+fn ordered(a: usize, b: usize) -> (usize, usize) {
+    (a.min(b), a.max(b))
+}
