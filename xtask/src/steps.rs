@@ -88,6 +88,7 @@ pub(crate) fn vectors() -> Result<()> {
         ("closed_chain", "closed_chains"),
         ("grasp", "grasps"),
         ("pitch_form", "pitch_forms"),
+        ("collision", "collision"),
     ] {
         let script = format!("xtask/vectors/{script}_vectors.py");
         let folder = format!("crates/cylindroid/tests/vectors/{folder}");
@@ -110,7 +111,7 @@ pub(crate) fn vectors() -> Result<()> {
 
 /// The kernels, the servo step by step, and calls from Python, on this machine.
 pub(crate) fn bench() -> Result<()> {
-    for bench in ["kernels", "jitter"] {
+    for bench in ["kernels", "collision", "jitter"] {
         run(&mut cargo(&["bench", "--package", "cylindroid", "--bench", bench]))?;
     }
     python::bench()

@@ -4,6 +4,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
+use cylindroid::collision::{CollisionModel, CollisionOptions};
 use cylindroid::control::{
     Admittance, AdmittanceGain, HybridController, HybridInput, SecondaryTask, ServoGains,
     SharedController, SharedInput, Task, TaskProjection,
@@ -11,11 +12,11 @@ use cylindroid::control::{
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
 use cylindroid::kinematics::{Chain, KinematicsBatch};
-use cylindroid::model::{Inertial, JointKind, JointSpec, Link};
+use cylindroid::model::{Geometry, Inertial, JointKind, JointSpec, Link, Visual};
 use cylindroid::screws::{Complement, Projector, ScrewOptions};
 use cylindroid::spatial::Mat3;
 use cylindroid::{
-    Matrix, Mechanism, Pose, ReferenceFrame, Servo, ServoOptions, Twist, Vec3, catalogue,
+    Matrix, Mechanism, Pose, ReferenceFrame, Rotation, Servo, ServoOptions, Twist, Vec3, catalogue,
 };
 
 struct Counting;
@@ -238,6 +239,58 @@ fn control_laws_allocate_nothing() {
         });
         assert_eq!(counted, 0, "{along:?}");
     }
+}
+
+/// Shapes of all kinds, apart and with overlapping cores, once the scratch memory has its size.
+#[test]
+fn distances_allocate_nothing() {
+    let mut builder = Mechanism::builder("slide");
+    let point = |k: i32| Vec3::new((0.7 * f64::from(k)).sin(), (1.1 * f64::from(k)).cos(), 0.1);
+    let shapes = [
+        Geometry::Sphere { radius: 0.1 },
+        Geometry::Capsule { radius: 0.1, length: 0.4 },
+        Geometry::Box { size: Vec3::new(0.2, 0.3, 0.4) },
+        Geometry::Cylinder { radius: 0.2, length: 0.4 },
+        Geometry::ConvexHull {
+            points: (0..60).map(|k| point(k) * 0.2 + Vec3::Z * (0.01 * f64::from(k))).collect(),
+        },
+        Geometry::HalfSpace,
+    ];
+    for geometry in &shapes[..5] {
+        builder.collision("cart", Visual { geometry: geometry.clone(), ..Visual::default() });
+    }
+    builder.joint(JointSpec::new("x", JointKind::Prismatic, "rail", "cart"));
+    let robot = builder.build().unwrap();
+    let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
+    let names: Vec<String> = (0..shapes.len()).map(|i| format!("obstacle {i}")).collect();
+    let place = |i: usize| Pose {
+        rotation: Rotation::exp(Vec3::new(0.3, 0.2, -0.4) * (1 + i) as f64),
+        translation: Vec3::new(0.11, 0.05, 0.7),
+    };
+    for (i, (name, shape)) in names.iter().zip(&shapes).enumerate() {
+        model.add_obstacle(name, shape, place(i)).unwrap();
+    }
+    let mut state = robot.state(&[0.0]).unwrap();
+    let (mut near, mut row) = (Vec::new(), vec![0.0; 1]);
+    let (mut overlapping, mut counted) = (0, 0);
+    for _ in 0..2 {
+        // The second time, all memory is there.
+        counted = count(|| {
+            for step in 0..200 {
+                state.set(&[0.01 * f64::from(step)]).unwrap();
+                for (i, name) in names.iter().enumerate() {
+                    model.move_obstacle(name, place(i)).unwrap();
+                }
+                model.near(&state, f64::INFINITY, &mut near).unwrap();
+                for pair in &near {
+                    overlapping += usize::from(pair.distance < 0.0);
+                    model.gradient_into(&state, pair, &mut row);
+                }
+            }
+        });
+    }
+    assert!(overlapping > 1000, "{overlapping}");
+    assert_eq!(counted, 0);
 }
 
 fn count(f: impl FnOnce()) -> usize {

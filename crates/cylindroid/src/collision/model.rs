@@ -64,8 +64,7 @@ impl CollisionModel {
     /// ```
     ///
     /// # Errors
-    /// [`Error::UnknownName`] for a disabled pair of unknown links; [`Error::InvalidOption`] for a
-    /// margin that is not finite.
+    /// [`Error::InvalidOption`] for a margin that is not finite.
     pub fn new(mechanism: &Mechanism, options: &CollisionOptions) -> Result<Self> {
         let (mut scene, mut ignored) = (Scene::default(), Vec::new());
         for (index, link) in mechanism.links().iter().enumerate() {
@@ -90,7 +89,7 @@ impl CollisionModel {
                 }
             }
         }
-        scene.pairs = pairs::candidates(mechanism, &scene.bodies, &options.disabled)?;
+        scene.pairs = pairs::candidates(mechanism, &scene.bodies, &options.disabled, &mut ignored);
         drop_constant(mechanism, &mut scene, options)?;
         Ok(Self {
             mechanism: mechanism.clone(),
@@ -130,7 +129,8 @@ impl CollisionModel {
         [&self.scene.bodies[a].name, &self.scene.bodies[b].name]
     }
 
-    /// The collision shapes that could not be made, with the reason: their links have none there.
+    /// The collision shapes that could not be made, with the reason: their links have none there; and
+    /// disabled pairs of links that do not exist.
     #[must_use]
     pub fn ignored(&self) -> &[Ignored] {
         &self.ignored

@@ -8,24 +8,27 @@
 use super::body::Body;
 use super::convex::Core;
 use super::scene::Pair;
-use crate::error::{Error, Result};
-use crate::model::{JointKind, Mechanism};
+use crate::model::{Ignored, JointKind, Mechanism};
 
 /// All pairs of shapes of links that can move relative to one another and are neither neighbours
-/// nor disabled.
+/// nor disabled; disabled pairs of unknown links are logged.
 pub(super) fn candidates(
     mechanism: &Mechanism,
     bodies: &[Body],
     disabled: &[[String; 2]],
-) -> Result<Vec<Pair>> {
-    let link = |name: &String| {
-        let links = mechanism.links();
-        let found = links.iter().position(|l| l.name == *name);
-        found.ok_or_else(|| Error::unknown("link", name, links.iter().map(|l| l.name.as_str())))
-    };
+    ignored: &mut Vec<Ignored>,
+) -> Vec<Pair> {
+    let link = |name: &String| mechanism.links().iter().position(|l| l.name == *name);
     let mut apart: Vec<(usize, usize)> = Vec::new();
     for [a, b] in disabled {
-        apart.push(ordered(link(a)?, link(b)?));
+        match (link(a), link(b)) {
+            (Some(a), Some(b)) => apart.push(ordered(a, b)),
+            (found, _) => ignored.push(Ignored {
+                line: 0,
+                what: format!("disabled collision of '{a}' and '{b}'"),
+                why: format!("there is no link '{}'", if found.is_none() { a } else { b }),
+            }),
+        }
     }
     apart.sort_unstable();
     // The slot of the body is that of its last joint; a joint of several coordinates has more slots.
@@ -53,7 +56,7 @@ pub(super) fn candidates(
             }
         }
     }
-    Ok(pairs)
+    pairs
 }
 
 fn ordered(a: usize, b: usize) -> (usize, usize) {

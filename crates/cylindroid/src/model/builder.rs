@@ -15,7 +15,7 @@ use super::elasticity::Elasticity;
 use super::flatten::FlatMechanism;
 use super::joint::Joint;
 use super::joint_spec::JointSpec;
-use super::link::Link;
+use super::link::{Link, Visual};
 use super::loop_joint::{LoopJoint, LoopJointSpec};
 use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
@@ -42,6 +42,7 @@ use crate::tolerance::ZERO_AXIS;
 pub struct Builder {
     pub(super) name: String,
     pub(super) links: Vec<Link>,
+    collisions: Vec<(String, Visual)>,
     pub(super) joints: Vec<JointSpec>,
     pub(super) loops: Vec<LoopJointSpec>,
     contacts: Vec<ContactSpec>,
@@ -62,6 +63,7 @@ impl Builder {
         Self {
             name: name.to_owned(),
             links: Vec::new(),
+            collisions: Vec::new(),
             joints: Vec::new(),
             loops: Vec::new(),
             contacts: Vec::new(),
@@ -81,6 +83,12 @@ impl Builder {
     /// Adds a link.
     pub fn link(&mut self, link: Link) -> &mut Self {
         self.links.push(link);
+        self
+    }
+
+    /// Adds a collision shape to a link, which exists by being named.
+    pub fn collision(&mut self, link: &str, shape: Visual) -> &mut Self {
+        self.collisions.push((link.to_owned(), shape));
         self
     }
 
@@ -239,6 +247,12 @@ impl Builder {
                     links.insert(name.clone(), self.links.len());
                     self.links.push(Link::named(name));
                 }
+            }
+        }
+        for (name, shape) in std::mem::take(&mut self.collisions) {
+            match links.get(&name) {
+                Some(&i) => self.links[i].collisions.push(shape),
+                None => return Err(Error::unknown("link", &name, links.keys())),
             }
         }
         if self.links.is_empty() {

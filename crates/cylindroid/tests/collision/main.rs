@@ -8,6 +8,8 @@
     clippy::float_cmp_const
 )]
 
+mod coal;
+mod files;
 mod gradient;
 mod laws;
 mod pairs;

@@ -19,6 +19,8 @@ pub mod sdf;
 #[cfg(feature = "formats")]
 mod span;
 #[cfg(feature = "formats")]
+pub mod srdf;
+#[cfg(feature = "formats")]
 pub mod toml;
 #[cfg(feature = "formats")]
 pub mod urdf;

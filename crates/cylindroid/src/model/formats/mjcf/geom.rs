@@ -132,6 +132,8 @@ impl<'d> Mjcf<'d> {
             ("box", [across, half]) => {
                 Some(Geometry::Box { size: Vec3::new(*across, *across, *half) * 2.0 })
             }
+            ("ellipsoid", [x, y, z]) => Some(Geometry::Ellipsoid { radii: Vec3::new(*x, *y, *z) }),
+            ("plane", _) => Some(Geometry::HalfSpace),
             ("mesh", _) => {
                 let mesh = element.text("mesh").and_then(|m| self.assets.meshes.get(m));
                 mesh.map(|(uri, scale)| {

@@ -94,15 +94,17 @@ impl Reader<'_> {
         parent: Node<'_, '_>,
         packages: &Packages,
     ) -> Result<Option<Geometry>> {
-        self.leftovers(parent, &[], &["box", "cylinder", "capsule", "sphere", "mesh"]);
-        let known = |n: &Node<'_, '_>| {
-            matches!(n.tag_name().name(), "box" | "cylinder" | "capsule" | "sphere" | "mesh")
-        };
+        const SHAPES: [&str; 6] = ["box", "cylinder", "capsule", "sphere", "ellipsoid", "mesh"];
+        self.leftovers(parent, &[], &SHAPES);
+        let known = |n: &Node<'_, '_>| SHAPES.contains(&n.tag_name().name());
         let Some(node) = parent.children().find(known) else { return Ok(None) };
         let radius = self.child_number(node, "radius")?;
         let length = self.child_number(node, "length")?;
         Ok(match (node.tag_name().name(), radius, length) {
             ("box", ..) => self.child_vector(node, "size")?.map(|size| Geometry::Box { size }),
+            ("ellipsoid", ..) => {
+                self.child_vector(node, "radii")?.map(|radii| Geometry::Ellipsoid { radii })
+            }
             ("sphere", Some(radius), _) => Some(Geometry::Sphere { radius }),
             ("cylinder", Some(radius), Some(length)) => Some(Geometry::Cylinder { radius, length }),
             ("capsule", Some(radius), Some(length)) => Some(Geometry::Capsule { radius, length }),

@@ -2,7 +2,7 @@
 //! other files, or a table of Denavit-Hartenberg rows.
 //!
 //! Keys     name, description, source, dimension (2 or 3), reference, reference_point, home, tool;
-//!          `[[joint]]`, or `[dh]` with convention, rows, base, flange; `[[link]]`, `[[contact]]`,
+//!          `[[joint]]`, or `[dh]` with convention, rows, base, flange; `[[link]]`, `[[collision]]`, `[[contact]]`,
 //!          `[[robot]]`, `[[frame]]`, `[[closure]]`, `[[elasticity]]`
 //! Units    m, rad, N, N m; pitch in m/rad
 //! Valid    any connected graph. Home is q = 0, for included robots their start configuration; a
@@ -13,6 +13,7 @@
 mod arm;
 mod body;
 mod closure;
+mod collision;
 mod contact;
 mod elasticity;
 mod names;
@@ -38,7 +39,7 @@ use crate::error::Result;
 use crate::model::{CloseHome, Dimension, Mechanism};
 use crate::spatial::{Pose, Vec3};
 
-const KEYS: [&str; 16] = [
+const KEYS: [&str; 17] = [
     "name",
     "description",
     "source",
@@ -49,6 +50,7 @@ const KEYS: [&str; 16] = [
     "tool",
     "joint",
     "link",
+    "collision",
     "dh",
     "frame",
     "contact",
@@ -102,6 +104,7 @@ pub(in crate::model) fn describe(
     tree::write(&mut world, &joints, &contacts, reference.map(|r| (r, point)))?;
     contact::write(&mut world, &contacts);
     body::write(&file, &mut world, &brought)?;
+    collision::write(&file, &mut world)?;
     let of_joints = joints.iter().map(|j| (j.name, j.between[0], j.origin));
     let of_contacts = contacts.iter().map(|c| (c.name, c.between[0], Some(c.point)));
     let parts: Vec<_> = of_joints.chain(of_contacts).collect();

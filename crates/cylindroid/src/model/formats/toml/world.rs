@@ -121,6 +121,11 @@ impl<'t> World<'t> {
         Err(table.refuse(key, unknown.to_string(), ""))
     }
 
+    /// Logs a part of the file, at a byte offset, that the model does not contain.
+    pub(super) fn note(&mut self, at: usize, what: &str, why: &'static str, name: &str) {
+        self.notes.add(at, what, why, name);
+    }
+
     /// Records the place of a joint, contact, robot or frame in the file, for the builder's errors.
     pub(super) fn note_place(&mut self, name: &str, span: Range<usize>) {
         self.places.push((name.to_owned(), span));
