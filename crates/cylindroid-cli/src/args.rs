@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 mod closed;
+mod distance;
 mod ik;
 pub(crate) mod inverses;
 mod move_to;
@@ -13,6 +14,7 @@ pub(crate) use closed::{
     AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, MobilityArgs,
     StaticsArgs,
 };
+pub(crate) use distance::{CollisionArgs, DistanceArgs};
 pub(crate) use ik::IkArgs;
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, NullSpaceName, PathArgs, ServoArgs, TargetArgs, TaskAxes,
@@ -32,7 +34,8 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --plot move.svg
   cylindroid screws youbot
 
-Exit codes: 0 success, 1 negative answer (target not reached, loops or grasp not closed), 2 error.";
+Exit codes: 0 success, 1 negative answer (target not reached, loops or grasp not closed, collision), \
+2 error.";
 
 const JACOBIAN_EXAMPLES: &str = "\
 Examples:
@@ -80,6 +83,9 @@ pub(crate) enum Command {
     /// The screw system of the joints: class, pitches, frame, and which inverses exist
     #[command(long_about = screws::ABOUT, after_long_help = screws::EXAMPLES)]
     Screws(Box<ScrewsArgs>),
+    /// Distances between links that can collide, and from links to obstacles
+    #[command(long_about = distance::ABOUT, after_long_help = distance::EXAMPLES)]
+    Distance(Box<DistanceArgs>),
     /// Close the loops of a mechanism from an initial guess, within its position limits
     #[command(long_about = closed::ASSEMBLE, after_long_help = closed::ASSEMBLE_EXAMPLES)]
     Assemble(Box<AssembleArgs>),

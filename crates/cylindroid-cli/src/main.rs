@@ -8,6 +8,7 @@ mod commands;
 mod diagnostic;
 mod flags;
 mod number_file;
+mod obstacle;
 mod output;
 mod plot;
 mod trajectory;

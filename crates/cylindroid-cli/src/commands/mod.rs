@@ -1,6 +1,7 @@
 //! One file per command: arguments in, text or JSON out, an exit code.
 
 pub(crate) mod closed;
+mod distance;
 mod fk;
 mod ik;
 pub(crate) mod info;
@@ -30,6 +31,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Ik(args) => ik::run(args, style, out),
         Command::Move(args) => move_to::run(args, style, out),
         Command::Screws(args) => screws::run(args, style, out),
+        Command::Distance(args) => distance::run(args, style, out),
         Command::Assemble(args) => closed::assemble::run(args, style, out),
         Command::Mobility(args) => closed::mobility::run(args, style, out),
         Command::Manipulability(args) => closed::manipulability::run(args, style, out),

@@ -11,7 +11,7 @@
 //! Checked  tests/collision/laws.rs
 
 use super::convex::Placed;
-use super::distance::Separation;
+use super::separation::Separation;
 use crate::scalar::clamp;
 use crate::spatial::Vec3;
 use crate::tolerance::{PARALLEL_SEGMENTS, ZERO_SEPARATION};

@@ -23,7 +23,7 @@ use parry3d_f64::query::gjk::{self, CsoPoint, GJKResult, VoronoiSimplex};
 use parry3d_f64::shape::SupportMap;
 
 use super::convex::{Core, Placed};
-use super::distance::Separation;
+use super::separation::Separation;
 use super::simplex::{Simplex, Vertex};
 use crate::linalg::{Hull, HullGoal, HullOptions, Qr};
 use crate::spatial::{Pose, Vec3};

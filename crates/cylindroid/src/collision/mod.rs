@@ -20,10 +20,12 @@ mod options;
 mod pairs;
 mod sampling;
 mod scene;
+mod separation;
 mod simplex;
 
 pub use body::Body;
-pub use distance::{Separation, distance};
+pub use distance::distance;
 pub use model::CollisionModel;
 pub use options::{CollisionOptions, MeshShape};
 pub use scene::{NearPair, Pair};
+pub use separation::Separation;

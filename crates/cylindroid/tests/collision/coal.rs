@@ -48,7 +48,7 @@ fn check(robot: &Mechanism, data: &Value) {
     let places: Vec<usize> = data["joints"].as_array().unwrap().iter().map(place).collect();
     let configurations = data["configurations"].as_array().unwrap();
     assert!(configurations.len() >= 20);
-    let (mut near, mut compared) = (Vec::new(), 0);
+    let (mut near, mut compared, mut deep, mut longer) = (Vec::new(), 0, 0, 0);
     for configuration in configurations {
         let mut q = robot.home().to_vec();
         for (x, &place) in configuration["q"].as_array().unwrap().iter().zip(&places) {
@@ -69,9 +69,15 @@ fn check(robot: &Mechanism, data: &Value) {
             let ours = ours.unwrap_or_else(|| panic!("{name}: {pair} is not watched"));
             let theirs = pair["distance"].as_f64().unwrap();
             let error = (ours.distance - theirs).abs();
-            // Coal's expanding polytope ends earlier, above the depth.
-            let tolerance = if theirs > 0.0 { 1e-7 } else { 2e-6 };
-            assert!(error < tolerance, "{name}: {pair} {ours:?}");
+            if theirs > 0.0 {
+                assert!(error < 1e-7, "{name}: {pair} {ours:?}");
+            } else {
+                // Coal's expanding polytope ends on some cylinders before the shortest translation;
+                // that ours separates is a law of its own (`laws.rs`).
+                assert!(ours.distance > theirs - 2e-6, "{name}: {pair} {ours:?}");
+                deep += 1;
+                longer += usize::from(error > 2e-6);
+            }
             if let Some(n) = pair["normal"].as_array() {
                 let n = Vec3::new(
                     n[0].as_f64().unwrap(),
@@ -85,4 +91,5 @@ fn check(robot: &Mechanism, data: &Value) {
         }
     }
     assert!(compared > 50, "{name}: {compared}");
+    assert!(20 * longer <= deep, "{name}: {longer} of {deep}");
 }
