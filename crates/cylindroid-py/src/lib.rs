@@ -8,6 +8,7 @@
 
 mod arrays;
 mod closed;
+mod collision;
 mod control;
 mod error;
 mod ik;
@@ -37,6 +38,8 @@ mod _core {
         PyStiffness, PyTransmission, PyTransmittedWrench, grasp::grasp_quality,
         grasp_mobility::grasp_mobility,
     };
+    #[pymodule_export]
+    use crate::collision::{PyCollisionModel, PyDistances};
     #[pymodule_export]
     use crate::control::{
         PyAdmittance, PyHybridCommand, PyHybridController, PyInternalForceCommand,

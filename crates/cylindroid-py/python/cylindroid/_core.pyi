@@ -17,11 +17,13 @@ __all__ = [
     "Branch",
     "CartesianMove",
     "CartesianPath",
+    "CollisionModel",
     "Constraint",
     "ContactForces",
     "ContinuationResult",
     "Deflection",
     "Direction",
+    "Distances",
     "Eigenscrews",
     "Ellipsoid",
     "ErrorFormZeros",
@@ -207,6 +209,40 @@ class CartesianPath:
     def deviation(self, pose: ArrayLike) -> tuple[float, float, float]: ...
 
 @final
+class CollisionModel:
+    def __new__(
+        cls,
+        mechanism: Mechanism,
+        *,
+        disabled: Sequence[tuple[str, str]] | None = None,
+        srdf: str | os.PathLike[str] | None = None,
+        meshes: str = "convex_hull",
+        samples: int = 200,
+        seed: int = 0,
+    ) -> CollisionModel: ...
+    @property
+    def pairs(self) -> list[tuple[str, str]]: ...
+    @property
+    def obstacles(self) -> list[str]: ...
+    @property
+    def ignored(self) -> list[tuple[str, str]]: ...
+    def near(self, q: ArrayLike, margin: float = 0.1) -> Distances: ...
+    def add_obstacle(
+        self,
+        name: str,
+        shape: str,
+        pose: ArrayLike | None = None,
+        *,
+        radius: float | None = None,
+        length: float | None = None,
+        size: ArrayLike | None = None,
+        points: ArrayLike | None = None,
+        file: str | os.PathLike[str] | None = None,
+    ) -> None: ...
+    def move_obstacle(self, name: str, pose: ArrayLike) -> None: ...
+    def remove_obstacle(self, name: str) -> None: ...
+
+@final
 class Constraint:
     def __new__(
         cls,
@@ -323,6 +359,22 @@ class ErrorFormZeros:
     def everywhere(self) -> bool: ...
     @property
     def defined(self) -> bool: ...
+
+@final
+class Distances:
+    @property
+    def pairs(self) -> list[tuple[str, str]]: ...
+    @property
+    def distances(self) -> _Array: ...
+    @property
+    def points_a(self) -> _Array: ...
+    @property
+    def points_b(self) -> _Array: ...
+    @property
+    def normals(self) -> _Array: ...
+    @property
+    def gradients(self) -> _Array: ...
+    def __len__(self) -> int: ...
 
 @final
 class Eigenscrews:
@@ -758,6 +810,14 @@ class Mechanism:
         tool: ArrayLike | None = None,
     ) -> _Array: ...
     def mass_matrix(self, q: ArrayLike) -> _Array: ...
+    def distances(
+        self,
+        q: ArrayLike,
+        margin: float = ...,
+        *,
+        srdf: str | os.PathLike[str] | None = None,
+        meshes: str = "convex_hull",
+    ) -> Distances: ...
     def actuated_inertia(self, q: ArrayLike) -> _Array: ...
     def jacobian_dot(
         self,

@@ -91,5 +91,5 @@ fn check(robot: &Mechanism, data: &Value) {
         }
     }
     assert!(compared > 50, "{name}: {compared}");
-    assert!(20 * longer <= deep, "{name}: {longer} of {deep}");
+    assert!(10 * longer <= deep, "{name}: {longer} of {deep}");
 }

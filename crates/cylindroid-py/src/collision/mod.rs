@@ -1,0 +1,287 @@
+//! The classes `CollisionModel` and `Distances`.
+
+mod distances;
+mod shape;
+
+use std::path::PathBuf;
+
+use cylindroid::collision::{CollisionModel, CollisionOptions, MeshShape};
+use cylindroid::model::formats::srdf;
+use cylindroid::{Error, Mechanism, Pose, State};
+use pyo3::prelude::*;
+
+pub(crate) use self::distances::PyDistances;
+use self::shape::{Sizes, geometry};
+use crate::arrays::Numbers;
+use crate::error::Result;
+use crate::mechanism::PyMechanism;
+
+/// The collision shapes of a mechanism and of obstacles, and the pairs of them that are watched.
+///
+/// Links that a joint connects are not watched against each other, nor pairs that always or never
+/// touch (by random configurations and a descent from the nearest of them), nor disabled ones.
+///
+/// Parameters
+/// ----------
+/// mechanism : Mechanism
+/// disabled : list of tuple of str, optional
+///     Pairs of links that are not watched.
+/// srdf : path, optional
+///     An SRDF, whose `disable_collisions` are such pairs.
+/// meshes : {'convex_hull', 'capsule'}
+///     The shape that stands for a mesh.
+/// samples : int
+///     Number of random configurations; 0 keeps all pairs.
+/// seed : int
+///     Seed of the random configurations.
+///
+/// Attributes
+/// ----------
+/// pairs : list of tuple of str
+///     The links or obstacles of the pairs that are watched.
+/// obstacles : list of str
+/// ignored : list of tuple of str
+///     Shapes that could not be made (a mesh that is not found) and disabled pairs of unknown
+///     links, with the reason.
+///
+/// Raises
+/// ------
+/// ModelFileError, MissingFileError
+///     For the SRDF.
+/// InvalidOptionError
+///
+/// Examples
+/// --------
+/// >>> import cylindroid as cy
+/// >>> crane = cy.parse('''
+/// ... [[joint]]
+/// ... name = "lift"
+/// ... type = "prismatic"
+/// ... between = ["ground", "hook"]
+/// ... axis = [0, 0, 1]
+/// ... [[collision]]
+/// ... link = "hook"
+/// ... shape = "sphere"
+/// ... radius = 0.1
+/// ... ''')
+/// >>> model = cy.CollisionModel(crane)
+/// >>> model.add_obstacle("floor", "half_space", [0, 0, -1])
+/// >>> near = model.near([0.5], margin=2.0)
+/// >>> near.pairs, near.distances, near.gradients
+/// ([('hook', 'floor')], array([1.4]), array([[1.]]))
+#[pyclass(name = "CollisionModel", module = "cylindroid")]
+#[derive(Debug)]
+pub(crate) struct PyCollisionModel {
+    inner: CollisionModel,
+    state: State,
+}
+
+/// A model by the options of Python.
+fn model(
+    mechanism: &Mechanism,
+    (disabled, srdf): (Option<Vec<[String; 2]>>, Option<PathBuf>),
+    meshes: &str,
+    (samples, seed): (usize, u64),
+) -> Result<CollisionModel> {
+    let mut disabled = disabled.unwrap_or_default();
+    if let Some(path) = srdf {
+        disabled.extend(srdf::load(&path)?.pairs(mechanism));
+    }
+    let named = MeshShape::NAMES.into_iter().find(|(name, _)| *name == meshes);
+    let Some((_, meshes)) = named else {
+        let names = MeshShape::NAMES.map(|(name, _)| name);
+        return Err(Error::unknown("shape of meshes", meshes, names).into());
+    };
+    let options =
+        CollisionOptions { meshes, disabled, samples, seed, ..CollisionOptions::default() };
+    Ok(CollisionModel::new(mechanism, &options)?)
+}
+
+/// A pose from a matrix of 4 x 4, or a position.
+fn placed(pose: Option<Numbers<'_>>) -> Result<Pose> {
+    let Some(numbers) = pose else { return Ok(Pose::IDENTITY) };
+    if *numbers.shape() == [3] {
+        let position = numbers.entries::<3>("pose")?;
+        return Ok(Pose::from_translation(cylindroid::Vec3::from_array(position)));
+    }
+    numbers.pose("pose")
+}
+
+#[pymethods]
+impl PyCollisionModel {
+    #[new]
+    #[pyo3(signature = (mechanism, *, disabled=None, srdf=None, meshes="convex_hull", samples=200, seed=0))]
+    fn new(
+        mechanism: PyRef<'_, PyMechanism>,
+        disabled: Option<Vec<[String; 2]>>,
+        srdf: Option<PathBuf>,
+        meshes: &str,
+        samples: usize,
+        seed: u64,
+    ) -> Result<Self> {
+        let inner = model(&mechanism.inner, (disabled, srdf), meshes, (samples, seed))?;
+        let state = mechanism.inner.state(mechanism.inner.home())?;
+        Ok(Self { inner, state })
+    }
+
+    #[getter]
+    fn pairs(&self) -> Vec<(&str, &str)> {
+        let names = (0..self.inner.pairs().len()).map(|i| self.inner.names(i));
+        names.map(|[a, b]| (a, b)).collect()
+    }
+
+    #[getter]
+    fn obstacles(&self) -> Vec<&str> {
+        self.inner.obstacles().collect()
+    }
+
+    #[getter]
+    fn ignored(&self) -> Vec<(&str, &str)> {
+        self.inner.ignored().iter().map(|i| (i.what.as_str(), i.why.as_str())).collect()
+    }
+
+    /// The pairs nearer than a margin, nearest first.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// margin : float
+    ///     Pairs farther apart are left out [m]; `inf` for all.
+    ///
+    /// Returns
+    /// -------
+    /// Distances
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    #[pyo3(signature = (q, margin=0.1))]
+    fn near(&mut self, q: Numbers<'_>, margin: f64) -> Result<PyDistances> {
+        self.state.set(q.vector("q")?)?;
+        PyDistances::of(&mut self.inner, &self.state, margin)
+    }
+
+    /// Adds an obstacle, which is watched against all links that can move.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    /// shape : {'sphere', 'capsule', 'cylinder', 'box', 'ellipsoid', 'half_space', 'convex_hull', 'mesh'}
+    ///     Capsules and cylinders are along z, a half-space is z <= 0.
+    /// pose : array_like, (4, 4) or (3,), optional
+    ///     Its pose in the world, or its position [m].
+    /// radius : float, optional
+    ///     Of a sphere, capsule or cylinder [m].
+    /// length : float, optional
+    ///     Of a capsule, without its ends, or a cylinder [m].
+    /// size : array_like, (3,), optional
+    ///     Edges of a box, or semi-axes of an ellipsoid [m].
+    /// points : array_like, (k, 3), optional
+    ///     Of a convex hull [m].
+    /// file : path, optional
+    ///     Of a mesh (STL, OBJ, Collada), whose convex hull is taken.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidOptionError
+    ///     For a name that is taken, or a shape that cannot be made.
+    /// UnknownNameError
+    ///     For an unknown shape.
+    #[pyo3(signature = (name, shape, pose=None, *, radius=None, length=None, size=None, points=None, file=None))]
+    #[allow(clippy::too_many_arguments)] // of Python: keywords
+    fn add_obstacle(
+        &mut self,
+        name: &str,
+        shape: &str,
+        pose: Option<Numbers<'_>>,
+        radius: Option<f64>,
+        length: Option<f64>,
+        size: Option<Numbers<'_>>,
+        points: Option<Numbers<'_>>,
+        file: Option<PathBuf>,
+    ) -> Result<()> {
+        let shape = geometry(shape, Sizes { radius, length, size, points, file })?;
+        Ok(self.inner.add_obstacle(name, &shape, placed(pose)?)?)
+    }
+
+    /// Moves an obstacle.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    /// pose : array_like, (4, 4) or (3,)
+    ///     Its pose in the world, or its position [m].
+    ///
+    /// Raises
+    /// ------
+    /// UnknownNameError
+    #[pyo3(signature = (name, pose))]
+    fn move_obstacle(&mut self, name: &str, pose: Numbers<'_>) -> Result<()> {
+        Ok(self.inner.move_obstacle(name, placed(Some(pose))?)?)
+    }
+
+    /// Removes an obstacle.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///
+    /// Raises
+    /// ------
+    /// UnknownNameError
+    #[pyo3(signature = (name))]
+    fn remove_obstacle(&mut self, name: &str) -> Result<()> {
+        Ok(self.inner.remove_obstacle(name)?)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<CollisionModel of '{}': {} shapes, {} pairs, {} obstacles>",
+            self.inner.mechanism().name(),
+            self.inner.bodies().len(),
+            self.inner.pairs().len(),
+            self.inner.obstacles().count()
+        )
+    }
+}
+
+#[pymethods]
+impl PyMechanism {
+    /// Distances between all links that no joint connects, nearest first.
+    ///
+    /// For obstacles, or many configurations, see `CollisionModel`.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,)
+    ///     Coordinates in the order of `joint_names` [rad or m].
+    /// margin : float
+    ///     Pairs farther apart are left out [m].
+    /// srdf : path, optional
+    ///     An SRDF, whose `disable_collisions` are left out.
+    /// meshes : {'convex_hull', 'capsule'}
+    ///     The shape that stands for a mesh.
+    ///
+    /// Returns
+    /// -------
+    /// Distances
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    /// ModelFileError, MissingFileError
+    ///     For the SRDF.
+    #[pyo3(signature = (q, margin=f64::INFINITY, *, srdf=None, meshes="convex_hull"))]
+    fn distances(
+        &self,
+        q: Numbers<'_>,
+        margin: f64,
+        srdf: Option<PathBuf>,
+        meshes: &str,
+    ) -> Result<PyDistances> {
+        let mut model = model(&self.inner, (None, srdf), meshes, (0, 0))?;
+        let state = self.inner.state(q.vector("q")?)?;
+        PyDistances::of(&mut model, &state, margin)
+    }
+}
