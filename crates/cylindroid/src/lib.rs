@@ -90,6 +90,7 @@ mod book {
         ConceptsRanks "../../../docs/concepts/ranks.md"
         GuideAssembly "../../../docs/guide/assembly.md"
         GuideControl "../../../docs/guide/control.md"
+        GuideDistances "../../../docs/guide/distances.md"
         GuideGrasps "../../../docs/guide/grasps.md"
         GuideInverseKinematics "../../../docs/guide/inverse-kinematics.md"
         GuideInverses "../../../docs/guide/inverses.md"

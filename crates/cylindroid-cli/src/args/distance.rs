@@ -18,8 +18,8 @@ watched. The exit code is 1 if shapes penetrate each other.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
-  cylindroid distance robot.urdf --srdf robot.srdf
-  cylindroid distance panda --obstacle ball=sphere:0.1@0.5,0,0.4 --margin 0.5
+  cylindroid distance docs/cell.toml --margin 0.5
+  cylindroid distance docs/cell.toml --obstacle ball=sphere:0.1@0.5,0,0.4 --q home --json
 
 An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], with SHAPE one of \
 sphere:RADIUS, capsule:RADIUS,LENGTH, cylinder:RADIUS,LENGTH, box:X,Y,Z, ellipsoid:X,Y,Z, half_space \

@@ -175,8 +175,9 @@ fn commands_run_and_print_what_the_pages_show() {
         let lines: Vec<&str> = text.lines().collect();
         let folder = tempfile::tempdir().unwrap();
         fs::create_dir(folder.path().join("docs")).unwrap();
-        let grasp = Path::new(ROOT).join("docs/grasp.toml");
-        fs::copy(grasp, folder.path().join("docs/grasp.toml")).unwrap();
+        for model in ["docs/grasp.toml", "docs/cell.toml"] {
+            fs::copy(Path::new(ROOT).join(model), folder.path().join(model)).unwrap();
+        }
         let found = blocks(&lines);
         let mut written = Vec::new();
         for (i, block) in found.iter().enumerate() {

@@ -12,6 +12,7 @@ use crate::text;
 
 pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
+const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
 /// All commands, as the help lists them.
 fn commands() -> Vec<String> {
     let help = text(&["--help"]);
@@ -49,6 +50,7 @@ fn examples_run_as_they_stand() {
     let docs = folder.path().join("docs");
     fs::create_dir(&docs).unwrap();
     fs::copy(GRASP, docs.join("grasp.toml")).unwrap();
+    fs::copy(CELL, docs.join("cell.toml")).unwrap();
     fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
     let home = ["0"; 21].join(",");
     fs::write(folder.path().join("configurations.csv"), format!("{home}\n{home}\n")).unwrap();
@@ -138,6 +140,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
                 vec!["delta"],
             ]
         }
+        "distance" => vec![vec![CELL, "--margin", "0.5"]],
         "assemble" => vec![
             vec!["five-bar"],
             vec!["five-bar", "--modes", "2"],
