@@ -2,7 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use cylindroid::collision::{CollisionModel, CollisionOptions, distance};
-use cylindroid::model::{Geometry, Inclusion, Visual};
+use cylindroid::model::{Collision, Geometry, Inclusion};
 use cylindroid::{Mechanism, Pose, Rotation, Vec3, catalogue};
 use divan::{Bencher, black_box};
 
@@ -27,8 +27,10 @@ fn panda_of_spheres() -> Mechanism {
             let at = Vec3::new(0.0, 0.02 * f64::from(k), -0.05 * f64::from(k));
             let geometry = Geometry::Sphere { radius: 0.05 };
             let link_from_shape = Pose::from_translation(at);
-            builder
-                .collision(&link.name, Visual { geometry, link_from_shape, ..Visual::default() });
+            builder.collision(
+                &link.name,
+                Collision { geometry, link_from_shape, ..Collision::default() },
+            );
         }
     }
     builder.build().unwrap()
@@ -91,7 +93,7 @@ fn pair(bencher: Bencher<'_, '_>, kind: &str) {
         translation: Vec3::new(away, 0.1, -0.1),
     };
     let mut builder = Mechanism::builder("one body");
-    builder.collision("body", Visual { geometry: shape.clone(), ..Visual::default() });
+    builder.collision("body", Collision { geometry: shape.clone(), ..Collision::default() });
     let kind = cylindroid::model::JointKind::Prismatic;
     builder.joint(cylindroid::model::JointSpec::new("x", kind, "world", "body"));
     let robot = builder.build().unwrap();

@@ -12,7 +12,7 @@ use cylindroid::control::{
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
 use cylindroid::kinematics::{Chain, KinematicsBatch};
-use cylindroid::model::{Geometry, Inertial, JointKind, JointSpec, Link, Visual};
+use cylindroid::model::{Collision, Geometry, Inertial, JointKind, JointSpec, Link};
 use cylindroid::screws::{Complement, Projector, ScrewOptions};
 use cylindroid::spatial::Mat3;
 use cylindroid::{
@@ -257,7 +257,7 @@ fn distances_allocate_nothing() {
         Geometry::HalfSpace,
     ];
     for geometry in &shapes[..5] {
-        builder.collision("cart", Visual { geometry: geometry.clone(), ..Visual::default() });
+        builder.collision("cart", Collision { geometry: geometry.clone(), ..Collision::default() });
     }
     builder.joint(JointSpec::new("x", JointKind::Prismatic, "rail", "cart"));
     let robot = builder.build().unwrap();

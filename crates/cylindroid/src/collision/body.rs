@@ -26,6 +26,9 @@ pub struct Body {
     pub(super) slot: usize,
     pub(super) slot_from_body: Pose,
     pub(super) convex: Convex,
+    /// Bits of its categories, and of those that it collides with.
+    pub(super) category: u32,
+    pub(super) mask: u32,
 }
 
 impl Body {

@@ -80,6 +80,8 @@ impl CollisionModel {
                             * shape.link_from_shape
                             * shape_from_body,
                         convex,
+                        category: shape.category,
+                        mask: shape.mask,
                     }),
                     Err(why) => ignored.push(Ignored {
                         line: 0,
@@ -174,6 +176,8 @@ impl CollisionModel {
             slot: 0,
             slot_from_body: world_from_shape * shape_from_body,
             convex,
+            category: u32::MAX,
+            mask: u32::MAX,
         };
         self.shape_from_body.push(shape_from_body);
         self.scene.add(obstacle);
@@ -251,12 +255,12 @@ impl CollisionModel {
     ///
     /// ```
     /// use cylindroid::collision::{CollisionModel, CollisionOptions};
-    /// use cylindroid::model::{Geometry, Link, Visual};
+    /// use cylindroid::model::{Collision, Geometry, Link};
     /// use cylindroid::{Pose, Vec3};
     ///
     /// let mut builder = cylindroid::Mechanism::builder("slide");
     /// let ball = Geometry::Sphere { radius: 0.1 };
-    /// let shape = Visual { geometry: ball.clone(), ..Visual::default() };
+    /// let shape = Collision { geometry: ball.clone(), ..Collision::default() };
     /// builder.link(Link { collisions: vec![shape], ..Link::named("cart") });
     /// let kind = cylindroid::model::JointKind::Prismatic;
     /// builder.joint(cylindroid::model::JointSpec::new("x", kind, "rail", "cart"));

@@ -19,7 +19,8 @@ pub(super) fn candidates(
     ignored: &mut Vec<Ignored>,
 ) -> Vec<Pair> {
     let link = |name: &String| mechanism.links().iter().position(|l| l.name == *name);
-    let mut apart: Vec<(usize, usize)> = Vec::new();
+    let by_file = mechanism.disabled_collisions().iter().map(|&[a, b]| ordered(a, b));
+    let mut apart: Vec<(usize, usize)> = by_file.collect();
     for [a, b] in disabled {
         match (link(a), link(b)) {
             (Some(a), Some(b)) => apart.push(ordered(a, b)),
@@ -51,7 +52,8 @@ pub(super) fn candidates(
             let near = neighbours.binary_search(&ordered(first.slot, second.slot)).is_ok();
             let off = links.is_some_and(|l| apart.binary_search(&l).is_ok());
             let planes = is_half_space(first) && is_half_space(second);
-            if !(rigid || near || off || planes) {
+            let ignore = (first.category & second.mask) | (second.category & first.mask) == 0;
+            if !(rigid || near || off || planes || ignore) {
                 pairs.push(Pair { a, b });
             }
         }

@@ -15,7 +15,7 @@ use super::elasticity::Elasticity;
 use super::flatten::FlatMechanism;
 use super::joint::Joint;
 use super::joint_spec::JointSpec;
-use super::link::{Link, Visual};
+use super::link::{Collision, Link};
 use super::loop_joint::{LoopJoint, LoopJointSpec};
 use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
@@ -42,7 +42,8 @@ use crate::tolerance::ZERO_AXIS;
 pub struct Builder {
     pub(super) name: String,
     pub(super) links: Vec<Link>,
-    collisions: Vec<(String, Visual)>,
+    collisions: Vec<(String, Collision)>,
+    pub(super) disabled_collisions: Vec<[String; 2]>,
     pub(super) joints: Vec<JointSpec>,
     pub(super) loops: Vec<LoopJointSpec>,
     contacts: Vec<ContactSpec>,
@@ -64,6 +65,7 @@ impl Builder {
             name: name.to_owned(),
             links: Vec::new(),
             collisions: Vec::new(),
+            disabled_collisions: Vec::new(),
             joints: Vec::new(),
             loops: Vec::new(),
             contacts: Vec::new(),
@@ -87,8 +89,14 @@ impl Builder {
     }
 
     /// Adds a collision shape to a link, which exists by being named.
-    pub fn collision(&mut self, link: &str, shape: Visual) -> &mut Self {
-        self.collisions.push((link.to_owned(), shape));
+    pub fn collision(&mut self, link: &str, shape: impl Into<Collision>) -> &mut Self {
+        self.collisions.push((link.to_owned(), shape.into()));
+        self
+    }
+
+    /// Says that the shapes of two links do not collide.
+    pub fn disable_collision(&mut self, a: &str, b: &str) -> &mut Self {
+        self.disabled_collisions.push([a.to_owned(), b.to_owned()]);
         self
     }
 
@@ -385,6 +393,14 @@ impl Builder {
             frames.push(flat.frame(name.clone(), index, *pose));
         }
 
+        let mut disabled_collisions = Vec::new();
+        for pair in &self.disabled_collisions {
+            let link = |name: &String| match links.get(name) {
+                Some(&link) => Ok(link),
+                None => Err(Error::unknown("link", name, links.keys())),
+            };
+            disabled_collisions.push([link(&pair[0])?, link(&pair[1])?]);
+        }
         let named = |what: &str, name: &String| match frames.iter().position(|f| f.name == *name) {
             Some(i) => Ok(i),
             None => {
@@ -451,6 +467,7 @@ impl Builder {
                 reach: 1.0,
                 far: 0.0,
                 elasticity: self.elasticity,
+                disabled_collisions,
                 report: self.report,
             }),
         };

@@ -124,6 +124,9 @@ impl Builder {
                 actuated: joint.actuated,
             });
         }
+        for &[a, b] in robot.disabled_collisions() {
+            self.disable_collision(&name(a), &name(b));
+        }
         for name in robot.unassembled() {
             self.assemble_home(&how.prefixed(name));
         }

@@ -12,7 +12,7 @@ pub struct Link {
     /// Shapes for display.
     pub visuals: Vec<Visual>,
     /// Shapes for collision.
-    pub collisions: Vec<Visual>,
+    pub collisions: Vec<Collision>,
     /// Its mass, if the file gives one.
     pub inertial: Option<Inertial>,
 }
@@ -36,6 +36,35 @@ pub struct Visual {
     pub geometry: Geometry,
     /// Colour red, green, blue, alpha in [0, 1], if the file gives one.
     pub rgba: Option<[f64; 4]>,
+}
+
+/// A shape of a link for distances and collisions. Two shapes can collide if the category of either
+/// is in the mask of the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collision {
+    /// Its name, often empty.
+    pub name: String,
+    /// Its pose on the link.
+    pub link_from_shape: Pose,
+    /// The shape.
+    pub geometry: Geometry,
+    /// Bits of its categories (`contype` of MJCF); 1 by default.
+    pub category: u32,
+    /// Bits of the categories that it collides with (`conaffinity` of MJCF); 1 by default.
+    pub mask: u32,
+}
+
+impl Default for Collision {
+    fn default() -> Self {
+        Visual::default().into()
+    }
+}
+
+impl From<Visual> for Collision {
+    fn from(shape: Visual) -> Self {
+        let Visual { name, link_from_shape, geometry, rgba: _ } = shape;
+        Self { name, link_from_shape, geometry, category: 1, mask: 1 }
+    }
 }
 
 /// A shape.

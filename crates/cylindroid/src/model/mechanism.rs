@@ -43,6 +43,7 @@ pub(super) struct Data {
     pub(super) reach: f64,
     pub(super) far: f64,
     pub(super) elasticity: Elasticity,
+    pub(super) disabled_collisions: Vec<[usize; 2]>,
     pub(super) report: LoadReport,
 }
 
@@ -139,6 +140,12 @@ impl Mechanism {
     #[must_use]
     pub fn links(&self) -> &[Link] {
         &self.data.links
+    }
+
+    /// Pairs of links whose shapes do not collide, by the file (`<exclude>` of MJCF).
+    #[must_use]
+    pub fn disabled_collisions(&self) -> &[[usize; 2]] {
+        &self.data.disabled_collisions
     }
 
     /// The joints of the spanning tree, parents before children: all that have coordinates.

@@ -41,7 +41,7 @@ pub use include::Inclusion;
 pub(crate) use joint::JointLocus;
 pub use joint::{Joint, JointKind, Limits, Mimic};
 pub use joint_spec::JointSpec;
-pub use link::{Geometry, Inertial, Link, Visual};
+pub use link::{Collision, Geometry, Inertial, Link, Visual};
 pub use loop_joint::{LoopJoint, LoopJointSpec};
 pub use mechanism::{Coordinate, CoordinateKind, Frame, FrameId, Mechanism};
 pub(crate) use node::{Node, NodeKind};

@@ -103,7 +103,7 @@ fn meshes_are_hulls_or_capsules() {
     }
 
     let mut builder = cylindroid::Mechanism::builder("slide");
-    let shape = cylindroid::model::Visual { geometry: mesh, ..Default::default() };
+    let shape = cylindroid::model::Collision { geometry: mesh, ..Default::default() };
     builder.collision("cart", shape);
     let kind = cylindroid::model::JointKind::Prismatic;
     builder.joint(cylindroid::model::JointSpec::new("x", kind, "rail", "cart"));
@@ -132,6 +132,24 @@ fn mjcf_planes_and_ellipsoids() {
     model.near(&state, 10.0, &mut near).unwrap();
     assert_eq!(model.names(near[0].pair), ["world", "egg"]);
     assert!((near[0].distance - 1.2).abs() < 1e-12);
+}
+
+/// A geom of type 0 and affinity 2 meets type 2 alone; excluded bodies never meet.
+#[test]
+fn mjcf_types_affinities_and_exclusions() {
+    let text = r#"<mujoco><worldbody>
+        <geom name="plain" size="0.1"/>
+        <body name="a"><freejoint/><geom size="0.1" contype="2" conaffinity="0"/></body>
+        <body name="b"><freejoint/><geom size="0.1" contype="0" conaffinity="2"/></body>
+        <body name="c"><freejoint/><geom size="0.1"/></body>
+        <body name="d"><freejoint/><geom size="0.1"/></body>
+        </worldbody>
+        <contact><exclude body1="c" body2="d"/><exclude body1="c" body2="e"/></contact></mujoco>"#;
+    let robot = mjcf::parse(text, "types.xml".as_ref()).unwrap();
+    assert!(robot.report().ignored[0].what.contains("exclude"), "{:?}", robot.report());
+    let model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
+    let names: Vec<_> = (0..model.pairs().len()).map(|i| model.names(i).join(" ")).collect();
+    assert_eq!(names, ["world c", "world d", "a b"]);
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! The pairs that are watched.
 
 use cylindroid::collision::{CollisionModel, CollisionOptions};
-use cylindroid::model::{Geometry, JointKind, JointSpec, Limits, Link, Visual};
+use cylindroid::model::{Collision, Geometry, JointKind, JointSpec, Limits, Link};
 use cylindroid::{Mechanism, Pose, Vec3};
 
-fn ball(x: f64) -> Visual {
+fn ball(x: f64) -> Collision {
     let geometry = Geometry::Sphere { radius: 0.1 };
     let link_from_shape = Pose::from_translation(Vec3::X * x);
-    Visual { geometry, link_from_shape, ..Visual::default() }
+    Collision { geometry, link_from_shape, ..Collision::default() }
 }
 
 fn link(name: &str, at: &[f64]) -> Link {

@@ -1,6 +1,6 @@
 //! Random shapes, and robots made of them.
 
-use cylindroid::model::{Builder, Geometry, JointKind, JointSpec, Limits, Link, Visual};
+use cylindroid::model::{Builder, Collision, Geometry, JointKind, JointSpec, Limits, Link};
 use cylindroid::{Mechanism, Pose, Vec3};
 
 use crate::support::Random;
@@ -47,12 +47,12 @@ pub(crate) fn arm(random: &mut Random, kinds: &[usize]) -> Mechanism {
     for (i, kind) in kinds.iter().enumerate() {
         let name = format!("link{i}");
         let geometry = scaled(&shape(random, *kind), 0.5);
-        let visual = Visual { link_from_shape: random.pose(), geometry, ..Visual::default() };
+        let visual = Collision { link_from_shape: random.pose(), geometry, ..Collision::default() };
         let at = Pose {
             translation: visual.link_from_shape.translation * 0.05,
             ..visual.link_from_shape
         };
-        let visual = Visual { link_from_shape: at, ..visual };
+        let visual = Collision { link_from_shape: at, ..visual };
         builder.link(Link { collisions: vec![visual], ..Link::named(&name) });
         let joint = JointSpec::new(&format!("j{i}"), JointKind::Revolute, &parent, &name);
         builder.joint(JointSpec {

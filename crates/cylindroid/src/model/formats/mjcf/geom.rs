@@ -9,9 +9,9 @@ use super::Mjcf;
 use super::attributes::used;
 use super::compiler::turn_z_to;
 use super::defaults::Element;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::formats::mesh::Packages;
-use crate::model::{Geometry, Inertial, Link, Visual};
+use crate::model::{Collision, Geometry, Inertial, Link, Visual};
 use crate::spatial::{Mat3, Pose, Vec3};
 
 impl<'d> Mjcf<'d> {
@@ -96,7 +96,8 @@ impl<'d> Mjcf<'d> {
         let flag = |attribute: &str, missing: f64| -> Result<f64> {
             Ok(element.number(&self.reader, attribute)?.unwrap_or(missing))
         };
-        let collides = flag("contype", 1.0)? != 0.0 || flag("conaffinity", 1.0)? != 0.0;
+        let bits = |attribute: &str| Ok::<_, Error>(flag(attribute, 1.0)? as i64 as u32);
+        let (category, mask) = (bits("contype")?, bits("conaffinity")?);
         // The viewer of MuJoCo shows groups 0 to 2 unless told otherwise.
         let shown = flag("group", 0.0)? < 3.0;
         let visual = Visual {
@@ -105,8 +106,9 @@ impl<'d> Mjcf<'d> {
             geometry,
             rgba: own.or(material.copied()),
         };
-        if collides {
-            link.collisions.push(visual.clone());
+        if category != 0 || mask != 0 {
+            let shape = Collision::from(visual.clone());
+            link.collisions.push(Collision { category, mask, ..shape });
         }
         if shown {
             link.visuals.push(visual);

@@ -50,6 +50,8 @@ struct Mjcf<'d> {
     links: Vec<Link>,
     joints: Vec<JointSpec>,
     loops: Vec<LoopJointSpec>,
+    /// Bodies whose shapes do not collide.
+    disabled_collisions: Vec<[String; 2]>,
     /// Name, body, pose on it.
     sites: Vec<(String, String, Pose)>,
     /// Home positions of joints; later ones take precedence.
@@ -101,8 +103,16 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
     (reader.owners, reader.why) = (&["body", "key", "default"], why_unused);
     let root = files.main.root_element();
     reader.unread_attributes(root, &["model"]);
-    let sections =
-        ["compiler", "default", "asset", "worldbody", "equality", "actuator", "keyframe"];
+    let sections = [
+        "compiler",
+        "default",
+        "asset",
+        "worldbody",
+        "contact",
+        "equality",
+        "actuator",
+        "keyframe",
+    ];
     for section in files.children(root) {
         let name = section.tag_name().name();
         if !sections.contains(&name) {
@@ -120,6 +130,7 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
         links: Vec::new(),
         joints: Vec::new(),
         loops: Vec::new(),
+        disabled_collisions: Vec::new(),
         sites: Vec::new(),
         starts: Vec::new(),
         tied: Vec::new(),
@@ -129,6 +140,7 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
     };
     it.assets()?;
     it.bodies()?;
+    it.excluded_contacts()?;
     it.equalities()?;
     it.tendons();
     it.actuators()?;
@@ -148,6 +160,27 @@ impl Mjcf<'_> {
         }
     }
 
+    /// Pairs of bodies of `<exclude>`; pairs of geoms are reported as unused.
+    fn excluded_contacts(&mut self) -> Result<()> {
+        for node in self.files.section("contact") {
+            let name = node.attribute("name").unwrap_or("");
+            if !node.has_tag_name("exclude") {
+                let what = format!("<{}> in <contact>", node.tag_name().name());
+                let why = "pairs are chosen by contype and conaffinity, and <exclude>";
+                self.reader.note(node, what, why, name);
+                continue;
+            }
+            let a = self.reader.required(node, "body1")?.trim().to_owned();
+            let b = self.reader.required(node, "body2")?.trim().to_owned();
+            if [&a, &b].iter().all(|body| self.link_names.contains(*body)) {
+                self.disabled_collisions.push([a, b]);
+            } else {
+                self.reader.note(node, "<exclude>", "it names no bodies of this model", name);
+            }
+        }
+        Ok(())
+    }
+
     fn write(mut self, model: Option<&str>) -> Result<Mechanism> {
         let source = self.reader.source;
         let stem = source.path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default();
@@ -161,6 +194,9 @@ impl Mjcf<'_> {
         }
         for joint in self.loops {
             builder.loop_joint(joint);
+        }
+        for [a, b] in self.disabled_collisions {
+            builder.disable_collision(&a, &b);
         }
         // MJCF has separate namespaces for sites and bodies; frames share one here.
         for (name, link, pose) in self.sites {

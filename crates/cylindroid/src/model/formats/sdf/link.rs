@@ -7,7 +7,7 @@ use roxmltree::Node;
 use crate::error::Result;
 use crate::model::formats::mesh::Packages;
 use crate::model::formats::xml::Reader;
-use crate::model::{Geometry, Inertial, Link, Visual};
+use crate::model::{Collision, Geometry, Inertial, Link, Visual};
 use crate::spatial::{Mat3, Pose, Vec3};
 
 impl Reader<'_> {
@@ -27,7 +27,7 @@ impl Reader<'_> {
             link.visuals.extend(self.sdf_shape(child, packages)?);
         }
         for child in node.children().filter(|c| c.has_tag_name("collision")) {
-            link.collisions.extend(self.sdf_shape(child, packages)?);
+            link.collisions.extend(self.sdf_shape(child, packages)?.map(Collision::from));
         }
         Ok(link)
     }

@@ -10,7 +10,7 @@ use super::value::Table;
 use super::world::World;
 use crate::error::Result;
 use crate::model::formats::mesh::Packages;
-use crate::model::{Geometry, Visual};
+use crate::model::{Collision, Geometry};
 use crate::spatial::Vec3;
 
 const KEYS: [&str; 11] =
@@ -24,11 +24,11 @@ pub(super) fn write(file: &Table<'_>, world: &mut World<'_>) -> Result<()> {
     for table in file.tables("collision", "[[collision]]", &KEYS)? {
         let link = table.required_string("link")?;
         world.check_link(&table, "link", link)?;
-        let shape = Visual {
+        let shape = Collision {
             name: table.string("name")?.unwrap_or("").to_owned(),
             link_from_shape: table.pose()?,
             geometry: geometry(&table)?,
-            rgba: None,
+            ..Collision::default()
         };
         if let Geometry::Mesh { uri, path: None, .. } = &shape.geometry {
             let why = "mesh not found; the link has no shape there";

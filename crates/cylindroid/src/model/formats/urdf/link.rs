@@ -10,7 +10,7 @@ use roxmltree::Node;
 use crate::error::Result;
 use crate::model::formats::mesh::Packages;
 use crate::model::formats::xml::Reader;
-use crate::model::{Geometry, Inertial, Link, Visual};
+use crate::model::{Collision, Geometry, Inertial, Link, Visual};
 use crate::spatial::{Mat3, Vec3};
 
 /// Colours by the name of the material.
@@ -59,7 +59,8 @@ impl Reader<'_> {
             if self.is(child, "visual") {
                 link.visuals.extend(self.shape(child, materials, packages)?);
             } else if self.is(child, "collision") {
-                link.collisions.extend(self.shape(child, materials, packages)?);
+                link.collisions
+                    .extend(self.shape(child, materials, packages)?.map(Collision::from));
             }
         }
         Ok(link)
