@@ -5,6 +5,7 @@
 mod bad_input;
 mod book;
 mod closed;
+mod distance;
 mod documents;
 mod ik;
 mod inverses;

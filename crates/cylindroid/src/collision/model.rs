@@ -222,7 +222,7 @@ impl CollisionModel {
     pub fn near(&mut self, state: &State, margin: f64, out: &mut Vec<NearPair>) -> Result<()> {
         out.clear();
         let (own, other) = (&self.mechanism, state.mechanism());
-        if own.n() != other.n() || own.nodes().len() != other.nodes().len() {
+        if own.check_frame(other.tool()).is_err() {
             let reason = format!("the shapes are those of '{}'", own.name());
             return Err(body::refused("state", other.name(), reason));
         }

@@ -23,9 +23,11 @@ use crate::kinematics::State;
 use crate::model::{CoordinateKind, JointKind, Mechanism};
 use crate::scalar::{clamp, uniform};
 
-/// Steps of the descent of a pair at most, and their largest change of a coordinate (rad or m).
+/// Steps of the descent of a pair at most.
 const STEPS: usize = 60;
-const LARGEST_STEP: f64 = 0.3;
+
+/// Change of a coordinate in a step, the first and the last (rad or m).
+const STEP: [f64; 2] = [0.3, 3e-4];
 
 /// Removes the pairs that always or never touch.
 pub(super) fn drop_constant(
@@ -147,7 +149,7 @@ fn descend(
     };
     let mut q = start.to_vec();
     let Some(mut best) = at(state, &q)? else { return Ok(f64::INFINITY) };
-    let mut largest = LARGEST_STEP;
+    let mut largest = STEP[0];
     for _ in 0..STEPS {
         if best.distance <= 0.0 {
             break;
@@ -177,7 +179,7 @@ fn descend(
             Some(near) if near.distance < best.distance => (q, best) = (next, near),
             _ => {
                 largest *= 0.25;
-                if largest < 1e-3 * LARGEST_STEP {
+                if largest < STEP[1] {
                     break;
                 }
             }
