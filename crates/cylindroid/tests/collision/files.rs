@@ -4,7 +4,7 @@ use std::fs;
 
 use cylindroid::collision::{CollisionModel, CollisionOptions, MeshShape, distance};
 use cylindroid::model::Geometry;
-use cylindroid::model::formats::{mjcf, srdf};
+use cylindroid::model::formats::{mjcf, sdf, srdf};
 use cylindroid::{Error, Pose, Vec3};
 
 /// A box 2 x 4 x 6 as OBJ.
@@ -132,6 +132,26 @@ fn mjcf_planes_and_ellipsoids() {
     model.near(&state, 10.0, &mut near).unwrap();
     assert_eq!(model.names(near[0].pair), ["world", "egg"]);
     assert!((near[0].distance - 1.2).abs() < 1e-12);
+}
+
+#[test]
+fn sdf_planes_and_ellipsoids() {
+    let text = r#"<sdf version="1.9"><model name="m">
+        <link name="wall"><collision name="c"><pose>2 0 0 0 0 0</pose>
+          <geometry><plane><normal>-1 0 0</normal></plane></geometry></collision></link>
+        <link name="egg"><collision name="c">
+          <geometry><ellipsoid><radii>0.1 0.2 0.3</radii></ellipsoid></geometry></collision></link>
+        <joint name="j" type="prismatic"><parent>world</parent><child>wall</child>
+          <axis><xyz>1 0 0</xyz></axis></joint>
+        <joint name="k" type="prismatic"><parent>world</parent><child>egg</child>
+          <axis><xyz>1 0 0</xyz></axis></joint>
+        </model></sdf>"#;
+    let model = sdf::parse(text, "m.sdf".as_ref()).unwrap();
+    let options = CollisionOptions { samples: 0, ..CollisionOptions::default() };
+    let mut shapes = CollisionModel::new(&model, &options).unwrap();
+    let (state, mut near) = (model.state(model.home()).unwrap(), Vec::new());
+    shapes.near(&state, 10.0, &mut near).unwrap();
+    assert!((near[0].distance - 1.9).abs() < 1e-12, "{near:?}");
 }
 
 /// A geom of type 0 and affinity 2 meets type 2 alone; excluded bodies never meet.

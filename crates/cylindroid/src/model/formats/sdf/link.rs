@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::model::formats::mesh::Packages;
 use crate::model::formats::xml::Reader;
 use crate::model::{Collision, Geometry, Inertial, Link, Visual};
-use crate::spatial::{Mat3, Pose, Vec3};
+use crate::spatial::{Mat3, Pose, Rotation, Vec3};
 
 impl Reader<'_> {
     /// A link under its full name.
@@ -65,9 +65,12 @@ impl Reader<'_> {
 
     fn sdf_shape(&mut self, node: Node<'_, '_>, packages: &Packages) -> Result<Option<Visual>> {
         self.leftovers(node, &["name"], &["pose", "geometry", "material"]);
-        let link_from_shape = self.pose_on_link(node)?;
+        let mut link_from_shape = self.pose_on_link(node)?;
         let geometry = match self.child(node, "geometry") {
-            Some(geometry) => self.sdf_geometry(geometry, packages)?,
+            Some(geometry) => {
+                link_from_shape = link_from_shape * self.plane_normal(geometry)?;
+                self.sdf_geometry(geometry, packages)?
+            }
             None => None,
         };
         let Some(geometry) = geometry else {
@@ -89,12 +92,21 @@ impl Reader<'_> {
         Ok(Some(Visual { name, link_from_shape, geometry, rgba }))
     }
 
+    /// The rotation from z to the normal of a plane; none for other shapes.
+    fn plane_normal(&mut self, geometry: Node<'_, '_>) -> Result<Pose> {
+        let plane = geometry.children().find(|c| c.has_tag_name("plane"));
+        let Some(plane) = plane else { return Ok(Pose::IDENTITY) };
+        let normal = self.child_vector(plane, "normal")?.unwrap_or(Vec3::Z);
+        Ok(Pose::from_rotation(Rotation::z_to(normal).unwrap_or_default()))
+    }
+
     fn sdf_geometry(
         &mut self,
         parent: Node<'_, '_>,
         packages: &Packages,
     ) -> Result<Option<Geometry>> {
-        const SHAPES: [&str; 6] = ["box", "cylinder", "capsule", "sphere", "ellipsoid", "mesh"];
+        const SHAPES: [&str; 7] =
+            ["box", "cylinder", "capsule", "sphere", "ellipsoid", "plane", "mesh"];
         self.leftovers(parent, &[], &SHAPES);
         let known = |n: &Node<'_, '_>| SHAPES.contains(&n.tag_name().name());
         let Some(node) = parent.children().find(known) else { return Ok(None) };
@@ -105,6 +117,7 @@ impl Reader<'_> {
             ("ellipsoid", ..) => {
                 self.child_vector(node, "radii")?.map(|radii| Geometry::Ellipsoid { radii })
             }
+            ("plane", ..) => Some(Geometry::HalfSpace),
             ("sphere", Some(radius), _) => Some(Geometry::Sphere { radius }),
             ("cylinder", Some(radius), Some(length)) => Some(Geometry::Cylinder { radius, length }),
             ("capsule", Some(radius), Some(length)) => Some(Geometry::Capsule { radius, length }),
