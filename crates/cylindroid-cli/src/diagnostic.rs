@@ -25,6 +25,9 @@ pub(crate) fn is_closed_pipe(error: &anyhow::Error) -> bool {
     })
 }
 
+/// Longer lines (bytes) are not shown.
+const LONGEST_SHOWN: usize = 1000;
+
 /// A place in a model file, with the text of the file.
 #[derive(Debug)]
 struct Underlined {
@@ -37,6 +40,10 @@ impl Underlined {
     fn new(error: &FileError) -> Self {
         let mut error = error.clone();
         let text = fs::read(&error.path).map(|b| String::from_utf8_lossy(&b).into_owned()).ok();
+        let text = text.filter(|t| {
+            let line = t.lines().nth(error.line.saturating_sub(1));
+            line.is_none_or(|line| line.len() <= LONGEST_SHOWN)
+        });
         if let Some(text) = &text {
             error.span.start = text.floor_char_boundary(error.span.start);
             error.span.end = text.ceil_char_boundary(error.span.end.max(error.span.start));

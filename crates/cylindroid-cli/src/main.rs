@@ -37,9 +37,13 @@ fn main() -> ExitCode {
 }
 
 fn run() -> anyhow::Result<ExitCode> {
-    let words = values::join_after_commas(
-        std::env::args_os().map(|word| word.to_string_lossy().into_owned()),
-    );
+    let words = std::env::args_os().map(|word| {
+        word.into_string().map_err(|word| {
+            let hint = "rename the file or leave out these bytes";
+            anyhow::anyhow!("the argument {word:?} is not UTF-8; {hint}")
+        })
+    });
+    let words = values::join_after_commas(words.collect::<anyhow::Result<Vec<String>>>()?);
     if words.len() <= 1 {
         Cli::command().print_help()?;
         return Ok(ExitCode::SUCCESS);

@@ -7,7 +7,7 @@
 //! Checked  tests in this file, tests/formats/broken.rs
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Result of every fallible function of the library.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -21,7 +21,7 @@ pub enum Error {
     File(Box<FileError>),
 
     /// A file that cannot be read or written.
-    #[error("cannot {action} {}: {message}", path.display())]
+    #[error("cannot {action} {}: {message}", shown(path))]
     Io {
         /// The path as given.
         path: PathBuf,
@@ -89,7 +89,7 @@ pub enum Error {
 
 /// A place in a model file that cannot be parsed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{}:{line}:{column}: {message}", path.display())]
+#[error("{}:{line}:{column}: {message}", shown(path))]
 pub struct FileError {
     /// The format of the file: "URDF", "mechanism file", ...
     pub format: &'static str,
@@ -159,11 +159,18 @@ impl Error {
     }
 }
 
+/// Longer names (bytes) are not compared: the time of a comparison is the product of the lengths.
+const LONGEST_COMPARED: usize = 1000;
+
 /// The names of `known` nearest to `name`, best first: at most five, all when there are no more.
 fn nearest(name: &str, known: impl IntoIterator<Item: AsRef<str>>) -> Vec<String> {
+    if name.len() > LONGEST_COMPARED {
+        return Vec::new();
+    }
     let given = name.to_lowercase();
     let mut ranked: Vec<(f64, String)> = known
         .into_iter()
+        .filter(|candidate| candidate.as_ref().len() <= LONGEST_COMPARED)
         .map(|candidate| {
             let candidate = candidate.as_ref();
             let lower = candidate.to_lowercase();
@@ -187,6 +194,16 @@ fn refused(value: &str) -> String {
 
 fn hint_text(hint: &str) -> String {
     if hint.is_empty() { String::new() } else { format!(" ({hint})") }
+}
+
+/// A path for messages; bytes that are not UTF-8 are written as `\xNN`.
+pub(crate) fn shown(path: &Path) -> String {
+    let mut text = String::new();
+    for chunk in path.as_os_str().as_encoded_bytes().utf8_chunks() {
+        text.push_str(chunk.valid());
+        chunk.invalid().iter().for_each(|byte| text.push_str(&format!("\\x{byte:02x}")));
+    }
+    text
 }
 
 /// True if no number is NaN or infinite (zero times it is zero). Eight independent sums, for speed.

@@ -315,6 +315,9 @@ fn print_closings(out: &mut dyn Write, info: &InfoJson<'_>) -> io::Result<()> {
     Ok(())
 }
 
+/// Characters before a link of the tree; links farther from the root are not indented further.
+const WIDEST_PREFIX: usize = 150;
+
 /// The links as a tree, each with the joint that carries it. The stack holds joints still to be
 /// drawn with the prefix of their line, so that depth is bounded by memory alone.
 fn print_tree(out: &mut dyn Write, robot: &Mechanism) -> io::Result<()> {
@@ -333,7 +336,12 @@ fn print_tree(out: &mut dyn Write, robot: &Mechanism) -> io::Result<()> {
             let branch = if is_last { "└─ " } else { "├─ " };
             let child = &robot.links()[joint.child].name;
             writeln!(out, "{prefix}{branch}{child}   {}", joint_text(joint))?;
-            let below = format!("{prefix}{}", if is_last { "   " } else { "│  " });
+            // The lines of a chain of 100 000 links would have 15 GB.
+            let below = if prefix.chars().count() >= WIDEST_PREFIX {
+                prefix
+            } else {
+                format!("{prefix}{}", if is_last { "   " } else { "│  " })
+            };
             push_children(&mut stack, &children[joint.child], &below);
         }
     }

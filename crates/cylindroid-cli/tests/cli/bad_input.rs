@@ -144,3 +144,39 @@ fn a_broken_file_is_shown_with_its_line() {
     assert!(stderr.contains("broken.urdf:3:"), "{stderr}");
     assert!(stderr.contains("type=\"hinge\""), "the source line: {stderr}");
 }
+
+#[cfg(unix)]
+#[test]
+fn devices_and_arguments_that_are_not_utf_8_are_told() {
+    use std::os::unix::ffi::OsStrExt as _;
+    refused(&["info", "/dev/zero"], "not a regular file");
+    refused(&["info", "/tmp"], "it is a folder");
+    let word = std::ffi::OsStr::from_bytes(b"a\xff.urdf");
+    let output = Command::new(env!("CARGO_BIN_EXE_cylindroid")).arg("info").arg(word).output();
+    let output = output.unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(stderr.contains("the argument \"a\\xFF.urdf\" is not UTF-8"), "{stderr}");
+}
+
+/// A line of a megabyte is not printed, and a chain of links is not indented without end.
+#[test]
+fn large_files_do_not_print_without_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.toml");
+    std::fs::write(&path, format!("name = [{}", "1,".repeat(500_000))).unwrap();
+    let stderr = crate::refused(&["info", &path.to_string_lossy()]);
+    assert!(stderr.len() < 1000, "{} bytes", stderr.len());
+    let links: String = (0..3000).map(|i| format!("<link name='l{i}'/>")).collect();
+    let joint = |i: usize| {
+        let from = i - 1;
+        format!(
+            "<joint name='j{i}' type='fixed'><parent link='l{from}'/><child link='l{i}'/></joint>"
+        )
+    };
+    let joints: String = (1..3000).map(joint).collect();
+    let path = folder.path().join("chain.urdf");
+    std::fs::write(&path, format!("<robot name='chain'>{links}{joints}</robot>")).unwrap();
+    let out = cylindroid(&["info", &path.to_string_lossy()]);
+    assert!(out.stdout.len() < 1_000_000, "{} bytes", out.stdout.len());
+}

@@ -44,7 +44,10 @@ use crate::table::{self, Table};
 #[pyo3(signature = (model))]
 pub(crate) fn load(py: Python<'_>, model: PathBuf) -> Result<PyMechanism> {
     let name = model.to_string_lossy().into_owned();
-    let inner = py.detach(|| cylindroid::load(&name))?;
+    let inner = py.detach(|| match model.to_str() {
+        Some(name) => cylindroid::load(name),
+        None => cylindroid::load_file(&model),
+    })?;
     // A path is the same from another folder only if it is absolute.
     let model = match std::path::absolute(&model) {
         Ok(path) if !cylindroid::catalogue::names().contains(&name.as_str()) => {

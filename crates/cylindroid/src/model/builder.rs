@@ -6,7 +6,7 @@
 //!
 //! Checked  tests/it/model.rs, tests/it/graph.rs, tests/formats/broken.rs
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::contact::{Contact, ContactSpec};
@@ -373,6 +373,7 @@ impl Builder {
         mut flat: FlatMechanism,
     ) -> Result<Mechanism> {
         let mut frames: Vec<Frame> = Vec::with_capacity(self.links.len() + self.frames.len());
+        let mut names: BTreeSet<&str> = self.links.iter().map(|l| l.name.as_str()).collect();
         for (link, l) in self.links.iter().enumerate() {
             frames.push(flat.frame(l.name.clone(), link, Pose::IDENTITY));
         }
@@ -381,7 +382,7 @@ impl Builder {
                 let unknown = Error::unknown("link", link, links.keys().map(String::as_str));
                 return self.refuse(name, format!("frame '{name}': {unknown}"));
             };
-            if frames.iter().any(|f| f.name == *name) {
+            if !names.insert(name) {
                 return self.refuse(
                     name,
                     format!("'{name}' names two frames (links are frames too); rename one"),

@@ -31,7 +31,7 @@ impl Builder {
                         "it falls into {} parts: links {} have no parent joint; connect them or \
                          remove all but one",
                         names.len(),
-                        names.join(", ")
+                        shorten(&names, ", ")
                     ),
                 );
             }
@@ -58,10 +58,12 @@ impl Builder {
         start: usize,
     ) -> Result<TreeOrder> {
         let mut path = vec![start];
+        let mut places = vec![None; self.links.len()];
+        places[start] = Some(0);
         let mut link = start;
         while let Some(j) = parent_joint[link] {
             link = links[&self.joints[j].parent];
-            if let Some(first) = path.iter().position(|&l| l == link) {
+            if let Some(first) = places[link] {
                 let mut names: Vec<&str> =
                     path[first..].iter().rev().map(|&l| self.links[l].name.as_str()).collect();
                 names.push(names[0]);
@@ -71,12 +73,23 @@ impl Builder {
                     format!(
                         "its links form a cycle without a root: {}; a tree has one link that is \
                          no joint's child",
-                        names.join(" -> ")
+                        shorten(&names, " -> ")
                     ),
                 );
             }
+            places[link] = Some(path.len());
             path.push(link);
         }
         self.refuse(&self.links[start].name, "it is not connected to the root")
+    }
+}
+
+/// Names for a message, at most ten of them.
+fn shorten(names: &[&str], between: &str) -> String {
+    match names {
+        [first @ .., last] if first.len() > 9 => {
+            format!("{}{between}...{between}{last}", first[..9].join(between))
+        }
+        _ => names.join(between),
     }
 }

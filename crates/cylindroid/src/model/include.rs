@@ -77,8 +77,9 @@ impl Builder {
     pub fn include(&mut self, robot: &Mechanism, how: Inclusion<'_>) -> Result<&mut Self> {
         robot.check_q("start", how.start)?;
         let name = |i: usize| how.link(robot, i);
-        let is_child = |i: usize| robot.joints().iter().any(|j| j.child == i);
-        let root = (0..robot.links().len()).find(|&i| !is_child(i)).unwrap_or(0);
+        let mut is_child = vec![false; robot.links().len()];
+        robot.joints().iter().for_each(|j| is_child[j.child] = true);
+        let root = is_child.iter().position(|child| !child).unwrap_or(0);
         for (i, link) in robot.links().iter().enumerate() {
             if name(i) != how.parent {
                 self.link(Link { name: name(i), ..link.clone() });

@@ -6,6 +6,8 @@
 //!          write the model, once for each file, so the plain product is sufficient here
 //! Checked  tests/it/graph.rs::motion_* (against `State`), tests/formats/closed_file.rs
 
+use std::collections::BTreeMap;
+
 use super::joint::JointKind;
 use super::mechanism::Mechanism;
 use crate::spatial::{Pose, Rotation, Vec3};
@@ -64,21 +66,11 @@ impl Mechanism {
     /// The pose of every link in the root, for a `q` that was checked.
     pub(crate) fn link_poses(&self, q: &[f64]) -> Vec<Pose> {
         let joints = self.joints();
-        // Mimic joints may follow one another, in any order of the tree.
-        let value = |start: usize| {
-            let (mut joint, mut factor, mut sum) = (start, 1.0, 0.0);
-            while let Some(mimic) = &joints[joint].mimic {
-                let Some(source) = joints.iter().position(|j| j.name == mimic.joint) else { break };
-                sum += factor * mimic.offset;
-                factor *= mimic.multiplier;
-                joint = source;
-            }
-            factor * joints[joint].coordinates.clone().map(|c| q[c]).sum::<f64>() + sum
-        };
+        let values = self.mimic_values(q);
         let mut poses = vec![Pose::IDENTITY; self.links().len()];
         for (i, joint) in joints.iter().enumerate() {
             let motion = if joint.mimic.is_some() {
-                joint.kind.transform(joint.axis, &[value(i)])
+                joint.kind.transform(joint.axis, &[values[i]])
             } else {
                 joint.kind.transform(joint.axis, &q[joint.coordinates.clone()])
             };
@@ -87,5 +79,37 @@ impl Mechanism {
                 poses[joint.parent] * joint.parent_from_joint * motion * joint.joint_from_child;
         }
         poses
+    }
+
+    /// The values of the mimic joints, zero for the others.
+    fn mimic_values(&self, q: &[f64]) -> Vec<f64> {
+        let joints = self.joints();
+        let index: BTreeMap<&str, usize> = if joints.iter().any(|j| j.mimic.is_some()) {
+            joints.iter().enumerate().map(|(i, j)| (j.name.as_str(), i)).collect()
+        } else {
+            BTreeMap::new()
+        };
+        let mut values = vec![0.0; joints.len()];
+        let mut known = vec![false; joints.len()];
+        for start in (0..joints.len()).filter(|&i| joints[i].mimic.is_some()) {
+            // Mimic joints may follow one another, in any order of the tree.
+            let mut chain = Vec::new();
+            let mut at = start;
+            while let Some(mimic) = joints[at].mimic.as_ref().filter(|_| !known[at]) {
+                chain.push((at, mimic));
+                let Some(&source) = index.get(mimic.joint.as_str()) else { break };
+                at = source;
+            }
+            let mut value = if joints[at].mimic.is_some() {
+                values[at]
+            } else {
+                joints[at].coordinates.clone().map(|c| q[c]).sum()
+            };
+            for (joint, mimic) in chain.into_iter().rev() {
+                value = mimic.multiplier * value + mimic.offset;
+                (values[joint], known[joint]) = (value, true);
+            }
+        }
+        values
     }
 }

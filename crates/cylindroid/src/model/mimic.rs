@@ -11,7 +11,7 @@ impl Builder {
     /// For every mimic joint the independent joint at the end of its chain, with the total ratio
     /// and offset.
     pub(super) fn resolve_mimics(&self) -> Result<BTreeMap<usize, (usize, f64, f64)>> {
-        let mut resolved = BTreeMap::new();
+        let mut resolved: BTreeMap<usize, (usize, f64, f64)> = BTreeMap::new();
         let by_name: BTreeMap<&str, usize> =
             self.joints.iter().enumerate().map(|(j, o)| (o.name.as_str(), j)).collect();
         for (index, joint) in self.joints.iter().enumerate() {
@@ -22,6 +22,14 @@ impl Builder {
             let mut source = 0;
             let mut length = 0;
             while let Some(mimic) = step {
+                // A joint that was resolved before ends the chain.
+                let known = by_name.get(mimic.joint.as_str()).and_then(|j| resolved.get(j));
+                if let Some(&(of, ratio, shift)) = known {
+                    offset += multiplier * (mimic.offset + mimic.multiplier * shift);
+                    multiplier *= mimic.multiplier * ratio;
+                    source = of;
+                    break;
+                }
                 offset += multiplier * mimic.offset;
                 multiplier *= mimic.multiplier;
                 if !(multiplier.is_finite() && offset.is_finite()) {

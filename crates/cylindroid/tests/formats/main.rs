@@ -2,15 +2,18 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests stop where tests do
 
+mod ablation;
 mod broken;
 mod catalogue;
 mod closed_file;
 mod closures;
 mod contact_curvature;
+mod corpus;
 mod dh;
 mod elasticity;
 mod fk;
 mod lax;
+mod limits;
 mod load;
 mod mechanism_file;
 mod mjcf;

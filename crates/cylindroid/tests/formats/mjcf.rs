@@ -288,7 +288,7 @@ fn names_that_are_missing_or_shared_are_made() {
 }
 
 #[test]
-fn includes_stand_in_the_folder_of_the_model() {
+fn includes_are_found_from_the_folder_of_the_model() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| {
         let path = folder.path().join(name);
@@ -313,9 +313,23 @@ fn includes_stand_in_the_folder_of_the_model() {
     write("hand.xml", "<mujocoinclude>\n<joint name='j' axis='0 0'/></mujocoinclude>");
     let error = load(&main).unwrap_err().to_string();
     assert!(error.contains("hand.xml:2:23: axis of <joint> has 2 numbers"), "{error}");
+    // A file is found from the folder of the main file, otherwise from that of the including one.
+    fs::create_dir_all(folder.path().join("parts/deep")).unwrap();
+    write("parts/deep/leaf.xml", "<mujocoinclude><body name='leaf' pos='0 0 2'/></mujocoinclude>");
+    let absolute = folder.path().join("parts/deep/leaf.xml").to_string_lossy().into_owned();
+    write("parts/own.xml", "<mujocoinclude><include file='deep/leaf.xml'/></mujocoinclude>");
+    let up = write(
+        "parts/main.xml",
+        "<mujoco><worldbody><include file='../parts/own.xml'/></worldbody></mujoco>",
+    );
+    let whole = format!("<mujoco><worldbody><include file='{absolute}'/></worldbody></mujoco>");
+    for path in [up, write("whole.xml", &whole)] {
+        let m = load(&path).unwrap();
+        assert_eq!(tool(&m, m.home()).translation, Vec3::Z * 2.0);
+    }
     for (file, says) in [
-        ("../arm.xml", "leaves the folder"),
-        ("/etc/passwd", "leaves the folder"),
+        ("../none/arm.xml", "cannot read"),
+        ("/dev/zero", "not a regular file"),
         ("none.xml", "cannot read"),
         ("main.xml", "included twice"),
     ] {
@@ -384,4 +398,82 @@ fn couplings_that_cannot_be_followed_are_noted() {
         let m = couple(equality);
         assert!(report(&m).contains(says), "{equality}: {}", report(&m));
     }
+}
+
+/// Numbers of MuJoCo 4.0.
+#[test]
+fn masses_are_those_of_the_geoms_without_an_inertial() {
+    let inertial = |compiler: &str, inside: &str| {
+        let m = read(&format!(
+            "<mujoco><compiler angle='radian' {compiler}/><worldbody><body name='a'><joint/>\
+             {inside}</body></worldbody></mujoco>"
+        ));
+        m.links()[1].inertial.map(|i| {
+            let axes = i.link_from_inertia.rotation.matrix();
+            let rows = (axes * i.inertia * axes.transpose()).to_rows();
+            let centre = i.link_from_inertia.translation.to_array();
+            (i.mass, centre, [rows[0][0], rows[1][1], rows[2][2]])
+        })
+    };
+    let close = |(mass, centre, moments): (f64, [f64; 3], [f64; 3]), expected: [f64; 7]| {
+        let [m, x, y, z, a, b, c] = expected;
+        let pairs = [mass].into_iter().chain(centre).chain(moments).zip([m, x, y, z, a, b, c]);
+        pairs
+            .for_each(|(own, expected)| assert!((own - expected).abs() < 1e-6, "{own} {expected}"));
+    };
+    let two = "<geom type='capsule' size='.1 .2' density='500'/>\
+               <geom type='ellipsoid' size='.1 .2 .3' pos='1 0 0' group='5'/>";
+    let expected = [33.510321638, 0.75, 0.0, 0.0, 0.87650435, 7.00889321, 6.57430623];
+    let got = inertial("", two).unwrap();
+    assert!((got.0 - expected[0]).abs() < 1e-6 && (got.1[0] - 0.75).abs() < 1e-12, "{got:?}");
+    let mut moments = got.2;
+    moments.sort_by(f64::total_cmp);
+    let sorted = [0.87650435, 6.57430623, 7.00889321];
+    assert!(moments.iter().zip(sorted).all(|(a, b)| (a - b).abs() < 1e-6), "{moments:?}");
+    close(
+        inertial("inertiagrouprange='0 3'", two).unwrap(),
+        [8.37758041, 0.0, 0.0, 0.0, 0.22305308, 0.22305308, 0.03979351],
+    );
+    let own = "<inertial pos='0 1 0' mass='1' diaginertia='1 2 2'/><geom size='.1'/>";
+    close(inertial("", own).unwrap(), [1.0, 0.0, 1.0, 0.0, 1.0, 2.0, 2.0]);
+    let ball = [4.1887902, 0.0, 0.0, 0.0, 0.01675516, 0.01675516, 0.01675516];
+    close(inertial("inertiafromgeom='true'", own).unwrap(), ball);
+    let half = ball.map(|x| x * 0.5 / 4.1887902047863905);
+    close(inertial("inertiafromgeom='true' settotalmass='0.5'", own).unwrap(), half);
+    assert_eq!(inertial("inertiafromgeom='false'", "<geom size='.1'/>"), None);
+    assert_eq!(inertial("", "<geom size='.1' mass='0'/>"), None);
+}
+
+/// Joints, masses and sites stand in the frame that contains them.
+#[test]
+fn frames_move_all_that_they_contain() {
+    let m = read(
+        "<mujoco><default><default class='c'><joint damping='1' axis='1 0 0'/></default></default>\
+         <worldbody><body name='a'><frame pos='1 0 0' euler='90 0 0' childclass='c'>\
+         <joint name='j' pos='0 1 0' axis='0 0 1'/><joint name='k'/>\
+         <inertial pos='0 1 0' mass='1' diaginertia='1 2 3'/>\
+         <site name='s' fromto='0 0 0 0 0 2'/></frame></body></worldbody></mujoco>",
+    );
+    let joint = |name: &str| m.joints().iter().find(|j| j.name == name).unwrap();
+    assert!((joint("j").axis + Vec3::Y).norm() < 1e-12, "{:?}", joint("j").axis);
+    assert!((joint("k").axis - Vec3::X).norm() < 1e-12);
+    let at = joint("j").parent_from_joint.translation;
+    assert!((at - Vec3::new(1.0, 0.0, 1.0)).norm() < 1e-12, "{at:?}");
+    let body = m.links().iter().find(|l| l.name == "a").unwrap();
+    let centre = body.inertial.unwrap().link_from_inertia.translation;
+    assert!((centre - Vec3::new(1.0, 0.0, 1.0)).norm() < 1e-12, "{centre:?}");
+    let site = m.state(m.home()).unwrap().pose(m.frame("s").unwrap()).translation;
+    assert!((site - Vec3::new(1.0, -1.0, 0.0)).norm() < 1e-12, "{site:?}");
+}
+
+/// A name that the loader makes up is none that the file gives to another joint or body.
+#[test]
+fn made_up_names_leave_those_of_the_file() {
+    let m = read(&world(
+        "<body name='door'><joint/><body><joint name='door'/></body><body name='body2'/></body>",
+    ));
+    let names: Vec<&str> = m.joints().iter().map(|j| j.name.as_str()).collect();
+    assert_eq!(names, ["door.2", "door", "body2"]);
+    let links: Vec<&str> = m.links().iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(links, ["world", "door", "body2.2", "body2"]);
 }

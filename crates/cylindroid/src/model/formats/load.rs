@@ -5,8 +5,9 @@
 use std::path::Path;
 
 use super::span::Source;
-use super::{mjcf, sdf, toml, urdf, xml};
-use crate::error::{Error, Result};
+use super::text_file::{self, TextFile};
+use super::{mjcf, sdf, toml, urdf, xml_limits};
+use crate::error::{Error, Result, shown};
 use crate::model::{CloseHome, Mechanism, catalogue};
 
 /// Extensions that mark a word as a missing file, not as a misspelt name.
@@ -50,35 +51,43 @@ pub(crate) fn load_file(path: &Path, close: CloseHome<'_>) -> Result<Mechanism> 
 }
 
 fn read_file(path: &Path, depth: usize, close: CloseHome<'_>) -> Result<Mechanism> {
-    let bytes = std::fs::read(path).map_err(|e| Error::Io {
-        path: path.to_owned(),
-        action: "read",
-        message: e.to_string(),
-    })?;
-    // Old files have names and comments in other encodings; the numbers are ASCII in all of them.
-    let text = String::from_utf8_lossy(&bytes);
+    let TextFile { text, replaced } = text_file::read(path)?;
     let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
-    match extension(path).as_deref() {
+    let mechanism = match extension(path).as_deref() {
         Some("toml") => {
+            if let Some(at) = replaced {
+                let source = Source { format: "mechanism file", path, text: &text };
+                let message = "this is not UTF-8, which a mechanism file must be";
+                return Err(source.error(at..at + 1, message, "save it as UTF-8"));
+            }
             let loader = |from: &Path, name: &str, depth| load_from(from, name, depth, close);
-            Ok(toml::describe(&text, path, "mechanism file", (depth, &loader), close)?.0)
+            toml::describe(&text, path, "mechanism file", (depth, &loader), close)?.0
         }
-        Some("mjcf") => mjcf::parse(&text, path),
-        Some("urdf" | "xml" | "xacro" | "sdf") => read_xml(&text, path),
-        _ if is_xml => read_xml(&text, path),
-        _ => Err(Error::InvalidOption {
-            option: "model file",
-            value: path.display().to_string(),
-            reason: "its format cannot be told; name a .urdf, .xml, .sdf or .toml file".to_owned(),
-        }),
-    }
+        Some("mjcf") => mjcf::parse(&text, path)?,
+        Some("urdf" | "xml" | "xacro" | "sdf") => read_xml(&text, path)?,
+        _ if is_xml => read_xml(&text, path)?,
+        _ => {
+            return Err(Error::InvalidOption {
+                option: "model file",
+                value: shown(path),
+                reason: "its format cannot be told; name a .urdf, .xml, .sdf or .toml file"
+                    .to_owned(),
+            });
+        }
+    };
+    Ok(match replaced {
+        None => mechanism,
+        Some(at) => {
+            let line = text[..at].matches('\n').count() + 1;
+            let why = "names and texts have \u{fffd} for them; save the file as UTF-8";
+            mechanism.noting(line, "bytes that are not UTF-8", why)
+        }
+    })
 }
 
 /// Reads XML by its root element; unknown ones go to the URDF reader, which reports the element.
 fn read_xml(text: &str, path: &Path) -> Result<Mechanism> {
-    let source = Source { format: "XML", path, text };
-    let root = xml::document(&source).ok().map(|d| d.root_element().tag_name().name().to_owned());
-    match root.as_deref() {
+    match xml_limits::root(text) {
         Some("mujoco" | "mujocoinclude") => mjcf::parse(text, path),
         Some("sdf" | "gazebo") => sdf::parse(text, path),
         _ => urdf::parse(text, path),

@@ -21,8 +21,12 @@ mod span;
 #[cfg(feature = "formats")]
 pub mod srdf;
 #[cfg(feature = "formats")]
+mod text_file;
+#[cfg(feature = "formats")]
 pub mod toml;
 #[cfg(feature = "formats")]
 pub mod urdf;
 #[cfg(feature = "formats")]
 mod xml;
+#[cfg(feature = "formats")]
+mod xml_limits;

@@ -3,10 +3,11 @@
 //!
 //! Checked  tests in this file, tests/formats/broken.rs
 
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use std::path::Path;
 
-use crate::error::{Error, FileError};
+use crate::error::{Error, FileError, shown};
 use crate::model::LoadReport;
 
 /// The text of a model file, for errors with line and column.
@@ -68,10 +69,19 @@ impl Source<'_> {
 /// Characters of the names listed in one note; further names are only counted.
 const NAMES_SHOWN: usize = 60;
 
+/// Distinct notes of a file; further parts are only counted.
+const NOTES_KEPT: usize = 10_000;
+
 /// The log of ignored elements and attributes, one note for each distinct reason.
 #[derive(Debug, Default)]
 pub(super) struct IgnoredLog {
     notes: Vec<Note>,
+    /// The note of each file, part and reason.
+    index: BTreeMap<(usize, String, &'static str), usize>,
+    /// Parts beyond [`NOTES_KEPT`].
+    uncounted: usize,
+    /// Files and offsets of all notes.
+    places: HashSet<(usize, usize)>,
 }
 
 #[derive(Debug)]
@@ -107,29 +117,51 @@ impl IgnoredLog {
         why: &'static str,
         name: &str,
     ) {
-        let what = what.into();
-        let same = |n: &Note| n.file == file && n.what == what && n.why == why;
-        let found = self.notes.iter().position(same);
-        let index = found.unwrap_or_else(|| {
-            self.notes.push(Note { file, offset, what, why, count: 0, names: Vec::new() });
-            self.notes.len() - 1
-        });
+        self.places.insert((file, offset));
+        let key = (file, what.into(), why);
+        let index = match self.index.get(&key) {
+            Some(&index) => index,
+            None if self.notes.len() >= NOTES_KEPT => {
+                self.uncounted += 1;
+                return;
+            }
+            None => {
+                let what = key.1.clone();
+                self.notes.push(Note { file, offset, what, why, count: 0, names: Vec::new() });
+                self.index.insert(key, self.notes.len() - 1);
+                self.notes.len() - 1
+            }
+        };
         let note = &mut self.notes[index];
         note.count += 1;
         note.offset = note.offset.min(offset);
-        if !name.is_empty() && !note.names.iter().any(|n| n == name) {
+        // One name more than is shown tells that there are more.
+        let shown: usize = note.names.iter().map(String::len).sum();
+        if !name.is_empty() && shown <= NAMES_SHOWN && !note.names.iter().any(|n| n == name) {
             note.names.push(name.to_owned());
         }
+    }
+
+    /// True if there is a note at this file and offset.
+    pub(super) fn has(&self, place: (usize, usize)) -> bool {
+        self.places.contains(&place)
     }
 
     /// Writes the notes into a report, in the order of the files; the main one is the first.
     pub(super) fn write(mut self, sources: &[Source<'_>], report: &mut LoadReport) {
         self.notes.sort_by_key(|n| (n.file, n.offset));
+        let (mut file, mut line, mut counted) = (0, 1, 0);
         for note in self.notes {
             let Some(source) = sources.get(note.file) else { continue };
+            if note.file != file {
+                (file, line, counted) = (note.file, 1, 0);
+            }
+            let offset = source.clamp(note.offset);
+            line += source.text.as_bytes()[counted..offset].iter().filter(|b| **b == b'\n').count();
+            counted = offset;
             let mut detail = Vec::new();
             if note.file > 0 {
-                detail.push(format!("in {}", source.path.display()));
+                detail.push(format!("in {}", shown(source.path)));
             }
             if note.count > 1 {
                 detail.push(format!("{} times", note.count));
@@ -151,8 +183,11 @@ impl IgnoredLog {
             } else {
                 format!("{} ({})", note.what, detail.join(": "))
             };
-            let (line, _) = source.line_column(source.clamp(note.offset));
             report.ignore(line, what, note.why);
+        }
+        if self.uncounted > 0 {
+            let what = format!("{} further elements and attributes", self.uncounted);
+            report.ignore(0, what, "not known to this reader");
         }
     }
 }

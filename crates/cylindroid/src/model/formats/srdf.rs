@@ -10,8 +10,9 @@
 use std::path::Path;
 
 use super::span::Source;
+use super::text_file;
 use super::xml::{self, Reader};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::model::Mechanism;
 
 /// The disabled collisions of an SRDF, by the names of links.
@@ -70,12 +71,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Srdf> {
 /// # Errors
 /// [`Error::Io`]; those of [`parse`].
 pub fn load(path: &Path) -> Result<Srdf> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::Io {
-        path: path.to_owned(),
-        action: "read",
-        message: e.to_string(),
-    })?;
-    parse(&text, path)
+    parse(&text_file::read(path)?.text, path)
 }
 
 impl Srdf {

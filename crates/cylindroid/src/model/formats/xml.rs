@@ -3,11 +3,14 @@
 //!
 //! Checked  tests/formats/broken.rs, tests/formats/mutations.rs
 
+use std::cell::RefCell;
+use std::collections::HashSet;
 use std::ops::Range;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::span::{IgnoredLog, Source};
+use super::xml_limits;
 use crate::error::{Error, Result};
 use crate::model::LoadReport;
 
@@ -22,6 +25,9 @@ pub(super) struct Reader<'a> {
     /// The texts of included files.
     pub(super) included: Vec<Source<'a>>,
     pub(super) notes: IgnoredLog,
+    /// Files and offsets of elements whose attributes and children were accounted for, and of texts
+    /// that were read.
+    read: RefCell<HashSet<(usize, usize)>>,
     /// The namespace of the root: elements of another one are extensions.
     pub(super) namespace: Option<&'a str>,
     /// Elements whose `name` identifies the owner of an ignored element or attribute in notes.
@@ -30,9 +36,14 @@ pub(super) struct Reader<'a> {
     pub(super) why: fn(&str) -> &'static str,
 }
 
-/// Parses XML; errors carry line and column.
+/// Elements, texts and comments of a file: blanks around every element are texts too.
+const MOST_NODES: u32 = 3 * xml_limits::MOST_ELEMENTS as u32;
+
+/// Parses XML within the limits of this reader; errors carry line and column.
 pub(super) fn document<'t>(source: &Source<'t>) -> Result<Document<'t>> {
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    xml_limits::check(source)?;
+    let options =
+        ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     Document::parse_with_options(source.text, options).map_err(|error| {
         let position = error.pos();
         let offset = source.offset(position.row as usize, position.col as usize);
@@ -53,9 +64,9 @@ pub(super) fn xacro(source: &Source<'_>, span: Range<usize>) -> Error {
 impl<'a> Reader<'a> {
     /// A reader of one file.
     pub(super) fn new(source: Source<'a>, namespace: Option<&'a str>) -> Self {
-        let (included, notes) = (Vec::new(), IgnoredLog::default());
+        let (included, notes, read) = (Vec::new(), IgnoredLog::default(), RefCell::default());
         let why = |_: &str| "not known to this reader";
-        Self { source, included, notes, namespace, owners: &[], why }
+        Self { source, included, notes, read, namespace, owners: &[], why }
     }
 
     /// The index of the file of a node: 0 is the main one.
@@ -99,11 +110,42 @@ impl<'a> Reader<'a> {
         self.notes.add_in(file, offset, what, why, name);
     }
 
-    /// Writes the notes into the report of a model.
-    pub(super) fn report(&mut self, report: &mut LoadReport) {
+    /// Writes the notes into the report of a model. Every element of the documents that was neither
+    /// read nor noted is noted here, so that no part of a file is ignored silently.
+    pub(super) fn report(&mut self, roots: &[Node<'_, '_>], report: &mut LoadReport) {
+        for root in roots {
+            self.note_unread(*root);
+        }
         let mut sources = vec![self.source];
         sources.extend(&self.included);
         std::mem::take(&mut self.notes).write(&sources, report);
+    }
+
+    fn note_unread(&mut self, root: Node<'_, '_>) {
+        let file = self.file(root);
+        let mut stack = vec![root];
+        while let Some(node) = stack.pop() {
+            let place = (file, node.range().start);
+            let is_read = self.read.borrow().contains(&place);
+            if node.is_text() {
+                if !is_read && !node.text().unwrap_or("").trim().is_empty() {
+                    let parent = node.parent_element().map_or("", |p| p.tag_name().name());
+                    let owner = self.owner(node);
+                    self.note(node, format!("text in <{parent}>"), "it has no meaning here", owner);
+                }
+            } else if is_read {
+                stack.extend(node.children().filter(|n| n.is_element() || n.is_text()));
+            } else if !self.notes.has(place) {
+                let name = node.tag_name().name();
+                let owner = self.owner(node);
+                self.note(node, format!("<{name}>"), (self.why)(name), owner);
+            }
+        }
+    }
+
+    /// Marks an element, or a text, as read.
+    pub(super) fn mark(&self, node: Node<'_, '_>) {
+        self.read.borrow_mut().insert((self.file(node), node.range().start));
     }
 
     /// True for an element of this name in the namespace of the root.
@@ -229,7 +271,8 @@ impl<'a> Reader<'a> {
         self.error(node, Self::value(node, attribute), message, "")
     }
 
-    /// Logs attributes and children that are not among those read.
+    /// Marks an element as read, and logs attributes and children that are not among those known;
+    /// known children are read themselves, or logged at the end.
     pub(super) fn leftovers(&mut self, node: Node<'_, '_>, attributes: &[&str], children: &[&str]) {
         self.unread_attributes(node, attributes);
         for child in node.children().filter(Node::is_element) {
@@ -243,8 +286,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Logs attributes that are not among those read.
+    /// Marks an element as read, and logs attributes that are not among those known.
     pub(super) fn unread_attributes(&mut self, node: Node<'_, '_>, known: &[&str]) {
+        self.mark(node);
         let tag = node.tag_name().name();
         let owner = self.owner(node);
         for attribute in node.attributes() {

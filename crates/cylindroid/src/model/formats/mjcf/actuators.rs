@@ -5,6 +5,7 @@
 use roxmltree::Node;
 
 use super::Mjcf;
+use super::attributes::used;
 use super::defaults::Element;
 use crate::error::Result;
 use crate::model::JointKind;
@@ -44,9 +45,7 @@ impl<'d> Mjcf<'d> {
             let mut at = i;
             for _ in 0..self.joints.len() {
                 let Some(mimic) = &self.joints[at].mimic else { break };
-                let Some(next) = self.joints.iter().position(|j| j.name == mimic.joint) else {
-                    break;
-                };
+                let Some(&next) = self.joint_index.get(&mimic.joint) else { break };
                 at = next;
             }
             if at != i && self.joints[i].actuated {
@@ -73,6 +72,7 @@ impl<'d> Mjcf<'d> {
             );
             return Ok(());
         };
+        self.reader.unread_attributes(node, &used(tag));
         let joint = self.joint_named(node, attribute)?;
         let element: Element<'d> = self.defaults.of(&self.reader, node, 0, &ACTUATORS)?;
         let gear = element.list(&self.reader, "gear")?.and_then(|g| g.first().copied());
@@ -101,6 +101,7 @@ impl<'d> Mjcf<'d> {
             self.reader.note(key, "<key>", "only the key named 'home' is used", name);
         }
         let Some(home) = home else { return Ok(()) };
+        self.reader.unread_attributes(home, &["name", "qpos"]);
         let Some(qpos) = Element::bare(home).list(&self.reader, "qpos")? else { return Ok(()) };
         let size = |kind: JointKind| match kind {
             JointKind::Free => 7,

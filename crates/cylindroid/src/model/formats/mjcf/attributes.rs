@@ -5,7 +5,13 @@ pub(super) const FORMAT: &str = "MJCF";
 /// The attributes that give an orientation; an element has at most one of them.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
-/// The attributes that are read, by element; other elements are not checked.
+/// The attributes of equality constraints that are read.
+const EQUALITY: [&str; 14] = [
+    "name", "class", "active", "body1", "body2", "anchor", "site1", "site2", "relpose", "joint1",
+    "joint2", "polycoef", "tendon1", "tendon2",
+];
+
+/// The attributes that are read, by element; none of other elements.
 pub(super) fn used(element: &str) -> Vec<&'static str> {
     let own: &[&str] = match element {
         "joint" | "freejoint" => &[
@@ -20,7 +26,14 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
             "ref",
             "actuatorfrcrange",
         ],
-        "body" => &["name", "childclass"],
+        "body" | "frame" => &["name", "childclass"],
+        "inertial" => &["mass", "diaginertia", "fullinertia"],
+        "motor" => &["name", "class", "joint", "jointinparent", "gear", "forcerange", "ctrlrange"],
+        "general" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" | "muscle"
+        | "dcmotor" | "adhesion" => {
+            &["name", "class", "joint", "jointinparent", "gear", "forcerange"]
+        }
+        "equality" => &EQUALITY,
         "geom" => &[
             "name",
             "class",
@@ -36,13 +49,13 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
             "mass",
             "density",
         ],
-        "site" => &["name", "class", "type", "size", "rgba", "material", "group"],
+        "site" => &["name", "class", "fromto"],
         "mesh" => &["name", "class", "file", "scale"],
         "material" => &["name", "class", "rgba"],
         _ => &[],
     };
     let mut all = own.to_vec();
-    if matches!(element, "body" | "geom" | "site") {
+    if matches!(element, "body" | "frame" | "inertial" | "geom" | "site") {
         all.push("pos");
         all.extend(ORIENTATIONS);
     }
@@ -57,8 +70,14 @@ pub(super) fn why_unused(name: &str) -> &'static str {
         }
         "friction" | "condim" | "solref" | "solimp" | "margin" | "gap" | "priority" | "solmix"
         | "contact" | "fluidshape" | "fluidcoef" => "contacts of the simulation are not used",
-        "option" | "size" | "visual" | "statistic" | "sensor" | "custom" | "extension"
-        | "plugin" | "actuatorfrclimited" | "user" => "settings of the simulator are not used",
+        "option" | "visual" | "statistic" | "sensor" | "custom" | "extension" | "plugin"
+        | "actuatorfrclimited" | "user" => "settings of the simulator are not used",
+        "rgba" | "material" | "type" | "size" | "group" => "it is not drawn",
+        "ctrlrange" | "ctrllimited" | "forcelimited" | "kp" | "kv" | "dampratio" | "timeconst"
+        | "gaintype" | "biastype" | "gainprm" | "biasprm" | "dyntype" | "dynprm" | "actdim"
+        | "inheritrange" | "actlimited" | "actrange" | "lengthrange" | "delay" | "nsample"
+        | "interp" => "control of the simulation is not used",
+        "solreffix" | "torquescale" => "settings of the simulator are not used",
         "camera" | "light" | "texture" | "hfield" | "skin" => "it is not drawn",
         "tendon" | "deformable" | "flexcomp" | "composite" => {
             "it is not read; what it ties together is free here"

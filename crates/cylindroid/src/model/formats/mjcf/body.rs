@@ -1,7 +1,7 @@
 //! Bodies, joints and sites of MJCF.
 //!
 //! Formula  parent_from_body(q) = pose product_i [Trans(p_i) motion_i(q_i - ref_i) Trans(-p_i)]
-//!          with p_i, axis_i in the axes of the body; free: parent_from_body(q) = motion(q)
+//!          with p_i, axis_i in the axes of the body, moved by enclosing frames; free: parent_from_body(q) = motion(q)
 //! Why so   every body keeps its own frame, so poses equal MuJoCo's; q has the zero of qpos, and
 //!          home is qpos0 (or the key frame named "home")
 //! Source   mujoco.readthedocs.io, XML reference, body, joint; mj_kinematics
@@ -32,10 +32,10 @@ struct Pending<'d> {
 #[derive(Default)]
 struct Inside<'d> {
     bodies: Vec<(Node<'d, 'd>, Pose, usize)>,
-    joints: Vec<(Node<'d, 'd>, usize)>,
+    joints: Vec<(Node<'d, 'd>, Pose, usize)>,
     geoms: Vec<(Node<'d, 'd>, Pose, usize)>,
     sites: Vec<(Node<'d, 'd>, Pose, usize)>,
-    inertial: Option<Node<'d, 'd>>,
+    inertial: Option<(Node<'d, 'd>, Pose)>,
 }
 
 impl<'d> Mjcf<'d> {
@@ -44,13 +44,14 @@ impl<'d> Mjcf<'d> {
         self.links.push(Link::named("world"));
         self.link_names.insert("world".to_owned());
         self.world.insert("world".to_owned(), Pose::IDENTITY);
+        self.reserve_names();
         let roots = self.files.children(self.files.main.root_element());
         let mut worlds = Vec::new();
         for root in roots.into_iter().filter(|n| n.has_tag_name("worldbody")) {
             let class = self.defaults.class(&self.reader, root, "childclass")?.unwrap_or(0);
             let inside = self.inside(root, class)?;
             self.furnish(0, &inside)?;
-            for (joint, _) in &inside.joints {
+            for (joint, ..) in &inside.joints {
                 self.reader.note(*joint, "<joint> of the world", "the world does not move", "");
             }
             worlds.push(inside.bodies);
@@ -65,6 +66,18 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
+    /// Names that are made up for bodies and joints without one are none that another has.
+    fn reserve_names(&mut self) {
+        for node in self.files.roots().into_iter().flat_map(|root| root.descendants()) {
+            let names = match node.tag_name().name() {
+                "body" => &mut self.link_names,
+                "joint" | "freejoint" => &mut self.joint_names,
+                _ => continue,
+            };
+            names.extend(node.attribute("name").map(|n| n.trim().to_owned()));
+        }
+    }
+
     fn body(&mut self, body: Pending<'d>, stack: &mut Vec<Pending<'d>>) -> Result<()> {
         let Pending { node, parent, parent_from_frame, childclass, top } = body;
         self.reader.unread_attributes(node, &used("body"));
@@ -74,7 +87,7 @@ impl<'d> Mjcf<'d> {
         }
         let name = match node.attribute("name").map(str::trim).filter(|n| !n.is_empty()) {
             Some(name) => {
-                if !self.link_names.insert(name.to_owned()) {
+                if name == "world" || !self.given_bodies.insert(name.to_owned()) {
                     let message = format!("two bodies are named '{name}'");
                     return Err(self.reader.refuse(node, "name", message));
                 }
@@ -107,11 +120,14 @@ impl<'d> Mjcf<'d> {
         while let Some((child, pose, class)) = stack.pop() {
             match child.tag_name().name() {
                 "body" => inside.bodies.push((child, pose, class)),
-                "joint" | "freejoint" => inside.joints.push((child, class)),
+                "joint" | "freejoint" => inside.joints.push((child, pose, class)),
                 "geom" => inside.geoms.push((child, pose, class)),
                 "site" => inside.sites.push((child, pose, class)),
-                "inertial" if inside.inertial.is_none() => inside.inertial = Some(child),
+                "inertial" if inside.inertial.is_none() => {
+                    inside.inertial = Some((child, pose));
+                }
                 "frame" => {
+                    self.reader.unread_attributes(child, &used("frame"));
                     let own = self.compiler.pose(&self.reader, &Element::bare(child))?;
                     let class_of = self.defaults.class(&self.reader, child, "childclass")?;
                     stack.extend(under(child, pose * own, class_of.unwrap_or(class)));
@@ -130,8 +146,9 @@ impl<'d> Mjcf<'d> {
     /// Shapes, masses and sites of a link.
     fn furnish(&mut self, index: usize, inside: &Inside<'d>) -> Result<()> {
         let mut link = self.links[index].clone();
-        if let Some(node) = inside.inertial {
-            link.inertial = self.inertial(node)?;
+        // The world does not move.
+        if index > 0 {
+            link.inertial = self.mass_of(inside.inertial, &inside.geoms, &link.name)?;
         }
         for (node, pose, class) in &inside.geoms {
             self.geom(&mut link, *node, *class, *pose)?;
@@ -144,7 +161,11 @@ impl<'d> Mjcf<'d> {
                 self.reader.note(*node, "<site> without a name", why, &link.name);
                 continue;
             };
-            let place = *pose * self.compiler.pose(&self.reader, &element)?;
+            let mut on_frame = self.compiler.pose(&self.reader, &element)?;
+            if let Some((between, _)) = element.between(&self.reader)? {
+                on_frame = between;
+            }
+            let place = *pose * on_frame;
             self.sites.push((name.to_owned(), link.name.clone(), place));
         }
         self.links[index] = link;
@@ -157,7 +178,7 @@ impl<'d> Mjcf<'d> {
         parent: &str,
         body: &str,
         pose: Pose,
-        joints: &[(Node<'d, 'd>, usize)],
+        joints: &[(Node<'d, 'd>, Pose, usize)],
         top: bool,
     ) -> Result<()> {
         if joints.is_empty() {
@@ -168,9 +189,9 @@ impl<'d> Mjcf<'d> {
         }
         let mut near = parent.to_owned();
         let mut pending = pose;
-        for (i, (node, class)) in joints.iter().enumerate() {
+        for (i, (node, body_from_frame, class)) in joints.iter().enumerate() {
             let last = i + 1 == joints.len();
-            let (mut spec, reference) = self.joint(*node, *class, body)?;
+            let (mut spec, reference) = self.joint(*node, *body_from_frame, *class, body)?;
             if spec.kind == JointKind::Free && !(top && joints.len() == 1) {
                 let message =
                     format!("body '{body}' has a free joint and a second joint or a parent");
@@ -213,6 +234,7 @@ impl<'d> Mjcf<'d> {
     fn joint(
         &mut self,
         node: Node<'d, 'd>,
+        body_from_frame: Pose,
         class: usize,
         body: &str,
     ) -> Result<(JointSpec, Vec<f64>)> {
@@ -236,7 +258,7 @@ impl<'d> Mjcf<'d> {
             }
         };
         let name = match node.attribute("name").map(str::trim).filter(|n| !n.is_empty()) {
-            Some(name) if !self.joint_names.insert(name.to_owned()) => {
+            Some(name) if !self.given_joints.insert(name.to_owned()) => {
                 let message = format!("two joints are named '{name}'");
                 return Err(reader.refuse(node, "name", message));
             }
@@ -249,10 +271,11 @@ impl<'d> Mjcf<'d> {
         let unit = if kind == JointKind::Prismatic { 1.0 } else { self.compiler.unit };
         if kind != JointKind::Free {
             let anchor = element.vector::<3>(reader, "pos")?.map_or(Vec3::ZERO, Vec3::from_array);
-            spec.parent_from_joint = Pose::from_translation(anchor);
+            spec.parent_from_joint = Pose::from_translation(body_from_frame * anchor);
         }
+        spec.axis = body_from_frame.rotation * spec.axis;
         if one && let Some(axis) = element.vector::<3>(reader, "axis")? {
-            spec.axis = Vec3::from_array(axis);
+            spec.axis = body_from_frame.rotation * Vec3::from_array(axis);
             if spec.axis.unit(crate::tolerance::ZERO_AXIS).is_none() {
                 let message = format!("the axis of joint '{name}' has no direction");
                 return Err(element.refuse(reader, "axis", message));

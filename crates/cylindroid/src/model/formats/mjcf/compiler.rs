@@ -15,6 +15,14 @@ use crate::model::formats::xml::Reader;
 use crate::spatial::{Mat3, Pose, Quaternion, Rotation, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
+/// When the masses of bodies are those of their geoms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FromGeoms {
+    Never,
+    Always,
+    WithoutInertial,
+}
+
 /// The settings of a model.
 #[derive(Debug, Clone)]
 pub(super) struct Compiler {
@@ -24,6 +32,10 @@ pub(super) struct Compiler {
     pub(super) autolimits: bool,
     /// Folder of meshes, relative to that of the model.
     pub(super) meshes: String,
+    pub(super) inertia_from_geoms: FromGeoms,
+    /// First and last group of the geoms that have mass.
+    pub(super) inertia_groups: [f64; 2],
+    pub(super) total_mass: Option<f64>,
 }
 
 impl Compiler {
@@ -34,10 +46,23 @@ impl Compiler {
             sequence: ['x', 'y', 'z'],
             autolimits: true,
             meshes: String::new(),
+            inertia_from_geoms: FromGeoms::WithoutInertial,
+            inertia_groups: [0.0, 5.0],
+            total_mass: None,
         };
         let root = files.children(files.main.root_element());
         for node in root.into_iter().filter(|n| n.has_tag_name("compiler")) {
-            let known = ["angle", "eulerseq", "autolimits", "meshdir", "assetdir", "coordinate"];
+            let known = [
+                "angle",
+                "eulerseq",
+                "autolimits",
+                "meshdir",
+                "assetdir",
+                "coordinate",
+                "inertiafromgeom",
+                "inertiagrouprange",
+                "settotalmass",
+            ];
             reader.unread_attributes(node, &known);
             match node.attribute("angle").map(str::trim) {
                 None => {}
@@ -61,6 +86,15 @@ impl Compiler {
             if let Some(text) = node.attribute("autolimits") {
                 it.autolimits = text.trim() == "true";
             }
+            match node.attribute("inertiafromgeom").map(str::trim) {
+                Some("true") => it.inertia_from_geoms = FromGeoms::Always,
+                Some("false") => it.inertia_from_geoms = FromGeoms::Never,
+                _ => {}
+            }
+            if let Some(groups) = reader.vector::<2>(node, "inertiagrouprange")? {
+                it.inertia_groups = groups;
+            }
+            it.total_mass = reader.number(node, "settotalmass")?.or(it.total_mass);
             if node.attribute("coordinate").is_some_and(|c| c.trim() == "global") {
                 let message = "coordinate = \"global\" was removed from MJCF";
                 return Err(reader.refuse(node, "coordinate", message));
@@ -132,6 +166,18 @@ impl Compiler {
             rotation = if letter.is_lowercase() { rotation * turn } else { turn * rotation };
         }
         rotation
+    }
+}
+
+impl Element<'_> {
+    /// The pose between the two points of `fromto`, z from the second to the first, and half their
+    /// distance; `None` without the attribute.
+    pub(super) fn between(&self, reader: &Reader<'_>) -> Result<Option<(Pose, f64)>> {
+        let Some([a, b, c, d, e, f]) = self.vector::<6>(reader, "fromto")? else { return Ok(None) };
+        let (from, to) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
+        let rotation = turn_z_to(from - to).unwrap_or_default();
+        let pose = Pose { rotation, translation: (from + to) * 0.5 };
+        Ok(Some((pose, (from - to).norm() * 0.5)))
     }
 }
 

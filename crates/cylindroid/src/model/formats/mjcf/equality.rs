@@ -12,6 +12,7 @@
 use roxmltree::Node;
 
 use super::Mjcf;
+use super::attributes::used;
 use super::defaults::Element;
 use super::unique_name::unique;
 use crate::error::{Error, Result};
@@ -28,11 +29,7 @@ impl<'d> Mjcf<'d> {
                 self.reader.note(node, format!("<{tag}> that is not active"), "not read", &name);
                 continue;
             }
-            let known = [
-                "name", "class", "active", "body1", "body2", "anchor", "site1", "site2", "relpose",
-                "joint1", "joint2", "polycoef", "tendon1", "tendon2",
-            ];
-            self.reader.unread_attributes(node, &known);
+            self.reader.unread_attributes(node, &used("equality"));
             match tag {
                 "connect" | "weld" => self.close(node, tag, &name)?,
                 "joint" => self.couple(node, &name)?,
@@ -123,7 +120,7 @@ impl<'d> Mjcf<'d> {
     /// The index of a joint that an attribute names.
     pub(super) fn joint_named(&self, node: Node<'d, 'd>, attribute: &str) -> Result<usize> {
         let name = self.reader.required(node, attribute)?.trim();
-        self.joints.iter().position(|j| j.name == name).ok_or_else(|| {
+        self.joint_index.get(name).copied().ok_or_else(|| {
             let unknown = Error::unknown("joint", name, self.joints.iter().map(|j| &j.name));
             self.reader.refuse(node, attribute, unknown.to_string())
         })
@@ -167,8 +164,10 @@ impl<'d> Mjcf<'d> {
             let unknown = Error::unknown("tendon", tendon_name, known);
             return Err(self.reader.refuse(node, "tendon1", unknown.to_string()));
         };
+        self.reader.unread_attributes(*tendon, &["name"]);
         let mut ends = Vec::new();
         for joint in self.files.children(*tendon).into_iter().filter(|n| n.has_tag_name("joint")) {
+            self.reader.unread_attributes(joint, &["joint", "coef"]);
             let coefficient = Element::bare(joint).number(&self.reader, "coef")?.unwrap_or(0.0);
             ends.push((self.joint_named(joint, "joint")?, coefficient));
         }
@@ -229,7 +228,7 @@ impl<'d> Mjcf<'d> {
                 return true;
             }
             let Some(mimic) = &self.joints[at].mimic else { return false };
-            let Some(next) = self.joints.iter().position(|j| j.name == mimic.joint) else {
+            let Some(&next) = self.joint_index.get(&mimic.joint) else {
                 return false;
             };
             at = next;

@@ -1,22 +1,31 @@
-//! The files of an MJCF model: `<include>` inside the model's own folder, each file once.
+//! The files of an MJCF model: `<include>`, each file once.
 //!
+//! Formula  a path is relative to the folder of the main file; if there is no such file, to that of
+//!          the including one
+//! Source   mujoco.readthedocs.io, XML reference, include
 //! Checked  tests/formats/mjcf.rs::includes_*
 
-use std::path::{Component, Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
 use super::attributes::FORMAT;
-use crate::error::Result;
+use crate::error::{Error, Result, shown};
 use crate::model::formats::span::Source;
+use crate::model::formats::text_file::{self, TextFile};
 use crate::model::formats::xml::{self, Reader};
+use crate::model::formats::xml_limits;
+
+/// Files of a model; deeper inclusion than this is no model of a robot.
+const MOST_FILES: usize = 1000;
 
 /// The text of an included file.
 pub(super) struct Included {
-    /// As the `<include>` names it.
-    name: String,
     path: PathBuf,
     text: String,
+    /// The file (0 is the main one) and the byte offset of its `<include>`.
+    place: (usize, usize),
 }
 
 impl Included {
@@ -29,50 +38,65 @@ impl Included {
 pub(super) fn gather(main: &Source<'_>) -> Result<Vec<Included>> {
     let folder = main.path.parent().unwrap_or_else(|| Path::new(""));
     let mut found: Vec<Included> = Vec::new();
-    read(main, folder, &mut found)?;
+    read(main, 0, folder, &mut found)?;
     let mut next = 0;
     while next < found.len() {
         // The text is moved out while its own includes are read.
         let (path, text) = (found[next].path.clone(), std::mem::take(&mut found[next].text));
-        read(&Source { format: FORMAT, path: &path, text: &text }, folder, &mut found)?;
+        let source = Source { format: FORMAT, path: &path, text: &text };
+        read(&source, next + 1, folder, &mut found)?;
         found[next].text = text;
         next += 1;
     }
     Ok(found)
 }
 
-fn read(source: &Source<'_>, folder: &Path, found: &mut Vec<Included>) -> Result<()> {
+fn read(source: &Source<'_>, file: usize, folder: &Path, found: &mut Vec<Included>) -> Result<()> {
     let document = xml::document(source)?;
     for node in document.descendants().filter(|n| n.has_tag_name("include")) {
         let reader = Reader::new(*source, None);
-        let name = reader.required(node, "file")?;
+        let name = reader.required(node, "file")?.trim();
         let refuse = |message: String, help: &str| {
             Err(source.error(Reader::value(node, "file"), message, help))
         };
-        let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
-        if !Path::new(name).components().all(inside) {
-            let help = "put the file into the folder of the model and include it by its name";
-            return refuse(format!("'{name}' leaves the folder of the model"), help);
-        }
-        if found.iter().any(|f| f.name == name) {
+        let beside = source.path.parent().unwrap_or_else(|| Path::new("")).join(name);
+        let path = Some(folder.join(name)).filter(|p| p.exists() || !beside.exists());
+        let path = path.unwrap_or(beside);
+        let same = |f: &Included| f.path == path || is_same(&f.path, &path);
+        if found.iter().any(same) || is_same(source.path, &path) {
             return refuse(format!("'{name}' is included twice"), "include a file only once");
         }
-        let path = folder.join(name);
-        match std::fs::read(&path) {
-            Ok(bytes) => {
-                let text = String::from_utf8_lossy(&bytes).into_owned();
-                found.push(Included { name: name.to_owned(), path, text });
+        if found.len() >= MOST_FILES {
+            return refuse(format!("the model has more than {MOST_FILES} files"), "");
+        }
+        match text_file::read(&path) {
+            Ok(TextFile { text, .. }) => {
+                let text = xml_limits::without_undeclared(&text).into_owned();
+                found.push(Included { path, text, place: (file, node.range().start) });
             }
-            Err(e) => return refuse(format!("cannot read {}: {e}", path.display()), ""),
+            Err(Error::Io { path, message, .. }) => {
+                return refuse(format!("cannot read {}: {message}", shown(&path)), "");
+            }
+            Err(error) => return Err(error),
         }
     }
     Ok(())
 }
 
+fn is_same(a: &Path, b: &Path) -> bool {
+    a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+}
+
 /// The documents of a model: the main one, then the included ones.
 pub(super) struct Files<'d> {
     pub(super) main: &'d Document<'d>,
-    pub(super) included: Vec<(&'d str, &'d Document<'d>)>,
+    /// By the texts of the files, their `<include>` elements and the documents of these.
+    included: BTreeMap<(usize, usize), &'d Document<'d>>,
+}
+
+/// Identifies a document by its text.
+fn key(document: &Document<'_>) -> usize {
+    document.input_text().as_ptr() as usize
 }
 
 impl<'d> Files<'d> {
@@ -81,8 +105,21 @@ impl<'d> Files<'d> {
         included: &'d [Included],
         documents: &'d [Document<'d>],
     ) -> Self {
-        let names = included.iter().map(|f| f.name.as_str());
-        Self { main, included: names.zip(documents).collect() }
+        let text = |file: usize| key(file.checked_sub(1).map_or(main, |i| &documents[i]));
+        let place = |f: &Included| (text(f.place.0), f.place.1);
+        Self { main, included: included.iter().map(place).zip(documents).collect() }
+    }
+
+    /// The root elements of all files, the main one first.
+    pub(super) fn roots(&self) -> Vec<Node<'d, 'd>> {
+        let others = self.included.values().map(|d| d.root_element());
+        std::iter::once(self.main.root_element()).chain(others).collect()
+    }
+
+    /// The `<include>` elements of all files.
+    pub(super) fn includes(&self) -> Vec<Node<'d, 'd>> {
+        let all = self.roots().into_iter().flat_map(|root| root.descendants());
+        all.filter(|n| n.has_tag_name("include")).collect()
     }
 
     /// The child elements; an `<include>` stands for the children of its file's root.
@@ -90,9 +127,10 @@ impl<'d> Files<'d> {
         let mut children = Vec::new();
         let mut stack: Vec<Node<'d, 'd>> = elements(node);
         while let Some(child) = stack.pop() {
-            let file = child.has_tag_name("include").then(|| child.attribute("file")).flatten();
-            match file.and_then(|f| self.included.iter().find(|i| i.0 == f)) {
-                Some((_, document)) => stack.extend(elements(document.root_element())),
+            let place = || (key(child.document()), child.range().start);
+            let file = child.has_tag_name("include").then(place);
+            match file.and_then(|place| self.included.get(&place)) {
+                Some(document) => stack.extend(elements(document.root_element())),
                 None => children.push(child),
             }
         }

@@ -1,4 +1,4 @@
-//! Shapes and masses of MJCF bodies: kept as data, to the extent that a link represents them.
+//! Shapes of MJCF bodies: kept as data, to the extent that a link represents them.
 //!
 //! Units    MJCF gives half sizes; shapes of links have full sizes
 //! Checked  tests/formats/mjcf.rs::shapes_*
@@ -7,12 +7,11 @@ use std::path::Path;
 
 use super::Mjcf;
 use super::attributes::used;
-use super::compiler::turn_z_to;
 use super::defaults::Element;
 use crate::error::{Error, Result};
 use crate::model::formats::mesh::Packages;
-use crate::model::{Collision, Geometry, Inertial, Link, Visual};
-use crate::spatial::{Mat3, Pose, Vec3};
+use crate::model::{Collision, Geometry, Link, Visual};
+use crate::spatial::{Pose, Vec3};
 
 impl<'d> Mjcf<'d> {
     /// Colours and meshes.
@@ -21,6 +20,7 @@ impl<'d> Mjcf<'d> {
         for node in self.files.section("asset") {
             match node.tag_name().name() {
                 "material" => {
+                    self.reader.unread_attributes(node, &used("material"));
                     let element = self.defaults.of(&self.reader, node, 0, &["material"])?;
                     let colour = element.vector::<4>(&self.reader, "rgba")?;
                     if let (Some(name), Some(rgba)) = (node.attribute("name"), colour) {
@@ -28,6 +28,7 @@ impl<'d> Mjcf<'d> {
                     }
                 }
                 "mesh" => {
+                    self.reader.unread_attributes(node, &used("mesh"));
                     let element = self.defaults.of(&self.reader, node, 0, &["mesh"])?;
                     let Some(file) = element.text("file") else {
                         let name = node.attribute("name").unwrap_or("");
@@ -44,7 +45,6 @@ impl<'d> Mjcf<'d> {
                         if folder.is_empty() { file.into() } else { format!("{folder}/{file}") };
                     self.assets.meshes.insert(name, (uri, scale));
                 }
-                "texture" => {}
                 other => {
                     let what = format!("<{other}> in <asset>");
                     self.reader.note(node, what, "it is not drawn", "");
@@ -52,21 +52,6 @@ impl<'d> Mjcf<'d> {
             }
         }
         Ok(())
-    }
-
-    pub(super) fn inertial(&mut self, node: roxmltree::Node<'d, 'd>) -> Result<Option<Inertial>> {
-        let element = Element::bare(node);
-        let link_from_inertia = self.compiler.pose(&self.reader, &element)?;
-        let Some(mass) = element.number(&self.reader, "mass")? else { return Ok(None) };
-        let diagonal = element.vector::<3>(&self.reader, "diaginertia")?;
-        let full = element.vector::<6>(&self.reader, "fullinertia")?;
-        let [xx, yy, zz, xy, xz, yz] = match (full, diagonal) {
-            (Some(full), _) => full,
-            (None, Some([x, y, z])) => [x, y, z, 0.0, 0.0, 0.0],
-            (None, None) => [0.0; 6],
-        };
-        let inertia = Mat3::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
-        Ok(Some(Inertial { mass, link_from_inertia, inertia }))
     }
 
     /// A geom, as visual shape and as collision shape.
@@ -79,16 +64,7 @@ impl<'d> Mjcf<'d> {
     ) -> Result<()> {
         let element = self.defaults.of(&self.reader, node, childclass, &["geom"])?;
         self.reader.unread_attributes(node, &used("geom"));
-        let mut pose = self.compiler.pose(&self.reader, &element)?;
-        let mut size = element.list(&self.reader, "size")?.unwrap_or_default();
-        if let Some([a, b, c, d, e, f]) = element.vector::<6>(&self.reader, "fromto")? {
-            let (from, to) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
-            pose.translation = (from + to) * 0.5;
-            pose.rotation = turn_z_to(from - to).unwrap_or_default();
-            // The first size is across; the length comes from the two points.
-            size.truncate(1);
-            size.push((from - to).norm() * 0.5);
-        }
+        let (pose, size) = self.place_and_size(&element)?;
         let name = node.attribute("name").unwrap_or("").to_owned();
         let Some(geometry) = self.shape(&element, &size)? else { return Ok(()) };
         let own = element.vector::<4>(&self.reader, "rgba")?;
@@ -116,11 +92,33 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
+    /// The pose of a geom on its frame, and its sizes.
+    pub(super) fn place_and_size(&self, element: &Element<'d>) -> Result<(Pose, Vec<f64>)> {
+        let pose = self.compiler.pose(&self.reader, element)?;
+        let mut size = element.list(&self.reader, "size")?.unwrap_or_default();
+        let Some((between, half_length)) = element.between(&self.reader)? else {
+            return Ok((pose, size));
+        };
+        let is_box = matches!(self.kind_of(element), "box" | "ellipsoid");
+        // The first size is across; the length comes from the two points.
+        size.truncate(1);
+        if is_box {
+            size.push(size.first().copied().unwrap_or(0.0));
+        }
+        size.push(half_length);
+        Ok((between, size))
+    }
+
+    /// The type of a geom.
+    pub(super) fn kind_of(&self, element: &Element<'d>) -> &'d str {
+        let implied = if element.source_element("mesh").is_some() { "mesh" } else { "sphere" };
+        element.text("type").unwrap_or(implied)
+    }
+
     fn shape(&mut self, element: &Element<'d>, size: &[f64]) -> Result<Option<Geometry>> {
         let node = element.node;
         let body = self.reader.owner(node).to_owned();
-        let implied = if element.source_element("mesh").is_some() { "mesh" } else { "sphere" };
-        let kind = element.text("type").unwrap_or(implied);
+        let kind = self.kind_of(element);
         let shape = match (kind, size) {
             ("sphere", [radius, ..]) => Some(Geometry::Sphere { radius: *radius }),
             ("capsule", [radius, half, ..]) => {
@@ -130,10 +128,6 @@ impl<'d> Mjcf<'d> {
                 Some(Geometry::Cylinder { radius: *radius, length: 2.0 * half })
             }
             ("box", [x, y, z]) => Some(Geometry::Box { size: Vec3::new(*x, *y, *z) * 2.0 }),
-            // Between two points: across, across, along.
-            ("box", [across, half]) => {
-                Some(Geometry::Box { size: Vec3::new(*across, *across, *half) * 2.0 })
-            }
             ("ellipsoid", [x, y, z]) => Some(Geometry::Ellipsoid { radii: Vec3::new(*x, *y, *z) }),
             ("plane", _) => Some(Geometry::HalfSpace),
             ("mesh", _) => {

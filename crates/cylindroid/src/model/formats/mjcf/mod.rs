@@ -17,10 +17,10 @@ mod attributes;
 mod body;
 mod compiler;
 mod defaults;
-
 mod equality;
 mod files;
 mod geom;
+mod inertia;
 mod unique_name;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,6 +36,7 @@ use self::files::Files;
 use self::unique_name::unique;
 use super::span::Source;
 use super::xml::{self, Reader};
+use super::xml_limits;
 use crate::error::{Error, Result};
 use crate::model::{JointSpec, Link, LoopJointSpec, Mechanism};
 use crate::spatial::Pose;
@@ -62,6 +63,11 @@ struct Mjcf<'d> {
     world: BTreeMap<String, Pose>,
     link_names: BTreeSet<String>,
     joint_names: BTreeSet<String>,
+    /// Names of bodies and joints in the file, of those that were read.
+    given_bodies: BTreeSet<String>,
+    given_joints: BTreeSet<String>,
+    /// Indices of the joints.
+    joint_index: BTreeMap<String, usize>,
 }
 
 /// Reads the text of an MJCF model. The path is used in errors, to find meshes, and to read the
@@ -83,6 +89,7 @@ struct Mjcf<'d> {
 /// [`Error::File`] with line and column for broken XML, a number that is not one, a name that is
 /// missing or unknown, an include that cannot be read, and everything that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
+    let text = &*xml_limits::without_undeclared(text);
     let source = Source { format: FORMAT, path, text };
     let main = xml::document(&source)?;
     let root = main.root_element();
@@ -103,21 +110,21 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
     (reader.owners, reader.why) = (&["body", "key", "default"], why_unused);
     let root = files.main.root_element();
     reader.unread_attributes(root, &["model"]);
-    let sections = [
-        "compiler",
-        "default",
-        "asset",
-        "worldbody",
-        "contact",
-        "equality",
-        "actuator",
-        "keyframe",
-    ];
+    let sections = ["asset", "contact", "equality", "actuator", "keyframe", "tendon"];
     for section in files.children(root) {
-        let name = section.tag_name().name();
-        if !sections.contains(&name) {
-            reader.note(section, format!("<{name}>"), why_unused(name), "");
+        match section.tag_name().name() {
+            "compiler" | "default" => {}
+            "worldbody" => reader.unread_attributes(section, &["childclass"]),
+            name if sections.contains(&name) => reader.unread_attributes(section, &[]),
+            "size" => reader.note(section, "<size>", why_unused("option"), ""),
+            name => reader.note(section, format!("<{name}>"), why_unused(name), ""),
         }
+    }
+    for include in files.includes() {
+        reader.unread_attributes(include, &["file"]);
+    }
+    for root in files.roots().into_iter().skip(1) {
+        reader.unread_attributes(root, &["model"]);
     }
     let compiler = Compiler::read(&files, &mut reader)?;
     let defaults = Defaults::read(&files, &mut reader)?;
@@ -137,10 +144,15 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
         world: BTreeMap::new(),
         link_names: BTreeSet::new(),
         joint_names: BTreeSet::new(),
+        given_bodies: BTreeSet::new(),
+        given_joints: BTreeSet::new(),
+        joint_index: BTreeMap::new(),
     };
     it.assets()?;
     it.bodies()?;
     it.excluded_contacts()?;
+    it.set_total_mass();
+    it.joint_index = it.joints.iter().enumerate().map(|(i, j)| (j.name.clone(), i)).collect();
     it.equalities()?;
     it.tendons();
     it.actuators()?;
@@ -151,6 +163,10 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
 impl Mjcf<'_> {
     /// Reports tendons that couple no joints here.
     fn tendons(&mut self) {
+        let sections = self.files.children(self.files.main.root_element());
+        for section in sections.into_iter().filter(|n| n.has_tag_name("tendon")) {
+            self.reader.unread_attributes(section, &[]);
+        }
         for tendon in self.files.section("tendon") {
             let name = tendon.attribute("name").unwrap_or("");
             if !self.tied.iter().any(|t| t == name) {
@@ -210,7 +226,7 @@ impl Mjcf<'_> {
         }
         let report = builder.report();
         report.format = FORMAT;
-        self.reader.report(report);
+        self.reader.report(&self.files.roots(), report);
         builder.build().map_err(|error| {
             let Error::Model { culprit, message, .. } = error else { return error };
             let root = self.files.main.root_element();

@@ -7,6 +7,7 @@
 //! Source   sdformat.org, pose frame semantics
 //! Checked  tests/formats/sdf.rs::poses_*
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use roxmltree::Node;
@@ -34,6 +35,10 @@ pub(super) struct PosedFrame<'d> {
 #[derive(Debug, Default)]
 pub(super) struct Frames<'d> {
     all: BTreeMap<String, PosedFrame<'d>>,
+    /// Poses in the outermost model, of the frames asked for and those that they are relative to.
+    poses: RefCell<BTreeMap<String, Pose>>,
+    /// Links to which frames are attached.
+    links: RefCell<BTreeMap<String, String>>,
 }
 
 impl<'d> Frames<'d> {
@@ -67,36 +72,59 @@ impl<'d> Frames<'d> {
 
     /// The pose of a frame in the outermost model.
     pub(super) fn pose(&self, reader: &Reader<'_>, name: &str) -> Result<Pose> {
-        let mut pose = Pose::IDENTITY;
+        let mut known = self.poses.borrow_mut();
+        let mut chain = Vec::new();
         let mut at = name;
-        for _ in 0..=self.all.len() {
+        let mut pose = loop {
             if at == MODEL {
-                return Ok(pose);
+                break Pose::IDENTITY;
+            }
+            if let Some(pose) = known.get(at) {
+                break *pose;
             }
             let Some(placed) = self.all.get(at) else {
                 let unknown = self.unknown(at).to_string();
                 return Err(self.blame(reader, name, unknown));
             };
-            pose = placed.pose * pose;
+            if chain.len() > self.all.len() {
+                let message = format!("'{name}' is placed relative to itself in a ring");
+                return Err(self.blame(reader, name, message));
+            }
+            chain.push((at, placed.pose));
             at = &placed.relative_to;
+        };
+        for (at, own) in chain.into_iter().rev() {
+            pose = pose * own;
+            known.insert(at.to_owned(), pose);
         }
-        Err(self.blame(reader, name, format!("'{name}' is placed relative to itself in a ring")))
+        Ok(pose)
     }
 
     /// The link to which a frame is attached.
     pub(super) fn link(&self, reader: &Reader<'_>, name: &str) -> Result<String> {
+        let mut known = self.links.borrow_mut();
+        let mut chain = Vec::new();
         let mut at = name;
-        for _ in 0..=self.all.len() {
+        let link = loop {
+            if let Some(link) = known.get(at) {
+                break link.clone();
+            }
             let Some(placed) = self.all.get(at) else {
                 let unknown = self.unknown(at).to_string();
                 return Err(self.blame(reader, name, unknown));
             };
             if placed.attached_to == *at {
-                return Ok(at.to_owned());
+                break at.to_owned();
             }
+            if chain.len() > self.all.len() {
+                let message = format!("'{name}' is attached to itself in a ring");
+                return Err(self.blame(reader, name, message));
+            }
+            chain.push(at);
             at = &placed.attached_to;
-        }
-        Err(self.blame(reader, name, format!("'{name}' is attached to itself in a ring")))
+        };
+        known.extend(chain.into_iter().map(|at| (at.to_owned(), link.clone())));
+        Ok(link)
     }
 
     fn blame(&self, reader: &Reader<'_>, name: &str, message: String) -> Error {

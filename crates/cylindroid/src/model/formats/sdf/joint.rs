@@ -97,7 +97,8 @@ impl<'d> Sdf<'d> {
             let help = format!("add <{which}>LINK</{which}>");
             return Err(self.reader.error(joint, Reader::tag(joint), message, help));
         };
-        let text = node.text().unwrap_or("").trim();
+        self.reader.value_of(node);
+        let text = self.reader.text_of(node).trim();
         if text == "world" {
             return Ok(text.to_owned());
         }
@@ -121,6 +122,7 @@ impl<'d> Sdf<'d> {
         let Some(node) = self.reader.child(element, "xyz") else {
             return Ok(self.frames.pose(&self.reader, joint)?.rotation * Vec3::Z);
         };
+        self.reader.leftovers(node, &["expressed_in"], &[]);
         let xyz = Vec3::from_array(self.reader.finite::<3>(node)?);
         if xyz.unit(ZERO_AXIS).is_none() {
             let message = format!("the axis of joint '{joint}' has no direction");
@@ -175,6 +177,7 @@ impl<'d> Sdf<'d> {
         let Some(axis) = reader.child(joint, "axis") else { return Ok((limits, None)) };
         let mut mimic = None;
         if let Some(node) = reader.child(axis, "mimic") {
+            reader.leftovers(node, &["joint"], &["multiplier", "offset", "reference"]);
             let leader = super::scoped(scope, reader.required(node, "joint")?.trim());
             let multiplier = reader.child_number(node, "multiplier")?.unwrap_or(1.0);
             let offset = reader.child_number(node, "offset")?.unwrap_or(0.0);
@@ -194,6 +197,7 @@ impl<'d> Sdf<'d> {
         }
         let bound = |reader: &mut Reader<'_>, which: &str| -> Result<Option<f64>> {
             let Some(child) = reader.child(node, which) else { return Ok(None) };
+            reader.value_of(child);
             reader.content::<1>(child).map(|[x]| Some(x).filter(|x| x.abs() < UNLIMITED))
         };
         if kind != JointKind::Continuous {

@@ -35,6 +35,7 @@ impl Reader<'_> {
     /// The pose in a link; a pose relative to another frame is reported as unused.
     fn pose_on_link(&mut self, node: Node<'_, '_>) -> Result<Pose> {
         let Some(pose) = self.child(node, "pose") else { return Ok(Pose::IDENTITY) };
+        self.unread_attributes(pose, &super::POSE);
         let given = ["relative_to", "frame"].into_iter().find_map(|a| pose.attribute(a));
         if given.is_some_and(|f| !f.trim().is_empty()) {
             let owner = self.owner(node).to_owned();
@@ -54,7 +55,9 @@ impl Reader<'_> {
         let mut inertia = Mat3::ZERO;
         if let Some(child) = self.child(node, "inertia") {
             let mut m = [0.0; 6];
-            for (slot, name) in m.iter_mut().zip(["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]) {
+            let names = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
+            self.leftovers(child, &[], &names);
+            for (slot, name) in m.iter_mut().zip(names) {
                 *slot = self.child_number(child, name)?.unwrap_or(0.0);
             }
             let [xx, xy, xz, yy, yz, zz] = m;
@@ -81,7 +84,11 @@ impl Reader<'_> {
         };
         let mut rgba = None;
         if let Some(material) = self.child(node, "material") {
+            self.leftovers(material, &[], &["diffuse", "ambient"]);
             let colour = ["diffuse", "ambient"].into_iter().find_map(|c| self.child(material, c));
+            if let Some(colour) = colour {
+                self.value_of(colour);
+            }
             // Colours with three numbers are opaque.
             rgba = colour.and_then(|c| match self.finite::<4>(c) {
                 Ok(rgba) => Some(rgba),
@@ -110,6 +117,13 @@ impl Reader<'_> {
         self.leftovers(parent, &[], &SHAPES);
         let known = |n: &Node<'_, '_>| SHAPES.contains(&n.tag_name().name());
         let Some(node) = parent.children().find(known) else { return Ok(None) };
+        let children: &[&str] = match node.tag_name().name() {
+            "box" => &["size"],
+            "sphere" => &["radius"],
+            "cylinder" | "capsule" => &["radius", "length"],
+            _ => &["uri", "scale"],
+        };
+        self.leftovers(node, &[], children);
         let radius = self.child_number(node, "radius")?;
         let length = self.child_number(node, "length")?;
         Ok(match (node.tag_name().name(), radius, length) {
@@ -122,7 +136,6 @@ impl Reader<'_> {
             ("cylinder", Some(radius), Some(length)) => Some(Geometry::Cylinder { radius, length }),
             ("capsule", Some(radius), Some(length)) => Some(Geometry::Capsule { radius, length }),
             ("mesh", ..) => {
-                self.leftovers(node, &[], &["uri", "scale"]);
                 let scale = self.child_vector(node, "scale")?.unwrap_or(Vec3::new(1.0, 1.0, 1.0));
                 let Some(uri) = self.child_text(node, "uri") else { return Ok(None) };
                 let path = packages.find(uri);

@@ -28,11 +28,15 @@ use self::joint_entry::JointEntry;
 use super::mesh::Packages;
 use super::span::Source;
 use super::xml::{self, Reader};
+use super::xml_limits;
 use crate::error::Result;
 use crate::model::{Link, Mechanism};
 use crate::spatial::Pose;
 
 const FORMAT: &str = "SDF";
+
+/// Attributes of `<pose>`.
+const POSE: [&str; 4] = ["relative_to", "frame", "rotation_format", "degrees"];
 
 /// The model while it is read.
 struct Sdf<'d> {
@@ -67,6 +71,7 @@ struct Sdf<'d> {
 /// model, an invalid number, a name that is missing or unknown, a cycle of frames, and everything
 /// that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
+    let text = &*xml_limits::without_undeclared(text);
     let source = Source { format: FORMAT, path, text };
     let document = xml::document(&source)?;
     let root = document.root_element();
@@ -145,6 +150,7 @@ impl<'d> Sdf<'d> {
                         joints.push((node, scope.clone()));
                     }
                     "frame" => {
+                        self.reader.leftovers(node, &["name", "attached_to"], &["pose"]);
                         let to = node.attribute("attached_to").map(str::trim).unwrap_or("");
                         let name = self.place(node, &scope, Some(to.to_owned()))?;
                         self.named.push(name);
@@ -156,9 +162,11 @@ impl<'d> Sdf<'d> {
                     _ => {}
                 }
             }
-            // The frame of a model is attached to its canonical link.
+            // The frame of a model is attached to its canonical link: by default the first link,
+            // in a model without links that of its first model.
             let canonical = model.attribute("canonical_link").map(|l| scoped(&scope, l.trim()));
-            let attached_to = canonical.or(first_link).unwrap_or_default();
+            let inner = nested.first().map(|(_, scope)| scoped(scope, MODEL));
+            let attached_to = canonical.or(first_link).or(inner).unwrap_or_default();
             if scope.is_empty() {
                 let (relative_to, pose) = (MODEL.to_owned(), Pose::IDENTITY);
                 let placed = PosedFrame { node: model, relative_to, pose, attached_to };
@@ -213,8 +221,7 @@ impl<'d> Sdf<'d> {
         let Some(pose) = self.reader.child(node, "pose") else {
             return Ok((scoped(scope, missing), Pose::IDENTITY));
         };
-        let known = ["relative_to", "frame", "rotation_format", "degrees"];
-        self.reader.unread_attributes(pose, &known);
+        self.reader.unread_attributes(pose, &POSE);
         let given = ["relative_to", "frame"].into_iter().find_map(|a| pose.attribute(a));
         let to = given.map(str::trim).filter(|t| !t.is_empty()).unwrap_or(missing);
         Ok((scoped(scope, to), self.reader.pose_in(pose)?))
@@ -259,9 +266,9 @@ fn why_unused(name: &str) -> &'static str {
         "stiffness" | "dissipation" | "damping" => {
             "springs and damping do not enter the kinematics"
         }
-        "light" | "cast_shadows" | "transparency" | "meta" | "visibility_flags" => {
-            "it is not drawn"
-        }
+        "light" | "cast_shadows" | "transparency" | "meta" | "visibility_flags" | "script"
+        | "specular" | "emissive" | "lighting" | "pbr" | "shader" | "double_sided"
+        | "render_order" | "submesh" => "it is not drawn",
         "include" => "it is not fetched: what it would bring is missing",
         "gearbox_ratio" | "gearbox_reference_body" => "gearboxes are not modelled",
         "battery" | "projector" | "particle_emitter" | "gripper" => {

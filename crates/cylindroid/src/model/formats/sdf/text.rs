@@ -26,9 +26,24 @@ impl Reader<'_> {
         self.error(node, Self::text_place(node), message, "")
     }
 
+    /// Marks an element that holds a value as text and nothing else.
+    pub(super) fn value_of(&mut self, node: Node<'_, '_>) {
+        self.leftovers(node, &[], &[]);
+    }
+
+    /// The text of an element, which counts as read.
+    pub(super) fn text_of<'d>(&self, node: Node<'d, '_>) -> &'d str {
+        if let Some(text) = node.first_child().filter(Node::is_text) {
+            self.mark(text);
+        }
+        node.text().unwrap_or("")
+    }
+
     /// The text of the first child element of this name.
     pub(super) fn child_text<'d>(&mut self, node: Node<'d, '_>, name: &str) -> Option<&'d str> {
-        Some(self.child(node, name)?.text().unwrap_or("").trim())
+        let child = self.child(node, name)?;
+        self.value_of(child);
+        Some(self.text_of(child).trim())
     }
 
     /// The truth value of a child element; false if it is missing.
@@ -39,7 +54,7 @@ impl Reader<'_> {
     /// The numbers of an element; infinite ones are accepted.
     pub(super) fn content<const N: usize>(&self, node: Node<'_, '_>) -> Result<[f64; N]> {
         let tag = node.tag_name().name();
-        let values = numbers_in(node.text().unwrap_or(""))
+        let values = numbers_in(self.text_of(node))
             .map_err(|word| self.refuse_text(node, format!("<{tag}>: '{word}' is not a number")))?;
         let count = values.len();
         <[f64; N]>::try_from(values).map_err(|_| {
@@ -59,18 +74,20 @@ impl Reader<'_> {
     /// The finite number in the first child element of this name.
     pub(super) fn child_number(&mut self, node: Node<'_, '_>, name: &str) -> Result<Option<f64>> {
         let Some(child) = self.child(node, name) else { return Ok(None) };
+        self.value_of(child);
         self.finite::<1>(child).map(|[x]| Some(x))
     }
 
     /// The vector in the first child element of this name.
     pub(super) fn child_vector(&mut self, node: Node<'_, '_>, name: &str) -> Result<Option<Vec3>> {
         let Some(child) = self.child(node, name) else { return Ok(None) };
+        self.value_of(child);
         self.finite::<3>(child).map(|v| Some(Vec3::from_array(v)))
     }
 
     /// The pose of an element of the kind `<pose>`; the identity if it is empty.
     pub(super) fn pose_in(&self, node: Node<'_, '_>) -> Result<Pose> {
-        if node.text().unwrap_or("").trim().is_empty() {
+        if self.text_of(node).trim().is_empty() {
             return Ok(Pose::IDENTITY);
         }
         match node.attribute("rotation_format").map(str::trim) {

@@ -2,12 +2,12 @@
 //!
 //! Checked  tests/formats/sdf.rs::joints_*, ::cassie_*
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
 use super::joint_entry::JointEntry;
-use super::{FORMAT, MODEL, Sdf};
+use super::{FORMAT, MODEL, POSE, Sdf};
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
 use crate::model::formats::graph::{Branch, Coupling, Rank, spanning_tree};
@@ -28,7 +28,10 @@ impl<'d> Sdf<'d> {
         let is_static = self.reader.child_flag(model, "static");
         let at_world = self.joints.iter().any(|j| j.between.iter().any(|l| l == WORLD));
         let world_from_model = match self.reader.child(model, "pose") {
-            Some(pose) => self.reader.pose_in(pose)?,
+            Some(pose) => {
+                self.reader.unread_attributes(pose, &POSE);
+                self.reader.pose_in(pose)?
+            }
             None => Pose::IDENTITY,
         };
         let mut names: Vec<String> = Vec::new();
@@ -57,7 +60,7 @@ impl<'d> Sdf<'d> {
 
         let report = builder.report();
         report.format = FORMAT;
-        self.reader.report(report);
+        self.reader.report(&[model.document().root_element()], report);
         builder.build().map_err(|error| {
             let Error::Model { culprit, message, .. } = error else { return error };
             match self.frames.get(&culprit) {
@@ -79,10 +82,11 @@ impl<'d> Sdf<'d> {
         let place = |name: &String| index.get(name.as_str()).copied().unwrap_or(root);
         let ends: Vec<[usize; 2]> =
             self.joints.iter().map(|j| [place(&j.between[0]), place(&j.between[1])]).collect();
-        let followed = |name: &String| {
-            self.joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == *name))
+        let followed: BTreeSet<&str> =
+            self.joints.iter().filter_map(|j| j.mimic.as_ref()).map(|m| m.joint.as_str()).collect();
+        let coupling = |j: &JointEntry<'_>| {
+            Coupling::of(j.mimic.is_some(), followed.contains(j.name.as_str()))
         };
-        let coupling = |j: &JointEntry<'_>| Coupling::of(j.mimic.is_some(), followed(&j.name));
         let named: Vec<_> =
             self.joints.iter().map(|j| (j.name.clone(), j.kind, coupling(j))).collect();
         let ranks: Vec<Rank<'_>> = named
@@ -101,11 +105,11 @@ impl<'d> Sdf<'d> {
                     actuated: false,
                     ..JointSpec::new(&format!("{name}.base"), kind, &graph.names[root], name)
                 });
-                if let Some((_, node)) = self.links.iter().find(|l| l.0.name == *name)
+                if let Some(placed) = self.frames.get(name)
                     && !is_static
                 {
                     let why = "no joint connects it with the rest; it moves freely";
-                    self.reader.note(*node, "link without a joint", why, name);
+                    self.reader.note(placed.node, "link without a joint", why, name);
                 }
                 roots.push(link);
             }

@@ -16,6 +16,7 @@ mod closure;
 mod collision;
 mod contact;
 mod elasticity;
+mod limit;
 mod names;
 mod parse;
 mod robot;
@@ -68,6 +69,7 @@ pub(in crate::model) fn describe(
     close: CloseHome<'_>,
 ) -> Result<(Mechanism, String)> {
     let source = Source { format, path, text };
+    limit::check(&source)?;
     let document = DeTable::parse(text).map_err(|e| {
         let span = e.span().unwrap_or(0..0);
         source.error(span, format!("broken TOML: {}", e.message()), "")

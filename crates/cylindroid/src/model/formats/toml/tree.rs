@@ -6,7 +6,7 @@
 //!          second link relative to the first: it enters the tree reversed
 //! Checked  tests/formats/mechanism_file.rs, tests/formats/closed_file.rs
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::ContactEntry;
 use super::names::GROUND;
@@ -101,10 +101,10 @@ pub(super) fn write<'t>(
         roots.push(link);
     }
 
-    let followed =
-        |name: &str| joints.iter().any(|j| j.mimic.as_ref().is_some_and(|m| m.joint == name));
+    let followed: BTreeSet<&str> =
+        joints.iter().filter_map(|j| j.mimic.as_ref()).map(|m| m.joint.as_str()).collect();
     let rank = |j: &JointEntry<'t>| {
-        let coupling = Coupling::of(j.mimic.is_some(), followed(j.name));
+        let coupling = Coupling::of(j.mimic.is_some(), followed.contains(j.name));
         Rank::new(j.name, j.kind, coupling, j.actuated)
     };
     let ranks: Vec<Rank<'t>> = joints.iter().map(rank).collect();

@@ -35,13 +35,21 @@ impl Reader<'_> {
         let child = self.end(node, "child", links)?;
         let mut spec = JointSpec::new(name, kind, parent, child);
         spec.parent_from_joint = self.origin(node)?;
-        // Exporters write zero axes and empty limits for fixed joints; they have no meaning there.
+        // Exporters write zero axes and empty limits for fixed joints, which are noted only.
         if kind != JointKind::Fixed {
             spec.axis = self.axis(node, kind)?;
             spec.limits = self.limits(node, kind)?;
             spec.mimic = self.mimic(node)?;
-        } else if let Some(mimic) = self.child(node, "mimic") {
-            self.notes.add(mimic.range().start, "<mimic>", "a fixed joint follows nothing", name);
+        } else {
+            for (tag, why) in [
+                ("axis", "a fixed joint does not move"),
+                ("limit", "a fixed joint does not move"),
+                ("mimic", "a fixed joint follows nothing"),
+            ] {
+                if let Some(child) = self.child(node, tag) {
+                    self.note(child, format!("<{tag}>"), why, name);
+                }
+            }
         }
         Ok(spec)
     }

@@ -24,6 +24,7 @@ impl Reader<'_> {
         let all: Vec<_> = global.chain(nested).collect();
         let mut materials = Materials::new();
         for node in all {
+            self.leftovers(node, &["name"], &["color"]);
             let name = node.attribute("name").unwrap_or("");
             if name.is_empty() || materials.contains_key(name) {
                 continue;
@@ -36,8 +37,9 @@ impl Reader<'_> {
     }
 
     /// The colour given in a material itself.
-    fn color(&self, material: Node<'_, '_>) -> Option<[f64; 4]> {
-        let color = material.children().find(|c| self.is(*c, "color"))?;
+    fn color(&mut self, material: Node<'_, '_>) -> Option<[f64; 4]> {
+        let color = self.child(material, "color")?;
+        self.leftovers(color, &["rgba"], &[]);
         match self.vector::<4>(color, "rgba") {
             Ok(Some(rgba)) => Some(rgba),
             // Files with three numbers are common.
@@ -72,7 +74,10 @@ impl Reader<'_> {
         let owner = link.attribute("name").unwrap_or("");
         let link_from_inertia = self.origin(node)?;
         let mass = match self.child(node, "mass") {
-            Some(mass) => self.number(mass, "value")?,
+            Some(mass) => {
+                self.leftovers(mass, &["value"], &[]);
+                self.number(mass, "value")?
+            }
             None => None,
         };
         let Some(mass) = mass else {
@@ -81,6 +86,7 @@ impl Reader<'_> {
         };
         let mut inertia = Mat3::ZERO;
         if let Some(child) = self.child(node, "inertia") {
+            self.leftovers(child, &["ixx", "iyy", "izz", "ixy", "ixz", "iyz"], &[]);
             let entry = |name| self.number(child, name).map(|x| x.unwrap_or(0.0));
             let (xx, yy, zz) = (entry("ixx")?, entry("iyy")?, entry("izz")?);
             let (xy, xz, yz) = (entry("ixy")?, entry("ixz")?, entry("iyz")?);
@@ -110,7 +116,6 @@ impl Reader<'_> {
         let rgba = match self.child(node, "material") {
             None => None,
             Some(material) => {
-                self.leftovers(material, &["name"], &["color"]);
                 let named = material.attribute("name").and_then(|n| materials.get(n).copied());
                 let rgba = self.color(material).or(named);
                 if rgba.is_none() {
@@ -129,6 +134,14 @@ impl Reader<'_> {
         let Some(parent) = self.child(shape, "geometry") else { return Ok(None) };
         self.leftovers(parent, &[], &["box", "cylinder", "capsule", "sphere", "mesh"]);
         let Some(node) = parent.children().find(Node::is_element) else { return Ok(None) };
+        let attributes: &[&str] = match node.tag_name().name() {
+            "box" => &["size"],
+            "cylinder" | "capsule" => &["radius", "length"],
+            "sphere" => &["radius"],
+            "mesh" => &["filename", "scale"],
+            _ => &[],
+        };
+        self.leftovers(node, attributes, &[]);
         let radius_and_length = |reader: &Self| -> Result<Option<(f64, f64)>> {
             let (radius, length) = (reader.number(node, "radius")?, reader.number(node, "length")?);
             Ok(radius.zip(length))
@@ -148,7 +161,6 @@ impl Reader<'_> {
     }
 
     fn mesh(&mut self, node: Node<'_, '_>, packages: &Packages) -> Result<Option<Geometry>> {
-        self.leftovers(node, &["filename", "scale"], &[]);
         let Some(uri) = node.attribute("filename") else { return Ok(None) };
         let scale =
             self.vector::<3>(node, "scale")?.map_or(Vec3::new(1.0, 1.0, 1.0), Vec3::from_array);

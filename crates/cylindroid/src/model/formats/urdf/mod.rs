@@ -20,6 +20,7 @@ use roxmltree::Node;
 use super::mesh::Packages;
 use super::span::Source;
 use super::xml::{self, Reader};
+use super::xml_limits;
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::spatial::{Pose, Quaternion, Rotation, Rpy, Vec3};
@@ -46,6 +47,7 @@ use crate::spatial::{Pose, Quaternion, Rotation, Rpy, Vec3};
 /// [`Error::File`] with line and column for broken XML, xacro, MJCF and SDF, an invalid number, a
 /// name that is missing or unknown, and everything that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
+    let text = &*xml_limits::without_undeclared(text);
     let mut source = Source { format: "URDF", path, text };
     let document = xml::document(&source)?;
     let root = document.root_element();
@@ -103,7 +105,7 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
 
     let report = builder.report();
     report.format = "URDF";
-    reader.report(report);
+    reader.report(&[robot], report);
     builder.build().map_err(|e| place(reader, robot, e))
 }
 

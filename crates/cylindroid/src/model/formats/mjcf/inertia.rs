@@ -1,0 +1,173 @@
+//! Masses of MJCF bodies: `<inertial>`, otherwise those of the geoms.
+//!
+//! Formula  mass = density volume, or the mass of the geom; the inertias of the shapes about their
+//!          centres, in the axes of the body about the common centre c:
+//!          I = sum R I_k R^T + m_k (|d_k|^2 1 - d_k d_k^T), d_k = c_k - c
+//! Units    kg, kg m^2; density in kg/m^3, 1000 if missing
+//! Valid    spheres, capsules, cylinders, boxes and ellipsoids, all solid. The volume of a mesh is
+//!          not computed: a body with a mesh of its own density has no mass here (noted)
+//! Why so   `inertiafromgeom`: "auto" takes the geoms where there is no `<inertial>`, "true"
+//!          everywhere; only groups of `inertiagrouprange` count
+//! Source   mujoco.readthedocs.io, XML reference, compiler
+//! Checked  tests/formats/mjcf.rs::masses_*, tests/formats/corpus.rs (against MuJoCo)
+
+use std::f64::consts::PI;
+
+use roxmltree::Node;
+
+use super::Mjcf;
+use super::attributes::used;
+use super::compiler::FromGeoms;
+use super::defaults::Element;
+use crate::error::Result;
+use crate::model::Inertial;
+use crate::spatial::{Mat3, Pose, Vec3};
+
+/// Density of geoms [kg/m^3], that of water.
+const DENSITY: f64 = 1000.0;
+
+/// A part of a body: mass, centre and inertia about the centre, in the axes of the body.
+struct Part {
+    mass: f64,
+    centre: Vec3,
+    inertia: Mat3,
+}
+
+impl<'d> Mjcf<'d> {
+    /// The mass of a body.
+    pub(super) fn mass_of(
+        &mut self,
+        inertial: Option<(Node<'d, 'd>, Pose)>,
+        geoms: &[(Node<'d, 'd>, Pose, usize)],
+        body: &str,
+    ) -> Result<Option<Inertial>> {
+        let from_geoms = match self.compiler.inertia_from_geoms {
+            FromGeoms::Never => false,
+            FromGeoms::Always => true,
+            FromGeoms::WithoutInertial => inertial.is_none(),
+        };
+        match inertial {
+            Some((node, pose)) if !from_geoms => self.inertial(node, pose),
+            Some((node, _)) => {
+                let why = "inertiafromgeom: the masses of the geoms count";
+                self.reader.note(node, "<inertial>", why, body);
+                self.of_geoms(geoms, body)
+            }
+            None if from_geoms => self.of_geoms(geoms, body),
+            None => Ok(None),
+        }
+    }
+
+    fn inertial(&mut self, node: Node<'d, 'd>, link_from_frame: Pose) -> Result<Option<Inertial>> {
+        self.reader.unread_attributes(node, &used("inertial"));
+        let element = Element::bare(node);
+        let mut link_from_inertia = link_from_frame * self.compiler.pose(&self.reader, &element)?;
+        let Some(mass) = element.number(&self.reader, "mass")? else { return Ok(None) };
+        let diagonal = element.vector::<3>(&self.reader, "diaginertia")?;
+        let full = element.vector::<6>(&self.reader, "fullinertia")?;
+        let [xx, yy, zz, xy, xz, yz] = match (full, diagonal) {
+            (Some(full), _) => {
+                // Its axes are those of the frame.
+                link_from_inertia.rotation = link_from_frame.rotation;
+                full
+            }
+            (None, Some([x, y, z])) => [x, y, z, 0.0, 0.0, 0.0],
+            (None, None) => [0.0; 6],
+        };
+        let inertia = Mat3::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
+        Ok(Some(Inertial { mass, link_from_inertia, inertia }))
+    }
+
+    fn of_geoms(
+        &mut self,
+        geoms: &[(Node<'d, 'd>, Pose, usize)],
+        body: &str,
+    ) -> Result<Option<Inertial>> {
+        let mut parts = Vec::new();
+        for (node, link_from_frame, class) in geoms {
+            let element = self.defaults.of(&self.reader, *node, *class, &["geom"])?;
+            let group = element.number(&self.reader, "group")?.unwrap_or(0.0);
+            let [first, last] = self.compiler.inertia_groups;
+            let mass = element.number(&self.reader, "mass")?;
+            let density = element.number(&self.reader, "density")?.unwrap_or(DENSITY);
+            if group < first || group > last || mass.map_or(density, |m| m) == 0.0 {
+                continue;
+            }
+            let (pose, size) = self.place_and_size(&element)?;
+            let Some((volume, moments)) = solid(self.kind_of(&element), &size) else {
+                if !matches!(self.kind_of(&element), "plane" | "hfield") {
+                    let why = "the volume of a mesh is not computed: its body has no mass here";
+                    self.reader.note(*node, "mass of a geom that is a mesh", why, body);
+                    return Ok(None);
+                }
+                continue;
+            };
+            let mass = mass.unwrap_or(density * volume);
+            let pose = *link_from_frame * pose;
+            let axes = pose.rotation.matrix();
+            let [x, y, z] = moments.map(|m| m * mass);
+            let own = Mat3::from_rows([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]);
+            let inertia = axes * own * axes.transpose();
+            parts.push(Part { mass, centre: pose.translation, inertia });
+        }
+        let mass: f64 = parts.iter().map(|p| p.mass).sum();
+        if mass <= 0.0 || !mass.is_finite() {
+            return Ok(None);
+        }
+        let centre = parts.iter().fold(Vec3::ZERO, |c, p| c + p.centre * (p.mass / mass));
+        let inertia = parts.iter().fold(Mat3::ZERO, |sum, p| {
+            let d = p.centre - centre;
+            let [x, y, z] = d.to_array();
+            let square = d.dot(d);
+            let away = Mat3::from_rows([
+                [square - x * x, -x * y, -x * z],
+                [-x * y, square - y * y, -y * z],
+                [-x * z, -y * z, square - z * z],
+            ]);
+            sum + p.inertia + away * p.mass
+        });
+        Ok(Some(Inertial { mass, link_from_inertia: Pose::from_translation(centre), inertia }))
+    }
+
+    /// Scales all masses to the total that the compiler sets.
+    pub(super) fn set_total_mass(&mut self) {
+        let Some(total) = self.compiler.total_mass.filter(|total| *total > 0.0) else { return };
+        let sum: f64 = self.links.iter().filter_map(|l| l.inertial).map(|i| i.mass).sum();
+        if sum > 0.0 {
+            for inertial in self.links.iter_mut().filter_map(|l| l.inertial.as_mut()) {
+                inertial.mass *= total / sum;
+                inertial.inertia = inertial.inertia * (total / sum);
+            }
+        }
+    }
+}
+
+/// Volume of a solid, and its moments of inertia about its axes for a mass of 1 kg; sizes as in
+/// MJCF, half of the whole.
+fn solid(kind: &str, size: &[f64]) -> Option<(f64, [f64; 3])> {
+    let square = |x: f64| x * x;
+    Some(match (kind, size) {
+        ("sphere", [r, ..]) => (4.0 / 3.0 * PI * r * r * r, [0.4 * r * r; 3]),
+        ("ellipsoid", [a, b, c]) => {
+            let [a2, b2, c2] = [square(*a), square(*b), square(*c)];
+            (4.0 / 3.0 * PI * a * b * c, [b2 + c2, a2 + c2, a2 + b2].map(|x| x / 5.0))
+        }
+        ("box", [a, b, c]) => {
+            let [a2, b2, c2] = [square(*a), square(*b), square(*c)];
+            (8.0 * a * b * c, [b2 + c2, a2 + c2, a2 + b2].map(|x| x / 3.0))
+        }
+        ("cylinder", [r, half, ..]) => {
+            let across = (3.0 * r * r + 4.0 * half * half) / 12.0;
+            (2.0 * PI * r * r * half, [across, across, r * r / 2.0])
+        }
+        ("capsule", [r, half, ..]) => {
+            let length = 2.0 * half;
+            let (tube, ball) = (PI * r * r * length, 4.0 / 3.0 * PI * r * r * r);
+            let (t, b) = (tube / (tube + ball), ball / (tube + ball));
+            let across = t * (3.0 * r * r + length * length) / 12.0
+                + b * (0.4 * r * r + 0.375 * r * length + 0.25 * length * length);
+            (tube + ball, [across, across, t * r * r / 2.0 + b * 0.4 * r * r])
+        }
+        _ => return None,
+    })
+}

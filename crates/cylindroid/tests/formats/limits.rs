@@ -1,0 +1,149 @@
+//! Limits of the one reader in front of all formats: kinds of files, size, depth, counts, encoding.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use cylindroid::{Error, load_file};
+
+use crate::mjcf::read_mjcf;
+use crate::sdf::read_sdf;
+use crate::{ARM_URDF, read_toml, read_urdf};
+
+/// The message of the error, which must come within two seconds.
+#[track_caller]
+fn told<T: std::fmt::Debug>(work: impl FnOnce() -> Result<T, Error>) -> String {
+    let start = Instant::now();
+    let message = work().unwrap_err().to_string();
+    assert!(start.elapsed() < Duration::from_secs(20), "{message}");
+    assert!(message.len() < 2000, "a message of {} bytes", message.len());
+    message
+}
+
+fn written(folder: &tempfile::TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    path
+}
+
+#[test]
+fn only_regular_files_of_bounded_size_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(told(|| load_file(folder.path())).ends_with("it is a folder, name a file in it"));
+    if cfg!(unix) {
+        for device in ["/dev/zero", "/dev/null"] {
+            let message = told(|| load_file(Path::new(device)));
+            assert!(message.contains("not a regular file"), "{message}");
+        }
+        let pipe = folder.path().join("pipe.urdf");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        assert!(told(|| load_file(&pipe)).contains("pipe"));
+    }
+    for name in ["a.urdf", "a.toml", "a.xml", "a.sdf"] {
+        let path = written(&folder, name, "");
+        fs::File::options().write(true).open(&path).unwrap().set_len(33 << 20).unwrap();
+        let message = told(|| load_file(&path));
+        assert!(message.contains("larger than 32 MiB"), "{message}");
+    }
+    let include = written(&folder, "m.xml", "<mujoco><include file='big.xml'/></mujoco>");
+    let big = written(&folder, "big.xml", "");
+    fs::File::options().write(true).open(big).unwrap().set_len(33 << 20).unwrap();
+    assert!(told(|| load_file(&include)).contains("32 MiB"));
+}
+
+#[test]
+fn counts_have_limits_that_errors_name() {
+    let values = format!("a = [{}]", "1,".repeat(1_100_000));
+    assert!(told(|| read_toml(&values)).contains("1000000 values"));
+    let elements = format!("<robot>{}<link name='l'/></robot>", "<gazebo/>".repeat(1_100_000));
+    assert!(told(|| read_urdf(&elements)).contains("1000000 elements"));
+    let names: String = (0..300).map(|i| format!(" a{i}='1'")).collect();
+    let message = told(|| read_urdf(&format!("<robot><link name='l'{names}/></robot>")));
+    assert!(message.contains("256 attributes"), "{message}");
+    let long = "x".repeat(1001);
+    let message = told(|| read_urdf(&format!("<robot><link name='{long}'/></robot>")));
+    assert!(message.contains("1000 bytes in a name"), "{message}");
+    let nested = |n: usize| {
+        let open: String = (0..n).map(|i| format!("<model name='m{i}'>")).collect();
+        format!("<sdf>{open}<link name='l'/>{}</sdf>", "</model>".repeat(n))
+    };
+    assert!(told(|| read_sdf(&nested(5000))).contains("1000 elements inside one another"));
+    assert_eq!(read_sdf(&nested(50)).unwrap().links().len(), 1);
+    let entities = "<!DOCTYPE r [<!ENTITY a 'bbbbbbbb'>]><robot><link name='&a;'/></robot>";
+    assert!(told(|| read_urdf(entities)).contains("entities"));
+}
+
+/// The elements of comments, texts and declarations are not counted.
+#[test]
+fn only_elements_are_counted() {
+    let text = "<?xml version='1.0'?><!DOCTYPE robot><!-- <a> <!ENTITY <b -->\n<robot name='>'>\
+                <![CDATA[<c><d>]]><link name='l'/></robot>";
+    assert_eq!(read_urdf(text).unwrap().links().len(), 1);
+    let comment = format!("<robot><!--{}--><link name='l'/></robot>", "<a>".repeat(2000));
+    assert_eq!(read_urdf(&comment).unwrap().links().len(), 1);
+}
+
+#[test]
+fn encodings_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |head: &str, name: &[u8]| {
+        [head.as_bytes(), b"<robot name='r'><link name='", name, b"'/></robot>"].concat()
+    };
+    let latin = with("<?xml version='1.0' encoding='ISO-8859-1'?>", b"\xe4rm");
+    let m = load_file(&written(&folder, "latin.urdf", latin)).unwrap();
+    assert_eq!((m.links()[0].name.as_str(), m.report().ignored.len()), ("ärm", 0));
+    let m = load_file(&written(&folder, "none.urdf", with("\n", b"\xe4rm"))).unwrap();
+    let note = &m.report().ignored[0];
+    assert_eq!((note.line, note.what.as_str()), (2, "bytes that are not UTF-8"));
+    let message = told(|| load_file(&written(&folder, "a.toml", b"name = \"\xe4\"")));
+    assert!(message.ends_with("a.toml:1:9: this is not UTF-8, which a mechanism file must be"));
+    let utf16: Vec<u8> = "\u{feff}<robot/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert!(told(|| load_file(&written(&folder, "a.urdf", utf16))).contains("UTF-16"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_path_that_is_not_utf_8_is_written_with_its_bytes() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(std::ffi::OsStr::from_bytes(b"a\xff.urdf"));
+    assert!(told(|| load_file(&path)).contains("a\\xff.urdf: "));
+    fs::write(&path, "<robot><link/></robot>").unwrap();
+    assert!(told(|| load_file(&path)).contains("a\\xff.urdf:1:8: "));
+    fs::write(&path, ARM_URDF).unwrap();
+    assert_eq!(load_file(&path).unwrap().n(), 3);
+}
+
+/// The time of loading is that of reading: 50 000 links, sites, joints that follow one another,
+/// notes of different elements.
+#[test]
+fn large_models_are_loaded() {
+    let n = 50_000;
+    let all = |each: &dyn Fn(usize) -> String| (1..n).map(each).collect::<String>();
+    let links = all(&|i| format!("<link name='l{i}'/>"));
+    let joints = all(&|i| {
+        let (parent, last) = (i - 1, i.saturating_sub(1).max(1));
+        let mimic = if i > 1 { format!("<mimic joint='j{last}'/>") } else { String::new() };
+        format!(
+            "<joint name='j{i}' type='continuous'><parent link='l{parent}'/><child link='l{i}'/>\
+             {mimic}</joint><a{i}/>"
+        )
+    });
+    let robot = read_urdf(&format!("<robot><link name='l0'/>{links}{joints}</robot>")).unwrap();
+    assert_eq!((robot.n(), robot.links().len()), (1, n));
+    let last = robot.report().ignored.iter().find(|i| i.line == 0).unwrap();
+    assert!(last.what.ends_with("further elements and attributes"), "{}", last.what);
+    let sites = all(&|i| format!("<site name='s{i}'/>"));
+    let bodies = all(&|i| format!("<body name='b{i}'><joint name='j{i}'/></body>"));
+    let motors = all(&|i| format!("<motor joint='j{i}'/>"));
+    let robot = read_mjcf(&format!(
+        "<mujoco><worldbody>{sites}{bodies}</worldbody><actuator>{motors}</actuator></mujoco>"
+    ));
+    assert_eq!(robot.unwrap().n(), n - 1);
+    let frames = all(&|i| {
+        let to = if i == 1 { "l".to_owned() } else { format!("f{}", i - 1) };
+        format!("<frame name='f{i}' attached_to='{to}'><pose>0 0 1 0 0 0</pose></frame>")
+    });
+    let robot = read_sdf(&format!("<sdf><model name='m'><link name='l'/>{frames}</model></sdf>"));
+    assert_eq!(robot.unwrap().frames().len(), n);
+}
