@@ -67,6 +67,12 @@ def of_mujoco(path):
             if model.body(i).name and model.body_mocapid[model.body_rootid[i]] < 0
         }
         cases.append({"q": of_joints(model, qpos), "poses": poses})
+    moving = model.nv > 0 and (model.jnt_type >= 2).all()
+    if moving and not (np.isin(model.eq_type, (2, 3)) & (model.eq_active0 > 0)).any():
+        mujoco.mj_fwdPosition(model, data)
+        matrix = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, matrix)
+        cases[-1]["mass_matrix"] = matrix.tolist()
     masses = {}
     for i in range(1, model.nbody):
         rotation = np.zeros(9)

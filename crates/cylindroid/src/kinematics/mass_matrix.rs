@@ -1,6 +1,7 @@
 //! Mass matrix of the joints by the composite-rigid-body algorithm.
 //!
-//! Formula  M = sum over links of J_i^T W_i J_i: qd^T M qd is twice the kinetic energy. For each
+//! Formula  M = sum over links of J_i^T W_i J_i, and the armature of every joint on the diagonal,
+//!          times the square of the ratio of mimic joints: qd^T M qd is twice the kinetic energy. For each
 //!          moving frame the composite body of all links beyond it, (m, c, I about c); the momentum
 //!          of that body for a unit rate of each of its joint's coordinates, times the twists of all
 //!          coordinates on the way to the root
@@ -92,6 +93,8 @@ pub struct MassMatrix {
     /// Of the links fixed to each slot, in its frame.
     bodies: Vec<Body>,
     composites: Vec<Body>,
+    /// Coordinates of the joints with an armature, and what it adds there.
+    armatures: Vec<(usize, f64)>,
 }
 
 impl MassMatrix {
@@ -106,7 +109,8 @@ impl MassMatrix {
             let own = Body { mass: inertial.mass, center: Vec3::ZERO, inertia: inertial.inertia };
             bodies[frame.slot] = bodies[frame.slot].with(own.moved(pose));
         }
-        Self { composites: bodies.clone(), bodies }
+        let armatures = armatures(mechanism);
+        Self { composites: bodies.clone(), bodies, armatures }
     }
 
     /// M at `state`, a state of the mechanism of [`MassMatrix::new`].
@@ -125,6 +129,7 @@ impl MassMatrix {
 
     fn fill(&mut self, nodes: &[Node], slots: &[AlignedPose], out: &mut Matrix) {
         out.as_mut_slice().fill(0.0);
+        self.armatures.iter().for_each(|&(c, armature)| out[(c, c)] += armature);
         for ((composite, body), slot) in self.composites.iter_mut().zip(&self.bodies).zip(slots) {
             *composite = body.moved(slot.pose());
         }
@@ -154,6 +159,22 @@ impl MassMatrix {
             });
         }
     }
+}
+
+/// What the armatures of joints add to the diagonal, by coordinate.
+fn armatures(mechanism: &Mechanism) -> Vec<(usize, f64)> {
+    let joints = mechanism.joints();
+    let mut all = Vec::new();
+    for joint in joints.iter().filter(|j| j.armature != 0.0) {
+        let (mut ratio, mut leader) = (1.0, joint);
+        while let Some(mimic) = &leader.mimic {
+            ratio *= mimic.multiplier;
+            let Some(next) = joints.iter().find(|j| j.name == mimic.joint) else { break };
+            leader = next;
+        }
+        all.extend(joint.coordinates.clone().map(|c| (c, joint.armature * ratio * ratio)));
+    }
+    all
 }
 
 /// Of a body at a twist at its centre of mass.

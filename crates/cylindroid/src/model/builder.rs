@@ -438,6 +438,7 @@ impl Builder {
                     mimic: spec.mimic.clone(),
                     coordinates: flat.ranges.get(&j).cloned().unwrap_or(0..0),
                     actuated: spec.actuated && spec.mimic.is_none(),
+                    armature: spec.armature,
                 }
             })
             .collect();

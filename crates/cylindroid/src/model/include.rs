@@ -3,6 +3,8 @@
 //!
 //! Checked  tests/it/graph.rs::an_included_mechanism_*
 
+use std::collections::BTreeSet;
+
 use super::builder::Builder;
 use super::contact::ContactSpec;
 use super::elasticity::ElasticKind;
@@ -34,9 +36,17 @@ impl Inclusion<'_> {
         if self.name.is_empty() { name.to_owned() } else { format!("{}/{name}", self.name) }
     }
 
-    /// The name of the joint between the parent and the root.
-    fn base(&self) -> String {
-        format!("{}/base", if self.name.is_empty() { self.parent } else { self.name })
+    /// The name of the joint between the parent and the root: `name/base`, with a number where the
+    /// mechanism has a joint of this name.
+    fn base(&self, robot: &Mechanism) -> String {
+        let base = format!("{}/base", if self.name.is_empty() { self.parent } else { self.name });
+        let joints = robot.joints().iter().map(|j| &j.name);
+        let loops = robot.loops().iter().map(|l| &l.name);
+        let contacts = robot.contacts().iter().map(|c| &c.name);
+        let taken: BTreeSet<String> =
+            joints.chain(loops).chain(contacts).map(|name| self.prefixed(name)).collect();
+        let numbered = (2..).map(|i| format!("{base}.{i}"));
+        std::iter::once(base.clone()).chain(numbered).find(|b| !taken.contains(b)).unwrap_or(base)
     }
 
     /// The name of a link of the included mechanism.
@@ -48,7 +58,8 @@ impl Inclusion<'_> {
 
 impl Builder {
     /// Adds a whole mechanism. Its root is attached to `parent` by a joint `name/base`
-    /// (`parent/base` without a name), fixed or free.
+    /// (`parent/base` without a name), fixed or free; a number follows where the mechanism has a joint
+    /// of this name.
     ///
     /// ```
     /// use cylindroid::model::{Inclusion, Mechanism};
@@ -90,7 +101,7 @@ impl Builder {
             self.joint(JointSpec {
                 parent_from_joint: how.parent_from_root,
                 actuated: false,
-                ..JointSpec::new(&how.base(), kind, how.parent, &name(root))
+                ..JointSpec::new(&how.base(robot), kind, how.parent, &name(root))
             });
         }
         for joint in robot.joints() {
@@ -107,6 +118,7 @@ impl Builder {
                 limits: joint.limits,
                 mimic: joint.mimic.as_ref().map(follows),
                 actuated: joint.actuated,
+                armature: joint.armature,
             });
             if joint.mimic.is_none() && joint.kind.dof() > 0 {
                 self.start(&how.prefixed(&joint.name), &how.start[joint.coordinates.clone()]);

@@ -207,4 +207,7 @@ pub struct Joint {
     pub coordinates: Range<usize>,
     /// True if it is actuated: all joints of a serial robot are, unless the file says otherwise.
     pub actuated: bool,
+    /// Inertia of its drive, reflected to the joint [kg m^2, or kg for a slide], for each of its
+    /// coordinates: the mass matrix has it on its diagonal.
+    pub armature: f64,
 }

@@ -32,6 +32,9 @@ pub struct JointSpec {
     pub mimic: Option<Mimic>,
     /// True if it is actuated.
     pub actuated: bool,
+    /// Inertia of its drive, reflected to the joint [kg m^2, or kg for a slide], for each of its
+    /// coordinates.
+    pub armature: f64,
 }
 
 impl JointSpec {
@@ -50,6 +53,7 @@ impl JointSpec {
             limits: Limits::NONE,
             mimic: None,
             actuated: true,
+            armature: 0.0,
         }
     }
 
@@ -66,6 +70,12 @@ impl JointSpec {
     pub(super) fn fault(&self, dimension: Dimension) -> Option<String> {
         if !(self.parent_from_joint.is_finite() && self.joint_from_child.is_finite()) {
             return Some(format!("the origin of joint '{}' is not finite", self.name));
+        }
+        if !(self.armature >= 0.0 && self.armature.is_finite()) {
+            let (name, armature) = (&self.name, self.armature);
+            return Some(format!(
+                "the armature of joint '{name}' is {armature}; it must be finite and not negative"
+            ));
         }
         fault(&self.name, self.kind, self.axis, &self.limits, dimension)
     }

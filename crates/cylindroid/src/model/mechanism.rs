@@ -280,10 +280,16 @@ impl Mechanism {
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
+    /// The name of a joint is that of the frame it moves, where this is the frame of its child, as
+    /// in URDF.
+    ///
     /// # Errors
     /// [`Error::UnknownName`] with the nearest names.
     pub fn frame(&self, name: &str) -> Result<FrameId> {
-        let index = self.data.frames.iter().position(|f| f.name == name).ok_or_else(|| {
+        let named = self.data.frames.iter().position(|f| f.name == name);
+        let moved = |j: &&Joint| j.name == name && j.joint_from_child == Pose::IDENTITY;
+        let of_joint = || self.data.joints.iter().find(moved).map(|j| j.child);
+        let index = named.or_else(of_joint).ok_or_else(|| {
             Error::unknown("frame", name, self.data.frames.iter().map(|f| f.name.as_str()))
         })?;
         Ok(FrameId { index, frame_key: self.data.frame_key })

@@ -391,6 +391,22 @@ fn links_have_masses() {
     }
 }
 
+/// A robot may have a joint of the name that its own base joint would get.
+#[test]
+fn robots_may_have_a_joint_called_base() {
+    let folder = tempfile::tempdir().unwrap();
+    let arm = "[[joint]]\nname = 'base'\ntype = 'revolute'\nbetween = ['ground', 'arm']\n\
+               origin = [0, 0, 0]\naxis = [0, 0, 1]";
+    fs::write(folder.path().join("arm.toml"), arm).unwrap();
+    let two =
+        "[[robot]]\nname = 'l'\nmodel = 'arm.toml'\n[[robot]]\nname = 'r'\nmodel = 'arm.toml'";
+    let path = folder.path().join("two.toml");
+    fs::write(&path, two).unwrap();
+    let m = cylindroid::load_file(&path).unwrap();
+    let joints = names(m.joints().iter().map(|j| &j.name));
+    assert_eq!(joints, ["l/base.2", "l/base", "r/base.2", "r/base"]);
+}
+
 #[test]
 fn robots_that_cannot_be_are_pointed_at() {
     check(&robot("name = \"r\"\nmodel = \"pandda\""), "\"pandda\"", "nearest: panda");

@@ -36,6 +36,61 @@ fn by_name(m: &Mechanism, given: &Value) -> Vec<f64> {
     q
 }
 
+/// True where the report says that a mass is that of a mesh, which is not computed.
+fn has_mesh_mass(m: &Mechanism) -> bool {
+    m.report().ignored.iter().any(|i| i.what.starts_with("mass of a geom"))
+}
+
+/// The inertia of each body.
+fn masses(m: &Mechanism, of: &Value) -> Result<(), String> {
+    for (name, mass) in of["masses"].as_object().unwrap() {
+        let expected = numbers(mass);
+        // A body without mass has no centre. The volume of a mesh is not computed (noted).
+        let without = |l: &cylindroid::model::Link| l.name == *name && l.inertial.is_none();
+        let unknown = has_mesh_mass(m) && m.links().iter().any(without);
+        if expected[0] == 0.0 || unknown {
+            continue;
+        }
+        let Some(link) = m.links().iter().find(|l| l.name == *name) else { continue };
+        let own = link.inertial.map_or([0.0; 10], |i| {
+            let axes = i.link_from_inertia.rotation;
+            let rows = (axes.matrix() * i.inertia * axes.matrix().transpose()).to_rows();
+            let [x, y, z] = i.link_from_inertia.translation.to_array();
+            let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = rows;
+            [i.mass, x, y, z, xx, xy, xz, yy, yz, zz]
+        });
+        let size = expected.iter().fold(1e-6, |a: f64, b| a.max(b.abs()));
+        for (own, expected) in own.iter().zip(&expected) {
+            if (own - expected).abs() > 1e-6 * size {
+                return Err(format!("inertia of {name}: {own} instead of {expected}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The mass matrix with armatures, where all masses are known.
+fn mass_matrix(m: &Mechanism, of: &Value) -> Result<(), String> {
+    let case = of["cases"].as_array().unwrap().last().unwrap();
+    let Some(rows) = case["mass_matrix"].as_array().filter(|_| !has_mesh_mass(m)) else {
+        return Ok(());
+    };
+    let expected: Vec<Vec<f64>> = rows.iter().map(numbers).collect();
+    let own = m.state(&coordinates(m, &case["q"])).unwrap().mass_matrix();
+    if own.rows() != expected.len() {
+        return Err(format!("mass matrix of {} rows, not {}", own.rows(), expected.len()));
+    }
+    let size = expected.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+    for (i, row) in expected.iter().enumerate() {
+        for (j, x) in row.iter().enumerate() {
+            if (own[(i, j)] - x).abs() > 1e-6 * size {
+                return Err(format!("mass matrix ({i}, {j}): {} instead of {x}", own[(i, j)]));
+            }
+        }
+    }
+    Ok(())
+}
+
 /// The first difference from the program of the format.
 fn compare(m: &Mechanism, of: &Value) -> Result<(), String> {
     let is_mujoco = of["program"] == "MuJoCo";
@@ -60,30 +115,8 @@ fn compare(m: &Mechanism, of: &Value) -> Result<(), String> {
     if !is_mujoco {
         return Ok(());
     }
-    for (name, mass) in of["masses"].as_object().unwrap() {
-        let expected = numbers(mass);
-        // A body without mass has no centre. The volume of a mesh is not computed (noted).
-        let is_mesh = |i: &cylindroid::model::Ignored| i.what.starts_with("mass of a geom");
-        let without = |l: &cylindroid::model::Link| l.name == *name && l.inertial.is_none();
-        let unknown = m.report().ignored.iter().any(is_mesh) && m.links().iter().any(without);
-        if expected[0] == 0.0 || unknown {
-            continue;
-        }
-        let Some(link) = m.links().iter().find(|l| l.name == *name) else { continue };
-        let own = link.inertial.map_or([0.0; 10], |i| {
-            let axes = i.link_from_inertia.rotation;
-            let rows = (axes.matrix() * i.inertia * axes.matrix().transpose()).to_rows();
-            let [x, y, z] = i.link_from_inertia.translation.to_array();
-            let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = rows;
-            [i.mass, x, y, z, xx, xy, xz, yy, yz, zz]
-        });
-        let size = expected.iter().fold(1e-6, |a: f64, b| a.max(b.abs()));
-        for (own, expected) in own.iter().zip(&expected) {
-            if (own - expected).abs() > 1e-6 * size {
-                return Err(format!("inertia of {name}: {own} instead of {expected}"));
-            }
-        }
-    }
+    masses(m, of)?;
+    mass_matrix(m, of)?;
     for (name, range) in of["limits"].as_object().unwrap() {
         let Some(joint) = m.joints().iter().find(|j| j.name == *name) else {
             return Err(format!("no joint {name}"));

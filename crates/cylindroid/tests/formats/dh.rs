@@ -43,6 +43,7 @@ fn rows() -> Vec<Row> {
         d,
         theta,
         prismatic,
+        flip: false,
         limits: Limits::NONE,
     };
     vec![
@@ -142,4 +143,31 @@ fn the_table_is_read_from_a_file() {
         let error = refused(&changed, read_toml(&changed));
         assert!(error.message.contains(says), "{error}");
     }
+}
+
+/// A flipped joint has the opposite q: revolute and prismatic, in both conventions, from files too.
+#[test]
+fn flipped_joints_subtract_their_coordinate() {
+    for convention in [Convention::Standard, Convention::Modified] {
+        let poses = |flip: bool, sign: f64| {
+            let rows = rows().into_iter().map(|row| Row { flip, ..row }).collect();
+            let (ground_from_base, last_from_flange) = (None, Pose::IDENTITY);
+            let mut builder = Mechanism::builder("flipped");
+            for joint in dh::joints(&Arm { convention, rows, ground_from_base, last_from_flange }) {
+                builder.joint(joint);
+            }
+            let m = builder.build().unwrap();
+            frame(&m, &[0.7, -1.1, 0.25, 2.2].map(|q| sign * q), "flange")
+        };
+        assert_close(poses(true, -1.0), poses(false, 1.0), 1e-14);
+    }
+    let file = |flip: &str| {
+        let row = format!("{{ name = 'q', a = 1, alpha = 0, d = 0, theta = 0.5{flip} }}");
+        read_toml(&format!("[dh]\nconvention = 'standard'\nrows = [{row}]")).unwrap()
+    };
+    assert_close(
+        frame(&file(", flip = true"), &[-0.3], "flange"),
+        frame(&file(""), &[0.3], "flange"),
+        1e-15,
+    );
 }

@@ -146,3 +146,29 @@ fn the_report_says_once_what_was_not_used() {
     let first = ARM_URDF.lines().position(|l| l.contains("<transmission")).unwrap() + 1;
     assert_eq!(m.report().ignored.last().unwrap().line, first);
 }
+
+/// As Drake reads them, with and without the declaration of its prefix.
+#[test]
+fn universal_and_ball_joints_are_read() {
+    for declaration in ["", " xmlns:drake='http://drake.mit.edu'"] {
+        let m = read_urdf(&format!(
+            "<robot name='r'{declaration}><link name='a'/><link name='b'/><link name='c'/>\
+             <drake:joint name='u' type='universal'><parent link='a'/><child link='b'/></drake:joint>\
+             <drake:joint name='s' type='ball'><parent link='b'/><child link='c'/></drake:joint>\
+             <drake:declare_convex/></robot>"
+        ))
+        .unwrap();
+        let kinds: Vec<JointKind> = m.joints().iter().map(|j| j.kind).collect();
+        assert_eq!(kinds, [JointKind::Universal { second: Vec3::Y }, JointKind::Spherical]);
+        assert_eq!(m.joints()[0].axis, Vec3::X);
+        assert_eq!(m.report().ignored.len(), 1, "{}", report(&m));
+    }
+}
+
+#[test]
+fn a_joint_names_the_frame_that_it_moves() {
+    let m = read_urdf(ARM_URDF).unwrap();
+    let joint = &m.joints()[1];
+    let child = m.frame(&m.links()[joint.child].name).unwrap();
+    assert_eq!(m.frame(&joint.name).unwrap(), child);
+}

@@ -3,7 +3,7 @@
 use cylindroid::closure::{ActuationMap, ClosedChain, MotionSpace};
 use cylindroid::kinematics::MassMatrix;
 use cylindroid::manipulability::{Manipulability, Metrics, actuated_inertia, body_inertia};
-use cylindroid::model::{Inertial, JointKind, JointSpec, Link, LoopJointSpec};
+use cylindroid::model::{Inertial, JointKind, JointSpec, Link, LoopJointSpec, Mimic};
 use cylindroid::spatial::{Mat3, Pose, Vec3};
 use cylindroid::{Matrix, Mechanism, ReferenceFrame, State};
 
@@ -41,6 +41,7 @@ fn heavy(mechanism: &Mechanism, seed: u64) -> Mechanism {
             limits: joint.limits,
             mimic: joint.mimic.clone(),
             actuated: joint.actuated,
+            armature: joint.armature,
         });
     }
     builder.build().unwrap()
@@ -235,4 +236,25 @@ fn inertia_measures_manipulability() {
     let trace = whitened.frobenius_norm().powi(2);
     let sum: f64 = found.values().iter().sum();
     assert!((sum - trace).abs() < 1e-9 * trace, "{sum} {trace}");
+}
+
+/// An armature stands on the diagonal, that of a mimic joint times the square of its ratio.
+#[test]
+fn armatures_add_to_the_diagonal() {
+    let mut builder = Mechanism::builder("geared");
+    let joint = |name: &str, parent: &str, child: &str, armature: f64| JointSpec {
+        armature,
+        ..JointSpec::new(name, JointKind::Revolute, parent, child)
+    };
+    let follower = Mimic { joint: "b".to_owned(), multiplier: -3.0, offset: 1.0 };
+    builder.joint(joint("a", "ground", "1", 0.5));
+    builder.joint(joint("b", "1", "2", 0.25));
+    builder.joint(JointSpec { mimic: Some(follower), ..joint("c", "2", "3", 2.0) });
+    let m = builder.build().unwrap();
+    let mass_matrix = m.state(&[0.1, 0.2]).unwrap().mass_matrix();
+    let expected = Matrix::from_rows(&[vec![0.5, 0.0], vec![0.0, 0.25 + 9.0 * 2.0]]).unwrap();
+    assert_matrix("geared", &mass_matrix, &expected, 1e-15);
+    let mut wrong = Mechanism::builder("wrong");
+    wrong.joint(joint("a", "ground", "1", -1.0));
+    assert!(wrong.build().unwrap_err().to_string().contains("armature of joint 'a' is -1"));
 }

@@ -2,7 +2,8 @@
 //!
 //! Formula  standard  (i-1)_from_i = Rz(theta) Tz(d) Tx(a) Rx(alpha), joint i along z of i-1
 //!          modified  (i-1)_from_i = Rx(alpha) Tx(a) Rz(theta) Tz(d), joint i along z of i
-//!          q adds to theta (revolute) or to d (prismatic): the numbers of a row hold at q = 0
+//!          q adds to theta (revolute) or to d (prismatic), a flipped joint subtracts it: the
+//!          numbers of a row hold at q = 0
 //! Units    a, d in m; alpha, theta in rad
 //! Why so   a link's frame lies on the axis of its joint. In the standard convention a row's
 //!          Tx(a) Rx(alpha) is therefore part of the next joint's placement, and the frame after
@@ -37,6 +38,8 @@ pub struct Row {
     pub theta: f64,
     /// True if q adds to d, false if it adds to theta.
     pub prismatic: bool,
+    /// True if q is subtracted instead of added, as in tables of Jaco and Mico.
+    pub flip: bool,
     /// Limits of q.
     pub limits: Limits,
 }
@@ -62,7 +65,7 @@ pub struct Arm {
 /// modified  (i-1)_from_i = Rx(alpha) Tx(a) Rz(theta) Tz(d),  joint i along z of frame i
 /// ```
 ///
-/// q is added to theta (revolute) or to d (prismatic): the parameters of a row are those at q = 0,
+/// q is added to theta (revolute) or to d (prismatic), subtracted where a row flips: the parameters of a row are those at q = 0,
 /// a and d in m, alpha and theta in rad. Link i moves with joint i, and its frame has its origin on
 /// the axis of that joint; `flange` is frame N of the table displaced by `last_from_flange`.
 ///
@@ -81,6 +84,7 @@ pub struct Arm {
 ///     d: 0.0,
 ///     theta: 0.0,
 ///     prismatic: false,
+///     flip: false,
 ///     limits: Limits::NONE,
 /// };
 /// let arm = Arm {
@@ -121,6 +125,7 @@ pub fn joints(arm: &Arm) -> Vec<JointSpec> {
         };
         joints.push(JointSpec {
             parent_from_joint: placement,
+            axis: if row.flip { -Vec3::Z } else { Vec3::Z },
             limits: row.limits,
             ..JointSpec::new(&row.name, kind, &parent, &child)
         });

@@ -24,6 +24,7 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
             "range",
             "limited",
             "ref",
+            "armature",
             "actuatorfrcrange",
         ],
         "body" | "frame" => &["name", "childclass"],
@@ -64,8 +65,8 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
 
 pub(super) fn why_unused(name: &str) -> &'static str {
     match name {
-        "damping" | "armature" | "frictionloss" | "stiffness" | "springref" | "springdamper"
-        | "solreflimit" | "solimplimit" | "solreffriction" | "solimpfriction" | "gravcomp" => {
+        "damping" | "frictionloss" | "stiffness" | "springref" | "springdamper" | "solreflimit"
+        | "solimplimit" | "solreffriction" | "solimpfriction" | "gravcomp" => {
             "springs, friction and inertia do not enter the kinematics"
         }
         "friction" | "condim" | "solref" | "solimp" | "margin" | "gap" | "priority" | "solmix"

@@ -306,6 +306,7 @@ impl<'d> Mjcf<'d> {
             spec.kind = JointKind::Continuous;
             spec.limits = Limits { effort: spec.limits.effort, ..Limits::NONE };
         }
+        spec.armature = element.number(reader, "armature")?.unwrap_or(0.0);
         let reference = match element.number(reader, "ref")? {
             Some(x) if one => vec![x * unit],
             _ if one => vec![0.0],

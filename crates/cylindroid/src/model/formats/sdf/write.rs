@@ -172,6 +172,7 @@ impl Graph<'_> {
             limits: joint.limits,
             mimic: joint.mimic.clone(),
             actuated: actuated(joint.kind),
+            armature: 0.0,
         }
     }
 

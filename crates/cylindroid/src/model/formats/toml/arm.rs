@@ -41,7 +41,7 @@ pub(super) fn joints(file: &Table<'_>, planar: bool) -> Result<Vec<JointSpec>> {
 }
 
 pub(super) fn rows<'t>(dh: &Table<'t>) -> Result<Vec<Table<'t>>> {
-    let keys = ["name", "a", "alpha", "d", "theta", "type", "limits"];
+    let keys = ["name", "a", "alpha", "d", "theta", "type", "flip", "limits"];
     if !dh.has("rows") {
         return Err(dh.missing("rows"));
     }
@@ -65,6 +65,7 @@ fn row(table: &Table<'_>) -> Result<dh::Row> {
         d: number("d")?,
         theta: number("theta")?,
         prismatic,
+        flip: table.boolean("flip")?.unwrap_or(false),
         limits: table.limits()?,
     })
 }

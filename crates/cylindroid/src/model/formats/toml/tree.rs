@@ -197,6 +197,7 @@ fn branch_out(
         limits: joint.limits,
         mimic: joint.mimic.clone(),
         actuated: joint.actuated,
+        armature: 0.0,
     });
 }
 

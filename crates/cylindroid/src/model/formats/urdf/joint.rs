@@ -63,6 +63,8 @@ impl Reader<'_> {
             "floating" => JointKind::Free,
             "planar" => JointKind::Planar,
             "spherical" | "ball" => JointKind::Spherical,
+            // As in Drake, about x of the parent and y of the child.
+            "universal" => JointKind::Universal { second: Vec3::Y },
             other => {
                 let unknown = Error::unknown("joint type", other, TYPES);
                 return Err(self.refuse(node, "type", unknown.to_string()));
@@ -98,6 +100,11 @@ impl Reader<'_> {
         let Some(node) = self.child(joint, "axis") else { return Ok(Vec3::X) };
         self.leftovers(node, &["xyz"], &[]);
         let axis = self.vector::<3>(node, "xyz")?.map_or(Vec3::X, Vec3::from_array);
+        if matches!(kind, JointKind::Universal { .. }) {
+            let name = joint.attribute("name").unwrap_or("");
+            self.note(node, "<axis>", "the axes of a universal joint are x and y", name);
+            return Ok(Vec3::X);
+        }
         let needed = !matches!(kind, JointKind::Free | JointKind::Spherical);
         if needed && axis.unit(ZERO_AXIS).is_none() {
             let name = joint.attribute("name").unwrap_or("");

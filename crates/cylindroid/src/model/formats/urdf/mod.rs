@@ -85,7 +85,7 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
         let why = "the robot has none; the name of the file is used";
         reader.notes.add(robot.range().start, "attribute 'name' of <robot> missing", why, "");
     }
-    reader.leftovers(robot, &["name", "version"], &["link", "joint", "material"]);
+    reader.unread_attributes(robot, &["name", "version"]);
 
     let materials = reader.materials(robot);
     let packages = Packages::of(path);
@@ -98,7 +98,7 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
         }
     }
     for node in &elements {
-        if reader.is(*node, "joint") {
+        if is_joint(reader, *node) {
             builder.joint(reader.joint(*node, &links)?);
         }
     }
@@ -107,6 +107,12 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
     report.format = "URDF";
     reader.report(&[robot], report);
     builder.build().map_err(|e| place(reader, robot, e))
+}
+
+/// True for a joint, also one that only Drake reads: ball and universal.
+fn is_joint(reader: &Reader<'_>, node: Node<'_, '_>) -> bool {
+    let tag = node.document().input_text().get(Reader::tag(node));
+    reader.is(node, "joint") || matches!(tag, Some("<drake:joint" | "<drake.joint"))
 }
 
 /// Finds the element to which an error of the builder refers.
