@@ -16,6 +16,7 @@ mod screws;
 mod shape;
 mod statics;
 mod view;
+mod xacro;
 
 use std::process::{Command, Output};
 

@@ -304,3 +304,82 @@ fn what_is_broken_is_pointed_at() {
     let mimic = "<axis><mimic joint='k'/></axis>";
     check(&of(&joint("revolute", mimic)), "j", "no joint named 'k'");
 }
+
+/// A robot of included parts: a folder with a `model.config`, a file, one of them twice.
+#[test]
+fn includes_are_nested_models() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    write(
+        "models/wheel/model.config",
+        "<model><name>w</name><sdf version='1.5'>w.sdf</sdf></model>",
+    );
+    write(
+        "models/wheel/w.sdf",
+        "<sdf version='1.4'><model name='wheel'><pose>9 9 9 0 0 0</pose><link name='rim'/>\
+         <link name='cap'><pose>0 0 1 0 0 0</pose></link>\
+         <joint name='spin' type='revolute'><parent>rim</parent><child>cap</child>\
+         <axis><xyz>0 1 0</xyz></axis></joint></model></sdf>",
+    );
+    write(
+        "models/plain/model.sdf",
+        "<sdf version='1.9'><model name='box'><link name='b'/></model></sdf>",
+    );
+    let main = write(
+        "models/robot/robot.sdf",
+        "<sdf version='1.9'><world name='w'>\
+         <model name='ground'><static>1</static><link name='g'/></model>\
+         <model name='robot'><link name='base'/>\
+         <include><uri>model://wheel</uri><name>left</name><pose>0 1 0 0 0 0</pose></include>\
+         <include><uri>../wheel/w.sdf</uri><name>right</name></include>\
+         <include><uri>../plain</uri></include><include><uri>model://none</uri></include>\
+         <joint name='l' type='fixed'><parent>base</parent><child>left::rim</child></joint>\
+         <joint name='r' type='fixed'><parent>base</parent><child>right::rim</child></joint>\
+         <joint name='b' type='fixed'><parent>base</parent><child>box::b</child></joint>\
+         </model></world></sdf>",
+    );
+    let m = cylindroid::load_file(&main).unwrap();
+    assert_eq!((m.name(), m.n()), ("robot", 2));
+    let at = |name: &str| frame(&m, m.home(), name).translation;
+    assert_eq!(at("left::cap"), Vec3::new(0.0, 1.0, 1.0));
+    assert_eq!(at("right::cap"), Vec3::new(9.0, 9.0, 10.0));
+    let said = report(&m);
+    assert!(said.contains("further <model> (ground)"), "{said}");
+    assert!(
+        said.contains("<include>") && said.contains("what it would bring is missing"),
+        "{said}"
+    );
+    assert!(said.contains("that of the <include> counts"), "{said}");
+    let itself = write(
+        "a.sdf",
+        "<sdf version='1.9'><model name='a'><link name='l'/><include><uri>a.sdf</uri></include>\
+         </model></sdf>",
+    );
+    let error = cylindroid::load_file(&itself).unwrap_err().to_string();
+    assert!(error.contains("includes more than 1000 files"), "{error}");
+}
+
+/// Nothing but nested models: the canonical link is that of the first.
+#[test]
+fn a_model_without_links_has_the_canonical_link_of_its_first_model() {
+    let m = read(
+        "<sdf version='1.9'><model name='m'><model name='n'><pose>1 0 0 0 0 0</pose><link name='a'/>\
+         <link name='b'/><joint name='j' type='revolute'><parent>a</parent><child>b</child>\
+         <axis><xyz>0 0 1</xyz></axis></joint></model></model></sdf>",
+    );
+    assert_eq!((m.n(), m.links()[0].name.as_str()), (1, "n::a"));
+}
+
+/// Elements of Drake and others whose prefix has no declaration, as in many files.
+#[test]
+fn prefixes_need_no_declaration() {
+    let text =
+        "<sdf version='1.9'><model name='m'><drake:x/><link name='a' my:b='1'/></model></sdf>";
+    let said = report(&read(text));
+    assert_eq!(said.lines().count(), 2, "{said}");
+}

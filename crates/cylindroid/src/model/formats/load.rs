@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::span::Source;
 use super::text_file::{self, TextFile};
-use super::{mjcf, sdf, toml, urdf, xml_limits};
+use super::{mjcf, sdf, toml, urdf, xacro, xml_limits};
 use crate::error::{Error, Result, shown};
 use crate::model::{CloseHome, Mechanism, catalogue};
 
@@ -64,7 +64,11 @@ fn read_file(path: &Path, depth: usize, close: CloseHome<'_>) -> Result<Mechanis
             toml::describe(&text, path, "mechanism file", (depth, &loader), close)?.0
         }
         Some("mjcf") => mjcf::parse(&text, path)?,
-        Some("urdf" | "xml" | "xacro" | "sdf") => read_xml(&text, path)?,
+        Some("xacro") => match xacro::expand(path)? {
+            Some(urdf) => urdf::parse_expanded(&urdf, path)?,
+            None => urdf::parse(&text, path)?,
+        },
+        Some("urdf" | "xml" | "sdf") => read_xml(&text, path)?,
         _ if is_xml => read_xml(&text, path)?,
         _ => {
             return Err(Error::InvalidOption {

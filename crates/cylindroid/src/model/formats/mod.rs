@@ -27,6 +27,8 @@ pub mod toml;
 #[cfg(feature = "formats")]
 pub mod urdf;
 #[cfg(feature = "formats")]
+mod xacro;
+#[cfg(feature = "formats")]
 mod xml;
 #[cfg(feature = "formats")]
 mod xml_limits;

@@ -6,6 +6,7 @@
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::ops::Range;
+use std::path::Path;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -15,8 +16,8 @@ use crate::error::{Error, Result};
 use crate::model::LoadReport;
 
 /// What to do with a xacro file.
-pub(super) const XACRO_HELP: &str = "expand it first: pip install xacro, then \
-                                     xacro file.urdf.xacro > file.urdf";
+pub(super) const XACRO_HELP: &str = "pip install xacro, and files named .xacro are expanded when \
+                                     they are loaded; others by xacro file.urdf.xacro > file.urdf";
 
 /// The state shared by all parts of a reader.
 #[derive(Debug)]
@@ -73,6 +74,12 @@ impl<'a> Reader<'a> {
     fn file(&self, node: Node<'_, '_>) -> usize {
         let text = node.document().input_text().as_ptr();
         self.included.iter().position(|s| s.text.as_ptr() == text).map_or(0, |i| i + 1)
+    }
+
+    /// The path of the file of a node.
+    pub(super) fn path_of(&self, node: Node<'_, '_>) -> &'a Path {
+        let source = self.file(node).checked_sub(1).and_then(|i| self.included.get(i));
+        source.unwrap_or(&self.source).path
     }
 
     /// An error at a byte range of the file of the node.

@@ -130,7 +130,7 @@ impl<'d> Sdf<'d> {
         }
         let in_model = match self.reader.child_text(element, "use_parent_model_frame") {
             Some(text) => super::is_true(text),
-            None => self.version < 1.5,
+            None => super::version(&self.reader, element)? < 1.5,
         };
         let frame = match node.attribute("expressed_in").map(str::trim) {
             Some(name) if !name.is_empty() => super::scoped(scope, name),

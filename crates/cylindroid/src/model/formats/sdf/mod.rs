@@ -3,7 +3,8 @@
 //! Formula  parent_from_joint = model_from_parent^-1 model_from_joint, likewise for the child:
 //!          every link keeps the frame of the file
 //! Units    m, rad (degrees for a pose with `degrees="true"`), kg, N, N m
-//! Valid    the first model of a file, nested models included (`model::link`). Joints form a graph:
+//! Valid    one model of a file, the first with a joint, with nested and included models
+//!          (`model::link`). Joints form a graph:
 //!          a spanning tree provides the coordinates, and the remaining joints become loop joints.
 //!          The root is `world` if a joint refers to it or the model is static, otherwise the
 //!          canonical link
@@ -13,6 +14,7 @@
 //! Checked  tests/formats/sdf.rs
 
 mod frames;
+mod includes;
 mod joint;
 mod joint_entry;
 mod link;
@@ -21,9 +23,10 @@ mod write;
 
 use std::path::Path;
 
-use roxmltree::Node;
+use roxmltree::{Document, Node};
 
 use self::frames::{Frames, MODEL, PosedFrame};
+use self::includes::Includes;
 use self::joint_entry::JointEntry;
 use super::mesh::Packages;
 use super::span::Source;
@@ -41,7 +44,7 @@ const POSE: [&str; 4] = ["relative_to", "frame", "rotation_format", "degrees"];
 /// The model while it is read.
 struct Sdf<'d> {
     reader: Reader<'d>,
-    version: f64,
+    includes: Includes<'d>,
     frames: Frames<'d>,
     links: Vec<(Link, Node<'d, 'd>)>,
     joints: Vec<JointEntry<'d>>,
@@ -81,55 +84,124 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
             format!("the root element is <{}>, SDF begins with <sdf>", root.tag_name().name());
         return Err(source.error(tag, message, ""));
     }
+    let included = includes::gather(&source)?;
+    let sources: Vec<Source<'_>> = included.iter().map(includes::Included::source).collect();
+    let documents: Vec<Document<'_>> = sources.iter().map(xml::document).collect::<Result<_>>()?;
+    read(source, sources.clone(), root, Includes::new(&document, &included, &documents))
+}
+
+fn read<'d>(
+    source: Source<'d>,
+    included: Vec<Source<'d>>,
+    root: Node<'d, 'd>,
+    includes: Includes<'d>,
+) -> Result<Mechanism> {
     let mut reader = Reader::new(source, None);
+    reader.included = included;
     (reader.owners, reader.why) = (&["link", "joint", "frame", "model"], why_unused);
-    reader.leftovers(root, &["version"], &["model", "world"]);
-    let version = match root.attribute("version") {
-        None => 1.5,
-        Some(text) => {
-            text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| {
-                reader.refuse(root, "version", format!("version '{text}' is not a number"))
-            })?
-        }
-    };
-    // 1.10 and 1.11 come after 1.9.
-    let version = if version < 1.2 { 1.9 } else { version };
+    for root in std::iter::once(root).chain(includes.roots()) {
+        reader.unread_attributes(root, &["version"]);
+        version(&reader, root)?;
+    }
     let worlds = root.children().filter(|n| n.has_tag_name("world"));
-    let places = std::iter::once(root).chain(worlds);
-    let models: Vec<Node<'_, '_>> =
-        places.flat_map(|p| p.children().filter(|n| n.has_tag_name("model"))).collect();
-    let Some((&model, others)) = models.split_first() else {
+    let places = std::iter::once(root).chain(worlds).flat_map(|p| p.children());
+    let models: Vec<Placed<'_>> = places
+        .filter_map(|node| match node.tag_name().name() {
+            "model" => Some(Placed { model: node, by: node }),
+            "include" => includes.model(node).map(|model| Placed { model, by: node }),
+            _ => None,
+        })
+        .collect();
+    // A world is a ground and objects around a robot.
+    let robot = models.iter().position(|m| m.model.descendants().any(|n| n.has_tag_name("joint")));
+    let Some(&chosen) = models.get(robot.unwrap_or(0)) else {
+        let tag = Reader::tag(root);
         return Err(source.error(tag, "this SDF has no <model>", "give a file with one"));
     };
-    for other in others {
-        let name = other.attribute("name").unwrap_or("");
-        reader.note(*other, "further <model>", "only the first model of a file is read", name);
+    for other in models.iter().filter(|m| m.by != chosen.by) {
+        let name = other.name(&reader).unwrap_or("").to_owned();
+        let why = "one model of a file is read: the first with a joint, otherwise the first";
+        reader.note(other.by, "further <model>", why, &name);
     }
-    if let Some(world) = model.parent_element().filter(|p| p.has_tag_name("world")) {
-        reader.leftovers(world, &["name"], &["model"]);
+    if let Some(world) = chosen.by.parent_element().filter(|p| p.has_tag_name("world")) {
+        reader.unread_attributes(world, &["name"]);
     }
     let mut it = Sdf {
         reader,
-        version,
+        includes,
         frames: Frames::default(),
         links: Vec::new(),
         joints: Vec::new(),
         named: Vec::new(),
     };
-    it.read(model)?;
-    it.write(model)
+    it.read(chosen)?;
+    it.write(chosen)
+}
+
+/// The version of the format that an element is written in.
+fn version(reader: &Reader<'_>, node: Node<'_, '_>) -> Result<f64> {
+    let root = node.document().root_element();
+    let Some(text) = root.attribute("version") else { return Ok(1.5) };
+    let version = text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| {
+        reader.refuse(root, "version", format!("version '{text}' is not a number"))
+    })?;
+    // 1.10 and 1.11 come after 1.9.
+    Ok(if version < 1.2 { 1.9 } else { version })
+}
+
+/// A model, and the element that places it: itself, or an `<include>`.
+#[derive(Debug, Clone, Copy)]
+struct Placed<'d> {
+    model: Node<'d, 'd>,
+    by: Node<'d, 'd>,
+}
+
+impl<'d> Placed<'d> {
+    /// The name that the `<include>` gives, otherwise that of the model.
+    fn name(self, reader: &Reader<'_>) -> Option<&'d str> {
+        let given = self.by.children().find(|c| c.has_tag_name("name") && self.by != self.model);
+        let own = || self.model.attribute("name");
+        given.map(|n| reader.text_of(n)).or_else(own).map(str::trim).filter(|n| !n.is_empty())
+    }
+
+    /// The element whose `<pose>` counts.
+    fn posed(self) -> Node<'d, 'd> {
+        let has_pose = self.by.children().any(|c| c.has_tag_name("pose"));
+        if has_pose { self.by } else { self.model }
+    }
+
+    /// Marks what an `<include>` may contain.
+    fn note_unread(self, reader: &mut Reader<'_>) {
+        if self.by != self.model {
+            reader.leftovers(self.by, &[], &["uri", "name", "pose"]);
+            for value in self
+                .by
+                .children()
+                .filter(|c| ["uri", "name"].iter().any(|tag| c.has_tag_name(*tag)))
+            {
+                reader.value_of(value);
+                reader.text_of(value);
+            }
+            if let Some(own) = self.model.children().find(|c| c.has_tag_name("pose"))
+                && self.posed() == self.by
+            {
+                reader.note(own, "<pose>", "that of the <include> counts", "");
+            }
+        }
+    }
 }
 
 impl<'d> Sdf<'d> {
     /// The model and those nested in it: frames first, then the elements that refer to them.
-    fn read(&mut self, model: Node<'d, 'd>) -> Result<()> {
-        let packages = Packages::of(self.reader.source.path);
+    fn read(&mut self, outermost: Placed<'d>) -> Result<()> {
         let mut joints = Vec::new();
-        let mut stack = vec![(model, String::new())];
-        while let Some((model, scope)) = stack.pop() {
+        let mut stack = vec![(outermost, String::new())];
+        while let Some((placed, scope)) = stack.pop() {
+            let model = placed.model;
+            placed.note_unread(&mut self.reader);
+            let packages = Packages::of(self.reader.path_of(model));
             let attributes = ["name", "canonical_link", "placement_frame"];
-            let children = ["pose", "link", "joint", "frame", "model", "static"];
-            self.reader.leftovers(model, &attributes, &children);
+            self.reader.unread_attributes(model, &attributes);
             if let Some(frame) = model.attribute("placement_frame") {
                 let why = "it moves the whole model, not its parts";
                 self.reader.note(model, "placement_frame", why, frame);
@@ -157,7 +229,13 @@ impl<'d> Sdf<'d> {
                     }
                     "model" => {
                         let own = self.reader.required(node, "name")?;
-                        nested.push((node, scoped(&scope, own)));
+                        nested.push((Placed { model: node, by: node }, scoped(&scope, own)));
+                    }
+                    "include" => {
+                        let Some(model) = self.includes.model(node) else { continue };
+                        let placed = Placed { model, by: node };
+                        let own = placed.name(&self.reader).unwrap_or("");
+                        nested.push((placed, self.scope_of(node, &scope, own)?));
                     }
                     _ => {}
                 }
@@ -173,7 +251,7 @@ impl<'d> Sdf<'d> {
                 self.frames.insert(&self.reader, MODEL.to_owned(), placed)?;
             } else {
                 let outer = scope.rsplit_once("::").map_or("", |s| s.0);
-                let (relative_to, pose) = self.pose_of(model, outer, MODEL)?;
+                let (relative_to, pose) = self.pose_of(placed.posed(), outer, MODEL)?;
                 let placed = PosedFrame { node: model, relative_to, pose, attached_to };
                 let own = scoped(&scope, MODEL);
                 let alias = PosedFrame {
@@ -192,6 +270,17 @@ impl<'d> Sdf<'d> {
             self.joints.extend(joint);
         }
         Ok(())
+    }
+
+    /// The scope of an included model; its name must not be empty or that of another.
+    fn scope_of(&self, node: Node<'d, 'd>, outer: &str, own: &str) -> Result<String> {
+        let scope = scoped(outer, own);
+        if own.is_empty() || self.frames.get(&scope).is_some() {
+            let message = format!("an included model is named '{own}' as another frame is");
+            let help = "give the <include> a <name>";
+            return Err(self.reader.error(node, Reader::tag(node), message, help));
+        }
+        Ok(scope)
     }
 
     /// Records the pose of a link (attached to itself), a joint or a frame.

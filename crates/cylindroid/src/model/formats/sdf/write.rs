@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::joint_entry::JointEntry;
-use super::{FORMAT, MODEL, POSE, Sdf};
+use super::{FORMAT, MODEL, POSE, Placed, Sdf};
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
 use crate::model::formats::graph::{Branch, Coupling, Rank, spanning_tree};
@@ -19,15 +19,16 @@ use crate::spatial::Pose;
 const WORLD: &str = "world";
 
 impl<'d> Sdf<'d> {
-    pub(super) fn write(mut self, model: Node<'d, 'd>) -> Result<Mechanism> {
+    pub(super) fn write(mut self, placed: Placed<'d>) -> Result<Mechanism> {
+        let model = placed.model;
         let source = self.reader.source;
         let stem = source.path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default();
-        let own = model.attribute("name").map(str::trim).filter(|n| !n.is_empty());
+        let own = placed.name(&self.reader);
         let mut builder = Mechanism::builder(own.unwrap_or(&stem));
 
         let is_static = self.reader.child_flag(model, "static");
         let at_world = self.joints.iter().any(|j| j.between.iter().any(|l| l == WORLD));
-        let world_from_model = match self.reader.child(model, "pose") {
+        let world_from_model = match self.reader.child(placed.posed(), "pose") {
             Some(pose) => {
                 self.reader.unread_attributes(pose, &POSE);
                 self.reader.pose_in(pose)?
@@ -60,12 +61,14 @@ impl<'d> Sdf<'d> {
 
         let report = builder.report();
         report.format = FORMAT;
-        self.reader.report(&[model.document().root_element()], report);
+        let main = placed.by.document().root_element();
+        let roots: Vec<Node<'_, '_>> = std::iter::once(main).chain(self.includes.roots()).collect();
+        self.reader.report(&roots, report);
         builder.build().map_err(|error| {
             let Error::Model { culprit, message, .. } = error else { return error };
             match self.frames.get(&culprit) {
                 Some(placed) => self.reader.refuse(placed.node, "name", message),
-                None => source.error(Reader::tag(model), message, ""),
+                None => source.error(Reader::tag(placed.by), message, ""),
             }
         })
     }

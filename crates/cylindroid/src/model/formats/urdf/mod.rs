@@ -2,7 +2,7 @@
 //!
 //! Formula  parent_from_child = Trans(xyz) Rz(yaw) Ry(pitch) Rx(roll) motion(axis, q)
 //! Units    m, rad, kg, N, N m, as in the file
-//! Valid    expanded URDF. xacro is rejected with the command that expands it
+//! Valid    expanded URDF. xacro that is not expanded is rejected with the command that does it
 //! Why so   real files are lax, so errors outside the kinematics are reported and never rejected;
 //!          kinematic data are never guessed. This reader is our own, because the existing crate
 //!          drops unknown elements, has no line numbers and reads missing limits as zero
@@ -47,6 +47,15 @@ use crate::spatial::{Pose, Quaternion, Rotation, Rpy, Vec3};
 /// [`Error::File`] with line and column for broken XML, xacro, MJCF and SDF, an invalid number, a
 /// name that is missing or unknown, and everything that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
+    read(text, path, path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xacro")))
+}
+
+/// Reads the URDF that a xacro file expanded to.
+pub(super) fn parse_expanded(text: &str, path: &Path) -> Result<Mechanism> {
+    read(text, path, false)
+}
+
+fn read(text: &str, path: &Path, is_xacro: bool) -> Result<Mechanism> {
     let text = &*xml_limits::without_undeclared(text);
     let mut source = Source { format: "URDF", path, text };
     let document = xml::document(&source)?;
@@ -69,7 +78,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
             return Err(source.error(tag, message, "give a URDF or a mechanism file"));
         }
     }
-    refuse_xacro(&source, root)?;
+    refuse_xacro(&source, root, is_xacro)?;
     let namespace = root.tag_name().namespace();
     let mut reader = Reader::new(source, namespace);
     (reader.owners, reader.why) = (&["link", "joint"], why_unused);
@@ -135,15 +144,14 @@ fn place(reader: &Reader<'_>, robot: Node<'_, '_>, error: Error) -> Error {
 }
 
 /// xacro is recognised by its elements, not by a declared prefix, which expanded files keep.
-fn refuse_xacro(source: &Source<'_>, root: Node<'_, '_>) -> Result<()> {
-    let is_xacro = |n: &Node<'_, '_>| {
+fn refuse_xacro(source: &Source<'_>, root: Node<'_, '_>, is_xacro: bool) -> Result<()> {
+    let of_xacro = |n: &Node<'_, '_>| {
         let text = source.text.get(n.range().start..).unwrap_or("");
         text.starts_with("<xacro:")
             || (n.parent() == Some(root) && matches!(n.tag_name().name(), "macro" | "include"))
     };
-    let extension = source.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xacro"));
-    let element = root.descendants().filter(Node::is_element).find(is_xacro);
-    let Some(node) = element.or(extension.then_some(root)) else { return Ok(()) };
+    let element = root.descendants().filter(Node::is_element).find(of_xacro);
+    let Some(node) = element.or(is_xacro.then_some(root)) else { return Ok(()) };
     Err(xml::xacro(source, Reader::tag(node)))
 }
 
