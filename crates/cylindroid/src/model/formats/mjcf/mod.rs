@@ -186,6 +186,7 @@ impl Mjcf<'_> {
                 self.reader.note(node, what, why, name);
                 continue;
             }
+            self.reader.unread_attributes(node, &["name", "body1", "body2"]);
             let a = self.reader.required(node, "body1")?.trim().to_owned();
             let b = self.reader.required(node, "body2")?.trim().to_owned();
             if [&a, &b].iter().all(|body| self.link_names.contains(*body)) {
