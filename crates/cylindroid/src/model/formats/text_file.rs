@@ -15,6 +15,9 @@ use crate::error::{Error, Result};
 /// The largest model file (bytes): 32 MiB. The largest of 300 public models has 1 MB.
 pub(super) const LARGEST_FILE: u64 = 32 << 20;
 
+/// The bytes of all files that one file includes: 64 MiB.
+pub(super) const LARGEST_INCLUSION: usize = 64 << 20;
+
 /// The text of a file.
 pub(super) struct TextFile {
     pub(super) text: String,

@@ -13,7 +13,7 @@ use roxmltree::{Document, Node};
 use super::attributes::FORMAT;
 use crate::error::{Error, Result, shown};
 use crate::model::formats::span::Source;
-use crate::model::formats::text_file::{self, TextFile};
+use crate::model::formats::text_file::{self, LARGEST_INCLUSION, TextFile};
 use crate::model::formats::xml::{self, Reader};
 use crate::model::formats::xml_limits;
 
@@ -72,6 +72,11 @@ fn read(source: &Source<'_>, file: usize, folder: &Path, found: &mut Vec<Include
         match text_file::read(&path) {
             Ok(TextFile { text, .. }) => {
                 let text = xml_limits::without_undeclared(&text).into_owned();
+                let bytes: usize = found.iter().map(|f| f.text.len()).sum();
+                if bytes + text.len() > LARGEST_INCLUSION {
+                    let limit = LARGEST_INCLUSION >> 20;
+                    return refuse(format!("the files of the model exceed {limit} MiB"), "");
+                }
                 found.push(Included { path, text, place: (file, node.range().start) });
             }
             Err(Error::Io { path, message, .. }) => {

@@ -15,8 +15,9 @@ use roxmltree::{Document, Node};
 use super::FORMAT;
 use crate::error::Result;
 use crate::model::formats::span::Source;
+use crate::model::formats::text_file::{self, LARGEST_INCLUSION};
 use crate::model::formats::xml::Reader;
-use crate::model::formats::{text_file, xml, xml_limits};
+use crate::model::formats::{xml, xml_limits};
 
 /// Included files; a file may be included several times.
 const MOST_FILES: usize = 1000;
@@ -68,6 +69,12 @@ fn read(source: &Source<'_>, file: usize, found: &mut Vec<Included>) -> Result<(
         }
         let text = text_file::read(&path)?.text;
         let text = xml_limits::without_undeclared(&text).into_owned();
+        let bytes: usize = found.iter().map(|f| f.text.len()).sum();
+        if bytes + text.len() > LARGEST_INCLUSION {
+            let limit = LARGEST_INCLUSION >> 20;
+            let message = format!("the files that the model includes exceed {limit} MiB");
+            return Err(source.error(Reader::tag(node), message, ""));
+        }
         found.push(Included { path, text, place: (file, node.range().start) });
     }
     Ok(())
