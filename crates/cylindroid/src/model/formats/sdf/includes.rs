@@ -12,12 +12,13 @@ use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
-use super::FORMAT;
 use crate::error::Result;
 use crate::model::formats::span::Source;
 use crate::model::formats::text_file::{self, LARGEST_INCLUSION};
 use crate::model::formats::xml::Reader;
 use crate::model::formats::{xml, xml_limits};
+
+pub(super) const FORMAT: &str = "SDF";
 
 /// Included files; a file may be included several times.
 const MOST_FILES: usize = 1000;

@@ -26,7 +26,7 @@ use std::path::Path;
 use roxmltree::{Document, Node};
 
 use self::frames::{Frames, MODEL, PosedFrame};
-use self::includes::Includes;
+use self::includes::{FORMAT, Includes};
 use self::joint_entry::JointEntry;
 use super::mesh::Packages;
 use super::span::Source;
@@ -35,8 +35,6 @@ use super::xml_limits;
 use crate::error::Result;
 use crate::model::{Link, Mechanism};
 use crate::spatial::Pose;
-
-const FORMAT: &str = "SDF";
 
 /// Attributes of `<pose>`.
 const POSE: [&str; 4] = ["relative_to", "frame", "rotation_format", "degrees"];

@@ -6,8 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
+use super::includes::FORMAT;
 use super::joint_entry::JointEntry;
-use super::{FORMAT, MODEL, POSE, Placed, Sdf};
+use super::{MODEL, POSE, Placed, Sdf};
 use crate::error::{Error, Result};
 use crate::model::builder::Builder;
 use crate::model::formats::graph::{Branch, Coupling, Rank, spanning_tree};
