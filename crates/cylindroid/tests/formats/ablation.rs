@@ -37,9 +37,14 @@ fn ablate(name: &str, text: &str, read: impl Fn(&str) -> Result<Mechanism>) {
     let mut silent = Vec::new();
     for range in numbers(text) {
         let x: f64 = text[range.clone()].parse().unwrap();
-        let other = if x.fract() == 0.0 { format!("{}", x + 1.0) } else { format!("{}", x * 1.25) };
-        let changed = format!("{}{other}{}", &text[..range.start], &text[range.end..]);
-        let Ok(m) = read(&changed) else { continue };
+        // One change may leave the same direction, or the larger of two bounds.
+        let near = if x.fract() == 0.0 { x + 1.0 } else { x * 1.25 };
+        let others = [near, -x - 0.5, 10.0 * x].map(|other| {
+            let changed = format!("{}{other}{}", &text[..range.start], &text[range.end..]);
+            read(&changed).ok()
+        });
+        let [Some(m), Some(second), Some(third)] = others else { continue };
+        let same = [&m, &second, &third].iter().all(|m| content(m) == whole);
         let line = text[..range.start].matches('\n').count() + 1;
         // Notes of the same kind are one, with the line of the first; a note of an element is one
         // of all that it contains.
@@ -56,7 +61,7 @@ fn ablate(name: &str, text: &str, read: impl Fn(&str) -> Result<Mechanism>) {
                 .ignored
                 .iter()
                 .any(|i| i.line == line || says.iter().any(|s| i.what.contains(s.as_str())));
-        if content(&m) == whole && !noted {
+        if same && !noted {
             let start = text[..range.start].rfind('\n').map_or(0, |i| i + 1);
             silent.push(format!(
                 "{name}:{line}: {} in {}",
@@ -88,11 +93,11 @@ fn open_tags(before: &str) -> Vec<&str> {
 fn lines(text: &str) -> String {
     let mut out = String::new();
     let mut inside = false;
-    for c in text.chars() {
+    for c in text.trim_start().chars() {
         match c {
             '<' => {
                 inside = true;
-                out.push_str("\n<");
+                out.push_str(if out.is_empty() { "<" } else { "\n<" });
             }
             '>' => {
                 inside = false;

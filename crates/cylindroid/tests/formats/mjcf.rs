@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cylindroid::model::{JointKind, formats};
+use cylindroid::model::{Geometry, JointKind, Visual, formats};
 use cylindroid::spatial::Quaternion;
 use cylindroid::{Mechanism, Pose, Result, Vec3};
 use serde_json::Value;
@@ -229,14 +229,16 @@ fn equality_constraints_are_loops_and_couplings() {
     let mimic = follow.mimic.as_ref().unwrap();
     assert_eq!((mimic.joint.as_str(), mimic.multiplier), ("turn", -0.5));
     assert!((mimic.offset - (0.1 + 5f64.to_radians())).abs() < 1e-15);
+    let crank = m.links().iter().find(|l| l.name == "crank").unwrap();
+    let is_ellipsoid = |v: &Visual| matches!(v.geometry, Geometry::Ellipsoid { .. });
+    assert!(crank.visuals.iter().any(is_ellipsoid), "{:?}", crank.visuals);
+    assert_eq!(m.links()[0].visuals[0].geometry, Geometry::HalfSpace);
     let said = report(&m);
     for what in [
         "<joint> in <equality> (bent): only linear couplings",
         "<weld> that is not active (off)",
         "<general> at a tendon (m3)",
         "<fixed> in <tendon> (cable): it is not read",
-        "<geom> of type ellipsoid (crank)",
-        "<geom> of type plane",
         "attribute 'damping' of <joint>: springs",
         "<key> (other)",
         "<option>",

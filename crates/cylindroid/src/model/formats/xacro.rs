@@ -6,7 +6,7 @@
 //! Fails    what the program refuses; more than [`LARGEST_FILE`] of output, or more than
 //!          [`LONGEST`]
 //! Why so   xacro evaluates Python expressions, so nothing but Python expands all of it
-//! Checked  tests/formats/load.rs; with a program, by the tests of the command line (xacro.rs)
+//! Checked  tests/formats/load.rs
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;
