@@ -129,7 +129,8 @@ const SDF: &str = "<sdf version='1.9'><model name='m'><pose degrees='1'>1 2 3 4 
 <link name='a'><inertial><mass>2</mass><density>3</density><pose>1 2 3 0 0 0</pose><inertia><ixx>1</ixx><ixy>2</ixy><ixz>3</ixz><iyy>4</iyy><iyz>5</iyz><izz>6</izz></inertia></inertial>
 <visual name='v'><geometry><box><size>1 2 3</size><bevel>1</bevel></box></geometry><transparency>0.5</transparency><material><diffuse>1 0 0 1</diffuse><specular>1 1 1 1</specular></material></visual></link>
 <link name='b'><gravity>1</gravity><collision name='c'><geometry><cylinder><radius>1</radius><length>2</length></cylinder></geometry><max_contacts>3</max_contacts></collision></link>
-<link name='c'/><link name='d'/>
+<link name='c'><collision name='e'><geometry><ellipsoid><radii>1 2 3</radii></ellipsoid></geometry></collision>
+<collision name='p'><geometry><plane><normal>0 1 2</normal><size>3 4</size></plane></geometry></collision></link><link name='d'/>
 <frame name='f' attached_to='b'><pose>1 2 3 0 0 0</pose><weight>3</weight></frame>
 <joint name='j' type='revolute'><parent weight='2'>a</parent><child>b</child><pose>1 2 3 0 0 0</pose><axis><xyz w='2'>0 0 1</xyz><limit><lower>-1</lower><upper>1</upper><effort>3</effort><velocity>4</velocity><stiffness>5</stiffness></limit><dynamics><damping>3</damping></dynamics></axis></joint>
 <joint name='k' type='revolute'><parent>b</parent><child>c</child><axis><xyz>0 1 0</xyz><mimic joint='j' delay='3'><multiplier>2</multiplier><offset>3</offset><reference>4</reference><speed>5</speed></mimic></axis></joint>

@@ -121,6 +121,8 @@ impl Reader<'_> {
             "box" => &["size"],
             "sphere" => &["radius"],
             "cylinder" | "capsule" => &["radius", "length"],
+            "ellipsoid" => &["radii"],
+            "plane" => &["normal"],
             _ => &["uri", "scale"],
         };
         self.leftovers(node, &[], children);
