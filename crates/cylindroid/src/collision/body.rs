@@ -45,6 +45,16 @@ pub(super) fn refused(option: &'static str, value: &str, reason: String) -> Erro
 
 /// The convex shape of a geometry and its pose there; the reason why there is none.
 pub(super) fn convex(geometry: &Geometry, meshes: MeshShape) -> Result<(Convex, Pose), String> {
+    let (shape, pose) = unbounded(geometry, meshes)?;
+    let size = shape.core.bound() + shape.radius;
+    if matches!(shape.core, Core::HalfSpace) || (size * size).is_finite() {
+        return Ok((shape, pose));
+    }
+    Err("it is too large".to_owned())
+}
+
+/// [`convex`] of any size.
+fn unbounded(geometry: &Geometry, meshes: MeshShape) -> Result<(Convex, Pose), String> {
     let lengths = |all: &[f64]| {
         if all.iter().all(|x| *x >= 0.0 && x.is_finite()) {
             return Ok(());

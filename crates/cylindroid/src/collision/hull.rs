@@ -39,7 +39,7 @@ impl Hull {
             high = Vec3::new(high.x.max(v.x), high.y.max(v.y), high.z.max(v.z));
         }
         let center = (low + high) * 0.5;
-        vertices.iter_mut().for_each(|v| *v = *v - center);
+        vertices.iter_mut().for_each(|v| *v -= center);
         let bound = vertices.iter().map(|v| v.norm()).fold(0.0, f64::max);
         let (first, neighbours) = adjacency(vertices.len(), &triangles);
         let farthest = |d: Vec3| {

@@ -36,7 +36,7 @@ pub struct CollisionOptions {
     pub samples: usize,
     /// Seed of the random configurations.
     pub seed: u64,
-    /// A pair whose distance stays above this [m] never touches.
+    /// A pair whose distance stays above this (m) never touches.
     pub never_margin: f64,
 }
 

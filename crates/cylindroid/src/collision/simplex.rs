@@ -56,10 +56,10 @@ impl Simplex {
             _ => tetrahedron(&p)?,
         };
         let mut kept = 0;
-        for i in 0..self.count {
-            if weights[i] > 0.0 {
+        for (i, weight) in weights.into_iter().enumerate().take(self.count) {
+            if weight > 0.0 {
                 self.vertices[kept] = self.vertices[i];
-                self.weights[kept] = weights[i];
+                self.weights[kept] = weight;
                 kept += 1;
             }
         }

@@ -187,6 +187,7 @@ fn shapes_without_sense_are_refused() {
     for bad in [
         Geometry::Sphere { radius: -1.0 },
         Geometry::Sphere { radius: f64::NAN },
+        Geometry::Box { size: Vec3::new(1e200, 1.0, 1.0) },
         Geometry::ConvexHull { points: Vec::new() },
         Geometry::ConvexHull { points: vec![Vec3::new(f64::INFINITY, 0.0, 0.0)] },
         Geometry::Mesh { uri: "a.stl".into(), path: None, scale: Vec3::X },
