@@ -38,7 +38,7 @@ rpy = [0, 1.5707963267948966, 0]
 
 @pytest.fixture
 def arm():
-    return cy.parse(ARM)
+    return cy.parse(ARM, format="toml")
 
 
 def test_distances(arm):

@@ -63,7 +63,7 @@ use crate::mechanism::PyMechanism;
 /// ... link = "hook"
 /// ... shape = "sphere"
 /// ... radius = 0.1
-/// ... ''')
+/// ... ''', format="toml")
 /// >>> model = cy.CollisionModel(crane)
 /// >>> model.add_obstacle("floor", "half_space", [0, 0, -1])
 /// >>> near = model.near([0.5], margin=2.0)

@@ -12,13 +12,20 @@
 
 use super::scene::NearPair;
 use crate::kinematics::{State, Tip};
-use crate::spatial::Vec3;
+use crate::spatial::{Pose, Vec3};
 
 /// The gradient of the distance of a pair over all coordinates, into `row` (n entries).
 pub(super) fn gradient_into(state: &State, near: &NearPair, row: &mut [f64]) {
     row.fill(0.0);
     let mechanism = state.mechanism();
-    let tip = |link: Option<usize>| link.map(|l| state.tip(mechanism.link_frame(l).into()));
+    let tip = |link: Option<usize>| {
+        link.map(|l| Tip {
+            nodes: mechanism.nodes(),
+            slots: state.slots(),
+            slot: mechanism.frames()[l].slot,
+            world_from_tip: Pose::IDENTITY, // its columns are taken at the closest point
+        })
+    };
     let (a, b) = (tip(near.link_a), tip(near.link_b));
     let shared = a.as_ref().zip(b.as_ref()).map_or(0, |(a, b)| a.common_slot(b));
     let mut add = |tip: Option<Tip<'_>>, point: Vec3, normal: Vec3| {
