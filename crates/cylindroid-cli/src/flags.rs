@@ -43,6 +43,11 @@ pub(crate) fn named(error: anyhow::Error, words: &[String]) -> anyhow::Error {
             let Some(flag) = flag_of(name) else { return error };
             Error::NotFinite { what: flag + entry, value: *value }.into()
         }
+        Some(Error::OutOfRange { what, value, range }) => {
+            let (name, entry) = what.split_at(what.find('[').unwrap_or(what.len()));
+            let Some(flag) = flag_of(name) else { return error };
+            Error::OutOfRange { what: flag + entry, value: *value, range: *range }.into()
+        }
         Some(Error::Dimension { what, expected, got, hint }) => {
             let Some(flag) = flag_of(what) else { return error };
             let (expected, got, hint) = (*expected, *got, hint.clone());

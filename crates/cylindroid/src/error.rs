@@ -64,6 +64,17 @@ pub enum Error {
         value: f64,
     },
 
+    /// A finite number whose products would not be finite.
+    #[error("{what} = {value:e} is out of range: magnitudes up to {range:e} are accepted")]
+    OutOfRange {
+        /// The argument, with its index or joint name if it has one.
+        what: String,
+        /// The offending value.
+        value: f64,
+        /// The largest magnitude accepted.
+        range: f64,
+    },
+
     /// An argument outside its domain.
     #[error("{option}{}: {reason}", refused(value))]
     InvalidOption {
@@ -128,6 +139,18 @@ impl Error {
         match values.iter().position(|v| !v.is_finite()) {
             None => Ok(()),
             Some(i) => Err(Self::NotFinite { what: format!("{what}[{i}]"), value: values[i] }),
+        }
+    }
+
+    /// Returns an error for the first entry of `values` that is NaN, infinite or of a magnitude
+    /// beyond `range`.
+    pub fn check_within(what: &str, values: &[f64], range: f64) -> Result<()> {
+        Self::check_finite(what, values)?;
+        match values.iter().position(|x| x.abs() > range) {
+            None => Ok(()),
+            Some(i) => {
+                Err(Self::OutOfRange { what: format!("{what}[{i}]"), value: values[i], range })
+            }
         }
     }
 
@@ -220,6 +243,21 @@ pub(crate) fn all_finite(values: &[f64]) -> bool {
     sums.iter().sum::<f64>() + rest == 0.0
 }
 
+/// True if all numbers are finite and at most `range` in magnitude, up to the root of their number:
+/// the sum of their squares says so without a branch. False needs a closer look.
+#[inline]
+pub(crate) fn all_within(values: &[f64], range: f64) -> bool {
+    let (eights, rest) = values.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for eight in eights {
+        for (sum, x) in sums.iter_mut().zip(eight) {
+            *sum += x * x;
+        }
+    }
+    let rest: f64 = rest.iter().map(|x| x * x).sum();
+    sums.iter().sum::<f64>() + rest <= range * range
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -239,6 +277,22 @@ mod tests {
                 for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                     values[i] = bad;
                     assert!(!all_finite(&values), "{bad} at {i} of {n}");
+                }
+                values[i] = 0.0;
+            }
+        }
+    }
+
+    #[test]
+    fn a_number_out_of_range_is_found_anywhere() {
+        for n in 1..=17 {
+            let mut values = vec![1e90; n];
+            assert!(all_within(&values, 1e100) && !all_within(&values, 1e90 * 0.9));
+            for i in 0..n {
+                for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e101, -f64::MAX] {
+                    values[i] = bad;
+                    assert!(!all_within(&values, 1e100), "{bad} at {i} of {n}");
+                    assert!(Error::check_within("q", &values, 1e100).is_err());
                 }
                 values[i] = 0.0;
             }

@@ -20,6 +20,10 @@ pub const SMALL_TANGENT: f64 = 1e-3;
 /// print six digits.
 pub const ORTHONORMAL: f64 = 1e-5;
 
+/// Numbers of models, configurations, velocities and poses are at most this in magnitude: their
+/// squares and the products with one another are finite, so that finite input gives finite results.
+pub const MAX_MAGNITUDE: f64 = 1e120;
+
 /// A vector shorter than this [-] has no direction (axes in files are near unit length).
 pub const ZERO_AXIS: f64 = 1e-9;
 

@@ -166,6 +166,9 @@ impl Complaint {
             }
             Error::Dimension { what, hint, .. } => (what.clone(), hint.clone()),
             Error::NotFinite { what, .. } => (what.clone(), "give finite values".to_owned()),
+            Error::OutOfRange { what, range, .. } => {
+                (what.clone(), format!("give magnitudes up to {range:e}"))
+            }
             Error::InvalidOption { option, reason, .. } => ((*option).to_owned(), reason.clone()),
             Error::Model { model, culprit, message } => {
                 let culprit = if culprit.is_empty() { model } else { culprit };

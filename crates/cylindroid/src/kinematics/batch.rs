@@ -53,6 +53,9 @@ impl KinematicsBatch {
     pub const CHUNK: usize = 4096;
 
     /// For an end effector.
+    ///
+    /// # Panics
+    /// If the frame is of another mechanism.
     #[must_use]
     pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
         Self { mechanism: mechanism.clone(), chain: Chain::new(mechanism, of) }

@@ -44,6 +44,9 @@ impl Chain {
     /// # let _ = world_from_tool;
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    ///
+    /// # Panics
+    /// If the frame is of another mechanism.
     #[must_use]
     pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
         let (path, slot_from_tool) = path(mechanism, of.into());

@@ -8,7 +8,7 @@
 //! Frame    world
 //! Valid    any joint; a joint without an axis (spherical, fixed) has the z axis of its frame. The
 //!          second axis of a universal joint is in its kind
-//! Checked  tests/it/kinematics.rs::joint_axes_*, contact_points_*
+//! Checked  tests/it/joint_axes.rs
 
 use super::State;
 use crate::screws::Line;

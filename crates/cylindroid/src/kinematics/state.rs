@@ -10,9 +10,9 @@ use crate::spatial::{AlignedPose, Pose, Twist, Vec3};
 
 /// A frame of a mechanism and a tool point fixed to it.
 ///
-/// Functions that take one and return no [`Result`] panic if the frame is of another mechanism
-/// ([`Mechanism::check_frame`] asks beforehand); a tool that is not finite gives numbers that are
-/// not finite.
+/// For the frame of another mechanism, functions that return a [`Result`] return an error, and the
+/// others panic ([`Mechanism::check_frame`] asks beforehand). A tool that is not finite gives
+/// numbers that are not finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffector {
     /// The frame.
@@ -111,6 +111,9 @@ impl State {
     /// assert!((state.pose(tip).translation - flange.translation).norm() - 0.1 < 1e-15);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    ///
+    /// # Panics
+    /// If the frame is of another mechanism.
     #[doc(alias = "forward kinematics")]
     #[must_use]
     pub fn pose(&self, of: impl Into<EndEffector>) -> Pose {
@@ -139,6 +142,9 @@ impl State {
     /// assert!(product.iter().zip(twist.to_array()).all(|(a, b)| (a - b).abs() < 1e-14));
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    ///
+    /// # Panics
+    /// If the frame is of another mechanism.
     #[doc(alias = "geometric Jacobian")]
     #[must_use]
     pub fn jacobian(&self, of: impl Into<EndEffector>, reference: ReferenceFrame) -> Matrix {
@@ -164,7 +170,7 @@ impl State {
     /// ```
     ///
     /// # Panics
-    /// If `out` is not 6 x n.
+    /// If `out` is not 6 x n, or the frame is of another mechanism.
     pub fn jacobian_into(
         &self,
         of: impl Into<EndEffector>,
@@ -236,16 +242,18 @@ impl State {
     /// ```
     ///
     /// # Errors
-    /// Joint velocities of the wrong size or non-finite.
+    /// Joint velocities of the wrong size, non-finite or out of range; a frame of another mechanism.
     pub fn jacobian_dot(
         &self,
         velocities: &[f64],
         of: impl Into<EndEffector>,
         reference: ReferenceFrame,
     ) -> Result<Matrix> {
+        let of = of.into();
+        self.mechanism.check_frame(of.frame)?;
         self.mechanism.check_q("velocities", velocities)?;
         let mut out = Matrix::zeros(6, self.mechanism.n());
-        self.tip(of.into()).jacobian_dot_into(velocities, reference, &mut out);
+        self.tip(of).jacobian_dot_into(velocities, reference, &mut out);
         Ok(out)
     }
 
@@ -266,6 +274,9 @@ impl State {
     /// assert_eq!(hessian.len(), robot.n()); // dJ/dq_k for each coordinate k
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    ///
+    /// # Panics
+    /// If the frame is of another mechanism.
     #[must_use]
     pub fn hessian(&self, of: impl Into<EndEffector>, reference: ReferenceFrame) -> Vec<Matrix> {
         let n = self.mechanism.n();
@@ -285,6 +296,9 @@ impl State {
     /// assert!(analytical.exists);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    ///
+    /// # Panics
+    /// If the frame is of another mechanism.
     #[must_use]
     pub fn analytical_jacobian(
         &self,
@@ -310,15 +324,17 @@ impl State {
     /// ```
     ///
     /// # Errors
-    /// Joint velocities of the wrong size or non-finite.
+    /// Joint velocities of the wrong size, non-finite or out of range; a frame of another mechanism.
     pub fn twist(
         &self,
         velocities: &[f64],
         of: impl Into<EndEffector>,
         reference: ReferenceFrame,
     ) -> Result<Twist> {
+        let of = of.into();
+        self.mechanism.check_frame(of.frame)?;
         self.mechanism.check_q("velocities", velocities)?;
-        let tip = self.tip(of.into());
+        let tip = self.tip(of);
         let world = tip.world_twist(velocities);
         let pose = tip.world_from_tip;
         Ok(match reference {

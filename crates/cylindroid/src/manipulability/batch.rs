@@ -188,18 +188,26 @@ impl ManipulabilityBatch {
         Ok(out)
     }
 
-    /// [`ManipulabilityBatch::analyse`] into `out`.
+    /// [`ManipulabilityBatch::analyse`] into `out`. Of a mechanism without coordinates, which has
+    /// one configuration, it is written as often as `out` has room.
     ///
     /// # Errors
     /// As there; an `out` of another size.
     pub fn analyse_into(&self, q: &[f64], out: &mut [f64]) -> Result<()> {
-        let count = self.mechanism.count_rows("q", q)?;
+        let n = self.mechanism.n();
+        let count = match n {
+            0 => out.len() / Self::WIDTH,
+            _ => self.mechanism.count_rows("q", q)?,
+        };
         self.mechanism.check_rows("q", q)?;
         if out.len() != count * Self::WIDTH {
             return Err(Error::rows("results", count * Self::WIDTH, out.len(), Self::WIDTH));
         }
-        let n = self.mechanism.n();
         if n == 0 {
+            let mut rows = out.chunks_exact_mut(Self::WIDTH);
+            let Some(first) = rows.next() else { return Ok(()) };
+            first.copy_from_slice(&self.single(&[], &mut None)?);
+            rows.for_each(|row| row.copy_from_slice(first));
             return Ok(());
         }
         let q = q.chunks(Self::CHUNK * n).enumerate();

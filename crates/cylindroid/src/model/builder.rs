@@ -17,6 +17,7 @@ use super::joint::Joint;
 use super::joint_spec::JointSpec;
 use super::link::{Collision, Link};
 use super::loop_joint::{LoopJoint, LoopJointSpec};
+use super::magnitude;
 use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
 use super::tree_order::{TreeOrder, default_tool};
@@ -388,8 +389,8 @@ impl Builder {
                     format!("'{name}' names two frames (links are frames too); rename one"),
                 );
             }
-            if !pose.is_finite() {
-                return self.refuse(name, format!("the pose of frame '{name}' is not finite"));
+            if let Some(fault) = magnitude::pose_fault(pose) {
+                return self.refuse(name, format!("the pose of frame '{name}' {fault}"));
             }
             frames.push(flat.frame(name.clone(), index, *pose));
         }

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use super::curvature::ContactCurvature;
 use super::dimension::Dimension;
 use super::loop_joint::ends;
+use super::magnitude;
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Vec3};
 
@@ -159,8 +160,9 @@ impl ContactSpec {
     ) -> std::result::Result<Contact, String> {
         let name = self.name.as_str();
         let (a, b) = ends("contact", name, [&self.a, &self.b], links)?;
-        if !(self.link_a_from_contact.is_finite() && self.link_b_from_contact.is_finite()) {
-            return Err(format!("the place of contact '{name}' is not finite"));
+        let places = [&self.link_a_from_contact, &self.link_b_from_contact];
+        if let Some(fault) = places.into_iter().find_map(magnitude::pose_fault) {
+            return Err(format!("the place of contact '{name}' {fault}"));
         }
         if self.friction.is_some_and(|mu| !(mu >= 0.0 && mu.is_finite())) {
             return Err(format!(

@@ -4,6 +4,7 @@
 
 use super::dimension::Dimension;
 use super::joint::{JointKind, Limits, Mimic};
+use super::magnitude;
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
@@ -68,8 +69,9 @@ impl JointSpec {
 
     /// The first fault of the specification, if any.
     pub(super) fn fault(&self, dimension: Dimension) -> Option<String> {
-        if !(self.parent_from_joint.is_finite() && self.joint_from_child.is_finite()) {
-            return Some(format!("the origin of joint '{}' is not finite", self.name));
+        let origins = [&self.parent_from_joint, &self.joint_from_child];
+        if let Some(fault) = origins.into_iter().find_map(magnitude::pose_fault) {
+            return Some(format!("the origin of joint '{}' {fault}", self.name));
         }
         if !(self.armature >= 0.0 && self.armature.is_finite()) {
             let (name, armature) = (&self.name, self.armature);
@@ -127,11 +129,15 @@ pub(super) fn fault(
         ));
     }
     if let JointKind::Helical { pitch } = kind
-        && !pitch.is_finite()
+        && let Some(fault) = magnitude::fault(&[pitch])
     {
-        return Some(format!("the pitch of joint '{name}' is {pitch}"));
+        return Some(format!("the pitch of joint '{name}' {fault}"));
     }
     let l = limits;
+    let all = [l.lower, l.upper, l.velocity, l.acceleration, l.effort];
+    if let Some(fault) = magnitude::bound_fault(&all) {
+        return Some(format!("a limit of joint '{name}' {fault}; for no limit use infinity"));
+    }
     if l.lower.is_nan() || l.upper.is_nan() || l.lower > l.upper {
         return Some(format!(
             "joint '{name}' has lower limit {} above its upper limit {}; exchange them",

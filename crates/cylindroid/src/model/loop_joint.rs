@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use super::dimension::Dimension;
 use super::joint::{JointKind, Limits};
 use super::joint_spec;
+use super::magnitude;
 use crate::error::Error;
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
@@ -109,8 +110,9 @@ impl LoopJointSpec {
     ) -> Result<LoopJoint, String> {
         let name = self.name.as_str();
         let (a, b) = ends("joint", name, [&self.a, &self.b], links)?;
-        if !(self.link_a_from_joint.is_finite() && self.link_b_from_joint.is_finite()) {
-            return Err(format!("the place of joint '{name}' is not finite"));
+        let places = [&self.link_a_from_joint, &self.link_b_from_joint];
+        if let Some(fault) = places.into_iter().find_map(magnitude::pose_fault) {
+            return Err(format!("the place of joint '{name}' {fault}"));
         }
         if let Some(fault) = joint_spec::fault(name, self.kind, self.axis, &self.limits, dimension)
         {

@@ -12,9 +12,10 @@ use super::link::Link;
 use super::loop_joint::LoopJoint;
 use super::node::{Node, NodeKind};
 use super::report::LoadReport;
-use crate::error::{Error, Result, all_finite};
+use crate::error::{Error, Result, all_within};
 use crate::scalar::fnv1a;
 use crate::spatial::{Pose, Rotation, Twist, Vec3, exp};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// A robot or mechanism. Immutable; clones share the data.
 #[derive(Debug, Clone)]
@@ -377,7 +378,7 @@ impl Mechanism {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Dimension`], [`Error::NotFinite`].
+    /// [`Error::Dimension`], [`Error::NotFinite`], [`Error::OutOfRange`].
     pub fn check_q(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.n() {
             let names: Vec<&str> = self.data.coordinates.iter().map(|c| c.name.as_str()).collect();
@@ -388,15 +389,19 @@ impl Mechanism {
                 hint: format!("in this order: {}", names.join(", ")),
             });
         }
-        if all_finite(q) {
+        if all_within(q, MAX_MAGNITUDE) {
             return Ok(());
         }
-        match q.iter().position(|x| !x.is_finite()) {
+        let entry = |i: usize| format!("{what}[{i}] ({})", self.data.coordinates[i].name);
+        if let Some(i) = q.iter().position(|x| !x.is_finite()) {
+            return Err(Error::NotFinite { what: entry(i), value: q[i] });
+        }
+        match q.iter().position(|x| x.abs() > MAX_MAGNITUDE) {
             None => Ok(()),
-            Some(i) => Err(Error::NotFinite {
-                what: format!("{what}[{i}] ({})", self.data.coordinates[i].name),
-                value: q[i],
-            }),
+            Some(i) => {
+                let (what, value, range) = (entry(i), q[i], MAX_MAGNITUDE);
+                Err(Error::OutOfRange { what, value, range })
+            }
         }
     }
 
@@ -412,9 +417,9 @@ impl Mechanism {
     /// Returns an error for rows of n values with a non-finite one, naming row and joint.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::Dimension`] for an incomplete last row.
+    /// [`Error::NotFinite`], [`Error::OutOfRange`]; [`Error::Dimension`] for an incomplete last row.
     pub fn check_rows(&self, what: &str, rows: &[f64]) -> Result<()> {
-        if all_finite(rows) {
+        if all_within(rows, MAX_MAGNITUDE) {
             return Ok(());
         }
         let mut rows = rows.chunks(self.n().max(1)).enumerate();
@@ -455,7 +460,7 @@ impl Mechanism {
     pub fn integrate(&self, q: &[f64], rates: &[f64], dt: f64) -> Result<Vec<f64>> {
         self.check_q("q", q)?;
         self.check_q("rates", rates)?;
-        Error::check_finite("dt", &[dt])?;
+        Error::check_within("dt", &[dt], MAX_MAGNITUDE)?;
         let mut next = q.to_vec();
         self.integrate_in_place(&mut next, rates, dt);
         Ok(next)

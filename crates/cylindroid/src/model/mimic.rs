@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 
 use super::builder::Builder;
+use super::magnitude;
 use crate::error::{Error, Result};
 
 impl Builder {
@@ -32,10 +33,10 @@ impl Builder {
                 }
                 offset += multiplier * mimic.offset;
                 multiplier *= mimic.multiplier;
-                if !(multiplier.is_finite() && offset.is_finite()) {
+                if let Some(fault) = magnitude::fault(&[multiplier, offset]) {
                     return self.refuse(
                         name,
-                        format!("the multiplier and offset of mimic joint '{name}' must be finite"),
+                        format!("the multiplier or offset of mimic joint '{name}' {fault}"),
                     );
                 }
                 let Some(&j) = by_name.get(mimic.joint.as_str()) else {

@@ -23,6 +23,7 @@ mod joint_spec;
 mod joint_transform;
 mod link;
 mod loop_joint;
+pub(crate) mod magnitude;
 mod mechanism;
 mod mimic;
 mod natural_order;

@@ -12,6 +12,7 @@ use super::rotation::Rotation;
 use super::twist::{Twist, Wrench};
 use super::vec3::{Mat3, Vec3};
 use crate::error::{Error, Result};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// The pose of frame b relative to frame a: `a_from_b`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -65,7 +66,7 @@ impl Pose {
     /// A non-finite matrix, whose rotation part is not a rotation, or whose last row is
     /// not 0 0 0 1.
     pub fn from_matrix(m: [[f64; 4]; 4]) -> Result<Self> {
-        Error::check_finite("pose matrix", m.as_flattened())?;
+        Error::check_within("pose matrix", m.as_flattened(), MAX_MAGNITUDE)?;
         if m[3] != [0.0, 0.0, 0.0, 1.0] {
             return Err(Error::InvalidOption {
                 option: "pose matrix",

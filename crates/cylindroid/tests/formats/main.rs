@@ -15,6 +15,7 @@ mod fk;
 mod lax;
 mod limits;
 mod load;
+mod magnitudes;
 mod mechanism_file;
 mod mjcf;
 mod mujoco;

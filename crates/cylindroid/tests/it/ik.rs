@@ -373,11 +373,11 @@ fn bad_requests_are_named() {
     assert!(!solve(&panda, &[Goal::pose(base, there)], &options).unwrap().success);
 }
 
-/// Limits near the largest number, whose arithmetic overflows: no success with NaN.
+/// Limits whose arithmetic overflows are no success with NaN, and those beyond the range of models
+/// are refused.
 #[test]
 fn limits_that_overflow_are_no_success() {
-    let robot = from_text(
-        r#"
+    let text = r#"
         name = "arm"
         reference = "hand"
         reference_point = [1.0, 0.2, 0.3]
@@ -395,9 +395,13 @@ fn limits_that_overflow_are_no_success() {
         origin = [0.5, 0.0, 0.3]
         axis = [0, 1, 0]
         pitch = 0.01
-        limits = { lower = 1e308 }
-        "#,
-    );
+        limits = { lower = 1e120 }
+        "#;
+    let robot = from_text(text);
+    let beyond = text.replace("1e120", "1e308");
+    let refused =
+        cylindroid::load_text(&beyond, std::path::Path::new("arm.toml")).unwrap_err().to_string();
+    assert!(refused.contains("lower is 1e308, out of range"), "{refused}");
     let at = Pose::from_translation(Vec3::new(0.9, 0.3, 0.3));
     for task in [Task::POSITION, Task::POSE] {
         let goal = Goal { task, ..Goal::pose(robot.tool(), at) };
@@ -433,4 +437,40 @@ fn other_joints_are_within_their_limits() {
     let pose = robot.state(&[0.3, 0.7]).unwrap().pose(robot.tool());
     let found = solve(&robot, &[Goal::pose(robot.tool(), pose)], &IkOptions::default()).unwrap();
     assert!(found.success && robot.outside_limits(&found.q).next().is_none(), "{found:?}");
+}
+
+/// Full turns towards the initial guess are for joints that rotate, and only within their limits: a
+/// slide of the same numbers stays where it is.
+#[test]
+fn full_turns_leave_slides_and_limits_alone() {
+    for (upper, expected) in [(4.5, -2.3 + 2.0 * std::f64::consts::PI), (3.9, -2.3)] {
+        let text = format!(
+            r#"
+            name = "crane"
+            reference = "hook"
+            [[joint]]
+            name = "slide"
+            type = "prismatic"
+            between = ["ground", "cart"]
+            origin = [0, 0, 0]
+            axis = [0, 0, 1]
+            limits = {{ lower = -20, upper = 20 }}
+            [[joint]]
+            name = "turn"
+            type = "revolute"
+            between = ["cart", "hook"]
+            origin = [0, 0, 0]
+            axis = [0, 0, 1]
+            limits = {{ lower = -4.5, upper = {upper} }}
+            "#
+        );
+        let robot = from_text(&text);
+        let target = robot.state(&[1.0, -2.3]).unwrap().pose(robot.tool());
+        let initial_guess = Some(vec![9.0, 3.8]);
+        let options = IkOptions { initial_guess, nearest: true, ..IkOptions::default() };
+        let found = solve(&robot, &[Goal::pose(robot.tool(), target)], &options).unwrap();
+        assert!(found.success, "{found:?}");
+        let error = (found.q[0] - 1.0).abs().max((found.q[1] - expected).abs());
+        assert!(error < 1e-5, "{:?} for 1 and {expected}", found.q);
+    }
 }

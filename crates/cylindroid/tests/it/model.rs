@@ -38,8 +38,8 @@ fn limits_leave_a_finite_position() {
     }
     // Also where a follower would leave none: it is noted, and the limits of the leader hold.
     let follower = JointSpec {
-        mimic: Some(Mimic { joint: "leader".into(), multiplier: 1e-10, offset: 0.0 }),
-        limits: Limits { lower: 1e300, upper: f64::INFINITY, ..Limits::NONE },
+        mimic: Some(Mimic { joint: "leader".into(), multiplier: 1e-200, offset: 0.0 }),
+        limits: Limits { lower: 1e115, upper: f64::INFINITY, ..Limits::NONE },
         ..JointSpec::new("follower", JointKind::Revolute, "b", "c")
     };
     let leader = JointSpec::new("leader", JointKind::Revolute, "a", "b");

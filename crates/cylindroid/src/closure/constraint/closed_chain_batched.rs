@@ -91,6 +91,7 @@ pub(crate) struct BatchedClosureError<R> {
 impl BatchedConstraintPlan {
     /// For a mechanism, its reference frame and a characteristic length.
     pub(crate) fn of(mechanism: &Mechanism, reference: FrameId, length: f64) -> Result<Self> {
+        mechanism.check_frame(reference)?;
         let columns = Columns::of(mechanism, &constraint_rows::joints_with_rate(mechanism));
         let actuated = columns.actuated.len();
         let column = |(is_actuated, place): (bool, usize)| {

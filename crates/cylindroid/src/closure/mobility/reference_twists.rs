@@ -34,6 +34,7 @@ use crate::spatial::Twist;
 /// As [`ClosedChain::of`].
 pub fn frame_twists(state: &State, of: impl Into<EndEffector>) -> Result<Vec<Twist>> {
     let (mechanism, of) = (state.mechanism(), of.into());
+    mechanism.check_frame(of.frame)?;
     if mechanism.is_closed() {
         return Ok(ClosedChain::of(state, Some(of.frame), None)?.reference_twists(state));
     }

@@ -141,7 +141,8 @@ impl OperationModes {
 /// ```
 ///
 /// # Errors
-/// A configuration of the wrong size or with non-finite values; zero starts.
+/// A configuration of the wrong size or with non-finite values; zero starts; a frame of another
+/// mechanism.
 #[doc(alias = "kinematotropic")]
 #[doc(alias = "configuration space components")]
 pub fn operation_modes(
@@ -151,6 +152,7 @@ pub fn operation_modes(
     options: ModeOptions,
 ) -> Result<OperationModes> {
     check_starts(options)?;
+    reference.map_or(Ok(()), |frame| mechanism.check_frame(frame))?;
     let all: Vec<usize> = (0..mechanism.n()).collect();
     let landmarks = Landmarks::of(mechanism);
     let places = landmarks.at(&link_poses(&mechanism.state(q)?));

@@ -13,7 +13,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::span::{IgnoredLog, Source};
 use super::xml_limits;
 use crate::error::{Error, Result};
-use crate::model::LoadReport;
+use crate::model::{LoadReport, magnitude};
 
 /// What to do with a xacro file.
 pub(super) const XACRO_HELP: &str = "pip install xacro, and files named .xacro are expanded when \
@@ -235,14 +235,7 @@ impl<'a> Reader<'a> {
         attribute: &str,
     ) -> Result<Option<[f64; N]>> {
         let values = self.numbers::<N>(node, attribute)?;
-        if values.is_some_and(|v| v.iter().any(|x| !x.is_finite())) {
-            return Err(self.error(
-                node,
-                Self::value(node, attribute),
-                format!("{attribute} of <{}> is not finite", node.tag_name().name()),
-                "give finite numbers",
-            ));
-        }
+        self.check(node, attribute, values.and_then(|v| magnitude::fault(&v)))?;
         Ok(values)
     }
 
@@ -253,7 +246,15 @@ impl<'a> Reader<'a> {
 
     /// A limit: a number that may be infinite.
     pub(super) fn bound(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<f64>> {
-        Ok(self.numbers::<1>(node, attribute)?.map(|[x]| x))
+        let limit = self.numbers::<1>(node, attribute)?;
+        self.check(node, attribute, limit.and_then(|x| magnitude::bound_fault(&x)))?;
+        Ok(limit.map(|[x]| x))
+    }
+
+    fn check(&self, node: Node<'_, '_>, attribute: &str, fault: Option<String>) -> Result<()> {
+        let Some(fault) = fault else { return Ok(()) };
+        let message = format!("{attribute} of <{}> {fault}", node.tag_name().name());
+        Err(self.error(node, Self::value(node, attribute), message, "give finite numbers"))
     }
 
     /// The first child element of this name; further ones are logged as ignored.

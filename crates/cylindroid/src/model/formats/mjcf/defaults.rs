@@ -11,6 +11,7 @@ use super::attributes::used;
 use super::files::Files;
 use crate::error::{Error, Result};
 use crate::model::formats::xml::Reader;
+use crate::model::magnitude;
 
 /// Default classes; the outermost is the first.
 pub(super) struct Defaults<'d> {
@@ -137,12 +138,11 @@ impl<'d> Element<'d> {
     /// Finite numbers, any count.
     pub(super) fn list(&self, reader: &Reader<'_>, attribute: &str) -> Result<Option<Vec<f64>>> {
         let Some(node) = self.source_element(attribute) else { return Ok(None) };
-        match reader.list(node, attribute)? {
-            Some(list) if list.iter().any(|x| !x.is_finite()) => {
-                let message = format!("{attribute} of <{}> is not finite", node.tag_name().name());
-                Err(reader.refuse(node, attribute, message))
-            }
-            list => Ok(list),
+        let list = reader.list(node, attribute)?;
+        if let Some(fault) = list.as_ref().and_then(|list| magnitude::fault(list)) {
+            let message = format!("{attribute} of <{}> {fault}", node.tag_name().name());
+            return Err(reader.refuse(node, attribute, message));
         }
+        Ok(list)
     }
 }

@@ -9,6 +9,7 @@ use roxmltree::Node;
 use super::{degrees, is_true};
 use crate::error::{Error, Result};
 use crate::model::formats::xml::{Reader, numbers_in};
+use crate::model::magnitude;
 use crate::spatial::{Pose, Quaternion, Rpy, Vec3};
 
 impl Reader<'_> {
@@ -65,10 +66,8 @@ impl Reader<'_> {
     /// The finite numbers of an element.
     pub(super) fn finite<const N: usize>(&self, node: Node<'_, '_>) -> Result<[f64; N]> {
         let values = self.content::<N>(node)?;
-        if values.iter().all(|x| x.is_finite()) {
-            return Ok(values);
-        }
-        Err(self.refuse_text(node, format!("<{}> is not finite", node.tag_name().name())))
+        let Some(fault) = magnitude::fault(&values) else { return Ok(values) };
+        Err(self.refuse_text(node, format!("<{}> {fault}", node.tag_name().name())))
     }
 
     /// The finite number in the first child element of this name.

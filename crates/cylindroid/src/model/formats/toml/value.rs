@@ -11,6 +11,7 @@ use ::toml::de::{DeString, DeTable, DeValue};
 use crate::error::{Error, Result};
 use crate::model::Limits;
 use crate::model::formats::span::Source;
+use crate::model::magnitude;
 use crate::spatial::{Pose, Rpy, Vec3};
 
 /// A table of the file.
@@ -101,9 +102,13 @@ impl<'t> Table<'t> {
     /// A number, which may be infinite.
     pub(super) fn bound(&self, key: &str) -> Result<Option<f64>> {
         let Some(value) = self.get(key) else { return Ok(None) };
-        number(value.get_ref())
-            .map(Some)
-            .ok_or_else(|| self.wrong_type(key, "a number", value.get_ref()))
+        let Some(x) = number(value.get_ref()) else {
+            return Err(self.wrong_type(key, "a number", value.get_ref()));
+        };
+        match magnitude::bound_fault(&[x]) {
+            None => Ok(Some(x)),
+            Some(fault) => Err(self.refuse(key, format!("{key} {fault}"), "")),
+        }
     }
 
     /// A finite number.
@@ -128,10 +133,9 @@ impl<'t> Table<'t> {
     pub(super) fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>> {
         let Some(array) = self.array(key)? else { return Ok(None) };
         let read = |entry: &Spanned<DeValue<'_>>| {
-            number(entry.get_ref()).filter(|x| x.is_finite()).ok_or_else(|| {
-                let message = format!("an entry of {key} is not a finite number");
-                self.source.error(entry.span(), message, "give numbers")
-            })
+            let read = number(entry.get_ref());
+            entry_of(key, read)
+                .map_err(|message| self.source.error(entry.span(), message, "give numbers"))
         };
         array.iter().map(read).collect::<Result<_>>().map(Some)
     }
@@ -140,10 +144,9 @@ impl<'t> Table<'t> {
     pub(super) fn number_rows(&self, key: &str) -> Result<Vec<Vec<f64>>> {
         let array = self.array(key)?.unwrap_or_default();
         let read = |entry: &Spanned<DeValue<'_>>| {
-            number(entry.get_ref()).filter(|x| x.is_finite()).ok_or_else(|| {
-                let message = format!("an entry of {key} is not a finite number");
-                self.source.error(entry.span(), message, "give numbers, or rows of numbers")
-            })
+            let help = "give numbers, or rows of numbers";
+            let read = number(entry.get_ref());
+            entry_of(key, read).map_err(|message| self.source.error(entry.span(), message, help))
         };
         let is_row = |entry: &Spanned<DeValue<'_>>| matches!(entry.get_ref(), DeValue::Array(_));
         if !array.iter().any(is_row) {
@@ -254,16 +257,12 @@ impl<'t> Table<'t> {
             return Ok(None);
         };
         let read =
-            |(name, value): (&'t Spanned<DeString<'t>>, &'t Spanned<DeValue<'t>>)| match number(
-                value.get_ref(),
-            )
-            .filter(|x| x.is_finite())
-            {
-                Some(x) => Ok((name.get_ref().as_ref(), x, name.span())),
-                None => {
-                    let message = format!("an entry of {key} is not a finite number");
-                    Err(self.source.error(value.span(), message, "give numbers"))
-                }
+            |(name, value): (&'t Spanned<DeString<'t>>, &'t Spanned<DeValue<'t>>)| match entry_of(
+                key,
+                number(value.get_ref()),
+            ) {
+                Ok(x) => Ok((name.get_ref().as_ref(), x, name.span())),
+                Err(message) => Err(self.source.error(value.span(), message, "give numbers")),
             };
         map.iter().map(read).collect::<Result<_>>().map(Some)
     }
@@ -330,4 +329,12 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
 fn article(type_name: &str) -> String {
     let n = if type_name.starts_with(['a', 'e', 'i', 'o', 'u']) { "n" } else { "" };
     format!("a{n} {type_name}")
+}
+
+/// A number in a list or table.
+fn entry_of(key: &str, read: Option<f64>) -> std::result::Result<f64, String> {
+    let Some(x) = read.filter(|x| x.is_finite()) else {
+        return Err(format!("an entry of {key} is not a finite number"));
+    };
+    magnitude::fault(&[x]).map_or(Ok(x), |fault| Err(format!("an entry of {key} {fault}")))
 }

@@ -1,0 +1,101 @@
+//! Finite input gives finite results up to the range that is stated, and an error beyond; frames of
+//! other mechanisms are errors.
+
+use cylindroid::closure::{ModeOptions, frame_twists, operation_modes};
+use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
+use cylindroid::model::{JointKind, JointSpec, Limits};
+use cylindroid::tolerance::MAX_MAGNITUDE;
+use cylindroid::{Error, Mechanism, Pose, ReferenceFrame, Vec3, catalogue};
+
+use crate::support::zoo;
+
+/// Slides and rotations in series, each as far as the range allows.
+fn far(places: f64) -> Result<Mechanism, Error> {
+    let mut builder = Mechanism::builder("far");
+    let kinds = [JointKind::Prismatic, JointKind::Revolute, JointKind::Helical { pitch: places }];
+    for (i, kind) in kinds.into_iter().cycle().take(6).enumerate() {
+        let (parent, child) = (format!("l{i}"), format!("l{}", i + 1));
+        builder.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::new(places, -places, places)),
+            ..JointSpec::new(&format!("q{i}"), kind, &parent, &child)
+        });
+    }
+    builder.build()
+}
+
+#[test]
+fn kinematics_are_finite_up_to_the_range() {
+    let edge = MAX_MAGNITUDE;
+    for robot in [far(edge).unwrap(), zoo(), catalogue::load("panda").unwrap()] {
+        let q = vec![edge; robot.n()];
+        let state = robot.state(&q).unwrap();
+        for frame in robot.frame_ids() {
+            assert!(state.pose(frame).is_finite(), "{}", robot.name());
+            let jacobian = state.jacobian(frame, ReferenceFrame::World);
+            assert!(jacobian.as_slice().iter().all(|x| x.is_finite()), "{}", robot.name());
+        }
+        let next = robot.integrate(&q, &q, 1e-3).unwrap();
+        assert!(next.iter().all(|x| x.is_finite()), "{next:?}");
+        let next = robot.integrate(&vec![0.0; robot.n()], &q, edge).unwrap();
+        assert!(next.iter().all(|x| x.is_finite()), "{next:?}");
+    }
+}
+
+#[test]
+fn numbers_beyond_the_range_are_refused_by_name() {
+    let robot = catalogue::load("panda").unwrap();
+    let name = &robot.coordinates()[2].name;
+    for beyond in [f64::MAX, -f64::MAX, 1e160, -1.1e120] {
+        let mut q = robot.home().to_vec();
+        q[2] = beyond;
+        let error = robot.state(&q).unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { value, .. } if value == beyond), "{error}");
+        assert!(error.to_string().starts_with(&format!("q[2] ({name}) = ")), "{error}");
+        let mut state = robot.state(robot.home()).unwrap();
+        assert!(state.set(&q).is_err() && state.q() == robot.home());
+        let rates = robot.integrate(robot.home(), &q, 1e-3).unwrap_err().to_string();
+        assert!(rates.starts_with(&format!("rates[2] ({name}) = ")), "{rates}");
+        let dt = robot.integrate(robot.home(), robot.home(), beyond).unwrap_err().to_string();
+        assert!(dt.starts_with("dt[0] = ") && dt.contains("magnitudes up to 1e120"), "{dt}");
+        let rows = [robot.home(), &q].concat();
+        let error = robot.check_rows("q", &rows).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("q[1][2] ({name}) = ")), "{error}");
+        let mut matrix = Pose::IDENTITY.to_matrix();
+        matrix[0][3] = beyond;
+        assert!(matches!(Pose::from_matrix(matrix), Err(Error::OutOfRange { .. })));
+    }
+    let message = far(1e121).unwrap_err().to_string();
+    assert!(message.contains("'q0'") && message.contains("1e121, out of range"), "{message}");
+    let mut builder = Mechanism::builder("wide");
+    builder.joint(JointSpec {
+        limits: Limits { velocity: 1.8e300, ..Limits::NONE },
+        ..JointSpec::new("turn", JointKind::Revolute, "a", "b")
+    });
+    let message = builder.build().unwrap_err().to_string();
+    assert!(message.contains("limit of joint 'turn' is 1.8e300"), "{message}");
+}
+
+/// What can return an error does.
+#[test]
+fn frames_of_other_mechanisms_are_errors() {
+    let [panda, ur5e, five_bar] =
+        ["panda", "ur5e", "five-bar"].map(|name| catalogue::load(name).unwrap());
+    let state = panda.state(panda.home()).unwrap();
+    let foreign = ur5e.tool();
+    let local = ReferenceFrame::Local;
+    let messages = [
+        state.twist(&[0.0; 7], foreign, local).unwrap_err(),
+        state.jacobian_dot(&[0.0; 7], foreign, local).unwrap_err(),
+        frame_twists(&state, foreign).unwrap_err(),
+        operation_modes(&five_bar, five_bar.home(), Some(foreign), ModeOptions::default())
+            .unwrap_err(),
+        ManipulabilityBatch::new(
+            &five_bar,
+            &BatchOptions { reference: Some(foreign), ..BatchOptions::default() },
+        )
+        .unwrap_err(),
+    ];
+    for error in messages {
+        assert!(error.to_string().contains("another mechanism"), "{error}");
+    }
+}
