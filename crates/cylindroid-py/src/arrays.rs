@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use pyo3::{IntoPyObjectExt, intern};
 
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, unfit};
 
 /// An array on its way out.
 pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -32,6 +32,12 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Numbers<'py> {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        Self::of(object).map_err(|error| unfit(object.py(), error))
+    }
+}
+
+impl<'py> Numbers<'py> {
+    fn of(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
             && array.is_c_contiguous()
             && array.is_aligned()
@@ -100,6 +106,13 @@ impl Numbers<'_> {
         }
     }
 
+    /// Twists as columns, linear part first.
+    pub(crate) fn twist_columns(&self, name: &'static str) -> Result<Matrix> {
+        let m = self.matrix(name)?;
+        check_twists(name, &m)?;
+        Ok(m)
+    }
+
     /// A twist, linear part first.
     pub(crate) fn twist(&self, name: &'static str) -> Result<Twist> {
         Ok(Twist::from_array(self.entries(name)?))
@@ -142,6 +155,11 @@ impl Numbers<'_> {
             _ => Err(Failure::option(name, self.shape_text(), "a pose is a matrix of 4 x 4")),
         }
     }
+}
+
+/// Checks a matrix of twists as columns.
+pub(crate) fn check_twists(name: &str, m: &Matrix) -> cylindroid::Result<()> {
+    Error::check_len(&format!("{name} (its rows)"), 6, m.rows())
 }
 
 pub(crate) fn matrix_of(values: &[f64], rows: usize, cols: usize) -> Matrix {

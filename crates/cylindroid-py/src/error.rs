@@ -4,7 +4,7 @@
 //! Python user would catch as well (`ValueError`, `KeyError`, `FileNotFoundError`).
 
 use cylindroid::Error;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyOverflowError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -15,6 +15,10 @@ pub(crate) enum Failure {
     Core(Error),
     /// Python's own.
     Python(PyErr),
+    /// An argument of the wrong kind, as a sentence.
+    Kind(String),
+    /// An object that another call changes at this moment, as a sentence.
+    InUse(String),
 }
 
 pub(crate) type Result<T> = std::result::Result<T, Failure>;
@@ -22,7 +26,7 @@ pub(crate) type Result<T> = std::result::Result<T, Failure>;
 impl Failure {
     /// An argument that is no number, name or object of the right kind.
     pub(crate) fn kind(message: impl Into<String>) -> Self {
-        Self::Python(PyTypeError::new_err(message.into()))
+        Self::Kind(message.into())
     }
 
     /// An argument outside its domain.
@@ -51,11 +55,64 @@ impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
         match failure {
             Failure::Python(error) => error,
+            Failure::Kind(message) => of_class("ArgumentTypeError", &message),
+            Failure::InUse(message) => of_class("InUseError", &message),
             Failure::Core(error) => {
                 Python::attach(|py| exception(py, &error).unwrap_or_else(|e| e))
             }
         }
     }
+}
+
+/// An argument, for `#[pyo3(from_py_with = argument)]`: what Python or PyO3 raise for a value that
+/// does not fit becomes an error of this package, which the caller of this function gives the name
+/// of the argument (`CylindroidError.add_note`).
+pub(crate) fn argument<'a, 'py, T: FromPyObject<'a, 'py>>(
+    object: &'a Bound<'py, PyAny>,
+) -> PyResult<T> {
+    object.extract::<T>().map_err(|error| unfit(object.py(), error.into()))
+}
+
+/// The same for a value inside an argument, here with its name.
+pub(crate) fn entry<'a, 'py, T: FromPyObject<'a, 'py>>(
+    name: &str,
+    object: &'a Bound<'py, PyAny>,
+) -> Result<T> {
+    argument(object).map_err(|error| {
+        let py = object.py();
+        let note = format!("while processing '{name}'");
+        let _ = error.value(py).call_method1("add_note", (note,));
+        error.into()
+    })
+}
+
+/// The error of this package for one of Python about an argument.
+pub(crate) fn unfit(py: Python<'_>, error: PyErr) -> PyErr {
+    let class = if error.is_instance_of::<PyTypeError>(py) {
+        "ArgumentTypeError"
+    } else if error.is_instance_of::<PyValueError>(py)
+        || error.is_instance_of::<PyOverflowError>(py)
+    {
+        "InvalidOptionError"
+    } else if error.is_instance_of::<PyRuntimeError>(py) {
+        "InUseError"
+    } else {
+        return error;
+    };
+    let message = error.value(py).to_string();
+    let found = of_class(class, &message);
+    found.set_cause(py, Some(error));
+    found
+}
+
+fn of_class(class: &str, message: &str) -> PyErr {
+    Python::attach(|py| {
+        let class = py.import("cylindroid._errors").and_then(|m| m.getattr(class));
+        match class.and_then(|class| class.call1((message,))) {
+            Ok(value) => PyErr::from_value(value),
+            Err(error) => error,
+        }
+    })
 }
 
 /// The exception of an error, its fields as attributes.
@@ -94,6 +151,11 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             fields.set_item("what", what)?;
             fields.set_item("value", value)?;
             "NotFiniteError"
+        }
+        Error::OutOfRange { what, value, .. } => {
+            fields.set_item("option", what)?;
+            fields.set_item("value", value.to_string())?;
+            "InvalidOptionError"
         }
         Error::InvalidOption { option, value, reason } => {
             fields.set_item("option", option)?;

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 use crate::arrays::Numbers;
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, entry};
 
 /// What a name means.
 pub(crate) fn named<T: Copy>(what: &'static str, name: &str, known: &[(&str, T)]) -> Result<T> {
@@ -63,17 +63,20 @@ pub(crate) fn secondary(
         return Ok(options.default_secondary(robot)?);
     };
     if let Ok(name) = given.cast::<PyString>() {
-        let name = name.to_cow()?;
+        let name: String = entry("secondary", name)?;
         return if name == "none" { Ok(Vec::new()) } else { Ok(vec![named(&name)?]) };
     }
     let words = "secondary is a name, a list of names, or a dict: for each name a gain or a dict of \
                  parameters";
     if let Ok(by_name) = given.cast::<PyDict>() {
         let each = by_name.iter().map(|(name, value)| {
-            let mut task = named(&name.extract::<String>()?)?;
+            let mut task = named(&entry::<String>("secondary", &name)?)?;
             if let Ok(parameters) = value.cast::<PyDict>() {
                 for (parameter, value) in parameters {
-                    task = task.with(&parameter.extract::<String>()?, value.extract()?)?;
+                    task = task.with(
+                        &entry::<String>("secondary", &parameter)?,
+                        entry("secondary", &value)?,
+                    )?;
                 }
                 return Ok(task);
             }
@@ -113,7 +116,7 @@ pub(crate) fn twists(name: &'static str, of: &Bound<'_, PyAny>) -> Result<Vec<Tw
         };
         return names.iter().map(one).collect();
     }
-    let numbers: Numbers<'_> = of.extract()?;
+    let numbers: Numbers<'_> = entry(name, of)?;
     match *numbers.shape() {
         [6] | [_, 6] => {
             let rows = numbers.values().as_chunks::<6>().0;

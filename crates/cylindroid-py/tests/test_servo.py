@@ -307,3 +307,36 @@ def test_secondary_tasks_are_documented():
         cy.Servo(robot, secondary={"limit-avoidance": {"margn": 0.2}})
     with pytest.raises(TypeError, match="dict of parameters"):
         cy.Servo(robot, secondary={"limit-avoidance": "fast"})
+
+
+def test_velocities_of_actuated_loop_joints_are_those_between_their_links():
+    robot = cy.load("five-bar").with_actuated(["q1", "q5"])
+    servo = cy.Servo(robot)
+    target = robot.fk(robot.home, frame=robot.reference)
+    target[:2, 3] += [0.05, -0.02]
+    qd = servo.step(robot.home, target)
+    joint = robot.joints[-1]
+    parent, child = (robot.jacobian(robot.home, frame=link)[5] @ qd for link in (joint.parent, joint.child))
+    assert joint.closes_loop and abs(child - parent) > 0.01
+    np.testing.assert_allclose(servo.loop_closure_velocities, [child - parent], rtol=1e-9)
+    assert cy.Servo(cy.load("panda")).loop_closure_velocities.shape == (0,)
+
+
+def test_a_servo_in_use_by_another_thread_is_an_error():
+    import threading
+
+    robot = cy.load("panda")
+    servo = cy.Servo(robot, dt=1e-5, tolerance_position=1e-300)
+    target = robot.fk(robot.home + 0.2)
+    thread = threading.Thread(target=lambda: servo.simulate(robot.home, target, duration=3.0))
+    thread.start()
+    refused = 0
+    while thread.is_alive():
+        try:
+            servo.status
+        except cy.InUseError as error:
+            assert isinstance(error, RuntimeError) and "another thread" in str(error)
+            refused += 1
+    thread.join()
+    assert refused > 0
+    assert servo.status is not None

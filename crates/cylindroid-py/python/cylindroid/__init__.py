@@ -123,8 +123,10 @@ from ._core import (
     wrench_pitch_form,
 )
 from ._errors import (
+    ArgumentTypeError,
     CylindroidError,
     DimensionError,
+    InUseError,
     InvalidOptionError,
     MissingFileError,
     ModelError,
@@ -137,6 +139,7 @@ from ._errors import (
 __all__ = [
     "ActuatorTransmission",
     "Admittance",
+    "ArgumentTypeError",
     "Assembly",
     "AssemblyModes",
     "Branch",
@@ -165,6 +168,7 @@ __all__ = [
     "HyperbolicSvd",
     "InternalForceCommand",
     "InternalForceController",
+    "InUseError",
     "InvalidOptionError",
     "Inverse",
     "Involution",

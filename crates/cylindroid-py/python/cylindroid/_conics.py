@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import Screw, ScrewSystem
+from ._figure import axes_of, pyplot, write_labels
 
 if TYPE_CHECKING:
     from ._core import PitchConics
@@ -76,13 +77,13 @@ def conics(
     -----
     Ball 1900; Donelan and Selig, figure 1.
     """
-    from .plot import ROUNDING, _axes, _labels, _pyplot
+    from .plot import ROUNDING
 
     family = system.pitch_conics()
     if family is None:
         raise ValueError(f"conics require a three-system; this system has order {system.rank}")
-    ax = _axes(ax, space=False)
-    colours = _pyplot().cm.viridis
+    ax = axes_of(ax, space=False)
+    colours = pyplot().cm.viridis
     pitches = _pencil(family, system)
     low, high = (min(pitches), max(pitches)) if pitches else (0.0, 1.0)
     for h in pitches:
@@ -111,5 +112,5 @@ def conics(
     ax.set_aspect("equal", adjustable="box")
     ax.set(xlim=(-HALF[0], HALF[0]), ylim=(-HALF[1], HALF[1]), xticks=[], yticks=[])
     ax.set_title(f"pitches {low:.3g} to {high:.3g} m/rad" if pitches else "one pitch")
-    _labels(ax, labels)
+    write_labels(ax, labels)
     return ax

@@ -6,6 +6,8 @@ fields of an error are attributes.
 
 from __future__ import annotations
 
+import re
+
 
 class CylindroidError(Exception):
     """What every error of cylindroid is.
@@ -17,6 +19,19 @@ class CylindroidError(Exception):
     def __str__(self) -> str:
         # KeyError would print the repr of the message.
         return str(self.args[0]) if self.args else ""
+
+    def add_note(self, note: str, /) -> None:
+        """Adds a note, or the name of the argument, which PyO3 gives as one.
+
+        Its note begins with "while processing", and comes from Python 3.10 too, which has no notes.
+        """
+        named = re.fullmatch(r"while processing '(\w+)'", note)
+        if named:
+            if isinstance(self, InvalidOptionError):
+                self.option, self.reason = named[1], str(self)
+            self.args = (f"{named[1]}: {self}",)
+        else:
+            super().add_note(note)
 
 
 class ModelFileError(CylindroidError, ValueError):
@@ -63,9 +78,17 @@ class NotFiniteError(CylindroidError, ValueError):
 class InvalidOptionError(CylindroidError, ValueError):
     """An argument outside its domain: which, its value, and what can be used instead."""
 
-    option: str
-    value: str
-    reason: str
+    option: str = ""
+    value: str = ""
+    reason: str = ""
+
+
+class ArgumentTypeError(CylindroidError, TypeError):
+    """An argument that is no number, text or object of the right kind."""
+
+
+class InUseError(CylindroidError, RuntimeError):
+    """An object that another thread, or a call around this one, is changing."""
 
 
 class ModelError(CylindroidError, ValueError):

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import Mechanism, Screw, ScrewSystem, Spectrum, Trajectory
 from ._conics import conics
+from ._figure import axes_of, equal_scales, is_spatial, pyplot, write_labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,93 +28,6 @@ PLANAR = 1e-6
 _BODY = "burlywood"
 
 __all__ = ["conics", "cylindroid", "ellipsoid", "frame", "mechanism", "screws", "trajectory"]
-
-
-def _pyplot() -> Any:
-    try:
-        from matplotlib import pyplot
-    except ImportError as error:
-        raise ImportError(
-            "plots need matplotlib: pip install matplotlib, or this package with [plot]"
-        ) from error
-    return pyplot
-
-
-def _is_spatial(ax: Any) -> bool:
-    return hasattr(ax, "plot_surface")
-
-
-def _axes(ax: Any, space: bool) -> Any:
-    """New axes if none are given; the dimension of given axes is checked."""
-    if ax is None:
-        figure = _pyplot().figure()
-        ax = figure.add_subplot(projection="3d" if space else None)
-    elif space and not _is_spatial(ax):
-        raise ValueError("this plot is spatial: pass axes created with projection='3d'")
-    if not _is_spatial(ax):
-        ax.set_aspect("equal", adjustable="datalim")
-    return ax
-
-
-def _equal(ax: Any) -> None:
-    """Equal scales on all axes, and their labels."""
-    if not _is_spatial(ax):
-        ax.set(xlabel="x (m)", ylabel="y (m)")
-        return
-    limits = np.array([ax.get_xlim(), ax.get_ylim(), ax.get_zlim()])
-    middle, half = limits.mean(1), 0.5 * np.ptp(limits, axis=1).max()
-    ax.set(
-        xlim=(middle[0] - half, middle[0] + half),
-        ylim=(middle[1] - half, middle[1] + half),
-        zlim=(middle[2] - half, middle[2] + half),
-        xlabel="x (m)",
-        ylabel="y (m)",
-        zlabel="z (m)",
-    )
-    ax.set_box_aspect((1, 1, 1))
-
-
-def _labels(ax: Any, labels: list[tuple[str, list[NDArray[Any]]]]) -> None:
-    """Writes each text at one of its positions so that the texts overlap as little as possible.
-
-    Boxes are estimated from the font size; positions are in order of preference. In a plane, the
-    text is placed next to its position, in one of four corners.
-    """
-    from matplotlib import rcParams
-    from matplotlib.font_manager import FontProperties
-
-    points = FontProperties(size=rcParams["font.size"]).get_size_in_points()
-    pixels = points * ax.figure.dpi / 72
-    space = _is_spatial(ax)
-    if space:
-        from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
-
-        ax.apply_aspect()
-        projection = ax.get_proj()
-    taken: list[NDArray[Any]] = []
-    for text, positions in labels:
-        extent = np.array([0.62 * pixels * len(text), 1.3 * pixels])
-        candidates = []
-        for at in positions:
-            corner = ax.transData.transform(proj_transform(*at, projection)[:2] if space else at)
-            if space:
-                candidates.append((corner, at))
-                continue
-            right, left = 0.5 * pixels, -0.5 * pixels - extent[0]
-            above, below = 0.5 * pixels, -0.5 * pixels - extent[1]
-            for offset in ((right, above), (left, above), (right, below), (left, below)):
-                place = corner + offset
-                candidates.append((place, ax.transData.inverted().transform(place)))
-
-        def overlap(candidate: tuple[NDArray[Any], NDArray[Any]]) -> float:
-            low, high = candidate[0], candidate[0] + extent
-            shared = [np.minimum(high, b[1]) - np.maximum(low, b[0]) for b in taken]
-            return sum(float(np.prod(sides)) for sides in shared if (sides > 0).all())
-
-        corner, at = min(candidates, key=overlap)
-        taken.append(np.array([corner, corner + extent]))
-        # On white, so that no line strikes it through.
-        ax.text(*at, text, bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1}, zorder=5)
 
 
 def frame(pose: ArrayLike, ax: Any = None, size: float = 0.1, name: str | None = None) -> Any:
@@ -135,8 +49,8 @@ def frame(pose: ArrayLike, ax: Any = None, size: float = 0.1, name: str | None =
     The axes.
     """
     T = np.asarray(pose, dtype=float)
-    ax = _axes(ax, space=ax is None)
-    d = 3 if _is_spatial(ax) else 2
+    ax = axes_of(ax, space=ax is None)
+    d = 3 if is_spatial(ax) else 2
     for i, colour in zip(range(d), ("tab:red", "tab:green", "tab:blue")):
         arrow = size * T[:d, i]
         if d == 3:
@@ -148,7 +62,7 @@ def frame(pose: ArrayLike, ax: Any = None, size: float = 0.1, name: str | None =
             ax.update_datalim([T[:2, 3] + arrow])
     if name is not None:
         ax.text(*T[:d, 3], name)
-    _equal(ax)
+    equal_scales(ax)
     return ax
 
 
@@ -168,7 +82,7 @@ def _body(ax: Any, points: NDArray[Any], label: str) -> None:
     ax.plot(*points.T, lw=14, label=label, **style)
     if len(points) < 3:
         return
-    if _is_spatial(ax):
+    if is_spatial(ax):
         from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
         ax.add_collection3d(Poly3DCollection([points], color=_BODY))
@@ -194,8 +108,8 @@ def mechanism(robot: Mechanism, q: ArrayLike | None = None, ax: Any = None) -> A
     -------
     The axes.
     """
-    ax = _axes(ax, space=ax is None and robot.dimension == 3)
-    d = 3 if _is_spatial(ax) else 2
+    ax = axes_of(ax, space=ax is None and robot.dimension == 3)
+    d = 3 if is_spatial(ax) else 2
     q = robot.home if q is None else q
     # A free body is bound by nothing that could be drawn.
     joints = [(i, j) for i, j in enumerate(robot.joints) if j.kind not in ("free", "planar")]
@@ -304,7 +218,7 @@ def ellipsoid(
         )
     seen = spectrum.ellipsoid(components, view)
     axes, d = scale * seen.semi_axes, len(components)
-    ax = _axes(ax, space=d == 3)
+    ax = axes_of(ax, space=d == 3)
     middle = np.zeros(d) if centre is None else np.asarray(centre, dtype=float)[:d]
     state = "free" if view == "projection" else "zero"
     others = f" ({view}: {', '.join(seen.others)} {state})" if seen.others else ""
@@ -322,7 +236,7 @@ def ellipsoid(
         ax.plot(*(middle[:, None] + np.outer(axis, [-1, 1])), color="0.2", lw=1)
     units = {_unit(c, seen.quantity) for c in components}
     if d == 3:
-        _equal(ax)
+        equal_scales(ax)
     if centre is None or len(units) > 1 or not set(components) <= {"x", "y", "z"}:
         names = [f"{c} ({_unit(c, seen.quantity)})".removesuffix(" ()") for c in components]
         ax.set(**dict(zip(("xlabel", "ylabel", "zlabel"), names)))
@@ -403,8 +317,8 @@ def screws(
     ValueError
         If the axes are those of a plane and a screw is not a motion in it.
     """
-    ax = _axes(ax, space=ax is None)
-    d = 3 if _is_spatial(ax) else 2
+    ax = axes_of(ax, space=ax is None)
+    d = 3 if is_spatial(ax) else 2
     labels: list[tuple[str, list[NDArray[Any]]]] = []
     for i, screw in enumerate(screws):
         label = names[i] if names else f"{i + 1}"
@@ -435,10 +349,10 @@ def screws(
             point = np.asarray(screw.point)[:2]
             ax.plot(*point, "o", color="tab:blue", zorder=4)
             labels.append((label, [point]))
-    _equal(ax)
+    equal_scales(ax)
     if d == 2:
         ax.autoscale_view()
-    _labels(ax, labels)
+    write_labels(ax, labels)
     return ax
 
 
@@ -466,7 +380,7 @@ def cylindroid(
             f"a cylindroid requires a two-system of class IA; this system has order {system.rank} "
             f"and class {system.gibson_hunt}"
         )
-    ax = _axes(ax, space=True)
+    ax = axes_of(ax, space=True)
     first, second = (np.asarray(s.twist) for s in system.principal_screws)
     members = [
         Screw(np.cos(t) * first + np.sin(t) * second) for t in np.linspace(0, np.pi, count)
@@ -474,14 +388,14 @@ def cylindroid(
     high, low = system.principal_pitches
     length = 3 * (high - low) if length is None else length
     origin = system.canonical_pose[:3, 3]
-    pyplot = _pyplot()
+    palette = pyplot().cm.viridis
     for screw in members:
         foot = screw.point + screw.direction * (screw.direction @ (origin - screw.point))
         ends = foot + np.outer([-0.5, 0.5], length * screw.direction)
         share = (screw.pitch - low) / (high - low)
-        ax.plot(*ends.T, color=pyplot.cm.viridis(share), lw=1)
+        ax.plot(*ends.T, color=palette(share), lw=1)
     ax.set_title(f"pitches {low:.3g} to {high:.3g} m/rad")
-    _equal(ax)
+    equal_scales(ax)
     return ax
 
 
@@ -503,7 +417,7 @@ def trajectory(
     ndarray of axes, (4,)
     """
     if figure is None:
-        figure = _pyplot().figure(figsize=(7, 9), layout="constrained")
+        figure = pyplot().figure(figsize=(7, 9), layout="constrained")
     ax: NDArray[Any] = figure.subplots(4, 1, sharex=True)
     ax[0].plot(way.time, way.q, label=names)
     ax[0].set_ylabel("q (rad or m)")

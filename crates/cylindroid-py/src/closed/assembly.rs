@@ -4,7 +4,7 @@ use cylindroid::closure::{Assembly, LoopClosureError, assemble};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table;
 
@@ -129,7 +129,7 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         guess: Option<Numbers<'_>>,
-        hold: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] hold: Option<Vec<String>>,
     ) -> Result<PyAssembly> {
         let m = &self.inner;
         let guess = self.or_home("guess", guess.as_ref())?;

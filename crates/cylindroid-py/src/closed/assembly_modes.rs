@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::PyAssembly;
 use crate::arrays::Numbers;
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table;
 
@@ -109,9 +109,9 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         guess: Option<Numbers<'_>>,
-        hold: Option<Vec<String>>,
-        starts: usize,
-        seed: u64,
+        #[pyo3(from_py_with = argument)] hold: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] starts: usize,
+        #[pyo3(from_py_with = argument)] seed: u64,
     ) -> Result<PyAssemblyModes> {
         let m = &self.inner;
         let guess = self.or_home("guess", guess.as_ref())?;

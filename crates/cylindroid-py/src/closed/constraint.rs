@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use super::PyLoopClosureError;
 use super::object::object;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
@@ -160,7 +160,7 @@ impl PyConstraint {
         } else if let Ok(names) = task.extract::<Vec<String>>() {
             names
         } else {
-            let map = task.extract::<Numbers<'_>>()?.matrix("task")?;
+            let map = entry::<Numbers<'_>>("task", task)?.matrix("task")?;
             let names = (1..=map.rows()).map(|i| format!("task {i}")).collect();
             return Ok((map, names));
         };
@@ -207,8 +207,8 @@ impl PyConstraint {
         Ja: Numbers<'_>,
         Jp: Option<Numbers<'_>>,
         G: Option<Numbers<'_>>,
-        length: Option<f64>,
-        units: Option<(String, String, String, String)>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
+        #[pyo3(from_py_with = argument)] units: Option<(String, String, String, String)>,
     ) -> Result<Self> {
         let actuated = Ja.matrix("Ja")?;
         let passive = match &Jp {
@@ -328,9 +328,9 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Option<Numbers<'py>>,
-        actuated: Option<Vec<String>>,
-        reference: Option<&str>,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
     ) -> Result<Bound<'py, PyAny>> {
         let all = self.constraints(py, q.as_ref(), actuated.as_deref(), reference, length)?;
         Ok(object(py, all)?)

@@ -4,7 +4,7 @@ use cylindroid::closure::{ContinuationOptions, ContinuationResult, PathEnd, trac
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::screws::PyScrew;
 use crate::table;
@@ -120,9 +120,9 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         start: Numbers<'_>,
-        goal: std::collections::BTreeMap<String, f64>,
-        step: f64,
-        least_distance: Option<f64>,
+        #[pyo3(from_py_with = argument)] goal: std::collections::BTreeMap<String, f64>,
+        #[pyo3(from_py_with = argument)] step: f64,
+        #[pyo3(from_py_with = argument)] least_distance: Option<f64>,
     ) -> Result<PyContinuationResult> {
         let names: Vec<String> = goal.keys().cloned().collect();
         let prescribed = self.places(&names)?;

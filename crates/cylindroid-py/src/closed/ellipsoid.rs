@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::PySpectrum;
 use crate::arrays::{self, Array};
-use crate::error::Result;
+use crate::error::{Result, argument, entry};
 use crate::table;
 
 /// The velocities (forces) for inputs of norm at most one, seen in some components.
@@ -110,7 +110,11 @@ impl PySpectrum {
     /// >>> k.ellipsoid("x,y", view="section").semi_axes.shape
     /// (2, 1)
     #[pyo3(signature = (components = None, view = "projection"))]
-    fn ellipsoid(&self, components: Option<&Bound<'_, PyAny>>, view: &str) -> Result<PyEllipsoid> {
+    fn ellipsoid(
+        &self,
+        components: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = argument)] view: &str,
+    ) -> Result<PyEllipsoid> {
         let Some(&view) = EllipsoidView::ALL.iter().find(|v| v.name() == view) else {
             let known = EllipsoidView::ALL.map(EllipsoidView::name);
             return Err(Error::unknown("view", view, known).into());
@@ -119,7 +123,7 @@ impl PySpectrum {
             None => self.components.clone(),
             Some(given) => match given.extract::<String>() {
                 Ok(text) => text.split(',').map(|s| s.trim().to_owned()).collect(),
-                Err(_) => given.extract::<Vec<String>>()?,
+                Err(_) => entry::<Vec<String>>("components", given)?,
             },
         };
         let place = |name: &String| {

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use super::PyConstraint;
 use super::metrics::Question;
 use crate::arrays::{self, Array, Many, Numbers};
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table;
 
@@ -145,13 +145,13 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         q: Option<Numbers<'_>>,
-        measure: &str,
-        actuated: Option<Vec<String>>,
-        reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] measure: &str,
+        #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
         task: Option<Bound<'_, PyAny>>,
         Wu: Option<Numbers<'_>>,
         Wq: Option<Numbers<'_>>,
-        metric: &str,
+        #[pyo3(from_py_with = argument)] metric: &str,
     ) -> Result<PyGradient> {
         let weights = [Wu.as_ref(), Wq.as_ref(), None, None];
         match self.constraints(py, q.as_ref(), actuated.as_deref(), reference, None)? {

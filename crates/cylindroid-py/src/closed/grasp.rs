@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 use super::curvature::Curvature;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::options;
 use crate::table;
@@ -49,11 +49,11 @@ impl PyFingerContact {
     fn new(
         point: Numbers<'_>,
         normal: Numbers<'_>,
-        mu: f64,
-        torsion: f64,
-        strength: f64,
-        finger_curvature: Curvature,
-        object_curvature: Curvature,
+        #[pyo3(from_py_with = argument)] mu: f64,
+        #[pyo3(from_py_with = argument)] torsion: f64,
+        #[pyo3(from_py_with = argument)] strength: f64,
+        #[pyo3(from_py_with = argument)] finger_curvature: Curvature,
+        #[pyo3(from_py_with = argument)] object_curvature: Curvature,
     ) -> Result<Self> {
         let friction = match (mu, torsion) {
             (0.0, 0.0) => Friction::None,
@@ -167,11 +167,11 @@ impl PyGraspQuality {
 #[pyo3(signature = (contacts, point = None, length = 1.0, planar = false, metric = "l1"))]
 pub(crate) fn grasp_quality(
     py: Python<'_>,
-    contacts: Vec<PyRef<'_, PyFingerContact>>,
+    #[pyo3(from_py_with = argument)] contacts: Vec<PyRef<'_, PyFingerContact>>,
     point: Option<Numbers<'_>>,
-    length: f64,
-    planar: bool,
-    metric: &str,
+    #[pyo3(from_py_with = argument)] length: f64,
+    #[pyo3(from_py_with = argument)] planar: bool,
+    #[pyo3(from_py_with = argument)] metric: &str,
 ) -> Result<PyGraspQuality> {
     let metric = metric_of(metric)?;
     let point = match &point {
@@ -222,11 +222,11 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         q: Option<Numbers<'_>>,
-        reference: Option<&str>,
-        mu: Option<f64>,
-        torsion: Option<f64>,
-        strength: f64,
-        metric: &str,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] mu: Option<f64>,
+        #[pyo3(from_py_with = argument)] torsion: Option<f64>,
+        #[pyo3(from_py_with = argument)] strength: f64,
+        #[pyo3(from_py_with = argument)] metric: &str,
     ) -> Result<PyGraspQuality> {
         let m = &self.inner;
         let state = m.state(self.or_home("q", q.as_ref())?)?;

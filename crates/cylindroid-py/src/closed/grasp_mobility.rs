@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::grasp::PyFingerContact;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 
 /// Mobility of an object between fixed frictionless fingers, to second order.
@@ -153,9 +153,9 @@ impl PyGraspMobility {
 #[pyo3(signature = (contacts, point = None, planar = false))]
 pub(crate) fn grasp_mobility(
     py: Python<'_>,
-    contacts: Vec<PyRef<'_, PyFingerContact>>,
+    #[pyo3(from_py_with = argument)] contacts: Vec<PyRef<'_, PyFingerContact>>,
     point: Option<Numbers<'_>>,
-    planar: bool,
+    #[pyo3(from_py_with = argument)] planar: bool,
 ) -> Result<PyGraspMobility> {
     let point = match &point {
         None => Vec3::ZERO,
@@ -193,7 +193,7 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         q: Option<Numbers<'_>>,
-        reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
     ) -> Result<PyGraspMobility> {
         let m = &self.inner;
         let state = m.state(self.or_home("q", q.as_ref())?)?;

@@ -10,7 +10,7 @@ use super::metrics::{JointMetric, Question};
 use super::object::object;
 use super::{PyConstraint, PySpectrum};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
@@ -125,7 +125,11 @@ impl PyManipulability {
     /// UnknownNameError
     ///     For an unknown index.
     #[pyo3(signature = (name))]
-    fn index<'py>(&self, py: Python<'py>, name: &str) -> Result<Array<'py>> {
+    fn index<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument)] name: &str,
+    ) -> Result<Array<'py>> {
         let Some(index) = Index::ALL.iter().find(|i| i.name() == name) else {
             let known = Index::ALL.iter().map(Index::name);
             return Err(Error::unknown("index", name, known).into());
@@ -175,11 +179,11 @@ impl PyConstraint {
         py: Python<'_>,
         task: Option<Bound<'_, PyAny>>,
         Wu: Option<Numbers<'_>>,
-        Wq: Option<JointMetric<'_>>,
+        #[pyo3(from_py_with = argument)] Wq: Option<JointMetric<'_>>,
         Ww: Option<Numbers<'_>>,
         Wtau: Option<Numbers<'_>>,
         Wt: Option<Numbers<'_>>,
-        metric: &str,
+        #[pyo3(from_py_with = argument)] metric: &str,
     ) -> Result<PyManipulability> {
         let joints = JointMetric::numbers(Wq.as_ref());
         let weights = [Wu.as_ref(), joints, Ww.as_ref(), Wtau.as_ref()];
@@ -246,16 +250,16 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Option<Numbers<'py>>,
-        actuated: Option<Vec<String>>,
-        reference: Option<&str>,
-        task: Option<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] task: Option<Bound<'py, PyAny>>,
         Wu: Option<Numbers<'py>>,
-        Wq: Option<JointMetric<'py>>,
+        #[pyo3(from_py_with = argument)] Wq: Option<JointMetric<'py>>,
         Ww: Option<Numbers<'py>>,
         Wtau: Option<Numbers<'py>>,
         Wt: Option<Numbers<'py>>,
-        metric: &str,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] metric: &str,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
     ) -> Result<Bound<'py, PyAny>> {
         let all = self.constraints(py, q.as_ref(), actuated.as_deref(), reference, length)?;
         let Some(like) = all.as_slice().first() else {

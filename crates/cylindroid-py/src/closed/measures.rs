@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use super::PyConstraint;
 use super::metrics::Question;
 use crate::arrays::{Numbers, Rows};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::threads;
 
@@ -82,12 +82,12 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Numbers<'py>,
-        actuated: Option<Vec<String>>,
-        reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
         Wu: Option<Numbers<'py>>,
         Wq: Option<Numbers<'py>>,
-        metric: &str,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] metric: &str,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
     ) -> Result<Bound<'py, PyDict>> {
         let actuated = actuated.map(|names| self.inner.with_actuated(&names)).transpose()?;
         let mechanism = actuated.as_ref().unwrap_or(&self.inner);
@@ -101,11 +101,13 @@ impl PyMechanism {
             None => mechanism.reference(),
         };
         let about = (reference, home.inner.length());
-        let numbers =
-            threads::run(py, rows.count.unwrap_or(1) > ManipulabilityBatch::CHUNK, || {
-                let options = BatchOptions { metrics, ..BatchOptions::default() };
-                self.ordinary.batch(mechanism, about, options)?.analyse(rows.values)
-            })??;
+        let count = rows.count.unwrap_or(1);
+        let numbers = threads::run(py, count > ManipulabilityBatch::CHUNK, || {
+            let options = BatchOptions { metrics, ..BatchOptions::default() };
+            let mut numbers = vec![0.0; count * ManipulabilityBatch::WIDTH];
+            let batch = self.ordinary.batch(mechanism, about, options)?;
+            batch.analyse_into(rows.values, &mut numbers).map(|()| numbers)
+        })??;
         let found = PyDict::new(py);
         for (i, name) in ManipulabilityBatch::COLUMNS.into_iter().enumerate() {
             let column = || numbers.iter().skip(i).step_by(ManipulabilityBatch::WIDTH).copied();

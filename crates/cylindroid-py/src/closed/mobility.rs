@@ -13,7 +13,7 @@ use super::{
     PyConstraint, PyFiniteMobility, PyLimb, PyLoopClosureError, PySingularity, PyTransmission,
 };
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
@@ -418,9 +418,9 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Option<Numbers<'py>>,
-        actuated: Option<Vec<String>>,
-        reference: Option<&str>,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
     ) -> Result<Bound<'py, PyAny>> {
         let all = self.constraints(py, q.as_ref(), actuated.as_deref(), reference, length)?;
         let reports = py.detach(|| all.try_map(|c| Ok::<_, Failure>(PyMobility::of(c))))?;

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use super::singularity::counts_of;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table;
 
@@ -238,9 +238,9 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         q: Option<Numbers<'_>>,
-        starts: usize,
-        seed: u64,
-        reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] starts: usize,
+        #[pyo3(from_py_with = argument)] seed: u64,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
     ) -> Result<PyOperationModes> {
         let m = &self.inner;
         let q = self.or_home("q", q.as_ref())?;

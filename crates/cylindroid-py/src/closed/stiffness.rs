@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use super::PyTransmittedWrench;
 use super::object::object;
 use crate::arrays::{self, Array, Many, Numbers, Rows};
-use crate::error::Result;
+use crate::error::{Result, argument, entry};
 use crate::mechanism::PyMechanism;
 use crate::screws::PyScrew;
 use crate::table;
@@ -212,12 +212,13 @@ fn elasticity(
     match stiffness {
         None => {}
         Some(given) if given.is_instance_of::<PyDict>() => {
-            for (name, k) in given.extract::<Bound<'_, PyDict>>().map_err(PyErr::from)? {
-                elasticity.stiffness(&name.extract::<String>()?, k.extract()?);
+            for (name, k) in entry::<Bound<'_, PyDict>>("stiffness", given)? {
+                let name: String = entry("stiffness", &name)?;
+                elasticity.stiffness(&name, entry("stiffness", &k)?);
             }
         }
         Some(given) => {
-            let k: f64 = given.extract()?;
+            let k: f64 = entry("stiffness", given)?;
             let tree = mechanism.coordinates().iter().filter(|c| c.actuated).map(|c| &c.name);
             let loops = mechanism.loops().iter().filter(|l| l.actuated).map(|l| &l.name);
             for name in tree.chain(loops) {
@@ -228,10 +229,10 @@ fn elasticity(
     let Some(compliance) = compliance else { return Ok(elasticity) };
     let d = mechanism.dimension().freedoms();
     for (name, given) in compliance {
-        let name: String = name.extract()?;
+        let name: String = entry("compliance", &name)?;
         let (matrix, frame) = match given.extract::<(Numbers<'_>, Numbers<'_>)>() {
             Ok((matrix, frame)) => (matrix, Some(frame)),
-            Err(_) => (given.extract()?, None),
+            Err(_) => (entry("compliance", &given)?, None),
         };
         let compliance = match matrix.shape() {
             [n] if *n == d => Matrix::diagonal(matrix.vector("compliance")?),
@@ -312,11 +313,11 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Option<Numbers<'py>>,
-        actuated: Option<Vec<String>>,
-        reference: Option<&str>,
-        length: Option<f64>,
-        stiffness: Option<Bound<'py, PyAny>>,
-        compliance: Option<Bound<'py, PyDict>>,
+        #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] reference: Option<&str>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
+        #[pyo3(from_py_with = argument)] stiffness: Option<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = argument)] compliance: Option<Bound<'py, PyDict>>,
     ) -> Result<Bound<'py, PyAny>> {
         let actuated = actuated.map(|names| self.inner.with_actuated(&names)).transpose()?;
         let mechanism = actuated.as_ref().unwrap_or(&self.inner);

@@ -5,7 +5,7 @@ use cylindroid::{Matrix, Vec3};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument};
 
 /// Admittance of a tool: twist = matrix @ wrench.
 ///
@@ -47,7 +47,11 @@ pub(crate) struct PyAdmittance {
 impl PyAdmittance {
     #[new]
     #[pyo3(signature = (force, moment = 0.0, point = None))]
-    fn new(force: f64, moment: f64, point: Option<Numbers<'_>>) -> Result<Self> {
+    fn new(
+        #[pyo3(from_py_with = argument)] force: f64,
+        #[pyo3(from_py_with = argument)] moment: f64,
+        point: Option<Numbers<'_>>,
+    ) -> Result<Self> {
         let point = point.map_or(Ok(Vec3::ZERO), |p| p.entries("point").map(Vec3::from_array))?;
         Ok(Self { inner: Admittance::at(point, AdmittanceGain { force, moment })? })
     }

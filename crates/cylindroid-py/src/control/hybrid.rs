@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::PyAdmittance;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::screws::PyProjector;
 use crate::table;
 
@@ -76,7 +76,10 @@ pub(crate) struct PyHybridCommand {
 impl PyHybridController {
     #[new]
     #[pyo3(signature = (gain, admittance))]
-    fn new(gain: f64, admittance: PyRef<'_, PyAdmittance>) -> Result<Self> {
+    fn new(
+        #[pyo3(from_py_with = argument)] gain: f64,
+        #[pyo3(from_py_with = argument)] admittance: PyRef<'_, PyAdmittance>,
+    ) -> Result<Self> {
         Ok(Self { inner: HybridController::new(gain, admittance.inner)? })
     }
 
@@ -105,7 +108,7 @@ impl PyHybridController {
     #[pyo3(signature = (projector, error, desired, measured, feed_forward = None))]
     fn command(
         &self,
-        projector: PyRef<'_, PyProjector>,
+        #[pyo3(from_py_with = argument)] projector: PyRef<'_, PyProjector>,
         error: Numbers<'_>,
         desired: Numbers<'_>,
         measured: Numbers<'_>,

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
 use crate::closed::PyConstraint;
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::table;
 
 /// Internal force control of a grasp or an over-actuated mechanism: velocities of the actuated
@@ -62,7 +62,7 @@ pub(crate) struct PyInternalForceCommand {
 impl PyInternalForceController {
     #[new]
     #[pyo3(signature = (gain, stiffness))]
-    fn new(gain: f64, stiffness: Numbers<'_>) -> Result<Self> {
+    fn new(#[pyo3(from_py_with = argument)] gain: f64, stiffness: Numbers<'_>) -> Result<Self> {
         Ok(Self { inner: InternalForceController::new(gain, stiffness.vector("stiffness")?)? })
     }
 
@@ -87,7 +87,7 @@ impl PyInternalForceController {
     #[pyo3(signature = (constraint, desired, measured))]
     fn command(
         &self,
-        constraint: PyRef<'_, PyConstraint>,
+        #[pyo3(from_py_with = argument)] constraint: PyRef<'_, PyConstraint>,
         desired: Numbers<'_>,
         measured: Numbers<'_>,
     ) -> Result<PyInternalForceCommand> {

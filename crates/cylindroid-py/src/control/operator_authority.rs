@@ -1,9 +1,11 @@
 //! The class `OperatorAuthority`: scale of an operator's twist near joint limits.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use cylindroid::control::{AuthorityTimes, OperatorAuthority};
 use pyo3::prelude::*;
 
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument};
 use crate::servo::PyServo;
 use crate::table;
 
@@ -41,23 +43,34 @@ use crate::table;
 /// >>> authority.update(servo)
 /// >>> authority.value
 /// 0.002
-#[pyclass(name = "OperatorAuthority", module = "cylindroid")]
+#[pyclass(frozen, name = "OperatorAuthority", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyOperatorAuthority {
-    inner: OperatorAuthority,
+    inner: Mutex<OperatorAuthority>,
+}
+
+impl PyOperatorAuthority {
+    fn lock(&self) -> MutexGuard<'_, OperatorAuthority> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 #[pymethods]
 impl PyOperatorAuthority {
     #[new]
     #[pyo3(signature = (dt, fall, rise))]
-    fn new(dt: f64, fall: f64, rise: f64) -> Result<Self> {
-        Ok(Self { inner: OperatorAuthority::new(AuthorityTimes { dt, fall, rise })? })
+    fn new(
+        #[pyo3(from_py_with = argument)] dt: f64,
+        #[pyo3(from_py_with = argument)] fall: f64,
+        #[pyo3(from_py_with = argument)] rise: f64,
+    ) -> Result<Self> {
+        let inner = OperatorAuthority::new(AuthorityTimes { dt, fall, rise })?;
+        Ok(Self { inner: Mutex::new(inner) })
     }
 
     #[getter]
     fn value(&self) -> f64 {
-        self.inner.get()
+        self.lock().get()
     }
 
     /// Updates the authority after a step of the servo.
@@ -72,15 +85,15 @@ impl PyOperatorAuthority {
     /// InvalidOptionError
     ///     Before the first step.
     #[pyo3(signature = (servo))]
-    fn update(&mut self, servo: PyRef<'_, PyServo>) -> Result<()> {
-        let Some(step) = servo.last() else {
+    fn update(&self, #[pyo3(from_py_with = argument)] servo: PyRef<'_, PyServo>) -> Result<()> {
+        let Some(step) = servo.last()? else {
             return Err(Failure::option("servo", "before its first step", "update after it"));
         };
-        self.inner.update(step.saturation);
+        self.lock().update(step.saturation);
         Ok(())
     }
 
     fn __repr__(&self) -> String {
-        format!("<OperatorAuthority {}>", table::number(self.inner.get()))
+        format!("<OperatorAuthority {}>", table::number(self.lock().get()))
     }
 }

@@ -5,7 +5,7 @@ use cylindroid::control::{SharedCommand, SharedController, SharedInput};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::screws::PyProjector;
 use crate::table;
 
@@ -66,7 +66,7 @@ pub(crate) struct PySharedCommand {
 impl PySharedController {
     #[new]
     #[pyo3(signature = (gain))]
-    fn new(gain: f64) -> Result<Self> {
+    fn new(#[pyo3(from_py_with = argument)] gain: f64) -> Result<Self> {
         Ok(Self { inner: SharedController::new(gain)? })
     }
 
@@ -95,7 +95,7 @@ impl PySharedController {
     #[pyo3(signature = (projector, error, operator, feed_forward = None))]
     fn command(
         &self,
-        projector: PyRef<'_, PyProjector>,
+        #[pyo3(from_py_with = argument)] projector: PyRef<'_, PyProjector>,
         error: Numbers<'_>,
         operator: Numbers<'_>,
         feed_forward: Option<Numbers<'_>>,

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 use self::search::Search;
 use crate::arrays::{self, Array, Many, Numbers, Rows};
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument};
 use crate::mechanism::PyMechanism;
 
 pub(crate) use solution::PySolution;
@@ -80,17 +80,17 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         target: Bound<'_, PyAny>,
-        frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
         q0: Option<Numbers<'_>>,
         tool: Option<Numbers<'_>>,
-        task: Option<&str>,
-        task_axes: Option<&str>,
-        nearest: bool,
-        fixed: Option<Vec<String>>,
-        tolerance_position: f64,
-        tolerance_orientation: f64,
-        seed: u64,
-        iterations: usize,
+        #[pyo3(from_py_with = argument)] task: Option<&str>,
+        #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
+        #[pyo3(from_py_with = argument)] nearest: bool,
+        #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] tolerance_position: f64,
+        #[pyo3(from_py_with = argument)] tolerance_orientation: f64,
+        #[pyo3(from_py_with = argument)] seed: u64,
+        #[pyo3(from_py_with = argument)] iterations: usize,
     ) -> Result<PySolution> {
         let robot = &self.inner;
         let search = Search {
@@ -162,17 +162,17 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         target: Bound<'py, PyAny>,
-        count: usize,
-        frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] count: usize,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
         q0: Option<Numbers<'py>>,
         tool: Option<Numbers<'py>>,
-        task: Option<&str>,
-        task_axes: Option<&str>,
-        fixed: Option<Vec<String>>,
-        tolerance_position: f64,
-        tolerance_orientation: f64,
-        seed: u64,
-        iterations: usize,
+        #[pyo3(from_py_with = argument)] task: Option<&str>,
+        #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
+        #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] tolerance_position: f64,
+        #[pyo3(from_py_with = argument)] tolerance_orientation: f64,
+        #[pyo3(from_py_with = argument)] seed: u64,
+        #[pyo3(from_py_with = argument)] iterations: usize,
     ) -> Result<Array<'py>> {
         let robot = &self.inner;
         let search = Search {
@@ -187,8 +187,11 @@ impl PyMechanism {
             iterations,
         };
         let mut options = search.options(self)?;
-        options.initial_guess =
-            q0.as_ref().map(|q| q.vector("q0").map(<[f64]>::to_vec)).transpose()?;
+        if let Some(q0) = &q0 {
+            let q0 = q0.vector("q0")?;
+            robot.check_q("q0", q0)?;
+            options.initial_guess = Some(q0.to_vec());
+        }
         let targets = search.targets(self, &target)?;
         if targets.count().is_some() {
             return Err(Failure::option("target", "a batch", "give one pose, (4, 4)"));

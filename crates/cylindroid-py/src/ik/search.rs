@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Many, Numbers};
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, entry};
 use crate::mechanism::PyMechanism;
 use crate::options;
 
@@ -79,7 +79,7 @@ impl Search<'_, '_> {
             Ok(Goal { end_effector, target: Pose::IDENTITY, task })
         };
         let Ok(by_frame) = target.cast::<PyDict>() else {
-            let poses = poses(&target.extract()?)?;
+            let poses = poses(&entry("target", target)?)?;
             return Ok(Targets { goals: vec![goal(self.frame)?], poses: vec![poses] });
         };
         if let Some(frame) = self.frame {
@@ -92,8 +92,8 @@ impl Search<'_, '_> {
         }
         let mut targets = Targets { goals: Vec::new(), poses: Vec::new() };
         for (frame, pose) in by_frame {
-            targets.goals.push(goal(Some(&frame.extract::<String>()?))?);
-            targets.poses.push(poses(&pose.extract()?)?);
+            targets.goals.push(goal(Some(&entry::<String>("target", &frame)?))?);
+            targets.poses.push(poses(&entry("target", &pose)?)?);
         }
         let count = targets.count();
         if targets.poses.iter().any(|p| p.count() != count) {

@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 
 use super::{PyInverse, by_method, of_each};
 use crate::arrays::Numbers;
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument, entry};
 use crate::parameter_tables::documented;
 
 /// Values of parameters by name, from keyword arguments: `lam` stands for `lambda`, which Python
@@ -18,7 +18,7 @@ pub(crate) fn parameters_of(
 ) -> Result<Vec<(&'static str, f64)>> {
     let mut given = Vec::new();
     for (name, value) in keywords.into_iter().flatten() {
-        let name: String = name.extract()?;
+        let name: String = entry(function, &name)?;
         let meant = if name == "lam" { "lambda" } else { name.as_str() };
         let all = || NamedInverse::all().flat_map(|i| i.parameters).map(|p| p.name);
         let Some(known) = all().find(|known| *known == meant && name != "lambda") else {
@@ -26,7 +26,7 @@ pub(crate) fn parameters_of(
             return Err(Failure::kind(message));
         };
         // None is as if it were not given.
-        if let Some(value) = value.extract()? {
+        if let Some(value) = entry(&name, &value)? {
             given.push((known, value));
         }
     }
@@ -79,7 +79,7 @@ pub(crate) fn parameters_of(
 pub(crate) fn inverse_by_name(
     py: Python<'_>,
     J: Numbers<'_>,
-    method: &str,
+    #[pyo3(from_py_with = argument)] method: &str,
     joint_weights: Option<Numbers<'_>>,
     task_weights: Option<Numbers<'_>>,
     parameters: Option<&Bound<'_, PyDict>>,

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::{PyInverse, by_method};
 use crate::arrays::{Many, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 
 /// The damped least-squares inverse `J^T (J J^T + damping^2)^-1`.
 ///
@@ -38,7 +38,11 @@ use crate::error::Result;
 #[pyfunction]
 #[pyo3(signature = (J, damping))]
 #[expect(non_snake_case, reason = "the field's name")]
-pub(crate) fn damped(py: Python<'_>, J: Numbers<'_>, damping: f64) -> Result<PyInverse> {
+pub(crate) fn damped(
+    py: Python<'_>,
+    J: Numbers<'_>,
+    #[pyo3(from_py_with = argument)] damping: f64,
+) -> Result<PyInverse> {
     by_method(py, &J, Method::Damped { damping })
 }
 
@@ -71,7 +75,7 @@ pub(crate) fn damped(py: Python<'_>, J: Numbers<'_>, damping: f64) -> Result<PyI
 pub(crate) fn selectively_damped(
     J: Numbers<'_>,
     task: Numbers<'_>,
-    max_joint_velocity: f64,
+    #[pyo3(from_py_with = argument)] max_joint_velocity: f64,
 ) -> Result<PyInverse> {
     let j = J.matrix("J")?;
     let inner = inverse::selectively_damped(&j, task.vector("task")?, max_joint_velocity)?;

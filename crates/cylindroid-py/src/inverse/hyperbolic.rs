@@ -4,8 +4,8 @@ use cylindroid::inverse::{self, HyperbolicDamping, HyperbolicOptions};
 use pyo3::prelude::*;
 
 use super::{PyInverse, of_each};
-use crate::arrays::Numbers;
-use crate::error::{Failure, Result};
+use crate::arrays::{Numbers, check_twists};
+use crate::error::{Failure, Result, argument};
 use crate::screws::scale_of;
 
 /// The damping of hyperbolic inverses that two optional numbers mean.
@@ -76,20 +76,23 @@ fn damping_of(mu: Option<f64>, lam: Option<f64>) -> Result<HyperbolicDamping> {
 pub(crate) fn hyperbolic(
     py: Python<'_>,
     J: Numbers<'_>,
-    h: f64,
+    #[pyo3(from_py_with = argument)] h: f64,
     joint_metric: Option<Numbers<'_>>,
-    length: Option<f64>,
+    #[pyo3(from_py_with = argument)] length: Option<f64>,
     center: Option<Numbers<'_>>,
-    noise: Option<f64>,
-    mu: Option<f64>,
-    lam: Option<f64>,
+    #[pyo3(from_py_with = argument)] noise: Option<f64>,
+    #[pyo3(from_py_with = argument)] mu: Option<f64>,
+    #[pyo3(from_py_with = argument)] lam: Option<f64>,
 ) -> Result<PyInverse> {
     let options = HyperbolicOptions {
         scale: scale_of(length, center.as_ref(), noise)?,
         joint_metric: joint_metric.map(|m| m.metric("joint_metric")).transpose()?,
         damping: damping_of(mu, lam)?,
     };
-    of_each(py, &J, |j| inverse::hyperbolic_with(j, h, &options))
+    of_each(py, &J, |j| {
+        check_twists("J", j)?;
+        inverse::hyperbolic_with(j, h, &options)
+    })
 }
 
 /// The inverse that leaves out sums of chosen twists.
@@ -119,15 +122,18 @@ pub(crate) fn oblique(
     J: Numbers<'_>,
     complement: Numbers<'_>,
     joint_metric: Option<Numbers<'_>>,
-    length: Option<f64>,
+    #[pyo3(from_py_with = argument)] length: Option<f64>,
     center: Option<Numbers<'_>>,
-    noise: Option<f64>,
+    #[pyo3(from_py_with = argument)] noise: Option<f64>,
 ) -> Result<PyInverse> {
     let options = HyperbolicOptions {
         scale: scale_of(length, center.as_ref(), noise)?,
         joint_metric: joint_metric.map(|m| m.metric("joint_metric")).transpose()?,
         damping: HyperbolicDamping::None,
     };
-    let complement = complement.matrix("complement")?;
-    of_each(py, &J, |j| inverse::oblique(j, &complement, &options))
+    let complement = complement.twist_columns("complement")?;
+    of_each(py, &J, |j| {
+        check_twists("J", j)?;
+        inverse::oblique(j, &complement, &options)
+    })
 }

@@ -4,7 +4,7 @@ use cylindroid::inverse::{self, HyperbolicSvd, PolarKind};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::screws::scale_of;
 use crate::table::{self, Table};
 
@@ -79,15 +79,15 @@ pub(crate) struct PyHyperbolicSvd {
 #[expect(non_snake_case, reason = "the field's name")]
 pub(crate) fn hyperbolic_svd(
     J: Numbers<'_>,
-    h: f64,
+    #[pyo3(from_py_with = argument)] h: f64,
     joint_metric: Option<Numbers<'_>>,
-    length: Option<f64>,
+    #[pyo3(from_py_with = argument)] length: Option<f64>,
     center: Option<Numbers<'_>>,
-    noise: Option<f64>,
+    #[pyo3(from_py_with = argument)] noise: Option<f64>,
 ) -> Result<PyHyperbolicSvd> {
     let scale = scale_of(length, center.as_ref(), noise)?;
     let metric = joint_metric.map(|m| m.metric("joint_metric")).transpose()?;
-    let inner = inverse::hyperbolic_svd(&J.matrix("J")?, h, &scale, metric.as_ref())?;
+    let inner = inverse::hyperbolic_svd(&J.twist_columns("J")?, h, &scale, metric.as_ref())?;
     Ok(PyHyperbolicSvd { inner })
 }
 

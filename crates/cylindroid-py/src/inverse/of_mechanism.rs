@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 
 use super::{PyInverse, parameters_of};
 use crate::arrays::{Many, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::options;
 
@@ -65,12 +65,12 @@ impl PyMechanism {
     fn inverse(
         &self,
         q: Numbers<'_>,
-        method: &str,
+        #[pyo3(from_py_with = argument)] method: &str,
         twist: Option<Numbers<'_>>,
-        frame: Option<&str>,
-        reference: &str,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] reference: &str,
         tool: Option<Numbers<'_>>,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
         give_up: Option<Bound<'_, PyAny>>,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> Result<PyInverse> {

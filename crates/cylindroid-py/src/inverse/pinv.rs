@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::{PyInverse, by_method};
 use crate::arrays::Numbers;
-use crate::error::Result;
+use crate::error::{Result, argument};
 
 /// The truncated pseudoinverse: singular values at or below `eps` times the largest are cut.
 ///
@@ -40,6 +40,10 @@ use crate::error::Result;
 #[pyfunction]
 #[pyo3(signature = (J, eps = 1e-3))]
 #[expect(non_snake_case, reason = "the field's name")]
-pub(crate) fn pinv(py: Python<'_>, J: Numbers<'_>, eps: f64) -> Result<PyInverse> {
+pub(crate) fn pinv(
+    py: Python<'_>,
+    J: Numbers<'_>,
+    #[pyo3(from_py_with = argument)] eps: f64,
+) -> Result<PyInverse> {
     by_method(py, &J, Method::Truncated { eps })
 }

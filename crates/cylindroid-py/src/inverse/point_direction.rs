@@ -70,6 +70,7 @@ pub(crate) fn point_direction(
 ) -> Result<PyPointDirection> {
     let (point, direction) = (point.entries("point")?, direction.entries("direction")?);
     Error::check_finite("direction", &direction)?;
-    let found = all_rates(&J.matrix("J")?, Vec3::from_array(point), Vec3::from_array(direction))?;
+    let found =
+        all_rates(&J.twist_columns("J")?, Vec3::from_array(point), Vec3::from_array(direction))?;
     Ok(PyPointDirection { along: found.along, still: found.still })
 }

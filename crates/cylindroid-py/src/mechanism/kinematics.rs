@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::PyMechanism;
 use crate::arrays::{self, Array, Numbers, Rows};
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument};
 use crate::options;
 use crate::options::reference_of;
 use crate::threads;
@@ -77,7 +77,7 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Numbers<'py>,
-        frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
         tool: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
         let rows = Rows::of(&self.inner, "q", &q)?;
@@ -158,7 +158,12 @@ impl PyMechanism {
     /// >>> r.joint_axes(r.home)[-1, 0]
     /// array([2., 0., 0.])
     #[pyo3(signature = (q, side = "parent"))]
-    fn joint_axes<'py>(&self, py: Python<'py>, q: Numbers<'py>, side: &str) -> Result<Array<'py>> {
+    fn joint_axes<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        #[pyo3(from_py_with = argument)] side: &str,
+    ) -> Result<Array<'py>> {
         let on_parent = match side {
             "parent" => true,
             "child" => false,
@@ -260,8 +265,8 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Numbers<'py>,
-        frame: Option<&str>,
-        reference: &str,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] reference: &str,
         tool: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
         let (n, reference) = (self.inner.n(), reference_of(reference)?);
@@ -317,8 +322,8 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Numbers<'py>,
-        frame: Option<&str>,
-        reference: &str,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] reference: &str,
         tool: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
         let (n, reference) = (self.inner.n(), reference_of(reference)?);
@@ -368,8 +373,8 @@ impl PyMechanism {
         py: Python<'py>,
         q: Numbers<'py>,
         qd: Numbers<'py>,
-        frame: Option<&str>,
-        reference: &str,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] reference: &str,
         tool: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
         let (n, reference) = (self.inner.n(), reference_of(reference)?);
@@ -412,8 +417,8 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         q: Numbers<'py>,
-        angles: &str,
-        frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] angles: &str,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
         tool: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
         const ANGLES: [(&str, OrientationRates); 3] = [
@@ -457,7 +462,7 @@ impl PyMechanism {
         py: Python<'py>,
         q: Numbers<'py>,
         qd: Numbers<'py>,
-        dt: f64,
+        #[pyo3(from_py_with = argument)] dt: f64,
     ) -> Result<Array<'py>> {
         let n = self.inner.n();
         let (rows, rates) = self.pair(&q, &qd)?;

@@ -7,7 +7,7 @@ use cylindroid::model::formats;
 use pyo3::prelude::*;
 
 use super::{Origin, PyMechanism};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::options;
 use crate::table::{self, Table};
 
@@ -42,7 +42,10 @@ use crate::table::{self, Table};
 /// cylindroid._errors.UnknownNameError: no catalogue model or file named 'pnda'; nearest: panda, ...
 #[pyfunction]
 #[pyo3(signature = (model))]
-pub(crate) fn load(py: Python<'_>, model: PathBuf) -> Result<PyMechanism> {
+pub(crate) fn load(
+    py: Python<'_>,
+    #[pyo3(from_py_with = argument)] model: PathBuf,
+) -> Result<PyMechanism> {
     let name = model.to_string_lossy().into_owned();
     let inner = py.detach(|| match model.to_str() {
         Some(name) => cylindroid::load(name),
@@ -82,9 +85,9 @@ pub(crate) fn load(py: Python<'_>, model: PathBuf) -> Result<PyMechanism> {
 #[pyo3(signature = (text, format = "urdf", path = None))]
 pub(crate) fn parse(
     py: Python<'_>,
-    text: &str,
-    format: &str,
-    path: Option<PathBuf>,
+    #[pyo3(from_py_with = argument)] text: &str,
+    #[pyo3(from_py_with = argument)] format: &str,
+    #[pyo3(from_py_with = argument)] path: Option<PathBuf>,
 ) -> Result<PyMechanism> {
     let path = path.unwrap_or_else(|| PathBuf::from("<text>"));
     type Reader = fn(&str, &Path) -> cylindroid::Result<Mechanism>;

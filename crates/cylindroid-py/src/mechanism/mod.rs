@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::{IntoPyObjectExt, intern};
 
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::table::{self, Table};
 
 pub(crate) use joint::PyJoint;
@@ -256,7 +256,7 @@ impl PyMechanism {
     /// InvalidOptionError
     ///     For a joint that does not move or follows another.
     #[pyo3(signature = (names))]
-    fn with_actuated(&self, names: Vec<String>) -> Result<Self> {
+    fn with_actuated(&self, #[pyo3(from_py_with = argument)] names: Vec<String>) -> Result<Self> {
         let inner = self.inner.with_actuated(&names)?;
         Ok(Self::new(inner, Origin::Actuated { of: Box::new(self.clone()), names }))
     }

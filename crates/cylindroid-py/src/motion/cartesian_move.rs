@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::{PyCartesianPath, bounds, times};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::table;
 
 /// A Cartesian trajectory: a path with the fastest time law within bounds of speed, acceleration
@@ -46,11 +46,11 @@ impl PyCartesianMove {
     #[new]
     #[pyo3(signature = (path, speed = None, acceleration = None, jerk = None, duration = None))]
     fn new(
-        path: PyRef<'_, PyCartesianPath>,
+        #[pyo3(from_py_with = argument)] path: PyRef<'_, PyCartesianPath>,
         speed: Option<Numbers<'_>>,
         acceleration: Option<Numbers<'_>>,
         jerk: Option<Numbers<'_>>,
-        duration: Option<f64>,
+        #[pyo3(from_py_with = argument)] duration: Option<f64>,
     ) -> Result<Self> {
         let (linear, angular) = bounds([&speed, &acceleration, &jerk], false)?;
         let bounds = CartesianBounds { linear, angular };
@@ -117,7 +117,12 @@ impl PyCartesianMove {
     ///     The pose at `t`, (4, 4) (m), and the constant twist to the pose at `t + dt`, (6,):
     ///     linear first, world axes, at the moving origin [m/s, rad/s].
     #[pyo3(signature = (t, dt))]
-    fn target<'py>(&self, py: Python<'py>, t: f64, dt: f64) -> Result<(Array<'py>, Array<'py>)> {
+    fn target<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument)] t: f64,
+        #[pyo3(from_py_with = argument)] dt: f64,
+    ) -> Result<(Array<'py>, Array<'py>)> {
         let target = self.inner.target(t, dt);
         Ok((arrays::pose(py, target.pose)?, arrays::vector(py, &target.feed_forward.to_array())))
     }

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::{bounds, times};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table;
 
@@ -48,17 +48,19 @@ impl PyJointMove {
     #[pyo3(signature = (mechanism, q, to, speed = None, acceleration = None, jerk = None,
         duration = None))]
     fn new(
-        mechanism: PyRef<'_, PyMechanism>,
+        #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
         q: Numbers<'_>,
         to: Numbers<'_>,
         speed: Option<Numbers<'_>>,
         acceleration: Option<Numbers<'_>>,
         jerk: Option<Numbers<'_>>,
-        duration: Option<f64>,
+        #[pyo3(from_py_with = argument)] duration: Option<f64>,
     ) -> Result<Self> {
         let (length, angle) = bounds([&speed, &acceleration, &jerk], true)?;
         let defaults = JointDefaults { length, angle };
         let (q, to) = (q.vector("q")?, to.vector("to")?);
+        mechanism.inner.check_q("q", q)?;
+        mechanism.inner.check_q("to", to)?;
         let mut inner = JointMove::within_limits(&mechanism.inner, q, to, &defaults)?;
         if let Some(duration) = duration {
             inner = inner.scaled_to_duration(duration)?;

@@ -30,7 +30,13 @@ fn bounds(given: Given<'_, '_>, of_both: bool) -> Result<(KinematicBounds, Kinem
     let [speed, acceleration, jerk] = given;
     let of = |name, given: &Option<Numbers<'_>>, default: (f64, f64)| match given {
         None => Ok(default),
-        Some(given) => pair(name, given, if of_both { f64::NAN } else { default.1 }),
+        Some(given) => {
+            if let Some(bad) = given.values().iter().find(|x| x.is_nan() || **x <= 0.0) {
+                let reason = "it must be positive; infinity means no bound";
+                return Err(Failure::option(name, bad.to_string(), reason));
+            }
+            pair(name, given, if of_both { f64::NAN } else { default.1 })
+        }
     };
     let v = of("speed", speed, SPEED)?;
     let a = of("acceleration", acceleration, ACCELERATION)?;

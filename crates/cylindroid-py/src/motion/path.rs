@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::times;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::table;
 
 /// A Cartesian path of a frame, over s from 0 to 1; created by `line`, `circle` or `rotation`.
@@ -108,7 +108,7 @@ impl PyCartesianPath {
         start: Numbers<'_>,
         centre: Numbers<'_>,
         axis: Numbers<'_>,
-        angle: f64,
+        #[pyo3(from_py_with = argument)] angle: f64,
     ) -> Result<Self> {
         let rotation = AxisRotation {
             centre: Vec3::from_array(centre.entries("centre")?),

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::times;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 
 /// A time law (trapezoidal or jerk-limited velocity profile): the fastest motion of one coordinate
 /// from rest to rest within bounds.
@@ -49,11 +49,11 @@ impl PyTimeLaw {
     #[new]
     #[pyo3(signature = (distance, velocity, acceleration, jerk = None, duration = None))]
     fn new(
-        distance: f64,
-        velocity: f64,
-        acceleration: f64,
-        jerk: Option<f64>,
-        duration: Option<f64>,
+        #[pyo3(from_py_with = argument)] distance: f64,
+        #[pyo3(from_py_with = argument)] velocity: f64,
+        #[pyo3(from_py_with = argument)] acceleration: f64,
+        #[pyo3(from_py_with = argument)] jerk: Option<f64>,
+        #[pyo3(from_py_with = argument)] duration: Option<f64>,
     ) -> Result<Self> {
         let jerk = jerk.unwrap_or(f64::INFINITY);
         let mut inner = TimeLaw::new(distance, KinematicBounds { velocity, acceleration, jerk })?;

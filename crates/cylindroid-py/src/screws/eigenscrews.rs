@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::{PyScrew, screw_list};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::table::{self, Table};
 
 /// The eigenscrews of a stiffness or inertia matrix.
@@ -70,8 +70,11 @@ pub(crate) struct PyEigenscrews {
 #[pyfunction]
 #[pyo3(signature = (K, h = 0.0))]
 #[expect(non_snake_case, reason = "the field's name")]
-pub(crate) fn eigenscrews(K: Numbers<'_>, h: f64) -> Result<PyEigenscrews> {
-    Ok(PyEigenscrews { inner: screws::eigenscrews(&K.matrix("K")?, h)? })
+pub(crate) fn eigenscrews(
+    K: Numbers<'_>,
+    #[pyo3(from_py_with = argument)] h: f64,
+) -> Result<PyEigenscrews> {
+    Ok(PyEigenscrews { inner: screws::eigenscrews(&K.twist_columns("K")?, h)? })
 }
 
 impl PyEigenscrews {

@@ -7,7 +7,7 @@ use super::PyScrewSystem;
 use super::forms::finite_twist;
 use super::pitch::check_pitch;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::table;
 
 /// The pitches at which the error form of a twist vanishes.
@@ -94,7 +94,11 @@ impl PyScrewSystem {
     /// >>> round(revolute.error_form([0.3, 0, 0, 1, 0, 0], 0.1), 12)
     /// 0.2
     #[pyo3(signature = (twist, h))]
-    fn error_form(&self, twist: Numbers<'_>, h: f64) -> Result<Option<f64>> {
+    fn error_form(
+        &self,
+        twist: Numbers<'_>,
+        #[pyo3(from_py_with = argument)] h: f64,
+    ) -> Result<Option<f64>> {
         check_pitch(h)?;
         Ok(self.inner.error_form(finite_twist(&twist, "twist")?, h))
     }

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use super::PyScrewSystem;
 use super::pitch::check_pitch;
 use crate::arrays::{self, Array};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::table;
 
 /// Whether a hyperbolic pseudoinverse exists, and how clearly.
@@ -62,7 +62,7 @@ impl PyScrewSystem {
     /// -------
     /// Existence
     #[pyo3(signature = (h))]
-    fn existence(&self, h: f64) -> Result<PyExistence> {
+    fn existence(&self, #[pyo3(from_py_with = argument)] h: f64) -> Result<PyExistence> {
         check_pitch(h)?;
         Ok(self.inner.existence(h).into())
     }
@@ -80,7 +80,7 @@ impl PyScrewSystem {
     ///     Numbers of positive, negative and zero eigenvalues of the Gram matrix of any basis. The
     ///     inverse exists if the last is zero.
     #[pyo3(signature = (h))]
-    fn signature(&self, h: f64) -> Result<(usize, usize, usize)> {
+    fn signature(&self, #[pyo3(from_py_with = argument)] h: f64) -> Result<(usize, usize, usize)> {
         Error::check_finite("h", &[h])?;
         let s = self.inner.signature(h);
         Ok((s.positive, s.negative, s.zero))
@@ -99,7 +99,11 @@ impl PyScrewSystem {
     ///     P for twists, linear part first; None if it does not exist, see `existence(h)`.
     ///     `1 - P.T` projects wrenches onto those that do no work on the system.
     #[pyo3(signature = (h))]
-    fn projector<'py>(&self, py: Python<'py>, h: f64) -> Result<Option<Array<'py>>> {
+    fn projector<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument)] h: f64,
+    ) -> Result<Option<Array<'py>>> {
         check_pitch(h)?;
         self.inner.projector(h).map(|p| arrays::matrix(py, &p.matrix())).transpose()
     }
@@ -118,7 +122,7 @@ impl PyScrewSystem {
     fn projector_along<'py>(
         &self,
         py: Python<'py>,
-        other: PyRef<'_, Self>,
+        #[pyo3(from_py_with = argument)] other: PyRef<'_, Self>,
     ) -> Result<Option<Array<'py>>> {
         let projector = self.inner.projector_along(&other.inner);
         projector.map(|p| arrays::matrix(py, &p.matrix())).transpose()
@@ -135,7 +139,7 @@ impl PyScrewSystem {
     /// -------
     /// float
     #[pyo3(signature = (h))]
-    fn projector_norm(&self, h: f64) -> Result<f64> {
+    fn projector_norm(&self, #[pyo3(from_py_with = argument)] h: f64) -> Result<f64> {
         check_pitch(h)?;
         Ok(self.inner.projector_norm(h))
     }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::pitch::check_pitch;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 
 /// A twist whose entries are finite.
 pub(crate) fn finite_twist(of: &Numbers<'_>, name: &'static str) -> Result<Twist> {
@@ -22,7 +22,7 @@ fn finite_wrench(of: &Numbers<'_>, name: &'static str) -> Result<Wrench> {
 }
 
 fn finite_columns(of: &Numbers<'_>) -> Result<Matrix> {
-    let j = of.matrix("J")?;
+    let j = of.twist_columns("J")?;
     Error::check_finite("J", j.as_slice())?;
     Ok(j)
 }
@@ -58,7 +58,11 @@ fn finite_columns(of: &Numbers<'_>) -> Result<Matrix> {
 /// (0.0, 0.25)
 #[pyfunction]
 #[pyo3(signature = (a, b, h))]
-pub(crate) fn pitch_form(a: Numbers<'_>, b: Numbers<'_>, h: f64) -> Result<f64> {
+pub(crate) fn pitch_form(
+    a: Numbers<'_>,
+    b: Numbers<'_>,
+    #[pyo3(from_py_with = argument)] h: f64,
+) -> Result<f64> {
     check_pitch(h)?;
     Ok(finite_twist(&a, "a")?.pitch_form(finite_twist(&b, "b")?, h))
 }
@@ -90,7 +94,11 @@ pub(crate) fn pitch_form(a: Numbers<'_>, b: Numbers<'_>, h: f64) -> Result<f64> 
 /// 0.0
 #[pyfunction]
 #[pyo3(signature = (a, b, h))]
-pub(crate) fn wrench_pitch_form(a: Numbers<'_>, b: Numbers<'_>, h: f64) -> Result<f64> {
+pub(crate) fn wrench_pitch_form(
+    a: Numbers<'_>,
+    b: Numbers<'_>,
+    #[pyo3(from_py_with = argument)] h: f64,
+) -> Result<f64> {
     check_pitch(h)?;
     Ok(finite_wrench(&a, "a")?.pitch_form(finite_wrench(&b, "b")?, h))
 }
@@ -177,7 +185,11 @@ pub(crate) fn killing(a: Numbers<'_>, b: Numbers<'_>) -> Result<f64> {
 /// True
 #[pyfunction]
 #[pyo3(signature = (twist, h))]
-pub(crate) fn lowered<'py>(py: Python<'py>, twist: Numbers<'py>, h: f64) -> Result<Array<'py>> {
+pub(crate) fn lowered<'py>(
+    py: Python<'py>,
+    twist: Numbers<'py>,
+    #[pyo3(from_py_with = argument)] h: f64,
+) -> Result<Array<'py>> {
     check_pitch(h)?;
     Ok(arrays::vector(py, &finite_twist(&twist, "twist")?.lowered(h).to_array()))
 }
@@ -207,7 +219,11 @@ pub(crate) fn lowered<'py>(py: Python<'py>, twist: Numbers<'py>, h: f64) -> Resu
 /// array([1., 0., 0., 0., 0., 1.])
 #[pyfunction]
 #[pyo3(signature = (wrench, h))]
-pub(crate) fn raised<'py>(py: Python<'py>, wrench: Numbers<'py>, h: f64) -> Result<Array<'py>> {
+pub(crate) fn raised<'py>(
+    py: Python<'py>,
+    wrench: Numbers<'py>,
+    #[pyo3(from_py_with = argument)] h: f64,
+) -> Result<Array<'py>> {
     Error::check_finite("h", &[h])?;
     Ok(arrays::vector(py, &finite_wrench(&wrench, "wrench")?.raised(h).to_array()))
 }
@@ -245,7 +261,11 @@ pub(crate) fn raised<'py>(py: Python<'py>, wrench: Numbers<'py>, h: f64) -> Resu
 #[pyfunction]
 #[pyo3(signature = (J, h))]
 #[expect(non_snake_case, reason = "the field's name")]
-pub(crate) fn gram<'py>(py: Python<'py>, J: Numbers<'py>, h: f64) -> Result<Array<'py>> {
+pub(crate) fn gram<'py>(
+    py: Python<'py>,
+    J: Numbers<'py>,
+    #[pyo3(from_py_with = argument)] h: f64,
+) -> Result<Array<'py>> {
     check_pitch(h)?;
     arrays::matrix(py, &gram_of(&finite_columns(&J)?, h)?)
 }
@@ -278,7 +298,10 @@ pub(crate) fn gram<'py>(py: Python<'py>, J: Numbers<'py>, h: f64) -> Result<Arra
 #[pyfunction]
 #[pyo3(signature = (J, h))]
 #[expect(non_snake_case, reason = "the field's name")]
-pub(crate) fn gram_determinant(J: Numbers<'_>, h: f64) -> Result<f64> {
+pub(crate) fn gram_determinant(
+    J: Numbers<'_>,
+    #[pyo3(from_py_with = argument)] h: f64,
+) -> Result<f64> {
     check_pitch(h)?;
     Ok(determinant_of(&finite_columns(&J)?, h)?)
 }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use super::lines::lines_of;
 use super::{PyScrew, PyScrewSystem, PyTransversals, scale_of};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 
 /// Involution test of lines: whether joints on them transmit some load without any joint torque.
 ///
@@ -38,9 +38,9 @@ use crate::error::Result;
 #[pyo3(signature = (lines, length = None, center = None, noise = None))]
 pub(crate) fn involution(
     lines: Numbers<'_>,
-    length: Option<f64>,
+    #[pyo3(from_py_with = argument)] length: Option<f64>,
     center: Option<Numbers<'_>>,
-    noise: Option<f64>,
+    #[pyo3(from_py_with = argument)] noise: Option<f64>,
 ) -> Result<PyInvolution> {
     let options = scale_of(length, center.as_ref(), noise)?;
     Ok(PyInvolution { inner: screws::involution(&lines_of(&lines)?, &options)? })

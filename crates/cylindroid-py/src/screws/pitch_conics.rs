@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::system::PyScrewSystem;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 
 /// The pencil of conics in which a three-system meets the pitch quadrics, in the projective plane of
 /// its screws: created by `ScrewSystem.pitch_conics`.
@@ -52,7 +52,7 @@ impl PyPitchConics {
     /// str
     ///     'empty', 'point', 'regular conic', 'pair of lines', 'double line' or 'whole plane'.
     #[pyo3(signature = (h))]
-    fn kind(&self, h: f64) -> Result<&'static str> {
+    fn kind(&self, #[pyo3(from_py_with = argument)] h: f64) -> Result<&'static str> {
         check(h)?;
         Ok(self.inner.kind(h).name())
     }
@@ -72,7 +72,12 @@ impl PyPitchConics {
     ///     Homogeneous coordinates of length one: a closed curve for a regular conic, two lines for
     ///     a pair, a single point, nothing if there is none.
     #[pyo3(signature = (h, count = 400))]
-    fn points<'py>(&self, py: Python<'py>, h: f64, count: usize) -> Result<Vec<Array<'py>>> {
+    fn points<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument)] h: f64,
+        #[pyo3(from_py_with = argument)] count: usize,
+    ) -> Result<Vec<Array<'py>>> {
         check(h)?;
         self.inner.points(h, count).iter().map(|curve| three(py, curve)).collect()
     }

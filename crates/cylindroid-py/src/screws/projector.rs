@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::scale_of;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Failure, Result};
+use crate::error::{Failure, Result, argument};
 use crate::table;
 
 /// A projector onto a subspace of twists along a complement, independent of frame and units.
@@ -63,18 +63,20 @@ impl PyProjector {
     fn new(
         motions: Numbers<'_>,
         along: Numbers<'_>,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
         center: Option<Numbers<'_>>,
-        noise: Option<f64>,
+        #[pyo3(from_py_with = argument)] noise: Option<f64>,
     ) -> Result<Self> {
         let columns = |name: &'static str, of: &Numbers<'_>| -> Result<Vec<Twist>> {
-            let m = of.matrix(name)?;
-            Error::check_len("rows of the matrix of twists", 6, m.rows())?;
+            let m = of.twist_columns(name)?;
             let twist = |j: usize| Twist::from_array(std::array::from_fn(|i| m[(i, j)]));
             Ok((0..m.cols()).map(twist).collect())
         };
         let motions = columns("motions", &motions)?;
         let twists = if along.shape().is_empty() { vec![] } else { columns("along", &along)? };
+        if along.values().iter().any(|x| x.is_nan()) {
+            Error::check_finite("along", along.values())?;
+        }
         let way = match (along.shape(), along.values()) {
             ([], [h]) => Complement::Reciprocal { h: *h },
             _ => Complement::Twists(&twists),
@@ -182,9 +184,9 @@ pub(crate) fn projector<'py>(
     py: Python<'py>,
     motions: Numbers<'py>,
     along: Numbers<'py>,
-    length: Option<f64>,
+    #[pyo3(from_py_with = argument)] length: Option<f64>,
     center: Option<Numbers<'py>>,
-    noise: Option<f64>,
+    #[pyo3(from_py_with = argument)] noise: Option<f64>,
 ) -> Result<Array<'py>> {
     PyProjector::new(motions, along, length, center, noise)?.matrix(py)
 }

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use super::pitch::check_pitch;
 use super::{PyScrew, scale_of, screw_list};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
@@ -112,12 +112,12 @@ impl PyScrewSystem {
     #[expect(non_snake_case, reason = "the field's name")]
     fn new(
         J: Numbers<'_>,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
         center: Option<Numbers<'_>>,
-        noise: Option<f64>,
+        #[pyo3(from_py_with = argument)] noise: Option<f64>,
     ) -> Result<Self> {
         let options = scale_of(length, center.as_ref(), noise)?;
-        Ok(Self { inner: ScrewSystem::of_columns(&J.matrix("J")?, &options)? })
+        Ok(Self { inner: ScrewSystem::of_columns(&J.twist_columns("J")?, &options)? })
     }
 
     #[getter]
@@ -235,7 +235,7 @@ impl PyScrewSystem {
     /// NotFiniteError
     ///     For a NaN.
     #[pyo3(signature = (h))]
-    fn h_reciprocal(&self, h: f64) -> Result<Self> {
+    fn h_reciprocal(&self, #[pyo3(from_py_with = argument)] h: f64) -> Result<Self> {
         check_pitch(h)?;
         Ok(Self { inner: self.inner.h_reciprocal(h) })
     }
@@ -250,7 +250,7 @@ impl PyScrewSystem {
     /// -------
     /// ScrewSystem
     #[pyo3(signature = (other))]
-    fn sum(&self, other: PyRef<'_, Self>) -> Self {
+    fn sum(&self, #[pyo3(from_py_with = argument)] other: PyRef<'_, Self>) -> Self {
         Self { inner: self.inner.sum(&other.inner) }
     }
 
@@ -264,7 +264,7 @@ impl PyScrewSystem {
     /// -------
     /// ScrewSystem
     #[pyo3(signature = (other))]
-    fn intersection(&self, other: PyRef<'_, Self>) -> Self {
+    fn intersection(&self, #[pyo3(from_py_with = argument)] other: PyRef<'_, Self>) -> Self {
         Self { inner: self.inner.intersection(&other.inner) }
     }
 
@@ -296,7 +296,7 @@ impl PyScrewSystem {
     /// float
     ///     Zero if this system lies in the other.
     #[pyo3(signature = (other))]
-    fn sine_to_system(&self, other: PyRef<'_, Self>) -> f64 {
+    fn sine_to_system(&self, #[pyo3(from_py_with = argument)] other: PyRef<'_, Self>) -> f64 {
         self.inner.sine_to_system(&other.inner)
     }
 
@@ -316,7 +316,7 @@ impl PyScrewSystem {
     /// -----
     /// Ball 1900, chapter II.
     #[pyo3(signature = (count))]
-    fn pencil(&self, count: usize) -> Vec<PyScrew> {
+    fn pencil(&self, #[pyo3(from_py_with = argument)] count: usize) -> Vec<PyScrew> {
         screw_list(&self.inner.pencil(count))
     }
 
@@ -387,10 +387,10 @@ impl PyMechanism {
     fn screw_system(
         &self,
         q: Option<Numbers<'_>>,
-        frame: Option<&str>,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
         center: Option<Numbers<'_>>,
-        noise: Option<f64>,
+        #[pyo3(from_py_with = argument)] noise: Option<f64>,
     ) -> Result<PyScrewSystem> {
         let mechanism = &self.inner;
         let length = length.unwrap_or(mechanism.reach());

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use super::lines::lines_of;
 use super::scale_of;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 
 /// The lines that meet all of a set of lines.
 ///
@@ -28,9 +28,9 @@ use crate::error::Result;
 #[pyo3(signature = (lines, length = None, center = None, noise = None))]
 pub(crate) fn transversals(
     lines: Numbers<'_>,
-    length: Option<f64>,
+    #[pyo3(from_py_with = argument)] length: Option<f64>,
     center: Option<Numbers<'_>>,
-    noise: Option<f64>,
+    #[pyo3(from_py_with = argument)] noise: Option<f64>,
 ) -> Result<PyTransversals> {
     let options = scale_of(length, center.as_ref(), noise)?;
     Ok(PyTransversals { inner: screws::transversals(&lines_of(&lines)?, &options)? })

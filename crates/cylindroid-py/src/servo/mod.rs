@@ -6,13 +6,15 @@ mod stall;
 mod status;
 mod trajectory;
 
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
 use cylindroid::control::{InverseSelection, Step, Target};
 use cylindroid::{Error, Servo, ServoOptions, Twist};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Failure, Result, argument};
 use crate::inverse::parameters_of;
 use crate::mechanism::PyMechanism;
 use crate::options;
@@ -132,10 +134,16 @@ pub(crate) use trajectory::PyTrajectory;
 /// ...     q = q + servo.dt * qd
 /// >>> servo.status, bool(abs(robot.fk(q) - target).max() < 1e-5)
 /// ('reached', True)
-#[pyclass(name = "Servo", module = "cylindroid")]
+#[pyclass(frozen, name = "Servo", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyServo {
-    inner: Servo,
+    running: Mutex<Running>,
+}
+
+#[derive(Debug)]
+struct Running {
+    servo: Servo,
+    /// The result of the last step.
     last: Option<Step>,
 }
 
@@ -147,9 +155,21 @@ enum JointWeights<'py> {
 }
 
 impl PyServo {
+    /// The servo, for one call at a time.
+    fn lock(&self) -> Result<MutexGuard<'_, Running>> {
+        match self.running.try_lock() {
+            Ok(running) => Ok(running),
+            Err(TryLockError::Poisoned(error)) => Ok(error.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(Failure::InUse(
+                "the servo is in use by a call in another thread; make a servo for each thread"
+                    .to_owned(),
+            )),
+        }
+    }
+
     /// The result of the last step.
-    pub(crate) fn last(&self) -> Option<&Step> {
-        self.last.as_ref()
+    pub(crate) fn last(&self) -> Result<Option<Step>> {
+        Ok(self.lock()?.last)
     }
 }
 
@@ -163,25 +183,25 @@ impl PyServo {
         inverse = "truncated", give_up = None, fallback = None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
-        mechanism: PyRef<'_, PyMechanism>,
-        frame: Option<&str>,
+        #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
         gain: Option<Numbers<'_>>,
         tool: Option<Numbers<'_>>,
-        dt: Option<f64>,
-        tolerance_position: Option<f64>,
-        tolerance_orientation: Option<f64>,
+        #[pyo3(from_py_with = argument)] dt: Option<f64>,
+        #[pyo3(from_py_with = argument)] tolerance_position: Option<f64>,
+        #[pyo3(from_py_with = argument)] tolerance_orientation: Option<f64>,
         speed: Option<Numbers<'_>>,
-        acceleration: Option<f64>,
-        length: Option<f64>,
-        joint_weights: Option<JointWeights<'_>>,
+        #[pyo3(from_py_with = argument)] acceleration: Option<f64>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
+        #[pyo3(from_py_with = argument)] joint_weights: Option<JointWeights<'_>>,
         secondary: Option<Bound<'_, PyAny>>,
         posture: Option<Numbers<'_>>,
-        null_space: &str,
-        task: Option<&str>,
-        task_axes: Option<&str>,
-        inverse: &str,
+        #[pyo3(from_py_with = argument)] null_space: &str,
+        #[pyo3(from_py_with = argument)] task: Option<&str>,
+        #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
+        #[pyo3(from_py_with = argument)] inverse: &str,
         give_up: Option<Bound<'_, PyAny>>,
-        fallback: Option<&str>,
+        #[pyo3(from_py_with = argument)] fallback: Option<&str>,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> Result<Self> {
         let robot = &mechanism.inner;
@@ -226,7 +246,8 @@ impl PyServo {
         selection.apply(&mut options)?;
         let posture = mechanism.or_home("posture", posture.as_ref())?;
         options.secondary = options::secondary(secondary.as_ref(), posture, robot, &options)?;
-        Ok(Self { inner: Servo::new(robot, options)?, last: None })
+        let servo = Servo::new(robot, options)?;
+        Ok(Self { running: Mutex::new(Running { servo, last: None }) })
     }
 
     /// One control step: the joint velocities to command until the next step.
@@ -255,7 +276,7 @@ impl PyServo {
     ///     For a target that is not a pose, or open loops.
     #[pyo3(signature = (q, target, secondary = None, feed_forward = None))]
     fn step<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         q: Numbers<'py>,
         target: Numbers<'py>,
@@ -269,16 +290,17 @@ impl PyServo {
                 Some(twist) => twist.twist("feed_forward")?,
             },
         };
+        let running = &mut *self.lock()?;
         let desired = match &secondary {
             None => &[],
             Some(desired) => {
                 let desired = desired.vector("secondary")?;
-                self.inner.mechanism().check_q("secondary", desired)?;
+                running.servo.mechanism().check_q("secondary", desired)?;
                 desired
             }
         };
-        self.last = Some(self.inner.step_with(q.vector("q")?, target, desired)?);
-        Ok(arrays::vector(py, self.inner.joint_velocities()))
+        running.last = Some(running.servo.step_with(q.vector("q")?, target, desired)?);
+        Ok(arrays::vector(py, running.servo.joint_velocities()))
     }
 
     /// Integrates the joint velocities of the last step over `dt`, for simulation.
@@ -299,16 +321,18 @@ impl PyServo {
     /// DimensionError, NotFiniteError
     #[pyo3(signature = (q))]
     fn advance<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
-        let q = q.vector("q")?;
-        self.inner.mechanism().check_q("q", q)?;
+        let (q, servo) = (q.vector("q")?, &self.lock()?.servo);
+        servo.mechanism().check_q("q", q)?;
         let mut next = q.to_vec();
-        self.inner.advance(&mut next);
+        servo.advance(&mut next);
         Ok(arrays::vector(py, &next))
     }
 
     /// Resets the servo: no last target, joints at rest.
-    fn reset(&mut self) {
-        self.inner.reset();
-        self.last = None;
+    fn reset(&self) -> Result<()> {
+        let running = &mut *self.lock()?;
+        running.servo.reset();
+        running.last = None;
+        Ok(())
     }
 }

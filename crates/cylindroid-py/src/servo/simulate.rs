@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::{PyMotionResult, PyServo, PyTrajectory};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument, entry};
 use crate::motion::PyCartesianMove;
 
 /// The goal of a motion.
@@ -39,20 +39,21 @@ impl PyServo {
     /// DimensionError, NotFiniteError, InvalidOptionError
     #[pyo3(signature = (q, target, duration = 60.0, record = false))]
     fn simulate(
-        &mut self,
+        &self,
         py: Python<'_>,
         q: Numbers<'_>,
         target: Bound<'_, PyAny>,
-        duration: f64,
-        record: bool,
+        #[pyo3(from_py_with = argument)] duration: f64,
+        #[pyo3(from_py_with = argument)] record: bool,
     ) -> Result<PyMotionResult> {
         Error::check_positive("duration", duration)?;
         let goal = match target.extract::<PyRef<'_, PyCartesianMove>>() {
             Ok(motion) => Goal::Along(Box::new(motion.inner)),
-            Err(_) => Goal::Pose(target.extract::<Numbers<'_>>()?.pose("target")?),
+            Err(_) => Goal::Pose(entry::<Numbers<'_>>("target", &target)?.pose("target")?),
         };
         let q = q.vector("q")?;
-        let servo = &mut self.inner;
+        let running = &mut *self.lock()?;
+        let servo = &mut running.servo;
         servo.reset();
         let (n, dt) = (servo.mechanism().n(), servo.options().dt);
         let mut trajectory = record.then(|| PyTrajectory::of(n));
@@ -68,9 +69,9 @@ impl PyServo {
             };
             simulate(servo, q, duration, aim, observe)
         })?;
-        self.last = Some(outcome.last);
+        running.last = Some(outcome.last);
         let trajectory = trajectory.map(|t| Py::new(py, t)).transpose()?;
-        let mechanism = self.inner.mechanism().clone();
+        let mechanism = running.servo.mechanism().clone();
         Ok(PyMotionResult { outcome, trajectory, mechanism })
     }
 
@@ -101,11 +102,11 @@ impl PyServo {
         py: Python<'py>,
         q: Numbers<'py>,
         target: Numbers<'py>,
-        max_restarts: usize,
+        #[pyo3(from_py_with = argument)] max_restarts: usize,
     ) -> Result<Option<Array<'py>>> {
         let (q, target) = (q.vector("q")?, target.pose("target")?);
-        let found =
-            py.detach(|| find_reachable_configuration(&self.inner, q, target, max_restarts))?;
+        let servo = &self.lock()?.servo;
+        let found = py.detach(|| find_reachable_configuration(servo, q, target, max_restarts))?;
         Ok(found.map(|found| arrays::vector(py, &found.q)))
     }
 }

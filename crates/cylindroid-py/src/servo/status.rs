@@ -3,7 +3,7 @@
 use cylindroid::control::Status;
 use pyo3::prelude::*;
 
-use super::{PyServo, PyStall};
+use super::{PyServo, PyStall, Running};
 use crate::arrays::{self, Array};
 use crate::error::Result;
 
@@ -18,101 +18,105 @@ fn status_name(status: Status) -> &'static str {
 #[pymethods]
 impl PyServo {
     #[getter]
-    fn status(&self) -> Option<&'static str> {
-        self.last.map(|s| status_name(s.status))
+    fn status(&self) -> Result<Option<&'static str>> {
+        Ok(self.lock()?.last.map(|s| status_name(s.status)))
     }
 
     #[getter]
-    fn stall(&self) -> Option<PyStall> {
-        let stalled = self.last.is_some_and(|s| s.status == Status::Stalled);
-        stalled.then(|| PyStall::new(&self.inner.stall(), self.inner.mechanism()))
+    fn stall(&self) -> Result<Option<PyStall>> {
+        let Running { servo, last } = &*self.lock()?;
+        let stalled = last.is_some_and(|s| s.status == Status::Stalled);
+        Ok(stalled.then(|| PyStall::new(&servo.stall(), servo.mechanism())))
     }
 
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> Result<Option<Array<'py>>> {
-        self.last.map(|s| arrays::pose(py, s.pose)).transpose()
+        self.lock()?.last.map(|s| arrays::pose(py, s.pose)).transpose()
     }
 
     #[getter]
-    fn position_error(&self) -> f64 {
-        self.last.map_or(f64::NAN, |s| s.position_error)
+    fn position_error(&self) -> Result<f64> {
+        Ok(self.lock()?.last.map_or(f64::NAN, |s| s.position_error))
     }
 
     #[getter]
-    fn orientation_error(&self) -> f64 {
-        self.last.map_or(f64::NAN, |s| s.orientation_error)
+    fn orientation_error(&self) -> Result<f64> {
+        Ok(self.lock()?.last.map_or(f64::NAN, |s| s.orientation_error))
     }
 
     #[getter]
-    fn singular_ratio(&self) -> f64 {
-        self.last.map_or(f64::NAN, |s| s.singular_ratio)
+    fn singular_ratio(&self) -> Result<f64> {
+        Ok(self.lock()?.last.map_or(f64::NAN, |s| s.singular_ratio))
     }
 
     #[getter]
-    fn rank(&self) -> usize {
-        self.last.map_or(0, |s| s.rank)
+    fn rank(&self) -> Result<usize> {
+        Ok(self.lock()?.last.map_or(0, |s| s.rank))
     }
 
     #[getter]
-    fn scale(&self) -> f64 {
-        self.last.map_or(f64::NAN, |s| s.saturation.scale)
+    fn scale(&self) -> Result<f64> {
+        Ok(self.lock()?.last.map_or(f64::NAN, |s| s.saturation.scale))
     }
 
     #[getter]
-    fn direction_lost(&self) -> bool {
-        self.last.is_some_and(|s| s.saturation.direction_lost)
+    fn direction_lost(&self) -> Result<bool> {
+        Ok(self.lock()?.last.is_some_and(|s| s.saturation.direction_lost))
     }
 
     #[getter]
-    fn joint_velocities<'py>(&self, py: Python<'py>) -> Array<'py> {
-        arrays::vector(py, self.inner.joint_velocities())
+    fn joint_velocities<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Ok(arrays::vector(py, self.lock()?.servo.joint_velocities()))
     }
 
     #[getter]
-    fn loop_closure_velocities<'py>(&self, py: Python<'py>) -> Array<'py> {
-        arrays::vector(py, self.inner.loop_closure_velocities())
+    fn loop_closure_velocities<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Ok(arrays::vector(py, self.lock()?.servo.loop_closure_velocities()))
     }
 
     #[getter]
-    fn active_limits(&self) -> Vec<(String, &'static str)> {
-        let coordinates = self.inner.mechanism().coordinates();
+    fn active_limits(&self) -> Result<Vec<(String, &'static str)>> {
+        let servo = &self.lock()?.servo;
+        let coordinates = servo.mechanism().coordinates();
         let named = |(i, kind): (usize, cylindroid::control::LimitKind)| {
             (coordinates[i].name.clone(), kind.name())
         };
-        self.inner.active_limits().map(named).collect()
+        Ok(servo.active_limits().map(named).collect())
     }
 
     #[getter]
-    fn no_inverse(&self) -> Option<String> {
-        self.inner.no_inverse().map(|r| r.to_string())
+    fn no_inverse(&self) -> Result<Option<String>> {
+        Ok(self.lock()?.servo.no_inverse().map(|r| r.to_string()))
     }
 
     #[getter]
-    fn frame(&self) -> &str {
-        &self.inner.mechanism().frame_of(self.inner.options().end_effector.frame).name
+    fn frame(&self) -> Result<String> {
+        let servo = &self.lock()?.servo;
+        Ok(servo.mechanism().frame_of(servo.options().end_effector.frame).name.clone())
     }
 
     #[getter]
-    fn dt(&self) -> f64 {
-        self.inner.options().dt
+    fn dt(&self) -> Result<f64> {
+        Ok(self.lock()?.servo.options().dt)
     }
 
-    fn __repr__(&self) -> String {
-        let options = self.inner.options();
+    fn __repr__(&self) -> Result<String> {
+        let Running { servo, last } = &*self.lock()?;
+        let options = servo.options();
         let mut text = format!(
             "<Servo of '{}', frame '{}', inverse {}, dt {} s",
-            self.inner.mechanism().name(),
-            self.frame(),
+            servo.mechanism().name(),
+            servo.mechanism().frame_of(options.end_effector.frame).name,
             match options.projection {
                 cylindroid::control::TaskProjection::Orthogonal => options.method.name(),
                 ref projection => projection.name(),
             },
             options.dt
         );
-        if let Some(status) = self.status() {
-            text.push_str(&format!(", {status}"));
+        if let Some(step) = last {
+            text.push_str(&format!(", {}", status_name(step.status)));
         }
         text.push('>');
-        text
+        Ok(text)
     }
 }

@@ -1,0 +1,285 @@
+"""Every public call of the package with arguments that it accepts; tests change one at a time."""
+
+import inspect
+
+import numpy as np
+
+import cylindroid as cy
+
+PANDA, FIVE_BAR, TWO_ARM = (cy.load(name) for name in ("panda", "five-bar", "two-arm"))
+HAND = """
+name = "hand"
+reference = "ball"
+""" + "".join(
+    f"""
+[[joint]]
+name = "push{i}"
+type = "prismatic"
+between = ["ground", "finger{i}"]
+origin = [{2 * x}, {2 * y}, 0]
+axis = [{-x}, {-y}, 0]
+actuated = true
+[[contact]]
+name = "tip{i}"
+type = "soft_finger"
+between = ["finger{i}", "ball"]
+point = [{x}, {y}, 0]
+normal = [{-x}, {-y}, 0]
+friction = 0.5
+curvature = [20, 10]
+"""
+    for i, (x, y) in enumerate([(1.0, 0.0), (-0.5, 0.8), (-0.5, -0.8)])
+)
+SLIDER = cy.parse(
+    """<robot name="slider"><link name="base"/><link name="cart"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="slide" type="prismatic"><parent link="base"/><child link="cart"/>
+    <axis xyz="1 0 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
+)
+POSE = PANDA.fk(PANDA.home)
+NEAR = PANDA.fk(PANDA.home + 0.05)
+J = PANDA.jacobian(PANDA.home + 0.1)
+ARM = J[:, :3]
+TWIST = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+LINES = [[0, 0, 0, 0, 0, 1], [0, -1, 0, 1, 0, 0]]
+FINGERS = [cy.FingerContact([x, 0, 0], [-x, 0, 0], mu=0.5, torsion=0.01) for x in (1.0, -1.0)]
+
+
+def line():
+    return cy.CartesianPath.line(POSE, NEAR)
+
+
+def system():
+    return cy.ScrewSystem(ARM)
+
+
+def two_system():
+    return cy.ScrewSystem(LINES_AS_COLUMNS)
+
+
+LINES_AS_COLUMNS = np.transpose(LINES)
+SPACE = {"length": 0.5, "center": [0.0, 0, 0], "noise": 1e-9}
+REFERENCE = {"frame": "flange", "reference": "local", "tool": np.eye(4)}
+BARS = {"q": FIVE_BAR.home, "actuated": ["q1", "q2"], "reference": "reference"}
+WEIGHTS = {"Wu": [1.0, 2, 3], "Wq": [1.0, 2]}
+FORCES = {"Ww": [1.0, 2, 3], "Wtau": [1.0, 2], "Wt": np.ones(6)}
+GOAL = {"tool": np.eye(4), "task": "pose", "task_axes": "world", "fixed": ["panda_joint1"]}
+TOLERANCES = {"tolerance_position": 1e-5, "tolerance_orientation": 1e-5, "seed": 1, "iterations": 99}
+SPEEDS = {"speed": 1.0, "acceleration": [1.0, 2], "jerk": 9.0}
+
+
+def constraint():
+    return FIVE_BAR.constraint(actuated=["q1", "q2"])
+
+
+def servo(**options):
+    return cy.Servo(PANDA, **options)
+
+
+def calls():
+    """(name, callable, arguments) of every public callable with parameters."""
+    projector = cy.Projector(ARM, J[:, 3:6])
+    admittance = cy.Admittance(2.0, 1.0)
+    grip, arms = cy.parse(HAND, "toml"), TWO_ARM.constraint()
+    moving = servo()
+    moving.step(PANDA.home, NEAR)
+    stiff = cy.load("stewart").stiffness(stiffness=1e6)
+    yield from [
+        ("Admittance", cy.Admittance, {"force": 1.0, "moment": 2.0, "point": [0.0, 0, 0]}),
+        ("Admittance.from_matrix", cy.Admittance.from_matrix, {"matrix": np.eye(6)}),
+        ("Admittance.seen_from", admittance.seen_from, {"a_from_b": POSE}),
+        ("CartesianMove", cy.CartesianMove, {"path": line(), **SPEEDS, "duration": 9.0}),
+        ("CartesianMove.at", cy.CartesianMove(line(), speed=1.0).at, {"t": 0.1}),
+        ("CartesianMove.target", cy.CartesianMove(line(), speed=1.0).target, {"t": 0.1, "dt": 0.01}),
+        ("CartesianPath.line", cy.CartesianPath.line, {"start": POSE, "end": NEAR}),
+        ("CartesianPath.circle", cy.CartesianPath.circle,
+         {"start": POSE, "via": [0.1, 0.2, 0.3], "end": NEAR}),
+        ("CartesianPath.rotation", cy.CartesianPath.rotation,
+         {"start": POSE, "centre": [0.0, 0, 0], "axis": [0.0, 0, 1], "angle": 1.0}),
+        ("CartesianPath.pose", line().pose, {"s": 0.5}),
+        ("CartesianPath.deviation", line().deviation, {"pose": POSE}),
+        ("Constraint", cy.Constraint,
+         {"Ja": np.eye(2), "Jp": np.ones((2, 1)), "G": np.eye(2), "length": 1.0,
+          "units": ("mr", "rr", "m", "mr")}),
+        ("Constraint.manipulability", constraint().manipulability,
+         {"task": "x,y", **WEIGHTS, "Wu": [1.0, 2], "Ww": [1.0, 2], "Wtau": [1.0, 2], "Wt": None,
+          "metric": "unit"}),
+        ("Constraint.transmitted_wrenches", arms.transmitted_wrenches, {"forces": np.ones(18)}),
+        ("Constraint.velocity_polytope", constraint().velocity_polytope,
+         {"limits": [1.0, 2], "task": "x,y"}),
+        ("Constraint.force_polytope", constraint().force_polytope,
+         {"limits": [1.0, 2], "task": "x,y"}),
+        ("Constraint.joint_torques", constraint().joint_torques,
+         {"wrench": [1.0, 2, 3], "metric": [1.0, 2]}),
+        ("Constraint.contact_forces", constraint().contact_forces,
+         {"torques": [0.0, 0], "wrench": [0.0, 0, 0], "compliance": np.ones(6)}),
+        ("FingerContact", cy.FingerContact,
+         {"point": [0.0, 0, 0], "normal": [0.0, 0, 1], "mu": 0.5, "torsion": 0.1, "strength": 2.0,
+          "finger_curvature": 1.0, "object_curvature": ([1.0, 2], [1.0, 0, 0])}),
+        ("HybridController", cy.HybridController, {"gain": 1.0, "admittance": admittance}),
+        ("HybridController.command", cy.HybridController(1.0, admittance).command,
+         {"projector": projector, "error": TWIST, "desired": TWIST, "measured": TWIST,
+          "feed_forward": TWIST}),
+        ("HybridController.seen_from", cy.HybridController(1.0, admittance).seen_from,
+         {"a_from_b": POSE}),
+        ("InternalForceController", cy.InternalForceController,
+         {"gain": 1.0, "stiffness": np.ones(14)}),
+        ("InternalForceController.command", cy.InternalForceController(1.0, np.ones(14)).command,
+         {"constraint": arms, "desired": np.ones(14), "measured": np.zeros(14)}),
+        ("JointMove", cy.JointMove,
+         {"mechanism": PANDA, "q": PANDA.home, "to": PANDA.home + 0.1, "speed": 1.0,
+          "acceleration": 1.0, "jerk": 9.0, "duration": 9.0}),
+        ("JointMove.at", cy.JointMove(PANDA, PANDA.home, PANDA.home + 0.1).at, {"t": 0.1}),
+        ("Manipulability.index", FIVE_BAR.manipulability().index, {"name": "force"}),
+        ("OperatorAuthority", cy.OperatorAuthority, {"dt": 0.01, "fall": 0.1, "rise": 1.0}),
+        ("OperatorAuthority.update", cy.OperatorAuthority(0.01, 0.1, 1.0).update, {"servo": moving}),
+        ("PitchConics.kind", system().pitch_conics().kind, {"h": 0.1}),
+        ("PitchConics.points", system().pitch_conics().points, {"h": 0.1, "count": 9}),
+        ("PitchConics.coordinates", system().pitch_conics().coordinates, {"twist": ARM[:, 0]}),
+        ("Projector", cy.Projector, {"motions": ARM, "along": J[:, 3:6], **SPACE}),
+        ("Projector.motion", projector.motion, {"twist": TWIST}),
+        ("Projector.rest", projector.rest, {"twist": TWIST}),
+        ("Projector.constraint", projector.constraint, {"wrench": TWIST}),
+        ("Screw", cy.Screw, {"twist": TWIST}),
+        ("ScrewSystem", cy.ScrewSystem, {"J": ARM, **SPACE}),
+        *[(f"ScrewSystem.{name}", getattr(system(), name), {"h": 0.1})
+          for name in ("existence", "signature", "projector", "projector_norm", "h_reciprocal")],
+        *[(f"ScrewSystem.{name}", getattr(system(), name), {"other": cy.ScrewSystem(J[:, 3:6])})
+          for name in ("projector_along", "sum", "intersection", "sine_to_system")],
+        *[(f"ScrewSystem.{name}", getattr(system(), name), {"twist": TWIST})
+          for name in ("sine_to", "contains", "error_form_zeros")],
+        ("ScrewSystem.error_form", system().error_form, {"twist": TWIST, "h": 0.1}),
+        ("ScrewSystem.pencil", two_system().pencil, {"count": 5}),
+        ("Servo", cy.Servo,
+         {"mechanism": PANDA, "frame": "flange", "gain": [5.0, 4], "tool": np.eye(4), "dt": 0.01,
+          "tolerance_position": 1e-4, "tolerance_orientation": 1e-3, "speed": 1.0,
+          "acceleration": 4.0, "length": 0.5, "joint_weights": np.ones(7), "secondary": "posture",
+          "posture": PANDA.home, "null_space": "exact", "task": "pose", "task_axes": "world",
+          "inverse": "damped", "give_up": None, "fallback": None, "damping": 0.1}),
+        ("Servo.step", servo().step,
+         {"q": PANDA.home, "target": NEAR, "secondary": np.zeros(7), "feed_forward": TWIST}),
+        ("Servo.advance", servo().advance, {"q": PANDA.home}),
+        ("Servo.simulate", servo().simulate,
+         {"q": PANDA.home, "target": NEAR, "duration": 0.01, "record": True}),
+        ("Servo.find_reachable_configuration", servo().find_reachable_configuration,
+         {"q": PANDA.home, "target": NEAR, "max_restarts": 2}),
+        ("SharedController", cy.SharedController, {"gain": 1.0}),
+        ("SharedController.command", cy.SharedController(1.0).command,
+         {"projector": projector, "error": TWIST, "operator": TWIST, "feed_forward": TWIST}),
+        ("Spectrum.ellipsoid", FIVE_BAR.manipulability().kinematic.ellipsoid,
+         {"components": "x,y", "view": "section"}),
+        ("Stiffness.at", stiff.at, {"frame": np.eye(4)}),
+        ("Stiffness.compliance_at", stiff.compliance_at, {"frame": np.eye(4)}),
+        ("Stiffness.deflection", stiff.deflection, {"wrench": TWIST}),
+        ("TimeLaw", cy.TimeLaw,
+         {"distance": 1.0, "velocity": 1.0, "acceleration": 2.0, "jerk": 9.0, "duration": 9.0}),
+        ("TimeLaw.at", cy.TimeLaw(1.0, 1.0, 2.0).at, {"t": 0.5}),
+        *[(name, getattr(cy, name), {"a_from_b": POSE}) for name in ("adjoint", "coadjoint")],
+        *[(name, getattr(cy, name), {"a": TWIST, "b": TWIST})
+          for name in ("bracket", "killing", "klein")],
+        *[(name, getattr(cy, name), {"a": TWIST, "b": TWIST, "h": 0.1})
+          for name in ("pitch_form", "wrench_pitch_form")],
+        ("damped", cy.damped, {"J": J, "damping": 0.1}),
+        *[(name, getattr(cy, name), {"pose": POSE, "target": NEAR})
+          for name in ("error_to", "screw_to")],
+        *[(name, getattr(cy, name), {"twist": TWIST}) for name in ("exp", "exp_derivative")],
+        *[(name, getattr(cy, name), {"J": ARM, "h": 0.1}) for name in ("gram", "gram_determinant")],
+        ("grasp_mobility", cy.grasp_mobility,
+         {"contacts": FINGERS, "point": [0.0, 0, 0], "planar": False}),
+        ("eigenscrews", cy.eigenscrews, {"K": np.eye(6), "h": 0.1}),
+        ("grasp_quality", cy.grasp_quality,
+         {"contacts": FINGERS, "point": [0.0, 0, 0], "length": 1.0, "planar": False, "metric": "l1"}),
+        ("hyperbolic", cy.hyperbolic,
+         {"J": ARM, "h": 0.1, "joint_metric": [1.0, 2, 3], **SPACE, "mu": 0.01, "lam": None}),
+        ("hyperbolic_svd", cy.hyperbolic_svd,
+         {"J": ARM, "h": 0.1, "joint_metric": [1.0, 2, 3], **SPACE}),
+        ("inverse", cy.inverse,
+         {"J": J, "method": "damped", "joint_weights": np.ones(7), "task_weights": np.ones(6),
+          "damping": 0.1}),
+        ("involution", cy.involution, {"lines": LINES_AS_COLUMNS, **SPACE}),
+        ("load", cy.load, {"model": "panda"}),
+        ("log", cy.log, {"pose": POSE}),
+        ("log_derivative", cy.log_derivative, {"twist": TWIST}),
+        ("lowered", cy.lowered, {"twist": TWIST, "h": 0.1}),
+        ("oblique", cy.oblique,
+         {"J": ARM, "complement": J[:, 3:6], "joint_metric": [1.0, 2, 3], **SPACE}),
+        ("parse", cy.parse, {"text": HAND, "format": "toml", "path": "hand.toml"}),
+        ("pinv", cy.pinv, {"J": J, "eps": 1e-3}),
+        ("point_direction", cy.point_direction,
+         {"J": J, "point": [0.0, 0, 0], "direction": [1.0, 0, 0]}),
+        ("projector", cy.projector, {"motions": ARM, "along": J[:, 3:6], **SPACE}),
+        ("raised", cy.raised, {"wrench": TWIST, "h": 0.1}),
+        *[(name, getattr(cy, name), {"vector": [0.1, 0.2, 0.3]})
+          for name in ("rotation_exp_derivative", "rotation_log_derivative")],
+        ("selectively_damped", cy.selectively_damped,
+         {"J": J, "task": TWIST, "max_joint_velocity": 0.5}),
+        ("transversals", cy.transversals, {"lines": LINES_AS_COLUMNS, **SPACE}),
+        ("velocity_conversion", cy.velocity_conversion, {"b_from_a": POSE}),
+        *[(f"Mechanism.{name}", getattr(robot, name), arguments)
+          for name, robot, arguments in methods(grip)],
+    ]
+
+
+def methods(grip):
+    """The same of mechanisms."""
+    q, n = PANDA.home, {"q": PANDA.home}
+    yield from [
+        ("mobility", FIVE_BAR, {**BARS, "length": 1.0}),
+        ("grasp_quality", grip,
+         {"q": grip.home, "reference": "ball", "mu": 0.5, "torsion": 0.1, "strength": 1.0,
+          "metric": "l1"}),
+        ("operation_modes", FIVE_BAR,
+         {"q": FIVE_BAR.home, "starts": 2, "seed": 1, "reference": "reference"}),
+        ("grasp_mobility", grip, {"q": grip.home, "reference": "ball"}),
+        ("manipulability", FIVE_BAR,
+         {**BARS, "task": None, **WEIGHTS, **FORCES, "metric": "unit", "length": 1.0}),
+        ("manipulability_gradient", FIVE_BAR,
+         {**BARS, "measure": "volume", "task": None, **WEIGHTS, "metric": "unit"}),
+        ("constraint", FIVE_BAR, {**BARS, "length": 1.0}),
+        ("ik", PANDA,
+         {"target": POSE, "frame": "flange", "q0": q, **GOAL, "nearest": False, **TOLERANCES}),
+        ("ik_all", PANDA,
+         {"target": POSE, "count": 2, "frame": "flange", "q0": q, **GOAL, **TOLERANCES}),
+        ("assembly_modes", FIVE_BAR,
+         {"guess": FIVE_BAR.home, "hold": ["q1", "q2"], "starts": 2, "seed": 1}),
+        ("inverse", PANDA,
+         {**n, "method": "damped", "twist": TWIST, **REFERENCE, "length": 0.5, "give_up": None,
+          "damping": 0.1}),
+        ("mass_matrix", SLIDER, {"q": [0.0]}),
+        ("actuated_inertia", SLIDER, {"q": [0.0]}),
+        ("stiffness", FIVE_BAR,
+         {**BARS, "length": 1.0, "stiffness": {"q1": 1e3, "q2": 1e3}, "compliance": None}),
+        ("assemble", FIVE_BAR, {"guess": FIVE_BAR.home, "hold": ["q1", "q2"]}),
+        ("screw_system", PANDA, {**n, "frame": "flange", **SPACE}),
+        ("fk", PANDA, {**n, "frame": "flange", "tool": np.eye(4)}),
+        ("fk_all", PANDA, n),
+        ("joint_axes", PANDA, {**n, "side": "child"}),
+        ("contact_points", TWO_ARM, {"q": TWO_ARM.home}),
+        ("jacobian", PANDA, {**n, **REFERENCE}),
+        ("hessian", PANDA, {**n, **REFERENCE}),
+        ("jacobian_dot", PANDA, {**n, "qd": q, **REFERENCE}),
+        ("analytical_jacobian", PANDA,
+         {**n, "angles": "zyz", "frame": "flange", "tool": np.eye(4)}),
+        ("integrate", PANDA, {**n, "qd": q, "dt": 0.1}),
+        ("with_actuated", FIVE_BAR, {"names": ["q1"]}),
+        ("track_path", FIVE_BAR,
+         {"start": FIVE_BAR.home, "goal": {"q1": 0.1}, "step": 0.1, "least_distance": 0.01}),
+        ("outside_limits", PANDA, n),
+        ("measures", FIVE_BAR, {**BARS, **WEIGHTS, "metric": "unit", "length": 1.0}),
+    ]
+
+
+def public():
+    """The names of all public callables that have parameters."""
+    for name in cy.__all__:
+        thing = getattr(cy, name)
+        if inspect.isclass(thing) and issubclass(thing, BaseException) or not callable(thing):
+            continue
+        members = [m for m in vars(thing) if not m.startswith("_")] if inspect.isclass(thing) else []
+        for path, function in [(name, thing)] + [(f"{name}.{m}", getattr(thing, m)) for m in members]:
+            try:
+                parameters = inspect.signature(function).parameters if callable(function) else ()
+            except ValueError:  # of a class whose objects come from elsewhere
+                continue
+            if [p for p in parameters if p != "self"]:
+                yield path
