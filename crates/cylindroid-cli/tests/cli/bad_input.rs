@@ -180,3 +180,41 @@ fn large_files_do_not_print_without_end() {
     let out = cylindroid(&["info", &path.to_string_lossy()]);
     assert!(out.stdout.len() < 1_000_000, "{} bytes", out.stdout.len());
 }
+
+/// Without joints, every command gives an answer or one error.
+#[test]
+fn zero_joints_are_a_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let joint = "<link name=\"b\"/><joint name=\"j\" type=\"fixed\"><parent link=\"a\"/>\
+                 <child link=\"b\"/></joint>";
+    for more in ["", joint] {
+        let path = folder.path().join("still.urdf");
+        std::fs::write(&path, format!("<robot name=\"r\"><link name=\"a\"/>{more}</robot>"))
+            .unwrap();
+        let model = path.to_str().unwrap();
+        for (command, code) in [
+            ("info", 0),
+            ("fk --all", 0),
+            ("jacobian --twist x", 0),
+            ("ik --to 0,0,0", 0),
+            ("ik --to 1,0,0", 1),
+            ("move --to 0,0,0", 2),
+            ("move --joint-to zero", 2),
+            ("screws --h 0.1", 0),
+            ("mobility", 0),
+            ("manipulability --polytope", 0),
+            ("manipulability --gradient volume", 0),
+            ("assemble", 0),
+            ("statics --wrench 0,0,1,0,0,0", 0),
+            ("statics --wrench 0,0,1,0,0,0 --stiffness 5", 2),
+            ("grasp", 2),
+        ] {
+            let mut words: Vec<&str> = command.split(' ').collect();
+            words.insert(1, model);
+            let output = cylindroid(&words);
+            let stderr = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(code), "{command}: {stderr}");
+            assert!(!stderr.contains("panicked"), "{command}: {stderr}");
+        }
+    }
+}

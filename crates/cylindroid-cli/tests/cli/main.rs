@@ -7,6 +7,7 @@ mod book;
 mod closed;
 mod distance;
 mod documents;
+mod flags;
 mod ik;
 mod inverses;
 mod measured;

@@ -11,10 +11,12 @@ use super::{Client, Server};
 
 const CLIENTS: usize = 20;
 
-/// What a client found: states, and how far the servo's clock was behind at the most [s].
+/// What a client found: states, the largest motion of a joint [rad], and how far the servo's clock
+/// was behind at the most [s].
 #[derive(Debug, Clone, Copy)]
 struct Found {
     states: usize,
+    moved: f64,
     late: f64,
     end: f64,
 }
@@ -23,7 +25,7 @@ struct Found {
 fn drag(mut client: Client, tool: [f64; 3], seconds: f64) -> Found {
     let first = client.next("state");
     let quaternion = first["tool"]["quaternion"].clone();
-    let mut found = Found { states: 0, late: 0.0, end: 0.0 };
+    let mut found = Found { states: 0, moved: 0.0, late: 0.0, end: 0.0 };
     let begin = Instant::now();
     let mut origin = None;
     let mut side = 1.0;
@@ -37,6 +39,8 @@ fn drag(mut client: Client, tool: [f64; 3], seconds: f64) -> Found {
         let state = client.next("state");
         client.say(&json!({"type": "seen", "seq": state["seq"]}));
         found.states += 1;
+        let q = crate::numbers(&state["q"]);
+        found.moved = found.moved.max(crate::difference(&q, &crate::numbers(&first["q"])));
         let lag = begin.elapsed().as_secs_f64() - state["time"].as_f64().unwrap();
         // From the first state on: the connection took its time.
         let lag = lag - *origin.get_or_insert(lag);
@@ -61,7 +65,7 @@ fn together(server: &Server, seconds: f64) -> Vec<Found> {
 fn twenty_clients_have_sessions_of_their_own() {
     let server = Server::new(&["panda"]);
     let found = together(&server, 1.0);
-    assert!(found.iter().all(|f| f.states > 1), "{found:?}");
+    assert!(found.iter().all(|f| f.states > 1 && f.moved > 1e-3), "{found:?}");
     // None of them has moved what a new one sees.
     let state = server.client().next("state");
     let home = crate::json(&["info", "panda"], 0)["home"].clone();

@@ -1,0 +1,126 @@
+//! Flags reach what they set: times of paths against their formulas, inverses against the library.
+
+use cylindroid::control::{InverseSelection, NamedInverse};
+use cylindroid::{ReferenceFrame, catalogue};
+use serde_json::Value;
+
+use crate::{difference, json, numbers};
+
+fn list(numbers: &[f64]) -> String {
+    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+}
+
+/// The time of a move of the panda from home, 0.1 m down or 0.4 rad about the vertical.
+fn time(turn: f64, flags: &[&str]) -> f64 {
+    let home = &json(&["fk", "panda"], 0)["pose"];
+    let (mut to, mut rpy) = (numbers(&home["position"]), numbers(&home["rpy"]));
+    to[2] -= if turn == 0.0 { 0.1 } else { 0.0 };
+    rpy[2] += turn;
+    let (to, rpy) = (list(&to), list(&rpy));
+    let path = ["move", "panda", "--to", &to, "--rpy", &rpy, "--line", "--speed", "100,100"];
+    json(&[&path, flags].concat(), 0)["time"].as_f64().unwrap()
+}
+
+/// From rest to rest over a distance d: 2 sqrt(d / a), or (32 d / j)^(1/3) if jerk alone is bounded.
+#[test]
+fn accelerations_and_jerks_of_paths() {
+    let jerk_limited = |flags: &[&str], turn: f64| {
+        let law = ["--law", "jerk-limited", "--acceleration-linear", "1000"];
+        time(turn, &[&law[..], &["--acceleration-angular", "1000"], flags].concat())
+    };
+    for (size, text) in [(0.4, "0.4"), (0.05, "0.05")] {
+        for (turn, distance, part) in [(0.0, 0.1, "linear"), (0.4, 0.4, "angular")] {
+            let flag = format!("--acceleration-{part}");
+            let found = time(turn, &[&flag, text]);
+            let expected = 2.0 * f64::sqrt(distance / size);
+            assert!((found - expected).abs() < 3e-3, "{flag} {text}: {found} for {expected}");
+            let flag = format!("--jerk-{part}");
+            let found = jerk_limited(&[&flag, text], turn);
+            let expected = (32.0 * distance / size).cbrt();
+            assert!((found - expected).abs() < 3e-3, "{flag} {text}: {found} for {expected}");
+        }
+    }
+}
+
+/// The components x and y of the target are met in the axes that are named, and others are free.
+#[test]
+fn axes_of_a_task() {
+    let target = ["ik", "youbot", "--to", "0.3,0.1,0.3", "--rpy", "0.3,0.4,0.5", "--task", "x,y"];
+    for axes in ["world", "local"] {
+        let found = json(&[&target[..], &["--task-axes", axes]].concat(), 0);
+        let pose = &json(&["fk", "youbot", "--q", &list(&numbers(&found["q"]))], 0)["pose"];
+        let position = numbers(&pose["position"]);
+        let away: Vec<f64> = position.iter().zip([0.3, 0.1, 0.3]).map(|(at, to)| at - to).collect();
+        let rows: Vec<Vec<f64>> =
+            pose["matrix"].as_array().unwrap()[..3].iter().map(numbers).collect();
+        let local: Vec<f64> = (0..3).map(|j| (0..3).map(|i| rows[i][j] * away[i]).sum()).collect();
+        let (met, free) = if axes == "local" { (&local, &away) } else { (&away, &local) };
+        assert!(met[0].hypot(met[1]) < 2e-6 && met[2].abs() > 0.02, "{axes}: {met:?}");
+        assert!(free[0].hypot(free[1]) > 1e-3, "{axes}: {free:?}");
+    }
+}
+
+#[test]
+fn iterations_end_a_search() {
+    let search = ["ik", "youbot", "--to", "0.3,0.1,0.3", "--iterations"];
+    for (limit, code) in [("1", 1), ("2", 1), ("100", 0)] {
+        let found = json(&[&search[..], &[limit]].concat(), code);
+        let used = found["iterations"].as_u64().unwrap();
+        assert!(used == limit.parse::<u64>().unwrap() || (code == 0 && used < 100), "{found}");
+    }
+}
+
+/// Directions that the inverse truncates belong to the null space or not.
+#[test]
+fn null_space_of_truncated_directions() {
+    let target = ["move", "ur5e", "--to", "-0.3,0.2,0.4", "--rpy", "3,0,0.5", "--eps", "0.5"];
+    let more = ["--secondary", "centring", "--time-limit", "1", "--null-space"];
+    let [exact, retained] = ["exact", "retained"]
+        .map(|choice| numbers(&json(&[&target[..], &more, &[choice]].concat(), 1)["q"]));
+    assert!(difference(&exact, &retained) > 0.1, "{exact:?} {retained:?}");
+}
+
+/// Every parameter of every inverse that `jacobian` offers, near a singularity.
+#[test]
+fn parameters_of_inverses() {
+    let arm = catalogue::load("youbot").unwrap();
+    let q = [0.4, 0.02, 0.05, 0.03, 0.2];
+    let (state, text) = (arm.state(&q).unwrap(), list(&q));
+    let mut seen = 0;
+    for inverse in NamedInverse::all().filter(|i| !i.takes_complement) {
+        for changed in inverse.parameters {
+            let parameters: Vec<(&str, f64)> = inverse
+                .parameters
+                .iter()
+                .map(|p| (p.name, p.default * if p.name == changed.name { 1.5 } else { 1.0 }))
+                .collect();
+            let mut words: Vec<String> =
+                ["jacobian", "youbot", "--q", &text, "--inverse", inverse.name]
+                    .map(str::to_owned)
+                    .into();
+            for (name, value) in &parameters {
+                words.extend([format!("--{}", name.replace('_', "-")), value.to_string()]);
+            }
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            let found = &json(&words, 0)["inverse"];
+            let matrix = |parameters| {
+                let selection =
+                    InverseSelection { name: inverse.name, parameters, ..Default::default() };
+                let choice = selection.choice(arm.reach()).unwrap();
+                let reference = ReferenceFrame::LocalWorldAligned;
+                choice.inverse(&state, arm.tool(), reference, None).unwrap().matrix.to_rows()
+            };
+            let rows = |value: &Value| {
+                value.as_array().unwrap().iter().flat_map(numbers).collect::<Vec<f64>>()
+            };
+            let expected = matrix(parameters.clone()).concat();
+            let place = format!("{} {}", inverse.name, changed.name);
+            let usual = inverse.parameters.iter().map(|p| (p.name, p.default)).collect();
+            assert!(difference(&matrix(usual).concat(), &expected) > 1e-7, "no effect of {place}");
+            assert!(difference(&rows(&found["matrix"]), &expected) < 1e-9, "{place}");
+            assert_eq!(found["parameters"][changed.name], changed.default * 1.5, "{place}");
+            seen += 1;
+        }
+    }
+    assert!(seen >= 10, "{seen}");
+}
