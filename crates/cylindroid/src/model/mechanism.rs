@@ -461,6 +461,10 @@ impl Mechanism {
         self.check_q("q", q)?;
         self.check_q("rates", rates)?;
         Error::check_within("dt", &[dt], MAX_MAGNITUDE)?;
+        if let Some(i) = rates.iter().position(|x| (x * dt).abs() > MAX_MAGNITUDE) {
+            let what = format!("dt * rates[{i}] ({})", self.data.coordinates[i].name);
+            return Err(Error::OutOfRange { what, value: dt * rates[i], range: MAX_MAGNITUDE });
+        }
         let mut next = q.to_vec();
         self.integrate_in_place(&mut next, rates, dt);
         Ok(next)

@@ -36,8 +36,10 @@ fn kinematics_are_finite_up_to_the_range() {
         }
         let next = robot.integrate(&q, &q, 1e-3).unwrap();
         assert!(next.iter().all(|x| x.is_finite()), "{next:?}");
-        let next = robot.integrate(&vec![0.0; robot.n()], &q, edge).unwrap();
+        let next = robot.integrate(&q, &vec![1.0; robot.n()], edge).unwrap();
         assert!(next.iter().all(|x| x.is_finite()), "{next:?}");
+        let beyond = robot.integrate(&q, &q, edge).unwrap_err().to_string();
+        assert!(beyond.starts_with("dt * rates[0] (") && beyond.contains("1e240"), "{beyond}");
     }
 }
 

@@ -71,8 +71,7 @@ fn why_not() {
     let nan = Pose::from_translation(Vec3::new(f64::NAN, 0.0, 0.0));
     assert!(ik.solve(nan, &[0.0; 6]).is_err());
     let far = Pose::from_translation(Vec3::new(1e300, 1e300, 0.0));
-    assert!(ik.solve(far, &[1e120; 6]).unwrap().is_empty());
-    assert!(ik.solve(far, &[1e300; 6]).is_err());
+    assert!(ik.solve(far, &[1e300; 6]).unwrap().is_empty());
 }
 
 /// The search takes formulas where there are some, and says so.
