@@ -72,6 +72,16 @@ def constraint():
     return FIVE_BAR.constraint(actuated=["q1", "q2"])
 
 
+def with_ball():
+    model = cy.CollisionModel(PANDA)
+    model.add_obstacle("ball", "sphere", POSE, radius=0.1)
+    return model
+
+
+def add_obstacle(name, shape, pose, radius):
+    return cy.CollisionModel(PANDA).add_obstacle(name, shape, pose, radius=radius)
+
+
 def servo(**options):
     return cy.Servo(PANDA, **options)
 
@@ -98,6 +108,15 @@ def calls():
          {"start": POSE, "centre": [0.0, 0, 0], "axis": [0.0, 0, 1], "angle": 1.0}),
         ("CartesianPath.pose", line().pose, {"s": 0.5}),
         ("CartesianPath.deviation", line().deviation, {"pose": POSE}),
+        ("CollisionModel", cy.CollisionModel,
+         {"mechanism": PANDA, "disabled": [("link1", "link2")], "srdf": None,
+          "meshes": "convex_hull", "samples": 3, "seed": 1}),
+        ("CollisionModel.near", cy.CollisionModel(PANDA).near, {"q": PANDA.home, "margin": 0.2}),
+        ("CollisionModel.add_obstacle", add_obstacle,
+         {"name": "ball", "shape": "sphere", "pose": POSE, "radius": 0.1}),
+        ("CollisionModel.move_obstacle", with_ball().move_obstacle, {"name": "ball", "pose": POSE}),
+        ("CollisionModel.remove_obstacle", lambda name: with_ball().remove_obstacle(name),
+         {"name": "ball"}),
         ("Constraint", cy.Constraint,
          {"Ja": np.eye(2), "Jp": np.ones((2, 1)), "G": np.eye(2), "length": 1.0,
           "units": ("mr", "rr", "m", "mr")}),
@@ -265,6 +284,7 @@ def methods(grip):
         ("track_path", FIVE_BAR,
          {"start": FIVE_BAR.home, "goal": {"q1": 0.1}, "step": 0.1, "least_distance": 0.01}),
         ("outside_limits", PANDA, n),
+        ("distances", PANDA, {**n, "margin": 0.2, "srdf": None, "meshes": "convex_hull"}),
         ("measures", FIVE_BAR, {**BARS, **WEIGHTS, "metric": "unit", "length": 1.0}),
     ]
 

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 pub(crate) use self::distances::PyDistances;
 use self::shape::{Sizes, geometry};
 use crate::arrays::Numbers;
-use crate::error::Result;
+use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 
 /// The collision shapes of a mechanism and of obstacles, and the pairs of them that are watched.
@@ -112,12 +112,12 @@ impl PyCollisionModel {
     #[new]
     #[pyo3(signature = (mechanism, *, disabled=None, srdf=None, meshes="convex_hull", samples=200, seed=0))]
     fn new(
-        mechanism: PyRef<'_, PyMechanism>,
-        disabled: Option<Vec<[String; 2]>>,
-        srdf: Option<PathBuf>,
-        meshes: &str,
-        samples: usize,
-        seed: u64,
+        #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
+        #[pyo3(from_py_with = argument)] disabled: Option<Vec<[String; 2]>>,
+        #[pyo3(from_py_with = argument)] srdf: Option<PathBuf>,
+        #[pyo3(from_py_with = argument)] meshes: &str,
+        #[pyo3(from_py_with = argument)] samples: usize,
+        #[pyo3(from_py_with = argument)] seed: u64,
     ) -> Result<Self> {
         let inner = model(&mechanism.inner, (disabled, srdf), meshes, (samples, seed))?;
         let state = mechanism.inner.state(mechanism.inner.home())?;
@@ -157,7 +157,11 @@ impl PyCollisionModel {
     /// ------
     /// DimensionError, NotFiniteError
     #[pyo3(signature = (q, margin=0.1))]
-    fn near(&mut self, q: Numbers<'_>, margin: f64) -> Result<PyDistances> {
+    fn near(
+        &mut self,
+        q: Numbers<'_>,
+        #[pyo3(from_py_with = argument)] margin: f64,
+    ) -> Result<PyDistances> {
         self.state.set(q.vector("q")?)?;
         PyDistances::of(&mut self.inner, &self.state, margin)
     }
@@ -192,14 +196,14 @@ impl PyCollisionModel {
     #[allow(clippy::too_many_arguments)] // of Python: keywords
     fn add_obstacle(
         &mut self,
-        name: &str,
-        shape: &str,
+        #[pyo3(from_py_with = argument)] name: &str,
+        #[pyo3(from_py_with = argument)] shape: &str,
         pose: Option<Numbers<'_>>,
-        radius: Option<f64>,
-        length: Option<f64>,
+        #[pyo3(from_py_with = argument)] radius: Option<f64>,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
         size: Option<Numbers<'_>>,
         points: Option<Numbers<'_>>,
-        file: Option<PathBuf>,
+        #[pyo3(from_py_with = argument)] file: Option<PathBuf>,
     ) -> Result<()> {
         let shape = geometry(shape, Sizes { radius, length, size, points, file })?;
         Ok(self.inner.add_obstacle(name, &shape, placed(pose)?)?)
@@ -217,7 +221,11 @@ impl PyCollisionModel {
     /// ------
     /// UnknownNameError
     #[pyo3(signature = (name, pose))]
-    fn move_obstacle(&mut self, name: &str, pose: Numbers<'_>) -> Result<()> {
+    fn move_obstacle(
+        &mut self,
+        #[pyo3(from_py_with = argument)] name: &str,
+        pose: Numbers<'_>,
+    ) -> Result<()> {
         Ok(self.inner.move_obstacle(name, placed(Some(pose))?)?)
     }
 
@@ -231,7 +239,7 @@ impl PyCollisionModel {
     /// ------
     /// UnknownNameError
     #[pyo3(signature = (name))]
-    fn remove_obstacle(&mut self, name: &str) -> Result<()> {
+    fn remove_obstacle(&mut self, #[pyo3(from_py_with = argument)] name: &str) -> Result<()> {
         Ok(self.inner.remove_obstacle(name)?)
     }
 
@@ -276,9 +284,9 @@ impl PyMechanism {
     fn distances(
         &self,
         q: Numbers<'_>,
-        margin: f64,
-        srdf: Option<PathBuf>,
-        meshes: &str,
+        #[pyo3(from_py_with = argument)] margin: f64,
+        #[pyo3(from_py_with = argument)] srdf: Option<PathBuf>,
+        #[pyo3(from_py_with = argument)] meshes: &str,
     ) -> Result<PyDistances> {
         let mut model = model(&self.inner, (None, srdf), meshes, (0, 0))?;
         let state = self.inner.state(q.vector("q")?)?;
