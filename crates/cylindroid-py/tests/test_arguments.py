@@ -40,6 +40,7 @@ OTHER_WORDS = {
     "Jp": "passive Jacobian",
     "G": "grasp matrix",
     "joint_metric": "joint weights",
+    "radius": "a length",
 }
 
 
