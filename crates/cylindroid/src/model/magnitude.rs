@@ -2,8 +2,20 @@
 //!
 //! Checked  tests/formats/magnitudes.rs, tests/it/magnitudes.rs
 
+use crate::error::{Error, Result};
 use crate::spatial::Pose;
 use crate::tolerance::MAX_MAGNITUDE;
+
+/// Returns an error for the first number that is not finite, or out of range, with its name.
+pub(crate) fn check(values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
+    if let Some(i) = values.iter().position(|x| !x.is_finite()) {
+        return Err(Error::NotFinite { what: name(i), value: values[i] });
+    }
+    match values.iter().position(|x| x.abs() > MAX_MAGNITUDE) {
+        None => Ok(()),
+        Some(i) => Err(Error::OutOfRange { what: name(i), value: values[i], range: MAX_MAGNITUDE }),
+    }
+}
 
 /// The end of a sentence about numbers of which one is not finite or out of range.
 pub(crate) fn fault(values: &[f64]) -> Option<String> {

@@ -10,6 +10,7 @@ use super::elasticity::Elasticity;
 use super::joint::{Joint, Limits};
 use super::link::Link;
 use super::loop_joint::LoopJoint;
+use super::magnitude;
 use super::node::{Node, NodeKind};
 use super::report::LoadReport;
 use crate::error::{Error, Result, all_within};
@@ -392,17 +393,7 @@ impl Mechanism {
         if all_within(q, MAX_MAGNITUDE) {
             return Ok(());
         }
-        let entry = |i: usize| format!("{what}[{i}] ({})", self.data.coordinates[i].name);
-        if let Some(i) = q.iter().position(|x| !x.is_finite()) {
-            return Err(Error::NotFinite { what: entry(i), value: q[i] });
-        }
-        match q.iter().position(|x| x.abs() > MAX_MAGNITUDE) {
-            None => Ok(()),
-            Some(i) => {
-                let (what, value, range) = (entry(i), q[i], MAX_MAGNITUDE);
-                Err(Error::OutOfRange { what, value, range })
-            }
-        }
+        magnitude::check(q, |i| format!("{what}[{i}] ({})", self.data.coordinates[i].name))
     }
 
     /// Number of configurations in `rows`.
@@ -461,10 +452,7 @@ impl Mechanism {
         self.check_q("q", q)?;
         self.check_q("rates", rates)?;
         Error::check_within("dt", &[dt], MAX_MAGNITUDE)?;
-        if let Some(i) = rates.iter().position(|x| (x * dt).abs() > MAX_MAGNITUDE) {
-            let what = format!("dt * rates[{i}] ({})", self.data.coordinates[i].name);
-            return Err(Error::OutOfRange { what, value: dt * rates[i], range: MAX_MAGNITUDE });
-        }
+        self.check_q("dt * rates", &rates.iter().map(|x| dt * x).collect::<Vec<_>>())?;
         let mut next = q.to_vec();
         self.integrate_in_place(&mut next, rates, dt);
         Ok(next)
