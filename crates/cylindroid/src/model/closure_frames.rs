@@ -48,6 +48,12 @@ impl Builder {
 }
 
 impl Mechanism {
+    /// The same mechanism with one more entry in its report.
+    pub(super) fn noting(mut self, line: usize, what: &str, why: &str) -> Self {
+        Arc::make_mut(&mut self.data).report.ignore(line, what, why);
+        self
+    }
+
     /// The same mechanism with a home configuration in which all loops are closed.
     pub(crate) fn with_assembled_home(&self, home: Vec<f64>) -> Self {
         let unassembled = Vec::new();

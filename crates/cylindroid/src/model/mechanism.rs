@@ -356,13 +356,6 @@ impl Mechanism {
         &self.data.report
     }
 
-    /// The same mechanism with one more entry in its report.
-    #[cfg(feature = "formats")]
-    pub(super) fn noting(mut self, line: usize, what: &str, why: &str) -> Self {
-        Arc::make_mut(&mut self.data).report.ignore(line, what, why);
-        self
-    }
-
     pub(crate) fn nodes(&self) -> &[Node] {
         &self.data.nodes
     }
