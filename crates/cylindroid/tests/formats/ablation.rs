@@ -37,14 +37,14 @@ fn ablate(name: &str, text: &str, read: impl Fn(&str) -> Result<Mechanism>) {
     let mut silent = Vec::new();
     for range in numbers(text) {
         let x: f64 = text[range.clone()].parse().unwrap();
-        // One change may leave the same direction, or the larger of two bounds.
+        // One change may leave the same direction, the same quaternion, or the larger of two bounds.
         let near = if x.fract() == 0.0 { x + 1.0 } else { x * 1.25 };
-        let others = [near, -x - 0.5, 10.0 * x].map(|other| {
+        let others = [near, -x - 0.5, 10.0 * x, 0.0].map(|other| {
             let changed = format!("{}{other}{}", &text[..range.start], &text[range.end..]);
             read(&changed).ok()
         });
-        let [Some(m), Some(second), Some(third)] = others else { continue };
-        let same = [&m, &second, &third].iter().all(|m| content(m) == whole);
+        let [Some(m), Some(b), Some(c), Some(d)] = others else { continue };
+        let same = [&m, &b, &c, &d].iter().all(|m| content(m) == whole);
         let line = text[..range.start].matches('\n').count() + 1;
         // Notes of the same kind are one, with the line of the first; a note of an element is one
         // of all that it contains.

@@ -91,7 +91,7 @@ fn joints_close_loops() {
     assert_eq!(actuated, ["turn", "heel"]);
     let said = report(&m);
     for what in [
-        "gearbox joint (geared)",
+        "<joint> of type gearbox (geared)",
         "<dynamics> (turn)",
         "<sensor> (base): settings of the simulator",
         "motors: SDF names none",
@@ -128,7 +128,7 @@ fn cassie_has_its_loops() {
         // A connected graph has as many loops as joints beyond a tree.
         assert_eq!(m.joints().len(), m.links().len() - 1);
         assert_eq!(m.loops().len(), loops, "{file}");
-        let says = report(&m).contains("gearbox joint (10 times");
+        let says = report(&m).contains("<joint> of type gearbox (10 times");
         assert_eq!(says, gearboxes > 0, "{file}");
     }
     // The two legs mirror one another in the plane x-z of the model.

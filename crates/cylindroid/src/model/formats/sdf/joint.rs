@@ -50,7 +50,7 @@ impl<'d> Sdf<'d> {
         if word == "gearbox" {
             let why =
                 "it couples two joints by a ratio, which is not modelled; they move apart here";
-            reader.note(node, "gearbox joint", why, own);
+            reader.note(node, "<joint> of type gearbox", why, own);
             return Ok(None);
         }
         reader.leftovers(node, &["name", "type"], &known);
