@@ -113,8 +113,8 @@ fn in_folder(folder: &Path) -> PathBuf {
         let (path, text) = (folder.join("model.config"), config.text);
         let source = Source { format: FORMAT, path: &path, text: &text };
         let document = xml::document(&source).ok()?;
-        let files = document.descendants().filter(|n| n.has_tag_name("sdf"));
-        files.last()?.text().map(|t| t.trim().to_owned())
+        let mut files = document.descendants().filter(|n| n.has_tag_name("sdf"));
+        files.next_back()?.text().map(|t| t.trim().to_owned())
     });
     folder.join(named.unwrap_or_else(|| "model.sdf".to_owned()))
 }
