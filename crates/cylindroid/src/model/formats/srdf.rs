@@ -38,7 +38,7 @@ pub struct Srdf {
 /// ```
 ///
 /// # Errors
-/// [`Error::File`] for broken XML, another root element, or a pair without both links.
+/// [`Error::File`](crate::Error::File) for broken XML, another root element, or a pair without both links.
 pub fn parse(text: &str, path: &Path) -> Result<Srdf> {
     let source = Source { format: "SRDF", path, text };
     let document = xml::document(&source)?;
@@ -69,7 +69,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Srdf> {
 /// Reads an SRDF.
 ///
 /// # Errors
-/// [`Error::Io`]; those of [`parse`].
+/// [`Error::Io`](crate::Error::Io); those of [`parse`].
 pub fn load(path: &Path) -> Result<Srdf> {
     parse(&text_file::read(path)?.text, path)
 }
