@@ -144,12 +144,6 @@ impl Mechanism {
         &self.data.links
     }
 
-    /// Pairs of links whose shapes do not collide, by the file (`<exclude>` of MJCF).
-    #[must_use]
-    pub fn disabled_collisions(&self) -> &[[usize; 2]] {
-        &self.data.disabled_collisions
-    }
-
     /// The joints of the spanning tree, parents before children: all that have coordinates.
     #[must_use]
     pub fn joints(&self) -> &[Joint] {

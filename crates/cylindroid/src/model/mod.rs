@@ -13,6 +13,7 @@ mod contact;
 mod curvature;
 mod depth_first;
 mod dimension;
+mod disabled_collisions;
 mod elasticity;
 mod elasticity_check;
 mod flatten;
