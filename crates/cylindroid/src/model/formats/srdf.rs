@@ -38,7 +38,8 @@ pub struct Srdf {
 /// ```
 ///
 /// # Errors
-/// [`Error::File`](crate::Error::File) for broken XML, another root element, or a pair without both links.
+/// [`Error::File`](crate::Error::File) for broken XML, another root element, or a pair without both
+/// links.
 pub fn parse(text: &str, path: &Path) -> Result<Srdf> {
     let source = Source { format: "SRDF", path, text };
     let document = xml::document(&source)?;
