@@ -62,5 +62,8 @@ fn fetch(folder: &Path) -> Result<()> {
     fs::remove_dir_all(&wheels)?;
     let python = python::environment(&folder.join("venv"))?;
     python::pip(&python, &["-r", PROGRAMS])?;
-    run(Command::new(python).arg(SCRIPT).arg(&files).arg(folder.join("vectors.json")))
+    // MuJoCo writes its log into the current folder.
+    let mut vectors = Command::new(python);
+    vectors.current_dir(folder).arg(root().join(SCRIPT)).arg(&files);
+    run(vectors.arg(folder.join("vectors.json")))
 }
