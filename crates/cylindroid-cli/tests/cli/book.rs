@@ -100,8 +100,10 @@ fn command(line: &str) -> Option<Line<'_>> {
     let kept = match pipe.trim().split_once(" -n ") {
         None => Kept::All,
         Some(("head", n)) => Kept::Head(n.parse().unwrap()),
-        Some(("tail", n)) => Kept::Tail(n.parse().unwrap()),
-        Some(_) => panic!("{line}: | head -n N or | tail -n N"),
+        Some((end, n)) => {
+            assert_eq!(end, "tail", "{line}: | head -n N or | tail -n N");
+            Kept::Tail(n.parse().unwrap())
+        }
     };
     let code = i32::from(comment.contains("exit code 1"));
     Some(Line { arguments: arguments.trim(), code, kept })
