@@ -4,8 +4,11 @@
 //! unknowns are the joint velocities), then `reduced` (closed chains: the unknowns are the actuated
 //! motions, the bounds apply to all joints). The solver knows neither targets nor gains nor time.
 
+pub(super) mod active_set;
 pub(super) mod bounds;
 pub(super) mod direct;
+pub(super) mod hierarchy;
+pub(super) mod inequalities;
 pub(super) mod reduced;
 
 pub use bounds::{LimitKind, VelocityBounds};

@@ -1,0 +1,323 @@
+//! The solver against Clarabel, and scaled directions against linear programs.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
+    ZeroConeT,
+};
+
+use super::super::active_set::{ActiveSet, FEASIBLE, Level, Precision};
+use super::super::inequalities::Inequalities;
+use super::ScaledLevel;
+use crate::linalg::{Matrix, norm};
+use crate::scalar::uniform;
+
+/// Numbers of a fixed sequence.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        uniform(&mut self.0)
+    }
+
+    fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        ((self.unit() * n as f64) as usize).min(n - 1)
+    }
+}
+
+/// A problem: inequalities as dense rows with bounds, and levels.
+struct Problem {
+    n: usize,
+    boxed: bool,
+    rows: Vec<Vec<f64>>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    levels: Vec<(Matrix, Vec<f64>)>,
+}
+
+impl Problem {
+    /// Of any shape: rank-deficient, over- and underdetermined levels, repeated rows, bounds that
+    /// are equal, tiny, infinite or far away.
+    fn random(random: &mut Random) -> Self {
+        let n = 1 + random.below(9);
+        let boxed = random.below(4) > 0;
+        let more = random.below(if boxed { 4 } else { 10 });
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        if boxed {
+            rows.extend((0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()));
+        }
+        for _ in 0..more {
+            let row = match random.below(6) {
+                0 if !rows.is_empty() => rows[random.below(rows.len())].clone(),
+                1 => (0..n).map(|_| f64::from(random.below(3) as u32) - 1.0).collect(),
+                _ => (0..n).map(|_| random.signed()).collect(),
+            };
+            rows.push(row);
+        }
+        // Feasible by construction, in the middle or at the border.
+        let inside: Vec<f64> = (0..n).map(|_| 0.3 * random.signed()).collect();
+        let (mut lower, mut upper) = (Vec::new(), Vec::new());
+        for row in &rows {
+            let value: f64 = row.iter().zip(&inside).map(|(a, b)| a * b).sum();
+            let mut room = || match random.below(8) {
+                0 => f64::INFINITY,
+                1 => 0.0,
+                2 => 1e-6 * random.unit(),
+                3 => 100.0,
+                _ => random.unit(),
+            };
+            let (below, above) = (room(), room());
+            lower.push(value - below);
+            upper.push(value + above);
+        }
+        let levels = (0..1 + random.below(3))
+            .map(|_| {
+                let m = 1 + random.below(7);
+                let a = match random.below(4) {
+                    0 => {
+                        let rank = 1 + random.below(m.min(n));
+                        let [b, c] = [(m, rank), (rank, n)]
+                            .map(|(r, c)| Matrix::from_fn(r, c, |_, _| random.signed()));
+                        &b * &c
+                    }
+                    1 => Matrix::from_fn(m, n, |_, _| f64::from(random.below(3) as u32) - 1.0),
+                    _ => Matrix::from_fn(m, n, |_, _| random.signed()),
+                };
+                (a, (0..m).map(|_| 3.0 * random.signed()).collect())
+            })
+            .collect();
+        Self { n, boxed, rows, lower, upper, levels }
+    }
+
+    fn active_set(&self) -> ActiveSet {
+        let first = if self.boxed { self.n } else { 0 };
+        let mut inequalities = Inequalities::new(self.n, self.boxed, self.rows.len() - first);
+        for (place, row) in self.rows[first..].iter().enumerate() {
+            inequalities.set_row(place, |j| row[j]);
+        }
+        inequalities.lower.copy_from_slice(&self.lower);
+        inequalities.upper.copy_from_slice(&self.upper);
+        ActiveSet::new(self.n, inequalities)
+    }
+
+    fn assert_feasible(&self, y: &[f64], what: &str) {
+        for (i, row) in self.rows.iter().enumerate() {
+            let value: f64 = row.iter().zip(y).map(|(a, b)| a * b).sum();
+            for (excess, bound) in
+                [(value - self.upper[i], self.upper[i]), (self.lower[i] - value, self.lower[i])]
+            {
+                let slack = 10.0 * FEASIBLE * (1.0 + bound.abs() + norm(row));
+                assert!(!(excess > slack), "{what}: row {i} beyond its bound by {excess}");
+            }
+        }
+    }
+
+    /// The least |A y - b| of a level with `kept` rows of higher levels at their values, by
+    /// Clarabel; `None` if it gives up.
+    fn referee(
+        &self,
+        level: usize,
+        kept: &[(Vec<f64>, f64)],
+        linear: Option<&[f64]>,
+    ) -> Option<Vec<f64>> {
+        let n = self.n;
+        let (a, b) = &self.levels[level];
+        // |A y - b|^2 / 2 as 1/2 y^T P y + q^T y
+        let p = match linear {
+            None => {
+                Matrix::from_fn(n, n, |i, j| (0..a.rows()).map(|k| a[(k, i)] * a[(k, j)]).sum())
+            }
+            Some(_) => Matrix::zeros(n, n),
+        };
+        let q: Vec<f64> = match linear {
+            None => (0..n).map(|j| -(0..a.rows()).map(|k| a[(k, j)] * b[k]).sum::<f64>()).collect(),
+            Some(q) => q.to_vec(),
+        };
+        let mut equal: Vec<(Vec<f64>, f64)> = kept.to_vec();
+        let mut less: Vec<(Vec<f64>, f64)> = Vec::new();
+        for (i, row) in self.rows.iter().enumerate() {
+            let minus: Vec<f64> = row.iter().map(|x| -x).collect();
+            if self.lower[i] == self.upper[i] {
+                equal.push((row.clone(), self.upper[i]));
+                continue;
+            }
+            if self.upper[i].is_finite() {
+                less.push((row.clone(), self.upper[i]));
+            }
+            if self.lower[i].is_finite() {
+                less.push((minus, -self.lower[i]));
+            }
+        }
+        let all: Vec<&(Vec<f64>, f64)> = equal.iter().chain(&less).collect();
+        let dense = |rows: usize, f: &dyn Fn(usize, usize) -> f64| {
+            let (mut colptr, mut rowval, mut values) = (vec![0], Vec::new(), Vec::new());
+            for j in 0..n {
+                for i in 0..rows {
+                    let x = f(i, j);
+                    if x != 0.0 {
+                        rowval.push(i);
+                        values.push(x);
+                    }
+                }
+                colptr.push(rowval.len());
+            }
+            CscMatrix::new(rows, n, colptr, rowval, values)
+        };
+        let upper = dense(n, &|i, j| if i <= j { p[(i, j)] } else { 0.0 });
+        let rows = dense(all.len(), &|i, j| all[i].0[j]);
+        let rest: Vec<f64> = all.iter().map(|(_, b)| *b).collect();
+        let cones: Vec<SupportedConeT<f64>> =
+            vec![ZeroConeT(equal.len()), NonnegativeConeT(less.len())];
+        let settings = DefaultSettings {
+            verbose: false,
+            tol_gap_abs: 1e-13,
+            tol_gap_rel: 1e-13,
+            tol_feas: 1e-12,
+            max_iter: 200,
+            ..DefaultSettings::default()
+        };
+        let mut solver = DefaultSolver::new(&upper, &q, &rows, &rest, &cones, settings).ok()?;
+        solver.solve();
+        let good = matches!(
+            solver.solution.status,
+            SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
+        );
+        good.then(|| solver.solution.x.clone())
+    }
+}
+
+fn residual(a: &Matrix, b: &[f64], y: &[f64]) -> f64 {
+    norm(&a.mul_vec(y).iter().zip(b).map(|(x, b)| x - b).collect::<Vec<_>>())
+}
+
+/// Violation of everything that binds a point of the referee: it is no optimum if it is large.
+fn violation(problem: &Problem, kept: &[(Vec<f64>, f64)], y: &[f64]) -> f64 {
+    let value = |row: &[f64]| -> f64 { row.iter().zip(y).map(|(a, b)| a * b).sum() };
+    let rows = problem.rows.iter().zip(problem.lower.iter().zip(&problem.upper));
+    let rows = rows.map(|(row, (l, u))| (value(row) - u).max(l - value(row)));
+    let kept = kept.iter().map(|(row, b)| (value(row) - b).abs());
+    rows.chain(kept).fold(0.0, f64::max)
+}
+
+/// Level by level the same optimum as Clarabel: never worse than its point by more than 1e-9, where
+/// that point keeps to its rows, and feasible itself.
+#[test]
+fn levels_are_the_optima_of_clarabel() {
+    let mut random = Random(11);
+    let (mut compared, mut better) = (0, 0);
+    let mut rounds = 0;
+    for round in 0..10_000 {
+        let problem = Problem::random(&mut random);
+        let mut set = problem.active_set();
+        let guess: Vec<f64> = (0..problem.n).map(|_| 3.0 * random.signed()).collect();
+        assert!(set.start(&guess), "round {round}: no feasible point found");
+        problem.assert_feasible(set.point(), "start");
+        let mut kept: Vec<(Vec<f64>, f64)> = Vec::new();
+        for (k, (a, b)) in problem.levels.iter().enumerate() {
+            let mut level = Level::new(a.rows(), problem.n);
+            level.rows = a.clone();
+            level.target.copy_from_slice(b);
+            set.solve(&mut level, Precision::EXACT);
+            problem.assert_feasible(set.point(), "level");
+            let own = residual(a, b, set.point());
+            // One problem in ten has a referee; all keep what came before.
+            for (row, value) in &kept {
+                let now: f64 = row.iter().zip(set.point()).map(|(a, b)| a * b).sum();
+                assert!((now - value).abs() < 1e-9 * (1.0 + value.abs()), "round {round}");
+            }
+            if let Some(other) = problem.referee(k, &kept, None) {
+                let off = violation(&problem, &kept, &other);
+                let theirs = residual(a, b, &other);
+                if off < 1e-10 {
+                    compared += 1;
+                    assert!(
+                        own <= theirs + 1e-9 * (1.0 + theirs) + 100.0 * off,
+                        "round {round}, level {k}: {own} against {theirs}, off {off}"
+                    );
+                    better += usize::from(own < theirs - 1e-9);
+                }
+            }
+            let now = a.mul_vec(set.point());
+            kept.extend(
+                (0..a.rows()).map(|i| ((0..problem.n).map(|j| a[(i, j)]).collect(), now[i])),
+            );
+        }
+        rounds = rounds.max(set.rounds());
+    }
+    println!(
+        "{compared} levels compared, {better} better than the referee, {rounds} rounds at most"
+    );
+    assert!(compared > 10_000, "{compared}");
+}
+
+/// The nearest point of the polyhedron is nearer than any other point found.
+#[test]
+fn the_start_is_the_nearest_feasible_point() {
+    let mut random = Random(5);
+    for round in 0..500 {
+        let mut problem = Problem::random(&mut random);
+        let guess: Vec<f64> = (0..problem.n).map(|_| 3.0 * random.signed()).collect();
+        problem.boxed = false;
+        problem.levels = vec![(Matrix::identity(problem.n), guess.clone())];
+        let mut set = problem.active_set();
+        assert!(set.start(&guess));
+        if let Some(other) = problem.referee(0, &[], None)
+            && violation(&problem, &[], &other) < 1e-10
+        {
+            let far = |y: &[f64]| residual(&problem.levels[0].0, &guess, y);
+            assert!(far(set.point()) <= far(&other) + 1e-8, "round {round}");
+        }
+    }
+}
+
+/// A scaled level keeps its direction exactly, at the largest scale of a linear program.
+#[test]
+fn scaled_levels_keep_their_direction() {
+    let mut random = Random(23);
+    let (mut straight, mut compared) = (0, 0);
+    for round in 0..2000 {
+        let mut problem = Problem::random(&mut random);
+        // Rest is permitted, as for a robot.
+        for (l, u) in problem.lower.iter_mut().zip(&mut problem.upper) {
+            (*l, *u) = (l.min(0.0), u.max(0.0));
+        }
+        let (a, mut b) = problem.levels[0].clone();
+        let through: Vec<f64> = (0..problem.n).map(|_| 2.0 * random.signed()).collect();
+        b.copy_from_slice(&a.mul_vec(&through)); // a motion that exists without limits
+        let size = norm(&b);
+        let mut set = problem.active_set();
+        assert!(set.start(&vec![0.0; problem.n]));
+        let mut level = ScaledLevel::new(a.rows(), problem.n);
+        level.whole.rows = a.clone();
+        level.whole.target.copy_from_slice(&b);
+        let share = set.solve_scaled(&mut level, Precision::EXACT);
+        problem.assert_feasible(set.point(), "scaled");
+        assert!(share.is_straight, "round {round}");
+        let scaled: Vec<f64> = b.iter().map(|b| share.scale * b).collect();
+        assert!(residual(&a, &scaled, set.point()) < 1e-9 * (1.0 + size), "round {round}");
+        straight += 1;
+        if size < 1e-6 || share.scale >= 1.0 - 1e-12 {
+            continue;
+        }
+        // max s: along the target, nothing across it.
+        let along: Vec<f64> =
+            (0..problem.n).map(|j| (0..a.rows()).map(|k| a[(k, j)] * b[k] / size).sum()).collect();
+        let across: Vec<(Vec<f64>, f64)> = (0..a.rows())
+            .map(|k| ((0..problem.n).map(|j| a[(k, j)] - b[k] / size * along[j]).collect(), 0.0))
+            .collect();
+        let minus: Vec<f64> = along.iter().map(|x| -x).collect();
+        if let Some(other) = problem.referee(0, &across, Some(&minus))
+            && violation(&problem, &across, &other) < 1e-10
+        {
+            compared += 1;
+            let theirs: f64 =
+                along.iter().zip(&other).map(|(a, y)| a * y).sum::<f64>().min(size) / size;
+            assert!((share.scale - theirs).abs() < 1e-7, "round {round}: {share:?}, {theirs}");
+        }
+    }
+    assert!(straight == 2000 && compared > 300, "{straight}, {compared}");
+}

@@ -1,0 +1,103 @@
+//! Linear inequalities on the unknowns of a step: bounds of each unknown, and further rows.
+//!
+//! Formula  lower_i <= g_i^T y <= upper_i, where the first rows may be those of the unit matrix
+//! Shapes   y: n; further rows: n x r, one column each
+//! Units    of the unknowns: scaled joint velocities, or actuated motions of a closed chain
+//! Valid    infinite and equal bounds
+//! Checked  tests of `hierarchy.rs`
+
+use crate::linalg::{Matrix, dot, norm};
+
+/// The rows and their bounds.
+#[derive(Debug, Clone)]
+pub(in crate::control) struct Inequalities {
+    /// Number of unit rows: 0 or n.
+    boxed: usize,
+    /// The further rows, one column each.
+    normals: Matrix,
+    lengths: Vec<f64>,
+    pub(in crate::control) lower: Vec<f64>,
+    pub(in crate::control) upper: Vec<f64>,
+}
+
+impl Inequalities {
+    /// Without bounds: n unit rows if `boxed`, then `more` rows of zeros.
+    pub(in crate::control) fn new(n: usize, boxed: bool, more: usize) -> Self {
+        let boxed = if boxed { n } else { 0 };
+        Self {
+            boxed,
+            normals: Matrix::zeros(n, more),
+            lengths: vec![0.0; more],
+            lower: vec![f64::NEG_INFINITY; boxed + more],
+            upper: vec![f64::INFINITY; boxed + more],
+        }
+    }
+
+    /// Number of rows.
+    pub(super) fn len(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// Number of unit rows.
+    pub(super) fn boxed(&self) -> usize {
+        self.boxed
+    }
+
+    /// Sets the further row `place` (counted after the unit rows).
+    pub(in crate::control) fn set_row(&mut self, place: usize, entry: impl Fn(usize) -> f64) {
+        let column = self.normals.column_mut(place);
+        column.iter_mut().enumerate().for_each(|(j, x)| *x = entry(j));
+        self.lengths[place] = norm(column);
+    }
+
+    /// True if no motion satisfies or violates the row: all entries are zero.
+    pub(super) fn is_empty(&self, i: usize) -> bool {
+        i >= self.boxed && self.lengths[i - self.boxed] == 0.0
+    }
+
+    /// `g_i^T y`
+    #[inline]
+    pub(super) fn value(&self, i: usize, y: &[f64]) -> f64 {
+        if i < self.boxed { y[i] } else { dot(self.normals.column(i - self.boxed), y) }
+    }
+
+    /// |g_i|
+    #[inline]
+    pub(super) fn length(&self, i: usize) -> f64 {
+        if i < self.boxed { 1.0 } else { self.lengths[i - self.boxed] }
+    }
+
+    /// Writes `sign * g_i`.
+    pub(super) fn write(&self, i: usize, sign: f64, out: &mut [f64]) {
+        if i < self.boxed {
+            out.fill(0.0);
+            out[i] = sign;
+        } else {
+            out.iter_mut()
+                .zip(self.normals.column(i - self.boxed))
+                .for_each(|(o, g)| *o = sign * g);
+        }
+    }
+
+    /// True if the row permits one value only.
+    pub(super) fn is_equality(&self, i: usize) -> bool {
+        self.lower[i] == self.upper[i]
+    }
+
+    /// Distance by which a value of row `i` is beyond its bounds, and the sign of that bound; 0
+    /// within.
+    pub(super) fn excess(&self, i: usize, value: f64) -> (f64, f64) {
+        if value > self.upper[i] {
+            (value - self.upper[i], 1.0)
+        } else if value < self.lower[i] {
+            (self.lower[i] - value, -1.0)
+        } else {
+            (0.0, 1.0)
+        }
+    }
+
+    /// The bound of row `i` on the side of `sign`.
+    pub(super) fn bound(&self, i: usize, sign: f64) -> f64 {
+        if sign > 0.0 { self.upper[i] } else { self.lower[i] }
+    }
+}
