@@ -12,7 +12,7 @@
 //!          well
 //! Checked  tests/it/servo/shared.rs::an_arm_keeps_the_surface, ::the_authority_of_the_operator
 
-use crate::control::solver::direct::Saturation;
+use crate::control::solver::saturation::Saturation;
 use crate::error::{Error, Result};
 
 /// The share of the operator's twist to pass to [`SharedController`](super::SharedController).

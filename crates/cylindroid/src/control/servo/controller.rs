@@ -4,7 +4,7 @@
 //!          (world axes), saturated at the speed limits, then projected (`projection.rs`);
 //!          joint velocities = J+ x + P z: J+ the chosen inverse of the task Jacobian with linear
 //!          rows divided by L, z the velocities of the secondary tasks, P the null-space projector;
-//!          then position, velocity and acceleration limits (`limits.rs`, `solver/direct.rs`)
+//!          then position, velocity and acceleration limits (`limits.rs`, `solver/saturation.rs`)
 //! Shapes   task m <= 6 components, n joints that move the end effector; velocities of all joints
 //! Units    m, rad, s
 //! Loops    closed chains are constrained by `coupled.rs`: the unknowns are the actuated motions
@@ -28,7 +28,7 @@ use super::stall::{Stall, StallDetector, StallInputs, classify};
 use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
-use crate::control::solver::direct::{Saturation, Saturator};
+use crate::control::solver::saturation::{Saturation, Saturator};
 use crate::error::{Error, Result};
 use crate::inverse::{Method, is_kept};
 use crate::kinematics::Chain;
@@ -77,6 +77,8 @@ pub struct Servo {
     own_bounds: Vec<VelocityBounds>,
     bounds: Vec<VelocityBounds>,
     saturator: Saturator,
+    /// Velocities of the last step, scaled.
+    last: Vec<f64>,
     /// Derivatives of the Jacobian, where a secondary task needs them.
     hessian: Vec<Matrix>,
     /// Closed chains only.
@@ -191,8 +193,9 @@ impl Servo {
             secondary: vec![0.0; rates],
             own_bounds: vec![VelocityBounds::NONE; rates],
             bounds: vec![VelocityBounds::NONE; rates],
-            saturator: Saturator::new(m, unknowns),
+            saturator: Saturator::new(m, unknowns, coupled.is_some().then_some(rates)),
             hessian,
+            last: vec![0.0; rates],
             rates: vec![0.0; mechanism.n().max(rates)],
             active: vec![None; rates],
             coupled,

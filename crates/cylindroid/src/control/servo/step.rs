@@ -1,7 +1,7 @@
 //! Input and output of a servo step: target, status, errors.
 
 use super::options::ServoOptions;
-use crate::control::solver::direct::Saturation;
+use crate::control::solver::saturation::Saturation;
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Twist};
 

@@ -29,8 +29,8 @@ pub(in crate::control) struct Share {
     pub(in crate::control) scale: f64,
     /// True if the level points along its target.
     pub(in crate::control) is_straight: bool,
-    /// The inequality that stops it most, and the sign of its bound.
-    pub(in crate::control) cause: Option<(usize, f64)>,
+    /// True if one of the inequalities that were asked for stops it.
+    pub(in crate::control) is_stopped: bool,
 }
 
 /// Parts across the target below this share of it are roundings [-].
@@ -76,25 +76,27 @@ impl ActiveSet {
         self.minimise(Objective::Nearest(desired), precision);
     }
 
-    /// The largest share of a level along its direction.
+    /// The largest share of a level along its direction; `stops` are the inequalities (row and sign
+    /// of the bound) to report.
     pub(in crate::control) fn solve_scaled(
         &mut self,
         level: &mut ScaledLevel,
         precision: Precision,
+        stops: impl Fn(usize, f64) -> bool,
     ) -> Share {
         let size = level.split();
         if size == 0.0 {
             self.solve(&mut level.whole, precision);
-            return Share { scale: 1.0, is_straight: true, cause: None };
+            return Share { scale: 1.0, is_straight: true, is_stopped: false };
         }
         self.minimise(Objective::Rows(&mut level.across), precision);
         self.keep(&mut level.across, precision);
         let is_straight = level.across.residual(self.point()) <= STRAIGHT * size;
         self.minimise(Objective::Rows(&mut level.along), precision);
-        let cause = self.strongest();
+        let is_stopped = self.stopping().any(|(row, sign)| stops(row, sign));
         self.keep(&mut level.along, precision);
         let scale = dot_row(&level.along, self.point()) / size;
-        Share { scale, is_straight, cause }
+        Share { scale, is_straight, is_stopped }
     }
 }
 

@@ -1,15 +1,15 @@
-//! The bounded solver: joint velocities that perform a Cartesian task within their bounds.
+//! The bounded solver: joint velocities that perform tasks within their bounds.
 //!
-//! Read `bounds` (the interval of each joint and the limit that sets it), then `direct` (trees: the
-//! unknowns are the joint velocities), then `reduced` (closed chains: the unknowns are the actuated
-//! motions, the bounds apply to all joints). The solver knows neither targets nor gains nor time.
+//! Read `bounds` (the interval of each joint and the limit that sets it), `inequalities` (bounds as
+//! rows), `active_set` (least squares within them), `hierarchy` (level after level, scaled before
+//! bent), then `saturation` (one task with its secondary motion, for trees and closed chains). The
+//! solver knows neither targets nor gains nor time.
 
 pub(super) mod active_set;
 pub(super) mod bounds;
-pub(super) mod direct;
 pub(super) mod hierarchy;
 pub(super) mod inequalities;
-pub(super) mod reduced;
+pub(super) mod saturation;
 
 pub use bounds::{LimitKind, VelocityBounds};
-pub use direct::Saturation;
+pub use saturation::Saturation;

@@ -159,7 +159,7 @@ impl Servo {
         }
         let mut own = vec![0.0; self.limits.len()];
         match &self.coupled {
-            Some(coupled) => coupled.reduced.expand(x, &mut own),
+            Some(coupled) => coupled.coupling.expand(x, &mut own),
             None => own.copy_from_slice(x),
         }
         own.iter_mut().zip(&self.space.columns).for_each(|(rate, scale)| *rate *= scale);

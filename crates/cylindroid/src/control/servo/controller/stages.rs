@@ -11,10 +11,9 @@ use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
-use crate::control::solver::direct::{Problem, RELEASE, Saturation, solve};
-use crate::control::solver::reduced::ReducedProblem;
+use crate::control::solver::saturation::{Problem, RELEASE, Saturation, brake, solve};
 use crate::error::Result;
-use crate::linalg::{RowSpace, dot};
+use crate::linalg::{RowSpace, dot, norm};
 use crate::spatial::Twist;
 use crate::tolerance::AT_LIMIT;
 
@@ -40,9 +39,9 @@ impl Servo {
                 self.svd.apply_gains_into(
                     &self.projected_error,
                     &self.gains,
-                    &mut coupled.reduced.secondary,
+                    &mut coupled.coupling.secondary,
                 );
-                coupled.reduced.expand(&coupled.reduced.secondary, &mut self.secondary);
+                coupled.coupling.expand(&coupled.coupling.secondary, &mut self.secondary);
             } else {
                 self.svd.apply_gains_into(&self.projected_error, &self.gains, &mut self.secondary);
             }
@@ -80,8 +79,8 @@ impl Servo {
     /// `primary = J+ x`
     pub(super) fn solve(&mut self) {
         if let Some(coupled) = &mut self.coupled {
-            solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut coupled.reduced.primary);
-            coupled.reduced.expand(&coupled.reduced.primary, &mut self.primary);
+            solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut coupled.coupling.primary);
+            coupled.coupling.expand(&coupled.coupling.primary, &mut self.primary);
         } else {
             solve(&self.svd, &self.method, &mut self.gains, &self.x, &mut self.primary);
         }
@@ -117,20 +116,24 @@ impl Servo {
 
     /// Bounds the primary and secondary velocities.
     pub(super) fn saturate(&mut self, q: &[f64]) -> Result<Saturation> {
-        let (j, x, method, bounds) = (&self.task, &self.x, &self.method, &self.bounds);
+        for i in 0..self.last.len() {
+            self.last[i] = self.space.scaled_rate(i, self.rates[self.place(i)]);
+        }
+        let gain = self.options.gain.position.min(self.options.gain.orientation);
+        let error = norm(&self.projected_error);
+        let problem =
+            Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
         let Some(coupled) = &mut self.coupled else {
-            let problem = Problem { j, x, method, bounds };
-            let saturation = self.saturator.apply(problem, &self.secondary, &mut self.primary);
-            return Ok(saturation);
+            return Ok(self.saturator.apply(problem, &self.secondary, &mut self.primary));
         };
-        let rates = self.space.scaled_rates(&self.rates);
-        let last = coupled.actuation_of(&self.rates);
-        let problem = ReducedProblem { j, x, method, bounds, rates: &rates, last: &last };
-        let mut saturation = coupled.reduced.saturate(problem, &mut self.primary);
+        coupled.load_last(&self.rates);
+        let mut saturation =
+            self.saturator.apply_coupled(problem, &mut coupled.coupling, &mut self.primary);
         self.approaches_type_ii =
             coupled.approaches_type_ii(q, &self.primary, &self.space, self.options.dt)?;
         if self.approaches_type_ii {
-            coupled.reduced.brake(&problem, &mut self.primary);
+            brake(&problem, &mut self.primary);
+            coupled.coupling.actuation.fill(0.0);
             saturation = Saturation { scale: 0.0, direction_lost: false };
         }
         Ok(saturation)
@@ -139,7 +142,7 @@ impl Servo {
     /// The twist realised by the joint velocities of this step.
     pub(super) fn load_achieved_twist(&mut self) {
         let rates =
-            self.coupled.as_ref().map_or(&self.primary, |coupled| &coupled.reduced.actuation);
+            self.coupled.as_ref().map_or(&self.primary, |coupled| &coupled.coupling.actuation);
         self.task.mul_vec_into(rates, &mut self.achieved_twist);
     }
 
@@ -184,7 +187,7 @@ impl Servo {
             SecondaryNullSpace::Retained => RowSpace::from_kept(&self.svd, &self.kept),
         };
         space.project_out(match &mut self.coupled {
-            Some(coupled) => &mut coupled.reduced.secondary,
+            Some(coupled) => &mut coupled.coupling.secondary,
             None => &mut self.secondary,
         });
     }
@@ -283,7 +286,7 @@ impl Servo {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             let (q, l) = (self.chain.q()[i], self.limits[i]);
             let pull: f64 = match &self.coupled {
-                Some(coupled) => coupled.reduced.along(i, &descent),
+                Some(coupled) => coupled.coupling.along(i, &descent),
                 None => {
                     let rest = self.x.iter().zip(&self.achieved_twist).map(left);
                     self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum()

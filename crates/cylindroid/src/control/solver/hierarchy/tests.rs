@@ -294,7 +294,7 @@ fn scaled_levels_keep_their_direction() {
         let mut level = ScaledLevel::new(a.rows(), problem.n);
         level.whole.rows = a.clone();
         level.whole.target.copy_from_slice(&b);
-        let share = set.solve_scaled(&mut level, Precision::EXACT);
+        let share = set.solve_scaled(&mut level, Precision::EXACT, |_, _| false);
         problem.assert_feasible(set.point(), "scaled");
         assert!(share.is_straight, "round {round}");
         let scaled: Vec<f64> = b.iter().map(|b| share.scale * b).collect();

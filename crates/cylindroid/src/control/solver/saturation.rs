@@ -1,0 +1,396 @@
+//! Saturation: enforces bounds of joint velocities on a task and its secondary motion. The task is
+//! scaled down first; if no scaling is feasible, its direction is changed.
+//!
+//! Formula  rates = M y + c within their bounds; M = 1, c = 0 without loops. Secondary motion first:
+//!          the largest share of it beside the whole task; then the largest s in [0, 1] with
+//!          J y = s J y_0, y_0 the unbounded solution (the inverse of the servo has its say there);
+//!          what remains free comes nearest to s y_0 plus the secondary motion. Direction changed:
+//!          min |J y - J y_0|^2 + d |y|^2 within the bounds, d = k |J y' - J y_0| / gain, y' the
+//!          solution for d = 0
+//! Shapes   J: m x a, y: a, M: rates x a
+//! Cost     none but two passes over the joints where scaling both motions suffices; otherwise up to
+//!          four levels of `active_set.rs`. No allocation
+//! Why so   scaling preserves the direction, which users of straight-line paths rely on; the
+//!          direction is changed only when no scaled motion is feasible
+//!          Where a part of the task is out of reach, its curvature outweighs weak directions: the
+//!          least-squares motion would overshoot there and swing, d is a bound of that curvature
+//! Source   Flacco, De Luca & Khatib 2015 (saturation in the null space); `hierarchy.rs`
+//! Checked  tests/it/servo/limits.rs::saturation_*, tests/it/servo/object.rs, tests in this file
+
+use super::active_set::{ActiveSet, Level, Precision};
+use super::bounds::{LimitKind, VelocityBounds};
+use super::hierarchy::ScaledLevel;
+use super::inequalities::Inequalities;
+use crate::inverse::Method;
+use crate::linalg::{Matrix, Svd, norm};
+
+/// Below this scale the direction counts as infeasible and is changed [-].
+const MIN_SCALE: f64 = 0.05;
+
+/// A joint at a bound is released when its gradient exceeds this share of the largest possible one
+/// [-]: the residual along directions cut by the inverse must not release any joint.
+pub(in crate::control) const RELEASE: f64 = 1e-3;
+
+/// Scales closer to 1 than this are 1 [-].
+const ROUNDED: f64 = 1e-12;
+
+/// Singular values of a scaled task, relative to its norm, that may be needed to keep its direction
+/// [-]: the bounds limit the velocities there.
+const STRAIGHT: Precision = Precision { rank: 1e-6, release: 1e-9 };
+
+/// Share of a curvature of one that the damping stands for [-]: two links of length l have l / 2 when
+/// straight, and l is about the characteristic length; more slows the approach along other weak
+/// directions.
+const CURVATURE: f64 = 0.05;
+
+/// Motions of the joints up to which a Jacobian describes that of the task (scaled) [-].
+const LINEAR: f64 = 1.0;
+
+/// Joint motions that are larger than those of the task by more than this are those of a weak
+/// direction (scaled) [-].
+const AMPLIFIED: f64 = 20.0;
+
+/// Least damping of a task whose direction is changed [-].
+const LEAST_DAMPING: f64 = 1e-6;
+
+/// Saturation: the share of a task that the velocity bounds of the joints permit.
+///
+/// ```text
+/// scaled              the largest s in [0, 1] with J q' = s x,  lower <= q' <= upper
+/// direction changed   min |J q' - x|,  lower <= q' <= upper   (bounded least squares, BVLS)
+/// ```
+///
+/// Joints at a bound are clamped one by one while the others can still perform the task. The
+/// direction changes only if no scaled motion is feasible.
+///
+/// Source: Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
+/// Parker 1995 (bounded-variable least squares).
+#[doc(alias = "BVLS")]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Saturation {
+    /// Scale of the realised task twist; 1 when no limit is active.
+    pub scale: f64,
+    /// True if the direction was changed because no scaled motion was feasible.
+    pub direction_lost: bool,
+}
+
+impl Saturation {
+    /// No limit is active.
+    pub(in crate::control) const NONE: Self = Self { scale: 1.0, direction_lost: false };
+}
+
+/// Rates that follow from the motions of a closed chain, M y + c.
+#[derive(Debug, Clone)]
+pub(in crate::control) struct Coupling {
+    /// M in weighted velocities, a columns.
+    pub(in crate::control) motions: Matrix,
+    /// c in weighted velocities: closes the loops within a step.
+    pub(in crate::control) correction: Vec<f64>,
+    /// The actuation y of the primary task, of the secondary ones, of the last step and of the
+    /// result.
+    pub(in crate::control) primary: Vec<f64>,
+    pub(in crate::control) secondary: Vec<f64>,
+    pub(in crate::control) last: Vec<f64>,
+    pub(in crate::control) actuation: Vec<f64>,
+}
+
+impl Coupling {
+    /// For this number of rates and unknowns, at rest.
+    pub(in crate::control) fn new(rates: usize, unknowns: usize) -> Self {
+        Self {
+            motions: Matrix::zeros(rates, unknowns),
+            correction: vec![0.0; rates],
+            primary: vec![0.0; unknowns],
+            secondary: vec![0.0; unknowns],
+            last: vec![0.0; unknowns],
+            actuation: vec![0.0; unknowns],
+        }
+    }
+
+    /// `rates = M y`, without the loop-closure correction.
+    pub(in crate::control) fn expand(&self, y: &[f64], rates: &mut [f64]) {
+        self.motions.mul_vec_into(y, rates);
+    }
+
+    /// Row `joint` of M times `pull`.
+    pub(in crate::control) fn along(&self, joint: usize, pull: &[f64]) -> f64 {
+        (0..self.motions.cols()).map(|j| self.motions[(joint, j)] * pull[j]).sum()
+    }
+}
+
+/// The task and the bounds of a step.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::control) struct Problem<'a> {
+    /// The task in the unknowns.
+    pub(in crate::control) j: &'a Matrix,
+    /// Of the rates.
+    pub(in crate::control) bounds: &'a [VelocityBounds],
+    /// The rates of the last step.
+    pub(in crate::control) last: &'a [f64],
+    /// Velocities of the task for an error of 1 [1/s].
+    pub(in crate::control) gain: f64,
+    /// Size of the error of the task: what of it cannot be reached has a curvature, unlike a twist
+    /// that is fed forward.
+    pub(in crate::control) error: f64,
+}
+
+impl Problem<'_> {
+    /// True if a small share of the unbounded solution is a step on its way: not where it goes far
+    /// beyond the range of the linearisation for little motion of the task.
+    fn is_sensible(&self, primary: &[f64], task: f64) -> bool {
+        let size = norm(primary);
+        size <= self.gain * LINEAR || size <= AMPLIFIED * task
+    }
+}
+
+/// Workspace of the saturation.
+#[derive(Debug, Clone)]
+pub(in crate::control) struct Saturator {
+    set: ActiveSet,
+    task: ScaledLevel,
+    damped: Level,
+    /// d of the last changed direction.
+    damping: f64,
+    /// c, or zero.
+    constant: Vec<f64>,
+    /// The rates of the whole task, and those that the secondary motion adds.
+    whole: Vec<f64>,
+    more: Vec<f64>,
+    desired: Vec<f64>,
+}
+
+impl Saturator {
+    /// For a task of m components: n joints of a tree, or n actuated motions on which `rates` rates
+    /// of a closed chain depend.
+    pub(in crate::control) fn new(m: usize, n: usize, rates: Option<usize>) -> Self {
+        let inequalities = Inequalities::new(n, rates.is_none(), rates.unwrap_or(0));
+        let rates = rates.unwrap_or(n);
+        Self {
+            set: ActiveSet::new(n, inequalities),
+            task: ScaledLevel::new(m, n),
+            damped: Level::new(m + n, n),
+            damping: 0.0,
+            constant: vec![0.0; rates],
+            whole: vec![0.0; rates],
+            more: vec![0.0; rates],
+            desired: vec![0.0; n],
+        }
+    }
+
+    /// Bounds the primary motion `rates` of a tree and its secondary motion.
+    pub(in crate::control) fn apply(
+        &mut self,
+        p: Problem<'_>,
+        secondary: &[f64],
+        rates: &mut [f64],
+    ) -> Saturation {
+        self.more.copy_from_slice(secondary);
+        if let Some((saturation, ..)) = self.scale_down(&p, rates, None) {
+            return saturation;
+        }
+        for (i, bound) in p.bounds.iter().enumerate() {
+            self.set.inequalities.lower[i] = bound.lower;
+            self.set.inequalities.upper[i] = bound.upper;
+        }
+        let Some(saturation) = self.solve(&p, p.last, rates) else {
+            brake(&p, rates);
+            return Saturation { scale: 0.0, direction_lost: true };
+        };
+        // Rounding at the critical joint.
+        for ((rate, y), bound) in rates.iter_mut().zip(self.set.point()).zip(p.bounds) {
+            *rate = bound.clamp(*y);
+        }
+        saturation
+    }
+
+    /// Bounds the motions of a closed chain; `rates` are those of its primary motion.
+    pub(in crate::control) fn apply_coupled(
+        &mut self,
+        p: Problem<'_>,
+        coupling: &mut Coupling,
+        rates: &mut [f64],
+    ) -> Saturation {
+        // At a limit the loop-closure correction ends, too. Acceleration bounds that exclude rest
+        // are left to the motion: a correction that met them would open the loops.
+        for ((c, x), bound) in self.constant.iter_mut().zip(&coupling.correction).zip(p.bounds) {
+            *c = x.max(bound.lower.min(0.0)).min(bound.upper.max(0.0));
+        }
+        coupling.expand(&coupling.secondary, &mut self.more);
+        if let Some((saturation, primary, secondary)) =
+            self.scale_down(&p, rates, Some(&coupling.primary))
+        {
+            let both = coupling.primary.iter().zip(&coupling.secondary);
+            for (y, (a, b)) in coupling.actuation.iter_mut().zip(both) {
+                *y = primary * a + secondary * b;
+            }
+            return saturation;
+        }
+        let inequalities = &mut self.set.inequalities;
+        for (i, (bound, c)) in p.bounds.iter().zip(&self.constant).enumerate() {
+            inequalities.set_row(i, |j| coupling.motions[(i, j)]);
+            inequalities.lower[i] = bound.lower - c;
+            inequalities.upper[i] = bound.upper - c;
+        }
+        let found = self.solve(&p, &coupling.last, &coupling.primary);
+        let Some(saturation) = found else {
+            brake(&p, rates);
+            coupling.actuation.fill(0.0);
+            return Saturation { scale: 0.0, direction_lost: true };
+        };
+        coupling.actuation.copy_from_slice(self.set.point());
+        coupling.expand(&coupling.actuation, rates);
+        for ((rate, c), bound) in rates.iter_mut().zip(&self.constant).zip(p.bounds) {
+            *rate = bound.clamp(*rate + c);
+        }
+        saturation
+    }
+
+    /// The whole task with a share of the secondary motion, or a scaled task if accelerations alone
+    /// bound it, with the shares of both; `None` if that is not enough.
+    fn scale_down(
+        &mut self,
+        p: &Problem<'_>,
+        rates: &mut [f64],
+        primary: Option<&[f64]>,
+    ) -> Option<(Saturation, f64, f64)> {
+        let bounds = p.bounds;
+        for ((whole, rate), c) in self.whole.iter_mut().zip(&*rates).zip(&self.constant) {
+            *whole = rate + c;
+        }
+        // The secondary motion is reduced first.
+        if let Some(span) = interval(&self.whole, &self.more, bounds) {
+            for (((rate, a), z), bound) in
+                rates.iter_mut().zip(&self.whole).zip(&self.more).zip(bounds)
+            {
+                *rate = bound.clamp(a + span.most * z);
+            }
+            return Some((Saturation::NONE, 1.0, span.most));
+        }
+        // While joints accelerate, the twist is scaled and grows from step to step; only persistent
+        // limits justify another distribution of the motion over the joints.
+        let span = interval(&self.constant, rates, bounds)?;
+        let accelerates = span.most > 0.0 && span.cause == LimitKind::Acceleration;
+        if !accelerates {
+            return None;
+        }
+        if span.most < MIN_SCALE {
+            let primary = primary.unwrap_or(rates);
+            p.j.mul_vec_into(primary, &mut self.task.whole.target);
+            if !p.is_sensible(primary, norm(&self.task.whole.target)) {
+                return None;
+            }
+        }
+        for ((rate, c), bound) in rates.iter_mut().zip(&self.constant).zip(bounds) {
+            *rate = bound.clamp(c + *rate * span.most);
+        }
+        let saturation = Saturation { scale: span.most, direction_lost: false };
+        Some((saturation, span.most, 0.0))
+    }
+
+    /// The bounded unknowns, in the active set; `None` if the bounds contradict one another.
+    fn solve(&mut self, p: &Problem<'_>, last: &[f64], primary: &[f64]) -> Option<Saturation> {
+        let whole = &mut self.task.whole;
+        whole.rows.as_mut_slice().copy_from_slice(p.j.as_slice());
+        whole.rows.mul_vec_into(primary, &mut whole.target);
+        let is_sensible = p.is_sensible(primary, norm(&whole.target));
+        let at_position = |row: usize, sign: f64| {
+            let bound = &p.bounds[row];
+            let cause = if sign > 0.0 { bound.upper_cause } else { bound.lower_cause };
+            cause == LimitKind::Position
+        };
+        let clamped = self.set.clamp_one_by_one(&mut self.task.whole, STRAIGHT);
+        if let Some((scale, stop)) = clamped
+            && (scale >= MIN_SCALE
+                || (is_sensible && !stop.is_some_and(|(row, sign)| at_position(row, sign))))
+        {
+            return Some(Saturation { scale, direction_lost: false });
+        }
+        if !self.set.start(last) {
+            return None;
+        }
+        self.bend(p, last);
+        Some(Saturation { scale: 0.0, direction_lost: true })
+    }
+
+    /// The damped least-squares solution within the bounds.
+    fn bend(&mut self, p: &Problem<'_>, last: &[f64]) {
+        let Self { set, task, damped, .. } = self;
+        let (m, n) = (p.j.rows(), p.j.cols());
+        set.start(last);
+        set.solve(&mut task.whole, STRAIGHT);
+        let left = (task.whole.residual(set.point()) / p.gain).min(p.error);
+        self.damping = (CURVATURE * left).max(LEAST_DAMPING);
+        for j in 0..n {
+            let (rows, unit) = damped.rows.column_mut(j).split_at_mut(m);
+            rows.copy_from_slice(p.j.column(j));
+            unit.fill(0.0);
+            unit[j] = self.damping.sqrt();
+        }
+        damped.target[..m].copy_from_slice(&task.whole.target);
+        set.start(last);
+        set.solve(damped, STRAIGHT);
+    }
+}
+
+/// The last velocities, slowed together as far as the bounds permit.
+pub(in crate::control) fn brake(p: &Problem<'_>, out: &mut [f64]) {
+    // rates (1 - s): from the last ones to rest.
+    out.iter_mut().zip(p.last).for_each(|(o, r)| *o = -r);
+    let share = interval(p.last, out, p.bounds).map_or(1.0, |span| span.most);
+    for ((o, r), bound) in out.iter_mut().zip(p.last).zip(p.bounds) {
+        *o = bound.clamp(r * (1.0 - share));
+    }
+}
+
+/// `out = V diag(gains) U^T x`
+pub(in crate::control) fn solve(
+    svd: &Svd,
+    method: &Method,
+    gains: &mut [f64],
+    x: &[f64],
+    out: &mut [f64],
+) {
+    method.gains(svd, x, gains);
+    svd.apply_gains_into(x, gains, out);
+}
+
+/// The range of s in which `a + s b` is within the bounds.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::control) struct Span {
+    /// The largest s in [0, 1].
+    pub(in crate::control) most: f64,
+    /// The limit that sets it; velocity if none.
+    pub(in crate::control) cause: LimitKind,
+}
+
+/// The largest s in [0, 1] for which `a + s b` is within the bounds; `None` if there is none.
+pub(in crate::control) fn interval(
+    a: &[f64],
+    b: &[f64],
+    bounds: &[VelocityBounds],
+) -> Option<Span> {
+    let mut least = 0.0_f64;
+    let mut span = Span { most: 1.0, cause: LimitKind::Velocity };
+    for ((a, b), bound) in a.iter().zip(b).zip(bounds) {
+        if *b == 0.0 {
+            if !bound.contains(*a) {
+                return None;
+            }
+            continue;
+        }
+        let (lower, upper) = ((bound.lower - a) / b, (bound.upper - a) / b);
+        let (enter, leave, cause) = if *b > 0.0 {
+            (lower, upper, bound.upper_cause)
+        } else {
+            (upper, lower, bound.lower_cause)
+        };
+        least = least.max(enter);
+        if leave < span.most {
+            span = Span { most: leave, cause };
+        }
+    }
+    (least <= span.most).then_some(span)
+}
+
+#[cfg(test)]
+mod tests;
