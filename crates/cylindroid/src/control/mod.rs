@@ -1,8 +1,8 @@
 //! Cartesian control: the servo loop, its limits and secondary tasks, time laws and paths.
 //!
-//! Four parts, each reading only from the left: `solver` (joint velocities within bounds), `servo`
-//! (one control step), `laws` (force, shared and internal-force control), `motion` (trajectories
-//! and simulation).
+//! Five parts, each reading only from the left: `solver` (joint velocities within bounds), `servo`
+//! (one control step), `tasks` (many tasks in one step), `laws` (force, shared and internal-force
+//! control), `motion` (trajectories and simulation).
 //!
 //! A path gives the pose over `s` in [0, 1], a time law gives `s` over time, and a move combines
 //! both: the fastest law on this path within every bound. A servo follows a move, or moves straight
@@ -17,6 +17,7 @@ mod laws;
 mod motion;
 mod servo;
 mod solver;
+mod tasks;
 
 pub use crate::ik::Task;
 pub use laws::{
@@ -35,3 +36,7 @@ pub use servo::{
     SpeedLimit, Stall, Status, Step, Target, TaskProjection, VelocitiesAtPoint,
 };
 pub use solver::{LimitKind, Saturation, VelocityBounds};
+pub use tasks::{
+    CollisionAvoidance, CustomTask, MotionTask, StoppedBy, TaskObjective, TaskReport, TaskServo,
+    TaskServoOptions,
+};

@@ -127,6 +127,64 @@ impl MassMatrix {
         Ok(())
     }
 
+    /// Total mass and centre of mass of the moving links, and the Jacobian of the centre, 3 x n:
+    /// its velocity in world axes = J * joint velocities. Without allocation; links without mass do
+    /// not count, a mechanism without any has a zero mass and its centre at the origin.
+    ///
+    /// ```
+    /// use cylindroid::Matrix;
+    /// use cylindroid::kinematics::MassMatrix;
+    /// use cylindroid::model::{Inertial, JointKind, JointSpec, Link, Mechanism};
+    /// use cylindroid::spatial::{Mat3, Pose, Vec3};
+    ///
+    /// let mut builder = Mechanism::builder("pendulum");
+    /// let at = Pose::from_translation(Vec3::X * 0.5);
+    /// let inertial = Inertial { mass: 2.0, link_from_inertia: at, inertia: Mat3::ZERO };
+    /// builder.link(Link::named("ground"));
+    /// builder.link(Link { inertial: Some(inertial), ..Link::named("bob") });
+    /// builder.joint(JointSpec::new("hinge", JointKind::Revolute, "ground", "bob"));
+    /// let pendulum = builder.build()?;
+    /// let mut jacobian = Matrix::zeros(3, 1);
+    /// let state = pendulum.state(&[0.0])?;
+    /// let (mass, center) = MassMatrix::new(&pendulum).center_of_mass(&state, &mut jacobian)?;
+    /// assert_eq!((mass, center), (2.0, Vec3::X * 0.5));
+    /// assert_eq!(jacobian.column(0), [0.0, 0.5, 0.0]);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A state of a mechanism with another number of moving bodies; an `out` that is not 3 x n.
+    #[doc(alias = "center of mass")]
+    pub fn center_of_mass(&mut self, state: &State, out: &mut Matrix) -> Result<(f64, Vec3)> {
+        let (nodes, slots) = (state.mechanism().nodes(), state.slots());
+        Error::check_len("bodies of the state", self.bodies.len(), slots.len())?;
+        Error::check_len("rows of the Jacobian", 3, out.rows())?;
+        Error::check_len("columns of the Jacobian", state.mechanism().n(), out.cols())?;
+        out.as_mut_slice().fill(0.0);
+        for ((composite, body), slot) in self.composites.iter_mut().zip(&self.bodies).zip(slots) {
+            *composite = body.moved(slot.pose());
+        }
+        self.composites[0] = Body::NONE; // links fixed to the ground
+        for slot in (1..slots.len()).rev() {
+            let body = self.composites[slot];
+            let parent = nodes[slot - 1].parent;
+            self.composites[parent] = self.composites[parent].with(body);
+        }
+        let whole = self.composites[0];
+        if whole.mass == 0.0 {
+            return Ok((0.0, Vec3::ZERO));
+        }
+        for slot in 1..slots.len() {
+            let body = self.composites[slot];
+            let tip = Tip { nodes, slots, slot, world_from_tip: Pose::IDENTITY };
+            tip.for_each_column_above(nodes[slot - 1].parent, body.center, |_, c, twist| {
+                let velocity = twist.linear * (body.mass / whole.mass);
+                out.column_mut(c).iter_mut().zip(velocity.to_array()).for_each(|(o, v)| *o += v);
+            });
+        }
+        Ok((whole.mass, whole.center))
+    }
+
     fn fill(&mut self, nodes: &[Node], slots: &[AlignedPose], out: &mut Matrix) {
         out.as_mut_slice().fill(0.0);
         self.armatures.iter().for_each(|&(c, armature)| out[(c, c)] += armature);

@@ -165,7 +165,7 @@ pub(super) fn stopping_distance_bound(rate: f64, acceleration: f64, dt: f64) -> 
 
 /// The largest velocity from which steps of `dt` with deceleration `acceleration` stop within
 /// `distance`.
-pub(super) fn stopping_velocity(distance: f64, acceleration: f64, dt: f64) -> f64 {
+pub(in crate::control) fn stopping_velocity(distance: f64, acceleration: f64, dt: f64) -> f64 {
     if distance == f64::INFINITY {
         return f64::INFINITY;
     }

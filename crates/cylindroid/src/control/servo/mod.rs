@@ -21,6 +21,10 @@ mod stall;
 mod step;
 mod task_space;
 
+pub(super) use limits::stopping_velocity;
+pub(super) use secondary::add_posture;
+pub(super) use stall::{BrakingState, StallDetector};
+
 pub use controller::Servo;
 pub use controller::condition::ConditionReport;
 pub use inverse_choice::InverseChoice;

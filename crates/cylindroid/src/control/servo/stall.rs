@@ -108,7 +108,7 @@ impl Stall {
 
 /// Detects that the error no longer falls.
 #[derive(Debug, Clone)]
-pub(super) struct StallDetector {
+pub(in crate::control) struct StallDetector {
     best: f64,
     since: f64,
     window: f64,
@@ -116,20 +116,25 @@ pub(super) struct StallDetector {
 
 /// Acceleration of the joints in a step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct BrakingState {
+pub(in crate::control) struct BrakingState {
     /// True if a joint accelerates at its acceleration limit.
-    pub(super) accelerating: bool,
+    pub(in crate::control) accelerating: bool,
     /// The largest |v| / A of the joints (s).
-    pub(super) stopping_time: f64,
+    pub(in crate::control) stopping_time: f64,
 }
 
 impl StallDetector {
-    pub(super) const fn new() -> Self {
+    pub(in crate::control) const fn new() -> Self {
         Self { best: f64::INFINITY, since: 0.0, window: WINDOW }
     }
 
     /// Records the error of a step of `dt` seconds; true if stalled.
-    pub(super) fn stalled(&mut self, error: f64, braking: BrakingState, dt: f64) -> bool {
+    pub(in crate::control) fn stalled(
+        &mut self,
+        error: f64,
+        braking: BrakingState,
+        dt: f64,
+    ) -> bool {
         if error < self.best * (1.0 - SHARE) {
             let window = WINDOW + TURN_ROUND * braking.stopping_time;
             *self = Self { best: error, since: 0.0, window };

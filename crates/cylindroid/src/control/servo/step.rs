@@ -22,7 +22,7 @@ impl From<Pose> for Target {
 
 impl Target {
     /// Checks for non-finite values.
-    pub(super) fn check(&self) -> Result<()> {
+    pub(in crate::control) fn check(&self) -> Result<()> {
         Error::check_finite("target position", &self.pose.translation.to_array())?;
         if !self.pose.is_finite() {
             return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });

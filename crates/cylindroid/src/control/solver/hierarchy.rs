@@ -7,7 +7,7 @@
 //! Shapes   A_k: m_k x n
 //! Valid    any rank; a direction that cannot be kept exactly is reported
 //! Source   Escande, Mansard & Wieber 2014; Flacco, De Luca & Khatib 2015 (scaling)
-//! Checked  tests in this file
+//! Checked  src/control/solver/hierarchy/tests.rs
 
 use super::active_set::{ActiveSet, Level, Objective, Precision};
 use crate::linalg::{dot, norm};
@@ -82,7 +82,7 @@ impl ActiveSet {
         &mut self,
         level: &mut ScaledLevel,
         precision: Precision,
-        stops: impl Fn(usize, f64) -> bool,
+        mut stops: impl FnMut(usize, f64) -> bool,
     ) -> Share {
         let size = level.split();
         if size == 0.0 {

@@ -4,7 +4,7 @@
 //! Shapes   y: n; further rows: n x r, one column each
 //! Units    of the unknowns: scaled joint velocities, or actuated motions of a closed chain
 //! Valid    infinite and equal bounds
-//! Checked  tests of `hierarchy.rs`
+//! Checked  src/control/solver/hierarchy/tests.rs
 
 use crate::linalg::{Matrix, dot, norm};
 

@@ -15,11 +15,11 @@
 //!          Where a part of the task is out of reach, its curvature outweighs weak directions: the
 //!          least-squares motion would overshoot there and swing, d is a bound of that curvature
 //! Source   Flacco, De Luca & Khatib 2015 (saturation in the null space); `hierarchy.rs`
-//! Checked  tests/it/servo/limits.rs::saturation_*, tests/it/servo/object.rs, tests in this file
+//! Checked  tests/it/servo/limits.rs::saturation_*, tests/it/servo/object.rs,
+//!          src/control/solver/saturation/tests.rs
 
 use super::active_set::{ActiveSet, Level, Precision};
 use super::bounds::{LimitKind, VelocityBounds};
-use super::hierarchy::ScaledLevel;
 use super::inequalities::Inequalities;
 use crate::inverse::Method;
 use crate::linalg::{Matrix, Svd, norm};
@@ -30,9 +30,6 @@ const MIN_SCALE: f64 = 0.05;
 /// A joint at a bound is released when its gradient exceeds this share of the largest possible one
 /// [-]: the residual along directions cut by the inverse must not release any joint.
 pub(in crate::control) const RELEASE: f64 = 1e-3;
-
-/// Scales closer to 1 than this are 1 [-].
-const ROUNDED: f64 = 1e-12;
 
 /// Singular values of a scaled task, relative to its norm, that may be needed to keep its direction
 /// [-]: the bounds limit the velocities there.
@@ -147,8 +144,7 @@ impl Problem<'_> {
 #[derive(Debug, Clone)]
 pub(in crate::control) struct Saturator {
     set: ActiveSet,
-    task: ScaledLevel,
-    damped: Level,
+    task: Level,
     /// d of the last changed direction.
     damping: f64,
     /// c, or zero.
@@ -156,7 +152,6 @@ pub(in crate::control) struct Saturator {
     /// The rates of the whole task, and those that the secondary motion adds.
     whole: Vec<f64>,
     more: Vec<f64>,
-    desired: Vec<f64>,
 }
 
 impl Saturator {
@@ -167,13 +162,11 @@ impl Saturator {
         let rates = rates.unwrap_or(n);
         Self {
             set: ActiveSet::new(n, inequalities),
-            task: ScaledLevel::new(m, n),
-            damped: Level::new(m + n, n),
+            task: Level::new(m, n),
             damping: 0.0,
             constant: vec![0.0; rates],
             whole: vec![0.0; rates],
             more: vec![0.0; rates],
-            desired: vec![0.0; n],
         }
     }
 
@@ -275,8 +268,8 @@ impl Saturator {
         }
         if span.most < MIN_SCALE {
             let primary = primary.unwrap_or(rates);
-            p.j.mul_vec_into(primary, &mut self.task.whole.target);
-            if !p.is_sensible(primary, norm(&self.task.whole.target)) {
+            p.j.mul_vec_into(primary, &mut self.task.target);
+            if !p.is_sensible(primary, norm(&self.task.target)) {
                 return None;
             }
         }
@@ -289,7 +282,7 @@ impl Saturator {
 
     /// The bounded unknowns, in the active set; `None` if the bounds contradict one another.
     fn solve(&mut self, p: &Problem<'_>, last: &[f64], primary: &[f64]) -> Option<Saturation> {
-        let whole = &mut self.task.whole;
+        let whole = &mut self.task;
         whole.rows.as_mut_slice().copy_from_slice(p.j.as_slice());
         whole.rows.mul_vec_into(primary, &mut whole.target);
         let is_sensible = p.is_sensible(primary, norm(&whole.target));
@@ -298,7 +291,7 @@ impl Saturator {
             let cause = if sign > 0.0 { bound.upper_cause } else { bound.lower_cause };
             cause == LimitKind::Position
         };
-        let clamped = self.set.clamp_one_by_one(&mut self.task.whole, STRAIGHT);
+        let clamped = self.set.clamp_one_by_one(&mut self.task, STRAIGHT);
         if let Some((scale, stop)) = clamped
             && (scale >= MIN_SCALE
                 || (is_sensible && !stop.is_some_and(|(row, sign)| at_position(row, sign))))
@@ -314,21 +307,13 @@ impl Saturator {
 
     /// The damped least-squares solution within the bounds.
     fn bend(&mut self, p: &Problem<'_>, last: &[f64]) {
-        let Self { set, task, damped, .. } = self;
-        let (m, n) = (p.j.rows(), p.j.cols());
+        let Self { set, task, .. } = self;
         set.start(last);
-        set.solve(&mut task.whole, STRAIGHT);
-        let left = (task.whole.residual(set.point()) / p.gain).min(p.error);
+        set.solve(task, STRAIGHT);
+        let left = (task.residual(set.point()) / p.gain).min(p.error);
         self.damping = (CURVATURE * left).max(LEAST_DAMPING);
-        for j in 0..n {
-            let (rows, unit) = damped.rows.column_mut(j).split_at_mut(m);
-            rows.copy_from_slice(p.j.column(j));
-            unit.fill(0.0);
-            unit[j] = self.damping.sqrt();
-        }
-        damped.target[..m].copy_from_slice(&task.whole.target);
         set.start(last);
-        set.solve(damped, STRAIGHT);
+        set.solve_damped(task, self.damping, STRAIGHT);
     }
 }
 

@@ -14,6 +14,7 @@ mod secondary;
 mod shared;
 mod stall;
 mod steps;
+mod tasks;
 
 pub(crate) use cylindroid::control::{
     JointDefaults, JointMove, JointSample, JointState, KinematicBounds, LimitKind, MotionResult,

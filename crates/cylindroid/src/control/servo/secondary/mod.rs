@@ -11,4 +11,5 @@ mod posture;
 mod table;
 
 pub(super) use context::Context;
+pub(in crate::control) use posture::add_all as add_posture;
 pub use table::SecondaryTask;

@@ -9,7 +9,7 @@
 //! Checked  tests/it/servo/secondary.rs::secondary_tasks_do_what_they_say
 
 use super::Context;
-use crate::model::CoordinateKind;
+use crate::model::{CoordinateKind, Mechanism};
 use crate::spatial::{Rotation, Vec3};
 
 /// Adds the velocities towards `q` (all coordinates of the mechanism) to `out`.
@@ -27,6 +27,22 @@ pub(super) fn add(context: &Context<'_>, q: &[f64], gain: f64, out: &mut [f64]) 
         let kind = (context.coordinate(i).kind, context.is_reversed(i));
         let (here, there) = (&chain.q()[i..], &q[chain.coordinates()[i]..]);
         i += add_joint(kind, here, there, gain, &mut out[i..]);
+    }
+}
+
+/// Adds the velocities from one configuration of a mechanism to another to `out`.
+pub(in crate::control) fn add_all(
+    mechanism: &Mechanism,
+    here: &[f64],
+    there: &[f64],
+    gain: f64,
+    out: &mut [f64],
+) {
+    let mut i = 0;
+    while i < out.len() {
+        let coordinate = &mechanism.coordinates()[i];
+        let reversed = mechanism.joints()[coordinate.joint].reversed;
+        i += add_joint((coordinate.kind, reversed), &here[i..], &there[i..], gain, &mut out[i..]);
     }
 }
 

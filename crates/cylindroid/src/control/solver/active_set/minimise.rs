@@ -1,0 +1,180 @@
+//! Steps of least squares up to the first row in the way, and the release of rows.
+//!
+//! Formula  A^T (b - A y) = F^T m + G_W^T l, l >= 0 at the solution
+//! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
+//! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel
+
+use super::{
+    ActiveSet, Objective, Precision, ROUNDING, ROUNDS, STILL, Use, project_out, solve_triangle,
+};
+use crate::linalg::{dot, norm};
+
+impl ActiveSet {
+    /// Minimises the objective on the motions that the levels before leave free.
+    pub(in crate::control) fn minimise(
+        &mut self,
+        mut objective: Objective<'_>,
+        precision: Precision,
+    ) {
+        let most = ROUNDS * (self.y.len() + self.inequalities.len()) + 10;
+        let mut standing = 0;
+        for _ in 0..most {
+            self.rounds += 1;
+            self.load_direction(&mut objective, precision);
+            let blocked = self.advance();
+            let Some((share, row, sign)) = blocked else {
+                let least = self.load_gradient(&mut objective, precision);
+                // At rounds without progress the first row is as good as the most promising one.
+                let cautious = standing > self.y.len();
+                if !self.release(least, cautious) {
+                    break;
+                }
+                continue;
+            };
+            standing = if share > 0.0 { 0 } else { standing + 1 };
+            if !self.add(row, sign) {
+                self.uses[row] = Use::Dependent;
+            }
+        }
+    }
+
+    /// The step to the minimum on the free motions.
+    pub(super) fn load_direction(&mut self, objective: &mut Objective<'_>, precision: Precision) {
+        let columns = self.fixed + self.working.len();
+        match objective {
+            Objective::Nearest(desired) => {
+                for ((d, goal), y) in self.direction.iter_mut().zip(*desired).zip(&self.y) {
+                    *d = goal - y;
+                }
+                project_out(&self.basis, columns, &mut self.direction);
+                project_out(&self.basis, columns, &mut self.direction);
+            }
+            Objective::Rows(level) => {
+                let scale = level.scale;
+                level.load_residual(&self.y);
+                self.direction.fill(0.0);
+                if columns == self.y.len() || scale == 0.0 {
+                    return;
+                }
+                level.project(&self.basis, columns);
+                level.svd.decompose(&level.projected);
+                for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
+                    *gain = if s > precision.rank * scale { 1.0 / s } else { 0.0 };
+                }
+                level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
+                project_out(&self.basis, columns, &mut self.direction);
+            }
+            Objective::Damped(level, damping) => {
+                // y = y_w + z, y_w in the span of the basis: z = V s / (s^2 + d) U^T (b - A y_w)
+                self.normal.copy_from_slice(&self.y);
+                project_out(&self.basis, columns, &mut self.normal);
+                project_out(&self.basis, columns, &mut self.normal);
+                self.direction.fill(0.0);
+                if columns < self.y.len() {
+                    level.load_residual(&self.y);
+                    level.rows.mul_vec_into(&self.normal, &mut level.along);
+                    level.residual.iter_mut().zip(&level.along).for_each(|(r, a)| *r += a);
+                    level.project(&self.basis, columns);
+                    level.svd.decompose(&level.projected);
+                    for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
+                        *gain = s / (s * s + *damping);
+                    }
+                    level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
+                    project_out(&self.basis, columns, &mut self.direction);
+                }
+                self.direction.iter_mut().zip(&self.normal).for_each(|(d, z)| *d -= z);
+            }
+        }
+    }
+
+    /// Moves along the direction to its end or to the first row in the way: the share of the
+    /// motion, that row and the sign of its bound.
+    pub(super) fn advance(&mut self) -> Option<(f64, usize, f64)> {
+        let size = norm(&self.direction);
+        let mut first: Option<(f64, usize, f64)> = None;
+        for i in 0..self.inequalities.len() {
+            if self.uses[i] != Use::Free {
+                continue;
+            }
+            let rate = self.inequalities.value(i, &self.direction);
+            if rate.abs() <= STILL * self.inequalities.length(i) * size {
+                continue;
+            }
+            let sign = 1_f64.copysign(rate);
+            let bound = self.inequalities.bound(i, sign);
+            if bound.is_infinite() {
+                continue;
+            }
+            let room = (bound - self.inequalities.value(i, &self.y)) / rate;
+            if room < first.map_or(1.0, |f| f.0) {
+                first = Some((room.max(0.0), i, sign));
+            }
+        }
+        let share = first.map_or(1.0, |f| f.0);
+        self.y.iter_mut().zip(&self.direction).for_each(|(y, d)| *y += share * d);
+        if let Some((_, row, sign)) = first
+            && row < self.inequalities.boxed()
+        {
+            self.y[row] = self.inequalities.bound(row, sign);
+        }
+        first
+    }
+
+    /// The gradient of the objective, and the multipliers of the working rows; returns the
+    /// multiplier below which one counts as zero.
+    pub(super) fn load_gradient(
+        &mut self,
+        objective: &mut Objective<'_>,
+        precision: Precision,
+    ) -> f64 {
+        let moved = norm(&self.y);
+        let least = match objective {
+            Objective::Nearest(desired) => {
+                for ((g, goal), y) in self.gradient.iter_mut().zip(*desired).zip(&self.y) {
+                    *g = goal - y;
+                }
+                precision.release * norm(&self.gradient) + ROUNDING * (norm(desired) + moved)
+            }
+            Objective::Rows(level) | Objective::Damped(level, _) => {
+                level.load_residual(&self.y);
+                level.rows.tr_mul_vec_into(&level.residual, &mut self.gradient);
+                let reached = norm(&level.target) + level.scale * moved;
+                let size = precision.release * norm(&level.residual) + ROUNDING * reached;
+                level.scale * size
+            }
+        };
+        if let Objective::Damped(_, damping) = objective {
+            self.gradient.iter_mut().zip(&self.y).for_each(|(g, y)| *g -= *damping * y);
+        }
+        let w = self.working.len();
+        for k in 0..w {
+            self.multipliers[k] = dot(self.basis.column(self.fixed + k), &self.gradient);
+        }
+        solve_triangle(&self.triangle, w, &mut self.multipliers);
+        least
+    }
+
+    /// Releases the working row with the most negative multiplier; false if none is below `-least`.
+    pub(super) fn release(&mut self, least: f64, cautious: bool) -> bool {
+        let mut best: Option<(f64, usize)> = None;
+        for (k, w) in self.working.iter().enumerate() {
+            let pull = -self.multipliers[k] * self.inequalities.length(w.row);
+            let better = match best {
+                None => true,
+                Some((_, b)) if cautious => w.row < self.working[b].row,
+                Some((most, _)) => pull > most,
+            };
+            if pull > least && !self.inequalities.is_equality(w.row) && better {
+                best = Some((pull, k));
+            }
+        }
+        let Some((_, k)) = best else { return false };
+        self.remove(k);
+        for use_of_row in &mut self.uses {
+            if *use_of_row == Use::Dependent {
+                *use_of_row = Use::Free;
+            }
+        }
+        true
+    }
+}

@@ -1,0 +1,15 @@
+//! Many tasks at once: frames, frames relative to each other, the centre of mass, gaze, posture,
+//! with priorities and weights inside the limits of all joints and outside of collisions.
+//!
+//! Read `objective` (a task as an error and a Jacobian), `options` (gain, weight, level; reports),
+//! `task_servo` (one step) and `stack` (the levels, solved with `solver/hierarchy.rs`).
+
+mod levels;
+mod objective;
+mod options;
+mod stack;
+mod task_servo;
+
+pub use objective::{CustomTask, TaskObjective};
+pub use options::{CollisionAvoidance, MotionTask, StoppedBy, TaskReport, TaskServoOptions};
+pub use task_servo::TaskServo;

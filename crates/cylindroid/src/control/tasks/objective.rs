@@ -1,0 +1,358 @@
+//! Objectives of tasks: an error and a Jacobian.
+//!
+//! Formula  J q' = K e + feed-forward, with
+//!          frame               e = [p_d - p; log(R_d R^T)] in the axes of the task
+//!          relative frame      the same for reference_from_tool, in the axes of the reference;
+//!                              J = R_a^T (J_b - J_a at the point of b)
+//!          centre of mass      e = c_d - c,  J = sum m_i J_i / m
+//!          gaze                e = angle(z, d) along z x d,  d = (p - o) / |p - o|;
+//!                              J = (1 - d d^T) (J_w + [d]x J_v / |p - o|)
+//!          posture             K (q_d - q), rotations on their group
+//! Shapes   e: rows; J: rows x n
+//! Units    m and rad; rows of lengths are divided by the characteristic length by the servo
+//! Checked  tests/it/servo/tasks.rs::jacobians_are_derivatives_of_errors
+
+use std::fmt;
+
+use crate::control::servo::{Target, add_posture};
+use crate::error::{Error, Result};
+use crate::ik::Task;
+use crate::kinematics::{EndEffector, MassMatrix, ReferenceFrame, State};
+use crate::linalg::Matrix;
+use crate::model::Mechanism;
+use crate::spatial::{Pose, Twist, Vec3};
+
+/// A task defined by its user: an error and its Jacobian.
+pub trait CustomTask: fmt::Debug + Send + Sync {
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
+    /// Writes the error e (rows) and the Jacobian J (rows x n) at `state`, such that joint
+    /// velocities q' change the error by `-J q'`: the servo makes `J q' = gain * e`.
+    ///
+    /// # Errors
+    /// Its own; the step then fails and leaves the servo as it was.
+    fn evaluate(&mut self, state: &State, error: &mut [f64], jacobian: &mut Matrix) -> Result<()>;
+
+    /// A copy in a box.
+    fn boxed(&self) -> Box<dyn CustomTask>;
+}
+
+/// The motion that a task asks for.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum TaskObjective {
+    /// A frame at a pose in the world.
+    Frame {
+        /// The frame and the tool point.
+        end_effector: EndEffector,
+        /// The components of the task.
+        components: Task,
+        /// Pose and feed-forward twist (world axes, at the tool).
+        target: Target,
+    },
+    /// A frame at a pose relative to another one: two hands on one object, a tool beside a tool.
+    RelativeFrame {
+        /// The frame.
+        end_effector: EndEffector,
+        /// The frame from which its pose is seen.
+        reference: EndEffector,
+        /// The components of the task, in the axes of the reference.
+        components: Task,
+        /// Desired pose `reference_from_tool`.
+        target: Pose,
+    },
+    /// The centre of mass of the moving links at a point of the world (m).
+    CenterOfMass {
+        /// The axes that count.
+        axes: [bool; 3],
+        /// The point.
+        target: Vec3,
+    },
+    /// The z axis of a frame towards a point of the world.
+    Gaze {
+        /// The frame that looks along its z axis.
+        end_effector: EndEffector,
+        /// The point.
+        point: Vec3,
+    },
+    /// A preferred configuration. Always of the lowest level: what all other tasks leave free.
+    Posture {
+        /// The configuration.
+        q: Vec<f64>,
+    },
+    /// Desired velocities of all joints [rad/s or m/s]. Always of the lowest level.
+    JointVelocities {
+        /// The velocities.
+        velocities: Vec<f64>,
+    },
+    /// A task of one's own.
+    Custom(Box<dyn CustomTask>),
+}
+
+impl Clone for TaskObjective {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Frame { end_effector, components, target } => Self::Frame {
+                end_effector: *end_effector,
+                components: *components,
+                target: *target,
+            },
+            Self::RelativeFrame { end_effector, reference, components, target } => {
+                Self::RelativeFrame {
+                    end_effector: *end_effector,
+                    reference: *reference,
+                    components: *components,
+                    target: *target,
+                }
+            }
+            Self::CenterOfMass { axes, target } => {
+                Self::CenterOfMass { axes: *axes, target: *target }
+            }
+            Self::Gaze { end_effector, point } => {
+                Self::Gaze { end_effector: *end_effector, point: *point }
+            }
+            Self::Posture { q } => Self::Posture { q: q.clone() },
+            Self::JointVelocities { velocities } => {
+                Self::JointVelocities { velocities: velocities.clone() }
+            }
+            Self::Custom(task) => Self::Custom(task.boxed()),
+        }
+    }
+}
+
+/// Memory for the Jacobians of frames.
+#[derive(Debug, Clone)]
+pub(super) struct Scratch {
+    jacobian: Matrix,
+    other: Matrix,
+    center: Matrix,
+    masses: Option<MassMatrix>,
+}
+
+impl Scratch {
+    pub(super) fn new(mechanism: &Mechanism, needs_masses: bool) -> Self {
+        let n = mechanism.n();
+        Self {
+            jacobian: Matrix::zeros(6, n),
+            other: Matrix::zeros(6, n),
+            center: Matrix::zeros(3, n),
+            masses: needs_masses.then(|| MassMatrix::new(mechanism)),
+        }
+    }
+}
+
+/// The rows of a task: error, feed-forward velocity and Jacobian.
+#[derive(Debug)]
+pub(super) struct Rows<'a> {
+    pub(super) error: &'a mut [f64],
+    pub(super) feed_forward: &'a mut [f64],
+    pub(super) jacobian: &'a mut Matrix,
+}
+
+impl TaskObjective {
+    /// Number of rows; 0 for what belongs to the lowest level.
+    pub(super) fn rows(&self) -> usize {
+        let count = |components: &[bool]| components.iter().filter(|c| **c).count();
+        match self {
+            Self::Frame { components, .. } | Self::RelativeFrame { components, .. } => {
+                count(&components.components)
+            }
+            Self::CenterOfMass { axes, .. } => count(axes),
+            Self::Gaze { .. } => 3,
+            Self::Posture { .. } | Self::JointVelocities { .. } => 0,
+            Self::Custom(task) => task.rows(),
+        }
+    }
+
+    /// True if row `i` is a length.
+    pub(super) fn is_length(&self, i: usize) -> bool {
+        match self {
+            Self::Frame { components, .. } | Self::RelativeFrame { components, .. } => {
+                i < components.components[..3].iter().filter(|c| **c).count()
+            }
+            Self::CenterOfMass { .. } => true,
+            _ => false,
+        }
+    }
+
+    pub(super) fn needs_masses(&self) -> bool {
+        matches!(self, Self::CenterOfMass { .. })
+    }
+
+    /// Refuses what does not belong to the mechanism, and non-finite numbers.
+    pub(super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
+        let pose = |what: &str, pose: &Pose| match pose.is_finite() {
+            true => Ok(()),
+            false => Err(Error::NotFinite { what: what.to_owned(), value: f64::NAN }),
+        };
+        match self {
+            Self::Frame { end_effector, components, target } => {
+                mechanism.check_frame(end_effector.frame)?;
+                pose("tool of the frame", &end_effector.frame_from_tool)?;
+                components.check()?;
+                target.check()
+            }
+            Self::RelativeFrame { end_effector, reference, components, target } => {
+                mechanism.check_frame(end_effector.frame)?;
+                mechanism.check_frame(reference.frame)?;
+                pose("tool of the frame", &end_effector.frame_from_tool)?;
+                pose("tool of the reference frame", &reference.frame_from_tool)?;
+                pose("target of the relative frame", target)?;
+                components.check()
+            }
+            Self::CenterOfMass { target, .. } => {
+                Error::check_finite("target of the centre of mass", &target.to_array())
+            }
+            Self::Gaze { end_effector, point } => {
+                mechanism.check_frame(end_effector.frame)?;
+                pose("tool of the gaze", &end_effector.frame_from_tool)?;
+                Error::check_finite("point of the gaze", &point.to_array())
+            }
+            Self::Posture { q } => mechanism.check_q("posture", q),
+            Self::JointVelocities { velocities } => {
+                mechanism.check_q("desired joint velocities", velocities)
+            }
+            Self::Custom(_) => Ok(()),
+        }
+    }
+
+    /// Adds desired joint velocities of the lowest level.
+    pub(super) fn add_velocities(&self, state: &State, gain: f64, weight: f64, out: &mut [f64]) {
+        match self {
+            Self::Posture { q } => {
+                add_posture(state.mechanism(), state.q(), q, weight * gain, out);
+            }
+            Self::JointVelocities { velocities } => {
+                out.iter_mut().zip(velocities).for_each(|(o, v)| *o += weight * v);
+            }
+            _ => {}
+        }
+    }
+
+    /// Writes the rows at `state`.
+    pub(super) fn evaluate(
+        &mut self,
+        state: &State,
+        scratch: &mut Scratch,
+        rows: &mut Rows<'_>,
+    ) -> Result<()> {
+        rows.feed_forward.fill(0.0);
+        match self {
+            Self::Frame { end_effector, components, target } => {
+                let pose = state.pose(*end_effector);
+                let seen = |twist| components.seen(pose, twist);
+                let error = seen(pose.error_to(target.pose));
+                let forward = seen(target.feed_forward);
+                state.jacobian_into(*end_effector, components.axes, &mut scratch.jacobian);
+                write(components.components, error, forward, &scratch.jacobian, rows);
+            }
+            Self::RelativeFrame { end_effector, reference, components, target } => {
+                let (a, b) = (state.pose(*reference), state.pose(*end_effector));
+                let a_from_b = a.inverse() * b;
+                let error = components.seen(a_from_b, a_from_b.error_to(*target));
+                let aligned = ReferenceFrame::LocalWorldAligned;
+                state.jacobian_into(*end_effector, aligned, &mut scratch.jacobian);
+                state.jacobian_into(*reference, aligned, &mut scratch.other);
+                let arm = b.translation - a.translation;
+                for j in 0..scratch.jacobian.cols() {
+                    let own = twist_of(scratch.jacobian.column(j));
+                    let other = twist_of(scratch.other.column(j));
+                    let carried = other.linear + other.angular.cross(arm);
+                    let turn = a.rotation.matrix();
+                    let relative = Twist {
+                        linear: turn.tr_mul(own.linear - carried),
+                        angular: turn.tr_mul(own.angular - other.angular),
+                    };
+                    let relative =
+                        Task { components: [true; 6], ..*components }.seen(a_from_b, relative);
+                    scratch.jacobian.column_mut(j).copy_from_slice(&relative.to_array());
+                }
+                write(components.components, error, Twist::ZERO, &scratch.jacobian, rows);
+            }
+            Self::CenterOfMass { axes, target } => {
+                let Some(masses) = &mut scratch.masses else { return Ok(()) };
+                let (_, center) = masses.center_of_mass(state, &mut scratch.center)?;
+                let error = (*target - center).to_array();
+                for (row, axis) in (0..3).filter(|&axis| axes[axis]).enumerate() {
+                    rows.error[row] = error[axis];
+                    for j in 0..scratch.center.cols() {
+                        rows.jacobian[(row, j)] = scratch.center[(axis, j)];
+                    }
+                }
+            }
+            Self::Gaze { end_effector, point } => {
+                let pose = state.pose(*end_effector);
+                let way = *point - pose.translation;
+                let distance = way.norm();
+                if distance == 0.0 {
+                    // The point is at the eye: every direction looks at it.
+                    rows.error.fill(0.0);
+                    rows.jacobian.as_mut_slice().fill(0.0);
+                    return Ok(());
+                }
+                let d = way * distance.recip();
+                let z = pose.rotation.z_axis();
+                let error = turn_between(z, d);
+                state.jacobian_into(
+                    *end_effector,
+                    ReferenceFrame::LocalWorldAligned,
+                    &mut scratch.jacobian,
+                );
+                rows.error.copy_from_slice(&error.to_array());
+                for j in 0..scratch.jacobian.cols() {
+                    let own = twist_of(scratch.jacobian.column(j));
+                    let turned = own.angular + d.cross(own.linear) * distance.recip();
+                    rows.jacobian
+                        .column_mut(j)
+                        .copy_from_slice(&(turned - d * d.dot(turned)).to_array());
+                }
+            }
+            Self::Posture { .. } | Self::JointVelocities { .. } => {}
+            Self::Custom(task) => {
+                task.evaluate(state, rows.error, rows.jacobian)?;
+                Error::check_finite("error of a task", rows.error)?;
+                Error::check_finite("Jacobian of a task", rows.jacobian.as_slice())?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The rotation vector of the smallest turn from one unit vector to another; about any axis across
+/// if they are opposite.
+fn turn_between(from: Vec3, to: Vec3) -> Vec3 {
+    let across = from.cross(to);
+    let (sin, cos) = (across.norm(), from.dot(to));
+    if sin > 0.0 {
+        return across * (sin.atan2(cos) / sin);
+    }
+    if cos > 0.0 {
+        return Vec3::ZERO;
+    }
+    let other = if from.x.abs() < 0.6 { Vec3::X } else { Vec3::Y };
+    let axis = from.cross(other);
+    axis * (std::f64::consts::PI / axis.norm())
+}
+
+fn twist_of(column: &[f64]) -> Twist {
+    Twist::from_array(std::array::from_fn(|i| column[i]))
+}
+
+/// The selected rows.
+fn write(
+    components: [bool; 6],
+    error: Twist,
+    forward: Twist,
+    jacobian: &Matrix,
+    rows: &mut Rows<'_>,
+) {
+    let (error, forward) = (error.to_array(), forward.to_array());
+    for (row, i) in (0..6).filter(|&i| components[i]).enumerate() {
+        rows.error[row] = error[i];
+        rows.feed_forward[row] = forward[i];
+        for j in 0..jacobian.cols() {
+            rows.jacobian[(row, j)] = jacobian[(i, j)];
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Tasks, options and reports of a servo of many tasks.
+//!
+//! Checked  tests/it/servo/tasks.rs
+
+use super::objective::TaskObjective;
+use crate::collision::CollisionModel;
+use crate::control::servo::{PoseTolerance, Status};
+use crate::control::solver::bounds::LimitKind;
+use crate::error::{Error, Result};
+use crate::model::Mechanism;
+use crate::tolerance;
+
+/// A task with its gain, weight and priority.
+#[derive(Debug, Clone)]
+pub struct MotionTask {
+    /// The name in reports.
+    pub name: String,
+    /// The motion that it asks for.
+    pub objective: TaskObjective,
+    /// Priority: 0 first. Tasks of one level share it by their weights; a level never disturbs one
+    /// before it.
+    pub level: usize,
+    /// Weight beside the other tasks of its level [-].
+    pub weight: f64,
+    /// Proportional gain [1/s].
+    pub gain: f64,
+    /// Errors below which it counts as reached.
+    pub tolerance: PoseTolerance,
+}
+
+impl MotionTask {
+    /// A task of the first level with weight 1, a gain of 5/s and the tolerances of a servo.
+    #[must_use]
+    pub fn new(name: &str, objective: TaskObjective) -> Self {
+        Self {
+            name: name.to_owned(),
+            objective,
+            level: 0,
+            weight: 1.0,
+            gain: 5.0,
+            tolerance: PoseTolerance {
+                position: tolerance::POSITION,
+                orientation: tolerance::ORIENTATION,
+            },
+        }
+    }
+
+    /// The same task with another priority.
+    #[must_use]
+    pub fn at_level(self, level: usize) -> Self {
+        Self { level, ..self }
+    }
+}
+
+/// Distances to keep between bodies and to obstacles.
+#[derive(Debug, Clone)]
+pub struct CollisionAvoidance {
+    /// The bodies, and the obstacles, which may move while the servo runs.
+    pub model: CollisionModel,
+    /// Least distance (m).
+    pub gap: f64,
+    /// Pairs nearer than this count (m).
+    pub margin: f64,
+}
+
+/// Options of a servo of many tasks.
+#[derive(Debug, Clone)]
+pub struct TaskServoOptions {
+    /// Time between steps (s).
+    pub dt: f64,
+    /// Characteristic length that scales the linear rows (m).
+    pub length: f64,
+    /// A weight for each coordinate (a large weight keeps it still); empty for none.
+    pub joint_weights: Vec<f64>,
+    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
+    pub acceleration: f64,
+    /// Directions of a level with singular values below this share of its norm are left out [-].
+    pub eps: f64,
+    /// Distances to keep.
+    pub collisions: Option<CollisionAvoidance>,
+}
+
+impl TaskServoOptions {
+    /// 1 kHz, the characteristic length of the mechanism, no weights, no collisions.
+    #[must_use]
+    pub fn new(mechanism: &Mechanism) -> Self {
+        Self {
+            dt: 1e-3,
+            length: mechanism.reach(),
+            joint_weights: Vec::new(),
+            acceleration: f64::INFINITY,
+            eps: tolerance::TRUNCATION,
+            collisions: None,
+        }
+    }
+}
+
+/// The inequality that stops a level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StoppedBy {
+    /// A limit of a coordinate.
+    Limit {
+        /// Its index in `q`.
+        coordinate: usize,
+        /// The kind of the limit.
+        kind: LimitKind,
+    },
+    /// A pair of bodies, by its index in [`CollisionModel::pairs`].
+    Distance {
+        /// The index.
+        pair: usize,
+    },
+}
+
+/// The state of a task after a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TaskReport {
+    /// Reached, moving or stalled.
+    pub status: Status,
+    /// Norm of the error's lengths (m).
+    pub position_error: f64,
+    /// Norm of the error's angles, and of the errors of custom tasks (rad).
+    pub orientation_error: f64,
+    /// Share of its level that is realised; 1 when nothing stops it, 0 if its direction is lost.
+    pub scale: f64,
+    /// Share of the level's velocity that higher levels or singular directions leave out [-].
+    pub left_out: f64,
+    /// The inequality that stops its level, if one does.
+    pub stopped_by: Option<StoppedBy>,
+}
+
+/// Checks that tasks and options define a controller.
+pub(super) fn check(
+    mechanism: &Mechanism,
+    tasks: &[MotionTask],
+    options: &TaskServoOptions,
+) -> Result<()> {
+    let refuse = |option, value: String, reason: &str| {
+        Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
+    };
+    if mechanism.is_closed() {
+        return refuse(
+            "mechanism",
+            mechanism.name().to_owned(),
+            "it has loops or contacts: use a Servo, which drives its object",
+        );
+    }
+    if mechanism.n() == 0 {
+        return refuse("mechanism", mechanism.name().to_owned(), "no joint moves");
+    }
+    let positive = Error::check_positive;
+    positive("dt", options.dt)?;
+    positive("length", options.length)?;
+    if !(options.acceleration > 0.0) {
+        return refuse(
+            "acceleration",
+            options.acceleration.to_string(),
+            "it must be positive; infinity means no limit",
+        );
+    }
+    if !(options.eps >= 0.0 && options.eps < 1.0) {
+        return refuse("eps", options.eps.to_string(), "it must be in [0, 1)");
+    }
+    if !options.joint_weights.is_empty() {
+        mechanism.check_q("joint weights", &options.joint_weights)?;
+        options.joint_weights.iter().try_for_each(|w| positive("joint weight", *w))?;
+    }
+    if let Some(c) = &options.collisions
+        && !(c.gap >= 0.0 && c.margin > c.gap && c.margin.is_finite())
+    {
+        let value = format!("gap {} m, margin {} m", c.gap, c.margin);
+        return refuse(
+            "collisions",
+            value,
+            "the margin must be above the gap, and that not negative",
+        );
+    }
+    for (i, task) in tasks.iter().enumerate() {
+        task.objective.check(mechanism)?;
+        if task.objective.needs_masses() {
+            mechanism.check_masses()?;
+        }
+        positive("weight of a task", task.weight)?;
+        positive("gain of a task", task.gain)?;
+        if task.gain * options.dt >= 2.0 {
+            return refuse(
+                "gain of a task",
+                format!("{} 1/s with dt = {} s", task.gain, options.dt),
+                "gain * dt must be below 2, or the error grows with every step",
+            );
+        }
+        if tasks[..i].iter().any(|t| t.name == task.name) {
+            return refuse("tasks", task.name.clone(), "two tasks have this name");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,395 @@
+//! The servo of many tasks: one step from joint positions to joint velocities.
+//!
+//! Formula  level by level min |W (J q' - K e - feed-forward)|, each on what the levels before leave
+//!          free, scaled along its direction before it is bent (`solver/hierarchy.rs`); last the
+//!          joint velocities nearest to the postures. Inequalities stand above all levels:
+//!          position, velocity and acceleration limits (`limits.rs`), and for every near pair of
+//!          bodies  g q' >= -v(d - gap),  v the velocity from which the pair stops in that distance
+//! Shapes   n joint velocities, the sum of the tasks' rows
+//! Units    rows of lengths are divided by the characteristic length
+//! Valid    trees: arms, hands, several arms, mobile and floating bases. Closed chains: `Servo`
+//! Cost     a level of m rows decomposes m x n once for each round of its active set, and again for
+//!          each level that is bent. No allocation
+//! Fails    on non-finite input, and where limits and distances contradict one another all joints
+//!          brake together
+//! Source   Escande, Mansard & Wieber 2014; Faverjon & Tournassoud 1987 (velocity dampers)
+//! Checked  tests/it/servo/tasks.rs, tests/allocation.rs
+
+use super::levels::{Stack, TaskRows};
+use super::objective::{Rows, Scratch, TaskObjective};
+use super::options::{MotionTask, TaskReport, TaskServoOptions, check};
+use crate::collision::{CollisionModel, NearPair};
+use crate::control::servo::stopping_velocity;
+use crate::control::servo::{BrakingState, JointState, StallDetector, Status};
+use crate::control::solver::active_set::ActiveSet;
+use crate::control::solver::bounds::{LimitKind, VelocityBounds};
+use crate::control::solver::hierarchy::ScaledLevel;
+use crate::control::solver::inequalities::Inequalities;
+use crate::error::{Error, Result};
+use crate::kinematics::State;
+use crate::linalg::Matrix;
+use crate::model::{Limits, Mechanism};
+
+/// Most pairs of bodies that count at once: the nearest.
+const MOST_PAIRS: usize = 64;
+
+/// Share of the acceleration limits that brakes a pair of bodies [-]; the rest follows the other
+/// tasks.
+const BRAKING: f64 = 0.5;
+
+/// A controller of any number of tasks with priorities, inside limits and outside of collisions.
+///
+/// ```text
+/// for each level:  min |W (J q' - K e - feed-forward)|  on what the levels before leave free
+/// always:          position, velocity and acceleration limits,  g q' >= -v(d - gap)
+/// ```
+///
+/// J and e are the stacked Jacobians and errors of the level's tasks, K their gains, W the roots of
+/// their weights; d the distance of a near pair of bodies, g its gradient.
+///
+/// ```
+/// use cylindroid::control::{MotionTask, TaskObjective, TaskServo, TaskServoOptions, Target};
+/// use cylindroid::ik::Task;
+/// use cylindroid::{Pose, Vec3};
+///
+/// // The hand first, the elbow as far as the hand permits.
+/// let panda = cylindroid::load("panda")?;
+/// let mut q = panda.home().to_vec();
+/// let state = panda.state(&q)?;
+/// let elbow = panda.frame("panda_link4")?;
+/// let frame = |of, components, way| TaskObjective::Frame {
+///     end_effector: of,
+///     components,
+///     target: Target::from(Pose { translation: state.pose(of).translation + way, ..state.pose(of) }),
+/// };
+/// let tasks = vec![
+///     MotionTask::new("hand", frame(panda.tool().into(), Task::POSE, Vec3::X * 0.05)),
+///     MotionTask::new("elbow", frame(elbow.into(), Task::POSITION, Vec3::Y * 0.2)).at_level(1),
+/// ];
+/// let mut servo = TaskServo::new(&panda, tasks, TaskServoOptions::new(&panda))?;
+/// for _ in 0..3000 {
+///     servo.step(&q)?;
+///     servo.advance(&mut q);
+/// }
+/// assert!(servo.reports()[0].position_error < 1e-5 && servo.reports()[1].position_error > 0.01);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// Source: Escande, Mansard & Wieber 2014; Faverjon & Tournassoud 1987.
+#[doc(alias = "whole-body control")]
+#[doc(alias = "stack of tasks")]
+#[derive(Debug, Clone)]
+pub struct TaskServo {
+    pub(super) options: TaskServoOptions,
+    pub(super) tasks: Vec<MotionTask>,
+    state: State,
+    scratch: Scratch,
+    pub(super) rows: Vec<TaskRows>,
+    pub(super) stacks: Vec<Stack>,
+    pub(super) set: ActiveSet,
+    limits: Vec<Limits>,
+    pub(super) bounds: Vec<VelocityBounds>,
+    /// 1 / root of the weight; 0 for locked joints.
+    pub(super) columns: Vec<f64>,
+    pub(super) near: Vec<NearPair>,
+    gradient: Vec<f64>,
+    pub(super) last: Vec<f64>,
+    pub(super) desired: Vec<f64>,
+    rates: Vec<f64>,
+    reports: Vec<TaskReport>,
+    detectors: Vec<StallDetector>,
+}
+
+impl TaskServo {
+    /// A servo at rest.
+    ///
+    /// # Errors
+    /// A closed chain; tasks or options that define no controller, named.
+    pub fn new(
+        mechanism: &Mechanism,
+        tasks: Vec<MotionTask>,
+        options: TaskServoOptions,
+    ) -> Result<Self> {
+        check(mechanism, &tasks, &options)?;
+        let n = mechanism.n();
+        let limits: Vec<Limits> = mechanism
+            .coordinates()
+            .iter()
+            .map(|c| {
+                let mut limits = c.limits;
+                if limits.acceleration == f64::INFINITY {
+                    limits.acceleration = options.acceleration;
+                }
+                limits
+            })
+            .collect();
+        let column = |i: usize| {
+            let l = &limits[i];
+            if l.lower == l.upper || l.velocity == 0.0 || l.acceleration == 0.0 {
+                return 0.0;
+            }
+            options.joint_weights.get(i).map_or(1.0, |w| 1.0 / w.sqrt())
+        };
+        let columns: Vec<f64> = (0..n).map(column).collect();
+        let rows = tasks
+            .iter()
+            .map(|task| {
+                let m = task.objective.rows();
+                TaskRows {
+                    error: vec![0.0; m],
+                    feed_forward: vec![0.0; m],
+                    jacobian: Matrix::zeros(m, n),
+                }
+            })
+            .collect();
+        let mut levels: Vec<usize> =
+            tasks.iter().filter(|t| t.objective.rows() > 0).map(|t| t.level).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        let stacks = levels
+            .iter()
+            .map(|&level| {
+                let mut first = 0;
+                let mut members = Vec::new();
+                for (i, task) in tasks.iter().enumerate() {
+                    let m = task.objective.rows();
+                    if task.level == level && m > 0 {
+                        members.push((i, first));
+                        first += m;
+                    }
+                }
+                Stack {
+                    members,
+                    level: ScaledLevel::new(first, n),
+                    is_bent: false,
+                    scale: 1.0,
+                    left_out: 0.0,
+                    stopped_by: None,
+                }
+            })
+            .collect();
+        let pairs = if options.collisions.is_some() { MOST_PAIRS } else { 0 };
+        let capacity = options.collisions.as_ref().map_or(0, |c| c.model.pairs().len());
+        let report = TaskReport {
+            status: Status::Moving,
+            position_error: 0.0,
+            orientation_error: 0.0,
+            scale: 1.0,
+            left_out: 0.0,
+            stopped_by: None,
+        };
+        Ok(Self {
+            state: mechanism.state(mechanism.home())?,
+            scratch: Scratch::new(mechanism, tasks.iter().any(|t| t.objective.needs_masses())),
+            rows,
+            stacks,
+            set: ActiveSet::new(n, Inequalities::new(n, true, pairs)),
+            limits,
+            bounds: vec![VelocityBounds::NONE; n],
+            columns,
+            near: Vec::with_capacity(capacity + MOST_PAIRS),
+            gradient: vec![0.0; n],
+            last: vec![0.0; n],
+            desired: vec![0.0; n],
+            rates: vec![0.0; n],
+            reports: vec![report; tasks.len()],
+            detectors: vec![StallDetector::new(); tasks.len()],
+            tasks,
+            options,
+        })
+    }
+
+    /// The tasks, in the order of the reports.
+    #[must_use]
+    pub fn tasks(&self) -> &[MotionTask] {
+        &self.tasks
+    }
+
+    /// The objective of the task of this name, to move its target. The number of its rows must stay.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] with the nearest names.
+    pub fn objective_mut(&mut self, name: &str) -> Result<&mut TaskObjective> {
+        match self.tasks.iter().position(|t| t.name == name) {
+            Some(i) => Ok(&mut self.tasks[i].objective),
+            None => Err(Error::unknown("task", name, self.tasks.iter().map(|t| t.name.as_str()))),
+        }
+    }
+
+    /// The collision model, to add, move and remove obstacles while the servo runs.
+    pub fn collision_model_mut(&mut self) -> Option<&mut CollisionModel> {
+        self.options.collisions.as_mut().map(|c| &mut c.model)
+    }
+
+    /// Joint velocities of the last step, all n [rad/s or m/s].
+    #[must_use]
+    pub fn joint_velocities(&self) -> &[f64] {
+        &self.rates
+    }
+
+    /// The tasks after the last step.
+    #[must_use]
+    pub fn reports(&self) -> &[TaskReport] {
+        &self.reports
+    }
+
+    /// The mechanism.
+    #[must_use]
+    pub fn mechanism(&self) -> &Mechanism {
+        self.state.mechanism()
+    }
+
+    /// Integrates `q` by the joint velocities of the last step, for simulation.
+    ///
+    /// # Panics
+    /// If `q` is shorter than the mechanism's number of coordinates.
+    pub fn advance(&self, q: &mut [f64]) {
+        self.mechanism().integrate_in_place(q, &self.rates, self.options.dt);
+    }
+
+    /// Resets the servo to rest.
+    pub fn reset(&mut self) {
+        self.rates.fill(0.0);
+        self.detectors.fill(StallDetector::new());
+    }
+
+    /// One step: [`TaskServo::joint_velocities`] are to be commanded until the next step. All
+    /// reached, or the first status of a task that is not.
+    ///
+    /// # Errors
+    /// A `q` of the wrong size or non-finite input; targets of another mechanism or with another
+    /// number of rows than at the start; errors of custom tasks. The joint velocities are unchanged.
+    pub fn step(&mut self, q: &[f64]) -> Result<Status> {
+        for (task, rows) in self.tasks.iter().zip(&self.rows) {
+            task.objective.check(self.state.mechanism())?;
+            Error::check_len("rows of a task", rows.error.len(), task.objective.rows())?;
+        }
+        self.state.set(q)?;
+        for (task, rows) in self.tasks.iter_mut().zip(&mut self.rows) {
+            let mut rows = Rows {
+                error: &mut rows.error,
+                feed_forward: &mut rows.feed_forward,
+                jacobian: &mut rows.jacobian,
+            };
+            task.objective.evaluate(&self.state, &mut self.scratch, &mut rows)?;
+        }
+        self.load_bounds();
+        self.load_distances()?;
+        self.load_desired();
+        self.solve();
+        let braking = self.store(q);
+        self.report(braking);
+        let open = self.reports.iter().map(|r| r.status).find(|s| *s != Status::Reached);
+        Ok(open.unwrap_or(Status::Reached))
+    }
+
+    /// Limits of the joints, scaled.
+    fn load_bounds(&mut self) {
+        for (i, limits) in self.limits.iter().enumerate() {
+            let now = JointState { position: self.state.q()[i], velocity: self.rates[i] };
+            let bound = VelocityBounds::next(limits, now, self.options.dt);
+            self.bounds[i] = bound;
+            let scaled = |v: f64| if self.columns[i] == 0.0 { 0.0 } else { v / self.columns[i] };
+            self.set.inequalities.lower[i] = scaled(bound.lower);
+            self.set.inequalities.upper[i] = scaled(bound.upper);
+            self.last[i] = scaled(self.rates[i]);
+        }
+    }
+
+    /// One row for each of the nearest pairs.
+    fn load_distances(&mut self) -> Result<()> {
+        let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
+        let n = self.columns.len();
+        collisions.model.near(&self.state, collisions.margin, &mut self.near)?;
+        if self.near.len() > MOST_PAIRS {
+            self.near.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance));
+        }
+        self.near.truncate(MOST_PAIRS);
+        for place in 0..MOST_PAIRS {
+            let inequalities = &mut self.set.inequalities;
+            inequalities.lower[n + place] = f64::NEG_INFINITY;
+            let Some(near) = self.near.get(place) else {
+                inequalities.set_row(place, |_| 0.0);
+                continue;
+            };
+            collisions.model.gradient_into(&self.state, near, &mut self.gradient);
+            let mut acceleration = 0.0;
+            for (g, (column, l)) in
+                self.gradient.iter_mut().zip(self.columns.iter().zip(&self.limits))
+            {
+                if *g != 0.0 && *column != 0.0 {
+                    acceleration += g.abs() * l.acceleration;
+                }
+                *g *= column;
+            }
+            let room = (near.distance - collisions.gap).max(0.0);
+            inequalities.set_row(place, |j| self.gradient[j]);
+            // Half of the way in a step at most: distances bend.
+            let most = stopping_velocity(0.5 * room, BRAKING * acceleration, self.options.dt);
+            inequalities.lower[n + place] = -most;
+        }
+        Ok(())
+    }
+
+    /// Desired velocities of the lowest level, scaled.
+    fn load_desired(&mut self) {
+        self.desired.fill(0.0);
+        for task in &self.tasks {
+            let (gain, weight) = (task.gain, task.weight);
+            task.objective.add_velocities(&self.state, gain, weight, &mut self.desired);
+        }
+        for (d, column) in self.desired.iter_mut().zip(&self.columns) {
+            *d = if *column == 0.0 { 0.0 } else { *d / column };
+        }
+    }
+
+    /// Stores the joint velocities, within the limits to the last bit.
+    fn store(&mut self, q: &[f64]) -> BrakingState {
+        debug_assert_eq!(q.len(), self.rates.len());
+        let mut braking = BrakingState::default();
+        for i in 0..self.rates.len() {
+            let rate = self.bounds[i].clamp(self.last[i] * self.columns[i]);
+            let rate = if self.columns[i] == 0.0 { 0.0 } else { rate };
+            let before = std::mem::replace(&mut self.rates[i], rate).abs();
+            let speed = rate.abs();
+            let met = self.bounds[i].met(rate) == Some(LimitKind::Acceleration);
+            braking.accelerating |= met && speed > before;
+            if speed > 0.0 {
+                braking.stopping_time =
+                    braking.stopping_time.max(speed / self.limits[i].acceleration);
+            }
+        }
+        braking
+    }
+
+    fn report(&mut self, braking: BrakingState) {
+        for (i, task) in self.tasks.iter().enumerate() {
+            let rows = &self.rows[i];
+            let part = |lengths: bool| {
+                let own = (0..rows.error.len())
+                    .filter(|&r| task.objective.is_length(r) == lengths)
+                    .map(|r| rows.error[r] * rows.error[r]);
+                own.sum::<f64>().sqrt()
+            };
+            let (position_error, orientation_error) = (part(true), part(false));
+            let stack = self.stacks.iter().find(|s| s.members.iter().any(|(t, _)| *t == i));
+            let scaled = position_error / self.options.length + orientation_error;
+            let reached = position_error <= task.tolerance.position
+                && orientation_error <= task.tolerance.orientation;
+            let stalled = self.detectors[i].stalled(scaled, braking, self.options.dt);
+            let status = match (reached, stalled) {
+                (true, _) => Status::Reached,
+                (false, true) => Status::Stalled,
+                (false, false) => Status::Moving,
+            };
+            self.reports[i] = TaskReport {
+                status,
+                position_error,
+                orientation_error,
+                scale: stack.map_or(1.0, |s| s.scale),
+                left_out: stack.map_or(0.0, |s| s.left_out),
+                stopped_by: stack.and_then(|s| s.stopped_by),
+            };
+        }
+    }
+}
