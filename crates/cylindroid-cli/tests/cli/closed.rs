@@ -184,7 +184,7 @@ fn bad_requests() {
     let text =
         refused(&["manipulability", "five-bar", "--actuated", "q1,q5", "--metric", "limits"]);
     assert!(text.contains("q5"), "{text}");
-    assert!(refused(&["assemble", "five-bar", "--modes", "0"]).contains("starts"));
+    assert!(refused(&["assemble", "five-bar", "--modes", "0"]).contains("first start"));
     assert!(refused(&["assemble", "five-bar", "--modes", "2", "--to", "q1=1"]).contains("--to"));
     assert!(refused(&["assemble", "five-bar", "--to", "1,2,3,4"]).contains("name the coordinates"));
     assert!(refused(&["assemble", "five-bar", "--to", "q9=1"]).contains("q1, q2"));
