@@ -100,6 +100,8 @@ pub(in crate::control) struct ActiveSet {
     triangle: Matrix,
     uses: Vec<Use>,
     multipliers: Vec<f64>,
+    /// Multipliers of the last level up to this size (times the length of the row) are zero.
+    least: f64,
     direction: Vec<f64>,
     gradient: Vec<f64>,
     normal: Vec<f64>,
@@ -121,6 +123,7 @@ impl ActiveSet {
             triangle: Matrix::zeros(n, n),
             uses: vec![Use::Free; r],
             multipliers: vec![0.0; n],
+            least: 0.0,
             direction: vec![0.0; n],
             gradient: vec![0.0; n],
             normal: vec![0.0; n],
@@ -143,7 +146,8 @@ impl ActiveSet {
     /// The rows that stop the last minimised level, with the signs of their bounds.
     pub(super) fn stopping(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let all = self.working.iter().zip(&self.multipliers);
-        all.filter(|(_, multiplier)| **multiplier > 0.0).map(|(w, _)| (w.row, w.sign))
+        all.filter(|(w, l)| **l * self.inequalities.length(w.row) > self.least)
+            .map(|(w, _)| (w.row, w.sign))
     }
 
     /// Goes to the feasible point nearest to `guess` and forgets all levels; false if there is

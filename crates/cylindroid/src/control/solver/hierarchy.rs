@@ -91,7 +91,8 @@ impl ActiveSet {
         }
         self.minimise(Objective::Rows(&mut level.across), precision);
         self.keep(&mut level.across, precision);
-        let is_straight = level.across.residual(self.point()) <= STRAIGHT * size;
+        let cut = precision.rank * level.whole.scale * norm(self.point());
+        let is_straight = level.across.residual(self.point()) <= STRAIGHT * size + cut;
         self.minimise(Objective::Rows(&mut level.along), precision);
         let is_stopped = self.stopping().any(|(row, sign)| stops(row, sign));
         self.keep(&mut level.along, precision);

@@ -3,18 +3,17 @@
 //!
 //! Formula  rates = M y + c within their bounds; M = 1, c = 0 without loops. Secondary motion first:
 //!          the largest share of it beside the whole task; then the largest s in [0, 1] with
-//!          J y = s J y_0, y_0 the unbounded solution (the inverse of the servo has its say there);
-//!          what remains free comes nearest to s y_0 plus the secondary motion. Direction changed:
-//!          min |J y - J y_0|^2 + d |y|^2 within the bounds, d = k |J y' - J y_0| / gain, y' the
-//!          solution for d = 0
+//!          J y = s J y_0, y_0 the unbounded solution of the inverse, while joints at a bound are
+//!          clamped one by one. Direction changed: min |J y - J y_0|^2 + d |y|^2 within the bounds,
+//!          d = k min(|J y' - J y_0| / gain, |error|), y' the solution for d = 0
 //! Shapes   J: m x a, y: a, M: rates x a
-//! Cost     none but two passes over the joints where scaling both motions suffices; otherwise up to
-//!          four levels of `active_set.rs`. No allocation
+//! Cost     two passes over the joints where scaling both motions suffices; otherwise up to n
+//!          decompositions of m x n, and two solutions of `active_set.rs` where the direction changes.
+//!          No allocation
 //! Why so   scaling preserves the direction, which users of straight-line paths rely on; the
-//!          direction is changed only when no scaled motion is feasible
-//!          Where a part of the task is out of reach, its curvature outweighs weak directions: the
+//!          direction is changed only when no scaled motion is feasible. Where a part of the task is out of reach, its curvature outweighs weak directions: the
 //!          least-squares motion would overshoot there and swing, d is a bound of that curvature
-//! Source   Flacco, De Luca & Khatib 2015 (saturation in the null space); `hierarchy.rs`
+//! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space)
 //! Checked  tests/it/servo/limits.rs::saturation_*, tests/it/servo/object.rs,
 //!          src/control/solver/saturation/tests.rs
 
@@ -25,7 +24,7 @@ use crate::inverse::Method;
 use crate::linalg::{Matrix, Svd, norm};
 
 /// Below this scale the direction counts as infeasible and is changed [-].
-const MIN_SCALE: f64 = 0.05;
+pub(in crate::control) const MIN_SCALE: f64 = 0.05;
 
 /// A joint at a bound is released when its gradient exceeds this share of the largest possible one
 /// [-]: the residual along directions cut by the inverse must not release any joint.
@@ -33,12 +32,12 @@ pub(in crate::control) const RELEASE: f64 = 1e-3;
 
 /// Singular values of a scaled task, relative to its norm, that may be needed to keep its direction
 /// [-]: the bounds limit the velocities there.
-const STRAIGHT: Precision = Precision { rank: 1e-6, release: 1e-9 };
+pub(in crate::control) const STRAIGHT: Precision = Precision { rank: 1e-6, release: 1e-9 };
 
-/// Share of a curvature of one that the damping stands for [-]: two links of length l have l / 2 when
-/// straight, and l is about the characteristic length; more slows the approach along other weak
-/// directions.
-const CURVATURE: f64 = 0.05;
+/// Damping for an error of one that is out of reach [-]: a tenth of the curvature of two equal links
+/// that are nearly straight, for more of it slows the approach along other weak directions. Found by
+/// experiment with arms and two arms at the edge of their reach.
+pub(in crate::control) const CURVATURE: f64 = 0.05;
 
 /// Motions of the joints up to which a Jacobian describes that of the task (scaled) [-].
 const LINEAR: f64 = 1.0;
@@ -48,21 +47,21 @@ const LINEAR: f64 = 1.0;
 const AMPLIFIED: f64 = 20.0;
 
 /// Least damping of a task whose direction is changed [-].
-const LEAST_DAMPING: f64 = 1e-6;
+pub(in crate::control) const LEAST_DAMPING: f64 = 1e-6;
 
 /// Saturation: the share of a task that the velocity bounds of the joints permit.
 ///
 /// ```text
 /// scaled              the largest s in [0, 1] with J q' = s x,  lower <= q' <= upper
-/// direction changed   min |J q' - x|,  lower <= q' <= upper   (bounded least squares, BVLS)
+/// direction changed   min |J q' - x|^2 + d |q'|^2,  lower <= q' <= upper
 /// ```
 ///
 /// Joints at a bound are clamped one by one while the others can still perform the task. The
-/// direction changes only if no scaled motion is feasible.
+/// direction changes only if no scaled motion is feasible; d, a damping, grows with the error that is
+/// out of reach.
 ///
-/// Source: Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space); Stark &
-/// Parker 1995 (bounded-variable least squares).
-#[doc(alias = "BVLS")]
+/// Source: Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space).
+#[doc(alias = "bounded least squares")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Saturation {
     /// Scale of the realised task twist; 1 when no limit is active.

@@ -13,7 +13,7 @@ pub(super) struct Stack {
     /// Indices of tasks, and their first rows.
     pub(super) members: Vec<(usize, usize)>,
     pub(super) level: ScaledLevel,
-    pub(super) is_bent: bool,
+    pub(super) direction_changed: bool,
     pub(super) scale: f64,
     pub(super) left_out: f64,
     pub(super) stopped_by: Option<StoppedBy>,

@@ -21,6 +21,7 @@ use crate::kinematics::{EndEffector, MassMatrix, ReferenceFrame, State};
 use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::spatial::{Pose, Twist, Vec3};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// A task defined by its user: an error and its Jacobian.
 pub trait CustomTask: fmt::Debug + Send + Sync {
@@ -38,8 +39,14 @@ pub trait CustomTask: fmt::Debug + Send + Sync {
     fn boxed(&self) -> Box<dyn CustomTask>;
 }
 
+impl Clone for Box<dyn CustomTask> {
+    fn clone(&self) -> Self {
+        (**self).boxed()
+    }
+}
+
 /// The motion that a task asks for.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum TaskObjective {
     /// A frame at a pose in the world.
@@ -90,37 +97,6 @@ pub enum TaskObjective {
     Custom(Box<dyn CustomTask>),
 }
 
-impl Clone for TaskObjective {
-    fn clone(&self) -> Self {
-        match self {
-            Self::Frame { end_effector, components, target } => Self::Frame {
-                end_effector: *end_effector,
-                components: *components,
-                target: *target,
-            },
-            Self::RelativeFrame { end_effector, reference, components, target } => {
-                Self::RelativeFrame {
-                    end_effector: *end_effector,
-                    reference: *reference,
-                    components: *components,
-                    target: *target,
-                }
-            }
-            Self::CenterOfMass { axes, target } => {
-                Self::CenterOfMass { axes: *axes, target: *target }
-            }
-            Self::Gaze { end_effector, point } => {
-                Self::Gaze { end_effector: *end_effector, point: *point }
-            }
-            Self::Posture { q } => Self::Posture { q: q.clone() },
-            Self::JointVelocities { velocities } => {
-                Self::JointVelocities { velocities: velocities.clone() }
-            }
-            Self::Custom(task) => Self::Custom(task.boxed()),
-        }
-    }
-}
-
 /// Memory for the Jacobians of frames.
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
@@ -151,7 +127,7 @@ pub(super) struct Rows<'a> {
 }
 
 impl TaskObjective {
-    /// Number of rows; 0 for what belongs to the lowest level.
+    /// Number of rows; 0 for tasks of the lowest level.
     pub(super) fn rows(&self) -> usize {
         let count = |components: &[bool]| components.iter().filter(|c| **c).count();
         match self {
@@ -174,6 +150,11 @@ impl TaskObjective {
             Self::CenterOfMass { .. } => true,
             _ => false,
         }
+    }
+
+    /// True for what is of the lowest level whatever its number says.
+    pub(super) fn is_of_lowest_level(&self) -> bool {
+        matches!(self, Self::Posture { .. } | Self::JointVelocities { .. })
     }
 
     pub(super) fn needs_masses(&self) -> bool {
@@ -271,7 +252,13 @@ impl TaskObjective {
                 write(components.components, error, Twist::ZERO, &scratch.jacobian, rows);
             }
             Self::CenterOfMass { axes, target } => {
-                let Some(masses) = &mut scratch.masses else { return Ok(()) };
+                let Some(masses) = &mut scratch.masses else {
+                    return Err(Error::InvalidOption {
+                        option: "objective",
+                        value: "centre of mass".to_owned(),
+                        reason: "the servo was made without one; make another servo".to_owned(),
+                    });
+                };
                 let (_, center) = masses.center_of_mass(state, &mut scratch.center)?;
                 let error = (*target - center).to_array();
                 for (row, axis) in (0..3).filter(|&axis| axes[axis]).enumerate() {
@@ -311,8 +298,12 @@ impl TaskObjective {
             Self::Posture { .. } | Self::JointVelocities { .. } => {}
             Self::Custom(task) => {
                 task.evaluate(state, rows.error, rows.jacobian)?;
-                Error::check_finite("error of a task", rows.error)?;
-                Error::check_finite("Jacobian of a task", rows.jacobian.as_slice())?;
+                let (m, n) = (rows.error.len(), state.mechanism().n());
+                Error::check_len("rows of the Jacobian of a task", m, rows.jacobian.rows())?;
+                Error::check_len("columns of the Jacobian of a task", n, rows.jacobian.cols())?;
+                Error::check_within("error of a task", rows.error, MAX_MAGNITUDE)?;
+                let entries = rows.jacobian.as_slice();
+                Error::check_within("Jacobian of a task", entries, MAX_MAGNITUDE)?;
             }
         }
         Ok(())

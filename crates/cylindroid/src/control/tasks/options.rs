@@ -20,7 +20,7 @@ pub struct MotionTask {
     /// Priority: 0 first. Tasks of one level share it by their weights; a level never disturbs one
     /// before it.
     pub level: usize,
-    /// Weight beside the other tasks of its level [-].
+    /// Weight beside the other tasks of its level [-]: of postures and velocities the mean counts.
     pub weight: f64,
     /// Proportional gain [1/s].
     pub gain: f64,
@@ -59,7 +59,7 @@ pub struct CollisionAvoidance {
     pub model: CollisionModel,
     /// Least distance (m).
     pub gap: f64,
-    /// Pairs nearer than this count (m).
+    /// Only pairs closer than this are considered (m), and of these the 64 closest.
     pub margin: f64,
 }
 
@@ -115,7 +115,8 @@ pub enum StoppedBy {
 /// The state of a task after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TaskReport {
-    /// Reached, moving or stalled.
+    /// Reached, moving or stalled. Postures and velocities have no error here: they count as
+    /// reached.
     pub status: Status,
     /// Norm of the error's lengths (m).
     pub position_error: f64,
@@ -179,6 +180,9 @@ pub(super) fn check(
         task.objective.check(mechanism)?;
         if task.objective.needs_masses() {
             mechanism.check_masses()?;
+        }
+        if !task.objective.is_of_lowest_level() && task.objective.rows() == 0 {
+            return refuse("tasks", task.name.clone(), "it has no rows");
         }
         positive("weight of a task", task.weight)?;
         positive("gain of a task", task.gain)?;

@@ -9,9 +9,9 @@
 //! Units    rows of lengths are divided by the characteristic length
 //! Valid    trees: arms, hands, several arms, mobile and floating bases. Closed chains: `Servo`
 //! Cost     a level of m rows decomposes m x n once for each round of its active set, and again for
-//!          each level that is bent. No allocation
-//! Fails    on non-finite input, and where limits and distances contradict one another all joints
-//!          brake together
+//!          each level whose direction changes. No allocation
+//! Fails    on non-finite input; where limits and distances contradict one another all joints brake,
+//!          each with its own acceleration
 //! Source   Escande, Mansard & Wieber 2014; Faverjon & Tournassoud 1987 (velocity dampers)
 //! Checked  tests/it/servo/tasks.rs, tests/allocation.rs
 
@@ -161,7 +161,7 @@ impl TaskServo {
                 Stack {
                     members,
                     level: ScaledLevel::new(first, n),
-                    is_bent: false,
+                    direction_changed: false,
                     scale: 1.0,
                     left_out: 0.0,
                     stopped_by: None,
@@ -277,6 +277,7 @@ impl TaskServo {
         self.load_distances()?;
         self.load_desired();
         self.solve();
+        Error::check_finite("joint velocities", &self.last)?;
         let braking = self.store(q);
         self.report(braking);
         let open = self.reports.iter().map(|r| r.status).find(|s| *s != Status::Reached);
@@ -334,9 +335,11 @@ impl TaskServo {
     /// Desired velocities of the lowest level, scaled.
     fn load_desired(&mut self) {
         self.desired.fill(0.0);
-        for task in &self.tasks {
-            let (gain, weight) = (task.gain, task.weight);
-            task.objective.add_velocities(&self.state, gain, weight, &mut self.desired);
+        let lowest = |task: &&MotionTask| task.objective.is_of_lowest_level();
+        let sum: f64 = self.tasks.iter().filter(lowest).map(|task| task.weight).sum();
+        for task in self.tasks.iter().filter(lowest) {
+            let (gain, share) = (task.gain, task.weight / sum);
+            task.objective.add_velocities(&self.state, gain, share, &mut self.desired);
         }
         for (d, column) in self.desired.iter_mut().zip(&self.columns) {
             *d = if *column == 0.0 { 0.0 } else { *d / column };

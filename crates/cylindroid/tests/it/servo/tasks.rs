@@ -214,6 +214,69 @@ fn weights_share_a_level() {
     assert!((q[3] - 0.36).abs() < 1e-6, "{}", q[3]);
 }
 
+/// The weight of a posture or of velocities is beside the others of their kind, not a gain.
+#[test]
+fn weights_are_no_gains() {
+    let robot = unlimited(&two_armed());
+    let wanted: Vec<f64> = (0..robot.n()).map(|i| 0.01 * i as f64).collect();
+    let velocities =
+        |velocities: &[f64]| TaskObjective::JointVelocities { velocities: velocities.to_vec() };
+    let task = |weight, name: &str, v: &[f64]| MotionTask {
+        weight,
+        ..MotionTask::new(name, velocities(v))
+    };
+    let q = vec![0.1; robot.n()];
+    let alone = vec![task(1000.0, "a", &wanted)];
+    let mut servo = TaskServo::new(&robot, alone, options(&robot)).unwrap();
+    servo.step(&q).unwrap();
+    let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+    assert!(close(servo.joint_velocities(), &wanted));
+    let both = vec![task(3.0, "a", &wanted), task(1.0, "b", &vec![0.0; robot.n()])];
+    let mut servo = TaskServo::new(&robot, both, options(&robot)).unwrap();
+    servo.step(&q).unwrap();
+    let mean: Vec<f64> = wanted.iter().map(|v| 0.75 * v).collect();
+    assert!(close(servo.joint_velocities(), &mean));
+}
+
+/// A custom task of the wrong shape or size is an error, and the servo stays as it was.
+#[test]
+fn wrong_custom_tasks_are_errors() {
+    #[derive(Debug, Clone)]
+    struct Wrong(usize);
+    impl CustomTask for Wrong {
+        fn rows(&self) -> usize {
+            1
+        }
+
+        fn evaluate(
+            &mut self,
+            state: &State,
+            error: &mut [f64],
+            jacobian: &mut Matrix,
+        ) -> Result<(), Error> {
+            error[0] = 0.1;
+            match self.0 {
+                0 => *jacobian = Matrix::zeros(1, 1),
+                1 => jacobian[(0, 0)] = f64::NAN,
+                2 => jacobian.as_mut_slice().fill(1e200),
+                _ => error[0] = state.q()[0] + 1e300,
+            }
+            Ok(())
+        }
+
+        fn boxed(&self) -> Box<dyn CustomTask> {
+            Box::new(self.clone())
+        }
+    }
+    let robot = two_armed();
+    for kind in 0..4 {
+        let task = MotionTask::new("wrong", TaskObjective::Custom(Box::new(Wrong(kind))));
+        let mut servo = TaskServo::new(&robot, vec![task], options(&robot)).unwrap();
+        assert!(servo.step(&vec![0.0; robot.n()]).is_err(), "{kind}");
+        assert!(servo.joint_velocities().iter().all(|v| *v == 0.0));
+    }
+}
+
 /// No limit is left and nothing is non-finite, whatever the tasks ask for.
 #[test]
 fn limits_hold_for_any_tasks() {

@@ -15,8 +15,9 @@ impl ActiveSet {
         for i in 0..self.inequalities.len() {
             let (excess, sign) = self.inequalities.excess(i, self.inequalities.value(i, &self.y));
             let bound = self.inequalities.bound(i, sign);
-            let excess = excess / self.inequalities.length(i).max(f64::MIN_POSITIVE);
-            let slack = FEASIBLE * (1.0 + bound.abs());
+            let length = self.inequalities.length(i).max(f64::MIN_POSITIVE);
+            let excess = excess / length;
+            let slack = FEASIBLE * (1.0 + bound.abs() / length);
             if excess > slack && worst.is_none_or(|w| excess > w.1) {
                 worst = Some((i, excess, sign));
             }

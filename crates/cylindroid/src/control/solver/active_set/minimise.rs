@@ -151,6 +151,7 @@ impl ActiveSet {
             self.multipliers[k] = dot(self.basis.column(self.fixed + k), &self.gradient);
         }
         solve_triangle(&self.triangle, w, &mut self.multipliers);
+        self.least = least;
         least
     }
 
