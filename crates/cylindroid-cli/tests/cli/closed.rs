@@ -192,7 +192,7 @@ fn bad_requests() {
     assert!(refused(&["assemble", "stewart", "--hold", "s1.rx"]).contains("prescribe all"));
     assert!(refused(&["assemble", "stewart", "--hold", "nobody"]).contains("coordinate"));
     let far = ["assemble", "five-bar", "--to", "q1=1", "--least-distance", "2"];
-    assert!(refused(&far).contains("least_distance"));
+    assert!(refused(&far).contains("--least-distance"));
     let text = refused(&["move", "five-bar", "--joint-to", "0.1,0,0,0"]);
     assert!(text.contains("loops"), "{text}");
     let text = refused(&["move", "five-bar", "--actuated", "q1", "--to", "1,2,0"]);
