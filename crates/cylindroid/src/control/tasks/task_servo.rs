@@ -56,7 +56,7 @@ const BRAKING: f64 = 0.5;
 /// let panda = cylindroid::load("panda")?;
 /// let mut q = panda.home().to_vec();
 /// let state = panda.state(&q)?;
-/// let elbow = panda.frame("panda_link4")?;
+/// let elbow = panda.frame("link4")?;
 /// let frame = |of, components, way| TaskObjective::Frame {
 ///     end_effector: of,
 ///     components,
