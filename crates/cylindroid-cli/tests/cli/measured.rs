@@ -110,7 +110,9 @@ fn polytopes() {
     assert!(one["polytope"]["notes"][0].as_str().unwrap().contains("'q5' has no effort limit"));
     let both = refused(&with(&["--polytope"]));
     assert!(both.contains("--velocity-limits") && both.contains("--torque-limits"), "{both}");
-    assert!(refused(&with(&["--velocity-limits", "1"])).contains("--velocity-limits has 1 entries"));
+    assert!(
+        refused(&with(&["--velocity-limits", "1"])).contains("--velocity-limits has 1 entries")
+    );
     assert!(refused(&with(&["--velocity-limits", "1,2:3"])).contains("zero must lie between them"));
     // In space: ranges, and corners of a task.
     let panda = json(&["manipulability", "panda", "--polytope"], 0);
