@@ -136,13 +136,14 @@ pub(crate) struct PathArgs {
     #[arg(long, value_name = "A", default_value_t = 4.0, allow_hyphen_values = true)]
     pub(crate) acceleration_angular: f64,
 
-    /// Jerk on the path with the law jerk-limited [m/s^3]
-    #[arg(long, value_name = "J", default_value_t = 10.0, allow_hyphen_values = true)]
-    pub(crate) jerk_linear: f64,
+    /// Jerk on the path with the law jerk-limited [m/s^3] [default: 10]
+    #[arg(long, value_name = "J", allow_hyphen_values = true)]
+    pub(crate) jerk_linear: Option<f64>,
 
     /// Angular jerk on the path, and jerk of joints, with the law jerk-limited [rad/s^3]
-    #[arg(long, value_name = "J", default_value_t = 40.0, allow_hyphen_values = true)]
-    pub(crate) jerk_angular: f64,
+    /// [default: 40]
+    #[arg(long, value_name = "J", allow_hyphen_values = true)]
+    pub(crate) jerk_angular: Option<f64>,
 }
 
 #[derive(Debug, Args)]

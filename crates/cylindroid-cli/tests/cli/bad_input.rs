@@ -97,6 +97,12 @@ fn errors_name_the_flag() {
         &["jacobian", "youbot", "--inverse", "hyperbolic-damped", "--h", "1"],
         "--mu is missing",
     );
+    refused(
+        &["jacobian", "youbot", "--inverse", "hyperbolic", "--h", "0.1", "--eps", "0.1"],
+        "--eps = 0.1",
+    );
+    refused_move(&["--line", "--jerk-linear", "2"], "add --law jerk-limited");
+    refused_move(&["--jerk-angular", "2"], "--jerk-angular = 2");
     refused(&["assemble", "five-bar", "--modes", "0"], "--modes = 0");
     refused(&["screws", "youbot", "--center", "nan,0,0"], "--center[0] is not finite");
     refused_move(&["--joint-weights", "1,1"], "--joint-weights has 2 entries");

@@ -193,7 +193,7 @@ impl PyCollisionModel {
     /// UnknownNameError
     ///     For an unknown shape.
     #[pyo3(signature = (name, shape, pose=None, *, radius=None, length=None, size=None, points=None, file=None))]
-    #[allow(clippy::too_many_arguments)] // of Python: keywords
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn add_obstacle(
         &mut self,
         #[pyo3(from_py_with = argument)] name: &str,

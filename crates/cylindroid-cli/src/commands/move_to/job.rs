@@ -8,13 +8,13 @@ use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 
 use super::super::target::{target_pose, task};
-use super::bounds::{joint_defaults, path_bounds};
+use super::bounds::{check_jerks, joint_defaults, path_bounds};
 use super::inverse;
 use crate::args::{MoveArgs, NullSpaceName, PathArgs, ServoArgs};
 use crate::commands::shared::{all_actuated, configuration, end_effector, load, within_limits};
 use crate::values::{Named, Weights};
 
-/// What is to be done.
+/// A motion to compute.
 #[derive(Debug)]
 pub(super) struct Job {
     pub(super) robot: Mechanism,
@@ -22,13 +22,13 @@ pub(super) struct Job {
     /// Name of the frame that is controlled.
     pub(super) frame: String,
     pub(super) start: Vec<f64>,
-    /// Where the tool shall be in the end; what was not given is as at the start.
+    /// The final pose of the tool; components that were not given are as at the start.
     pub(super) target_pose: Pose,
     pub(super) goal: Goal,
-    /// What is controlled, in words.
+    /// The controlled components, in words.
     pub(super) controlled: String,
     pub(super) time_limit: f64,
-    /// Whether to go round where the servo alone stalls on its way to a pose.
+    /// Whether to reconfigure if the servo alone stalls on its way to a pose.
     pub(super) reconfigure: bool,
     /// For joint moves.
     pub(super) defaults: JointDefaults,
@@ -62,6 +62,8 @@ impl Job {
             }
             .into());
         }
+
+        check_jerks(&args.path)?;
 
         let mut options = ServoOptions::new(&robot);
         options.end_effector = end_effector(&robot, &args.frame)?;

@@ -114,12 +114,12 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
             trajectory.push(&sample);
         }
     };
-    let round = joints::simulate(&mut servo, job, &motion, push)?;
+    let outcome_of_joints = joints::simulate(&mut servo, job, &motion, push)?;
     Ok(Result {
-        outcome: round,
+        outcome: outcome_of_joints,
         deviation: None,
         closure_error: None,
-        way: Way::Round { stalled: outcome.into() },
+        way: Way::Reconfigured { stalled: outcome.into() },
     })
 }
 

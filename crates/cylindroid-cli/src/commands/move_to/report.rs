@@ -19,12 +19,12 @@ use crate::output::{self, PoseJson};
 pub(super) struct Result {
     pub(super) outcome: MotionResult,
     pub(super) deviation: Option<Deviation>,
-    /// The widest closure_error of the loops on the way.
+    /// The largest closure error of the loops during the motion.
     pub(super) closure_error: Option<LoopClosureError>,
     pub(super) way: Way,
 }
 
-/// The way that was taken.
+/// The motion that was executed.
 #[derive(Debug)]
 pub(super) enum Way {
     /// As requested.
@@ -32,14 +32,14 @@ pub(super) enum Way {
     /// As requested, and it stalled; this configuration reaches the target.
     Offered { configuration: Vec<f64> },
     /// By reconfiguration through joint space, since the servo alone would have ended like this.
-    Round { stalled: Box<MotionResult> },
+    Reconfigured { stalled: Box<MotionResult> },
 }
 
 impl Way {
     fn offered(&self) -> Option<&[f64]> {
         match self {
             Self::Offered { configuration } => Some(configuration),
-            Self::Direct | Self::Round { .. } => None,
+            Self::Direct | Self::Reconfigured { .. } => None,
         }
     }
 }
@@ -156,7 +156,9 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         reached: outcome.reached,
         reason: sentences::reason(outcome),
         explanation: match way {
-            Way::Round { stalled } if outcome.reached => sentences::round(job, stalled),
+            Way::Reconfigured { stalled } if outcome.reached => {
+                sentences::reconfigured(job, stalled)
+            }
             _ => sentences::explanation(job, outcome, way.offered()),
         },
         q: &outcome.q,
@@ -191,9 +193,9 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         law_duration: law_duration(job),
         path_deviation: *deviation,
         other_configuration: way.offered(),
-        reconfigured: matches!(way, Way::Round { .. }),
+        reconfigured: matches!(way, Way::Reconfigured { .. }),
         reconfiguration_reason: match way {
-            Way::Round { stalled } => Some(sentences::reason(stalled)),
+            Way::Reconfigured { stalled } => Some(sentences::reason(stalled)),
             Way::Direct | Way::Offered { .. } => None,
         },
     }
@@ -202,13 +204,13 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
 /// Names of the actuated joints.
 fn actuated_joints(job: &Job) -> Vec<&str> {
     let tree = job.robot.coordinates().iter().filter(|c| c.actuated).map(|c| c.name.as_str());
-    let closing = job.robot.loops().iter().filter(|l| l.actuated).map(|l| l.name.as_str());
-    tree.chain(closing).collect()
+    let loop_closure = job.robot.loops().iter().filter(|l| l.actuated).map(|l| l.name.as_str());
+    tree.chain(loop_closure).collect()
 }
 
 fn result_word(outcome: &MotionResult, way: &Way) -> &'static str {
     match (outcome.reached, way) {
-        (true, Way::Round { .. }) => "reached, after reconfiguration",
+        (true, Way::Reconfigured { .. }) => "reached, after reconfiguration",
         (true, _) => "reached",
         (false, _) => "not reached",
     }
@@ -248,7 +250,9 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             (
                 "reason",
                 match way {
-                    Way::Round { stalled } if outcome.reached => sentences::round(job, stalled),
+                    Way::Reconfigured { stalled } if outcome.reached => {
+                        sentences::reconfigured(job, stalled)
+                    }
                     _ if outcome.reached => sentences::without_inverse(outcome).trim().to_owned(),
                     _ => sentences::explanation(job, outcome, way.offered()),
                 },

@@ -17,7 +17,7 @@ pub(super) fn reason(outcome: &MotionResult) -> &'static str {
 }
 
 /// The reason of a reconfiguration.
-pub(super) fn round(job: &Job, stalled: &MotionResult) -> String {
+pub(super) fn reconfigured(job: &Job, stalled: &MotionResult) -> String {
     let what = match &stalled.stall {
         Some(Stall::Limits { coordinates }) => {
             let names: Vec<&str> =

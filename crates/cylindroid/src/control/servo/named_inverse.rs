@@ -185,7 +185,11 @@ impl InverseSelection<'_> {
     pub fn apply(&self, options: &mut ServoOptions) -> Result<()> {
         let chosen = NamedInverse::named(self.name)?;
         let fallback = self.fallback.map(|name| self.find_fallback(&chosen, name)).transpose()?;
-        self.refuse_foreign(&chosen, fallback.as_ref())?;
+        // A servo inverts the projected task by the default method.
+        let plain = NamedInverse::named(Method::default().name())?;
+        let by_method = chosen.is_partial.then_some(plain);
+        let more: Vec<NamedInverse> = fallback.iter().copied().chain(by_method).collect();
+        self.refuse_foreign(&chosen, &more)?;
         let method = self.method_of(&chosen)?;
         let projection = self.projection(&chosen)?;
         let fallback = fallback.map(|f| self.projection(&f)).transpose()?;
@@ -215,7 +219,7 @@ impl InverseSelection<'_> {
     pub fn choice(&self, length: f64) -> Result<InverseChoice> {
         Error::check_positive("length", length)?;
         let chosen = NamedInverse::named(self.name)?;
-        self.refuse_foreign(&chosen, None)?;
+        self.refuse_foreign(&chosen, &[])?;
         let method = self.method_of(&chosen)?;
         Ok(InverseChoice { method, projection: self.projection(&chosen)?, length })
     }
@@ -227,7 +231,7 @@ impl InverseSelection<'_> {
     /// inverses, which are no methods.
     pub fn method(&self) -> Result<Method> {
         let method = Method::named(self.name)?;
-        self.refuse_foreign(&NamedInverse::named(self.name)?, None)?;
+        self.refuse_foreign(&NamedInverse::named(self.name)?, &[])?;
         self.with_values(method)
     }
 
@@ -273,13 +277,11 @@ impl InverseSelection<'_> {
             .ok_or_else(|| Error::unknown("fallback", name, possible().map(|i| i.name)))
     }
 
-    /// Refuses parameters that neither the inverse nor its fallback has.
-    fn refuse_foreign(&self, chosen: &NamedInverse, fallback: Option<&NamedInverse>) -> Result<()> {
-        let in_use = || [Some(chosen), fallback].into_iter().flatten();
-        let plain = Method::default();
+    /// Refuses parameters that neither the chosen inverse nor one of the `more` in use has.
+    fn refuse_foreign(&self, chosen: &NamedInverse, more: &[NamedInverse]) -> Result<()> {
+        let in_use = || std::iter::once(chosen).chain(more);
         for &(name, value) in &self.parameters {
-            let of_method = chosen.is_partial && plain.parameters().iter().any(|p| p.name == name);
-            if of_method || in_use().any(|i| i.parameters.iter().any(|p| p.name == name)) {
+            if in_use().any(|i| i.parameters.iter().any(|p| p.name == name)) {
                 continue;
             }
             let having = |i: &NamedInverse| i.parameters.iter().find(|p| p.name == name);
