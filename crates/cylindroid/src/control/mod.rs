@@ -37,6 +37,6 @@ pub use servo::{
 };
 pub use solver::{LimitKind, Saturation, VelocityBounds};
 pub use tasks::{
-    CollisionAvoidance, CustomTask, MotionTask, StoppedBy, TaskObjective, TaskReport, TaskServo,
-    TaskServoOptions,
+    CollisionAvoidance, CustomTask, MotionTask, StoppedBy, TaskMotionResult, TaskObjective,
+    TaskReport, TaskServo, TaskServoOptions,
 };

@@ -144,7 +144,7 @@ impl ActiveSet {
     }
 
     /// The rows that stop the last minimised level, with the signs of their bounds.
-    pub(super) fn stopping(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub(in crate::control) fn stopping(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let all = self.working.iter().zip(&self.multipliers);
         all.filter(|(w, l)| **l * self.inequalities.length(w.row) > self.least)
             .map(|(w, _)| (w.row, w.sign))

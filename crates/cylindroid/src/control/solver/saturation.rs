@@ -312,7 +312,7 @@ impl Saturator {
         let left = (task.residual(set.point()) / p.gain).min(p.error);
         self.damping = (CURVATURE * left).max(LEAST_DAMPING);
         set.start(last);
-        set.solve_damped(task, self.damping, STRAIGHT);
+        set.solve_damped(task, self.damping, STRAIGHT, |_| ());
     }
 }
 

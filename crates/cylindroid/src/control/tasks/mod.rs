@@ -2,14 +2,16 @@
 //! with priorities and weights inside the limits of all joints and outside of collisions.
 //!
 //! Read `objective` (a task as an error and a Jacobian), `options` (gain, weight, level; reports),
-//! `task_servo` (one step) and `stack` (the levels, solved with `solver/hierarchy.rs`).
+//! `task_servo` (one step), `stack` (the levels, solved with `solver/hierarchy.rs`) and `simulation`.
 
 mod levels;
 mod objective;
 mod options;
+mod simulation;
 mod stack;
 mod task_servo;
 
 pub use objective::{CustomTask, TaskObjective};
 pub use options::{CollisionAvoidance, MotionTask, StoppedBy, TaskReport, TaskServoOptions};
+pub use simulation::TaskMotionResult;
 pub use task_servo::TaskServo;

@@ -211,9 +211,25 @@ impl TaskObjective {
         }
     }
 
-    /// Writes the rows at `state`.
+    /// Writes the joint velocities that are still desired at `rates`: the way to a posture, or the
+    /// part of desired velocities that is not realised. False for other tasks.
+    pub(super) fn remainder(&self, state: &State, rates: &[f64], out: &mut [f64]) -> bool {
+        out.fill(0.0);
+        match self {
+            Self::Posture { q } => add_posture(state.mechanism(), state.q(), q, 1.0, out),
+            Self::JointVelocities { velocities } => {
+                let parts = out.iter_mut().zip(velocities.iter().zip(rates));
+                parts.for_each(|(o, (desired, rate))| *o = desired - rate);
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Writes the rows at `state`; `name` is for errors.
     pub(super) fn evaluate(
         &mut self,
+        name: &str,
         state: &State,
         scratch: &mut Scratch,
         rows: &mut Rows<'_>,
@@ -298,16 +314,27 @@ impl TaskObjective {
             Self::Posture { .. } | Self::JointVelocities { .. } => {}
             Self::Custom(task) => {
                 task.evaluate(state, rows.error, rows.jacobian)?;
-                let (m, n) = (rows.error.len(), state.mechanism().n());
-                Error::check_len("rows of the Jacobian of a task", m, rows.jacobian.rows())?;
-                Error::check_len("columns of the Jacobian of a task", n, rows.jacobian.cols())?;
-                Error::check_within("error of a task", rows.error, MAX_MAGNITUDE)?;
-                let entries = rows.jacobian.as_slice();
-                Error::check_within("Jacobian of a task", entries, MAX_MAGNITUDE)?;
+                check_rows(name, rows, state.mechanism().n())?;
             }
         }
         Ok(())
     }
+}
+
+/// Checks the rows that a custom task wrote.
+fn check_rows(name: &str, rows: &Rows<'_>, n: usize) -> Result<()> {
+    let (m, jacobian) = (rows.error.len(), &rows.jacobian);
+    let within = |x: &f64| x.abs() <= MAX_MAGNITUDE;
+    if (jacobian.rows(), jacobian.cols()) == (m, n)
+        && rows.error.iter().chain(jacobian.as_slice()).all(within)
+    {
+        return Ok(());
+    }
+    let what = |part: &str| format!("{part} of the task '{name}'");
+    Error::check_len(&what("rows of the Jacobian"), m, jacobian.rows())?;
+    Error::check_len(&what("columns of the Jacobian"), n, jacobian.cols())?;
+    Error::check_within(&what("error"), rows.error, MAX_MAGNITUDE)?;
+    Error::check_within(&what("Jacobian"), jacobian.as_slice(), MAX_MAGNITUDE)
 }
 
 /// The rotation vector of the smallest turn from one unit vector to another; about any axis across

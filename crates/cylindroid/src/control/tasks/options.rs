@@ -115,16 +115,19 @@ pub enum StoppedBy {
 /// The state of a task after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TaskReport {
-    /// Reached, moving or stalled. Postures and velocities have no error here: they count as
-    /// reached.
+    /// Reached, moving or stalled.
     pub status: Status,
-    /// Norm of the error's lengths (m).
+    /// Norm of the error's lengths (m); of desired velocities, of the part that is not realised
+    /// (m/s).
     pub position_error: f64,
-    /// Norm of the error's angles, and of the errors of custom tasks (rad).
+    /// Norm of the error's angles, and of the errors of custom tasks (rad); of desired velocities, of
+    /// the part that is not realised (rad/s).
     pub orientation_error: f64,
     /// Share of its level that is realised; 1 when nothing stops it, 0 if its direction is lost.
+    /// Postures and velocities have no direction to keep: 1.
     pub scale: f64,
-    /// Share of the level's velocity that higher levels or singular directions leave out [-].
+    /// Share of the level's velocity that higher levels or singular directions leave out [-]; of
+    /// postures and velocities, the share that is not realised.
     pub left_out: f64,
     /// The inequality that stops its level, if one does.
     pub stopped_by: Option<StoppedBy>,
@@ -165,6 +168,13 @@ pub(super) fn check(
     if !options.joint_weights.is_empty() {
         mechanism.check_q("joint weights", &options.joint_weights)?;
         options.joint_weights.iter().try_for_each(|w| positive("joint weight", *w))?;
+    }
+    if let Some(c) = &options.collisions
+        && mechanism.check_frame(c.model.mechanism().tool()).is_err()
+    {
+        let name = c.model.mechanism().name();
+        let reason = format!("the collision model is of '{name}'; make one of this mechanism");
+        return refuse("collisions", mechanism.name().to_owned(), &reason);
     }
     if let Some(c) = &options.collisions
         && !(c.gap >= 0.0 && c.margin > c.gap && c.margin.is_finite())

@@ -7,11 +7,9 @@
 //!          changed where a limit stops the rest
 //! Checked  tests/it/servo/tasks.rs
 
-use super::levels::Stack;
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use crate::collision::NearPair;
-use crate::control::solver::active_set::ActiveSet;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::saturation::{CURVATURE, LEAST_DAMPING, MIN_SCALE, STRAIGHT};
 use crate::linalg::norm;
@@ -28,6 +26,7 @@ impl TaskServo {
                     (stack.scale, stack.left_out, stack.stopped_by) = (0.0, 0.0, None);
                 }
                 self.last.fill(0.0);
+                self.lowest_stopped_by = None;
                 return;
             }
             if self.solve_levels() {
@@ -35,6 +34,11 @@ impl TaskServo {
             }
         }
         self.set.approach(&self.desired, STRAIGHT);
+        let mut stop = None;
+        self.set.stopping().for_each(|row| {
+            note(&mut stop, cause(row, &self.bounds, &self.near));
+        });
+        self.lowest_stopped_by = stop;
         self.last.copy_from_slice(self.set.point());
     }
 
@@ -60,18 +64,19 @@ impl TaskServo {
             let size = norm(&whole.target);
             let left_out = self.set.reduce_target(whole, self.options.eps);
             stack.left_out = if size > 0.0 { left_out / size } else { 0.0 };
-            if stack.direction_changed {
-                change_direction(&mut self.set, stack, f64::sqrt(error));
-                continue;
-            }
             let (near, bounds) = (&self.near, &self.bounds);
             let mut stop = None;
+            if stack.direction_changed {
+                let damping = (CURVATURE * f64::sqrt(error)).max(LEAST_DAMPING);
+                self.set.solve_damped(whole, damping, STRAIGHT, |row| {
+                    note(&mut stop, cause(row, bounds, near));
+                });
+                // Inequalities across the target stop only this solution.
+                stack.stopped_by = stop.or(stack.stopped_by);
+                continue;
+            }
             let share = self.set.solve_scaled(&mut stack.level, STRAIGHT, |row, sign| {
-                let (cause, is_end) = cause(row, sign, bounds, near);
-                if is_end || stop.is_none() {
-                    stop = Some(cause);
-                }
-                is_end
+                note(&mut stop, cause((row, sign), bounds, near))
             });
             stack.stopped_by = stop;
             stack.scale = share.scale.min(1.0);
@@ -86,14 +91,21 @@ impl TaskServo {
     }
 }
 
-/// The damped least-squares solution of a level, with an error of at most this size.
-fn change_direction(set: &mut ActiveSet, stack: &mut Stack, error: f64) {
-    let damping = (CURVATURE * error).max(LEAST_DAMPING);
-    set.solve_damped(&mut stack.level.whole, damping, STRAIGHT);
+/// Of several inequalities, the last one that ends the motion for good, otherwise the first. True if
+/// this one ends it.
+fn note(stop: &mut Option<StoppedBy>, (cause, is_end): (StoppedBy, bool)) -> bool {
+    if is_end || stop.is_none() {
+        *stop = Some(cause);
+    }
+    is_end
 }
 
 /// The inequality of a row, and true if it ends the motion for good: a position or a distance.
-fn cause(row: usize, sign: f64, bounds: &[VelocityBounds], near: &[NearPair]) -> (StoppedBy, bool) {
+fn cause(
+    (row, sign): (usize, f64),
+    bounds: &[VelocityBounds],
+    near: &[NearPair],
+) -> (StoppedBy, bool) {
     let Some(bound) = bounds.get(row) else {
         let pair = near.get(row - bounds.len()).map_or(0, |near| near.pair);
         return (StoppedBy::Distance { pair }, true);

@@ -17,7 +17,7 @@
 
 use super::levels::{Stack, TaskRows};
 use super::objective::{Rows, Scratch, TaskObjective};
-use super::options::{MotionTask, TaskReport, TaskServoOptions, check};
+use super::options::{MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
 use crate::collision::{CollisionModel, NearPair};
 use crate::control::servo::stopping_velocity;
 use crate::control::servo::{BrakingState, JointState, StallDetector, Status};
@@ -27,7 +27,7 @@ use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::inequalities::Inequalities;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::Matrix;
+use crate::linalg::{Matrix, norm};
 use crate::model::{Limits, Mechanism};
 
 /// Most pairs of bodies that count at once: the nearest.
@@ -95,6 +95,8 @@ pub struct TaskServo {
     gradient: Vec<f64>,
     pub(super) last: Vec<f64>,
     pub(super) desired: Vec<f64>,
+    /// The inequality that stops postures and desired velocities.
+    pub(super) lowest_stopped_by: Option<StoppedBy>,
     rates: Vec<f64>,
     reports: Vec<TaskReport>,
     detectors: Vec<StallDetector>,
@@ -191,6 +193,7 @@ impl TaskServo {
             gradient: vec![0.0; n],
             last: vec![0.0; n],
             desired: vec![0.0; n],
+            lowest_stopped_by: None,
             rates: vec![0.0; n],
             reports: vec![report; tasks.len()],
             detectors: vec![StallDetector::new(); tasks.len()],
@@ -233,6 +236,12 @@ impl TaskServo {
         &self.reports
     }
 
+    /// Time between steps (s).
+    #[must_use]
+    pub const fn dt(&self) -> f64 {
+        self.options.dt
+    }
+
     /// The mechanism.
     #[must_use]
     pub fn mechanism(&self) -> &Mechanism {
@@ -253,8 +262,9 @@ impl TaskServo {
         self.detectors.fill(StallDetector::new());
     }
 
-    /// One step: [`TaskServo::joint_velocities`] are to be commanded until the next step. All
-    /// reached, or the first status of a task that is not.
+    /// One step: [`TaskServo::joint_velocities`] are to be commanded until the next step. Reached if
+    /// all tasks are, otherwise the status of the first that is not. Postures and desired velocities
+    /// count only where there are no other tasks.
     ///
     /// # Errors
     /// A `q` of the wrong size or non-finite input; targets of another mechanism or with another
@@ -262,7 +272,10 @@ impl TaskServo {
     pub fn step(&mut self, q: &[f64]) -> Result<Status> {
         for (task, rows) in self.tasks.iter().zip(&self.rows) {
             task.objective.check(self.state.mechanism())?;
-            Error::check_len("rows of a task", rows.error.len(), task.objective.rows())?;
+            if task.objective.rows() != rows.error.len() {
+                let what = format!("rows of the task '{}'", task.name);
+                Error::check_len(&what, rows.error.len(), task.objective.rows())?;
+            }
         }
         self.state.set(q)?;
         for (task, rows) in self.tasks.iter_mut().zip(&mut self.rows) {
@@ -271,7 +284,7 @@ impl TaskServo {
                 feed_forward: &mut rows.feed_forward,
                 jacobian: &mut rows.jacobian,
             };
-            task.objective.evaluate(&self.state, &mut self.scratch, &mut rows)?;
+            task.objective.evaluate(&task.name, &self.state, &mut self.scratch, &mut rows)?;
         }
         self.load_bounds();
         self.load_distances()?;
@@ -280,8 +293,29 @@ impl TaskServo {
         Error::check_finite("joint velocities", &self.last)?;
         let braking = self.store(q);
         self.report(braking);
-        let open = self.reports.iter().map(|r| r.status).find(|s| *s != Status::Reached);
-        Ok(open.unwrap_or(Status::Reached))
+        Ok(self.status())
+    }
+
+    /// The status of all tasks after the last step, as [`TaskServo::step`] returns it.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        let counts = |task: &MotionTask| self.stacks.is_empty() || task.objective.rows() > 0;
+        let pairs = self.tasks.iter().zip(&self.reports).filter(|(task, _)| counts(task));
+        let open = pairs.map(|(_, report)| report.status).find(|s| *s != Status::Reached);
+        open.unwrap_or(Status::Reached)
+    }
+
+    /// The limits that bounded a joint velocity in the last step: index in `q` and kind.
+    pub fn active_limits(&self) -> impl Iterator<Item = (usize, LimitKind)> + '_ {
+        let all = self.bounds.iter().zip(&self.rates).enumerate();
+        all.filter_map(|(i, (bound, rate))| Some((i, bound.met(*rate)?)))
+    }
+
+    /// The pairs of bodies that counted in the last step, at the configuration before it: nearer than
+    /// the margin, at most 64. Indices are those of the collision model before later changes.
+    #[must_use]
+    pub fn near(&self) -> &[NearPair] {
+        &self.near
     }
 
     /// Limits of the joints, scaled.
@@ -366,15 +400,23 @@ impl TaskServo {
     }
 
     fn report(&mut self, braking: BrakingState) {
+        let size = norm(&self.desired);
+        let missing = self.desired.iter().zip(self.set.point()).map(|(d, y)| (d - y) * (d - y));
+        let missing = missing.sum::<f64>().sqrt();
+        let lowest_left_out = if size > 0.0 { (missing / size).min(1.0) } else { 0.0 };
         for (i, task) in self.tasks.iter().enumerate() {
             let rows = &self.rows[i];
-            let part = |lengths: bool| {
-                let own = (0..rows.error.len())
-                    .filter(|&r| task.objective.is_length(r) == lengths)
-                    .map(|r| rows.error[r] * rows.error[r]);
-                own.sum::<f64>().sqrt()
-            };
-            let (position_error, orientation_error) = (part(true), part(false));
+            let mut parts = [0.0_f64; 2];
+            let mut add = |is_length: bool, x: f64| parts[usize::from(!is_length)] += x * x;
+            let is_lowest = task.objective.remainder(&self.state, &self.rates, &mut self.gradient);
+            if is_lowest {
+                let coordinates = self.state.mechanism().coordinates();
+                let all = self.gradient.iter().zip(coordinates);
+                all.for_each(|(x, coordinate)| add(coordinate.kind.is_length(), *x));
+            }
+            let own = rows.error.iter().enumerate();
+            own.for_each(|(r, x)| add(task.objective.is_length(r), *x));
+            let [position_error, orientation_error] = parts.map(f64::sqrt);
             let stack = self.stacks.iter().find(|s| s.members.iter().any(|(t, _)| *t == i));
             let scaled = position_error / self.options.length + orientation_error;
             let reached = position_error <= task.tolerance.position
@@ -390,8 +432,8 @@ impl TaskServo {
                 position_error,
                 orientation_error,
                 scale: stack.map_or(1.0, |s| s.scale),
-                left_out: stack.map_or(0.0, |s| s.left_out),
-                stopped_by: stack.and_then(|s| s.stopped_by),
+                left_out: stack.map_or(lowest_left_out, |s| s.left_out),
+                stopped_by: stack.map_or(self.lowest_stopped_by, |s| s.stopped_by),
             };
         }
     }

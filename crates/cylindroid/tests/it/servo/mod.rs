@@ -14,6 +14,7 @@ mod secondary;
 mod shared;
 mod stall;
 mod steps;
+mod task_reports;
 mod tasks;
 
 pub(crate) use cylindroid::control::{

@@ -38,9 +38,11 @@ impl ActiveSet {
         level: &mut Level,
         damping: f64,
         precision: Precision,
+        stops: impl FnMut((usize, f64)),
     ) {
         level.scale = level.rows.frobenius_norm();
         self.minimise(Objective::Damped(level, damping), precision);
+        self.stopping().for_each(stops);
         self.keep(level, precision);
     }
 

@@ -1,0 +1,122 @@
+//! Reports of many tasks: postures and desired velocities, stops, simulation.
+
+use cylindroid::control::{
+    MotionTask, StoppedBy, TaskObjective, TaskReport, TaskServo, TaskServoOptions,
+};
+
+use super::*;
+
+/// Two slides along x and y.
+fn table(limits: [Limits; 2]) -> Mechanism {
+    let mut builder = Mechanism::builder("table");
+    let axes = [Vec3::X, Vec3::Y];
+    let names = ["rail", "x", "y"];
+    for i in 0..2 {
+        let mut joint = JointSpec::new(names[i + 1], JointKind::Prismatic, names[i], names[i + 1]);
+        (joint.axis, joint.limits) = (axes[i], limits[i]);
+        builder.joint(joint);
+    }
+    builder.build().unwrap()
+}
+
+fn limits(acceleration: f64) -> Limits {
+    Limits { lower: -1.0, upper: 1.0, velocity: 1.0, acceleration, effort: 1.0 }
+}
+
+fn at(robot: &Mechanism, x: f64, y: f64) -> TaskObjective {
+    TaskObjective::Frame {
+        end_effector: robot.frame("y").unwrap().into(),
+        components: Task::POSITION,
+        target: Pose::from_translation(Vec3::new(x, y, 0.0)).into(),
+    }
+}
+
+fn of_tasks(robot: &Mechanism, tasks: Vec<MotionTask>) -> TaskServo {
+    TaskServo::new(robot, tasks, TaskServoOptions::new(robot)).unwrap()
+}
+
+fn posture(q: &[f64]) -> MotionTask {
+    MotionTask::new("posture", TaskObjective::Posture { q: q.to_vec() })
+}
+
+#[test]
+fn a_posture_alone_is_reached() {
+    let robot = table([limits(5.0); 2]);
+    let mut servo = of_tasks(&robot, vec![posture(&[0.3, -0.4])]);
+    assert_eq!(servo.step(&[0.0, 0.0]).unwrap(), Status::Moving);
+    assert!((servo.reports()[0].position_error - 0.5).abs() < 1e-15);
+    assert_eq!(servo.reports()[0].orientation_error, 0.0);
+    servo.reset();
+    let mut times = Vec::new();
+    let result = servo.simulate(&[0.0, 0.0], 10.0, |time, _, _| times.push(time)).unwrap();
+    assert_eq!((result.status, times.len()), (Status::Reached, result.steps + 1));
+    assert!((result.q[0] - 0.3).hypot(result.q[1] + 0.4) <= 1e-6);
+    assert!(result.limits_hit.contains(&(0, LimitKind::Acceleration)));
+    assert_eq!(result.nearest, None);
+}
+
+/// A preference that the pose leaves no room for stalls; the servo has reached its pose.
+#[test]
+fn a_posture_below_a_pose_does_not_hide_it() {
+    let robot = table([limits(5.0); 2]);
+    let hand = MotionTask::new("hand", at(&robot, 0.2, 0.1));
+    let mut servo = of_tasks(&robot, vec![posture(&[-0.5, -0.5]), hand]);
+    let result = servo.simulate(&[0.0, 0.0], 20.0, |_, _, _| ()).unwrap();
+    let [posture, hand]: [TaskReport; 2] = result.reports.try_into().unwrap();
+    assert_eq!((result.status, hand.status), (Status::Reached, Status::Reached));
+    assert_eq!((posture.status, posture.left_out), (Status::Stalled, 1.0));
+    assert!((posture.position_error - 0.7_f64.hypot(0.6)).abs() < 1e-5, "{posture:?}");
+}
+
+#[test]
+fn a_posture_beyond_a_limit_names_it() {
+    let robot = table([limits(5.0); 2]);
+    let mut servo = of_tasks(&robot, vec![posture(&[1.5, 0.0])]);
+    let result = servo.simulate(&[0.0, 0.0], 20.0, |_, _, _| ()).unwrap();
+    assert_eq!(result.status, Status::Stalled);
+    let expected = StoppedBy::Limit { coordinate: 0, kind: LimitKind::Position };
+    assert_eq!(result.reports[0].stopped_by, Some(expected));
+}
+
+/// The error of desired velocities is the part that is not realised.
+#[test]
+fn desired_velocities_report_the_rest() {
+    let robot = table([limits(5.0), limits(f64::INFINITY)]);
+    let objective = TaskObjective::JointVelocities { velocities: vec![0.3, 2.0] };
+    let mut servo = of_tasks(&robot, vec![MotionTask::new("velocities", objective)]);
+    assert_eq!(servo.step(&[0.0, 0.0]).unwrap(), Status::Moving);
+    let expected = (0.3 - 5.0 * 1e-3_f64).hypot(2.0 - 1.0);
+    assert!((servo.reports()[0].position_error - expected).abs() < 1e-12);
+    assert!(servo.reports()[0].stopped_by.is_some());
+    for _ in 0..100 {
+        servo.step(&[0.0, 0.0]).unwrap();
+    }
+    assert!((servo.reports()[0].position_error - 1.0).abs() < 1e-12);
+    let TaskObjective::JointVelocities { velocities } = servo.objective_mut("velocities").unwrap()
+    else {
+        panic!("velocities")
+    };
+    velocities[1] = 1.0;
+    assert_eq!(servo.step(&[0.0, 0.0]).unwrap(), Status::Reached);
+}
+
+/// A slide that still brakes across the way to a new target: the direction changes, and the limit that
+/// changes it is named.
+#[test]
+fn a_limit_across_the_target_is_named() {
+    let robot = table([limits(5.0), limits(f64::INFINITY)]);
+    let mut servo = of_tasks(&robot, vec![MotionTask::new("hand", at(&robot, 0.9, 0.0))]);
+    let mut q = vec![0.0, 0.0];
+    for _ in 0..150 {
+        servo.step(&q).unwrap();
+        servo.advance(&mut q);
+    }
+    assert!(servo.joint_velocities()[0] > 0.5);
+    let target = at(&robot, q[0], 0.1);
+    *servo.objective_mut("hand").unwrap() = target;
+    servo.step(&q).unwrap();
+    let report = servo.reports()[0];
+    let expected = StoppedBy::Limit { coordinate: 0, kind: LimitKind::Acceleration };
+    assert_eq!((report.scale, report.stopped_by), (0.0, Some(expected)), "{report:?}");
+    assert!(servo.joint_velocities()[1] > 0.0);
+}
