@@ -23,6 +23,7 @@ def random_q(robot, count, seed=1):
 def test_what_a_mechanism_tells():
     r = cy.load("panda")
     assert (r.name, r.n, r.tool, r.dimension, r.is_closed) == ("panda", 7, "hand_tcp", 3, False)
+    assert r.tool_choice == "named by the model"
     assert len(r.joint_names) == 7 and r.tool in r.frames and set(r.units) == {"rad"}
     for limit in (r.lower, r.upper, r.velocity_limit, r.acceleration_limit, r.effort_limit):
         assert limit.shape == (7,) and limit.dtype == np.float64

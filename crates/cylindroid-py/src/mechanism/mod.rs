@@ -51,6 +51,9 @@ pub(crate) use load::PyLoadReport;
 ///     zero.
 /// tool : str
 ///     The default frame.
+/// tool_choice : str
+///     The reason why it is the default frame: named by the model, a word in its name, or the end of
+///     the longest chain.
 /// reference : str
 ///     The reference frame of a closed chain: the frame of its task.
 /// reach : float
@@ -226,6 +229,11 @@ impl PyMechanism {
     #[getter]
     fn tool(&self) -> &str {
         self.frame_name(self.inner.tool())
+    }
+
+    #[getter]
+    fn tool_choice(&self) -> String {
+        self.inner.tool_choice().to_string()
     }
 
     #[getter]

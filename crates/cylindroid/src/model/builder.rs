@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::contact::{Contact, ContactSpec};
+use super::default_tool::DefaultTool;
 use super::dimension::Dimension;
 use super::elasticity::Elasticity;
 use super::flatten::FlatMechanism;
@@ -20,7 +21,8 @@ use super::loop_joint::{LoopJoint, LoopJointSpec};
 use super::magnitude;
 use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
-use super::tree_order::{TreeOrder, default_tool};
+use super::tool_choice::ToolChoice;
+use super::tree_order::TreeOrder;
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
@@ -410,9 +412,12 @@ impl Builder {
                 self.refuse(name, format!("the {what}: {}", Error::unknown("frame", name, known)))
             }
         };
-        let tool = match &self.tool {
-            None => default_tool(order, &self.joints, links, self.by_name),
-            Some(name) => named("tool", name)?,
+        let (tool, tool_choice) = match &self.tool {
+            Some(name) => (named("tool", name)?, ToolChoice::Named),
+            None => {
+                let (joints, by_name) = (&self.joints, self.by_name);
+                DefaultTool { order, joints, links, frames: &frames, by_name }.choose()
+            }
         };
         let reference = match &self.reference {
             None => tool,
@@ -467,6 +472,7 @@ impl Builder {
                 nodes: flat.nodes,
                 home,
                 tool: id(tool),
+                tool_choice,
                 reach: 1.0,
                 far: 0.0,
                 elasticity: self.elasticity,

@@ -13,6 +13,7 @@ use super::loop_joint::LoopJoint;
 use super::magnitude;
 use super::node::{Node, NodeKind};
 use super::report::LoadReport;
+use super::tool_choice::ToolChoice;
 use crate::error::{Error, Result, all_within};
 use crate::scalar::fnv1a;
 use crate::spatial::{Pose, Rotation, Twist, Vec3, exp};
@@ -42,6 +43,7 @@ pub(super) struct Data {
     pub(super) nodes: Vec<Node>,
     pub(super) home: Vec<f64>,
     pub(super) tool: FrameId,
+    pub(super) tool_choice: ToolChoice,
     pub(super) reach: f64,
     pub(super) far: f64,
     pub(super) elasticity: Elasticity,
@@ -331,7 +333,8 @@ impl Mechanism {
         id.frame_key == self.data.frame_key && id.index < self.data.frames.len()
     }
 
-    /// The default frame (tool): that of the file, otherwise the end of the only moving branch.
+    /// The default frame (tool): that of the file, otherwise the one that its name suggests (`tcp`,
+    /// `tool`, `gripper`, ...), otherwise the end of the longest chain; see [`ToolChoice`].
     #[must_use]
     pub fn tool(&self) -> FrameId {
         self.data.tool

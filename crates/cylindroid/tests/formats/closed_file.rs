@@ -252,7 +252,7 @@ fn contacts_that_cannot_be_are_pointed_at() {
     check(&FINGERS.replace("hard_finger", "plane_frictionless"), "\"cl\"", "line_frictionless");
     check(&FINGERS.replace("\"cr\"", "\"left\""), "\"left\"", "named 'left'");
     let missing = FINGERS.replace("reference = \"box\"", "reference = \"bx\"");
-    check(&missing, "\"bx\"", "no link named 'bx'; nearest: box");
+    check(&missing, "\"bx\"", "no link or frame named 'bx'; nearest: box");
 }
 
 #[test]

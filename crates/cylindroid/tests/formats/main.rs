@@ -23,6 +23,7 @@ mod mutations;
 mod order;
 mod real_chains;
 mod sdf;
+mod tool;
 mod urdf;
 
 use std::path::{Path, PathBuf};

@@ -181,7 +181,11 @@ fn what_is_not_known_is_refused_with_the_nearest_name() {
         "no joint type named 'screw'",
     );
     check(&ARM_TOML.replace("link = \"hand\"", "link = \"hnd\""), "\"hnd\"", "nearest: hand");
-    check(&ARM_TOML.replace("reference = \"hand\"", "reference = \"x\""), "\"x\"", "no link named");
+    check(
+        &ARM_TOML.replace("reference = \"hand\"", "reference = \"x\""),
+        "\"x\"",
+        "no link or frame named",
+    );
     let tool = format!("tool = \"tp\"\n{ARM_TOML}");
     check(&tool, "\"tp\"", "no frame named 'tp'; nearest: tip");
     let ring = ARM_TOML.replace("pitch = 0.01", "pitch = 0.01\nmimic = { joint = \"swin\" }");

@@ -103,7 +103,15 @@ pub(in crate::model) fn describe(
 
     let reference = file.string("reference")?;
     let point = file.vector("reference_point", planar)?;
-    tree::write(&mut world, &joints, &contacts, reference.map(|r| (r, point)))?;
+    let frames = file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])?;
+    let site = match reference {
+        Some(name) if !joined.contains(&name) && !world.has(name) => {
+            site_link(&world, &frames, name)?
+        }
+        _ => None,
+    };
+    let reference_link = site.as_deref().or(reference);
+    tree::write(&mut world, &joints, &contacts, reference_link.map(|r| (r, point)))?;
     contact::write(&mut world, &contacts);
     body::write(&file, &mut world, &brought)?;
     collision::write(&file, &mut world)?;
@@ -115,15 +123,21 @@ pub(in crate::model) fn describe(
         part.map(|(_, link, origin)| ((*link).to_owned(), *origin))
     })?;
 
-    for frame in file.tables("frame", "[[frame]]", &["name", "link", "xyz", "rpy"])? {
+    for frame in frames {
         let name = frame.required_string("name")?;
         let link = frame.required_string("link")?;
         world.check_link(&frame, "link", link)?;
         world.builder.frame(name, link, frame.pose()?);
     }
     closure::write(&file, &mut world)?;
-    if let Some(reference) = reference {
-        world.check_link(&file, "reference", reference)?;
+    if let (Some(reference), Some(_)) = (reference, &site) {
+        if point.is_some() {
+            let message = format!("'{reference}' is a frame, and its origin the reference point");
+            return Err(file.refuse("reference_point", message, "remove one of them"));
+        }
+        world.builder.tool(reference).reference(reference);
+    } else if let Some(reference) = reference {
+        world.check_reference(&file, reference)?;
         refer(&mut world, reference, point.or(tree::first_origin(&joints, reference)));
     } else if file.has("reference_point") {
         let help = "name the link it belongs to: reference = \"...\"";
@@ -139,6 +153,17 @@ pub(in crate::model) fn describe(
     report.format = format;
     report.source = file.string("source")?.unwrap_or("").to_owned();
     Ok((world.build(close)?, file.string("description")?.unwrap_or("").to_owned()))
+}
+
+/// The link of a frame of this name, of the file or of a robot in it; `None` for links.
+fn site_link(world: &World<'_>, frames: &[Table<'_>], name: &str) -> Result<Option<String>> {
+    for frame in frames {
+        if frame.required_string("name")? == name {
+            return Ok(Some(frame.required_string("link")?.to_owned()));
+        }
+    }
+    let known = world.builder.frames.iter().find(|(frame, ..)| frame == name);
+    Ok(known.map(|(_, link, _)| link.clone()))
 }
 
 /// The reference frame: the link's own frame, or one with world axes at the reference point.

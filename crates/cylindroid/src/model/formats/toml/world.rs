@@ -121,6 +121,16 @@ impl<'t> World<'t> {
         Err(table.refuse(key, unknown.to_string(), ""))
     }
 
+    /// Returns an error for a reference that is no link, with the nearest links and frames.
+    pub(super) fn check_reference(&self, table: &Table<'_>, name: &str) -> Result<()> {
+        if self.has(name) {
+            return Ok(());
+        }
+        let frames = self.builder.frames.iter().map(|(frame, ..)| frame);
+        let unknown = Error::unknown("link or frame", name, self.index.keys().chain(frames));
+        Err(table.refuse("reference", unknown.to_string(), ""))
+    }
+
     /// Logs a part of the file, at a byte offset, that the model does not contain.
     pub(super) fn note(&mut self, at: usize, what: &str, why: &'static str, name: &str) {
         self.notes.add(at, what, why, name);
