@@ -21,7 +21,7 @@ pub(crate) use move_to::{
 };
 
 pub(crate) use screws::ScrewsArgs;
-pub(crate) use shared::{ConfigurationArgs, FrameArgs};
+pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs};
 pub(crate) use view::ViewArgs;
 
 use self::inverses::NamedInverseArgs;
@@ -110,6 +110,9 @@ pub(crate) enum Command {
 pub(crate) struct InfoArgs {
     /// Model file or catalogue name
     pub(crate) model: String,
+
+    #[command(flatten)]
+    pub(crate) limits: LimitsArgs,
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,7 @@
 //! From Python's keywords to the options of the servo, with the names of the command line.
 
 use cylindroid::control::{SecondaryNullSpace, SecondaryTask, ServoGains, SpeedLimit, Task};
+use cylindroid::model::JointLimits;
 use cylindroid::{Error, Mechanism, ReferenceFrame, ServoOptions, Twist};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -87,6 +88,41 @@ pub(crate) fn secondary(
     }
     let names: Vec<String> = given.extract().map_err(|_| Failure::kind(words))?;
     names.iter().map(|name| Ok(named(name)?)).collect()
+}
+
+/// Limits of joints: a dict of dicts.
+pub(crate) fn limits(given: &Bound<'_, PyAny>) -> Result<Vec<(String, JointLimits)>> {
+    let words = "limits is a dict: for each joint a dict of limits, {'wrist': {'velocity': 1.0}}";
+    let joints = given.cast::<PyDict>().map_err(|_| Failure::kind(words))?;
+    let each = joints.iter().map(|(joint, of)| {
+        let joint: String = entry("limits", &joint)?;
+        let of = of.cast::<PyDict>().map_err(|_| Failure::kind(words))?;
+        let limits = of.iter().try_fold(JointLimits::default(), |limits, (name, value)| {
+            let name: String = entry("limits", &name)?;
+            Ok::<_, Failure>(limits.with(&name, entry("limits", &value)?)?)
+        })?;
+        Ok((joint, limits))
+    });
+    each.collect()
+}
+
+/// The argument of `with_limits`.
+pub(crate) fn limits_dict<'py>(
+    py: Python<'py>,
+    limits: &[(String, JointLimits)],
+) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    for (joint, l) in limits {
+        let of = PyDict::new(py);
+        let values = [l.lower, l.upper, l.velocity, l.acceleration, l.effort];
+        for (name, value) in JointLimits::NAMES.into_iter().zip(values) {
+            if let Some(value) = value {
+                of.set_item(name, value)?;
+            }
+        }
+        all.set_item(joint, of)?;
+    }
+    Ok(all)
 }
 
 pub(crate) fn null_space(name: &str) -> Result<SecondaryNullSpace> {

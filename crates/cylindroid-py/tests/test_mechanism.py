@@ -188,6 +188,17 @@ def test_pickling(tmp_path, monkeypatch):
         np.testing.assert_array_equal(again.fk(r.home), r.fk(r.home))
     driven = read[1].with_actuated(["q1", "q3"])
     assert pickle.loads(pickle.dumps(driven)).actuated == driven.actuated == ["q1", "q3"]
+    slow = driven.with_limits({"q1": {"velocity": 0.5, "lower": -1.0}, "q5": {"effort": 2.0}})
+    assert slow.velocity_limit[0] == 0.5 and slow.lower[0] == -1.0
+    again = pickle.loads(pickle.dumps(slow))
+    np.testing.assert_array_equal(again.velocity_limit, slow.velocity_limit)
+    assert again.actuated == ["q1", "q3"]
+    with pytest.raises(cy.UnknownNameError, match="nearest: velocity"):
+        driven.with_limits({"q1": {"velocty": 0.5}})
+    with pytest.raises(cy.InvalidOptionError, match="narrowed"):
+        slow.with_limits({"q1": {"lower": -2.0}})
+    with pytest.raises(cy.ArgumentTypeError, match="limits is a dict"):
+        driven.with_limits([1.0])
     (tmp_path / "one.urdf").unlink()
     with pytest.raises(cy.CylindroidError, match="one.urdf"):
         pickle.loads(kept[2])

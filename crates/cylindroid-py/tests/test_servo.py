@@ -109,6 +109,11 @@ def test_options_are_the_command_lines():
     slow = cy.Servo(ur, acceleration=1.0, dt=0.001)
     assert np.abs(slow.step(ur.home, lowered(ur))).max() <= 1e-3 * (1 + 1e-12)
     assert "acceleration" in {kind for _, kind in slow.active_limits}
+    limits = {name: {"velocity": 0.1, "acceleration": 2.0} for name in ur.joint_names}
+    limited = cy.Servo(ur, limits=limits, dt=0.001)
+    assert np.abs(limited.step(ur.home, lowered(ur))).max() <= 2e-3 * (1 + 1e-12)
+    with pytest.raises(cy.UnknownNameError, match="nearest: wrist_1_joint"):
+        cy.Servo(ur, limits={"wrist_1": {"velocity": 1.0}})
     offset = np.eye(4)
     offset[2, 3] = 0.2
     tool = cy.Servo(r, tool=offset)

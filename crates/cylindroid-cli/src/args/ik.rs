@@ -3,7 +3,7 @@
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
-use super::{ConfigurationArgs, FrameArgs, TargetArgs};
+use super::{ConfigurationArgs, FrameArgs, LimitsArgs, TargetArgs};
 
 pub(crate) const ABOUT: &str = "\
 Inverse kinematics: configurations that bring a frame to a target, within all limits
@@ -31,6 +31,9 @@ pub(crate) struct IkArgs {
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
+
+    #[command(flatten)]
+    pub(crate) limits: LimitsArgs,
 
     #[command(flatten)]
     pub(crate) target: TargetArgs,

@@ -7,7 +7,7 @@ use cylindroid::control::SecondaryTask;
 use cylindroid::inverse::Parameter;
 
 use super::inverses::NamedInverseArgs;
-use super::{ConfigurationArgs, FrameArgs};
+use super::{ConfigurationArgs, FrameArgs, LimitsArgs};
 use crate::values::{Joints, Named, Numbers, Pair, Weights};
 
 pub(crate) const ABOUT: &str = "\
@@ -43,6 +43,9 @@ pub(crate) struct MoveArgs {
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
+
+    #[command(flatten)]
+    pub(crate) limits: LimitsArgs,
 
     /// Actuated joints of a mechanism with loops, overriding those of the file
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]

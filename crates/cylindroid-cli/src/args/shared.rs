@@ -1,5 +1,7 @@
 //! Arguments of several commands: a model at a configuration, a frame.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use crate::values::{Joints, Numbers};
@@ -31,4 +33,14 @@ pub(crate) struct FrameArgs {
     /// Point fixed to the frame that replaces its origin, in its axes [m]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) tool: Option<Numbers<3>>,
+}
+
+/// Limits in place of those of the model.
+#[derive(Debug, Args)]
+pub(crate) struct LimitsArgs {
+    /// Limits of joints in place of those of the model: a table [NAME] for each joint with `lower`,
+    /// `upper` (narrower than in the model), `velocity`, `acceleration`, `effort` [rad or m, s, N m or
+    /// N]
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) limits: Option<PathBuf>,
 }

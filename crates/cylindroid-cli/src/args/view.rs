@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{ConfigurationArgs, FrameArgs};
+use super::{ConfigurationArgs, FrameArgs, LimitsArgs};
 
 pub(crate) const ABOUT: &str = "\
 The web viewer: display a model, drag its tool or object, and monitor its measures
@@ -29,6 +29,9 @@ pub(crate) struct ViewArgs {
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
+
+    #[command(flatten)]
+    pub(crate) limits: LimitsArgs,
 
     /// Actuated joints of a mechanism with loops, replacing those of the file
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::target::{errors, target_pose, task};
 use crate::args::IkArgs;
-use crate::commands::shared::{Style, answer, configuration, end_effector};
+use crate::commands::shared::{Style, answer, configuration, end_effector, limited};
 use crate::output::{self, Align, PoseJson, number};
 
 #[derive(Debug, Serialize)]
@@ -54,7 +54,7 @@ struct ReachJson {
 }
 
 pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.configuration.model)?;
+    let robot = limited(cylindroid::load(&args.configuration.model)?, &args.limits)?;
     let start = configuration(&robot, &args.configuration)?;
     let end_effector = end_effector(&robot, &args.frame)?;
     let (task, what) = task(&args.target, &robot)?;

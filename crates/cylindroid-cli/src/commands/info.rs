@@ -9,7 +9,7 @@ use cylindroid::model::Joint;
 use serde::Serialize;
 
 use crate::args::InfoArgs;
-use crate::commands::shared::Style;
+use crate::commands::shared::{Style, limited};
 use crate::output::{self, Align, MimicJson};
 
 #[derive(Debug, Serialize)]
@@ -114,7 +114,7 @@ struct IgnoredJson<'a> {
 }
 
 pub(crate) fn run(args: &InfoArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.model)?;
+    let robot = limited(cylindroid::load(&args.model)?, &args.limits)?;
     let info = describe(&robot);
     match style {
         Style::Json => output::json(out, &info)?,

@@ -3,9 +3,10 @@
 use std::process::ExitCode;
 
 use cylindroid::model::Mechanism;
+use cylindroid::model::formats::toml::with_limits_of_file;
 use cylindroid::{EndEffector, Error, Pose, Vec3};
 
-use crate::args::{ConfigurationArgs, FrameArgs};
+use crate::args::{ConfigurationArgs, FrameArgs, LimitsArgs};
 
 /// Output style of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +24,14 @@ pub(crate) fn answer(yes: bool) -> ExitCode {
 pub(crate) fn load(model: &str, actuated: &[String]) -> cylindroid::Result<Mechanism> {
     let loaded = cylindroid::load(model)?;
     if actuated.is_empty() { Ok(loaded) } else { loaded.with_actuated(actuated) }
+}
+
+/// The model with the limits of a file, if one is named.
+pub(crate) fn limited(robot: Mechanism, args: &LimitsArgs) -> cylindroid::Result<Mechanism> {
+    match &args.limits {
+        None => Ok(robot),
+        Some(file) => with_limits_of_file(&robot, file),
+    }
 }
 
 /// The configuration of the arguments; its size and values are checked.

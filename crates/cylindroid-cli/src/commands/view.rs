@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::args::ViewArgs;
 use crate::commands::shared::{
-    Style, all_actuated, configuration, end_effector, load, within_limits,
+    Style, all_actuated, configuration, end_effector, limited, load, within_limits,
 };
 use crate::viewer::{Server, Start, page_is_built};
 
@@ -65,6 +65,7 @@ fn note() {
 
 fn start(args: &ViewArgs) -> Result<Start> {
     let robot = load(&args.configuration.model, &args.actuated)?;
+    let robot = limited(robot, &args.limits)?;
     if !args.actuated.is_empty() && !robot.is_closed() {
         return Err(all_actuated(&robot));
     }

@@ -2,9 +2,10 @@
 
 use pyo3::prelude::*;
 
-use super::PyMechanism;
+use super::{Origin, PyMechanism};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::Result;
+use crate::options;
 
 impl PyMechanism {
     fn limits<'py>(
@@ -42,6 +43,40 @@ impl PyMechanism {
     #[getter]
     fn effort_limit<'py>(&self, py: Python<'py>) -> Array<'py> {
         self.limits(py, |l| l.effort)
+    }
+
+    /// The same mechanism with other limits of some joints.
+    ///
+    /// Parameters
+    /// ----------
+    /// limits : dict of str to dict of str to float
+    ///     For each joint, coordinate or loop joint the limits that replace those of the model:
+    ///     'lower' and 'upper' (narrower than in the model), 'velocity', 'acceleration', 'effort'
+    ///     [rad or m, /s, /s^2, N m or N].
+    ///
+    /// Returns
+    /// -------
+    /// Mechanism
+    ///
+    /// Raises
+    /// ------
+    /// UnknownNameError
+    ///     For an unknown joint or limit, with the nearest names.
+    /// InvalidOptionError
+    ///     For positions beyond those of the model, contradictory limits, a joint that is fixed or
+    ///     follows another.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> robot = cy.load("ur5e").with_limits({"elbow_joint": {"acceleration": 5.0}})
+    /// >>> float(robot.acceleration_limit[2])
+    /// 5.0
+    #[pyo3(signature = (limits))]
+    fn with_limits(&self, limits: &Bound<'_, PyAny>) -> Result<Self> {
+        let limits = options::limits(limits)?;
+        let inner = self.inner.with_limits(&limits)?;
+        Ok(Self::new(inner, Origin::Limited { of: Box::new(self.clone()), limits }))
     }
 
     /// The names of coordinates outside their position limits.

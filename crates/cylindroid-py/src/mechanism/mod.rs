@@ -12,13 +12,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use cylindroid::closure::MobilityCounts;
 use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
-use cylindroid::model::Dimension;
+use cylindroid::model::{Dimension, JointLimits};
 use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose};
 use pyo3::prelude::*;
 use pyo3::{IntoPyObjectExt, intern};
 
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Result, argument};
+use crate::options;
 use crate::table::{self, Table};
 
 pub(crate) use joint::PyJoint;
@@ -83,6 +84,8 @@ pub(crate) enum Origin {
     Text { text: String, format: String, path: PathBuf },
     /// Another mechanism, with other actuators.
     Actuated { of: Box<PyMechanism>, names: Vec<String> },
+    /// Another mechanism, with other limits.
+    Limited { of: Box<PyMechanism>, limits: Vec<(String, JointLimits)> },
 }
 
 /// Drives, reference, bits of the length.
@@ -311,6 +314,10 @@ impl PyMechanism {
             Origin::Actuated { of, names } => (
                 py.get_type::<Self>().getattr(intern!(py, "with_actuated"))?,
                 ((**of).clone(), names).into_bound_py_any(py)?,
+            ),
+            Origin::Limited { of, limits } => (
+                py.get_type::<Self>().getattr(intern!(py, "with_limits"))?,
+                ((**of).clone(), options::limits_dict(py, limits)?).into_bound_py_any(py)?,
             ),
         })
     }

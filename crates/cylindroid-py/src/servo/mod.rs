@@ -48,6 +48,8 @@ pub(crate) use trajectory::PyTrajectory;
 ///     Speed limits of the tool [m/s, rad/s]. Default: those of the joints.
 /// acceleration : float, optional
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
+/// limits : dict of str to dict of str to float, optional
+///     Limits of joints in place of those of the model, see `Mechanism.with_limits`.
 /// length : float, optional
 ///     Characteristic length that scales linear rows (m). Default: that of the mechanism, `reach`.
 /// joint_weights : array_like, (n,), or 'inertia', optional
@@ -178,7 +180,7 @@ impl PyServo {
     #[new]
     #[pyo3(signature = (mechanism, frame = None, gain = None, *, tool = None, dt = None,
         tolerance_position = None, tolerance_orientation = None, speed = None,
-        acceleration = None, length = None, joint_weights = None, secondary = None,
+        acceleration = None, limits = None, length = None, joint_weights = None, secondary = None,
         posture = None, null_space = "exact", task = None, task_axes = None,
         inverse = "truncated", give_up = None, fallback = None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
@@ -192,6 +194,7 @@ impl PyServo {
         #[pyo3(from_py_with = argument)] tolerance_orientation: Option<f64>,
         speed: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] acceleration: Option<f64>,
+        limits: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] length: Option<f64>,
         #[pyo3(from_py_with = argument)] joint_weights: Option<JointWeights<'_>>,
         secondary: Option<Bound<'_, PyAny>>,
@@ -204,7 +207,11 @@ impl PyServo {
         #[pyo3(from_py_with = argument)] fallback: Option<&str>,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> Result<Self> {
-        let robot = &mechanism.inner;
+        let limited = match &limits {
+            None => mechanism.inner.clone(),
+            Some(limits) => mechanism.inner.with_limits(&options::limits(limits)?)?,
+        };
+        let robot = &limited;
         let mut options = ServoOptions::new(robot);
         if let Some(name) = frame {
             options.end_effector.frame = robot.frame(name)?;

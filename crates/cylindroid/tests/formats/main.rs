@@ -12,6 +12,7 @@ mod corpus;
 mod dh;
 mod elasticity;
 mod fk;
+mod joint_limits;
 mod lax;
 mod limits;
 mod load;

@@ -11,7 +11,9 @@ use super::super::target::{target_pose, task};
 use super::bounds::{check_jerks, joint_defaults, path_bounds};
 use super::inverse;
 use crate::args::{MoveArgs, NullSpaceName, PathArgs, ServoArgs};
-use crate::commands::shared::{all_actuated, configuration, end_effector, load, within_limits};
+use crate::commands::shared::{
+    all_actuated, configuration, end_effector, limited, load, within_limits,
+};
 use crate::values::{Named, Weights};
 
 /// A motion to compute.
@@ -48,6 +50,7 @@ pub(super) enum Goal {
 impl Job {
     pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
         let robot = load(&args.configuration.model, &args.actuated)?;
+        let robot = limited(robot, &args.limits)?;
         if !args.actuated.is_empty() && !robot.is_closed() {
             return Err(all_actuated(&robot).into());
         }

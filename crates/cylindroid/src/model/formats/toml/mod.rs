@@ -17,6 +17,7 @@ mod collision;
 mod contact;
 mod elasticity;
 mod limit;
+mod limits_file;
 mod names;
 mod parse;
 mod robot;
@@ -24,6 +25,7 @@ mod tree;
 mod value;
 mod world;
 
+pub use self::limits_file::{with_limits_of_file, with_limits_of_text};
 pub use self::parse::parse;
 pub(crate) use self::parse::read;
 pub(in crate::model) use self::robot::Loader;
