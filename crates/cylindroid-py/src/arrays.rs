@@ -72,13 +72,8 @@ impl Numbers<'_> {
         self.0.as_slice().unwrap_or_default()
     }
 
-    fn shape_text(&self) -> String {
-        let sizes: Vec<String> = self.shape().iter().map(ToString::to_string).collect();
-        format!(
-            "an array of shape ({}{})",
-            sizes.join(", "),
-            if sizes.len() == 1 { "," } else { "" }
-        )
+    pub(crate) fn shape_text(&self) -> String {
+        format!("an array of shape {}", shape_text(self.shape()))
     }
 
     /// The numbers of a vector.
@@ -155,6 +150,12 @@ impl Numbers<'_> {
             _ => Err(Failure::option(name, self.shape_text(), "a pose is a matrix of 4 x 4")),
         }
     }
+}
+
+/// A shape as Python writes it.
+pub(crate) fn shape_text(shape: &[usize]) -> String {
+    let sizes: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    format!("({}{})", sizes.join(", "), if sizes.len() == 1 { "," } else { "" })
 }
 
 /// Checks a matrix of twists as columns.

@@ -21,6 +21,7 @@ mod screws;
 mod servo;
 mod spatial;
 mod table;
+mod tasks;
 mod threads;
 
 use pyo3::prelude::*;
@@ -92,6 +93,12 @@ mod _core {
     use crate::spatial::{
         bracket, coadjoint, error_to, exp, exp_derivative, log, log_derivative,
         rotation_exp_derivative, rotation_log_derivative, velocity_conversion,
+    };
+    #[pymodule_export]
+    use crate::tasks::{
+        PyCenterOfMassTask, PyCollisionAvoidance, PyCustomTask, PyFrameTask, PyGazeTask,
+        PyJointVelocitiesTask, PyMotionTask, PyPostureTask, PyRelativeFrameTask, PyTaskReport,
+        PyTaskServo,
     };
 
     use super::*;

@@ -86,6 +86,35 @@ def servo(**options):
     return cy.Servo(PANDA, **options)
 
 
+def task_servo():
+    return cy.TaskServo(PANDA, [cy.FrameTask("flange", POSE), cy.PostureTask(PANDA.home)])
+
+
+def tasks():
+    """The same of tasks."""
+    common = {"name": "task", "weight": 2.0}
+    ranked = {**common, "level": 1, "gain": 4.0}
+    ranks = {"tolerance_position": 1e-4, "tolerance_orientation": 1e-3}
+    frame = {"frame": "flange", "tool": np.eye(4)}
+    yield from [
+        ("FrameTask", cy.FrameTask,
+         {**frame, "target": POSE, "components": "pose", "axes": "world", **ranked, **ranks}),
+        ("RelativeFrameTask", cy.RelativeFrameTask,
+         {**frame, "reference": "link4", "target": POSE, "reference_tool": np.eye(4),
+          "components": "x,y", **ranked, **ranks}),
+        ("CenterOfMassTask", cy.CenterOfMassTask,
+         {"target": [0.0, 0, 1], "axes": "xy", **ranked, "tolerance_position": 1e-4}),
+        ("GazeTask", cy.GazeTask,
+         {**frame, "point": [0.0, 0, 1], **ranked, "tolerance_orientation": 1e-3}),
+        ("PostureTask", cy.PostureTask, {"q": PANDA.home, **common, "gain": 4.0, **ranks}),
+        ("JointVelocitiesTask", cy.JointVelocitiesTask,
+         {"velocities": np.zeros(7), **common, **ranks}),
+        ("CustomTask", cy.CustomTask,
+         {"function": lambda q: ([0.0], np.zeros((1, 7))), "rows": 1, **ranked,
+          "tolerance_orientation": 1e-3}),
+    ]
+
+
 def calls():
     """(name, callable, arguments) of every public callable with parameters."""
     projector = cy.Projector(ARM, J[:, 3:6])
@@ -108,6 +137,8 @@ def calls():
          {"start": POSE, "centre": [0.0, 0, 0], "axis": [0.0, 0, 1], "angle": 1.0}),
         ("CartesianPath.pose", line().pose, {"s": 0.5}),
         ("CartesianPath.deviation", line().deviation, {"pose": POSE}),
+        ("CollisionAvoidance", cy.CollisionAvoidance,
+         {"model": with_ball(), "gap": 0.02, "margin": 0.2}),
         ("CollisionModel", cy.CollisionModel,
          {"mechanism": PANDA, "disabled": [("link1", "link2")], "srdf": None,
           "meshes": "convex_hull", "samples": 3, "seed": 1}),
@@ -175,7 +206,8 @@ def calls():
           "acceleration": 4.0, "limits": {"panda_joint1": {"velocity": 1.0}}, "length": 0.5,
           "joint_weights": np.ones(7), "secondary": "posture",
           "posture": PANDA.home, "null_space": "exact", "task": "pose", "task_axes": "world",
-          "inverse": "damped", "give_up": None, "fallback": None, "damping": 0.1}),
+          "inverse": "damped", "give_up": None, "fallback": None, "tasks": None, "collisions": None,
+          "damping": 0.1}),
         ("Servo.step", servo().step,
          {"q": PANDA.home, "target": NEAR, "secondary": np.zeros(7), "feed_forward": TWIST}),
         ("Servo.advance", servo().advance, {"q": PANDA.home}),
@@ -191,6 +223,14 @@ def calls():
         ("Stiffness.at", stiff.at, {"frame": np.eye(4)}),
         ("Stiffness.compliance_at", stiff.compliance_at, {"frame": np.eye(4)}),
         ("Stiffness.deflection", stiff.deflection, {"wrench": TWIST}),
+        ("TaskServo", cy.TaskServo,
+         {"mechanism": PANDA, "tasks": [cy.FrameTask("link4", POSE)],
+          "collisions": cy.CollisionAvoidance(with_ball()),
+          "limits": {"panda_joint1": {"velocity": 1.0}}, "dt": 0.01, "length": 0.5,
+          "joint_weights": np.ones(7), "acceleration": 4.0, "eps": 0.01}),
+        ("TaskServo.step", task_servo().step,
+         {"q": PANDA.home, "targets": {"flange": (NEAR, TWIST), "posture": PANDA.home}}),
+        ("TaskServo.advance", task_servo().advance, {"q": PANDA.home}),
         ("TimeLaw", cy.TimeLaw,
          {"distance": 1.0, "velocity": 1.0, "acceleration": 2.0, "jerk": 9.0, "duration": 9.0}),
         ("TimeLaw.at", cy.TimeLaw(1.0, 1.0, 2.0).at, {"t": 0.5}),
@@ -235,6 +275,7 @@ def calls():
          {"J": J, "task": TWIST, "max_joint_velocity": 0.5}),
         ("transversals", cy.transversals, {"lines": LINES_AS_COLUMNS, **SPACE}),
         ("velocity_conversion", cy.velocity_conversion, {"b_from_a": POSE}),
+        *tasks(),
         *[(f"Mechanism.{name}", getattr(robot, name), arguments)
           for name, robot, arguments in methods(grip)],
     ]

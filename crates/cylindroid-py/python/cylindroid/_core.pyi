@@ -1,11 +1,12 @@
 """Types of the compiled part; documentation is in the docstrings (`help(cylindroid.Mechanism)`)."""
 
 import os
-from collections.abc import Sequence
-from typing import Any, final
+from collections.abc import Callable, Sequence
+from typing import Any, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 _Array = NDArray[np.float64]
 
@@ -17,10 +18,13 @@ __all__ = [
     "Branch",
     "CartesianMove",
     "CartesianPath",
+    "CenterOfMassTask",
+    "CollisionAvoidance",
     "CollisionModel",
     "Constraint",
     "ContactForces",
     "ContinuationResult",
+    "CustomTask",
     "Deflection",
     "Direction",
     "Distances",
@@ -30,6 +34,8 @@ __all__ = [
     "Existence",
     "FingerContact",
     "FiniteMobility",
+    "FrameTask",
+    "GazeTask",
     "Gradient",
     "GraspMobility",
     "GraspQuality",
@@ -44,6 +50,7 @@ __all__ = [
     "JointMobility",
     "JointMove",
     "JointTorques",
+    "JointVelocitiesTask",
     "Limb",
     "LoadReport",
     "LoopClosureError",
@@ -53,13 +60,16 @@ __all__ = [
     "Mobility",
     "ModeMeeting",
     "MotionResult",
+    "MotionTask",
     "OperationMode",
     "OperationModes",
     "OperatorAuthority",
     "PitchConics",
     "PointDirection",
     "Polytope",
+    "PostureTask",
     "Projector",
+    "RelativeFrameTask",
     "Screw",
     "ScrewSystem",
     "Servo",
@@ -70,6 +80,8 @@ __all__ = [
     "Spectrum",
     "Stall",
     "Stiffness",
+    "TaskReport",
+    "TaskServo",
     "TimeLaw",
     "Trajectory",
     "Transmission",
@@ -207,6 +219,16 @@ class CartesianPath:
     ) -> CartesianPath: ...
     def pose(self, s: ArrayLike) -> _Array: ...
     def deviation(self, pose: ArrayLike) -> tuple[float, float, float]: ...
+
+@final
+class CollisionAvoidance:
+    def __new__(cls, model: CollisionModel, *, gap: float = 0.01, margin: float = 0.3) -> CollisionAvoidance: ...
+    @property
+    def model(self) -> CollisionModel: ...
+    @property
+    def gap(self) -> float: ...
+    @property
+    def margin(self) -> float: ...
 
 @final
 class CollisionModel:
@@ -1281,6 +1303,7 @@ class ScrewSystem:
 
 @final
 class Servo:
+    @overload
     def __new__(
         cls,
         mechanism: Mechanism,
@@ -1304,8 +1327,23 @@ class Servo:
         inverse: str = "truncated",
         give_up: Sequence[str] | ArrayLike | None = None,
         fallback: str | None = None,
+        tasks: None = None,
+        collisions: None = None,
         **parameters: float | None,
     ) -> Servo: ...
+    @overload
+    def __new__(  # type: ignore[misc]
+        cls,
+        mechanism: Mechanism,
+        *,
+        tasks: Sequence[MotionTask],
+        collisions: CollisionAvoidance | None = None,
+        limits: dict[str, dict[str, float]] | None = None,
+        dt: float | None = None,
+        acceleration: float | None = None,
+        length: float | None = None,
+        joint_weights: ArrayLike | None = None,
+    ) -> TaskServo: ...
     @property
     def rank(self) -> int: ...
     @property
@@ -1491,6 +1529,184 @@ class Stiffness:
     def at(self, frame: ArrayLike) -> _Array | None: ...
     def compliance_at(self, frame: ArrayLike) -> _Array | None: ...
     def deflection(self, wrench: ArrayLike) -> Deflection: ...
+
+@disjoint_base
+class MotionTask:
+    @property
+    def name(self) -> str: ...
+    @property
+    def level(self) -> int: ...
+    @property
+    def weight(self) -> float: ...
+    @property
+    def gain(self) -> float: ...
+    @property
+    def tolerance_position(self) -> float: ...
+    @property
+    def tolerance_orientation(self) -> float: ...
+
+@final
+class CenterOfMassTask(MotionTask):
+    def __new__(
+        cls,
+        target: ArrayLike,
+        *,
+        axes: str = "xyz",
+        name: str | None = None,
+        level: int = 0,
+        weight: float | None = None,
+        gain: float | None = None,
+        tolerance_position: float | None = None,
+    ) -> CenterOfMassTask: ...
+
+@final
+class CustomTask(MotionTask):
+    def __new__(
+        cls,
+        function: Callable[[_Array], tuple[ArrayLike, ArrayLike]],
+        rows: int,
+        *,
+        name: str | None = None,
+        level: int = 0,
+        weight: float | None = None,
+        gain: float | None = None,
+        tolerance_orientation: float | None = None,
+    ) -> CustomTask: ...
+
+@final
+class FrameTask(MotionTask):
+    def __new__(
+        cls,
+        frame: str,
+        target: ArrayLike | tuple[ArrayLike, ArrayLike],
+        *,
+        tool: ArrayLike | None = None,
+        components: str = "pose",
+        axes: str | None = None,
+        name: str | None = None,
+        level: int = 0,
+        weight: float | None = None,
+        gain: float | None = None,
+        tolerance_position: float | None = None,
+        tolerance_orientation: float | None = None,
+    ) -> FrameTask: ...
+
+@final
+class GazeTask(MotionTask):
+    def __new__(
+        cls,
+        frame: str,
+        point: ArrayLike,
+        *,
+        tool: ArrayLike | None = None,
+        name: str | None = None,
+        level: int = 0,
+        weight: float | None = None,
+        gain: float | None = None,
+        tolerance_orientation: float | None = None,
+    ) -> GazeTask: ...
+
+@final
+class JointVelocitiesTask(MotionTask):
+    def __new__(
+        cls,
+        velocities: ArrayLike,
+        *,
+        name: str | None = None,
+        weight: float | None = None,
+        tolerance_position: float | None = None,
+        tolerance_orientation: float | None = None,
+    ) -> JointVelocitiesTask: ...
+
+@final
+class PostureTask(MotionTask):
+    def __new__(
+        cls,
+        q: ArrayLike,
+        *,
+        name: str | None = None,
+        weight: float | None = None,
+        gain: float | None = None,
+        tolerance_position: float | None = None,
+        tolerance_orientation: float | None = None,
+    ) -> PostureTask: ...
+
+@final
+class RelativeFrameTask(MotionTask):
+    def __new__(
+        cls,
+        frame: str,
+        reference: str,
+        target: ArrayLike,
+        *,
+        tool: ArrayLike | None = None,
+        reference_tool: ArrayLike | None = None,
+        components: str = "pose",
+        name: str | None = None,
+        level: int = 0,
+        weight: float | None = None,
+        gain: float | None = None,
+        tolerance_position: float | None = None,
+        tolerance_orientation: float | None = None,
+    ) -> RelativeFrameTask: ...
+
+@final
+class TaskReport:
+    @property
+    def name(self) -> str: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def position_error(self) -> float: ...
+    @property
+    def orientation_error(self) -> float: ...
+    @property
+    def scale(self) -> float: ...
+    @property
+    def left_out(self) -> float: ...
+    @property
+    def limit(self) -> tuple[str, str] | None: ...
+    @property
+    def pair(self) -> tuple[str, str] | None: ...
+    @property
+    def stopped_by(self) -> str | None: ...
+
+@final
+class TaskServo:
+    def __new__(
+        cls,
+        mechanism: Mechanism,
+        tasks: Sequence[MotionTask],
+        collisions: CollisionAvoidance | None = None,
+        *,
+        limits: dict[str, dict[str, float]] | None = None,
+        dt: float | None = None,
+        length: float | None = None,
+        joint_weights: ArrayLike | None = None,
+        acceleration: float | None = None,
+        eps: float | None = None,
+    ) -> TaskServo: ...
+    @property
+    def status(self) -> str | None: ...
+    @property
+    def reports(self) -> dict[str, TaskReport]: ...
+    @property
+    def joint_velocities(self) -> _Array: ...
+    @property
+    def active_limits(self) -> list[tuple[str, str]]: ...
+    @property
+    def near(self) -> Distances | None: ...
+    @property
+    def tasks(self) -> list[str]: ...
+    @property
+    def dt(self) -> float: ...
+    def step(
+        self,
+        q: ArrayLike,
+        targets: dict[str, ArrayLike | tuple[ArrayLike, ArrayLike]] | None = None,
+    ) -> _Array: ...
+    def advance(self, q: ArrayLike) -> _Array: ...
+    def reset(self) -> None: ...
 
 @final
 class TimeLaw:

@@ -72,7 +72,7 @@ use crate::mechanism::PyMechanism;
 #[pyclass(name = "CollisionModel", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PyCollisionModel {
-    inner: CollisionModel,
+    pub(crate) inner: CollisionModel,
     state: State,
 }
 
@@ -105,6 +105,14 @@ fn placed(pose: Option<Numbers<'_>>) -> Result<Pose> {
         return Ok(Pose::from_translation(cylindroid::Vec3::from_array(position)));
     }
     numbers.pose("pose")
+}
+
+impl PyCollisionModel {
+    /// The pairs nearer than a margin (m) at a configuration.
+    pub(crate) fn near_at(&mut self, q: &[f64], margin: f64) -> Result<PyDistances> {
+        self.state.set(q)?;
+        PyDistances::of(&mut self.inner, &self.state, margin)
+    }
 }
 
 #[pymethods]
@@ -162,8 +170,7 @@ impl PyCollisionModel {
         q: Numbers<'_>,
         #[pyo3(from_py_with = argument)] margin: f64,
     ) -> Result<PyDistances> {
-        self.state.set(q.vector("q")?)?;
-        PyDistances::of(&mut self.inner, &self.state, margin)
+        self.near_at(q.vector("q")?, margin)
     }
 
     /// Adds an obstacle, which is watched against all links that can move.

@@ -19,9 +19,11 @@ use crate::inverse::parameters_of;
 use crate::mechanism::PyMechanism;
 use crate::options;
 use crate::parameter_tables::documented;
+use crate::tasks::{PyCollisionAvoidance, PyMotionTask, PyTaskServo, TaskServoNumbers};
 
 pub(crate) use motion_result::PyMotionResult;
 pub(crate) use stall::PyStall;
+pub(crate) use status::status_name;
 pub(crate) use trajectory::PyTrajectory;
 
 /// A Cartesian servo (resolved-rate control) of one frame: computes joint velocities from joint
@@ -79,6 +81,11 @@ pub(crate) use trajectory::PyTrajectory;
 /// fallback : str, optional
 ///     The inverse used if the requested one does not exist or enlarges motions too much. Default:
 ///     none, the arm stops.
+/// tasks : sequence of MotionTask, optional
+///     Makes a `TaskServo` of these tasks instead, with `collisions`, `limits`, `dt`, `acceleration`,
+///     `length` and `joint_weights`; the other options belong to a single frame.
+/// collisions : CollisionAvoidance, optional
+///     The distances to keep, beside `tasks`.
 /// **parameters : float
 ///     Parameters of the inverse: `damping=0.05`, `h=0.1`, `mu=0.01`, ...
 ///
@@ -182,9 +189,11 @@ impl PyServo {
         tolerance_position = None, tolerance_orientation = None, speed = None,
         acceleration = None, limits = None, length = None, joint_weights = None, secondary = None,
         posture = None, null_space = "exact", task = None, task_axes = None,
-        inverse = "truncated", give_up = None, fallback = None, **parameters))]
+        inverse = "truncated", give_up = None, fallback = None, tasks = None, collisions = None,
+        **parameters))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
-    fn new(
+    fn new<'py>(
+        py: Python<'py>,
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         gain: Option<Numbers<'_>>,
@@ -205,13 +214,53 @@ impl PyServo {
         #[pyo3(from_py_with = argument)] inverse: &str,
         give_up: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] fallback: Option<&str>,
+        #[pyo3(from_py_with = argument)] tasks: Option<Vec<Py<PyMotionTask>>>,
+        #[pyo3(from_py_with = argument)] collisions: Option<Py<PyCollisionAvoidance>>,
         parameters: Option<&Bound<'_, PyDict>>,
-    ) -> Result<Self> {
+    ) -> Result<Bound<'py, PyAny>> {
         let limited = match &limits {
             None => mechanism.inner.clone(),
             Some(limits) => mechanism.inner.with_limits(&options::limits(limits)?)?,
         };
         let robot = &limited;
+        if let Some(tasks) = tasks {
+            let foreign = [
+                ("frame", frame.is_some()),
+                ("gain", gain.is_some()),
+                ("tool", tool.is_some()),
+                ("tolerance_position", tolerance_position.is_some()),
+                ("tolerance_orientation", tolerance_orientation.is_some()),
+                ("speed", speed.is_some()),
+                ("secondary", secondary.is_some()),
+                ("posture", posture.is_some()),
+                ("null_space", null_space != "exact"),
+                ("task", task.is_some()),
+                ("task_axes", task_axes.is_some()),
+                ("inverse", inverse != "truncated"),
+                ("give_up", give_up.is_some()),
+                ("fallback", fallback.is_some()),
+                ("parameters", parameters.is_some_and(|p| !p.is_empty())),
+            ];
+            if let Some((name, _)) = foreign.into_iter().find(|(_, given)| *given) {
+                let reason = "it belongs to a servo of one frame; give it to the tasks or omit it";
+                return Err(Failure::option(name, "", reason));
+            }
+            let weights = match joint_weights {
+                None => None,
+                Some(JointWeights::Numbers(weights)) => Some(weights),
+                Some(JointWeights::Name(name)) => {
+                    let reason = "weights of a servo of many tasks are numbers";
+                    return Err(Failure::option("joint_weights", name, reason));
+                }
+            };
+            let numbers = TaskServoNumbers { dt, length, acceleration, eps: None };
+            let collisions = collisions.as_ref().map(Py::get);
+            let servo = PyTaskServo::make(py, robot, (&tasks, collisions), weights, numbers)?;
+            return Ok(Bound::new(py, servo)?.into_any());
+        }
+        if collisions.is_some() {
+            return Err(Failure::option("collisions", "", "it needs tasks, as in TaskServo"));
+        }
         let mut options = ServoOptions::new(robot);
         if let Some(name) = frame {
             options.end_effector.frame = robot.frame(name)?;
@@ -254,7 +303,8 @@ impl PyServo {
         let posture = mechanism.or_home("posture", posture.as_ref())?;
         options.secondary = options::secondary(secondary.as_ref(), posture, robot, &options)?;
         let servo = Servo::new(robot, options)?;
-        Ok(Self { running: Mutex::new(Running { servo, last: None }) })
+        let new = Self { running: Mutex::new(Running { servo, last: None }) };
+        Ok(Bound::new(py, new)?.into_any())
     }
 
     /// One control step: the joint velocities to command until the next step.

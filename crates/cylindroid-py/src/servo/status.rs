@@ -7,7 +7,7 @@ use super::{PyServo, PyStall, Running};
 use crate::arrays::{self, Array};
 use crate::error::Result;
 
-fn status_name(status: Status) -> &'static str {
+pub(crate) fn status_name(status: Status) -> &'static str {
     match status {
         Status::Moving => "moving",
         Status::Reached => "reached",

@@ -63,6 +63,26 @@ pub struct CollisionAvoidance {
     pub margin: f64,
 }
 
+impl CollisionAvoidance {
+    /// Checks a least distance and a margin (m).
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for a negative gap, or a margin that is infinite or not above it.
+    pub fn check_distances(gap: f64, margin: f64) -> Result<()> {
+        if gap >= 0.0 && margin > gap && margin.is_finite() {
+            return Ok(());
+        }
+        Err(Error::InvalidOption {
+            option: "collisions",
+            value: format!("gap {gap} m, margin {margin} m"),
+            reason: "the margin must be above the gap, and that not negative".to_owned(),
+        })
+    }
+}
+
+/// Rows of a task at most: memory for all of them is reserved at the start.
+const MAX_ROWS: usize = 1000;
+
 /// Options of a servo of many tasks.
 #[derive(Debug, Clone)]
 pub struct TaskServoOptions {
@@ -176,15 +196,8 @@ pub(super) fn check(
         let reason = format!("the collision model is of '{name}'; make one of this mechanism");
         return refuse("collisions", mechanism.name().to_owned(), &reason);
     }
-    if let Some(c) = &options.collisions
-        && !(c.gap >= 0.0 && c.margin > c.gap && c.margin.is_finite())
-    {
-        let value = format!("gap {} m, margin {} m", c.gap, c.margin);
-        return refuse(
-            "collisions",
-            value,
-            "the margin must be above the gap, and that not negative",
-        );
+    if let Some(c) = &options.collisions {
+        CollisionAvoidance::check_distances(c.gap, c.margin)?;
     }
     for (i, task) in tasks.iter().enumerate() {
         task.objective.check(mechanism)?;
@@ -193,6 +206,10 @@ pub(super) fn check(
         }
         if !task.objective.is_of_lowest_level() && task.objective.rows() == 0 {
             return refuse("tasks", task.name.clone(), "it has no rows");
+        }
+        if task.objective.rows() > MAX_ROWS {
+            let value = format!("{} rows of '{}'", task.objective.rows(), task.name);
+            return refuse("tasks", value, "a task has at most 1000");
         }
         positive("weight of a task", task.weight)?;
         positive("gain of a task", task.gain)?;

@@ -1,0 +1,115 @@
+//! The class `TaskReport`: a task after a step.
+
+use cylindroid::control::{LimitKind, StoppedBy, TaskReport};
+use pyo3::prelude::*;
+
+use crate::servo::status_name;
+use crate::table::number;
+
+/// A task after a step.
+///
+/// Attributes
+/// ----------
+/// name : str
+/// status : str
+///     'moving', 'reached' or 'stalled'.
+/// position_error : float
+///     Norm of the error's lengths (m); of desired velocities, of the part that is not realised
+///     (m/s).
+/// orientation_error : float
+///     Norm of the error's angles and of the errors of custom tasks (rad); of desired velocities, of
+///     the part that is not realised (rad/s).
+/// scale : float
+///     Share of its level that is realised: 1 when nothing stops it, 0 if its direction is lost.
+/// left_out : float
+///     Share of the level's velocity that higher levels or singular directions leave out; of
+///     postures and velocities, the share that is not realised.
+/// limit : (str, str) or None
+///     The joint whose limit stops the level, and the kind of the limit: 'position', 'velocity' or
+///     'acceleration'.
+/// pair : (str, str) or None
+///     The links or obstacles whose distance stops the level.
+/// stopped_by : str or None
+///     The limit or the pair, as text.
+#[pyclass(frozen, name = "TaskReport", module = "cylindroid")]
+#[derive(Debug, Clone)]
+pub(crate) struct PyTaskReport {
+    #[pyo3(get)]
+    pub(super) name: String,
+    inner: TaskReport,
+    #[pyo3(get)]
+    limit: Option<(String, &'static str)>,
+    #[pyo3(get)]
+    pair: Option<(String, String)>,
+}
+
+impl PyTaskReport {
+    /// `joint` and `pair` name a coordinate and a pair of bodies.
+    pub(super) fn new(
+        name: &str,
+        report: &TaskReport,
+        joint: impl Fn(usize) -> String,
+        pair: impl Fn(usize) -> (String, String),
+    ) -> Self {
+        let mut new = Self { name: name.to_owned(), inner: *report, limit: None, pair: None };
+        match report.stopped_by {
+            None => {}
+            Some(StoppedBy::Limit { coordinate, kind }) => {
+                new.limit = Some((joint(coordinate), LimitKind::name(kind)));
+            }
+            Some(StoppedBy::Distance { pair: index }) => new.pair = Some(pair(index)),
+        }
+        new
+    }
+}
+
+#[pymethods]
+impl PyTaskReport {
+    #[getter]
+    fn status(&self) -> &'static str {
+        status_name(self.inner.status)
+    }
+
+    #[getter]
+    fn position_error(&self) -> f64 {
+        self.inner.position_error
+    }
+
+    #[getter]
+    fn orientation_error(&self) -> f64 {
+        self.inner.orientation_error
+    }
+
+    #[getter]
+    fn scale(&self) -> f64 {
+        self.inner.scale
+    }
+
+    #[getter]
+    fn left_out(&self) -> f64 {
+        self.inner.left_out
+    }
+
+    #[getter]
+    fn stopped_by(&self) -> Option<String> {
+        if let Some((joint, kind)) = &self.limit {
+            return Some(format!("{kind} limit of '{joint}'"));
+        }
+        self.pair.as_ref().map(|(a, b)| format!("distance of '{a}' and '{b}'"))
+    }
+
+    fn __repr__(&self) -> String {
+        let mut text = format!(
+            "<TaskReport '{}': {}, {} m, {} rad",
+            self.name,
+            self.status(),
+            number(self.inner.position_error),
+            number(self.inner.orientation_error)
+        );
+        if let Some(cause) = self.stopped_by() {
+            text.push_str(&format!(", stopped by the {cause}"));
+        }
+        text.push('>');
+        text
+    }
+}
