@@ -192,6 +192,7 @@ impl PyServo {
         inverse = "truncated", give_up = None, fallback = None, tasks = None, collisions = None,
         **parameters))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    #[expect(clippy::new_ret_no_self, reason = "tasks make a TaskServo")]
     fn new<'py>(
         py: Python<'py>,
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
