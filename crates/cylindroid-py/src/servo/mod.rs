@@ -23,7 +23,6 @@ use crate::tasks::{PyCollisionAvoidance, PyMotionTask, PyTaskServo, TaskServoNum
 
 pub(crate) use motion_result::PyMotionResult;
 pub(crate) use stall::PyStall;
-pub(crate) use status::status_name;
 pub(crate) use trajectory::PyTrajectory;
 
 /// A Cartesian servo (resolved-rate control) of one frame: computes joint velocities from joint

@@ -7,19 +7,11 @@ use super::{PyServo, PyStall, Running};
 use crate::arrays::{self, Array};
 use crate::error::Result;
 
-pub(crate) fn status_name(status: Status) -> &'static str {
-    match status {
-        Status::Moving => "moving",
-        Status::Reached => "reached",
-        Status::Stalled => "stalled",
-    }
-}
-
 #[pymethods]
 impl PyServo {
     #[getter]
     fn status(&self) -> Result<Option<&'static str>> {
-        Ok(self.lock()?.last.map(|s| status_name(s.status)))
+        Ok(self.lock()?.last.map(|s| s.status.name()))
     }
 
     #[getter]
@@ -114,7 +106,7 @@ impl PyServo {
             options.dt
         );
         if let Some(step) = last {
-            text.push_str(&format!(", {}", status_name(step.status)));
+            text.push_str(&format!(", {}", step.status.name()));
         }
         text.push('>');
         Ok(text)

@@ -3,7 +3,6 @@
 use cylindroid::control::{LimitKind, StoppedBy, TaskReport};
 use pyo3::prelude::*;
 
-use crate::servo::status_name;
 use crate::table::number;
 
 /// A task after a step.
@@ -67,7 +66,7 @@ impl PyTaskReport {
 impl PyTaskReport {
     #[getter]
     fn status(&self) -> &'static str {
-        status_name(self.inner.status)
+        self.inner.status.name()
     }
 
     #[getter]

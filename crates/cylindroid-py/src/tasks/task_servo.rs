@@ -15,7 +15,6 @@ use crate::collision::{PyCollisionModel, PyDistances};
 use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
 use crate::options;
-use crate::servo::status_name;
 
 /// A servo of many tasks with priorities, inside the limits of all joints and outside of collisions.
 ///
@@ -313,7 +312,7 @@ impl PyTaskServo {
     #[getter]
     fn status(&self) -> Result<Option<&'static str>> {
         let running = self.lock()?;
-        Ok(running.last.as_ref().map(|_| status_name(running.servo.status())))
+        Ok(running.last.as_ref().map(|_| running.servo.status().name()))
     }
 
     #[getter]
@@ -370,7 +369,7 @@ impl PyTaskServo {
             servo.dt()
         );
         if last.is_some() {
-            text.push_str(&format!(", {}", status_name(servo.status())));
+            text.push_str(&format!(", {}", servo.status().name()));
         }
         text.push('>');
         Ok(text)

@@ -72,6 +72,18 @@ pub enum Status {
     Stalled,
 }
 
+impl Status {
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Moving => "moving",
+            Self::Reached => "reached",
+            Self::Stalled => "stalled",
+        }
+    }
+}
+
 /// Result of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
