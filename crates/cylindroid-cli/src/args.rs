@@ -9,6 +9,7 @@ pub(crate) mod inverses;
 mod move_to;
 mod screws;
 mod shared;
+mod tasks;
 mod view;
 pub(crate) use closed::{
     AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, MobilityArgs,
@@ -22,6 +23,7 @@ pub(crate) use move_to::{
 
 pub(crate) use screws::ScrewsArgs;
 pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs};
+pub(crate) use tasks::{FrameTaskArg, TasksArgs};
 pub(crate) use view::ViewArgs;
 
 use self::inverses::NamedInverseArgs;

@@ -50,13 +50,14 @@ pub(crate) struct CollisionArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) srdf: Option<PathBuf>,
 
-    /// Shape that stands for a mesh
-    #[arg(long, value_name = "SHAPE", default_value = "convex_hull")]
-    pub(crate) meshes: MeshName,
+    /// Shape that stands for a mesh [default: convex_hull]
+    #[arg(long, value_name = "SHAPE")]
+    pub(crate) meshes: Option<MeshName>,
 
     /// Random configurations by which pairs that always or never touch are found; 0 keeps all pairs
-    #[arg(long, value_name = "N", default_value_t = 200)]
-    pub(crate) samples: usize,
+    /// [default: 200]
+    #[arg(long, value_name = "N")]
+    pub(crate) samples: Option<usize>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

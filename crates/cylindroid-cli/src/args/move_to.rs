@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use cylindroid::control::SecondaryTask;
 use cylindroid::inverse::Parameter;
+use cylindroid::{Error, Result};
 
 use super::inverses::NamedInverseArgs;
-use super::{ConfigurationArgs, FrameArgs, LimitsArgs};
+use super::{ConfigurationArgs, FrameArgs, FrameTaskArg, LimitsArgs, TasksArgs};
 use crate::values::{Joints, Named, Numbers, Pair, Weights};
 
 pub(crate) const ABOUT: &str = "\
@@ -20,6 +21,8 @@ controlled, and vice versa. With --line or --via the target moves along a path, 
 every joint moves straight to its goal. If the servo stalls on its way to a pose that another \
 configuration within all limits reaches, the robot reconfigures: every joint moves straight to \
 that configuration instead (--no-reconfigure keeps the motion of the servo).
+
+With --avoid or --obstacle links keep a distance from each other and from obstacles. Several tasks with priorities and weights come from --task FRAME=... and from a file (--tasks): frames, frames relative to each other, the centre of mass, the gaze of a frame, a posture, joint velocities. Such a motion ends when every task is reached or stalled, and each task reports what stops it.
 
 Mechanisms with loops or contacts are controlled at their reference, through their actuated joints \
 (--actuated) with minimum effort; passive joints follow, loops stay closed, and the motion stops \
@@ -34,7 +37,14 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --line --speed 0.1 --plot line.svg
   cylindroid move youbot --to 0.35,0,0.25 --rpy 0,2,0 --inverse hyperbolic --h 0.1
   cylindroid move stewart --to 0.1,0.05,1.1 --rpy 0,0,0.1
-  cylindroid move five-bar --actuated q1,q5 --to 1.2,1.8,0";
+  cylindroid move five-bar --actuated q1,q5 --to 1.2,1.8,0
+  cylindroid move docs/cell.toml --to 0.4,0,0.4 --avoid --obstacle ball=sphere:0.1@0.4,0.1,0.3
+  cylindroid move docs/cell.toml --task hand_tcp=0.4,0.1,0.5 --avoid --gap 0.005
+  cylindroid move panda --tasks docs/tasks.toml
+
+A file of tasks has a table [[task]] for each, with `type` and its keys: frame (frame, xyz, rpy, tool, components, axes), relative_frame (frame, reference, xyz, rpy, tool, components), center_of_mass (xyz, components), gaze (frame, point, tool), posture (q) and joint_velocities (velocities); and with name, level (0 first), weight, gain, tolerance_position and tolerance_orientation. Lengths are in m, angles in rad; a target that is not given is the start.
+
+An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], see `distance --help`.";
 
 #[derive(Debug, Args)]
 pub(crate) struct MoveArgs {
@@ -53,6 +63,9 @@ pub(crate) struct MoveArgs {
 
     #[command(flatten)]
     pub(crate) target: TargetArgs,
+
+    #[command(flatten)]
+    pub(crate) tasks: TasksArgs,
 
     #[command(flatten)]
     pub(crate) path: PathArgs,
@@ -101,13 +114,49 @@ pub(crate) struct TargetArgs {
 
     /// Controlled components: `pose`, `position`, `orientation`, `pointing` (position and direction of
     /// the tool's z axis), or components like `x,y,rz` [default: those of the target]. Where the
-    /// task asks for more than the target gives, the start's position or orientation is kept
+    /// task asks for more than the target gives, the start's position or orientation is kept. Of
+    /// `move` also FRAME=X,Y,Z or FRAME=X,Y,Z,ROLL,PITCH,YAW: a task of another frame [m, rad]; may be
+    /// given several times
     #[arg(long, value_name = "TASK")]
-    pub(crate) task: Option<String>,
+    pub(crate) task: Vec<String>,
 
     /// Axes of the components [default: world; local, the tool's, for `pointing`]
     #[arg(long, value_name = "AXES")]
     pub(crate) task_axes: Option<TaskAxes>,
+}
+
+impl TargetArgs {
+    /// The components; several are an error.
+    pub(crate) fn components(&self) -> Result<Option<&str>> {
+        let mut named = self.task.iter().filter(|task| !task.contains('='));
+        match (named.next(), named.next()) {
+            (first, None) => Ok(first.map(String::as_str)),
+            (_, Some(second)) => Err(Error::InvalidOption {
+                option: "--task",
+                value: second.clone(),
+                reason: "the components are given twice; a task of another frame is FRAME=X,Y,Z"
+                    .to_owned(),
+            }),
+        }
+    }
+
+    /// True if there are tasks of frames.
+    pub(crate) fn has_frame_tasks(&self) -> bool {
+        self.task.iter().any(|task| task.contains('='))
+    }
+
+    /// The tasks of frames.
+    pub(crate) fn frame_tasks(&self) -> Result<Vec<FrameTaskArg>> {
+        let frames = self.task.iter().filter(|task| task.contains('='));
+        let parse = |text: &String| {
+            text.parse().map_err(|reason| Error::InvalidOption {
+                option: "--task",
+                value: text.clone(),
+                reason,
+            })
+        };
+        frames.map(parse).collect()
+    }
 }
 
 #[derive(Debug, Args)]

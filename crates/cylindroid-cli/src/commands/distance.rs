@@ -54,11 +54,12 @@ pub(crate) fn collision_model(
         Some(path) => srdf::load(path)?.pairs(robot),
         None => Vec::new(),
     };
+    let usual = CollisionOptions::default();
     let options = CollisionOptions {
-        meshes: args.meshes.into(),
+        meshes: args.meshes.map_or(usual.meshes, Into::into),
         disabled,
-        samples: args.samples,
-        ..CollisionOptions::default()
+        samples: args.samples.unwrap_or(usual.samples),
+        ..usual
     };
     let mut model = CollisionModel::new(robot, &options)?;
     for obstacle in &args.obstacle {

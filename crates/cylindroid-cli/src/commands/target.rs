@@ -13,8 +13,9 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
     let position = args.to.is_some();
     let orientation =
         args.rpy.is_some() || args.quaternion.is_some() || args.rotation_vector.is_some();
-    let named = match (&args.task, position, orientation) {
-        (Some(task), ..) => task.as_str(),
+    let components = args.components()?;
+    let named = match (components, position, orientation) {
+        (Some(task), ..) => task,
         (None, true, false) => "position",
         (None, false, true) => "orientation",
         (None, ..) => "pose",
@@ -25,7 +26,7 @@ pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String
         Some(TaskAxes::Local) => task.axes = ReferenceFrame::Local,
         Some(TaskAxes::World) => task.axes = ReferenceFrame::LocalWorldAligned,
     }
-    let controlled = match (&args.task, named) {
+    let controlled = match (components, named) {
         (None, "position") => {
             "position only (--rpy, --quaternion or --rotation-vector give an orientation)".into()
         }

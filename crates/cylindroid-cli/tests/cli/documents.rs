@@ -13,6 +13,8 @@ use crate::text;
 pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
 const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
+const TASKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tasks.toml");
+
 /// All commands, as the help lists them.
 fn commands() -> Vec<String> {
     let help = text(&["--help"]);
@@ -51,6 +53,7 @@ fn examples_run_as_they_stand() {
     fs::create_dir(&docs).unwrap();
     fs::copy(GRASP, docs.join("grasp.toml")).unwrap();
     fs::copy(CELL, docs.join("cell.toml")).unwrap();
+    fs::copy(TASKS, docs.join("tasks.toml")).unwrap();
     fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
     let home = ["0"; 21].join(",");
     fs::write(folder.path().join("configurations.csv"), format!("{home}\n{home}\n")).unwrap();
@@ -117,6 +120,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec!["puma560", "--to", "-0.5,0.2,0.3"],
             vec!["puma560", "--to", "-0.5,0.2,0.3", "--no-reconfigure"],
             vec!["five-bar", "--to", "1.2,1.8,0"],
+            vec![CELL, "--to", "0.3,0,0.4", "--avoid"],
             vec![
                 "youbot",
                 "--q",

@@ -16,6 +16,7 @@ mod pictures;
 mod screws;
 mod shape;
 mod statics;
+mod tasks;
 mod view;
 mod xacro;
 

@@ -57,14 +57,7 @@ impl Job {
         let degrees = args.configuration.degrees;
         let start = configuration(&robot, &args.configuration)?;
         within_limits(&robot, "--q", &start)?;
-        if !(args.time_limit > 0.0 && args.time_limit.is_finite()) {
-            return Err(Error::InvalidOption {
-                option: "--time-limit",
-                value: args.time_limit.to_string(),
-                reason: "it must be a positive number of seconds".to_owned(),
-            }
-            .into());
-        }
+        Error::check_positive("--time-limit", args.time_limit)?;
 
         check_jerks(&args.path)?;
 

@@ -6,6 +6,7 @@ mod job;
 mod joints;
 mod report;
 pub(crate) mod sentences;
+mod tasks;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -32,6 +33,12 @@ const MAX_RESTARTS: usize = 200;
 const PROGRESS_STEPS: u64 = 256;
 
 pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    if tasks::are_asked_for(args) {
+        return tasks::run(args, style, out);
+    }
+    if let Some(option) = args.tasks.without_effect() {
+        anyhow::bail!("{option} has no effect without --avoid or --obstacle");
+    }
     let job = Job::new(args)?;
     let format = args.out.as_deref().map(trajectory::format_of).transpose()?;
     if let Some(path) = &args.plot {

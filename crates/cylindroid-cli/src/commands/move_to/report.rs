@@ -1,10 +1,11 @@
 //! What `move` prints: the table and the JSON object.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 
+use cylindroid::Mechanism;
 use cylindroid::closure::LoopClosureError;
-use cylindroid::control::{MotionResult, Task};
+use cylindroid::control::{LimitKind, MotionResult, Task};
 use serde::Serialize;
 
 use super::job::{Goal, Job};
@@ -279,7 +280,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ),
             ("inverse", inverse(job, outcome)),
             ("secondary", secondary(job)),
-            ("limits met", limits_met(job, outcome)),
+            ("limits met", limits_met(&job.robot, &outcome.limits_hit)),
             ("final q [rad or m]", output::entries(&outcome.q)),
         ],
     )?;
@@ -314,11 +315,11 @@ fn secondary(job: &Job) -> String {
 }
 
 /// `joint (kind, kind), ...`
-fn limits_met(job: &Job, outcome: &MotionResult) -> String {
+pub(super) fn limits_met(robot: &Mechanism, hit: &BTreeSet<(usize, LimitKind)>) -> String {
     let mut parts: Vec<String> = Vec::new();
-    for (i, coordinate) in job.robot.coordinates().iter().enumerate() {
+    for (i, coordinate) in robot.coordinates().iter().enumerate() {
         let kinds: Vec<&str> =
-            outcome.limits_hit.iter().filter(|(c, _)| *c == i).map(|(_, k)| k.name()).collect();
+            hit.iter().filter(|(c, _)| *c == i).map(|(_, kind)| kind.name()).collect();
         if !kinds.is_empty() {
             parts.push(format!("{} ({})", coordinate.name, kinds.join(", ")));
         }

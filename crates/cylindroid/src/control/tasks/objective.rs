@@ -152,8 +152,9 @@ impl TaskObjective {
         }
     }
 
-    /// True for what is of the lowest level whatever its number says.
-    pub(super) fn is_of_lowest_level(&self) -> bool {
+    /// True for postures and joint velocities, which are of the lowest level in any case.
+    #[must_use]
+    pub const fn is_of_lowest_level(&self) -> bool {
         matches!(self, Self::Posture { .. } | Self::JointVelocities { .. })
     }
 

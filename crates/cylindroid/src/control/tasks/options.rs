@@ -221,7 +221,11 @@ pub(super) fn check(
             );
         }
         if tasks[..i].iter().any(|t| t.name == task.name) {
-            return refuse("tasks", task.name.clone(), "two tasks have this name");
+            return refuse(
+                "tasks",
+                task.name.clone(),
+                "two tasks have this name; give one of them another",
+            );
         }
     }
     Ok(())

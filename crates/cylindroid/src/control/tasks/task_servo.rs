@@ -219,6 +219,12 @@ impl TaskServo {
         }
     }
 
+    /// The collision model, if distances are kept.
+    #[must_use]
+    pub fn collision_model(&self) -> Option<&CollisionModel> {
+        self.options.collisions.as_ref().map(|c| &c.model)
+    }
+
     /// The collision model, to add, move and remove obstacles while the servo runs.
     pub fn collision_model_mut(&mut self) -> Option<&mut CollisionModel> {
         self.options.collisions.as_mut().map(|c| &mut c.model)

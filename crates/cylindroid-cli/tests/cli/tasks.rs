@@ -1,0 +1,150 @@
+//! `move` with several tasks, and at a distance from other bodies.
+
+use std::fs;
+
+use serde_json::{Value, json as object};
+
+use crate::{json, numbers, refused, text};
+
+const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
+const TASKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tasks.toml");
+
+fn position(model: &str, q: &Value, frame: &str) -> Vec<f64> {
+    let q = numbers(q).iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    numbers(&json(&["fk", model, "--q", &q, "--frame", frame], 0)["pose"]["position"])
+}
+
+fn file(content: &str) -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tasks.toml");
+    fs::write(&path, content).unwrap();
+    let path = path.to_str().unwrap().to_owned();
+    (folder, path)
+}
+
+#[test]
+fn frames_as_arguments() {
+    let command =
+        ["move", "panda", "--task", "hand_tcp=0.36,0.1,0.5", "--task", "link4=0.05,0.05,0.65"];
+    let report = json(&command, 1);
+    assert_eq!((&report["reached"], &report["tasks"][0]["level"]), (&false.into(), &0.into()));
+    assert_eq!(report["tasks"][1]["name"], "link4");
+    // One of them alone is reached.
+    let report = json(&command[..4], 0);
+    assert_eq!((&report["reason"], &report["explanation"]), (&"reached".into(), &"".into()));
+    let at = position("panda", &report["q"], "hand_tcp");
+    for (x, expected) in at.iter().zip([0.36, 0.1, 0.5]) {
+        assert!((x - expected).abs() < 2e-6, "{at:?}");
+    }
+    // Beside --to, and with an orientation.
+    let both = ["move", "panda", "--to", "0.4,0,0.5", "--task", "link4=0,0,0.66,0,0,0"];
+    let report = json(&[&both[..], &["--time-limit", "0.1"]].concat(), 1);
+    assert_eq!(
+        (&report["reason"], &report["tasks"][0]["name"]),
+        (&"time-limit".into(), &"hand_tcp".into())
+    );
+    assert!(report["tasks"][1]["orientation_error"].as_f64().unwrap() > 0.1);
+}
+
+#[test]
+fn a_file_of_tasks() {
+    let report = json(&["move", "panda", "--tasks", TASKS], 0);
+    let tasks = report["tasks"].as_array().unwrap();
+    let names: Vec<&str> = tasks.iter().map(|t| t["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["hand", "elbow", "posture"]);
+    assert_eq!((&tasks[0]["status"], &tasks[2]["level"]), (&"reached".into(), &Value::Null));
+    let table = text(&["move", "panda", "--tasks", TASKS]);
+    assert!(table.contains("lowest") && table.contains("elbow"), "{table}");
+}
+
+#[test]
+fn every_type_of_task() {
+    let (_folder, path) = file(
+        "[[task]]\ntype = 'relative_frame'\nframe = 'hand_tcp'\nreference = 'link4'\n\
+         [[task]]\ntype = 'gaze'\nframe = 'hand_tcp'\npoint = [0.5, 0, 0]\ntool = [0, 0, 0.1]\n\
+         level = 1\nweight = 2.0\ntolerance_orientation = 0.1\n\
+         [[task]]\nname = 'up'\nframe = 'link4'\ncomponents = 'z'\naxes = 'world'\nlevel = 2\n\
+         [[task]]\ntype = 'joint_velocities'\nvelocities = { panda_joint1 = 0.1 }\n\
+         [[task]]\ntype = 'posture'\nq = [0, -0.7, 0, -2.3, 0, 1.5, 0.7]\n",
+    );
+    let report = json(&["move", "panda", "--tasks", &path, "--time-limit", "0.5"], 1);
+    let tasks = report["tasks"].as_array().unwrap();
+    let names: Vec<&str> = tasks.iter().map(|t| t["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["hand_tcp from link4", "gaze", "up", "joint_velocities", "posture"]);
+    assert_eq!(tasks[0]["status"], "reached");
+    assert_eq!((&tasks[1]["level"], &tasks[1]["weight"]), (&1.into(), &2.0.into()));
+}
+
+#[test]
+fn obstacles_are_avoided() {
+    let to = ["move", CELL, "--to", "0.406,0,0.337"];
+    let free = json(&[&to[..], &["--avoid"]].concat(), 0);
+    let nearest = &free["distances"]["nearest"];
+    assert!(nearest["distance"].as_f64().unwrap() > 0.01, "{nearest}");
+    let ball = ["--obstacle", "ball=sphere:0.1@0.366,0,0.287"];
+    let stopped = json(&[&to[..], &ball].concat(), 1);
+    assert_eq!(stopped["distances"]["obstacles"], object!(["ball"]));
+    let nearest = &stopped["distances"]["nearest"];
+    assert!((nearest["distance"].as_f64().unwrap() - 0.01).abs() < 1e-4, "{nearest}");
+    assert_eq!(nearest["b"], "ball");
+    let wide = json(&[&to[..], &ball, &["--gap", "0.015"]].concat(), 1);
+    assert!(wide["distances"]["nearest"]["distance"].as_f64().unwrap() > 0.0149);
+    let table = String::from_utf8(crate::cylindroid(&[&to[..], &ball].concat()).stdout).unwrap();
+    assert!(table.contains("ball") && table.contains("not reached"), "{table}");
+}
+
+#[test]
+fn what_has_no_effect_is_refused() {
+    for (more, message) in [
+        (&["--gap", "0.1"][..], "--gap has no effect without --avoid"),
+        (&["--samples", "9"], "--samples has no effect"),
+        (&["--avoid", "--line"], "--line belongs to the servo of one frame"),
+        (&["--avoid", "--inverse", "damped"], "--inverse belongs to"),
+        (&["--avoid", "--damping", "0.1"], "--damping belongs to"),
+        (&["--avoid", "--gain", "4,5"], "one gain"),
+        (&["--avoid", "--gap", "0.4"], "margin"),
+        (&["--task", "x", "--task", "y"], "given twice"),
+        (&["--task", "link4=1,2"], "2 numbers"),
+        (&["--task", "link99=1,2,3"], "nearest: link"),
+        (&["--task", "hand_tcp=1,2,3"], "two tasks have this name"),
+        (&["--tasks", "/dev/null"], "not a regular file"),
+        (&["--tasks", "none.toml"], "none.toml"),
+    ] {
+        let error = refused(&[&["move", "panda", "--to", "0.4,0,0.4"], more].concat());
+        assert!(error.contains(message), "{more:?}: {error}");
+    }
+    let error = refused(&["move", "panda", "--tasks", TASKS, "--frame", "link4"]);
+    assert!(error.contains("--frame: there is no target"), "{error}");
+    let inside = ["move", CELL, "--to", "0.4,0,0.4", "--obstacle", "ball=sphere:0.1@0.31,0,0.5"];
+    assert!(refused(&inside).contains("--q: flange and ball penetrate each other"));
+    let error = refused(&["move", "stewart", "--to", "0,0,1", "--avoid"]);
+    assert!(error.contains("loops or contacts"), "{error}");
+    assert!(refused(&["move", "panda", "--avoid"]).contains("--tasks FILE.toml"));
+    assert!(refused(&["ik", "panda", "--to", "0,0,1", "--task", "link4=1,2,3"]).contains("link4"));
+}
+
+#[test]
+fn a_broken_file_is_shown_with_its_place() {
+    for (content, words) in [
+        ("", &["no [[task]]"][..]),
+        ("[[task]]\nframe = 3", &["tasks.toml:2:9", "string"]),
+        ("[[task]]\nfram = 'link4'", &["unknown field `fram`"]),
+        ("\n[[task]]\nxyz = [0, 0, 0]", &["tasks.toml:2:1", "needs the key 'frame'"]),
+        ("[[task]]\nframe = 'link99'", &["tasks.toml:1:1", "nearest: link"]),
+        ("[[task]]\ntype = 'gaz'", &["nearest: gaze"]),
+        ("[[task]]\ntype = 'posture'\nq = [1]\nlevel = 1", &["'level' does not belong"]),
+        ("[[task]]\ntype = 'posture'\nq = { a = 1 }", &["no joint named 'a'"]),
+        ("[[task]]\nframe = 'link4'\naxes = 'mine'", &["axes", "world"]),
+        ("[[task]]\ntype = 'center_of_mass'\nxyz = [0, 0, 0]", &["mass"]),
+        ("[[task]]\ntype = 'center_of_mass'\nxyz = [0, 0, 0]\ncomponents = 'rx'", &["x, y and z"]),
+        ("[[task]]\nframe = 'link4'\ngain = 1e9", &["below 2"]),
+        ("[[task]]\nframe = 'link4'\nxyz = [nan, 0, 0]", &["finite"]),
+    ] {
+        let (_folder, path) = file(content);
+        let error = refused(&["move", "panda", "--tasks", &path]);
+        for word in words {
+            let flat = error.replace("\n  \u{2502} ", " ");
+            assert!(flat.contains(word), "{content}: {error}");
+        }
+    }
+}
