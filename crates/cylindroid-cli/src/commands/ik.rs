@@ -57,6 +57,11 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     let robot = limited(cylindroid::load(&args.configuration.model)?, &args.limits)?;
     let start = configuration(&robot, &args.configuration)?;
     let end_effector = end_effector(&robot, &args.frame)?;
+    if args.target.has_frame_tasks() {
+        anyhow::bail!(
+            "--task: ik takes the components of one frame; several frames are tasks of move"
+        );
+    }
     let (task, what) = task(&args.target, &robot)?;
     let from = robot.state(&start)?.pose(end_effector);
     let target = target_pose(&args.target, from, args.configuration.degrees, "")?;

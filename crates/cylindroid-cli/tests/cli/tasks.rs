@@ -120,7 +120,10 @@ fn what_has_no_effect_is_refused() {
     let error = refused(&["move", "stewart", "--to", "0,0,1", "--avoid"]);
     assert!(error.contains("loops or contacts"), "{error}");
     assert!(refused(&["move", "panda", "--avoid"]).contains("--tasks FILE.toml"));
-    assert!(refused(&["ik", "panda", "--to", "0,0,1", "--task", "link4=1,2,3"]).contains("link4"));
+    assert!(
+        refused(&["ik", "panda", "--to", "0,0,1", "--task", "link4=1,2,3"])
+            .contains("tasks of move")
+    );
 }
 
 #[test]
