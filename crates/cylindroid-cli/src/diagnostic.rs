@@ -1,9 +1,9 @@
 //! Errors on stderr: file errors with the line underlined, others as one paragraph.
 
 use std::fmt;
-use std::fs;
 use std::io::{self, Write};
 
+use cylindroid::model::read_regular_file;
 use cylindroid::{Error, FileError};
 use miette::{Diagnostic, LabeledSpan, NamedSource, Report, SourceCode};
 
@@ -25,6 +25,9 @@ pub(crate) fn is_closed_pipe(error: &anyhow::Error) -> bool {
     })
 }
 
+/// Larger files (bytes) are not shown.
+const LARGEST_SHOWN: u64 = 32 << 20;
+
 /// Longer lines (bytes) are not shown.
 const LONGEST_SHOWN: usize = 1000;
 
@@ -39,7 +42,8 @@ struct Underlined {
 impl Underlined {
     fn new(error: &FileError) -> Self {
         let mut error = error.clone();
-        let text = fs::read(&error.path).map(|b| String::from_utf8_lossy(&b).into_owned()).ok();
+        let bytes = read_regular_file(&error.path, LARGEST_SHOWN).ok();
+        let text = bytes.map(|b| String::from_utf8_lossy(&b).into_owned());
         let text = text.filter(|t| {
             let line = t.lines().nth(error.line.saturating_sub(1));
             line.is_none_or(|line| line.len() <= LONGEST_SHOWN)

@@ -1,13 +1,39 @@
 //! Files of rows of numbers: CSV, or JSON lists of lists.
 
+use std::fmt;
 use std::path::Path;
 
+use cylindroid::model::read_regular_file;
 use cylindroid::{Error, Matrix, Result};
 
-/// A row and where it stands in its file.
+/// The largest file of numbers (bytes): 128 MiB, a million configurations of seven coordinates.
+const LARGEST: u64 = 128 << 20;
+
+/// Rows of a file.
+const MOST_ROWS: usize = 5_000_000;
+
+/// The place of a row in its file, from 1.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Place {
+    /// Of CSV.
+    Line(u64),
+    /// Of a JSON list.
+    Row(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Row(row) => write!(f, "row {row}"),
+        }
+    }
+}
+
+/// A row and its place.
 #[derive(Debug)]
 pub(crate) struct Row {
-    pub(crate) place: String,
+    pub(crate) place: Place,
     pub(crate) numbers: Vec<f64>,
 }
 
@@ -17,19 +43,21 @@ struct Table {
     rows: Vec<Row>,
 }
 
-/// The rows of a file; CSV unless its name ends in .json. A first line of CSV that is no numbers
-/// names the columns.
+/// The rows of a regular file of at most [`LARGEST`] bytes and [`MOST_ROWS`] rows; CSV unless its
+/// name ends in .json. A first line of CSV that is no numbers names the columns.
 pub(crate) fn rows(path: &Path) -> Result<Vec<Row>> {
     Ok(table(path)?.rows)
 }
 
 fn table(path: &Path) -> Result<Table> {
-    if path.extension().is_some_and(|e| e == "json") { json(path) } else { csv(path) }
+    let bytes = read_regular_file(path, LARGEST)?;
+    let is_json = path.extension().is_some_and(|e| e == "json");
+    if is_json { json(path, &bytes) } else { csv(path, &bytes) }
 }
 
 /// Configurations one after the other, of the coordinates `names`. Where columns are named, those
 /// of the coordinates are read, `name` or as in a motion of `move` `q.name`, and others are not;
-/// else a row has a number for each.
+/// otherwise, a row has a number for each.
 pub(crate) fn configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
     let table = table(path)?;
     let places: Vec<usize> = match &table.names {
@@ -68,22 +96,28 @@ pub(crate) fn matrix(path: &Path, columns: usize) -> Result<Matrix> {
     Ok(Matrix::from_fn(rows.len(), columns, |i, j| rows[i].numbers[j]))
 }
 
-fn csv(path: &Path) -> Result<Table> {
+fn too_many_rows(path: &Path) -> Error {
+    cannot_read(path, &format!("it has more than {MOST_ROWS} rows, the limit of such a file"))
+}
+
+fn csv(path: &Path, bytes: &[u8]) -> Result<Table> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .flexible(true)
-        .from_path(path)
-        .map_err(|e| cannot_read(path, &e.to_string()))?;
+        .from_reader(bytes);
     let (mut names, mut rows) = (None, Vec::new());
     for (i, record) in reader.records().enumerate() {
         let record = record.map_err(|e| cannot_read(path, &e.to_string()))?;
         let line = record.position().map_or(i as u64 + 1, csv::Position::line);
         let numbers: std::result::Result<Vec<f64>, _> =
             record.iter().map(str::parse::<f64>).collect();
+        if rows.len() >= MOST_ROWS {
+            return Err(too_many_rows(path));
+        }
         match numbers {
-            Ok(numbers) => rows.push(Row { place: format!("line {line}"), numbers }),
+            Ok(numbers) => rows.push(Row { place: Place::Line(line), numbers }),
             Err(_) if i == 0 => names = Some(record.iter().map(str::to_owned).collect()),
             Err(_) => {
                 let text = record.iter().collect::<Vec<_>>().join(",");
@@ -94,11 +128,14 @@ fn csv(path: &Path) -> Result<Table> {
     Ok(Table { names, rows })
 }
 
-fn json(path: &Path) -> Result<Table> {
-    let text = std::fs::read_to_string(path).map_err(|e| cannot_read(path, &e.to_string()))?;
-    let rows: Vec<Vec<f64>> = serde_json::from_str(&text)
+fn json(path: &Path, bytes: &[u8]) -> Result<Table> {
+    // Every row begins with a bracket, and the list of them.
+    if bytes.iter().filter(|b| **b == b'[').count() > MOST_ROWS + 1 {
+        return Err(too_many_rows(path));
+    }
+    let rows: Vec<Vec<f64>> = serde_json::from_slice(bytes)
         .map_err(|e| cannot_read(path, &format!("not a list of lists of numbers: {e}")))?;
-    let row = |(i, numbers)| Row { place: format!("row {}", i + 1), numbers };
+    let row = |(i, numbers)| Row { place: Place::Row(i + 1), numbers };
     Ok(Table { names: None, rows: rows.into_iter().enumerate().map(row).collect() })
 }
 

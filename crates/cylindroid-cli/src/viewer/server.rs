@@ -11,6 +11,7 @@ use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use axum::{Router, middleware};
+use cylindroid::model::read_regular_file;
 use tokio::net::TcpListener;
 
 use super::assets::{Page, page_is_built};
@@ -21,6 +22,8 @@ use super::start::Start;
 /// Maximum frame size [bytes]. Longer messages than allowed are answered with an error up to this
 /// size; beyond it the connection ends.
 const LONGEST: usize = 1024 * 1024;
+/// Maximum size of a mesh or image file [bytes].
+const LARGEST_MESH: u64 = 256 << 20;
 /// Maximum number of concurrent sessions.
 const MOST_SESSIONS: usize = 100;
 
@@ -109,7 +112,8 @@ async fn mesh(
             .into_response();
     };
     let kind = mime_guess(&file);
-    let read = tokio::task::spawn_blocking(move || std::fs::read(file)).await;
+    let read = move || read_regular_file(&file, LARGEST_MESH);
+    let read = tokio::task::spawn_blocking(read).await;
     match read {
         Ok(Ok(bytes)) => ([(header::CONTENT_TYPE, kind)], bytes).into_response(),
         _ => (StatusCode::NOT_FOUND, "The mesh could not be read.").into_response(),

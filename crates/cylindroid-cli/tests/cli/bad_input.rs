@@ -157,12 +157,34 @@ fn devices_and_arguments_that_are_not_utf_8_are_told() {
     use std::os::unix::ffi::OsStrExt as _;
     refused(&["info", "/dev/zero"], "not a regular file");
     refused(&["info", "/tmp"], "it is a folder");
+    let map = |path| ["manipulability", "panda", "--task-map", path];
+    refused(&map("/dev/zero"), "not a regular file");
+    refused(&map("/tmp"), "it is a folder");
     let word = std::ffi::OsStr::from_bytes(b"a\xff.urdf");
     let output = Command::new(env!("CARGO_BIN_EXE_cylindroid")).arg("info").arg(word).output();
     let output = output.unwrap();
     assert_eq!(output.status.code(), Some(2));
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert!(stderr.contains("the argument \"a\\xFF.urdf\" is not UTF-8"), "{stderr}");
+}
+
+/// Files of numbers have limits too.
+#[test]
+fn files_of_numbers_are_bounded() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.csv", "a.json"] {
+        let path = folder.path().join(name);
+        let file = std::fs::File::create(&path).unwrap();
+        let path = path.to_str().unwrap();
+        file.set_len((128 << 20) + 1).unwrap();
+        refused(&["manipulability", "panda", "--task-map", path], "larger than 128 MiB");
+    }
+    for (name, row) in [("a.csv", "1\n"), ("a.json", "[],")] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, row.repeat(5_000_100)).unwrap();
+        let command = ["manipulability", "panda", "--task-map", path.to_str().unwrap()];
+        refused(&command, "more than 5000000 rows");
+    }
 }
 
 /// A line of a megabyte is not printed, and a chain of links is not indented without end.

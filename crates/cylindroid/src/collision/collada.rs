@@ -5,12 +5,23 @@
 //! Source   Collada 1.4.1, `<node>`, `<mesh>`, `<unit>`
 //! Checked  tests in this file
 
+use std::collections::BTreeMap;
+
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::spatial::{Mat3, Rotation, Vec3};
 
 /// Nodes inside one another, and instances of nodes, at most.
 const DEPTH: usize = 64;
+
+/// Nodes and instances of a scene at most: nodes that contain the next one twice grow without end.
+const MOST_INSTANCES: usize = 100_000;
+
+/// Numbers of all geometries at most, each as often as it is placed.
+const MOST_NUMBERS: usize = 60_000_000;
+
+/// Elements, texts and attributes of a file at most.
+const MOST_NODES: u32 = 3_000_000;
 
 /// An affine map.
 #[derive(Clone, Copy)]
@@ -33,7 +44,8 @@ impl Affine {
 
 /// The vertices of all geometries, as the scene places them.
 pub(super) fn vertices(text: &str) -> Result<Vec<Vec3>, String> {
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    let options =
+        ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document =
         Document::parse_with_options(text, options).map_err(|e| format!("broken XML: {e}"))?;
     let named =
@@ -44,62 +56,104 @@ pub(super) fn vertices(text: &str) -> Result<Vec<Vec3>, String> {
         linear: Mat3::from_cols(Vec3::X * scale, Vec3::Y * scale, Vec3::Z * scale),
         offset: Vec3::ZERO,
     };
-    let mut found = Vec::new();
-    for scene in named("visual_scene") {
-        for node in children(scene, "node") {
-            add_node(&document, node, unit, DEPTH, &mut found)?;
-        }
+    let by_id = document.descendants().filter_map(|n| Some((n.attribute("id")?, n)));
+    // The first of several elements of one id counts.
+    let by_id = by_id.rev().collect();
+    let mut scene = Scene { by_id, instances: 0, numbers: 0, found: Vec::new() };
+    for node in named("visual_scene").flat_map(|scene| children(scene, "node")) {
+        scene.add_node(node, unit, DEPTH)?;
     }
-    if found.is_empty() {
+    if scene.found.is_empty() {
         for geometry in named("geometry") {
-            add_geometry(geometry, unit, &mut found)?;
+            scene.add_geometry(geometry, unit)?;
         }
     }
-    Ok(found)
+    Ok(scene.found)
 }
 
 fn children<'d>(node: Node<'d, 'd>, name: &'static str) -> impl Iterator<Item = Node<'d, 'd>> {
     node.children().filter(move |n| n.tag_name().name() == name)
 }
 
-fn by_url<'d>(document: &'d Document<'d>, node: Node<'d, 'd>) -> Option<Node<'d, 'd>> {
-    let id = node.attribute("url")?.strip_prefix('#')?;
-    document.descendants().find(|n| n.attribute("id") == Some(id))
+/// The vertices that were placed so far.
+struct Scene<'d> {
+    by_id: BTreeMap<&'d str, Node<'d, 'd>>,
+    instances: usize,
+    numbers: usize,
+    found: Vec<Vec3>,
 }
 
-fn add_node<'d>(
-    document: &'d Document<'d>,
-    node: Node<'d, 'd>,
-    outer: Affine,
-    depth: usize,
-    found: &mut Vec<Vec3>,
-) -> Result<(), String> {
-    let Some(depth) = depth.checked_sub(1) else {
-        return Err("its nodes contain one another".to_owned());
-    };
-    let mut here = outer;
-    for child in node.children() {
-        if let Some(map) = transform(child)? {
-            here = here.after(map);
-        }
+impl<'d> Scene<'d> {
+    fn by_url(&self, node: Node<'d, 'd>) -> Option<Node<'d, 'd>> {
+        self.by_id.get(node.attribute("url")?.strip_prefix('#')?).copied()
     }
-    for child in node.children() {
-        match child.tag_name().name() {
-            "node" => add_node(document, child, here, depth, found)?,
-            "instance_node" => {
-                if let Some(other) = by_url(document, child) {
-                    add_node(document, other, here, depth, found)?;
+
+    fn count(&mut self) -> Result<(), String> {
+        self.instances += 1;
+        if self.instances > MOST_INSTANCES {
+            return Err(format!("its scene has more than {MOST_INSTANCES} nodes and geometries"));
+        }
+        Ok(())
+    }
+
+    fn add_node(&mut self, node: Node<'d, 'd>, outer: Affine, depth: usize) -> Result<(), String> {
+        let Some(depth) = depth.checked_sub(1) else {
+            return Err("its nodes contain one another".to_owned());
+        };
+        self.count()?;
+        let mut here = outer;
+        for child in node.children() {
+            if let Some(map) = transform(child)? {
+                here = here.after(map);
+            }
+        }
+        for child in node.children() {
+            match child.tag_name().name() {
+                "node" => self.add_node(child, here, depth)?,
+                "instance_node" => {
+                    if let Some(other) = self.by_url(child) {
+                        self.add_node(other, here, depth)?;
+                    }
+                }
+                "instance_geometry" => {
+                    if let Some(geometry) = self.by_url(child) {
+                        self.add_geometry(geometry, here)?;
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn add_geometry(&mut self, geometry: Node<'d, 'd>, map: Affine) -> Result<(), String> {
+        self.count()?;
+        let is = |n: &Node<'_, '_>, name: &str| n.tag_name().name() == name;
+        for mesh in geometry.children().filter(|n| is(n, "mesh")) {
+            for vertices in mesh.children().filter(|n| is(n, "vertices")) {
+                let mut inputs = vertices.children().filter(|n| is(n, "input"));
+                let position = inputs.find(|n| n.attribute("semantic") == Some("POSITION"));
+                let source = position.and_then(|n| n.attribute("source")?.strip_prefix('#'));
+                let Some(id) = source else { continue };
+                let Some(source) = mesh.children().find(|n| n.attribute("id") == Some(id)) else {
+                    continue;
+                };
+                let accessor = source.descendants().find(|n| is(n, "accessor"));
+                let stride = accessor.and_then(|n| n.attribute("stride")?.trim().parse().ok());
+                let stride: usize = stride.unwrap_or(3).max(3);
+                for array in source.children().filter(|n| is(n, "float_array")) {
+                    let points = numbers(array)?;
+                    self.numbers += points.len();
+                    if self.numbers > MOST_NUMBERS {
+                        return Err(format!("it places more than {MOST_NUMBERS} numbers"));
+                    }
+                    let points = points.chunks_exact(stride);
+                    self.found.extend(points.map(|p| map.apply(Vec3::new(p[0], p[1], p[2]))));
                 }
             }
-            "instance_geometry" => {
-                if let Some(geometry) = by_url(document, child) {
-                    add_geometry(geometry, here, found)?;
-                }
-            }
-            _ => {}
         }
+        Ok(())
     }
-    Ok(())
 }
 
 fn transform(node: Node<'_, '_>) -> Result<Option<Affine>, String> {
@@ -125,30 +179,6 @@ fn transform(node: Node<'_, '_>) -> Result<Option<Affine>, String> {
         _ => return Err(format!("<{name}> has {} numbers", x.len())),
     };
     Ok(Some(map))
-}
-
-fn add_geometry(geometry: Node<'_, '_>, map: Affine, found: &mut Vec<Vec3>) -> Result<(), String> {
-    let is = |n: &Node<'_, '_>, name: &str| n.tag_name().name() == name;
-    for mesh in geometry.children().filter(|n| is(n, "mesh")) {
-        for vertices in mesh.children().filter(|n| is(n, "vertices")) {
-            let mut inputs = vertices.children().filter(|n| is(n, "input"));
-            let position = inputs.find(|n| n.attribute("semantic") == Some("POSITION"));
-            let source = position.and_then(|n| n.attribute("source")?.strip_prefix('#'));
-            let Some(id) = source else { continue };
-            let Some(source) = mesh.children().find(|n| n.attribute("id") == Some(id)) else {
-                continue;
-            };
-            let accessor = source.descendants().find(|n| is(n, "accessor"));
-            let stride = accessor.and_then(|n| n.attribute("stride")?.trim().parse().ok());
-            let stride: usize = stride.unwrap_or(3).max(3);
-            for array in source.children().filter(|n| is(n, "float_array")) {
-                let points = numbers(array)?;
-                let points = points.chunks_exact(stride);
-                found.extend(points.map(|p| map.apply(Vec3::new(p[0], p[1], p[2]))));
-            }
-        }
-    }
-    Ok(())
 }
 
 fn numbers(node: Node<'_, '_>) -> Result<Vec<f64>, String> {
@@ -181,5 +211,30 @@ mod tests {
             assert!((*a - b).norm() < 1e-15, "{a:?} {b:?}");
         }
         assert!(vertices("<COLLADA>").unwrap_err().contains("XML"));
+    }
+
+    /// Every node contains the next one twice: 2^40 instances.
+    #[test]
+    fn nodes_that_double_are_refused() {
+        let nodes: String = (0..40)
+            .map(|i| {
+                let next = format!("<instance_node url='#n{}'/>", i + 1);
+                format!("<node id='n{i}'>{next}{next}</node>")
+            })
+            .collect();
+        let text = format!(
+            "<COLLADA><library_nodes>{nodes}</library_nodes><visual_scene>\
+             <node><instance_node url='#n0'/></node></visual_scene></COLLADA>"
+        );
+        assert!(vertices(&text).unwrap_err().contains("more than 100000 nodes"));
+        let nested = format!(
+            "<COLLADA><visual_scene>{}{}</visual_scene></COLLADA>",
+            "<node>".repeat(100),
+            "</node>".repeat(100)
+        );
+        assert!(vertices(&nested).unwrap_err().contains("contain one another"));
+        let circle = "<COLLADA><visual_scene><node id='a'><instance_node url='#a'/></node>\
+                      </visual_scene></COLLADA>";
+        assert!(vertices(circle).unwrap_err().contains("contain one another"));
     }
 }

@@ -6,14 +6,14 @@
 //! Fails    with a reason in words, which becomes a note: a link without its mesh is still a link
 //! Checked  tests in this file, tests/collision/files.rs
 
-use std::io::Read;
 use std::path::Path;
 
+use crate::model::read_regular_file;
 use crate::spatial::Vec3;
 
 /// The vertices of a mesh file, or the reason why there are none.
 pub(super) fn vertices(path: &Path) -> Result<Vec<Vec3>, String> {
-    let bytes = read(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+    let bytes = read_regular_file(path, LARGEST).map_err(|e| e.to_string())?;
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let found = match extension.as_deref() {
         Some("stl") => stl(&bytes),
@@ -34,22 +34,6 @@ pub(super) fn vertices(path: &Path) -> Result<Vec<Vec3>, String> {
 
 /// The largest mesh file (bytes): 256 MiB.
 const LARGEST: u64 = 256 << 20;
-
-/// The bytes of a regular file that is not too large.
-fn read(path: &Path) -> Result<Vec<u8>, String> {
-    // Opening a pipe waits for its writer: the kind of the file is known before.
-    let metadata = std::fs::metadata(path).map_err(|e| e.to_string())?;
-    if !metadata.is_file() {
-        return Err("it is no regular file".to_owned());
-    }
-    let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
-    let mut bytes = Vec::new();
-    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
-    if bytes.len() as u64 > LARGEST {
-        return Err(format!("it is larger than {} MiB", LARGEST >> 20));
-    }
-    Ok(bytes)
-}
 
 /// Bytes of the header with the number of triangles, and of each triangle.
 const HEADER: usize = 84;

@@ -4,13 +4,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use cylindroid::{Error, load_file};
+use cylindroid::collision::distance;
+use cylindroid::model::Geometry;
+use cylindroid::{Error, Vec3, load_file};
 
 use crate::mjcf::read_mjcf;
 use crate::sdf::read_sdf;
 use crate::{ARM_URDF, read_toml, read_urdf};
 
-/// The message of the error, which must come within two seconds.
+const ONE: Vec3 = Vec3::new(1.0, 1.0, 1.0);
+
+/// The message of the error, which must be short and come within twenty seconds.
 #[track_caller]
 fn told<T: std::fmt::Debug>(work: impl FnOnce() -> Result<T, Error>) -> String {
     let start = Instant::now();
@@ -45,10 +49,33 @@ fn only_regular_files_of_bounded_size_are_read() {
         let message = told(|| load_file(&path));
         assert!(message.contains("larger than 32 MiB"), "{message}");
     }
+    let obj = written(&folder, "a.obj", "");
+    fs::File::options().write(true).open(&obj).unwrap().set_len((256 << 20) + 1).unwrap();
+    let mesh = Geometry::Mesh { uri: "a.obj".into(), path: Some(obj), scale: ONE };
+    let ball = Geometry::Sphere { radius: 1.0 };
+    let pose = cylindroid::Pose::IDENTITY;
+    let message = told(|| distance((&mesh, pose), (&ball, pose)));
+    assert!(message.contains("larger than 256 MiB"), "{message}");
     let include = written(&folder, "m.xml", "<mujoco><include file='big.xml'/></mujoco>");
     let big = written(&folder, "big.xml", "");
     fs::File::options().write(true).open(big).unwrap().set_len(33 << 20).unwrap();
     assert!(told(|| load_file(&include)).contains("32 MiB"));
+}
+
+/// Files that include a large one: the file that is being read counts as well.
+#[test]
+fn included_files_have_a_limit_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let blanks = " ".repeat(30 << 20);
+    let include = |name: &str| format!("<include><uri>{name}</uri></include>");
+    written(&folder, "c.sdf", format!("<sdf>{blanks}</sdf>"));
+    written(&folder, "b.sdf", format!("<sdf>{blanks}{}</sdf>", include("c.sdf")));
+    let (two, three) = (include("b.sdf"), include("b.sdf") + &include("c.sdf"));
+    let of =
+        |includes: &str| format!("<sdf><model name='m'><link name='l'/>{includes}</model></sdf>");
+    assert!(load_file(&written(&folder, "two.sdf", of(&two))).is_ok());
+    let message = told(|| load_file(&written(&folder, "three.sdf", of(&three))));
+    assert!(message.contains("included files exceed 64 MiB together"), "{message}");
 }
 
 #[test]
@@ -71,6 +98,37 @@ fn counts_have_limits_that_errors_name() {
     assert_eq!(read_sdf(&nested(50)).unwrap().links().len(), 1);
     let entities = "<!DOCTYPE r [<!ENTITY a 'bbbbbbbb'>]><robot><link name='&a;'/></robot>";
     assert!(told(|| read_urdf(entities)).contains("entities"));
+}
+
+/// Neither a bracket nor an angle in a comment, an instruction or quotes ends a document type
+/// declaration.
+#[test]
+fn no_entity_is_hidden() {
+    let entity = "<!ENTITY a 'b'>";
+    for before in [
+        "",
+        "<!-- ]> -->",
+        "<!-->-->",
+        "<?p ]> ?>",
+        "<!NOTATION n SYSTEM ']'>",
+        "<!NOTATION n SYSTEM \"]\"><!ATTLIST r a CDATA ']'>",
+        "<!ELEMENT r ANY> \n",
+    ] {
+        for name in ["r", "r SYSTEM 'a]'", "r SYSTEM '>['", "r PUBLIC \"[\" \"'>\""] {
+            let doctype = |inside: &str| {
+                format!("<!DOCTYPE {name} [{before}{inside}]><robot><link name='l'/></robot>")
+            };
+            let message = told(|| read_urdf(&doctype(entity)));
+            assert!(message.contains("the file declares entities"), "{before} {name}: {message}");
+            let robot = read_urdf(&doctype("<!-- <!ENTITY -->"));
+            assert_eq!(robot.unwrap().links().len(), 1, "{before} {name}");
+        }
+    }
+    // What hides elements from the limits is broken for the parser too.
+    let deep = format!("{}{}", "<a>".repeat(2000), "</a>".repeat(2000));
+    for head in ["<!DOCTYPE r [ ", "<!DOCTYPE r [<!-- ]>", "<!DOCTYPE r 'a>", "<!OTHER ['>"] {
+        assert!(told(|| read_urdf(&format!("{head}{deep}"))).contains("broken XML"), "{head}");
+    }
 }
 
 /// The elements of comments, texts and declarations are not counted.

@@ -9,6 +9,8 @@ pub mod dh;
 #[cfg(feature = "formats")]
 mod graph;
 #[cfg(feature = "formats")]
+mod inclusion;
+#[cfg(feature = "formats")]
 pub(crate) mod load;
 #[cfg(feature = "formats")]
 mod mesh;

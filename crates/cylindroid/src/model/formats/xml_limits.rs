@@ -26,6 +26,8 @@ const MOST_NAMESPACES: usize = 1000;
 /// Bytes of an attribute `name`.
 const LONGEST_NAME: usize = 1000;
 
+const DOCTYPE: &str = "<!DOCTYPE";
+
 /// The tags of a text, until the first that is broken.
 struct Tags<'t> {
     text: &'t str,
@@ -63,18 +65,10 @@ impl Iterator for Tags<'_> {
             self.at = start + length?;
             return Some(Tag::Other);
         }
-        if rest.starts_with("<!") {
-            let subset = rest.find('>').zip(rest.find('[')).filter(|(end, open)| open < end);
-            let length = match subset {
-                None => rest.find('>')? + 1,
-                Some((_, open)) => open + rest[open..].find(']')? + 1,
-            };
-            self.at = start + length;
-            let entity = rest[..length].find("<!ENTITY");
-            return Some(match entity {
-                Some(i) => Tag::Entity { at: start + i },
-                None => Tag::Other,
-            });
+        if let Some(declaration) = rest.strip_prefix(DOCTYPE) {
+            let (length, entity) = document_type(declaration)?;
+            self.at = start + DOCTYPE.len() + length;
+            return Some(if entity { Tag::Entity { at: self.at } } else { Tag::Other });
         }
         let mut quote = None;
         let bytes = rest.as_bytes();
@@ -99,6 +93,47 @@ impl Iterator for Tags<'_> {
         } else {
             Tag::Start { range, is_empty: bytes.get(end - 1) == Some(&b'/') }
         })
+    }
+}
+
+/// The length of a document type declaration after [`DOCTYPE`], with its internal subset; up to the
+/// first declaration of an entity if there is one (true). `None` if it is broken, by the rules of
+/// the parser: `]` and `>` within comments, instructions and quoted identifiers end nothing.
+fn document_type(text: &str) -> Option<(usize, bool)> {
+    let mut quote = None;
+    let open = text.find(|c: char| match quote {
+        Some(q) => {
+            quote = quote.filter(|_| c != q);
+            false
+        }
+        None => {
+            quote = Some(c).filter(|c| matches!(c, '"' | '\''));
+            matches!(c, '[' | '>')
+        }
+    })?;
+    let mut at = open + 1;
+    if text[open..].starts_with('>') {
+        return Some((at, false));
+    }
+    loop {
+        let rest = text[at..].trim_start();
+        at = text.len() - rest.len();
+        if let Some(end) = rest.strip_prefix(']') {
+            let end = end.trim_start().strip_prefix('>')?;
+            return Some((text.len() - end.len(), false));
+        }
+        if rest.starts_with("<!ENTITY") {
+            return Some((at, true));
+        }
+        let close = match rest {
+            _ if rest.starts_with("<!--") => "-->",
+            _ if rest.starts_with("<?") => "?>",
+            _ if rest.starts_with("<!") => ">",
+            _ => return None,
+        };
+        // The end of "<!-->" is not that of a comment.
+        let from = if close == "-->" { 4 } else { 2 };
+        at += from + rest[from..].find(close)? + close.len();
     }
 }
 

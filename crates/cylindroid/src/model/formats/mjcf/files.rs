@@ -5,120 +5,50 @@
 //! Source   mujoco.readthedocs.io, XML reference, include
 //! Checked  tests/formats/mjcf.rs::includes_*
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
-use super::attributes::FORMAT;
-use crate::error::{Error, Result, shown};
+use crate::error::Result;
+use crate::model::formats::inclusion::{ByInclude, Included};
 use crate::model::formats::span::Source;
-use crate::model::formats::text_file::{self, LARGEST_INCLUSION, TextFile};
-use crate::model::formats::xml::{self, Reader};
-use crate::model::formats::xml_limits;
+use crate::model::formats::xml::Reader;
 
-/// Files of a model; deeper inclusion than this is no model of a robot.
-const MOST_FILES: usize = 1000;
-
-/// The text of an included file.
-pub(super) struct Included {
-    path: PathBuf,
-    text: String,
-    /// The file (0 is the main one) and the byte offset of its `<include>`.
-    place: (usize, usize),
-}
-
-impl Included {
-    pub(super) fn source(&self) -> Source<'_> {
-        Source { format: FORMAT, path: &self.path, text: &self.text }
+/// The file that an `<include>` names; `main` is the path of the model.
+pub(super) fn find(
+    main: &Path,
+    source: &Source<'_>,
+    include: Node<'_, '_>,
+    before: &[Included],
+) -> Result<Option<PathBuf>> {
+    let name = Reader::new(*source, None).required(include, "file")?.trim().to_owned();
+    let folder = |path: &Path| path.parent().unwrap_or_else(|| Path::new("")).to_owned();
+    let beside = folder(source.path).join(&name);
+    let path = Some(folder(main).join(&name)).filter(|p| p.exists() || !beside.exists());
+    let path = path.unwrap_or(beside);
+    let is_same = |f: &Path| f == path || is_same(f, &path);
+    if before.iter().any(|f| is_same(&f.path)) || is_same(source.path) {
+        let message = format!("'{name}' is included twice");
+        let span = Reader::value(include, "file");
+        return Err(source.error(span, message, "include a file only once"));
     }
-}
-
-/// Reads the files that a model includes, and those that they include.
-pub(super) fn gather(main: &Source<'_>) -> Result<Vec<Included>> {
-    let folder = main.path.parent().unwrap_or_else(|| Path::new(""));
-    let mut found: Vec<Included> = Vec::new();
-    read(main, 0, folder, &mut found)?;
-    let mut next = 0;
-    while next < found.len() {
-        // The text is moved out while its own includes are read.
-        let (path, text) = (found[next].path.clone(), std::mem::take(&mut found[next].text));
-        let source = Source { format: FORMAT, path: &path, text: &text };
-        read(&source, next + 1, folder, &mut found)?;
-        found[next].text = text;
-        next += 1;
-    }
-    Ok(found)
-}
-
-fn read(source: &Source<'_>, file: usize, folder: &Path, found: &mut Vec<Included>) -> Result<()> {
-    let document = xml::document(source)?;
-    for node in document.descendants().filter(|n| n.has_tag_name("include")) {
-        let reader = Reader::new(*source, None);
-        let name = reader.required(node, "file")?.trim();
-        let refuse = |message: String, help: &str| {
-            Err(source.error(Reader::value(node, "file"), message, help))
-        };
-        let beside = source.path.parent().unwrap_or_else(|| Path::new("")).join(name);
-        let path = Some(folder.join(name)).filter(|p| p.exists() || !beside.exists());
-        let path = path.unwrap_or(beside);
-        let same = |f: &Included| f.path == path || is_same(&f.path, &path);
-        if found.iter().any(same) || is_same(source.path, &path) {
-            return refuse(format!("'{name}' is included twice"), "include a file only once");
-        }
-        if found.len() >= MOST_FILES {
-            return refuse(format!("the model has more than {MOST_FILES} files"), "");
-        }
-        match text_file::read(&path) {
-            Ok(TextFile { text, .. }) => {
-                let text = xml_limits::without_undeclared(&text).into_owned();
-                let bytes: usize = found.iter().map(|f| f.text.len()).sum();
-                if bytes + text.len() > LARGEST_INCLUSION {
-                    let limit = LARGEST_INCLUSION >> 20;
-                    return refuse(format!("the files of the model exceed {limit} MiB"), "");
-                }
-                found.push(Included { path, text, place: (file, node.range().start) });
-            }
-            Err(Error::Io { path, message, .. }) => {
-                return refuse(format!("cannot read {}: {message}", shown(&path)), "");
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(())
+    Ok(Some(path))
 }
 
 fn is_same(a: &Path, b: &Path) -> bool {
     a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
 }
 
-/// The documents of a model: the main one, then the included ones.
+/// The documents of a model: the main one, and the included ones.
 pub(super) struct Files<'d> {
     pub(super) main: &'d Document<'d>,
-    /// By the texts of the files, their `<include>` elements and the documents of these.
-    included: BTreeMap<(usize, usize), &'d Document<'d>>,
-}
-
-/// Identifies a document by its text.
-fn key(document: &Document<'_>) -> usize {
-    document.input_text().as_ptr() as usize
+    pub(super) included: ByInclude<'d>,
 }
 
 impl<'d> Files<'d> {
-    pub(super) fn new(
-        main: &'d Document<'d>,
-        included: &'d [Included],
-        documents: &'d [Document<'d>],
-    ) -> Self {
-        let text = |file: usize| key(file.checked_sub(1).map_or(main, |i| &documents[i]));
-        let place = |f: &Included| (text(f.place.0), f.place.1);
-        Self { main, included: included.iter().map(place).zip(documents).collect() }
-    }
-
     /// The root elements of all files, the main one first.
     pub(super) fn roots(&self) -> Vec<Node<'d, 'd>> {
-        let others = self.included.values().map(|d| d.root_element());
-        std::iter::once(self.main.root_element()).chain(others).collect()
+        std::iter::once(self.main.root_element()).chain(self.included.roots()).collect()
     }
 
     /// The `<include>` elements of all files.
@@ -132,10 +62,8 @@ impl<'d> Files<'d> {
         let mut children = Vec::new();
         let mut stack: Vec<Node<'d, 'd>> = elements(node);
         while let Some(child) = stack.pop() {
-            let place = || (key(child.document()), child.range().start);
-            let file = child.has_tag_name("include").then(place);
-            match file.and_then(|place| self.included.get(&place)) {
-                Some(document) => stack.extend(elements(document.root_element())),
+            match self.included.root(child) {
+                Some(root) => stack.extend(elements(root)),
                 None => children.push(child),
             }
         }

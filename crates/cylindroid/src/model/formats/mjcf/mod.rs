@@ -34,6 +34,7 @@ use self::compiler::Compiler;
 use self::defaults::Defaults;
 use self::files::Files;
 use self::unique_name::unique;
+use super::inclusion::{self, ByInclude};
 use super::span::Source;
 use super::xml::{self, Reader};
 use super::xml_limits;
@@ -98,10 +99,12 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
             format!("the root element is <{}>, MJCF begins with <mujoco>", root.tag_name().name());
         return Err(source.error(Reader::tag(root), message, ""));
     }
-    let included = files::gather(&source)?;
-    let sources: Vec<Source<'_>> = included.iter().map(files::Included::source).collect();
+    let included =
+        inclusion::gather(&source, |s, node, before| files::find(path, s, node, before))?;
+    let sources: Vec<Source<'_>> = included.iter().map(|f| f.source(FORMAT)).collect();
     let documents: Vec<Document<'_>> = sources.iter().map(xml::document).collect::<Result<_>>()?;
-    read(source, sources.clone(), Files::new(&main, &included, &documents))
+    let files = Files { main: &main, included: ByInclude::new(&main, &included, &documents) };
+    read(source, sources.clone(), files)
 }
 
 fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> Result<Mechanism> {

@@ -26,8 +26,9 @@ use std::path::Path;
 use roxmltree::{Document, Node};
 
 use self::frames::{Frames, MODEL, PosedFrame};
-use self::includes::{FORMAT, Includes};
+use self::includes::FORMAT;
 use self::joint_entry::JointEntry;
+use super::inclusion::{self, ByInclude};
 use super::mesh::Packages;
 use super::span::Source;
 use super::xml::{self, Reader};
@@ -42,7 +43,7 @@ const POSE: [&str; 4] = ["relative_to", "frame", "rotation_format", "degrees"];
 /// The model while it is read.
 struct Sdf<'d> {
     reader: Reader<'d>,
-    includes: Includes<'d>,
+    includes: ByInclude<'d>,
     frames: Frames<'d>,
     links: Vec<(Link, Node<'d, 'd>)>,
     joints: Vec<JointEntry<'d>>,
@@ -82,17 +83,17 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
             format!("the root element is <{}>, SDF begins with <sdf>", root.tag_name().name());
         return Err(source.error(tag, message, ""));
     }
-    let included = includes::gather(&source)?;
-    let sources: Vec<Source<'_>> = included.iter().map(includes::Included::source).collect();
+    let included = inclusion::gather(&source, |source, node, _| Ok(includes::find(source, node)))?;
+    let sources: Vec<Source<'_>> = included.iter().map(|f| f.source(FORMAT)).collect();
     let documents: Vec<Document<'_>> = sources.iter().map(xml::document).collect::<Result<_>>()?;
-    read(source, sources.clone(), root, Includes::new(&document, &included, &documents))
+    read(source, sources.clone(), root, ByInclude::new(&document, &included, &documents))
 }
 
 fn read<'d>(
     source: Source<'d>,
     included: Vec<Source<'d>>,
     root: Node<'d, 'd>,
-    includes: Includes<'d>,
+    includes: ByInclude<'d>,
 ) -> Result<Mechanism> {
     let mut reader = Reader::new(source, None);
     reader.included = included;
@@ -106,7 +107,7 @@ fn read<'d>(
     let models: Vec<Placed<'_>> = places
         .filter_map(|node| match node.tag_name().name() {
             "model" => Some(Placed { model: node, by: node }),
-            "include" => includes.model(node).map(|model| Placed { model, by: node }),
+            "include" => included_model(&includes, node).map(|model| Placed { model, by: node }),
             _ => None,
         })
         .collect();
@@ -134,6 +135,11 @@ fn read<'d>(
     };
     it.read(chosen)?;
     it.write(chosen)
+}
+
+/// The model that an `<include>` brings.
+fn included_model<'d>(includes: &ByInclude<'d>, node: Node<'d, 'd>) -> Option<Node<'d, 'd>> {
+    includes.root(node)?.children().find(|n| n.has_tag_name("model"))
 }
 
 /// The version of the format that an element is written in.
@@ -230,7 +236,7 @@ impl<'d> Sdf<'d> {
                         nested.push((Placed { model: node, by: node }, scoped(&scope, own)));
                     }
                     "include" => {
-                        let Some(model) = self.includes.model(node) else { continue };
+                        let Some(model) = included_model(&self.includes, node) else { continue };
                         let placed = Placed { model, by: node };
                         let own = placed.name(&self.reader).unwrap_or("");
                         nested.push((placed, self.scope_of(node, &scope, own)?));

@@ -1,0 +1,124 @@
+//! The files that an XML model includes, and those that they include: read once for each
+//! `<include>`, within limits.
+//!
+//! Why so   MJCF and SDF differ in the search for a file alone
+//! Fails    more than [`MOST_FILES`] files, more than [`LARGEST_INCLUSION`] bytes, a file that cannot
+//!          be read: at the `<include>`
+//! Checked  tests/formats/limits.rs, tests/formats/mjcf.rs::includes_*,
+//!          tests/formats/sdf.rs::includes_*
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use roxmltree::{Document, Node};
+
+use super::span::Source;
+use super::text_file::{self, TextFile};
+use super::xml::{self, Reader};
+use super::xml_limits;
+use crate::error::{Error, Result, shown};
+
+/// Included files; SDF may include a file several times.
+const MOST_FILES: usize = 1000;
+
+/// The bytes of all included files: 64 MiB.
+const LARGEST_INCLUSION: usize = 64 << 20;
+
+/// An included file.
+pub(super) struct Included {
+    pub(super) path: PathBuf,
+    text: String,
+    /// The file (0 is the main one) and the byte offset of its `<include>`.
+    place: (usize, usize),
+}
+
+impl Included {
+    pub(super) fn source(&self, format: &'static str) -> Source<'_> {
+        Source { format, path: &self.path, text: &self.text }
+    }
+}
+
+/// Reads the files that a model includes, and those that they include. `find` gets the file with an
+/// `<include>`, the element and the files before it; `None` leaves the file out.
+pub(super) fn gather(
+    main: &Source<'_>,
+    find: impl Fn(&Source<'_>, Node<'_, '_>, &[Included]) -> Result<Option<PathBuf>>,
+) -> Result<Vec<Included>> {
+    let mut found: Vec<Included> = Vec::new();
+    let mut bytes = 0;
+    for file in 0_usize.. {
+        // The text is moved out while its own includes are read.
+        let own = match file.checked_sub(1).map(|i| found.get_mut(i)) {
+            None => None,
+            Some(None) => break,
+            Some(Some(f)) => Some((f.path.clone(), std::mem::take(&mut f.text))),
+        };
+        let source = match &own {
+            None => *main,
+            Some((path, text)) => Source { format: main.format, path, text },
+        };
+        for node in xml::document(&source)?.descendants().filter(|n| n.has_tag_name("include")) {
+            let Some(path) = find(&source, node, &found)? else { continue };
+            let refuse =
+                |message: String, help| Err(source.error(Reader::tag(node), message, help));
+            if found.len() >= MOST_FILES {
+                let message = format!("the model includes more than {MOST_FILES} files");
+                return refuse(message, "does a file include itself?");
+            }
+            let text = match text_file::read(&path) {
+                Ok(TextFile { text, .. }) => xml_limits::without_undeclared(&text).into_owned(),
+                Err(Error::Io { path, message, .. }) => {
+                    return refuse(format!("cannot read {}: {message}", shown(&path)), "");
+                }
+                Err(error) => return Err(error),
+            };
+            bytes += text.len();
+            if bytes > LARGEST_INCLUSION {
+                let limit = LARGEST_INCLUSION >> 20;
+                return refuse(format!("the included files exceed {limit} MiB together"), "");
+            }
+            found.push(Included { path, text, place: (file, node.range().start) });
+        }
+        if let (Some((_, text)), Some(i)) = (own, file.checked_sub(1)) {
+            found[i].text = text;
+        }
+    }
+    Ok(found)
+}
+
+/// The included documents.
+#[derive(Debug)]
+pub(super) struct ByInclude<'d> {
+    documents: &'d [Document<'d>],
+    /// Indices of `documents` by the texts and offsets of their `<include>` elements.
+    index: BTreeMap<(usize, usize), usize>,
+}
+
+impl<'d> ByInclude<'d> {
+    /// `documents` are those of `included`.
+    pub(super) fn new(
+        main: &'d Document<'d>,
+        included: &[Included],
+        documents: &'d [Document<'d>],
+    ) -> Self {
+        let text = |file: usize| text_of(file.checked_sub(1).map_or(main, |i| &documents[i]));
+        let place = |f: &Included| (text(f.place.0), f.place.1);
+        Self { documents, index: included.iter().map(place).zip(0..).collect() }
+    }
+
+    /// The root element of the file that an `<include>` brings.
+    pub(super) fn root(&self, include: Node<'d, 'd>) -> Option<Node<'d, 'd>> {
+        let place = (text_of(include.document()), include.range().start);
+        self.index.get(&place).map(|i| self.documents[*i].root_element())
+    }
+
+    /// The root elements of all included files, in the order in which they were found.
+    pub(super) fn roots(&self) -> impl Iterator<Item = Node<'d, 'd>> + use<'d> {
+        self.documents.iter().map(Document::root_element)
+    }
+}
+
+/// Identifies a document by its text.
+fn text_of(document: &Document<'_>) -> usize {
+    document.input_text().as_ptr() as usize
+}
