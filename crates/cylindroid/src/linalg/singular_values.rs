@@ -15,7 +15,8 @@
 //! Source   Golub & Van Loan, Matrix Computations, 4th ed., sections 5.4.8 and 8.6.3; Wilkinson,
 //!          The Algebraic Eigenvalue Problem, ch. 7 (Laguerre); Dhillon & Parlett 2004 (the pivots
 //!          of B^T B - t without forming it)
-//! Checked  tests::extremes_are_those_of_the_decomposition, tests/it/subspaces.rs
+//! Checked  tests::extremes_are_those_of_the_decomposition, tests::steps_are_few,
+//!          tests/it/subspaces.rs
 
 use super::matrix::Matrix;
 use super::vector::dot_unrolled as dot;
@@ -32,8 +33,13 @@ const MAX_STEPS: usize = 40;
 
 /// The singular values of `a`, largest first.
 pub(super) fn singular_values(a: Matrix) -> Option<Vec<f64>> {
+    singular_values_within::<STEPS>(a)
+}
+
+/// [`singular_values`] in at most `N` QR steps for each value.
+fn singular_values_within<const N: usize>(a: Matrix) -> Option<Vec<f64>> {
     let (d, e) = bidiagonal(a);
-    let mut values = chase(d, e)?;
+    let mut values = chase::<N>(d, e)?;
     values.iter_mut().for_each(|v| *v = v.abs());
     values.sort_unstable_by(|a, b| b.total_cmp(a));
     Some(values)
@@ -42,6 +48,11 @@ pub(super) fn singular_values(a: Matrix) -> Option<Vec<f64>> {
 /// The largest and the smallest singular value of `a`, without those between; `None` where the
 /// steps do not settle.
 pub(super) fn extreme_singular_values(a: Matrix) -> Option<[f64; 2]> {
+    extreme_singular_values_within::<MAX_STEPS>(a)
+}
+
+/// [`extreme_singular_values`] in at most `N` Laguerre steps for each.
+fn extreme_singular_values_within<const N: usize>(a: Matrix) -> Option<[f64; 2]> {
     if a.cols() <= SMALL {
         let values = singular_values(a)?;
         return Some([*values.first()?, *values.last()?]);
@@ -56,8 +67,8 @@ pub(super) fn extreme_singular_values(a: Matrix) -> Option<[f64; 2]> {
     let right = |i: usize| (d[i] * e.get(i).copied().unwrap_or(0.0)).sqrt();
     let left = |i: usize| if i == 0 { 0.0 } else { right(i - 1) };
     let bound = (0..d.len()).map(|i| d[i] + above(i) + right(i) + left(i)).fold(0.0, f64::max);
-    let largest = extreme(&d, &e, bound * (1.0 + 1e-12))?;
-    let smallest = extreme(&d, &e, 0.0)?;
+    let largest = extreme::<N>(&d, &e, bound * (1.0 + 1e-12))?;
+    let smallest = extreme::<N>(&d, &e, 0.0)?;
     Some([largest.sqrt(), smallest.sqrt()])
 }
 
@@ -65,7 +76,7 @@ pub(super) fn extreme_singular_values(a: Matrix) -> Option<[f64; 2]> {
 /// they come near it with the third power of the distance and would never pass it. Where several
 /// values seem one, the first steps are those to a multiple one, and may pass it; then the way back
 /// is sought in steps that grow from rounding.
-fn extreme(d: &[f64], e: &[f64], start: f64) -> Option<f64> {
+fn extreme<const N: usize>(d: &[f64], e: &[f64], start: f64) -> Option<f64> {
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
     let n = d.len() as f64;
     let side = if start > 0.0 { -1.0 } else { 1.0 };
@@ -74,7 +85,7 @@ fn extreme(d: &[f64], e: &[f64], start: f64) -> Option<f64> {
     let mut passed = None;
     // How near to a whole number what seems that many values must come.
     let mut near_whole = 0.05;
-    for _ in 0..MAX_STEPS {
+    for _ in 0..N {
         let Some((g, h)) = logarithmic_derivatives(d, e, t, side) else {
             if t == start {
                 return t.is_finite().then_some(t);
@@ -188,12 +199,12 @@ fn reflector(x: &mut [f64]) -> (f64, f64) {
 }
 
 /// QR steps on the bidiagonal matrix until it is diagonal.
-fn chase(mut d: Vec<f64>, mut e: Vec<f64>) -> Option<Vec<f64>> {
+fn chase<const N: usize>(mut d: Vec<f64>, mut e: Vec<f64>) -> Option<Vec<f64>> {
     let mut hi = d.len().saturating_sub(1);
     let small = |d: &[f64], e: &[f64], i: usize| {
         !(e[i].abs() > 0.5 * f64::EPSILON * (d[i].abs() + d[i + 1].abs()))
     };
-    for _ in 0..STEPS * d.len() {
+    for _ in 0..N * d.len() {
         while hi > 0 && small(&d, &e, hi - 1) {
             hi -= 1;
         }
@@ -295,5 +306,48 @@ mod tests {
         check("singular", &[1.0, 0.0, 2.0, 1.0], &[0.5; 3], true);
         check("nothing", &[0.0; 4], &[0.0; 3], true);
         assert!(extreme_singular_values(Matrix::diagonal(&[1.0, 2.0, f64::NAN, 1.0])).is_none());
+    }
+
+    /// A wrong fallback is only slower: the shares of matrices that need more steps are bounded by
+    /// those of the method, and three QR steps for each value are enough for all.
+    #[test]
+    fn steps_are_few() {
+        let mut seed = 1_u64;
+        let mut random = || 2.0 * crate::scalar::uniform(&mut seed) - 1.0;
+        let rounds = 4000_u32;
+        // For each kind those that need more than 8, 14 and 24 steps.
+        let mut slow = [[0_u32; 3]; 4];
+        for round in 0..rounds {
+            let n = 4 + round as usize % 18;
+            let width = 10.0_f64.powi(-(round as i32 / 21 % 17));
+            let spread: Vec<f64> = (0..n).map(|_| random()).collect();
+            let small: Vec<f64> = (1..n).map(|_| width * random()).collect();
+            let cluster: Vec<f64> = (0..n).map(|_| 0.7 * (1.0 + width * random())).collect();
+            let two: Vec<f64> =
+                (0..n).map(|i| (1.0 + (i % 2) as f64) * (1.0 + width * random())).collect();
+            let graded: Vec<f64> = (0..n).map(|_| 10.0_f64.powf(8.0 * random() - 8.0)).collect();
+            let above: Vec<f64> = (1..n).map(|i| graded[i] * random()).collect();
+            let kinds = [(&spread, &small), (&graded, &above), (&cluster, &small), (&two, &small)];
+            for (slow, (diagonal, above)) in slow.iter_mut().zip(kinds) {
+                let b = Matrix::from_fn(n, n, |i, j| match j.checked_sub(i) {
+                    Some(0) => diagonal[i],
+                    Some(1) => above[i],
+                    _ => 0.0,
+                });
+                assert!(singular_values_within::<3>(b.clone()).is_some(), "{diagonal:?} {above:?}");
+                let more = [
+                    extreme_singular_values_within::<8>(b.clone()),
+                    extreme_singular_values_within::<14>(b.clone()),
+                    extreme_singular_values_within::<24>(b),
+                ];
+                for (slow, found) in slow.iter_mut().zip(more) {
+                    *slow += u32::from(found.is_none());
+                }
+            }
+        }
+        let most = [[0.14, 0.14, 0.0], [0.07, 0.07, 0.001], [0.75, 0.4, 0.005], [0.95, 0.8, 0.35]];
+        for (few, most) in slow.as_flattened().iter().zip(most.as_flattened()) {
+            assert!(f64::from(*few) <= most * f64::from(rounds), "{slow:?} of {rounds}");
+        }
     }
 }

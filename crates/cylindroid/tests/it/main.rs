@@ -26,6 +26,7 @@ mod parameters;
 mod pinocchio;
 mod screws;
 mod servo;
+mod simd;
 mod spatial;
 mod subspaces;
 mod support;
