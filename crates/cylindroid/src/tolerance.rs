@@ -20,6 +20,10 @@ pub const SMALL_TANGENT: f64 = 1e-3;
 /// print six digits.
 pub const ORTHONORMAL: f64 = 1e-5;
 
+/// Position limits farther apart than this [rad or m] stand for none where configurations are drawn
+/// within them: files write 1e5 or 1e6 for a wheel or a mobile base.
+pub const WIDEST_RANGE: f64 = 1e3;
+
 /// Numbers of models, configurations, velocities and poses are at most this in magnitude: their
 /// squares and the products with one another are finite, so that finite input gives finite results.
 pub const MAX_MAGNITUDE: f64 = 1e120;

@@ -18,14 +18,15 @@ use std::time::Instant;
 use super::analytic::Analytic;
 use super::closed_form::{ClosedForm, REDUNDANCY_SAMPLES};
 use super::convergence::{Errors, is_reached};
-use super::goal::Goal;
+use super::goal::{Goal, check_all};
 use super::levenberg_marquardt::Problem;
 use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, LANES, MAX_COORDINATES, Restart, solve_batched};
 use super::solution::{FoundBy, Solution};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
+use crate::tolerance;
 
 /// Iteration limit of one restart.
 pub(crate) const ITERATIONS_PER_RESTART: usize = 60;
@@ -140,7 +141,7 @@ impl Solver {
     /// As [`solve`].
     pub fn new(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Self> {
         options.check(mechanism)?;
-        check(mechanism, goals)?;
+        check_all(mechanism, goals)?;
         let problem = Problem::new(mechanism, goals, options);
         let mut start = options.initial_guess.clone().unwrap_or_else(|| mechanism.home().to_vec());
         problem.clamp(&mut start);
@@ -222,7 +223,7 @@ impl Solver {
         after_first: usize,
         enough: impl Fn(usize) -> bool,
     ) -> Result<Vec<Solution>> {
-        check(&self.problem.mechanism, goals)?;
+        check_all(&self.problem.mechanism, goals)?;
         self.problem.set_goals(goals)?;
         let out_of_reach = self.problem.out_of_reach();
         let begin = Instant::now();
@@ -305,8 +306,13 @@ impl Solver {
             let (mut q, _) =
                 best.unwrap_or_else(|| (self.start.clone(), self.problem.evaluate(&self.start)));
             let errors = self.problem.refine(&mut q, REFINEMENT_ITERATIONS);
-            let nearest = Candidate { distance: 0.0, q, errors, found_by: FoundBy::Numerical };
-            return Ok(vec![solution(false, nearest)]);
+            if is_reached(errors, &self.options) {
+                self.add(&mut solutions, &q, FoundBy::Numerical);
+            }
+            if solutions.is_empty() {
+                let nearest = Candidate { distance: 0.0, q, errors, found_by: FoundBy::Numerical };
+                return Ok(vec![solution(false, nearest)]);
+            }
         }
         solutions.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         Ok(solutions.into_iter().map(|answer| solution(true, answer)).collect())
@@ -425,7 +431,7 @@ impl Solver {
     fn sample_configuration(&self, q: &mut [f64], near: bool, random: &mut u64) {
         let p = &self.problem;
         for (i, &c) in p.coordinates.iter().enumerate().filter(|(i, _)| !p.fixed[*i]) {
-            let bounded = p.lower[i].is_finite() && p.upper[i].is_finite();
+            let bounded = p.upper[i] - p.lower[i] <= tolerance::WIDEST_RANGE;
             let anywhere = if bounded && !p.turns[i] { f64::INFINITY } else { PI };
             let (middle, spread) =
                 if near { (self.start[c], PERTURBATION) } else { (0.0, anywhere) };
@@ -473,26 +479,4 @@ impl Solver {
             (apart - 2.0 * PI * turns).abs() < SAME_CONFIGURATION
         })
     }
-}
-
-fn check(mechanism: &Mechanism, goals: &[Goal]) -> Result<()> {
-    if goals.is_empty() {
-        return Err(Error::InvalidOption {
-            option: "goals",
-            value: "none".to_owned(),
-            reason: "name an end effector and where it shall be".to_owned(),
-        });
-    }
-    if mechanism.is_closed() {
-        return Err(Error::Model {
-            model: mechanism.name().to_owned(),
-            culprit: String::new(),
-            message: format!(
-                "'{}' has loops or contacts, which inverse kinematics of its spanning tree would \
-                 open; move its reference with a servo, or assemble it for given actuated joints",
-                mechanism.name()
-            ),
-        });
-    }
-    goals.iter().try_for_each(|goal| goal.check(mechanism))
 }
