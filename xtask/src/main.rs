@@ -4,6 +4,7 @@
 mod bench_peers;
 mod book;
 mod corpus;
+mod deny;
 mod instructions;
 mod layers;
 mod models;
@@ -44,6 +45,13 @@ cargo xtask <task>
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   viewer-load [seconds]
             serves the viewer to 20 clients for a minute, and prints memory and lateness
+  deny      checks licences, duplicates and sources of dependencies with cargo-deny, which it
+            installs (needs crates.io); --advisories reads those of RustSec (needs github.com)
+  limits [millions] [first round]
+            runs 10 million servo steps (release build) over random robots, tasks, limits, starts
+            and pushes, and prints every limit that is left, with the round that repeats it
+  fuzz [mutations]
+            loads 10 000 mutations of real files of every format (release build)
   bench-peers [--quick] [--only NAMES]
             installs other libraries in target/bench-peers (Python, PyPI, crates.io, Debian's
             packages, g++), compares with them and writes docs/benchmarks.* (--quick: a
@@ -78,6 +86,13 @@ fn run() -> Result<()> {
         Some("vectors") => steps::vectors(),
         Some("bench") => steps::bench(),
         Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),
+        Some("deny") => deny::task(std::env::args().nth(2).as_deref()),
+        Some("limits") => {
+            let arguments: Vec<String> = std::env::args().skip(2).collect();
+            let argument = |i: usize| arguments.get(i).map(String::as_str);
+            steps::limits(argument(0), argument(1))
+        }
+        Some("fuzz") => steps::fuzz(std::env::args().nth(2).as_deref()),
         Some("bench-peers") => {
             bench_peers::compare(&std::env::args().skip(2).collect::<Vec<String>>())
         }

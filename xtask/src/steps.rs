@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use crate::shell::{cargo, documentation, root, run};
-use crate::{book, layers, models, python, python_names, viewer};
+use crate::{book, deny, layers, models, python, python_names, viewer};
 
 fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
     println!("== {name}");
@@ -44,6 +44,7 @@ pub(crate) fn test() -> Result<()> {
     // Before anything is compiled: the command line embeds the page.
     step("viewer page", viewer::build)?;
     quick()?;
+    step("dependencies", deny::check)?;
     step("documentation", documentation)?;
     step("book", book::build)?;
     step("tests", || {
@@ -89,6 +90,7 @@ pub(crate) fn vectors() -> Result<()> {
         ("grasp", "grasps"),
         ("pitch_form", "pitch_forms"),
         ("collision", "collision"),
+        ("mesh_mass", "mesh_masses"),
     ] {
         let script = format!("xtask/vectors/{script}_vectors.py");
         let folder = format!("crates/cylindroid/tests/vectors/{folder}");
@@ -123,6 +125,25 @@ pub(crate) fn viewer_load(seconds: Option<&str>) -> Result<()> {
     let show = ["--", "--ignored", "--exact", "--nocapture", "view::load::load"];
     let arguments = [&filter[..], &show].concat();
     run(cargo(&arguments).env("CYLINDROID_LOAD", seconds.unwrap_or("60")))
+}
+
+/// Millions of servo steps on random robots; fails if one leaves a limit.
+pub(crate) fn limits(millions: Option<&str>, first: Option<&str>) -> Result<()> {
+    let millions: f64 = millions.map_or(Ok(10.0), str::parse).context("millions of steps")?;
+    let filter = ["test", "--release", "--package", "cylindroid", "--test", "limits"];
+    let show = ["--", "--ignored", "--exact", "--nocapture", "no_limit_is_left"];
+    let mut test = cargo(&[&filter[..], &show].concat());
+    test.env("CYLINDROID_LIMIT_STEPS", format!("{:.0}", millions * 1e6));
+    run(test.env("CYLINDROID_LIMIT_SEED", first.unwrap_or("0")))
+}
+
+/// Mutations of real files of every format; fails if a reader panics.
+pub(crate) fn fuzz(mutations: Option<&str>) -> Result<()> {
+    let robots = models::fetch()?;
+    let filter = ["test", "--release", "--package", "cylindroid", "--test", "formats"];
+    let mut test = cargo(&[&filter[..], &["--", "mutated_files"]].concat());
+    test.env("CYLINDROID_TEST_ROBOTS", &robots);
+    run(test.env("CYLINDROID_FUZZ", mutations.unwrap_or("10000")))
 }
 
 /// The figures of the README and the book, by the command line and the Python package.

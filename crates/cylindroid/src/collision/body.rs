@@ -7,10 +7,9 @@ use std::sync::Arc;
 use super::capsule_fit;
 use super::convex::{Convex, Core};
 use super::hull::Hull;
-use super::mesh;
 use super::options::MeshShape;
 use crate::error::Error;
-use crate::model::Geometry;
+use crate::model::{Geometry, mesh_file};
 use crate::spatial::{Pose, Vec3};
 
 /// A convex shape of a link or an obstacle.
@@ -96,7 +95,8 @@ fn unbounded(geometry: &Geometry, meshes: MeshShape) -> Result<(Convex, Pose), S
             };
             lengths(&scale.to_array().map(f64::abs))?;
             let scaled = |v: Vec3| Vec3::new(v.x * scale.x, v.y * scale.y, v.z * scale.z);
-            let points: Vec<Vec3> = mesh::vertices(path)?.into_iter().map(scaled).collect();
+            let points: Vec<Vec3> =
+                mesh_file::read(path)?.vertices.into_iter().map(scaled).collect();
             hull(&points, meshes)
         }
     }

@@ -7,14 +7,11 @@
 mod body;
 mod capsule_fit;
 mod closed_form;
-#[cfg(feature = "formats")]
-mod collada;
 mod convex;
 mod distance;
 mod gjk;
 mod gradient;
 mod hull;
-mod mesh;
 mod model;
 mod options;
 mod pairs;

@@ -8,6 +8,8 @@ pub mod catalogue;
 mod characteristic_length;
 #[cfg(feature = "formats")]
 mod closure_frames;
+#[cfg(feature = "formats")]
+mod collada;
 mod constraint_wrenches;
 mod contact;
 mod curvature;
@@ -28,6 +30,7 @@ mod link;
 mod loop_joint;
 pub(crate) mod magnitude;
 mod mechanism;
+pub(crate) mod mesh_file;
 mod mimic;
 mod natural_order;
 mod node;

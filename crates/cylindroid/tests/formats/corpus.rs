@@ -36,7 +36,7 @@ fn by_name(m: &Mechanism, given: &Value) -> Vec<f64> {
     q
 }
 
-/// True where the report says that a mass is that of a mesh, which is not computed.
+/// True where the report says that the mass of a mesh is unknown.
 fn has_mesh_mass(m: &Mechanism) -> bool {
     m.report().ignored.iter().any(|i| i.what.starts_with("mass of a geom"))
 }
@@ -45,7 +45,7 @@ fn has_mesh_mass(m: &Mechanism) -> bool {
 fn masses(m: &Mechanism, of: &Value) -> Result<(), String> {
     for (name, mass) in of["masses"].as_object().unwrap() {
         let expected = numbers(mass);
-        // A body without mass has no centre. The volume of a mesh is not computed (noted).
+        // A body without mass has no centre. A mesh without volume is noted.
         let without = |l: &cylindroid::model::Link| l.name == *name && l.inertial.is_none();
         let unknown = has_mesh_mass(m) && m.links().iter().any(without);
         if expected[0] == 0.0 || unknown {

@@ -51,7 +51,7 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
             "density",
         ],
         "site" => &["name", "class", "fromto"],
-        "mesh" => &["name", "class", "file", "scale"],
+        "mesh" => &["name", "class", "file", "scale", "inertia"],
         "material" => &["name", "class", "rgba"],
         _ => &[],
     };

@@ -6,8 +6,10 @@
 use std::path::Path;
 
 use super::Mjcf;
+use super::assets::Mesh;
 use super::attributes::used;
 use super::defaults::Element;
+use super::mesh_inertia::MeshInertia;
 use crate::error::{Error, Result};
 use crate::model::formats::mesh::Packages;
 use crate::model::{Collision, Geometry, Link, Visual};
@@ -43,7 +45,11 @@ impl<'d> Mjcf<'d> {
                     let folder = self.compiler.meshes.trim_end_matches('/');
                     let uri =
                         if folder.is_empty() { file.into() } else { format!("{folder}/{file}") };
-                    self.assets.meshes.insert(name, (uri, scale));
+                    let inertia = MeshInertia::named(element.text("inertia"));
+                    let is_moved =
+                        ["refpos", "refquat"].iter().any(|name| element.text(name).is_some());
+                    let mesh = Mesh { uri, scale, inertia, is_moved, solid: None };
+                    self.assets.meshes.insert(name, mesh);
                 }
                 other => {
                     let what = format!("<{other}> in <asset>");
@@ -132,9 +138,9 @@ impl<'d> Mjcf<'d> {
             ("plane", _) => Some(Geometry::HalfSpace),
             ("mesh", _) => {
                 let mesh = element.text("mesh").and_then(|m| self.assets.meshes.get(m));
-                mesh.map(|(uri, scale)| {
-                    let path = self.assets.packages.as_ref().and_then(|p| p.find(uri));
-                    Geometry::Mesh { uri: uri.clone(), path, scale: *scale }
+                mesh.map(|mesh| {
+                    let path = self.assets.packages.as_ref().and_then(|p| p.find(&mesh.uri));
+                    Geometry::Mesh { uri: mesh.uri.clone(), path, scale: mesh.scale }
                 })
             }
             _ => None,

@@ -4,12 +4,14 @@
 //!          centres, in the axes of the body about the common centre c:
 //!          I = sum R I_k R^T + m_k (|d_k|^2 1 - d_k d_k^T), d_k = c_k - c
 //! Units    kg, kg m^2; density in kg/m^3, 1000 if missing
-//! Valid    spheres, capsules, cylinders, boxes and ellipsoids, all solid. The volume of a mesh is
-//!          not computed: a body with a mesh of its own density has no mass here (noted)
+//! Valid    spheres, capsules, cylinders, boxes and ellipsoids, all solid, and meshes
+//!          (`mesh_inertia.rs`). A body with a mesh that is not found or has no volume has no mass
+//!          here (noted)
 //! Why so   `inertiafromgeom`: "auto" takes the geoms where there is no `<inertial>`, "true"
 //!          everywhere; only groups of `inertiagrouprange` count
 //! Source   mujoco.readthedocs.io, XML reference, compiler
-//! Checked  tests/formats/mjcf.rs::masses_*, tests/formats/corpus.rs (against MuJoCo)
+//! Checked  tests/formats/mjcf.rs::masses_*, tests/formats/mesh_masses.rs, tests/formats/corpus.rs
+//!          (against MuJoCo)
 
 use std::f64::consts::PI;
 
@@ -19,8 +21,9 @@ use super::Mjcf;
 use super::attributes::used;
 use super::compiler::FromGeoms;
 use super::defaults::Element;
+use super::mesh_inertia::{self, Solid};
 use crate::error::Result;
-use crate::model::Inertial;
+use crate::model::{Inertial, mesh_file};
 use crate::spatial::{Mat3, Pose, Vec3};
 
 /// Density of geoms [kg/m^3], that of water.
@@ -94,10 +97,15 @@ impl<'d> Mjcf<'d> {
                 continue;
             }
             let (pose, size) = self.place_and_size(&element)?;
-            let Some((volume, moments)) = solid(self.kind_of(&element), &size) else {
-                if !matches!(self.kind_of(&element), "plane" | "hfield") {
-                    let why = "the volume of a mesh is not computed: its body has no mass here";
-                    self.reader.note(*node, "mass of a geom that is a mesh", why, body);
+            let kind = self.kind_of(&element);
+            let found = match kind {
+                "mesh" => element.text("mesh").and_then(|name| self.solid_of_mesh(name)),
+                _ => primitive(kind, &size),
+            };
+            let Some(Solid { volume, centre, inertia }) = found else {
+                if !matches!(kind, "plane" | "hfield") {
+                    let why = "its mesh has no volume, or was not read: its body has no mass here";
+                    self.reader.note(*node, "mass of a geom", why, body);
                     return Ok(None);
                 }
                 continue;
@@ -105,10 +113,8 @@ impl<'d> Mjcf<'d> {
             let mass = mass.unwrap_or(density * volume);
             let pose = *link_from_frame * pose;
             let axes = pose.rotation.matrix();
-            let [x, y, z] = moments.map(|m| m * mass);
-            let own = Mat3::from_rows([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]);
-            let inertia = axes * own * axes.transpose();
-            parts.push(Part { mass, centre: pose.translation, inertia });
+            let inertia = axes * (inertia * mass) * axes.transpose();
+            parts.push(Part { mass, centre: pose * centre, inertia });
         }
         let mass: f64 = parts.iter().map(|p| p.mass).sum();
         if mass <= 0.0 || !mass.is_finite() {
@@ -129,6 +135,17 @@ impl<'d> Mjcf<'d> {
         Ok(Some(Inertial { mass, link_from_inertia: Pose::from_translation(centre), inertia }))
     }
 
+    /// The solid of a mesh asset; its file is read once.
+    fn solid_of_mesh(&mut self, name: &str) -> Option<Solid> {
+        let mesh = self.assets.meshes.get_mut(name)?;
+        if mesh.solid.is_none() {
+            let path = self.assets.packages.as_ref().and_then(|p| p.find(&mesh.uri));
+            let file = path.and_then(|path| mesh_file::read(&path).ok()).filter(|_| !mesh.is_moved);
+            mesh.solid = Some(file.and_then(|f| mesh_inertia::solid(f, mesh.scale, mesh.inertia)));
+        }
+        mesh.solid?
+    }
+
     /// Scales all masses to the total that the compiler sets.
     pub(super) fn set_total_mass(&mut self) {
         let Some(total) = self.compiler.total_mass.filter(|total| *total > 0.0) else { return };
@@ -142,9 +159,15 @@ impl<'d> Mjcf<'d> {
     }
 }
 
-/// Volume of a solid, and its moments of inertia about its axes for a mass of 1 kg; sizes as in
-/// MJCF, half of the whole.
-fn solid(kind: &str, size: &[f64]) -> Option<(f64, [f64; 3])> {
+/// The solid of a shape; sizes as in MJCF, half of the whole.
+fn primitive(kind: &str, size: &[f64]) -> Option<Solid> {
+    let (volume, [x, y, z]) = volume_and_moments(kind, size)?;
+    let inertia = Mat3::from_rows([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]);
+    Some(Solid { volume, centre: Vec3::ZERO, inertia })
+}
+
+/// Volume of a solid, and its moments of inertia about its axes for a mass of 1 kg.
+fn volume_and_moments(kind: &str, size: &[f64]) -> Option<(f64, [f64; 3])> {
     let square = |x: f64| x * x;
     Some(match (kind, size) {
         ("sphere", [r, ..]) => (4.0 / 3.0 * PI * r * r * r, [0.4 * r * r; 3]),

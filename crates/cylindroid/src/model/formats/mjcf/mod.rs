@@ -21,6 +21,7 @@ mod equality;
 mod files;
 mod geom;
 mod inertia;
+mod mesh_inertia;
 mod unique_name;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,32 +1,57 @@
-//! Vertices of mesh files: STL (binary and ASCII), Wavefront OBJ, Collada.
+//! Mesh files: STL (binary and ASCII), Wavefront OBJ, Collada.
 //!
 //! Units    of the file times the scale of the model; Collada's `<unit meter>` is applied, its
 //!          `<up_axis>` is not, as in the viewer and in RViz
-//! Valid    vertices alone, faces are not read: a convex shape is made of them
+//! Valid    vertices of all formats, triangles of STL and OBJ, whose polygons become fans
 //! Fails    with a reason in words, which becomes a note: a link without its mesh is still a link
-//! Checked  tests in this file, tests/collision/files.rs
+//! Checked  tests in this file, tests/collision/files.rs, tests/formats/mesh_masses.rs
 
 use std::path::Path;
 
-use crate::model::read_regular_file;
+use super::regular_file::read_regular_file;
 use crate::spatial::Vec3;
 
-/// The vertices of a mesh file, or the reason why there are none.
-pub(super) fn vertices(path: &Path) -> Result<Vec<Vec3>, String> {
+/// The contents of a mesh file.
+#[derive(Debug, PartialEq)]
+pub(crate) struct MeshFile {
+    pub(crate) vertices: Vec<Vec3>,
+    /// Indices of vertices; `None` where the file has no triangles that this reader reads.
+    pub(crate) triangles: Option<Vec<[usize; 3]>>,
+}
+
+impl MeshFile {
+    fn of_points(vertices: Vec<Vec3>) -> Self {
+        Self { vertices, triangles: None }
+    }
+
+    /// Three vertices for each triangle.
+    fn of_triangles(vertices: Vec<Vec3>) -> Self {
+        let count = vertices.len() / 3;
+        Self {
+            vertices,
+            triangles: Some((0..count).map(|i| [0, 1, 2].map(|k| 3 * i + k)).collect()),
+        }
+    }
+}
+
+/// Reads a mesh file; the reason why there is none.
+pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
     let bytes = read_regular_file(path, LARGEST).map_err(|e| e.to_string())?;
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let found = match extension.as_deref() {
         Some("stl") => stl(&bytes),
         Some("obj") => obj(&String::from_utf8_lossy(&bytes)),
         #[cfg(feature = "formats")]
-        Some("dae") => super::collada::vertices(&String::from_utf8_lossy(&bytes)),
+        Some("dae") => {
+            super::collada::vertices(&String::from_utf8_lossy(&bytes)).map(MeshFile::of_points)
+        }
         _ => Err("its format is not STL, OBJ or Collada".to_owned()),
     };
     let found = found.map_err(|reason| format!("{}: {reason}", path.display()))?;
-    if found.is_empty() {
+    if found.vertices.is_empty() {
         return Err(format!("{}: it has no vertices", path.display()));
     }
-    match found.iter().find(|v| !v.is_finite()) {
+    match found.vertices.iter().find(|v| !v.is_finite()) {
         Some(_) => Err(format!("{}: a vertex is not finite", path.display())),
         None => Ok(found),
     }
@@ -39,7 +64,7 @@ const LARGEST: u64 = 256 << 20;
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-fn stl(bytes: &[u8]) -> Result<Vec<Vec3>, String> {
+fn stl(bytes: &[u8]) -> Result<MeshFile, String> {
     let count = bytes.get(80..HEADER).and_then(|b| <[u8; 4]>::try_from(b).ok());
     let count = count.map(u32::from_le_bytes).unwrap_or(0) as usize;
     let length = count.saturating_mul(TRIANGLE).saturating_add(HEADER);
@@ -49,12 +74,13 @@ fn stl(bytes: &[u8]) -> Result<Vec<Vec3>, String> {
         let triangles = bytes[HEADER..length].chunks_exact(TRIANGLE);
         // A normal, three vertices, two bytes.
         let corners = triangles.flat_map(|t| t[12..48].chunks_exact(12));
-        return Ok(corners
-            .map(|c| Vec3::new(number(&c[..4]), number(&c[4..8]), number(&c[8..])))
-            .collect());
+        let corners =
+            corners.map(|c| Vec3::new(number(&c[..4]), number(&c[4..8]), number(&c[8..])));
+        return Ok(MeshFile::of_triangles(corners.collect()));
     }
     if is_ascii(bytes) {
-        return lines_of(&String::from_utf8_lossy(bytes), "vertex");
+        let vertices = lines_of(&String::from_utf8_lossy(bytes), "vertex")?;
+        return Ok(MeshFile::of_triangles(vertices));
     }
     Err("the STL file is shorter than its number of triangles says".to_owned())
 }
@@ -63,8 +89,39 @@ fn is_ascii(bytes: &[u8]) -> bool {
     bytes.trim_ascii_start().starts_with(b"solid")
 }
 
-fn obj(text: &str) -> Result<Vec<Vec3>, String> {
-    lines_of(text, "v")
+fn obj(text: &str) -> Result<MeshFile, String> {
+    let vertices = lines_of(text, "v")?;
+    let triangles = triangles(text, vertices.len()).filter(|t| !t.is_empty());
+    Ok(MeshFile { vertices, triangles })
+}
+
+/// The polygons of an OBJ as fans; `None` for one of fewer than three corners or with an index of
+/// none of the vertices.
+fn triangles(text: &str, vertices: usize) -> Option<Vec<[usize; 3]>> {
+    let mut found = Vec::new();
+    let mut before = 0;
+    for line in text.lines() {
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => before += 1,
+            Some("f") => {
+                // From 1, or negative: from the last vertex before this line.
+                let index = |word: &str| -> Option<usize> {
+                    let number: i64 = word.split('/').next()?.parse().ok()?;
+                    let from = if number < 0 { before } else { -1 };
+                    usize::try_from(from + number).ok().filter(|i| *i < vertices)
+                };
+                let corners: Vec<usize> = words.map(index).collect::<Option<_>>()?;
+                let [first, rest @ ..] = &corners[..] else { return None };
+                if rest.len() < 2 {
+                    return None;
+                }
+                found.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+            }
+            _ => {}
+        }
+    }
+    Some(found)
 }
 
 /// The three numbers after the keyword, of every line that begins with it.
@@ -90,8 +147,9 @@ mod tests {
 
     const CORNERS: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [0.0, -2.0, 0.25]];
 
-    fn expected() -> Vec<Vec3> {
-        CORNERS.iter().map(|c| Vec3::from_array(c.map(f64::from))).collect()
+    fn expected() -> MeshFile {
+        let vertices = CORNERS.iter().map(|c| Vec3::from_array(c.map(f64::from))).collect();
+        MeshFile { vertices, triangles: Some(vec![[0, 1, 2]]) }
     }
 
     fn binary(header: &[u8; 80], count: u32) -> Vec<u8> {
@@ -117,11 +175,24 @@ mod tests {
     }
 
     #[test]
+    fn polygons_of_obj_are_fans() {
+        let vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+        let of = |faces: &str| obj(&format!("{vertices}{faces}")).unwrap().triangles;
+        let square = Some(vec![[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(of("f 1 2 3 4"), square);
+        assert_eq!(of("f 1/9/9 2//9 3/9 4"), square);
+        assert_eq!(of("f -4 -3 -2 -1\nv 5 5 5"), square);
+        for wrong in ["", "f 1 2", "f 0 1 2", "f 1 2 5", "f 1 2 x", "f -5 1 2", "f"] {
+            assert_eq!(of(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
     fn broken_files_say_why() {
         assert!(stl(&binary(&[0; 80], 2)).unwrap_err().contains("shorter"));
         assert!(stl(b"").is_err());
         assert!(obj("v 1 2").unwrap_err().contains("line 1"));
-        assert!(vertices(Path::new("none.stl")).unwrap_err().contains("none.stl"));
-        assert!(vertices(Path::new("Cargo.toml")).unwrap_err().contains("format"));
+        assert!(read(Path::new("none.stl")).unwrap_err().contains("none.stl"));
+        assert!(read(Path::new("Cargo.toml")).unwrap_err().contains("format"));
     }
 }

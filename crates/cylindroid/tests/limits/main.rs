@@ -1,0 +1,55 @@
+//! Millions of servo steps over random robots, tasks, limits, starts and pushes: no limit is left,
+//! nothing is non-finite, and no bodies that were apart touch. `cargo xtask limits` runs them.
+
+#![allow(clippy::unwrap_used, clippy::panic)] // a round that fails names its seed
+
+mod robots;
+mod rounds;
+mod watch;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+use crate::rounds::Kind;
+use crate::watch::Tally;
+
+fn number(variable: &str, missing: u64) -> u64 {
+    std::env::var(variable).map_or(missing, |text| text.parse().unwrap())
+}
+
+/// `CYLINDROID_LIMIT_STEPS` steps (10 million), from round `CYLINDROID_LIMIT_SEED` on. Every round
+/// is random with its own number as seed, so that it can be run again alone.
+#[test]
+#[ignore = "takes minutes; run by cargo xtask limits"]
+fn no_limit_is_left() {
+    let most = number("CYLINDROID_LIMIT_STEPS", 10_000_000);
+    let (round, steps) = (AtomicU64::new(number("CYLINDROID_LIMIT_SEED", 0)), AtomicU64::new(0));
+    let tallies = Mutex::new([(); Kind::ALL.len()].map(|()| Tally::default()));
+    let start = Instant::now();
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while steps.load(Ordering::Relaxed) < most {
+                    let seed = round.fetch_add(1, Ordering::Relaxed);
+                    let kind = Kind::of(seed);
+                    let work = AssertUnwindSafe(|| rounds::run(kind, seed));
+                    let tally = catch_unwind(work).unwrap_or_else(|_| Tally::panicked(seed));
+                    steps.fetch_add(tally.steps, Ordering::Relaxed);
+                    tallies.lock().unwrap()[kind as usize].add(tally);
+                }
+            });
+        }
+    });
+    let tallies = tallies.into_inner().unwrap();
+    let mut violations = Vec::new();
+    for (kind, tally) in Kind::ALL.into_iter().zip(&tallies) {
+        println!("{:<22} {tally}", kind.name());
+        violations.extend(tally.violations.iter().map(|v| format!("{}: {v}", kind.name())));
+    }
+    let all: u64 = tallies.iter().map(|t| t.steps).sum();
+    println!("{all} steps in {:.0} s", start.elapsed().as_secs_f64());
+    violations.iter().take(50).for_each(|v| println!("{v}"));
+    assert!(violations.is_empty(), "{} violations", violations.len());
+}

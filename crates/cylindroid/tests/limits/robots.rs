@@ -1,0 +1,168 @@
+//! Random robots: joints of all kinds of one coordinate, ordinary and odd limits, branches, masses
+//! and shapes; and the catalogue.
+
+use cylindroid::model::{Collision, Geometry, Inertial, JointKind, JointSpec, Limits, Link, Mimic};
+use cylindroid::spatial::{Mat3, Rotation};
+use cylindroid::{Mechanism, Pose, Vec3, catalogue};
+
+/// SplitMix64.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    pub(crate) fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub(crate) fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    /// True once in `n` times.
+    pub(crate) fn once_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+
+    pub(crate) fn within(&mut self, lower: f64, upper: f64) -> f64 {
+        lower + (upper - lower) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A power of ten.
+    pub(crate) fn power(&mut self, lower: f64, upper: f64) -> f64 {
+        10_f64.powf(self.within(lower, upper))
+    }
+
+    pub(crate) fn vec3(&mut self, size: f64) -> Vec3 {
+        Vec3::new(self.within(-size, size), self.within(-size, size), self.within(-size, size))
+    }
+
+    pub(crate) fn pose(&mut self, size: f64) -> Pose {
+        Pose { rotation: Rotation::exp(self.vec3(3.0)), translation: self.vec3(size) }
+    }
+
+    /// Within the limits, at a bound now and then.
+    pub(crate) fn configuration(&mut self, robot: &Mechanism) -> Vec<f64> {
+        let mut one = |l: &Limits| {
+            let (lower, upper) = (l.lower.max(-3.0).min(l.upper), l.upper.min(3.0).max(l.lower));
+            match self.below(8) {
+                0 => lower,
+                1 => upper,
+                _ => self.within(lower, upper).clamp_to(lower, upper),
+            }
+        };
+        robot.coordinates().iter().map(|c| one(&c.limits)).collect()
+    }
+}
+
+pub(crate) trait ClampTo {
+    fn clamp_to(self, lower: Self, upper: Self) -> Self;
+}
+
+impl ClampTo for f64 {
+    fn clamp_to(self, lower: f64, upper: f64) -> f64 {
+        self.max(lower).min(upper)
+    }
+}
+
+fn limits(random: &mut Random) -> Limits {
+    let mut l = Limits {
+        lower: -random.power(-1.0, 0.6),
+        upper: random.power(-1.0, 0.6),
+        velocity: random.power(-1.0, 1.0),
+        acceleration: random.power(-0.5, 2.5),
+        effort: 1.0,
+    };
+    match random.below(24) {
+        0 => l.lower = f64::NEG_INFINITY,
+        1 => (l.lower, l.upper) = (f64::NEG_INFINITY, f64::INFINITY),
+        2 => l.lower = l.upper,
+        3 => l.upper = l.lower + 1e-9,
+        4 => l.velocity = 0.0,
+        5 => l.acceleration = 0.0,
+        6 => l.velocity = f64::INFINITY,
+        7..11 => l.acceleration = f64::INFINITY,
+        11 => (l.velocity, l.acceleration) = (1e-6, 1e3),
+        12 => (l.velocity, l.acceleration) = (1e3, 1e-3),
+        13 => (l.lower, l.upper) = (99_999.0, 100_001.0),
+        _ => {}
+    }
+    l
+}
+
+/// A tree of one to nine joints; with shapes on all links, a chain of ordinary joints.
+pub(crate) fn robot(random: &mut Random, with_shapes: bool) -> Mechanism {
+    let n = if with_shapes { 3 + random.below(4) } else { 1 + random.below(9) };
+    let mut builder = Mechanism::builder("random");
+    for i in 0..n {
+        let (name, link) = (format!("q{i}"), format!("l{}", i + 1));
+        let kind = match random.below(if with_shapes { 8 } else { 12 }) {
+            7 | 8 => JointKind::Prismatic,
+            9 => JointKind::Helical { pitch: random.within(-0.2, 0.2) },
+            10 => JointKind::Continuous,
+            _ => JointKind::Revolute,
+        };
+        let branches = !with_shapes && i > 1 && random.once_in(6);
+        let parent = format!("l{}", if branches { random.below(i) } else { i });
+        let size = if with_shapes { 0.3 } else { random.power(-2.0, 0.3) };
+        let leader = Mimic {
+            joint: "q0".to_owned(),
+            multiplier: random.within(-2.0, 2.0),
+            offset: random.within(-0.2, 0.2),
+        };
+        let own = if with_shapes {
+            let (velocity, acceleration) = (random.power(-0.5, 0.7), random.power(0.0, 2.0));
+            Limits { lower: -2.8, upper: 2.8, velocity, acceleration, effort: 1.0 }
+        } else {
+            limits(random)
+        };
+        let limits = match kind {
+            JointKind::Continuous => {
+                Limits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, ..own }
+            }
+            _ => own,
+        };
+        let mimics = !with_shapes && i > 0 && kind == JointKind::Revolute && random.once_in(12);
+        builder.joint(JointSpec {
+            parent_from_joint: random.pose(size),
+            axis: random.vec3(1.0),
+            limits,
+            mimic: mimics.then_some(leader),
+            ..JointSpec::new(&name, kind, &parent, &link)
+        });
+        let mut shapes = Vec::new();
+        if with_shapes {
+            let radius = random.within(0.02, 0.06);
+            let geometry = match random.below(4) {
+                0 => Geometry::Sphere { radius },
+                1 => Geometry::Box { size: Vec3::new(radius, 2.0 * radius, radius) },
+                2 => Geometry::Cylinder { radius, length: 0.1 },
+                _ => Geometry::Capsule { radius, length: 0.1 },
+            };
+            shapes.push(Collision { geometry, ..Collision::default() });
+        }
+        builder.link(Link {
+            inertial: Some(Inertial {
+                mass: random.power(-1.0, 1.0),
+                link_from_inertia: Pose::from_translation(random.vec3(0.1)),
+                inertia: Mat3::ZERO,
+            }),
+            collisions: shapes,
+            ..Link::named(&link)
+        });
+    }
+    builder.frame("tip", &format!("l{n}"), random.pose(0.2)).tool("tip");
+    builder.build().unwrap_or_else(|_| catalogue::load("ur5e").unwrap())
+}
+
+/// A model of the catalogue, serial or with loops.
+pub(crate) fn of_catalogue(random: &mut Random, closed: bool) -> Mechanism {
+    let names = catalogue::names();
+    loop {
+        let robot = catalogue::load(names[random.below(names.len())]).unwrap();
+        if robot.is_closed() == closed && robot.n() > 0 {
+            return robot;
+        }
+    }
+}

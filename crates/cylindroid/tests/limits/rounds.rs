@@ -1,0 +1,314 @@
+//! One round: a robot, a servo, a start, targets that jump, pushes.
+
+use cylindroid::collision::{CollisionModel, CollisionOptions, NearPair};
+use cylindroid::control::{
+    CollisionAvoidance, MotionTask, SecondaryTask, ServoGains, Task, TaskObjective, TaskServo,
+    TaskServoOptions,
+};
+use cylindroid::inverse::Method;
+use cylindroid::model::Geometry;
+use cylindroid::{Mechanism, Pose, Servo, ServoOptions};
+
+use crate::robots::{ClampTo, Random, of_catalogue, robot};
+use crate::watch::{Tally, Watch};
+
+/// Steps of a round.
+const STEPS: u64 = 500;
+
+/// Steps between two looks at all distances.
+const LOOK: u64 = 5;
+
+/// The servo of a round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Catalogue,
+    Random,
+    Closed,
+    Tasks,
+    Distances,
+}
+
+impl Kind {
+    pub(crate) const ALL: [Self; 5] =
+        [Self::Catalogue, Self::Random, Self::Closed, Self::Tasks, Self::Distances];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Catalogue => "robots of the catalogue",
+            Self::Random => "random robots",
+            Self::Closed => "closed chains",
+            Self::Tasks => "many tasks",
+            Self::Distances => "distances",
+        }
+    }
+
+    pub(crate) fn of(seed: u64) -> Self {
+        match seed % 20 {
+            0..6 => Self::Catalogue,
+            6..15 => Self::Random,
+            15 => Self::Closed,
+            16..18 => Self::Tasks,
+            _ => Self::Distances,
+        }
+    }
+}
+
+pub(crate) fn run(kind: Kind, seed: u64) -> Tally {
+    let mut random = Random(seed.wrapping_mul(0xd134_2543_de82_ef95));
+    let mut tally = match kind {
+        Kind::Catalogue | Kind::Closed => {
+            let robot = of_catalogue(&mut random, kind == Kind::Closed);
+            one_task(&robot, &mut random)
+        }
+        Kind::Random => one_task(&robot(&mut random, false), &mut random),
+        Kind::Tasks => many_tasks(&robot(&mut random, false), &mut random),
+        Kind::Distances => distances(&robot(&mut random, true), &mut random),
+    };
+    tally.rounds = 1;
+    tally.violations.iter_mut().for_each(|v| *v = format!("round {seed}, {v}"));
+    tally
+}
+
+/// Something moves the robot: anywhere within the limits, or a little.
+fn push(robot: &Mechanism, q: &mut [f64], random: &mut Random) {
+    let anywhere = random.configuration(robot);
+    let share = if random.once_in(3) { 1.0 } else { random.power(-6.0, -1.0) };
+    for ((x, to), c) in q.iter_mut().zip(anywhere).zip(robot.coordinates()) {
+        *x = (*x + share * (to - *x)).clamp_to(c.limits.lower, c.limits.upper);
+        // Beyond a limit, as measured positions are.
+        if random.once_in(20) {
+            *x += random.within(-1e-3, 1e-3);
+        }
+    }
+}
+
+/// A target near the pose, far away, beyond all numbers of robots, or the pose turned by a half.
+fn target(of: Pose, random: &mut Random) -> Pose {
+    match random.below(8) {
+        0 => random.pose(1e6),
+        1 => random.pose(1.0),
+        2 => of * Pose { translation: cylindroid::Vec3::ZERO, ..random.pose(1.0) },
+        3 => of,
+        _ => {
+            let size = random.power(-4.0, 0.0);
+            Pose { translation: of.translation + random.vec3(size), ..of }
+        }
+    }
+}
+
+fn one_task(robot: &Mechanism, random: &mut Random) -> Tally {
+    let mut options = ServoOptions::new(robot);
+    options.dt = random.power(-4.0, -1.3);
+    let gain = random.power(-1.0, 0.28) / options.dt;
+    options.gain = ServoGains { position: gain, orientation: gain };
+    options.acceleration = random.power(-1.0, 4.0);
+    options.method = Method::ALL[random.below(Method::ALL.len())];
+    let closed = robot.is_closed();
+    if !closed && random.once_in(2) {
+        options.joint_weights = (0..robot.n()).map(|_| random.power(-3.0, 3.0)).collect();
+    }
+    if !closed && random.once_in(3) {
+        options.secondary = SecondaryTask::all(robot.home()).to_vec();
+    }
+    if !closed && random.once_in(4) {
+        options.task = [Task::POSITION, Task::POINTING][random.below(2)];
+    }
+    let (dt, acceleration) = (options.dt, options.acceleration);
+    let mut tally = Tally::default();
+    // Combinations that define no controller are refused, which is another test's matter.
+    let Ok(mut servo) = Servo::new(robot, options) else { return tally };
+    let end_effector = servo.options().end_effector;
+    let mut q = if closed { robot.home().to_vec() } else { random.configuration(robot) };
+    let mut watch = Watch::new(robot, dt, acceleration);
+    let mut goal = target(robot.state(&q).unwrap().pose(end_effector), random);
+    for step in 0..STEPS {
+        if random.once_in(150) {
+            goal = target(robot.state(&q).unwrap().pose(end_effector), random);
+        }
+        if !closed && random.once_in(250) {
+            push(robot, &mut q, random);
+            watch.push();
+            tally.pushes += 1;
+        }
+        tally.steps += 1;
+        let outcome = servo.step(&q, goal);
+        if let Err(error) = outcome {
+            tally.errors += 1;
+            // A loop that opened is an error; a tree has none.
+            if !closed {
+                tally.violations.push(format!("step {step}: {error}"));
+            }
+            return tally;
+        }
+        let before = q.clone();
+        servo.advance(&mut q);
+        if closed {
+            closed_step(robot, servo.joint_velocities(), &q, step, &mut tally);
+            continue;
+        }
+        match watch.step(&before, servo.joint_velocities(), &q) {
+            Ok(at_limit) => tally.at_limits += u64::from(at_limit),
+            Err(what) => {
+                tally.violations.push(format!("step {step}: {what}"));
+                return tally;
+            }
+        }
+    }
+    tally
+}
+
+/// In closed chains the velocities of the actuated joints have limits.
+fn closed_step(robot: &Mechanism, velocities: &[f64], q: &[f64], step: u64, tally: &mut Tally) {
+    for ((c, v), x) in robot.coordinates().iter().zip(velocities).zip(q) {
+        let is_fast = c.actuated && v.abs() > c.limits.velocity * (1.0 + 1e-9);
+        if !v.is_finite() || !x.is_finite() || is_fast {
+            let what = format!("step {step}: {} at {x:e} with {v:e}", c.name);
+            tally.violations.push(what);
+        }
+    }
+}
+
+fn tasks(robot: &Mechanism, q: &[f64], random: &mut Random) -> Vec<MotionTask> {
+    let state = robot.state(q).unwrap();
+    let count = 1 + random.below(4);
+    let frames = robot.frames().len();
+    let task = |i: usize, random: &mut Random| {
+        let frame = robot.frame(&robot.frames()[random.below(frames)].name).unwrap();
+        let end_effector = frame.into();
+        let components = [Task::POSE, Task::POSITION, Task::POINTING][random.below(3)];
+        let objective = match random.below(6) {
+            0 => TaskObjective::Gaze { end_effector, point: random.vec3(3.0) },
+            1 => TaskObjective::Posture { q: random.configuration(robot) },
+            2 => {
+                TaskObjective::CenterOfMass { axes: [true, true, false], target: random.vec3(1.0) }
+            }
+            3 => TaskObjective::RelativeFrame {
+                end_effector,
+                reference: robot.tool().into(),
+                components,
+                target: random.pose(0.5),
+            },
+            _ => TaskObjective::Frame {
+                end_effector,
+                components,
+                target: target(state.pose(frame), random).into(),
+            },
+        };
+        MotionTask {
+            weight: random.power(-2.0, 2.0),
+            gain: random.power(-1.0, 1.5),
+            ..MotionTask::new(&format!("{i}"), objective)
+        }
+        .at_level(random.below(3))
+    };
+    (0..count).map(|i| task(i, random)).collect()
+}
+
+fn many_tasks(robot: &Mechanism, random: &mut Random) -> Tally {
+    let mut options = TaskServoOptions::new(robot);
+    options.dt = random.power(-3.5, -1.8);
+    options.acceleration = random.power(-1.0, 4.0);
+    let mut q = random.configuration(robot);
+    let (dt, acceleration) = (options.dt, options.acceleration);
+    let Ok(servo) = TaskServo::new(robot, tasks(robot, &q, random), options) else {
+        return Tally::default();
+    };
+    let mut watch = Watch::new(robot, dt, acceleration);
+    task_servo(servo, &mut q, &mut watch, random, |_, _| Ok(()))
+}
+
+/// Steps of a servo of many tasks; `look` is called after each with the step and the
+/// configuration.
+fn task_servo(
+    mut servo: TaskServo,
+    q: &mut Vec<f64>,
+    watch: &mut Watch,
+    random: &mut Random,
+    mut look: impl FnMut(u64, &[f64]) -> Result<(), String>,
+) -> Tally {
+    let robot = servo.mechanism().clone();
+    let mut tally = Tally::default();
+    // A push may put bodies into one another: none where distances are watched.
+    let pushes = servo.collision_model_mut().is_none();
+    for step in 0..STEPS {
+        if pushes && random.once_in(250) {
+            push(&robot, q, random);
+            watch.push();
+            tally.pushes += 1;
+        }
+        tally.steps += 1;
+        if let Err(error) = servo.step(q) {
+            tally.errors += 1;
+            tally.violations.push(format!("step {step}: {error}"));
+            return tally;
+        }
+        let before = q.clone();
+        servo.advance(q);
+        let found = watch.step(&before, servo.joint_velocities(), q);
+        match found.and_then(|at_limit| look(step, q).map(|()| at_limit)) {
+            Ok(at_limit) => tally.at_limits += u64::from(at_limit),
+            Err(what) => {
+                tally.violations.push(format!("step {step}: {what}"));
+                return tally;
+            }
+        }
+    }
+    tally
+}
+
+/// A robot among obstacles: pairs that start apart stay apart.
+fn distances(robot: &Mechanism, random: &mut Random) -> Tally {
+    let options = CollisionOptions { samples: 20, ..CollisionOptions::default() };
+    let mut model = CollisionModel::new(robot, &options).unwrap();
+    for i in 0..1 + random.below(3) {
+        let size = random.within(0.03, 0.2);
+        let geometry = match random.below(4) {
+            0 => Geometry::Box { size: cylindroid::Vec3::new(size, size, 2.0 * size) },
+            1 => Geometry::Capsule { radius: size, length: size },
+            2 => Geometry::Cylinder { radius: size, length: size },
+            _ => Geometry::Sphere { radius: size },
+        };
+        model.add_obstacle(&format!("o{i}"), &geometry, random.pose(1.0)).unwrap();
+    }
+    let gap = 0.005;
+    let mut near: Vec<NearPair> = Vec::new();
+    // A start where all pairs have more than the gap.
+    let mut q = Vec::new();
+    for _ in 0..30 {
+        q = random.configuration(robot);
+        model.near(&robot.state(&q).unwrap(), 0.02, &mut near).unwrap();
+        if near.is_empty() {
+            break;
+        }
+    }
+    if !near.is_empty() {
+        return Tally::default();
+    }
+    let mut options = TaskServoOptions::new(robot);
+    options.dt = random.power(-3.3, -2.3);
+    options.collisions = Some(CollisionAvoidance { model: model.clone(), gap, margin: 5.0 });
+    let dt = options.dt;
+    let Ok(servo) = TaskServo::new(robot, tasks(robot, &q, random), options) else {
+        return Tally::default();
+    };
+    let mut watch = Watch::new(robot, dt, f64::INFINITY);
+    let (mut nearest, mut below_gap) = (f64::INFINITY, 0);
+    let mut tally = task_servo(servo, &mut q, &mut watch, random, |step, q| {
+        if step % LOOK != 0 {
+            return Ok(());
+        }
+        model.near(&robot.state(q).unwrap(), gap, &mut near).unwrap();
+        let Some(least) = near.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
+            return Ok(());
+        };
+        below_gap += 1;
+        nearest = least.distance.min(nearest);
+        if least.distance < 0.0 {
+            return Err(format!("{:?} at {:e} m", model.names(least.pair), least.distance));
+        }
+        Ok(())
+    });
+    tally.below_gap = below_gap;
+    tally.nearest = nearest.is_finite().then_some(nearest);
+    tally
+}
