@@ -5,11 +5,15 @@
 >>> panda.jacob0(panda.qz).shape
 (6, 7)
 
+A robot of the Toolbox itself is read by its links: ``Robot(roboticstoolbox.models.DH.Puma560())``.
+
 What is as there: ``jacob0`` has world axes and its linear part at the end effector's origin,
 ``jacobe`` the axes of the end effector; ``ikine_LM`` returns ``.q``, ``.success``, ``.iterations``,
-``.searches``, ``.residual``. What is not: poses are arrays of 4 x 4, not ``SE3``; ``ikine_LM``
-keeps joint limits; frames are named, not numbered; ``manipulability`` of an arm with fewer joints
-than axes is the volume that its joints do span, where there it is zero.
+``.searches``, ``.residual``, and ``ik_LM`` the same as a tuple. What is not: poses are arrays of
+4 x 4, not ``SE3``; all methods of inverse kinematics are the one of `Mechanism.ik`, which keeps joint
+limits; frames are named, not numbered; ``manipulability`` of an arm with fewer joints than axes is
+the volume that its joints do span, where there it is zero. Members of the Toolbox that are not here
+raise `NotImplementedError` with the function that does the same.
 """
 
 from __future__ import annotations
@@ -22,6 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import Mechanism, load
+from ._toolbox import is_toolbox_robot, mechanism_of
 
 __all__ = ["IKSolution", "Robot"]
 
@@ -30,6 +35,34 @@ _AXES = {
     "trans": "x,y,z",
     "rot": "rx,ry,rz",
 }
+
+
+#: What to use for members of the Toolbox that are not here.
+_INSTEAD = {
+    "ets twists dhunique": "Mechanism.joint_axes",
+    "ikine_a ikine_analytic ikine_6s analytic_ik": "Mechanism.ik, which uses closed forms",
+    "jtraj": "cylindroid.JointMove",
+    "vellipse plot_vellipse plot_ellipse": "cylindroid.plot.ellipsoid of "
+    "Mechanism.manipulability(q).kinematic",
+    "fellipse plot_fellipse": "cylindroid.plot.ellipsoid of "
+    "Mechanism.manipulability(q).active_force",
+    "plot teach": "cylindroid.show or cylindroid.plot.mechanism",
+    "inertia": "Mechanism.mass_matrix",
+    "collided iscollided isselfcollided closest_point": "cylindroid.CollisionModel",
+    "link_collision_damper joint_velocity_damper vision_collision_damper": "cylindroid.Servo",
+    "partial_fkine0": "Mechanism.hessian",
+    "links link_dict dfs_links hierarchy showgraph dotfile": "Mechanism.joints and Mechanism.links",
+    "URDF urdf_string urdf_filepath": "cylindroid.load",
+    "rne rne_python fdyn accel accel_x coriolis coriolis_x cinertia gravload gravload_x "
+    "inertia_x itorque dynamics dynamics_list friction nofriction payload perturb paycap": "",
+    "addconfiguration addconfiguration_attr attach attach_to copy delete_rne dynchanged "
+    "basemesh fkine_geometry fkine_path get_path graph linkcolormap segments symbolic todegrees "
+    "toradians update gravity grippers meshdir hasdynamics hascollision hasgeometry": "",
+}
+
+
+class _NotHere(NotImplementedError, AttributeError):
+    """A member of the Toolbox that is not here; for `hasattr` a missing attribute."""
 
 
 @dataclass(frozen=True)
@@ -61,12 +94,41 @@ class Robot:
 
     Parameters
     ----------
-    robot : Mechanism, str or os.PathLike
-        A mechanism, the name of a catalogue model, or a file.
+    robot : Mechanism, str, os.PathLike or a robot of the Toolbox
+        A mechanism, the name of a catalogue model, a file, or a robot of the Robotics Toolbox, of
+        which joints, limits, poses and named configurations are read.
+
+    Examples
+    --------
+    >>> from cylindroid.rtb import Robot
+    >>> panda = Robot("panda")
+    >>> solution = panda.ikine_LM(panda.fkine(panda.qr))
+    >>> solution.success
+    True
     """
 
-    def __init__(self, robot: Mechanism | str | os.PathLike[str]) -> None:
-        self.mechanism = robot if isinstance(robot, Mechanism) else load(robot)
+    def __init__(self, robot: Mechanism | str | os.PathLike[str] | Any) -> None:
+        #: Named configurations, (n,) each.
+        self.configs: dict[str, NDArray[np.float64]] = {}
+        if isinstance(robot, Mechanism):
+            self.mechanism, self._end = robot, robot.tool
+        elif is_toolbox_robot(robot):
+            self.mechanism, self._end = mechanism_of(robot)
+            configs = getattr(robot, "configs", None) or {}
+            self.configs = {name: np.array(q, dtype=float) for name, q in configs.items()}
+        else:
+            self.mechanism = load(robot)
+            self._end = self.mechanism.tool
+
+    def __getattr__(self, name: str) -> Any:
+        configs = self.__dict__.get("configs", {})
+        if name in configs:
+            return configs[name].copy()
+        for names, instead in _INSTEAD.items():
+            if name in names.split():
+                use = f"; use {instead}" if instead else ""
+                raise _NotHere(f"'{name}' of the Robotics Toolbox is not in cylindroid.rtb{use}")
+        raise AttributeError(f"'Robot' object has no attribute '{name}'")
 
     @property
     def n(self) -> int:
@@ -85,35 +147,128 @@ class Robot:
 
     @property
     def qz(self) -> NDArray[np.float64]:
-        """All joints at zero, (n,)."""
-        return np.zeros(self.n)
+        """All joints at zero, (n,), unless the robot of the Toolbox has another `qz`."""
+        return self.configs.get("qz", np.zeros(self.n)).copy()
 
     @property
     def qr(self) -> NDArray[np.float64]:
-        """The home configuration, (n,)."""
-        return self.mechanism.home
+        """The `qr` of the robot of the Toolbox, otherwise the home configuration, (n,)."""
+        return self.configs.get("qr", self.mechanism.home).copy()
+
+    @property
+    def reach(self) -> float:
+        """The characteristic length (m)."""
+        return self.mechanism.reach
+
+    @property
+    def revolutejoints(self) -> list[bool]:
+        """For each coordinate, true if it is an angle."""
+        return [unit == "rad" for unit in self.mechanism.units]
+
+    @property
+    def prismaticjoints(self) -> list[bool]:
+        """For each coordinate, true if it is a length."""
+        return [unit != "rad" for unit in self.mechanism.units]
+
+    @property
+    def structure(self) -> str:
+        """'R' for each angle and 'P' for each length."""
+        return "".join("R" if angle else "P" for angle in self.revolutejoints)
+
+    def islimit(self, q: ArrayLike) -> list[bool]:
+        """For each coordinate, true at or beyond a limit; q of shape (n,)."""
+        q, (lower, upper) = np.asarray(q, dtype=float), self.qlim
+        return [bool(x) for x in (q <= lower) | (q >= upper)]
+
+    def random_q(self, seed: int | None = None) -> NDArray[np.float64]:
+        """A configuration within the limits, pi or 1 m where there are none, (n,)."""
+        most = np.where(self.revolutejoints, np.pi, 1.0)
+        lower, upper = np.maximum(self.qlim[0], -most), np.minimum(self.qlim[1], most)
+        return np.random.default_rng(seed).uniform(np.minimum(lower, upper), upper)
 
     def fkine(
         self, q: ArrayLike, end: str | None = None, tool: ArrayLike | None = None
     ) -> NDArray[np.float64]:
         """The pose of the end effector, (4, 4) or (N, 4, 4): `Mechanism.fk`."""
-        return self.mechanism.fk(q, end, tool)
+        return self.mechanism.fk(q, end or self._end, tool)
+
+    def fkine_all(self, q: ArrayLike) -> NDArray[np.float64]:
+        """The poses of all frames, in the order of `Mechanism.frames`: `Mechanism.fk_all`."""
+        return self.mechanism.fk_all(q)
 
     def jacob0(
         self, q: ArrayLike, end: str | None = None, tool: ArrayLike | None = None
     ) -> NDArray[np.float64]:
         """The Jacobian in world axes, (6, n) or (N, 6, n), linear rows first."""
-        return self.mechanism.jacobian(q, end, "local_world_aligned", tool)
+        return self.mechanism.jacobian(q, end or self._end, "local_world_aligned", tool)
 
     def jacobe(
         self, q: ArrayLike, end: str | None = None, tool: ArrayLike | None = None
     ) -> NDArray[np.float64]:
         """The Jacobian in the axes of the end effector, (6, n) or (N, 6, n)."""
-        return self.mechanism.jacobian(q, end, "local", tool)
+        return self.mechanism.jacobian(q, end or self._end, "local", tool)
 
     def hessian0(self, q: ArrayLike, end: str | None = None) -> NDArray[np.float64]:
         """The Hessian in world axes, (n, 6, n) or (N, n, 6, n)."""
-        return self.mechanism.hessian(q, end, "local_world_aligned")
+        return self.mechanism.hessian(q, end or self._end, "local_world_aligned")
+
+    def hessiane(self, q: ArrayLike, end: str | None = None) -> NDArray[np.float64]:
+        """The Hessian in the axes of the end effector, (n, 6, n) or (N, n, 6, n)."""
+        R = self.fkine(q, end)[..., :3, :3]
+        axes = np.zeros((*R.shape[:-2], 1, 6, 6))
+        axes[..., 0, :3, :3] = axes[..., 0, 3:, 3:] = np.swapaxes(R, -1, -2)
+        return axes @ self.hessian0(q, end)
+
+    def jacob0_dot(
+        self, q: ArrayLike, qd: ArrayLike, end: str | None = None
+    ) -> NDArray[np.float64]:
+        """The time derivative of `jacob0`, (6, n): `Mechanism.jacobian_dot`."""
+        return self.mechanism.jacobian_dot(q, qd, end or self._end, "local_world_aligned")
+
+    def jacob0_analytical(
+        self, q: ArrayLike, representation: str = "rpy/xyz", end: str | None = None
+    ) -> NDArray[np.float64]:
+        """The Jacobian of position and angles, (6, n).
+
+        Parameters
+        ----------
+        q : array_like, (n,)
+        representation : str
+            'eul' (angles about z, y, z) or 'exp' (rotation vector); the Toolbox's 'rpy/xyz' and
+            'rpy/zyx' are other angles than those of `Mechanism.analytical_jacobian`.
+        end : str, optional
+            A frame by name.
+        """
+        angles = {"eul": "zyz", "exp": "rotation_vector"}.get(representation)
+        if angles is None:
+            raise _NotHere(
+                f"representation = {representation!r} is not in cylindroid.rtb: 'eul' or 'exp'; "
+                "or Mechanism.analytical_jacobian with angles about fixed axes"
+            )
+        return self.mechanism.analytical_jacobian(q, angles, end or self._end)
+
+    def jacobm(
+        self, q: ArrayLike | None = None, axes: str = "all", end: str | None = None
+    ) -> NDArray[np.float64]:
+        """The gradient of Yoshikawa's manipulability, (n, 1); NaN where there is none."""
+        found = self.mechanism.manipulability_gradient(
+            self.qr if q is None else q,
+            "volume",
+            reference=end or self._end,
+            task=self._task(axes),
+        )
+        gradient = np.full(self.n, np.nan) if found.gradient is None else found.gradient
+        return gradient.reshape(-1, 1)
+
+    def _task(self, axes: str | ArrayLike) -> str:
+        if isinstance(axes, str):
+            if axes not in _AXES:
+                raise ValueError(f"axes = {axes!r}: one of {', '.join(_AXES)}, or six booleans")
+            return _AXES[axes]
+        mask = np.asarray(axes, dtype=bool)
+        if mask.shape != (6,):
+            raise ValueError("axes are six booleans: x, y, z, rx, ry, rz")
+        return ",".join(np.array(_AXES["all"].split(","))[mask])
 
     def manipulability(
         self,
@@ -140,19 +295,11 @@ class Robot:
         -------
         float, or ndarray, (N,)
         """
-        if isinstance(axes, str):
-            if axes not in _AXES:
-                raise ValueError(f"axes = {axes!r}: one of {', '.join(_AXES)}, or six booleans")
-            task = _AXES[axes]
-        else:
-            mask = np.asarray(axes, dtype=bool)
-            if mask.shape != (6,):
-                raise ValueError("axes are six booleans: x, y, z, rx, ry, rz")
-            task = ",".join(np.array(_AXES["all"].split(","))[mask])
+        task = self._task(axes)
         if method not in ("yoshikawa", "invcondition"):
             raise ValueError(f"method = {method!r}: 'yoshikawa' or 'invcondition'")
         q = self.qr if q is None else np.asarray(q, dtype=float)
-        found = self.mechanism.manipulability(np.atleast_2d(q), reference=end or self.mechanism.tool, task=task)
+        found = self.mechanism.manipulability(np.atleast_2d(q), reference=end or self._end, task=task)
         possible = min(len(task.split(",")), self.n)
         values = []
         for k in (report.kinematic for report in found):
@@ -208,7 +355,7 @@ class Robot:
         error = float(np.sqrt(tol))
         found = self.mechanism.ik(
             Tep,
-            end,
+            end or self._end,
             q0,
             task=task,
             tolerance_position=error,
@@ -223,3 +370,15 @@ class Robot:
         return IKSolution(
             found.q, found.success, found.iterations, found.restarts, residual, reason
         )
+
+    #: The Toolbox's other methods find the same solutions.
+    ikine_NR = ikine_GN = ikine_QP = ikine_LM
+
+    def ik_LM(
+        self, Tep: ArrayLike, end: str | None = None, q0: ArrayLike | None = None, **options: Any
+    ) -> tuple[NDArray[np.float64], int, int, int, float]:
+        """`ikine_LM` as a tuple: q, success (0 or 1), iterations, searches, residual."""
+        found = self.ikine_LM(Tep, end, q0, **options)
+        return found.q, int(found.success), found.iterations, found.searches, found.residual
+
+    ik_NR = ik_GN = ik_LM

@@ -1,0 +1,199 @@
+"""The names of the Robotics Toolbox, and its robots: classes with the attributes of its own."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import cylindroid as cy
+from cylindroid.rtb import Robot
+
+
+def rotation(axis, angle):
+    T = np.eye(4)
+    i, j = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
+    T[[i, j, i, j], [i, j, j, i]] = np.cos(angle), np.cos(angle), -np.sin(angle), np.sin(angle)
+    return T
+
+
+def translation(axis, length):
+    T = np.eye(4)
+    T["xyz".index(axis), 3] = length
+    return T
+
+
+@dataclass
+class DHLink:
+    theta: float = 0.0
+    d: float = 0.0
+    a: float = 0.0
+    alpha: float = 0.0
+    offset: float = 0.0
+    isflip: bool = False
+    isrevolute: bool = True
+    mdh: int = 0
+    qlim: object = None
+
+    def A(self, q):
+        q = (-q if self.isflip else q) + self.offset
+        theta, d = (q, self.d) if self.isrevolute else (self.theta, q)
+        along_z = rotation("z", theta) @ translation("z", d)
+        along_x = rotation("x", self.alpha) @ translation("x", self.a)
+        return along_x @ along_z if self.mdh else along_z @ along_x
+
+
+def pose(matrix):
+    """As an SE3: the matrix is its A."""
+    return SimpleNamespace(A=matrix)
+
+
+@dataclass
+class Table:
+    """A robot of a Denavit-Hartenberg table."""
+
+    links: list
+    name: str = "table & co"
+    base: object = None
+    tool: object = None
+    configs: dict = field(default_factory=dict)
+
+    def fkine(self, q):
+        T = np.eye(4) if self.base is None else self.base.A
+        for link, x in zip(self.links, q):
+            T = T @ link.A(x)
+        return T if self.tool is None else T @ self.tool.A
+
+
+@dataclass
+class Link:
+    """A link of elementary transforms: a constant one and at most one joint."""
+
+    name: str
+    parent: object
+    constant: np.ndarray
+    v: object = None
+    jindex: object = None
+    qlim: object = None
+
+    @property
+    def isjoint(self):
+        return self.v is not None
+
+    def A(self, q=0.0):
+        T = self.constant.copy()
+        if self.isjoint:
+            q = -q if self.v.isflip else q
+            of = rotation if self.v.kind[0] == "R" else translation
+            T = T @ of(self.v.kind[1], q)
+        return pose(T)
+
+
+def agrees(ours, theirs):
+    rng = np.random.default_rng(4)
+    for _ in range(10):
+        q = rng.uniform(-1, 1, ours.n)
+        np.testing.assert_allclose(ours.fkine(q), theirs(q), atol=1e-14)
+
+
+@pytest.mark.parametrize("mdh", [0, 1])
+def test_tables(mdh):
+    rng = np.random.default_rng(1)
+    links = []
+    for i in range(7):
+        theta, d, a, offset = rng.uniform(-1, 1, 4)
+        links.append(
+            DHLink(theta, d, a, [np.pi / 2, -np.pi / 2, 0.3, 0.0][i % 4], offset, i % 3 == 1,
+                   i % 4 != 2, mdh, (-2.0, 1.5) if i != 3 else None)
+        )
+    base = rotation("y", 0.4) @ translation("x", 0.3)
+    # A pitch of a right angle.
+    tool = rotation("y", np.pi / 2) @ rotation("x", 0.7) @ translation("z", 0.2)
+    table = Table(links, base=pose(base), tool=pose(tool), configs={"qr": np.arange(7) / 10})
+    robot = Robot(table)
+    agrees(robot, table.fkine)
+    assert (robot.n, robot.structure) == (7, "RRPRRRP")
+    assert robot.name == "table & co"
+    assert robot.qlim[:, 0].tolist() == [-2.0, 1.5] and np.isinf(robot.qlim[:, 3]).all()
+    assert robot.qr.tolist() == (np.arange(7) / 10).tolist()
+    plain = Robot(Table(links))
+    agrees(plain, Table(links).fkine)
+
+
+def tree():
+    """Two branches; the links are in another order than the joints; an arm with a gripper."""
+    et = lambda kind, flip=False: SimpleNamespace(kind=kind, isflip=flip)  # noqa: E731
+    body = Link("body", None, translation("z", 0.3))
+    lift = Link("lift", body, rotation("x", 0.5), et("tz"), 0, (0.0, 0.4))
+    left = Link("left", lift, translation("y", 0.2), et("Rx", True), 1, (-1.0, 2.0))
+    right = Link("right", lift, translation("y", -0.2), et("Ry"), 2)
+    hand = Link("hand", left, rotation("z", 0.25))
+    gripper = SimpleNamespace(links=[hand], tool=pose(translation("z", 0.1)))
+    links = [right, body, lift, left]
+    robot = SimpleNamespace(
+        name="tree", links=links, base=pose(np.eye(4)), tool=None, grippers=[], ee_links=[right]
+    )
+    return robot, gripper, hand
+
+
+def test_trees():
+    robot, gripper, hand = tree()
+    right, body, lift, left = robot.links
+    ours = Robot(robot)
+    path = lambda *links: lambda q: np.linalg.multi_dot(  # noqa: E731
+        [np.eye(4)] + [link.A(q[link.jindex] if link.isjoint else 0.0).A for link in links]
+    )
+    agrees(ours, path(body, lift, right))
+    assert ours.mechanism.joint_names == ["lift", "left", "right"]
+    assert ours.qlim[:, 1].tolist() == [-1.0, 2.0] and ours.qlim[:, 0].tolist() == [0.0, 0.4]
+    q = np.array([0.3, -0.4, 0.1])
+    np.testing.assert_allclose(ours.fkine(q, "left"), path(body, lift, left)(q), atol=1e-14)
+    robot.grippers = [gripper]
+    to_tip = lambda q: path(body, lift, left, hand)(q) @ gripper.tool.A  # noqa: E731
+    agrees(Robot(robot), to_tip)
+    lift.jindex, left.jindex = 1, 0
+    with pytest.raises(cy.InvalidOptionError, match="from the base to the tips"):
+        Robot(robot)
+
+
+def test_names_and_results():
+    robot = Robot("panda")
+    q = np.array([0.1, -0.3, 0.2, -1.8, 0.3, 1.9, 0.5])
+    qd = np.linspace(-1, 1, 7)
+    step = 1e-6
+    moved = robot.mechanism.integrate(q, qd, step)
+    slope = (robot.jacob0(moved) - robot.jacob0(q)) / step
+    np.testing.assert_allclose(robot.jacob0_dot(q, qd), slope, atol=1e-5)
+    # The Hessian in the axes of the end effector is the one in world axes, turned.
+    R = robot.fkine(q)[:3, :3].T
+    for own, world in zip(robot.hessiane(q), robot.hessian0(q)):
+        np.testing.assert_allclose(own, np.kron(np.eye(2), R) @ world, atol=1e-14)
+    assert robot.hessiane(np.stack([q, q + 0.1])).shape == (2, 7, 6, 7)
+    gradient = robot.jacobm(q)[:, 0]
+    for i in range(7):
+        ahead, behind = (robot.manipulability(q + s * np.eye(7)[i] * 1e-5) for s in (1, -1))
+        assert abs((ahead - behind) / 2e-5 - gradient[i]) < 1e-7
+    assert robot.jacob0_analytical(q, "eul").shape == (6, 7)
+    assert robot.fkine_all(q).shape == (len(robot.mechanism.frames), 4, 4)
+    found = robot.ik_LM(robot.fkine(q), q0=q)
+    assert found[1] == 1 and found[4] < 1e-12
+    np.testing.assert_allclose(robot.fkine(found[0]), robot.fkine(q), atol=1e-6)
+    assert robot.ikine_NR(robot.fkine(q)).success and robot.ik_GN(robot.fkine(q))[1] == 1
+    for seed in range(20):
+        assert not robot.mechanism.outside_limits(robot.random_q(seed))
+    assert robot.islimit(robot.qlim[0]) == [True] * 7 and not any(robot.islimit(q))
+
+
+def test_what_is_missing_says_what_to_use():
+    robot = Robot("panda")
+    with pytest.raises(NotImplementedError, match="use cylindroid.JointMove"):
+        robot.jtraj
+    with pytest.raises(NotImplementedError, match="'rne' of the Robotics Toolbox is not in"):
+        robot.rne
+    with pytest.raises(NotImplementedError, match="'eul' or 'exp'"):
+        robot.jacob0_analytical(robot.qr)
+    assert not hasattr(robot, "rne") and not hasattr(robot, "other")
+    with pytest.raises(AttributeError, match="no attribute 'other'"):
+        robot.other
+    with pytest.raises(cy.InvalidOptionError, match="no links"):
+        Robot(Table([]))
