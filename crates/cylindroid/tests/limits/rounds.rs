@@ -221,7 +221,7 @@ fn many_tasks(robot: &Mechanism, random: &mut Random) -> Tally {
 /// configuration.
 fn task_servo(
     mut servo: TaskServo,
-    q: &mut Vec<f64>,
+    q: &mut [f64],
     watch: &mut Watch,
     random: &mut Random,
     mut look: impl FnMut(u64, &[f64]) -> Result<(), String>,
@@ -242,7 +242,7 @@ fn task_servo(
             tally.violations.push(format!("step {step}: {error}"));
             return tally;
         }
-        let before = q.clone();
+        let before = q.to_vec();
         servo.advance(q);
         let found = watch.step(&before, servo.joint_velocities(), q);
         match found.and_then(|at_limit| look(step, q).map(|()| at_limit)) {

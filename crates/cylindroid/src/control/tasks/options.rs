@@ -59,7 +59,9 @@ pub struct CollisionAvoidance {
     pub model: CollisionModel,
     /// Least distance (m).
     pub gap: f64,
-    /// Only pairs closer than this are considered (m), and of these the 64 closest.
+    /// Only pairs closer than this are considered (m), and of these the 64 closest. It must exceed
+    /// the distance in which a pair stops: where joints are fast and accelerate slowly, a pair that
+    /// comes into view at a smaller one cannot brake before it touches.
     pub margin: f64,
 }
 

@@ -1,8 +1,8 @@
 //! Volume and inertia of meshes, as MuJoCo computes them.
 //!
-//! Formula  pyramids of all triangles (a, b, c) over an apex p, the mean of the triangles' centres by
-//!          their areas:  V = sum v_k, v_k = (a - p) . ((b - p) x (c - p)) / 6,
-//!          centre = p + sum v_k 3/4 (centre_k - p) / V; then, over the centre,
+//! Formula  pyramids of all triangles (a, b, c) over an apex p, first the mean of the triangles'
+//!          centres by their areas: v_k = (a - p) . ((b - p) x (c - p)) / 6,
+//!          centre = p + sum v_k 3/4 (centre_k - p) / sum v_k; then, over this centre, V = sum v_k,
 //!          P = sum v_k / 20 (2 (a a^T + b b^T + c c^T) + a b^T + b a^T + ...),  I = tr(P) 1 - P.
 //!          "legacy" (the default) counts |v_k|, "exact" v_k, "convex" the pyramids of the convex
 //!          hull, "shell" the triangles: areas for volumes, 1/12 for 1/20
@@ -79,7 +79,8 @@ pub(super) fn solid(mesh: MeshFile, scale: Vec3, kind: MeshInertia) -> Option<So
     let (_, apex) = mean(&area, &middle);
     let far = if kind == MeshInertia::Shell { 1.0 } else { 0.75 };
     let point = |t: [Vec3; 3]| apex + (middle(t) - apex) * far;
-    let (volume, centre) = mean(&|t| share(t, apex), &point);
+    let (_, centre) = mean(&|t| share(t, apex), &point);
+    let volume: f64 = corners.iter().map(|t| share(*t, centre)).sum();
     if !(volume > 0.0 && volume.is_finite() && centre.is_finite()) {
         return None;
     }
