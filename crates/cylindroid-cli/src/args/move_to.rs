@@ -42,7 +42,7 @@ Examples:
   cylindroid move docs/cell.toml --task hand_tcp=0.4,0.1,0.5 --avoid --gap 0.005
   cylindroid move panda --tasks docs/tasks.toml
 
-A file of tasks has a table [[task]] for each, with `type` and its keys: frame (frame, xyz, rpy, tool, components, axes), relative_frame (frame, reference, xyz, rpy, tool, components), center_of_mass (xyz, components), gaze (frame, point, tool), posture (q) and joint_velocities (velocities); and with name, level (0 first), weight, gain, tolerance_position and tolerance_orientation. Lengths are in m, angles in rad; a target that is not given is the start.
+A file of tasks has a table [[task]] for each, with `type` and its keys: frame (frame, xyz, rpy, tool, components, axes), relative_frame (frame, reference, xyz, rpy, tool, components), center_of_mass (xyz, components), gaze (frame, point, tool), posture (q) and joint_velocities (velocities); and with name, level (0 first), weight, gain, tolerance_position and tolerance_orientation. Lengths are in m, angles in rad; the default target is the start.
 
 An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], see `distance --help`.";
 
@@ -114,7 +114,7 @@ pub(crate) struct TargetArgs {
 
     /// Controlled components: `pose`, `position`, `orientation`, `pointing` (position and direction of
     /// the tool's z axis), or components like `x,y,rz` [default: those of the target]. Where the
-    /// task asks for more than the target gives, the start's position or orientation is kept. Of
+    /// task asks for more than the target gives, the start's position or orientation is kept. In
     /// `move` also FRAME=X,Y,Z or FRAME=X,Y,Z,ROLL,PITCH,YAW: a task of another frame [m, rad]; may be
     /// given several times
     #[arg(long, value_name = "TASK")]
