@@ -22,7 +22,11 @@ every joint moves straight to its goal. If the servo stalls on its way to a pose
 configuration within all limits reaches, the robot reconfigures: every joint moves straight to \
 that configuration instead (--no-reconfigure keeps the motion of the servo).
 
-With --avoid or --obstacle links keep a distance from each other and from obstacles. Several tasks with priorities and weights come from --task FRAME=... and from a file (--tasks): frames, frames relative to each other, the centre of mass, the gaze of a frame, a posture, joint velocities. Such a motion ends when every task is reached or stalled, and each task reports what stops it.
+With --avoid or --obstacle links keep a distance from each other and from obstacles. Several \
+tasks with priorities and weights come from --task FRAME=... and from a file (--tasks): frames, \
+frames relative to each other, the centre of mass, the gaze of a frame, a posture, joint \
+velocities. Such a motion ends when every task is reached or stalled, and each task reports what \
+stops it.
 
 Mechanisms with loops or contacts are controlled at their reference, through their actuated joints \
 (--actuated) with minimum effort; passive joints follow, loops stay closed, and the motion stops \
@@ -42,9 +46,14 @@ Examples:
   cylindroid move docs/cell.toml --task hand_tcp=0.4,0.1,0.5 --avoid --gap 0.005
   cylindroid move panda --tasks docs/tasks.toml
 
-A file of tasks has a table [[task]] for each, with `type` and its keys: frame (frame, xyz, rpy, tool, components, axes), relative_frame (frame, reference, xyz, rpy, tool, components), center_of_mass (xyz, components), gaze (frame, point, tool), posture (q) and joint_velocities (velocities); and with name, level (0 first), weight, gain, tolerance_position and tolerance_orientation. Lengths are in m, angles in rad; the default target is the start.
+A file of tasks has a table [[task]] for each, with `type` and its keys: frame (frame, xyz, rpy, \
+tool, components, axes), relative_frame (frame, reference, xyz, rpy, tool, components), \
+center_of_mass (xyz, components), gaze (frame, point, tool), posture (q) and joint_velocities \
+(velocities); and with name, level (0 first), weight, gain, tolerance_position and \
+tolerance_orientation. Lengths are in m, angles in rad; the default target is the start.
 
-An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], see `distance --help`.";
+An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], see `distance \
+--help`.";
 
 #[derive(Debug, Args)]
 pub(crate) struct MoveArgs {
