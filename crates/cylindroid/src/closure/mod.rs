@@ -36,6 +36,7 @@ pub use constraint::loop_closure_error::LoopClosureError;
 pub use constraint::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
 pub use mobility::actuation_map::ActuationMap;
 pub use mobility::blocks::CoordinateKinds;
+pub(crate) use mobility::coordinate_partitioning::CoordinatePartitioning;
 pub use mobility::counts::MobilityCounts;
 pub use mobility::finite_mobility::{Branch, FiniteMobility, MobilityEvidence};
 pub use mobility::force_spaces::{internal_forces, structural_forces};

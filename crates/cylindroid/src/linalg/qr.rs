@@ -70,8 +70,8 @@ impl Qr {
     }
 
     fn decompose(mut a: Matrix, pivot: bool) -> Self {
-        let (m, n) = (a.rows(), a.cols());
-        let k = m.min(n);
+        let n = a.cols();
+        let k = a.rows().min(n);
         let mut factors = vec![0.0; k];
         let mut order: Vec<usize> = (0..n).collect();
         let mut sizes: Vec<f64> =
@@ -90,25 +90,11 @@ impl Qr {
             if norm == 0.0 {
                 continue;
             }
-            let data = a.as_mut_slice();
-            let (head, rest) = data.split_at_mut((j + 1) * m);
-            let v = &mut head[j * m + j..];
-            // The sign without cancellation in v_0.
-            let diagonal = -norm.copysign(v[0]);
-            let first = v[0] - diagonal;
-            factors[j] = -first / diagonal;
-            v[0] = diagonal;
-            v[1..].iter_mut().for_each(|x| *x /= first);
-            let below = &v[1..];
-            for (l, column) in rest.chunks_exact_mut(m).enumerate() {
-                let (top, bottom) = column[j..].split_at_mut(1);
-                let along = factors[j] * (top[0] + dot(below, bottom));
-                top[0] -= along;
-                bottom.iter_mut().zip(below).for_each(|(x, y)| *x -= along * y);
+            factors[j] = reflect_rest(&mut a, j, norm, |l, rest| {
                 if pivot {
-                    sizes[j + 1 + l] = square(bottom);
+                    sizes[l] = square(rest);
                 }
-            }
+            });
         }
         Self { packed: a, factors, order }
     }
@@ -218,12 +204,49 @@ impl Qr {
 
     #[inline]
     fn reflect(&self, j: usize, x: &mut [f64]) {
-        let below = &self.packed.column(j)[j + 1..];
-        let (top, bottom) = x[j..].split_at_mut(1);
-        let along = self.factors[j] * (top[0] + dot(below, bottom));
-        top[0] -= along;
-        bottom.iter_mut().zip(below).for_each(|(x, v)| *x -= along * v);
+        reflect(&self.packed, j, self.factors[j], x);
     }
+}
+
+/// Reflects column `j` of `a`, `norm` its length from row `j` on, to a multiple of e_j, and the
+/// columns after it; `f` gets each of these with its remainder below row `j`. Returns the factor of
+/// the reflection; its vector is kept below the diagonal.
+#[inline]
+pub(super) fn reflect_rest(
+    a: &mut Matrix,
+    j: usize,
+    norm: f64,
+    mut f: impl FnMut(usize, &[f64]),
+) -> f64 {
+    let m = a.rows();
+    let data = a.as_mut_slice();
+    let (head, rest) = data.split_at_mut((j + 1) * m);
+    let v = &mut head[j * m + j..];
+    // The sign without cancellation in v_0.
+    let diagonal = -norm.copysign(v[0]);
+    let first = v[0] - diagonal;
+    let factor = -first / diagonal;
+    v[0] = diagonal;
+    v[1..].iter_mut().for_each(|x| *x /= first);
+    let below = &v[1..];
+    for (l, column) in rest.chunks_exact_mut(m).enumerate() {
+        let (top, bottom) = column[j..].split_at_mut(1);
+        let along = factor * (top[0] + dot(below, bottom));
+        top[0] -= along;
+        bottom.iter_mut().zip(below).for_each(|(x, y)| *x -= along * y);
+        f(j + 1 + l, bottom);
+    }
+    factor
+}
+
+/// `x <- (1 - factor v v^T) x`, v below the diagonal of column `j` of `packed`.
+#[inline]
+pub(super) fn reflect(packed: &Matrix, j: usize, factor: f64, x: &mut [f64]) {
+    let below = &packed.column(j)[j + 1..];
+    let (top, bottom) = x[j..].split_at_mut(1);
+    let along = factor * (top[0] + dot(below, bottom));
+    top[0] -= along;
+    bottom.iter_mut().zip(below).for_each(|(x, v)| *x -= along * v);
 }
 
 /// `R^-1 y` for the leading square block of an upper triangular matrix.
@@ -236,6 +259,6 @@ pub(crate) fn solve_upper(r: &Matrix, y: &[f64]) -> Vec<f64> {
     x
 }
 
-fn square(a: &[f64]) -> f64 {
+pub(super) fn square(a: &[f64]) -> f64 {
     dot(a, a)
 }

@@ -17,6 +17,7 @@ use crate::model::{Dimension, JointKind, LoopJoint, Mechanism};
 use crate::spatial::{Pose, Vec3, Wrench};
 
 /// A row: a constrained relative motion of two links, in world axes.
+#[derive(Debug, Clone)]
 pub(crate) struct ConstraintRow {
     /// The wrench whose power with the motion of `b` relative to `a` is measured, at `point`.
     pub(crate) wrench: Wrench,
@@ -74,6 +75,7 @@ impl ConstraintRow {
 }
 
 /// The constraints of a loop joint or contact, independent of the configuration.
+#[derive(Debug, Clone)]
 pub(crate) struct PairConstraints {
     /// Indices of its two links.
     pub(crate) ends: [usize; 2],
@@ -153,26 +155,56 @@ pub(crate) fn joints_with_rate(mechanism: &Mechanism) -> Vec<&LoopJoint> {
 pub(crate) fn constraint_rows(
     state: &State,
 ) -> Result<(Vec<ConstraintRow>, Vec<&LoopJoint>, LoopClosureError)> {
-    let mechanism = state.mechanism();
-    let pose = |link| state.link_pose(link);
-    let (mut rows, mut rates) = (Vec::new(), 0);
-    for (place, constraints) in pair_constraints(mechanism).enumerate() {
-        let constraints = constraints?;
-        let [a, b] = constraints.ends;
-        let on = [pose(a) * constraints.frames[0], pose(b) * constraints.frames[1]];
-        let pair = KinematicPair::new(place, constraints.ends, on);
-        rows.extend(constraints.crossed.and_then(|[first, second]| pair.crossed(first, second)));
-        rows.extend(pair.rows(&constraints.wrenches));
-        if let Some(w) = constraints.measure {
-            rows.push(ConstraintRow { rate_of: Some(rates), ..pair.row(w) });
-            rates += 1;
+    let mut rows = Vec::new();
+    let closure_error = ConstraintRows::of(state.mechanism())?.load(state, &mut rows);
+    Ok((rows, joints_with_rate(state.mechanism()), closure_error))
+}
+
+/// The constraints of all loop joints and contacts of a mechanism, for rows at many configurations.
+#[derive(Debug, Clone)]
+pub(crate) struct ConstraintRows {
+    pairs: Vec<PairConstraints>,
+}
+
+impl ConstraintRows {
+    /// # Errors
+    /// An actuated loop joint of several coordinates.
+    pub(crate) fn of(mechanism: &Mechanism) -> Result<Self> {
+        Ok(Self { pairs: pair_constraints(mechanism).collect::<Result<_>>()? })
+    }
+
+    /// Largest number of rows; universal joints with both axes along one line have fewer.
+    pub(crate) fn most_rows(&self) -> usize {
+        let rows = |p: &PairConstraints| {
+            p.wrenches.len() + usize::from(p.crossed.is_some()) + usize::from(p.measure.is_some())
+        };
+        self.pairs.iter().map(rows).sum()
+    }
+
+    /// The rows at a configuration, without allocation where `rows` has the room, and the
+    /// loop-closure error.
+    pub(crate) fn load(&self, state: &State, rows: &mut Vec<ConstraintRow>) -> LoopClosureError {
+        rows.clear();
+        let mut rates = 0;
+        for (place, constraints) in self.pairs.iter().enumerate() {
+            let [a, b] = constraints.ends;
+            let [on_a, on_b] = constraints.frames;
+            let on = [state.link_pose(a) * on_a, state.link_pose(b) * on_b];
+            let pair = KinematicPair::new(place, constraints.ends, on);
+            let crossed = constraints.crossed;
+            rows.extend(crossed.and_then(|[first, second]| pair.crossed(first, second)));
+            rows.extend(pair.rows(&constraints.wrenches));
+            if let Some(w) = constraints.measure {
+                rows.push(ConstraintRow { rate_of: Some(rates), ..pair.row(w) });
+                rates += 1;
+            }
         }
+        let mut closure_error = LoopClosureError::default();
+        for row in &*rows {
+            closure_error.widen(row.unit, row.residual);
+        }
+        closure_error
     }
-    let mut closure_error = LoopClosureError::default();
-    for row in &rows {
-        closure_error.widen(row.unit, row.residual);
-    }
-    Ok((rows, joints_with_rate(mechanism), closure_error))
 }
 
 /// A kinematic pair at a configuration: the two frames of a loop joint or contact.

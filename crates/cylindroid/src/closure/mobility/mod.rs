@@ -12,6 +12,7 @@ pub(crate) mod actuation_map;
 pub(crate) mod blocks;
 pub(crate) mod branches;
 pub(crate) mod compression;
+pub(crate) mod coordinate_partitioning;
 pub(crate) mod counts;
 pub(crate) mod finite_mobility;
 pub(crate) mod force_spaces;

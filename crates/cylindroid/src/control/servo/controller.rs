@@ -17,6 +17,7 @@
 
 pub(super) mod condition;
 mod stages;
+mod tracking;
 
 use super::coupled::Coupled;
 use super::inertia_weights::InertiaWeights;
@@ -88,6 +89,9 @@ pub struct Servo {
     approaches_type_ii: bool,
 
     rates: Vec<f64>,
+    /// Of the last step, its loops closed; and a workspace.
+    configuration: Vec<f64>,
+    predicted: Vec<f64>,
     active: Vec<Option<LimitKind>>,
     at_limit: Vec<usize>,
     stall_detector: StallDetector,
@@ -197,6 +201,8 @@ impl Servo {
             hessian,
             last: vec![0.0; rates],
             rates: vec![0.0; mechanism.n().max(rates)],
+            configuration: mechanism.home().to_vec(),
+            predicted: mechanism.home().to_vec(),
             active: vec![None; rates],
             coupled,
             inertia,
@@ -248,7 +254,7 @@ impl Servo {
         for sample in 0..=GENERIC_CONFIGURATIONS {
             let Some(q) = self.nearby_configuration(sample)? else { continue };
             closed += 1;
-            self.chain.set(&q);
+            self.load_configuration(&q)?;
             self.load_jacobian(&q)?;
             rank = rank.max(Svd::of(&self.task).rank(GENERIC_RANK).rank);
             match self.coupled.as_ref().and_then(|c| c.uncontrolled()) {
@@ -301,7 +307,7 @@ impl Servo {
         let target = target.into();
         self.check_input(q, &target, secondary_velocities)?;
 
-        let pose = self.chain.set(q);
+        let pose = self.load_configuration(q)?;
         let desired = target.desired(pose, &self.options)?;
         self.load_jacobian(q)?;
         self.svd.decompose_warm(&self.task);
@@ -324,8 +330,8 @@ impl Servo {
         let (saturation, braking) = match self.store_unlimited_rates(q) {
             Some(braking) => (Saturation::NONE, braking),
             None => {
-                self.load_bounds(q);
-                let saturation = self.saturate(q)?;
+                self.load_bounds();
+                let saturation = self.saturate()?;
                 Error::check_finite("joint velocities", &self.primary)?;
                 let braking = self.store_rates();
                 self.load_achieved_twist();
@@ -334,6 +340,7 @@ impl Servo {
             }
         };
 
+        self.note_configuration(q);
         self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         if self.last_target != Some(target.pose) {
             self.last_target = Some(target.pose);

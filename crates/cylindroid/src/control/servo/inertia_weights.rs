@@ -65,7 +65,7 @@ impl InertiaWeights {
             }
         }
         if let Some(coupled) = coupled {
-            coupled.set_weights((0..n).map(weight));
+            coupled.set_weights((0..n).map(weight))?;
         }
         Ok(())
     }

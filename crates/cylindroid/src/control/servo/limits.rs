@@ -58,9 +58,19 @@ impl VelocityBounds {
     /// ```
     #[must_use]
     pub fn next(limits: &Limits, now: JointState, dt: f64) -> Self {
+        Self::within_change(limits, now, limits.acceleration * dt, dt)
+    }
+
+    /// The bounds of a joint without drive: it brakes before its position limits, but its velocity
+    /// follows those of the others, whatever its changes.
+    pub(super) fn passive(limits: &Limits, now: JointState, dt: f64) -> Self {
+        Self::within_change(limits, now, f64::INFINITY, dt)
+    }
+
+    /// The bounds for a largest change of velocity.
+    fn within_change(limits: &Limits, now: JointState, step: f64, dt: f64) -> Self {
         let above = distance_to_limit(limits.upper - now.position, now.position, limits.upper);
         let below = distance_to_limit(now.position - limits.lower, now.position, limits.lower);
-        let step = limits.acceleration * dt;
         let brake_up = stopping_velocity(above, limits.acceleration, dt);
         let brake_down = -stopping_velocity(below, limits.acceleration, dt);
 

@@ -27,7 +27,8 @@ use crate::linalg::{Matrix, dot, norm};
 
 pub(in crate::control) use level::Level;
 
-/// Most rounds for each unknown and row [-]; then the feasible point reached counts.
+/// Most rounds of a level for each unknown and row, four times as many for the start [-]; then the
+/// feasible point reached counts.
 const ROUNDS: usize = 4;
 
 /// A row whose part outside others is smaller than this share of it depends on them [-].
@@ -36,7 +37,8 @@ const DEPENDENT: f64 = 1e-10;
 /// Rounding of a multiplier, relative to the terms that it is the difference of [-].
 const ROUNDING: f64 = 1e-13;
 
-/// Rates of rows below this share of the largest possible one are roundings of zero [-].
+/// Rates of rows along a direction below this share of the largest possible one are roundings of
+/// zero [-].
 const STILL: f64 = 1e-13;
 
 /// Values of rows beyond their bounds by less than this, relative to one plus the bound, are within
@@ -57,6 +59,7 @@ impl Precision {
     #[cfg(test)]
     pub(in crate::control) const EXACT: Self = Self { rank: 1e-11, release: 1e-11 };
 }
+
 /// The objective of a level.
 #[derive(Debug)]
 pub(in crate::control) enum Objective<'a> {
@@ -107,6 +110,8 @@ pub(in crate::control) struct ActiveSet {
     normal: Vec<f64>,
     /// The sign of the bound at which each row stood in the last solution; 0 if at none.
     last: Vec<f64>,
+    /// Rounds since the start.
+    #[cfg(test)]
     rounds: usize,
 }
 
@@ -128,6 +133,7 @@ impl ActiveSet {
             gradient: vec![0.0; n],
             normal: vec![0.0; n],
             last: vec![0.0; r],
+            #[cfg(test)]
             rounds: 0,
         }
     }
@@ -200,7 +206,10 @@ impl ActiveSet {
             }
         }
         self.fixed = 0;
-        self.rounds = 0;
+        #[cfg(test)]
+        {
+            self.rounds = 0;
+        }
         self.working.clear();
         self.uses.fill(Use::Free);
     }

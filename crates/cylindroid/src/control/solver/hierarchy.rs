@@ -1,5 +1,5 @@
 //! Hierarchical least squares within inequalities: level after level, scaled along its direction
-//! before it is bent.
+//! before the direction is changed.
 //!
 //! Formula  y_k = argmin |A_k y - b_k| over the minima of the levels before, l <= G y <= u for all.
 //!          Scaled: of all y with A_k y parallel to b_k the one with the largest scale s <= 1,
@@ -34,7 +34,7 @@ pub(in crate::control) struct Share {
 }
 
 /// Parts across the target below this share of it are roundings [-].
-const STRAIGHT: f64 = 1e-9;
+const ACROSS: f64 = 1e-9;
 
 impl ScaledLevel {
     pub(in crate::control) fn new(m: usize, n: usize) -> Self {
@@ -92,7 +92,7 @@ impl ActiveSet {
         self.minimise(Objective::Rows(&mut level.across), precision);
         self.keep(&mut level.across, precision);
         let cut = precision.rank * level.whole.scale * norm(self.point());
-        let is_straight = level.across.residual(self.point()) <= STRAIGHT * size + cut;
+        let is_straight = level.across.residual(self.point()) <= ACROSS * size + cut;
         self.minimise(Objective::Rows(&mut level.along), precision);
         let is_stopped = self.stopping().any(|(row, sign)| stops(row, sign));
         self.keep(&mut level.along, precision);

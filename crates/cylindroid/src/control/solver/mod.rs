@@ -2,7 +2,7 @@
 //!
 //! Read `bounds` (the interval of each joint and the limit that sets it), `inequalities` (bounds as
 //! rows), `active_set` (least squares within them), `hierarchy` (level after level, scaled before
-//! bent), then `saturation` (one task with its secondary motion, for trees and closed chains). The
+//! changed), then `saturation` (one task with its secondary motion, for trees and closed chains). The
 //! solver knows neither targets nor gains nor time.
 
 pub(super) mod active_set;

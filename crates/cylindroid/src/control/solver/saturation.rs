@@ -1,7 +1,7 @@
 //! Saturation: enforces bounds of joint velocities on a task and its secondary motion. The task is
 //! scaled down first; if no scaling is feasible, its direction is changed.
 //!
-//! Formula  rates = M y + c within their bounds; M = 1, c = 0 without loops. Secondary motion first:
+//! Formula  rates = M y within their bounds; M = 1 without loops. Secondary motion first:
 //!          the largest share of it beside the whole task; then the largest s in [0, 1] with
 //!          J y = s J y_0, y_0 the unbounded solution of the inverse, while joints at a bound are
 //!          clamped one by one. Direction changed: min |J y - J y_0|^2 + d |y|^2 within the bounds,
@@ -11,8 +11,9 @@
 //!          decompositions of m x n, and two solutions of `active_set.rs` where the direction changes.
 //!          No allocation
 //! Why so   scaling preserves the direction, which users of straight-line paths rely on; the
-//!          direction is changed only when no scaled motion is feasible. Where a part of the task is out of reach, its curvature outweighs weak directions: the
-//!          least-squares motion would overshoot there and swing, d is a bound of that curvature
+//!          direction is changed only when no scaled motion is feasible. Where a part of the task is
+//!          out of reach, its curvature outweighs weak directions: the least-squares motion would
+//!          overshoot there and swing, d is a bound of that curvature
 //! Source   Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space)
 //! Checked  tests/it/servo/limits.rs::saturation_*, tests/it/servo/object.rs,
 //!          src/control/solver/saturation/tests.rs
@@ -25,10 +26,6 @@ use crate::linalg::{Matrix, Svd, norm};
 
 /// Below this scale the direction counts as infeasible and is changed [-].
 pub(in crate::control) const MIN_SCALE: f64 = 0.05;
-
-/// A joint at a bound is released when its gradient exceeds this share of the largest possible one
-/// [-]: the residual along directions cut by the inverse must not release any joint.
-pub(in crate::control) const RELEASE: f64 = 1e-3;
 
 /// Singular values of a scaled task, relative to its norm, that may be needed to keep its direction
 /// [-]: the bounds limit the velocities there.
@@ -45,6 +42,10 @@ const LINEAR: f64 = 1.0;
 /// Joint motions that are larger than those of the task by more than this are those of a weak
 /// direction (scaled) [-].
 const AMPLIFIED: f64 = 20.0;
+
+/// Share of the velocities, or of their changes, that a joint may reserve for the correction of loops
+/// [-].
+const CORRECTION: f64 = 0.1;
 
 /// Least damping of a task whose direction is changed [-].
 pub(in crate::control) const LEAST_DAMPING: f64 = 1e-6;
@@ -75,13 +76,18 @@ impl Saturation {
     pub(in crate::control) const NONE: Self = Self { scale: 1.0, direction_lost: false };
 }
 
-/// Rates that follow from the motions of a closed chain, M y + c.
+/// Rates that follow from the motions of a closed chain, M y + c; c is beside the motion, not a part
+/// of its budget.
 #[derive(Debug, Clone)]
 pub(in crate::control) struct Coupling {
+    /// True for the rates of joints with drives.
+    pub(in crate::control) is_driven: Vec<bool>,
     /// M in weighted velocities, a columns.
     pub(in crate::control) motions: Matrix,
-    /// c in weighted velocities: closes the loops within a step.
+    /// c in weighted velocities, which closes the loops of the measured configuration within a step:
+    /// of the passive joints, and of the actuated ones with those that follow them.
     pub(in crate::control) correction: Vec<f64>,
+    pub(in crate::control) drive_correction: Vec<f64>,
     /// The actuation y of the primary task, of the secondary ones, of the last step and of the
     /// result.
     pub(in crate::control) primary: Vec<f64>,
@@ -91,11 +97,14 @@ pub(in crate::control) struct Coupling {
 }
 
 impl Coupling {
-    /// For this number of rates and unknowns, at rest.
-    pub(in crate::control) fn new(rates: usize, unknowns: usize) -> Self {
+    /// For these rates and this number of unknowns, at rest.
+    pub(in crate::control) fn new(is_driven: Vec<bool>, unknowns: usize) -> Self {
+        let rates = is_driven.len();
         Self {
+            is_driven,
             motions: Matrix::zeros(rates, unknowns),
             correction: vec![0.0; rates],
+            drive_correction: vec![0.0; rates],
             primary: vec![0.0; unknowns],
             secondary: vec![0.0; unknowns],
             last: vec![0.0; unknowns],
@@ -106,6 +115,24 @@ impl Coupling {
     /// `rates = M y`, without the loop-closure correction.
     pub(in crate::control) fn expand(&self, y: &[f64], rates: &mut [f64]) {
         self.motions.mul_vec_into(y, rates);
+    }
+
+    /// Adds the correction as far as the bounds of actuated joints leave room beside the motion:
+    /// noise of the measured positions must not compete with it.
+    fn correct(&self, bounds: &[VelocityBounds], rates: &mut [f64]) {
+        let mut share = 1.0_f64;
+        let driven = self.is_driven.iter().zip(&self.drive_correction).zip(&*rates).zip(bounds);
+        for (((is_driven, c), rate), bound) in driven {
+            if *is_driven && *c != 0.0 {
+                let room = if *c > 0.0 { bound.upper - rate } else { rate - bound.lower };
+                let reserve = CORRECTION * 0.5 * (bound.upper - bound.lower);
+                share = share.min(room.min(reserve).max(0.0) / c.abs());
+            }
+        }
+        let both = self.correction.iter().zip(&self.drive_correction);
+        for ((rate, (c, d)), bound) in rates.iter_mut().zip(both).zip(bounds) {
+            *rate = bound.clamp(*rate + c + share * d);
+        }
     }
 
     /// Row `joint` of M times `pull`.
@@ -145,11 +172,11 @@ pub(in crate::control) struct Saturator {
     set: ActiveSet,
     task: Level,
     /// d of the last changed direction.
+    #[cfg(test)]
     damping: f64,
-    /// c, or zero.
-    constant: Vec<f64>,
-    /// The rates of the whole task, and those that the secondary motion adds.
-    whole: Vec<f64>,
+    /// Zero rates.
+    rest: Vec<f64>,
+    /// Those that the secondary motion adds.
     more: Vec<f64>,
 }
 
@@ -162,9 +189,9 @@ impl Saturator {
         Self {
             set: ActiveSet::new(n, inequalities),
             task: Level::new(m, n),
+            #[cfg(test)]
             damping: 0.0,
-            constant: vec![0.0; rates],
-            whole: vec![0.0; rates],
+            rest: vec![0.0; rates],
             more: vec![0.0; rates],
         }
     }
@@ -202,11 +229,6 @@ impl Saturator {
         coupling: &mut Coupling,
         rates: &mut [f64],
     ) -> Saturation {
-        // At a limit the loop-closure correction ends, too. Acceleration bounds that exclude rest
-        // are left to the motion: a correction that met them would open the loops.
-        for ((c, x), bound) in self.constant.iter_mut().zip(&coupling.correction).zip(p.bounds) {
-            *c = x.max(bound.lower.min(0.0)).min(bound.upper.max(0.0));
-        }
         coupling.expand(&coupling.secondary, &mut self.more);
         if let Some((saturation, primary, secondary)) =
             self.scale_down(&p, rates, Some(&coupling.primary))
@@ -215,13 +237,14 @@ impl Saturator {
             for (y, (a, b)) in coupling.actuation.iter_mut().zip(both) {
                 *y = primary * a + secondary * b;
             }
+            coupling.correct(p.bounds, rates);
             return saturation;
         }
         let inequalities = &mut self.set.inequalities;
-        for (i, (bound, c)) in p.bounds.iter().zip(&self.constant).enumerate() {
+        for (i, bound) in p.bounds.iter().enumerate() {
             inequalities.set_row(i, |j| coupling.motions[(i, j)]);
-            inequalities.lower[i] = bound.lower - c;
-            inequalities.upper[i] = bound.upper - c;
+            inequalities.lower[i] = bound.lower;
+            inequalities.upper[i] = bound.upper;
         }
         let found = self.solve(&p, &coupling.last, &coupling.primary);
         let Some(saturation) = found else {
@@ -231,9 +254,7 @@ impl Saturator {
         };
         coupling.actuation.copy_from_slice(self.set.point());
         coupling.expand(&coupling.actuation, rates);
-        for ((rate, c), bound) in rates.iter_mut().zip(&self.constant).zip(p.bounds) {
-            *rate = bound.clamp(*rate + c);
-        }
+        coupling.correct(p.bounds, rates);
         saturation
     }
 
@@ -246,21 +267,16 @@ impl Saturator {
         primary: Option<&[f64]>,
     ) -> Option<(Saturation, f64, f64)> {
         let bounds = p.bounds;
-        for ((whole, rate), c) in self.whole.iter_mut().zip(&*rates).zip(&self.constant) {
-            *whole = rate + c;
-        }
         // The secondary motion is reduced first.
-        if let Some(span) = interval(&self.whole, &self.more, bounds) {
-            for (((rate, a), z), bound) in
-                rates.iter_mut().zip(&self.whole).zip(&self.more).zip(bounds)
-            {
-                *rate = bound.clamp(a + span.most * z);
+        if let Some(span) = interval(rates, &self.more, bounds) {
+            for ((rate, z), bound) in rates.iter_mut().zip(&self.more).zip(bounds) {
+                *rate = bound.clamp(*rate + span.most * z);
             }
             return Some((Saturation::NONE, 1.0, span.most));
         }
         // While joints accelerate, the twist is scaled and grows from step to step; only persistent
         // limits justify another distribution of the motion over the joints.
-        let span = interval(&self.constant, rates, bounds)?;
+        let span = interval(&self.rest, rates, bounds)?;
         let accelerates = span.most > 0.0 && span.cause == LimitKind::Acceleration;
         if !accelerates {
             return None;
@@ -272,8 +288,8 @@ impl Saturator {
                 return None;
             }
         }
-        for ((rate, c), bound) in rates.iter_mut().zip(&self.constant).zip(bounds) {
-            *rate = bound.clamp(c + *rate * span.most);
+        for (rate, bound) in rates.iter_mut().zip(bounds) {
+            *rate = bound.clamp(*rate * span.most);
         }
         let saturation = Saturation { scale: span.most, direction_lost: false };
         Some((saturation, span.most, 0.0))
@@ -300,19 +316,22 @@ impl Saturator {
         if !self.set.start(last) {
             return None;
         }
-        self.bend(p, last);
+        self.change_direction(p, last);
         Some(Saturation { scale: 0.0, direction_lost: true })
     }
 
-    /// The damped least-squares solution within the bounds.
-    fn bend(&mut self, p: &Problem<'_>, last: &[f64]) {
+    /// The damped least-squares solution within the bounds; the active set stands at its start.
+    fn change_direction(&mut self, p: &Problem<'_>, last: &[f64]) {
         let Self { set, task, .. } = self;
-        set.start(last);
         set.solve(task, STRAIGHT);
         let left = (task.residual(set.point()) / p.gain).min(p.error);
-        self.damping = (CURVATURE * left).max(LEAST_DAMPING);
+        let damping = (CURVATURE * left).max(LEAST_DAMPING);
+        #[cfg(test)]
+        {
+            self.damping = damping;
+        }
         set.start(last);
-        set.solve_damped(task, self.damping, STRAIGHT, |_| ());
+        set.solve_damped(task, damping, STRAIGHT, |_| ());
     }
 }
 

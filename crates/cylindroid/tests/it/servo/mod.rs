@@ -6,6 +6,7 @@ mod inertia;
 mod internal_force;
 mod inverse_choice;
 mod limits;
+mod measured;
 mod object;
 mod projection;
 mod reconfiguration;

@@ -133,7 +133,7 @@ impl Servo {
         let mut x = if let Some(coupled) = &self.coupled {
             let mut rates = last.to_vec();
             rates.resize(self.limits.len(), 0.0);
-            coupled.actuation_of(&rates)
+            coupled.actuation_of(&rates, &self.space)
         } else {
             let own = self.chain.coordinates().iter().enumerate();
             own.map(|(i, &c)| self.space.scaled_rate(i, last[c])).collect()
@@ -145,7 +145,7 @@ impl Servo {
     /// Singular value decomposition of the task Jacobian at `q`.
     fn decomposed(&mut self, q: &[f64]) -> Result<Svd> {
         self.mechanism.check_q("q", q)?;
-        self.chain.set(q);
+        self.load_configuration(q)?;
         self.load_jacobian(q)?;
         Error::check_finite("Jacobian of the task", self.task.as_slice())?;
         Ok(Svd::of(&self.task))

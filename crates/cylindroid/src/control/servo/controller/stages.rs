@@ -11,11 +11,15 @@ use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
-use crate::control::solver::saturation::{Problem, RELEASE, Saturation, brake, solve};
+use crate::control::solver::saturation::{Problem, Saturation, brake, solve};
 use crate::error::Result;
-use crate::linalg::{RowSpace, dot, norm};
-use crate::spatial::Twist;
+use crate::linalg::{RowSpace, norm};
+use crate::spatial::{Pose, Twist};
 use crate::tolerance::AT_LIMIT;
+
+/// A joint at a limit would realise more of the task beyond it if its gradient exceeds this share of
+/// the largest possible one [-]: the residual along directions cut by the inverse names no joint.
+const BLOCKED: f64 = 1e-3;
 
 impl Servo {
     /// Computes the error and the commanded twist, both scaled, and the joint velocities that
@@ -86,6 +90,17 @@ impl Servo {
         }
     }
 
+    /// Moves to the measured configuration; with loops, to the closed one nearest to it.
+    pub(super) fn load_configuration(&mut self, q: &[f64]) -> Result<Pose> {
+        Ok(match &mut self.coupled {
+            Some(coupled) => {
+                coupled.close_measured(q)?;
+                self.chain.set(coupled.q())
+            }
+            None => self.chain.set(q),
+        })
+    }
+
     /// Computes the task Jacobian with respect to the joints, or to the actuated motions of a
     /// closed chain.
     pub(super) fn load_jacobian(&mut self, q: &[f64]) -> Result<()> {
@@ -97,7 +112,7 @@ impl Servo {
             return Ok(());
         };
         self.space.load(&self.chain, &mut coupled.task);
-        coupled.load(q, &self.space, self.options.dt, &mut self.task)
+        coupled.load(&self.space, self.options.dt, &mut self.task)
     }
 
     /// A configuration near home in which the loops are closed; the first is the closest to home.
@@ -115,7 +130,7 @@ impl Servo {
     }
 
     /// Bounds the primary and secondary velocities.
-    pub(super) fn saturate(&mut self, q: &[f64]) -> Result<Saturation> {
+    pub(super) fn saturate(&mut self) -> Result<Saturation> {
         for i in 0..self.last.len() {
             self.last[i] = self.space.scaled_rate(i, self.rates[self.place(i)]);
         }
@@ -126,11 +141,11 @@ impl Servo {
         let Some(coupled) = &mut self.coupled else {
             return Ok(self.saturator.apply(problem, &self.secondary, &mut self.primary));
         };
-        coupled.load_last(&self.rates);
+        coupled.load_last(&self.rates, &self.space);
         let mut saturation =
             self.saturator.apply_coupled(problem, &mut coupled.coupling, &mut self.primary);
         self.approaches_type_ii =
-            coupled.approaches_type_ii(q, &self.primary, &self.space, self.options.dt)?;
+            coupled.approaches_type_ii(&self.primary, &self.space, self.options.dt)?;
         if self.approaches_type_ii {
             brake(&problem, &mut self.primary);
             coupled.coupling.actuation.fill(0.0);
@@ -175,7 +190,7 @@ impl Servo {
             secondary.add_velocities(&mut context, &mut self.secondary[..self.chain.n()]);
         }
         if let Some(coupled) = &mut self.coupled {
-            coupled.load_secondary(&self.secondary);
+            coupled.load_secondary(&self.secondary, &self.space);
         } else {
             if self.secondary.iter().all(|w| *w == 0.0) {
                 return;
@@ -225,12 +240,16 @@ impl Servo {
     }
 
     /// The bounds of the next joint velocities, in weighted coordinates.
-    pub(super) fn load_bounds(&mut self, q: &[f64]) {
+    pub(super) fn load_bounds(&mut self) {
         for i in 0..self.bounds.len() {
             let c = self.place(i);
-            let now =
-                JointState { position: q.get(c).copied().unwrap_or(0.0), velocity: self.rates[c] };
-            let mut bound = VelocityBounds::next(&self.limits[i], now, self.options.dt);
+            let position = self.chain.q().get(i).copied().unwrap_or(0.0);
+            let now = JointState { position, velocity: self.rates[c] };
+            let (limits, dt) = (&self.limits[i], self.options.dt);
+            let mut bound = match &self.coupled {
+                Some(coupled) if coupled.is_passive(i) => VelocityBounds::passive(limits, now, dt),
+                _ => VelocityBounds::next(limits, now, dt),
+            };
             self.own_bounds[i] = bound;
             bound.lower = self.space.scaled_rate(i, bound.lower);
             bound.upper = self.space.scaled_rate(i, bound.upper);
@@ -272,21 +291,20 @@ impl Servo {
         let left = |(x, done): (&f64, &f64)| x - done;
         let size =
             self.x.iter().zip(&self.achieved_twist).map(left).map(|r| r * r).sum::<f64>().sqrt();
-        let least = RELEASE * self.svd.value(0) * size;
+        let least = BLOCKED * self.svd.value(0) * size;
         // For closed chains in actuated coordinates: the direction of steepest descent of the
         // error.
-        let descent: Vec<f64> = match &self.coupled {
-            None => Vec::new(),
-            Some(_) => {
-                let rest: Vec<f64> = self.x.iter().zip(&self.achieved_twist).map(left).collect();
-                (0..self.task.cols()).map(|j| dot(self.task.column(j), &rest)).collect()
+        if let Some(coupled) = &mut self.coupled {
+            for (j, x) in coupled.descent.iter_mut().enumerate() {
+                let rest = self.x.iter().zip(&self.achieved_twist).map(left);
+                *x = self.task.column(j).iter().zip(rest).map(|(a, r)| a * r).sum();
             }
-        };
+        }
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             let (q, l) = (self.chain.q()[i], self.limits[i]);
             let pull: f64 = match &self.coupled {
-                Some(coupled) => coupled.coupling.along(i, &descent),
+                Some(coupled) => coupled.coupling.along(i, &coupled.descent),
                 None => {
                     let rest = self.x.iter().zip(&self.achieved_twist).map(left);
                     self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum()

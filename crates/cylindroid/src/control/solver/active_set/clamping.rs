@@ -6,12 +6,13 @@
 //! Checked  src/control/solver/saturation/tests.rs, tests/it/servo/limits.rs::saturation_*
 
 use super::{ActiveSet, FEASIBLE, Level, Precision, STILL, Use, Working};
+use crate::linalg::norm;
 
 impl ActiveSet {
     /// The largest scale of a level along its target with the least motion: rows that a motion of
     /// full scale would leave are clamped one by one while the others can perform the task. `None`
-    /// if no scale above zero was found; otherwise the scale, the row that stops it with the sign of
-    /// its bound, and the point.
+    /// if no scale above zero was found; otherwise the scale, and the row that stops it with the sign
+    /// of its bound. The point is then [`ActiveSet::point`].
     ///
     /// Of the largest scales that exist it finds those near the unbounded motion: greater ones use
     /// self-motions that later bounds no longer permit.
@@ -47,6 +48,7 @@ impl ActiveSet {
             level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.gradient);
             self.normal.iter_mut().zip(&self.gradient).for_each(|(p, g)| *p += g);
             level.svd.apply_gains_into(&level.target, &level.gains, &mut self.direction);
+            let size = norm(&self.direction);
             let (mut least, mut most) = (0.0_f64, (1.0, None));
             let mut worst: Option<(f64, usize, f64)> = None;
             for i in (0..self.inequalities.len()).filter(|&i| self.uses[i] == Use::Free) {
@@ -57,8 +59,9 @@ impl ActiveSet {
                 if excess > worst.map_or(0.0, |w| w.0) {
                     worst = Some((excess, i, sign));
                 }
-                if b.abs() <= STILL * self.inequalities.length(i) {
-                    if self.inequalities.excess(i, a).0 > FEASIBLE {
+                if b.abs() <= STILL * self.inequalities.length(i) * size {
+                    let bound = self.inequalities.bound(i, self.inequalities.excess(i, a).1);
+                    if self.inequalities.excess(i, a).0 > FEASIBLE * (1.0 + bound.abs()) {
                         least = f64::INFINITY;
                     }
                     continue;
@@ -86,7 +89,7 @@ impl ActiveSet {
     }
 
     /// The least point with the working rows at their bounds, into `normal`.
-    pub(super) fn load_clamped(&mut self) {
+    fn load_clamped(&mut self) {
         let w = self.working.len();
         for k in 0..w {
             let Working { row, sign } = self.working[k];

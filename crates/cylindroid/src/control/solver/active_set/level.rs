@@ -36,9 +36,7 @@ impl Level {
             gains: vec![0.0; m.min(n)],
         }
     }
-}
 
-impl Level {
     /// `residual = b - A y`
     pub(super) fn load_residual(&mut self, y: &[f64]) {
         self.residual.copy_from_slice(&self.target);
@@ -49,7 +47,7 @@ impl Level {
         }
     }
 
-    /// |A y - b| at the point of the last step.
+    /// |A y - b|
     pub(in crate::control) fn residual(&mut self, y: &[f64]) -> f64 {
         self.load_residual(y);
         norm(&self.residual)

@@ -19,7 +19,10 @@ impl ActiveSet {
         let most = ROUNDS * (self.y.len() + self.inequalities.len()) + 10;
         let mut standing = 0;
         for _ in 0..most {
-            self.rounds += 1;
+            #[cfg(test)]
+            {
+                self.rounds += 1;
+            }
             self.load_direction(&mut objective, precision);
             let blocked = self.advance();
             let Some((share, row, sign)) = blocked else {

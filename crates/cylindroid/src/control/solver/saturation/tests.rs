@@ -14,7 +14,7 @@ fn next(state: &mut u64) -> f64 {
 fn bent_rates_are_the_bounded_damped_solution() {
     let mut state = 7;
     let method = Method::Truncated { eps: 1e-9 };
-    let mut bent = 0;
+    let mut changed = 0;
     for round in 0..2000 {
         let (m, n) = [(6, 7), (6, 6), (3, 7), (2, 3), (6, 4), (3, 2)][round % 6];
         let j = Matrix::from_fn(m, n, |_, _| next(&mut state));
@@ -43,7 +43,7 @@ fn bent_rates_are_the_bounded_damped_solution() {
             assert!(norm(&off) < 1e-7 * (1.0 + norm(&goal)), "round {round}: {off:?}");
             continue;
         }
-        bent += 1;
+        changed += 1;
         let mut pulls = j.transpose().mul_vec(&rest);
         pulls.iter_mut().zip(&rates).for_each(|(p, r)| *p -= saturator.damping * r);
         for ((rate, bound), pull) in rates.iter().zip(&bounds).zip(pulls) {
@@ -55,5 +55,5 @@ fn bent_rates_are_the_bounded_damped_solution() {
             assert!(!down || pull >= -1e-7, "round {round}: {pull} down");
         }
     }
-    assert!(bent > 300, "{bent}");
+    assert!(changed > 300, "{changed}");
 }

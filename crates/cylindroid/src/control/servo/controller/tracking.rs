@@ -1,0 +1,102 @@
+//! Steps from the actuated joints alone: the passive ones are tracked from step to step.
+//!
+//! Formula  predicted: the closed configuration of the last step, moved by its velocities; measured
+//!          values for the actuated coordinates; then Newton's method on the loop equations
+//!          (`coupled.rs`)
+//! Valid    while the actuated joints determine the passive ones: the assembly mode is the one of
+//!          the last step. Near a type II singularity, where two meet, the servo stops
+//! Checked  tests/it/servo/measured.rs
+
+use super::super::step::{Step, Target};
+use super::Servo;
+use crate::error::{Error, Result};
+
+impl Servo {
+    /// One step from the positions of the actuated coordinates alone, in ascending order of their
+    /// indices ([`Mechanism::actuated`](crate::model::Mechanism::actuated)) [rad or m]: parallel
+    /// robots measure no others. The passive coordinates follow from the loops, near those of the
+    /// last step; before the first one, from [`Servo::start_from`] or the home configuration.
+    ///
+    /// ```
+    /// use cylindroid::{Servo, ServoOptions, Vec3};
+    ///
+    /// let stewart = cylindroid::load("stewart")?;
+    /// let mut servo = Servo::new(&stewart, ServoOptions::new(&stewart))?;
+    /// let mut legs: Vec<f64> = stewart.actuated().map(|i| stewart.home()[i]).collect();
+    /// let mut target = stewart.state(stewart.home())?.pose(stewart.reference());
+    /// target.translation = target.translation + Vec3::Z * 0.02;
+    /// for _ in 0..1000 {
+    ///     servo.step_actuated(&legs, target)?;
+    ///     let dt = servo.options().dt;
+    ///     for (leg, i) in legs.iter_mut().zip(stewart.actuated()) {
+    ///         *leg += servo.joint_velocities()[i] * dt;
+    ///     }
+    /// }
+    /// let here = stewart.state(servo.configuration())?.pose(stewart.reference());
+    /// assert!((here.translation - target.translation).norm() < 1e-3);
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The wrong number of positions or non-finite ones; loops that cannot be closed with them near
+    /// the last configuration. The servo is unchanged.
+    #[doc(alias = "encoders")]
+    pub fn step_actuated(&mut self, actuated: &[f64], target: impl Into<Target>) -> Result<Step> {
+        let expected = self.mechanism.actuated().count();
+        Error::check_len("actuated positions", expected, actuated.len())?;
+        Error::check_finite("actuated positions", actuated)?;
+        if let Some(joint) = self.mechanism.loops().iter().find(|l| l.actuated) {
+            return Err(Error::Model {
+                model: self.mechanism.name().to_owned(),
+                culprit: joint.name.clone(),
+                message: format!(
+                    "loop joint '{}' is actuated and has no coordinate to be measured; cut the loop \
+                     at a passive joint",
+                    joint.name
+                ),
+            });
+        }
+        // Moved by the velocities of the last step.
+        let mut q = std::mem::take(&mut self.predicted);
+        q.copy_from_slice(&self.configuration);
+        self.mechanism.integrate_in_place(&mut q, self.joint_velocities(), self.options.dt);
+        for (i, x) in self.mechanism.actuated().zip(actuated) {
+            q[i] = *x;
+        }
+        self.track(true);
+        let done = self.step(&q, target);
+        self.track(false);
+        self.predicted = q;
+        done
+    }
+
+    fn track(&mut self, is_tracked: bool) {
+        if let Some(coupled) = &mut self.coupled {
+            coupled.is_tracked = is_tracked;
+        }
+    }
+
+    /// The configuration from which [`Servo::step_actuated`] tracks the passive joints next; it
+    /// selects the assembly mode.
+    ///
+    /// # Errors
+    /// A `q` of the wrong size or non-finite; loops that are open.
+    pub fn start_from(&mut self, q: &[f64]) -> Result<()> {
+        self.mechanism.check_q("q", q)?;
+        self.load_configuration(q)?;
+        self.reset();
+        self.note_configuration(q);
+        Ok(())
+    }
+
+    /// Stores the configuration of this step: the measured one, its loops closed.
+    pub(super) fn note_configuration(&mut self, q: &[f64]) {
+        self.configuration.copy_from_slice(self.coupled.as_ref().map_or(q, |c| c.q()));
+    }
+
+    /// The configuration of the last step: the measured one, its loops closed.
+    #[must_use]
+    pub fn configuration(&self) -> &[f64] {
+        &self.configuration
+    }
+}
