@@ -20,10 +20,6 @@ pub(crate) struct MeshFile {
 }
 
 impl MeshFile {
-    fn of_points(vertices: Vec<Vec3>) -> Self {
-        Self { vertices, triangles: None }
-    }
-
     /// Three vertices for each triangle.
     fn of_triangles(vertices: Vec<Vec3>) -> Self {
         let count = vertices.len() / 3;
@@ -42,9 +38,8 @@ pub(crate) fn read(path: &Path) -> Result<MeshFile, String> {
         Some("stl") => stl(&bytes),
         Some("obj") => obj(&String::from_utf8_lossy(&bytes)),
         #[cfg(feature = "formats")]
-        Some("dae") => {
-            super::collada::vertices(&String::from_utf8_lossy(&bytes)).map(MeshFile::of_points)
-        }
+        Some("dae") => super::collada::vertices(&String::from_utf8_lossy(&bytes))
+            .map(|vertices| MeshFile { vertices, triangles: None }),
         _ => Err("its format is not STL, OBJ or Collada".to_owned()),
     };
     let found = found.map_err(|reason| format!("{}: {reason}", path.display()))?;
