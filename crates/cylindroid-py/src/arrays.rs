@@ -143,6 +143,15 @@ impl Numbers<'_> {
         }
     }
 
+    /// Poses from a stack of 4 x 4 matrices.
+    pub(crate) fn poses(&self, name: &'static str) -> Result<Vec<Pose>> {
+        let [_, 4, 4] = *self.shape() else {
+            return Err(Failure::option(name, self.shape_text(), "poses are an array (N, 4, 4)"));
+        };
+        let matrices = self.values().as_chunks::<4>().0.as_chunks::<4>().0;
+        matrices.iter().map(|rows| Ok(Pose::from_matrix(*rows)?)).collect()
+    }
+
     /// A pose from a 4 x 4 matrix.
     pub(crate) fn pose(&self, name: &'static str) -> Result<Pose> {
         match (self.shape(), self.values().as_chunks().0) {

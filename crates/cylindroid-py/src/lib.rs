@@ -67,7 +67,7 @@ mod _core {
     #[pymodule_export]
     use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism};
     #[pymodule_export]
-    use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw};
+    use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw, PyWaypointMove};
     #[pymodule_export]
     use crate::parameter_tables::{inverse_methods, secondary_tasks};
     #[pymodule_export]

@@ -209,6 +209,20 @@ def test_paths_and_moves():
     assert outcome.reached and outcome.time >= move.duration - 1e-3
     off = max(line.deviation(T)[0] for T in outcome.trajectory.pose)
     assert off < 1e-5
+    way = np.array([start, end, end, end])
+    way[2, :3, 3] += [0, 0, 0.1]
+    way[3, :3, 3] += [0.1, 0, 0.1]
+    through = cy.WaypointMove(way, speed=0.1)
+    outcome = cy.Servo(r).simulate(r.home, through, record=True)
+    assert outcome.reached and outcome.time >= through.duration - 1e-3
+    off = [np.linalg.norm(outcome.trajectory.pose[:, :3, 3] - T[:3, 3], axis=1).min() for T in way]
+    assert max(off) <= through.largest_deviation + 1e-4
+    timed = cy.WaypointMove(way, times=[0, 3, 5, 7])
+    assert abs(timed.duration - 7) < 1e-12 and timed.at(3.0)[1].shape == (6,)
+    with pytest.raises(cy.InvalidOptionError, match="5 s to 5.01 s"):
+        cy.WaypointMove(way, times=[0, 3, 5, 5.01])
+    with pytest.raises(cy.InvalidOptionError, match="poses"):
+        cy.WaypointMove(way[0])
     turn = cy.CartesianPath.rotation(start, start[:3, 3] + [0, 0, 0.1], [1, 0, 0], np.pi)
     assert abs(turn.length - 0.1 * np.pi) < 1e-12 and abs(turn.radius - 0.1) < 1e-12
     circle = cy.CartesianPath.circle(start, start[:3, 3] + [0.1, 0.1, 0], end)
@@ -345,3 +359,28 @@ def test_a_servo_in_use_by_another_thread_is_an_error():
     thread.join()
     assert refused > 0
     assert servo.status is not None
+
+
+def test_a_twist_is_followed_until_the_commands_cease():
+    r = cy.load("panda")
+    c = cy.Servo(r, dt=0.002, command_timeout=0.02)
+    q, twist = r.home, np.array([0.0, 0.05, -0.1, 0.0, 0.0, 0.2])
+    assert c.achieved_twist is None and not c.timed_out
+    for _ in range(200):
+        c.step_twist(q, twist)
+        q = c.advance(q)
+    assert c.status == "following" and c.stall is None
+    np.testing.assert_allclose(c.achieved_twist, twist, atol=1e-9)
+    for step in range(200):
+        rates = c.step_twist(q)
+        assert c.timed_out == (step >= 10)
+        q = c.advance(q)
+    assert c.status == "at-rest" and not rates.any()
+    with pytest.raises(cy.NotFiniteError, match="twist"):
+        c.step_twist(q, twist * np.nan)
+    # Pushed outwards, it stalls and says why.
+    c, up = cy.Servo(r, dt=0.002), np.array([0, 0, 0.3, 0, 0, 0])
+    for _ in range(5000):
+        c.step_twist(q, up)
+        q = c.advance(q)
+    assert c.status == "stalled" and c.stall.name in ("singular", "limits")

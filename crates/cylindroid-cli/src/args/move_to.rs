@@ -17,8 +17,8 @@ Cartesian control: move a frame to a target and report whether and how it was re
 A servo with period dt controls an ideal robot: joint velocities = J+ (gain * error + \
 feed-forward), within the limits of all joints, until both errors are within tolerance, the error \
 no longer falls, or the time limit is reached. Without an orientation only the position is \
-controlled, and vice versa. With --line or --via the target moves along a path, with --joint-to \
-every joint moves straight to its goal. If the servo stalls on its way to a pose that another \
+controlled, and vice versa. With --line, --via or --waypoints the target moves along a path, with --joint-to \
+every joint moves straight to its goal, with --twist the tool follows a twist. If the servo stalls on its way to a pose that another \
 configuration within all limits reaches, the robot reconfigures: every joint moves straight to \
 that configuration instead (--no-reconfigure keeps the motion of the servo).
 
@@ -45,6 +45,7 @@ Examples:
   cylindroid move docs/cell.toml --to 0.4,0,0.4 --avoid --obstacle ball=sphere:0.1@0.4,0.1,0.3
   cylindroid move docs/cell.toml --task hand_tcp=0.4,0.1,0.5 --avoid --gap 0.005
   cylindroid move panda --tasks docs/tasks.toml
+  cylindroid move panda --twist 0,0,-0.1,0,0,0 --duration 2
 
 A file of tasks has a table [[task]] for each, with `type` and its keys: frame (frame, xyz, rpy, \
 tool, components, axes), relative_frame (frame, reference, xyz, rpy, tool, components), \
@@ -185,7 +186,23 @@ pub(crate) struct PathArgs {
     #[arg(conflicts_with_all = ["to", "orientation", "line", "via", "task", "task_axes"])]
     pub(crate) joint_to: Option<Joints>,
 
-    /// Time law of --line, --via and --joint-to
+    /// Move through the poses of a file without stopping, from the start to the last one: rows
+    /// `x,y,z` or `x,y,z,qw,qx,qy,qz` [m], with a time [s] before them if they have one
+    #[arg(long, value_name = "FILE.csv")]
+    #[arg(conflicts_with_all = ["to", "orientation", "line", "via", "joint_to"])]
+    pub(crate) waypoints: Option<PathBuf>,
+
+    /// Follow this twist of the tool [m/s, rad/s] for --duration, in the axes of --task-axes, then
+    /// stop
+    #[arg(long, value_name = "VX,VY,VZ,WX,WY,WZ", allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["to", "orientation", "line", "via", "joint_to", "waypoints"])]
+    pub(crate) twist: Option<Numbers<6>>,
+
+    /// Time for which --twist is commanded [s] [default: 1]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, requires = "twist")]
+    pub(crate) duration: Option<f64>,
+
+    /// Time law of --line, --via and --joint-to; --waypoints takes the trapezoidal one
     #[arg(long, value_name = "LAW", default_value = "trapezoidal")]
     pub(crate) law: LawName,
 

@@ -62,7 +62,7 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
             "--task: ik takes the components of one frame; several frames are tasks of move"
         );
     }
-    let (task, what) = task(&args.target, &robot)?;
+    let (task, what) = task(&args.target, None, &robot)?;
     let from = robot.state(&start)?.pose(end_effector);
     let target = target_pose(&args.target, from, args.configuration.degrees, "")?;
     let options = IkOptions {

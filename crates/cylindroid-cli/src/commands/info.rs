@@ -217,6 +217,12 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
         (true, true) => info.reference.frame.to_owned(),
         (true, false) => format!("{} (on {})", info.reference.frame, info.reference.link),
     };
+    let unlimited = |c: &CoordinateJson<'_>| c.acceleration.is_infinite();
+    let accelerations = match info.report.format {
+        _ if info.n == 0 || !info.coordinates.iter().all(unlimited) => "",
+        "catalogue" => "no limits published; --limits and --acceleration give them",
+        _ => "no limits in the model; --limits and --acceleration give them",
+    };
     let count = |n: usize| if n == 0 { String::new() } else { n.to_string() };
     output::pairs(
         out,
@@ -230,6 +236,7 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
             ("tool frame", format!("{} ({})", info.tool, info.tool_choice)),
             ("named frames", named.join(", ")),
             ("reach [m]", output::number(info.reach)),
+            ("accelerations", accelerations.to_owned()),
             ("formulas for ik", info.inverse_kinematics.structure.clone().unwrap_or_default()),
             ("format", info.report.format.to_owned()),
             ("source", info.report.source.to_owned()),

@@ -8,11 +8,15 @@ use cylindroid::{Error, Pose, ReferenceFrame, Result, Rotation, Vec3};
 use crate::args::{TargetArgs, TaskAxes};
 use crate::output::number;
 
-/// The task, and what is controlled in words.
-pub(super) fn task(args: &TargetArgs, robot: &Mechanism) -> Result<(Task, String)> {
-    let position = args.to.is_some();
-    let orientation =
-        args.rpy.is_some() || args.quaternion.is_some() || args.rotation_vector.is_some();
+/// The task, and what is controlled in words. Waypoints say whether they give positions and
+/// orientations.
+pub(super) fn task(
+    args: &TargetArgs,
+    waypoints: Option<[bool; 2]>,
+    robot: &Mechanism,
+) -> Result<(Task, String)> {
+    let of_pose = args.rpy.is_some() || args.quaternion.is_some() || args.rotation_vector.is_some();
+    let [position, orientation] = waypoints.unwrap_or([args.to.is_some(), of_pose]);
     let components = args.components()?;
     let named = match (components, position, orientation) {
         (Some(task), ..) => task,

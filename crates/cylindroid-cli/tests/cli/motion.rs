@@ -218,3 +218,80 @@ fn the_pitch_is_asked_for_with_advice() {
     let text = refused(&["--inverse", "oblique", "--give-up", "1,2"]);
     assert!(text.contains("six numbers"), "{text}");
 }
+
+#[test]
+fn a_twist_is_followed_for_a_time() {
+    let twist = ["move", "panda", "--twist", "0,0.05,-0.1,0,0,0.2", "--duration", "1.5"];
+    let report = json(&twist, 0);
+    assert_eq!((&report["reached"], &report["reason"]), (&true.into(), &"reached".into()));
+    assert!(report["explanation"].as_str().unwrap().contains("followed the twist"));
+    // The joints accelerate within their limits: it is late by a little.
+    assert!(report["position_error"].as_f64().unwrap() < 5e-3);
+    assert!(report["time"].as_f64().unwrap() >= 1.5);
+    assert!(text(&twist).contains("twist followed"));
+    let along_the_tool = json(&[&twist[..], &["--task-axes", "local"]].concat(), 0);
+    assert!(along_the_tool["position_error"].as_f64().unwrap() < 5e-3);
+    let out = ["move", "panda", "--twist", "0,0,0.3,0,0,0", "--duration", "20"];
+    let report = json(&out, 1);
+    assert!(["singular", "limits"].contains(&report["reason"].as_str().unwrap()), "{report}");
+    for (more, expected) in
+        [(&["--duration", "0"][..], "--duration"), (&["--to", "0.4,0,0.4"], "cannot be used with")]
+    {
+        let output = cylindroid(&[&twist[..4], more].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(expected), "{output:?}");
+    }
+}
+
+#[test]
+fn limits_of_a_file_bound_the_joints() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("slow.toml");
+    let slow: String = (1..=3).map(|i| format!("[panda_joint{i}]\nvelocity = 0.05\n")).collect();
+    std::fs::write(&file, slow + "[panda_joint4]\nupper = -1.0").unwrap();
+    let file = file.to_str().unwrap();
+    let info = json(&["info", "panda", "--limits", file], 0);
+    assert_eq!(info["coordinates"][1]["velocity"], 0.05);
+    assert_eq!(info["coordinates"][3]["upper"], -1.0);
+    let to = ["--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"];
+    let slow = json(&[&["move", "panda", "--limits", file], &to[..]].concat(), 0);
+    let fast = json(&[&["move", "panda"], &to[..]].concat(), 0);
+    assert!(slow["time"].as_f64().unwrap() > 2.0 * fast["time"].as_f64().unwrap());
+    assert!(numbers(&slow["q"])[3] <= -1.0);
+    std::fs::write(file, "[panda_joint9]\nvelocity = 1").unwrap();
+    let output = cylindroid(&["ik", "panda", "--to", "0.4,0,0.4", "--limits", file]);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(error.contains("1:2") && error.contains("panda_joint1"), "{error}");
+}
+
+#[test]
+fn waypoints_are_passed_without_stopping() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("way.csv");
+    let write = |text: &str| std::fs::write(&file, text).unwrap();
+    let command = ["move", "panda", "--waypoints", file.to_str().unwrap()];
+    write("x,y,z\n0.45,0.0,0.55\n0.45,0.15,0.55\n0.45,0.15,0.4\n");
+    let report = json(&command, 0);
+    assert_eq!(
+        (&report["reached"], &report["task"]),
+        (&true.into(), &serde_json::json!(["x", "y", "z"]))
+    );
+    let end = numbers(&report["pose"]["position"]);
+    assert!(difference(&end, &[0.45, 0.15, 0.4]) < 1e-6);
+    assert!(report["law_duration"].as_f64().unwrap() < 4.0);
+    write("2,0.45,0.0,0.55,0,1,0,0\n4,0.45,0.15,0.55,0,1,0,0.1\n");
+    let report = json(&command, 0);
+    assert_eq!(report["task"].as_array().unwrap().len(), 6);
+    assert!((report["law_duration"].as_f64().unwrap() - 4.0).abs() < 1e-9);
+    for (text, more, expected) in [
+        ("0.45,0,0.55\n0.4,0.1", &[][..], "numbers; rows have 3"),
+        ("0.1,0.45,0.2,0.55", &[], "too short for the accelerations"),
+        ("", &[], "no rows"),
+        ("0.45,0,0.55", &["--law", "jerk-limited"], "--law"),
+    ] {
+        write(text);
+        let output = cylindroid(&[&command[..], more].concat());
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && error.contains(expected), "{error}");
+    }
+}

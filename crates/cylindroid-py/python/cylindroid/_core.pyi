@@ -88,6 +88,7 @@ __all__ = [
     "TransmittedWrench",
     "Transversals",
     "TruncatedDirection",
+    "WaypointMove",
     "__version__",
     "adjoint",
     "bracket",
@@ -198,6 +199,22 @@ class CartesianMove:
     def duration(self) -> float: ...
     @property
     def path(self) -> CartesianPath: ...
+    def at(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
+    def target(self, t: float, dt: float) -> tuple[_Array, _Array]: ...
+
+@final
+class WaypointMove:
+    def __new__(
+        cls,
+        poses: ArrayLike,
+        times: ArrayLike | None = None,
+        speed: float | tuple[float, float] | ArrayLike | None = None,
+        acceleration: float | tuple[float, float] | ArrayLike | None = None,
+    ) -> WaypointMove: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def largest_deviation(self) -> float: ...
     def at(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
     def target(self, t: float, dt: float) -> tuple[_Array, _Array]: ...
 
@@ -1316,6 +1333,7 @@ class Servo:
         tolerance_orientation: float | None = None,
         speed: float | tuple[float, float] | ArrayLike | None = None,
         acceleration: float | None = None,
+        command_timeout: float | None = None,
         limits: dict[str, dict[str, float]] | None = None,
         length: float | None = None,
         joint_weights: ArrayLike | str | None = None,
@@ -1373,6 +1391,10 @@ class Servo:
     @property
     def status(self) -> str | None: ...
     @property
+    def achieved_twist(self) -> _Array | None: ...
+    @property
+    def timed_out(self) -> bool: ...
+    @property
     def pose(self) -> _Array: ...
     def step(
         self,
@@ -1381,12 +1403,13 @@ class Servo:
         secondary: ArrayLike | None = None,
         feed_forward: ArrayLike | None = None,
     ) -> _Array: ...
+    def step_twist(self, q: ArrayLike, twist: ArrayLike | None = None) -> _Array: ...
     def advance(self, q: ArrayLike) -> _Array: ...
     def reset(self) -> None: ...
     def simulate(
         self,
         q: ArrayLike,
-        target: ArrayLike | CartesianMove,
+        target: ArrayLike | CartesianMove | WaypointMove,
         duration: float = 60.0,
         record: bool = False,
     ) -> MotionResult: ...

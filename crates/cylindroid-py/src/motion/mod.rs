@@ -4,6 +4,7 @@ mod cartesian_move;
 mod joint_move;
 mod path;
 mod time_law;
+mod waypoints;
 
 use cylindroid::Error;
 use cylindroid::control::KinematicBounds;
@@ -16,6 +17,7 @@ pub(crate) use cartesian_move::PyCartesianMove;
 pub(crate) use joint_move::PyJointMove;
 pub(crate) use path::PyCartesianPath;
 pub(crate) use time_law::PyTimeLaw;
+pub(crate) use waypoints::PyWaypointMove;
 
 /// Default speed and acceleration of a path, the same as those of the command line.
 const SPEED: (f64, f64) = (0.25, 1.0);

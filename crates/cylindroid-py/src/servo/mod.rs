@@ -8,7 +8,7 @@ mod trajectory;
 
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-use cylindroid::control::{InverseSelection, Step, Target};
+use cylindroid::control::{InverseSelection, Step, Target, TwistStep};
 use cylindroid::{Error, Servo, ServoOptions, Twist};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -49,6 +49,8 @@ pub(crate) use trajectory::PyTrajectory;
 ///     Speed limits of the tool [m/s, rad/s]. Default: those of the joints.
 /// acceleration : float, optional
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
+/// command_timeout : float, optional
+///     Time for which a twist of `step_twist` holds without a new command (s). Default: 0.1.
 /// limits : dict of str to dict of str to float, optional
 ///     Limits of joints in place of those of the model, see `Mechanism.with_limits`.
 /// length : float, optional
@@ -92,8 +94,14 @@ pub(crate) use trajectory::PyTrajectory;
 /// ----------
 /// status : str or None
 ///     'moving', 'reached' or 'stalled' after the last step, None before the first.
+///     In velocity mode (`step_twist`): 'following', 'stalled', 'braking' or 'at-rest'.
 /// stall : Stall or None
 ///     The reason of a stall in the last step.
+/// achieved_twist : ndarray, (6,), or None
+///     In velocity mode, the twist of the joint velocities in the components of the task, linear
+///     first, world axes, at the tool [m/s, rad/s].
+/// timed_out : bool
+///     True in velocity mode if the last command is older than `command_timeout`.
 /// position_error, orientation_error : float
 ///     Before the last step, in the components of the task (m, rad).
 /// singular_ratio : float
@@ -153,6 +161,8 @@ struct Running {
     servo: Servo,
     /// The result of the last step.
     last: Option<Step>,
+    /// The same in velocity mode.
+    twist: Option<TwistStep>,
 }
 
 /// Weights of joint velocities: numbers, or 'inertia'.
@@ -186,7 +196,7 @@ impl PyServo {
     #[new]
     #[pyo3(signature = (mechanism, frame = None, gain = None, *, tool = None, dt = None,
         tolerance_position = None, tolerance_orientation = None, speed = None,
-        acceleration = None, limits = None, length = None, joint_weights = None, secondary = None,
+        acceleration = None, command_timeout = None, limits = None, length = None, joint_weights = None, secondary = None,
         posture = None, null_space = "exact", task = None, task_axes = None,
         inverse = "truncated", give_up = None, fallback = None, tasks = None, collisions = None,
         **parameters))]
@@ -203,6 +213,7 @@ impl PyServo {
         #[pyo3(from_py_with = argument)] tolerance_orientation: Option<f64>,
         speed: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] acceleration: Option<f64>,
+        #[pyo3(from_py_with = argument)] command_timeout: Option<f64>,
         limits: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] length: Option<f64>,
         #[pyo3(from_py_with = argument)] joint_weights: Option<JointWeights<'_>>,
@@ -231,6 +242,7 @@ impl PyServo {
                 ("tolerance_position", tolerance_position.is_some()),
                 ("tolerance_orientation", tolerance_orientation.is_some()),
                 ("speed", speed.is_some()),
+                ("command_timeout", command_timeout.is_some()),
                 ("secondary", secondary.is_some()),
                 ("posture", posture.is_some()),
                 ("null_space", null_space != "exact"),
@@ -279,6 +291,7 @@ impl PyServo {
         set(&mut options.tolerance.position, tolerance_position);
         set(&mut options.tolerance.orientation, tolerance_orientation);
         set(&mut options.acceleration, acceleration);
+        set(&mut options.command_timeout, command_timeout);
         set(&mut options.length, length);
         match &joint_weights {
             None => {}
@@ -303,7 +316,7 @@ impl PyServo {
         let posture = mechanism.or_home("posture", posture.as_ref())?;
         options.secondary = options::secondary(secondary.as_ref(), posture, robot, &options)?;
         let servo = Servo::new(robot, options)?;
-        let new = Self { running: Mutex::new(Running { servo, last: None }) };
+        let new = Self { running: Mutex::new(Running { servo, last: None, twist: None }) };
         Ok(Bound::new(py, new)?.into_any())
     }
 
@@ -357,6 +370,44 @@ impl PyServo {
             }
         };
         running.last = Some(running.servo.step_with(q.vector("q")?, target, desired)?);
+        running.twist = None;
+        Ok(arrays::vector(py, running.servo.joint_velocities()))
+    }
+
+    /// One step of velocity mode: the tool follows a twist within all limits, without a target.
+    ///
+    /// Without a new command the last one holds for `command_timeout`, then the joints brake: a lost
+    /// connection stops the arm. `status` is 'following', 'stalled' (`stall` gives the reason),
+    /// 'braking' or 'at-rest'.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,)
+    ///     The measured configuration [rad or m].
+    /// twist : array_like, (6,), optional
+    ///     The command that arrived since the last step, linear first, world axes, at the tool [m/s,
+    ///     rad/s]. None: no command arrived.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (n,)
+    ///     Joint velocities [rad/s or m/s].
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     The state of the servo is unchanged.
+    #[pyo3(signature = (q, twist = None))]
+    fn step_twist<'py>(
+        &self,
+        py: Python<'py>,
+        q: Numbers<'py>,
+        twist: Option<Numbers<'py>>,
+    ) -> Result<Array<'py>> {
+        let twist = twist.as_ref().map(|twist| twist.twist("twist")).transpose()?;
+        let running = &mut *self.lock()?;
+        let step = running.servo.step_twist(q.vector("q")?, twist)?;
+        (running.last, running.twist) = (Some(step.step), Some(step));
         Ok(arrays::vector(py, running.servo.joint_velocities()))
     }
 
@@ -389,7 +440,7 @@ impl PyServo {
     fn reset(&self) -> Result<()> {
         let running = &mut *self.lock()?;
         running.servo.reset();
-        running.last = None;
+        (running.last, running.twist) = (None, None);
         Ok(())
     }
 }

@@ -7,12 +7,13 @@ use pyo3::prelude::*;
 use super::{PyMotionResult, PyServo, PyTrajectory};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Result, argument, entry};
-use crate::motion::PyCartesianMove;
+use crate::motion::{PyCartesianMove, PyWaypointMove};
 
 /// The goal of a motion.
 enum Goal {
     Pose(Pose),
     Along(Box<cylindroid::control::CartesianMove>),
+    Waypoints(Box<cylindroid::control::WaypointMove>),
 }
 
 #[pymethods]
@@ -23,7 +24,7 @@ impl PyServo {
     /// ----------
     /// q : array_like, (n,)
     ///     The initial configuration [rad or m].
-    /// target : array_like, (4, 4), or CartesianMove
+    /// target : array_like, (4, 4), or CartesianMove or WaypointMove
     ///     The pose `world_from_tool` (m), or a moving target.
     /// duration : float
     ///     Time limit (s).
@@ -49,7 +50,10 @@ impl PyServo {
         Error::check_positive("duration", duration)?;
         let goal = match target.extract::<PyRef<'_, PyCartesianMove>>() {
             Ok(motion) => Goal::Along(Box::new(motion.inner)),
-            Err(_) => Goal::Pose(entry::<Numbers<'_>>("target", &target)?.pose("target")?),
+            Err(_) => match target.extract::<PyRef<'_, PyWaypointMove>>() {
+                Ok(motion) => Goal::Waypoints(Box::new(motion.inner.clone())),
+                Err(_) => Goal::Pose(entry::<Numbers<'_>>("target", &target)?.pose("target")?),
+            },
         };
         let q = q.vector("q")?;
         let running = &mut *self.lock()?;
@@ -66,10 +70,11 @@ impl PyServo {
             let aim = |time: f64| match &goal {
                 Goal::Pose(pose) => (Target::from(*pose), true),
                 Goal::Along(motion) => (motion.target(time, dt), time >= motion.law().duration()),
+                Goal::Waypoints(motion) => (motion.target(time, dt), time >= motion.duration()),
             };
             simulate(servo, q, duration, aim, observe)
         })?;
-        running.last = Some(outcome.last);
+        (running.last, running.twist) = (Some(outcome.last), None);
         let trajectory = trajectory.map(|t| Py::new(py, t)).transpose()?;
         let mechanism = running.servo.mechanism().clone();
         Ok(PyMotionResult { outcome, trajectory, mechanism })

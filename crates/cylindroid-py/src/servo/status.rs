@@ -1,6 +1,6 @@
 //! Attributes of a servo after a step.
 
-use cylindroid::control::Status;
+use cylindroid::control::{Status, TwistStatus};
 use pyo3::prelude::*;
 
 use super::{PyServo, PyStall, Running};
@@ -11,14 +11,30 @@ use crate::error::Result;
 impl PyServo {
     #[getter]
     fn status(&self) -> Result<Option<&'static str>> {
-        Ok(self.lock()?.last.map(|s| s.status.name()))
+        let Running { last, twist, .. } = &*self.lock()?;
+        let name = || last.map(|s| s.status.name());
+        Ok(twist.map(|t| t.status.name()).or_else(name))
     }
 
     #[getter]
     fn stall(&self) -> Result<Option<PyStall>> {
-        let Running { servo, last } = &*self.lock()?;
-        let stalled = last.is_some_and(|s| s.status == Status::Stalled);
+        let Running { servo, last, twist } = &*self.lock()?;
+        let stalled = match twist {
+            Some(twist) => twist.status == TwistStatus::Stalled,
+            None => last.is_some_and(|s| s.status == Status::Stalled),
+        };
         Ok(stalled.then(|| PyStall::new(&servo.stall(), servo.mechanism())))
+    }
+
+    #[getter]
+    fn achieved_twist<'py>(&self, py: Python<'py>) -> Result<Option<Array<'py>>> {
+        let twist = self.lock()?.twist;
+        Ok(twist.map(|t| arrays::vector(py, &t.achieved.to_array())))
+    }
+
+    #[getter]
+    fn timed_out(&self) -> Result<bool> {
+        Ok(self.lock()?.twist.is_some_and(|t| t.timed_out))
     }
 
     #[getter]
@@ -93,7 +109,7 @@ impl PyServo {
     }
 
     fn __repr__(&self) -> Result<String> {
-        let Running { servo, last } = &*self.lock()?;
+        let Running { servo, last, twist } = &*self.lock()?;
         let options = servo.options();
         let mut text = format!(
             "<Servo of '{}', frame '{}', inverse {}, dt {} s",
@@ -105,8 +121,9 @@ impl PyServo {
             },
             options.dt
         );
-        if let Some(step) = last {
-            text.push_str(&format!(", {}", step.status.name()));
+        let name = || last.map(|s| s.status.name());
+        if let Some(status) = twist.map(|t| t.status.name()).or_else(name) {
+            text.push_str(&format!(", {status}"));
         }
         text.push('>');
         Ok(text)

@@ -28,12 +28,14 @@ pub use laws::{
 pub use motion::{
     AxisRotation, CartesianBounds, CartesianMove, CartesianPath, CartesianSample, JointDefaults,
     JointMove, JointPath, JointSample, KinematicBounds, LawSample, MotionResult, PathDeviation,
-    Reconfiguration, TimeLaw, TrajectorySample, find_reachable_configuration, simulate,
+    Reconfiguration, TimeLaw, TrajectorySample, WaypointMove, find_reachable_configuration,
+    simulate,
 };
 pub use servo::{
     ConditionReport, InverseChoice, InverseSelection, JointState, NamedInverse, PoseTolerance,
     ReferencePointComparison, SecondaryNullSpace, SecondaryTask, Servo, ServoGains, ServoOptions,
-    SpeedLimit, Stall, Status, Step, Target, TaskProjection, VelocitiesAtPoint,
+    SpeedLimit, Stall, Status, Step, Target, TaskProjection, TwistStatus, TwistStep,
+    VelocitiesAtPoint,
 };
 pub use solver::{LimitKind, Saturation, VelocityBounds};
 pub use tasks::{

@@ -5,3 +5,4 @@
 mod laws;
 mod moves;
 mod paths;
+mod waypoints;

@@ -2,7 +2,7 @@
 
 use cylindroid::control::{
     CartesianMove, CartesianPath, JointDefaults, JointMove, SecondaryNullSpace, SecondaryTask,
-    ServoGains,
+    ServoGains, WaypointMove,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
@@ -10,6 +10,8 @@ use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
 use super::super::target::{target_pose, task};
 use super::bounds::{check_jerks, joint_defaults, path_bounds};
 use super::inverse;
+use super::twist_goal::TwistGoal;
+use super::waypoints::Waypoints;
 use crate::args::{MoveArgs, NullSpaceName, PathArgs, ServoArgs};
 use crate::commands::shared::{
     all_actuated, configuration, end_effector, limited, load, within_limits,
@@ -43,8 +45,12 @@ pub(super) enum Goal {
     Pose(Pose),
     /// Along a path.
     Along(Box<CartesianMove>),
+    /// Through waypoints.
+    Waypoints(Box<WaypointMove>),
     /// There is none: the joints move.
     Joints(Box<JointMove>),
+    /// There is none: the tool follows a twist.
+    Twist(TwistGoal),
 }
 
 impl Job {
@@ -63,7 +69,9 @@ impl Job {
 
         let mut options = ServoOptions::new(&robot);
         options.end_effector = end_effector(&robot, &args.frame)?;
-        let (task, controlled) = task(&args.target, &robot)?;
+        let waypoints = args.path.waypoints.as_deref().map(Waypoints::read).transpose()?;
+        let given = waypoints.as_ref().map(|w| [true, w.orientations]);
+        let (task, controlled) = task(&args.target, given, &robot)?;
         options.task = task;
         apply(&args.servo, &mut options)?;
         inverse::apply(&args.inverse, &start, &robot, &mut options)?;
@@ -81,8 +89,20 @@ impl Job {
             within_limits(&robot, "--joint-to", &q)?;
             let motion = Box::new(JointMove::within_limits(&robot, &start, &q, &defaults)?);
             (pose(&q)?, Goal::Joints(motion), "all joints, straight".to_owned())
+        } else if let Some(waypoints) = waypoints {
+            options.speed = ServoOptions::new(&robot).speed;
+            let motion = waypoints.motion(from, path_bounds(args), &args.path)?;
+            let to = motion.at(f64::INFINITY).0;
+            (to, Goal::Waypoints(Box::new(motion)), controlled)
+        } else if let Some(twist) = TwistGoal::of(&args.path)? {
+            (twist.end(from, options.task.axes), Goal::Twist(twist), controlled)
         } else {
-            let to = target_pose(&args.target, from, degrees, ", or with --joint-to q")?;
+            let to = target_pose(
+                &args.target,
+                from,
+                degrees,
+                ", or with --joint-to q, --waypoints or --twist",
+            )?;
             let path = path(&args.path, from, to)?;
             let goal = match path {
                 None => Goal::Pose(to),

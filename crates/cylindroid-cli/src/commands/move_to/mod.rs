@@ -7,6 +7,9 @@ mod joints;
 mod report;
 pub(crate) mod sentences;
 mod tasks;
+mod twist;
+mod twist_goal;
+mod waypoints;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -101,7 +104,12 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
             let target = |t| (motion.target(t, dt), t >= motion.law().duration());
             simulate(&mut servo, &job.start, job.time_limit, target, &mut observe)?
         }
+        Goal::Waypoints(motion) => {
+            let target = |t| (motion.target(t, dt), t >= motion.duration());
+            simulate(&mut servo, &job.start, job.time_limit, target, &mut observe)?
+        }
         Goal::Joints(motion) => joints::simulate(&mut servo, job, motion, &mut observe)?,
+        Goal::Twist(goal) => twist::simulate(&mut servo, job, goal, &mut observe)?,
     };
     drop(progress);
     let direct = |way| Ok(Result { outcome: outcome.clone(), deviation, closure_error, way });
@@ -136,7 +144,9 @@ fn other_configuration(
     servo: &Servo,
     outcome: &MotionResult,
 ) -> cylindroid::Result<Option<Vec<f64>>> {
-    let stalled = outcome.stall.is_some() && outcome.last.status == Status::Stalled;
+    let stalled = outcome.stall.is_some()
+        && outcome.last.status == Status::Stalled
+        && !matches!(job.goal, Goal::Twist(_));
     // A proof that there is none, and the choice of an inverse by the user, are final.
     let final_word = matches!(outcome.stall, Some(Stall::OutOfReach { .. } | Stall::NoInverse(_)));
     if !stalled || final_word {

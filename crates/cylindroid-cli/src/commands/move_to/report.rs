@@ -209,8 +209,10 @@ fn actuated_joints(job: &Job) -> Vec<&str> {
     tree.chain(loop_closure).collect()
 }
 
-fn result_word(outcome: &MotionResult, way: &Way) -> &'static str {
+fn result_word(job: &Job, outcome: &MotionResult, way: &Way) -> &'static str {
     match (outcome.reached, way) {
+        (true, _) if matches!(job.goal, Goal::Twist(_)) => "twist followed",
+        (false, _) if matches!(job.goal, Goal::Twist(_)) => "twist not followed",
         (true, Way::Reconfigured { .. }) => "reached, after reconfiguration",
         (true, _) => "reached",
         (false, _) => "not reached",
@@ -219,9 +221,10 @@ fn result_word(outcome: &MotionResult, way: &Way) -> &'static str {
 
 fn law_duration(job: &Job) -> Option<f64> {
     match &job.goal {
-        Goal::Pose(_) => None,
+        Goal::Pose(_) | Goal::Twist(_) => None,
         Goal::Along(motion) => Some(motion.law().duration()),
         Goal::Joints(motion) => Some(motion.law().duration()),
+        Goal::Waypoints(motion) => Some(motion.duration()),
     }
 }
 
@@ -247,7 +250,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
                 "by",
                 if job.robot.is_closed() { actuated_joints(job).join(", ") } else { String::new() },
             ),
-            ("result", result_word(outcome, way).to_owned()),
+            ("result", result_word(job, outcome, way).to_owned()),
             (
                 "reason",
                 match way {

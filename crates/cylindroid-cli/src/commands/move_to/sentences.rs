@@ -4,7 +4,7 @@ use cylindroid::ReferenceFrame;
 use cylindroid::control::{MotionResult, Stall, Task};
 use cylindroid::model::Mechanism;
 
-use super::job::Job;
+use super::job::{Goal, Job};
 use crate::output::number;
 
 /// The cause as one word: "reached", a [`Stall::name`], or "time-limit".
@@ -58,7 +58,11 @@ pub(super) fn explanation(
 ) -> String {
     let mut text = match &outcome.stall {
         _ if outcome.reached => {
-            return format!("The target was reached.{}", without_inverse(outcome));
+            let end = match &job.goal {
+                Goal::Twist(_) => "The tool followed the twist, then stopped.",
+                _ => "The target was reached.",
+            };
+            return format!("{end}{}", without_inverse(outcome));
         }
         None => format!(
             "The time limit of {} s ran out before the target was reached; allow more with \

@@ -18,6 +18,7 @@
 pub(super) mod condition;
 mod stages;
 mod tracking;
+mod velocity_mode;
 
 use super::coupled::Coupled;
 use super::inertia_weights::InertiaWeights;
@@ -28,6 +29,7 @@ use super::secondary::SecondaryTask;
 use super::stall::{Stall, StallDetector, StallInputs, classify};
 use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
+use super::twist_step::TwistFollower;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::saturation::{Saturation, Saturator};
 use crate::error::{Error, Result};
@@ -96,6 +98,7 @@ pub struct Servo {
     at_limit: Vec<usize>,
     stall_detector: StallDetector,
     position_stall: StallDetector,
+    twist_follower: TwistFollower,
     last_target: Option<Pose>,
     distance: f64,
 }
@@ -210,6 +213,7 @@ impl Servo {
             at_limit: Vec::with_capacity(n),
             stall_detector: StallDetector::new(),
             position_stall: StallDetector::new(),
+            twist_follower: TwistFollower::new(m),
             last_target: None,
             distance: 0.0,
             chain,
@@ -409,7 +413,7 @@ impl Servo {
             let (share, direction) = (motion.share, motion.direction.clone());
             return Stall::TypeII { share, direction };
         }
-        classify(&StallInputs {
+        self.twist_stall(classify(&StallInputs {
             svd: &self.svd,
             gains: &self.gains,
             error: &self.error,
@@ -419,7 +423,7 @@ impl Servo {
             distance: self.distance,
             length: self.length + self.offset_of_free_position(),
             generic_rank: self.generic_rank,
-        })
+        }))
     }
 
     /// The reason why the requested projection was not used in the last step, but its fallback, or
@@ -453,6 +457,7 @@ impl Servo {
         self.rates.fill(0.0);
         self.stall_detector = StallDetector::new();
         self.last_target = None;
+        self.twist_follower.reset();
         self.approaches_type_ii = false;
     }
 
@@ -486,15 +491,5 @@ impl Servo {
             self.mechanism.check_q("secondary joint velocities", secondary_velocities)?;
         }
         target.check()
-    }
-
-    fn singular_ratio(&self) -> f64 {
-        let largest = self.svd.value(0);
-        if largest == 0.0 { 0.0 } else { self.svd.value(self.svd.len() - 1) / largest }
-    }
-
-    /// Distances prove nothing unless the task constrains the whole position.
-    fn offset_of_free_position(&self) -> f64 {
-        if self.options.task.components[..3] == [true; 3] { 0.0 } else { f64::INFINITY }
     }
 }

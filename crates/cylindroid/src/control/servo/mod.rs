@@ -20,6 +20,7 @@ mod secondary;
 mod stall;
 mod step;
 mod task_space;
+mod twist_step;
 
 pub(super) use limits::stopping_velocity;
 pub(super) use secondary::add_posture;
@@ -36,3 +37,4 @@ pub use reference_point::{ReferencePointComparison, VelocitiesAtPoint};
 pub use secondary::SecondaryTask;
 pub use stall::Stall;
 pub use step::{Status, Step, Target};
+pub use twist_step::{TwistStatus, TwistStep};

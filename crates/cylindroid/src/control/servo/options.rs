@@ -84,6 +84,9 @@ pub struct ServoOptions {
     pub speed: SpeedLimit,
     /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
     pub acceleration: f64,
+    /// Time for which a twist of [`Servo::step_twist`](super::controller::Servo::step_twist) holds
+    /// without a new command (s); infinite for no watchdog.
+    pub command_timeout: f64,
     /// Secondary tasks: their joint velocities are added and projected onto the null space.
     pub secondary: Vec<SecondaryTask>,
     /// The null space available to the secondary tasks.
@@ -93,7 +96,7 @@ pub struct ServoOptions {
 impl ServoOptions {
     /// The defaults for a mechanism: its tool, or the reference of a closed chain; complete poses
     /// (x, y and rz in the plane); 1 kHz; gains of 5/s; the truncated inverse; the characteristic
-    /// length of the mechanism.
+    /// length of the mechanism; twists that hold for 0.1 s.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
         let closed = mechanism.is_closed();
@@ -117,6 +120,7 @@ impl ServoOptions {
             inertia_weights: false,
             speed: SpeedLimit { linear: f64::INFINITY, angular: f64::INFINITY },
             acceleration: f64::INFINITY,
+            command_timeout: 0.1,
             secondary: Vec::new(),
             null_space: SecondaryNullSpace::Exact,
         }
@@ -199,6 +203,7 @@ impl ServoOptions {
             ("angular speed", self.speed.angular),
             ("acceleration", self.acceleration),
             ("largest projection", self.largest_projection),
+            ("command timeout", self.command_timeout),
         ] {
             if value.is_nan() || value <= 0.0 {
                 return Err(Error::InvalidOption {

@@ -17,6 +17,7 @@ mod stall;
 mod steps;
 mod task_reports;
 mod tasks;
+mod twist;
 
 pub(crate) use cylindroid::control::{
     JointDefaults, JointMove, JointSample, JointState, KinematicBounds, LimitKind, MotionResult,

@@ -75,6 +75,8 @@ fn refuse_foreign(args: &MoveArgs) -> anyhow::Result<()> {
         ("--line", path.line),
         ("--via", path.via.is_some()),
         ("--joint-to", path.joint_to.is_some()),
+        ("--waypoints", path.waypoints.is_some()),
+        ("--twist", path.twist.is_some()),
         ("--law", path.law != LawName::Trapezoidal),
         ("--jerk-linear", path.jerk_linear.is_some()),
         ("--jerk-angular", path.jerk_angular.is_some()),
@@ -130,7 +132,7 @@ fn tasks(args: &MoveArgs, robot: &Mechanism, start: &[f64]) -> anyhow::Result<Ve
         || target.rotation_vector.is_some();
     if is_given || (frames.is_empty() && args.tasks.tasks.is_none()) {
         let end_effector = end_effector(robot, &args.frame)?;
-        let (components, _) = task(target, robot)?;
+        let (components, _) = task(target, None, robot)?;
         let from = state.pose(end_effector);
         let other = ", with --task FRAME=X,Y,Z or with --tasks FILE.toml";
         let pose = target_pose(target, from, degrees, other)?;

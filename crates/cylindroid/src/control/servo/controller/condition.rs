@@ -176,4 +176,15 @@ impl Servo {
         }
         Some(rates)
     }
+
+    /// Ratio of the smallest to the largest singular value.
+    pub(super) fn singular_ratio(&self) -> f64 {
+        let largest = self.svd.value(0);
+        if largest == 0.0 { 0.0 } else { self.svd.value(self.svd.len() - 1) / largest }
+    }
+
+    /// Distances prove nothing unless the task constrains the whole position.
+    pub(super) fn offset_of_free_position(&self) -> f64 {
+        if self.options.task.components[..3] == [true; 3] { 0.0 } else { f64::INFINITY }
+    }
 }

@@ -25,6 +25,7 @@ impl Servo {
     /// Computes the error and the commanded twist, both scaled, and the joint velocities that
     /// realise it.
     pub(super) fn load_task(&mut self, desired: &DesiredMotion) {
+        self.twist_follower.is_stalled = false;
         self.space.scale(desired.error, &mut self.error);
         self.projected_error.copy_from_slice(&self.error);
         self.step_projection.apply(&mut self.projected_error);

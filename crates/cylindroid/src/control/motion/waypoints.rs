@@ -1,0 +1,315 @@
+//! Moves through waypoints: lines of constant twist, joined by blends of constant acceleration.
+//!
+//! Formula  the page of [`WaypointMove`]
+//! Units    m, rad, s
+//! Valid    two poses or more, from rest to rest. The corners of the path are rounded: a waypoint is
+//!          passed at a distance of T |v1 - v0| / 8, T the duration of its blend. Angular accelerations
+//!          are within their bound where |w0 x w1| is at most that bound
+//! Fails    on non-finite input, times that do not increase, times that are too short for the bounds,
+//!          named with the least one
+//! Why so   a robot need not stop at a waypoint, and the lines between them stay straight; splines
+//!          pass through the waypoints exactly, but swing between them
+//! Source   Craig 2005, section 7.3 (linear function with parabolic blends); Siciliano et al. 2009,
+//!          section 4.2.2
+//! Checked  tests/motion/waypoints.rs
+
+use super::cartesian_move::CartesianBounds;
+use super::path::CartesianPath;
+use crate::control::servo::Target;
+use crate::error::{Error, Result};
+use crate::spatial::{Pose, Rotation, Twist, Vec3};
+use crate::tolerance::{ORIENTATION, POSITION};
+
+/// Largest number of rounds in which segments are lengthened until their blends fit.
+const ROUNDS: usize = 200;
+
+/// A frame moving through waypoints without stopping, from rest to rest.
+///
+/// ```text
+/// between waypoints  p' = v_i,  R' = w_i x R,   v_i = (p_i+1 - p_i) / D_i
+/// blend at i         p = p_i - v_i-1 (T - u)^2 / 2 T + v_i u^2 / 2 T,   0 <= u <= T
+///                    R = exp(w_i u^2 / 2 T) exp(-w_i-1 (T - u)^2 / 2 T) R_i
+/// ```
+///
+/// D_i are the durations of the segments, T those of the blends, in which velocities change with
+/// constant acceleration. Units: m, rad, s.
+///
+/// ```
+/// use cylindroid::control::{CartesianBounds, KinematicBounds, WaypointMove};
+/// use cylindroid::{Pose, Vec3};
+///
+/// let corner = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y].map(Pose::from_translation);
+/// let bounds = CartesianBounds {
+///     linear: KinematicBounds { velocity: 0.5, acceleration: 1.0, jerk: f64::INFINITY },
+///     angular: KinematicBounds { velocity: 1.0, acceleration: 4.0, jerk: f64::INFINITY },
+/// };
+/// let motion = WaypointMove::new(&corner, bounds)?;
+/// assert!((motion.duration() - 4.5).abs() < 1e-12); // 2 m at 0.5 m/s, and the ends
+/// let most = motion.largest_deviation();
+/// assert!((most - 0.5_f64.sqrt() * 0.5_f64.sqrt() / 8.0).abs() < 1e-12); // T |v1 - v0| / 8
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// Source: Craig 2005, section 7.3; Siciliano et al. 2009, section 4.2.2.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WaypointMove {
+    knots: Vec<Knot>,
+    duration: f64,
+}
+
+/// A waypoint with its blend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Knot {
+    pose: Pose,
+    /// Time at which the lines meet, the middle of the blend (s).
+    time: f64,
+    /// Duration of the blend (s).
+    blend: f64,
+    /// Twists before and after, world axes, at the moving origin.
+    before: Twist,
+    after: Twist,
+}
+
+impl WaypointMove {
+    /// Through poses with at most the speeds and accelerations of `bounds`; segments are slowed down
+    /// where their blends would not fit. Poses that repeat the one before are left out. The jerk is not bounded: those of `bounds` must be infinite.
+    ///
+    /// # Errors
+    /// Fewer than two poses, non-finite poses, bounds that are not positive, a finite jerk.
+    pub fn new(poses: &[Pose], bounds: CartesianBounds) -> Result<Self> {
+        check(poses, bounds)?;
+        let poses = &without_repetitions(poses)?[..];
+        let ways = ways(poses)?;
+        let mut durations: Vec<f64> = ways
+            .iter()
+            .map(|way| {
+                let linear = way.linear.norm() / bounds.linear.velocity;
+                linear.max(way.angular.norm() / bounds.angular.velocity)
+            })
+            .collect();
+        // A segment holds half of each blend at its ends, and all of those from and to rest.
+        for _ in 0..ROUNDS {
+            let blends = blends(&ways, &durations, bounds);
+            let mut fits = true;
+            for (i, duration) in durations.iter_mut().enumerate() {
+                let needed = 0.5 * (blends[i] + blends[i + 1]);
+                if needed > *duration * (1.0 + 1e-12) {
+                    // Blends shrink while the segment grows: the geometric mean of both.
+                    *duration = (needed * *duration).sqrt().max(*duration * 1.001);
+                    fits = false;
+                }
+            }
+            if fits {
+                let start = 0.5 * blends[0];
+                return Ok(Self::assemble(poses, &ways, &durations, &blends, start));
+            }
+        }
+        Err(Error::InvalidOption {
+            option: "waypoints",
+            value: format!("{} poses", poses.len()),
+            reason: "their blends do not fit between them; leave out waypoints that are close \
+                     together, or permit more acceleration"
+                .to_owned(),
+        })
+    }
+
+    /// Through poses at given times (s): it starts at rest at the first time, passes the others in
+    /// the middle of their blends, and ends at rest at the last. Speeds follow from the times; those
+    /// of `bounds` are not used.
+    ///
+    /// # Errors
+    /// As [`WaypointMove::new`]; times that do not increase, or too short for the accelerations: the
+    /// segment is named.
+    pub fn timed(poses: &[Pose], times: &[f64], bounds: CartesianBounds) -> Result<Self> {
+        check(poses, bounds)?;
+        Error::check_len("times of the waypoints", poses.len(), times.len())?;
+        Error::check_finite("times of the waypoints", times)?;
+        let refuse = |i: usize, reason: String| {
+            let value = format!("{} s to {} s", times[i], times[i + 1]);
+            Err(Error::InvalidOption { option: "times of the waypoints", value, reason })
+        };
+        if let Some(i) = (1..times.len()).position(|i| times[i] <= times[i - 1]) {
+            return refuse(i, "they must increase".to_owned());
+        }
+        let ways = ways(poses)?;
+        let mut durations: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
+        let last = ways.len() - 1;
+        // The blends from and to rest take time of their segments: T (D - T / 2) = |way| / a, or
+        // T (D - T) if one segment has both.
+        let too_short = |i: usize| {
+            refuse(i, "it is too short for the accelerations; allow more time".to_owned())
+        };
+        let shares = if last == 0 { 1.0 } else { 0.5 };
+        let rest = |i: usize| {
+            let (linear, angular) = sizes(ways[i], bounds);
+            let root = durations[i] * durations[i] - 4.0 * shares * linear.max(angular);
+            (root >= 0.0).then(|| (durations[i] - root.sqrt()) / (2.0 * shares))
+        };
+        let Some(first) = rest(0) else { return too_short(0) };
+        let Some(end) = rest(last) else { return too_short(last) };
+        durations[0] -= 0.5 * first;
+        durations[last] -= 0.5 * end;
+        let mut blends = blends(&ways, &durations, bounds);
+        blends[0] = first;
+        blends[last + 1] = end;
+        for (i, duration) in durations.iter().enumerate() {
+            if 0.5 * (blends[i] + blends[i + 1]) > duration * (1.0 + 1e-9) {
+                return too_short(i);
+            }
+        }
+        Ok(Self::assemble(poses, &ways, &durations, &blends, 0.5 * first))
+    }
+
+    fn assemble(
+        poses: &[Pose],
+        ways: &[Twist],
+        durations: &[f64],
+        blends: &[f64],
+        start: f64,
+    ) -> Self {
+        let twist = |i: usize| {
+            let moves = durations[i] > 0.0;
+            if moves { ways[i] * (1.0 / durations[i]) } else { Twist::ZERO }
+        };
+        let mut time = start;
+        let mut knots = Vec::with_capacity(poses.len());
+        for (i, pose) in poses.iter().enumerate() {
+            knots.push(Knot {
+                pose: *pose,
+                time,
+                blend: blends[i],
+                before: if i > 0 { twist(i - 1) } else { Twist::ZERO },
+                after: if i < ways.len() { twist(i) } else { Twist::ZERO },
+            });
+            time += durations.get(i).unwrap_or(&0.0);
+        }
+        let duration = time + 0.5 * blends[ways.len()];
+        Self { knots, duration }
+    }
+
+    /// Time from rest to rest (s).
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The largest distance at which a waypoint is passed (m).
+    #[must_use]
+    pub fn largest_deviation(&self) -> f64 {
+        let inner = self.knots.get(1..self.knots.len() - 1).unwrap_or_default();
+        let of = |k: &Knot| 0.125 * k.blend * (k.after - k.before).linear.norm();
+        inner.iter().map(of).fold(0.0, f64::max)
+    }
+
+    /// Pose and twist (world axes, at the moving origin) at time `t` (s); at rest at the start before
+    /// 0 and at the end after the duration.
+    #[must_use]
+    pub fn at(&self, t: f64) -> (Pose, Twist) {
+        let ends = (&self.knots[0], &self.knots[self.knots.len() - 1]);
+        if t.is_nan() || t <= 0.0 {
+            return (ends.0.pose, Twist::ZERO);
+        }
+        if t >= self.duration {
+            return (ends.1.pose, Twist::ZERO);
+        }
+        // The knot whose line or blend is at t: the last that has begun.
+        let begun = self.knots.partition_point(|k| k.time - 0.5 * k.blend <= t);
+        let knot = &self.knots[begun.max(1) - 1];
+        let u = t - (knot.time - 0.5 * knot.blend);
+        if u >= knot.blend {
+            let since = t - knot.time;
+            return (moved(knot.pose, knot.after * since), knot.after);
+        }
+        let (share, whole) = (u / knot.blend, knot.blend);
+        let out = knot.after * (0.5 * u * share);
+        let left = (whole - u) * (1.0 - share);
+        let rest = moved(knot.pose, knot.before * (-0.5 * left));
+        let turn = Rotation::exp(out.angular);
+        let pose =
+            Pose { translation: rest.translation + out.linear, rotation: turn * rest.rotation };
+        let twist = Twist {
+            linear: knot.before.linear * (1.0 - share) + knot.after.linear * share,
+            angular: (turn * knot.before.angular) * (1.0 - share) + knot.after.angular * share,
+        };
+        (pose, twist)
+    }
+
+    /// The target of a servo of period `dt` (s) at time `t` (s): the present pose, and the constant
+    /// twist that leads to the pose of the next step.
+    #[must_use]
+    pub fn target(&self, t: f64, dt: f64) -> Target {
+        let (pose, _) = self.at(t);
+        Target { pose, feed_forward: pose.error_to(self.at(t + dt).0) * (1.0 / dt) }
+    }
+}
+
+/// A pose moved by a way in world axes, position and orientation each for itself.
+fn moved(pose: Pose, way: Twist) -> Pose {
+    Pose {
+        translation: pose.translation + way.linear,
+        rotation: Rotation::exp(way.angular) * pose.rotation,
+    }
+}
+
+/// The poses without those that repeat the one before; at least the first and one more.
+fn without_repetitions(poses: &[Pose]) -> Result<Vec<Pose>> {
+    let mut kept = vec![poses[0]];
+    for (pose, way) in poses[1..].iter().zip(ways(poses)?) {
+        if way.linear.norm() > POSITION || way.angular.norm() > ORIENTATION {
+            kept.push(*pose);
+        }
+    }
+    if kept.len() == 1 {
+        kept.push(poses[poses.len() - 1]);
+    }
+    Ok(kept)
+}
+
+/// Displacement and rotation vector of every segment, world axes.
+fn ways(poses: &[Pose]) -> Result<Vec<Twist>> {
+    let way = |pair: &[Pose]| Ok(CartesianPath::line(pair[0], pair[1])?.derivative(0.0));
+    poses.windows(2).map(way).collect()
+}
+
+/// |way| / a of both parts (s^2).
+fn sizes(way: Twist, bounds: CartesianBounds) -> (f64, f64) {
+    let Twist { linear, angular } = way;
+    let over = |part: Vec3, a: f64| part.norm() / a;
+    (over(linear, bounds.linear.acceleration), over(angular, bounds.angular.acceleration))
+}
+
+/// The durations of the blends in which no acceleration is exceeded (s).
+fn blends(ways: &[Twist], durations: &[f64], bounds: CartesianBounds) -> Vec<f64> {
+    let twist = |i: usize| match (ways.get(i), durations.get(i)) {
+        (Some(way), Some(d)) if *d > 0.0 => *way * (1.0 / d),
+        _ => Twist::ZERO,
+    };
+    (0..=ways.len())
+        .map(|i| {
+            let before = if i > 0 { twist(i - 1) } else { Twist::ZERO };
+            let (linear, angular) = sizes(twist(i) - before, bounds);
+            // The axis of the first rotation turns along: at most 3/4 |w0 x w1| more.
+            let turning = 0.75 * before.angular.cross(twist(i).angular).norm();
+            let a = bounds.angular.acceleration;
+            let angular = angular * a / (a - turning).max(0.25 * a);
+            linear.max(angular)
+        })
+        .collect()
+}
+
+fn check(poses: &[Pose], bounds: CartesianBounds) -> Result<()> {
+    bounds.linear.check("the linear part")?;
+    bounds.angular.check("the angular part")?;
+    let refuse = |value: String, reason: &str| {
+        let reason = reason.to_owned();
+        Err(Error::InvalidOption { option: "waypoints", value, reason })
+    };
+    if bounds.linear.jerk.is_finite() || bounds.angular.jerk.is_finite() {
+        let jerk = bounds.linear.jerk.min(bounds.angular.jerk);
+        return refuse(format!("jerk {jerk}"), "blends have no bounded jerk; leave it infinite");
+    }
+    if poses.len() < 2 {
+        return refuse(format!("{} poses", poses.len()), "a move needs a start and an end");
+    }
+    Ok(())
+}

@@ -1,0 +1,154 @@
+//! Velocity mode: twists that are followed, the watchdog, verdicts at limits and edges.
+
+use cylindroid::Twist;
+use cylindroid::control::{TwistStatus, TwistStep};
+
+use super::*;
+
+const DT: f64 = 2e-3;
+
+fn linear(v: Vec3) -> Twist {
+    Twist { linear: v, angular: Vec3::ZERO }
+}
+
+/// Follows a twist that is commanded in every step for `seconds`; the last step.
+fn follow(servo: &mut Servo, q: &mut [f64], twist: Twist, seconds: f64) -> TwistStep {
+    let mut last = None;
+    for _ in 0..(seconds / DT) as usize {
+        last = Some(servo.step_twist(q, Some(twist)).unwrap());
+        servo.advance(q);
+    }
+    last.unwrap()
+}
+
+#[test]
+fn a_twist_is_followed_in_world_axes() {
+    for name in ["panda", "ur5e", "iiwa14"] {
+        let robot = catalogue::load(name).unwrap();
+        for axes in [ReferenceFrame::LocalWorldAligned, ReferenceFrame::Local] {
+            let mut servo = servo(&robot, |o| {
+                o.dt = DT;
+                o.task.axes = axes;
+            });
+            let mut q = robot.home().to_vec();
+            q.iter_mut().enumerate().for_each(|(i, x)| *x += 0.1 + 0.02 * i as f64);
+            let start = robot.state(&q).unwrap().pose(robot.tool());
+            let twist =
+                Twist { linear: Vec3::new(0.02, -0.03, 0.05), angular: Vec3::new(0.1, 0.05, -0.1) };
+            let now = follow(&mut servo, &mut q, twist, 0.5);
+            assert_eq!(
+                (now.status, now.timed_out, now.desired),
+                (TwistStatus::Following, false, twist)
+            );
+            for (a, b) in now.achieved.to_array().iter().zip(twist.to_array()) {
+                assert!((a - b).abs() < 1e-9, "{name}: {a} instead of {b}");
+            }
+            let end = robot.state(&q).unwrap().pose(robot.tool());
+            let moved = end.translation - start.translation - twist.linear * 0.5;
+            assert!(moved.norm() < 2e-3, "{name}: {moved:?}");
+        }
+    }
+}
+
+/// A command holds for the timeout; then the joints brake within their acceleration limits.
+#[test]
+fn the_watchdog_stops_the_arm() {
+    let panda = catalogue::load("panda").unwrap();
+    let mut servo = servo(&panda, |o| {
+        (o.dt, o.command_timeout) = (DT, 0.05);
+        o.secondary = vec![SecondaryTask::LimitAvoidance { gain: 0.5, margin: 0.2 }];
+    });
+    let mut q = panda.home().to_vec();
+    let down = linear(-Vec3::Z * 0.2);
+    assert_eq!(servo.step_twist(&q, None).unwrap().status, TwistStatus::AtRest);
+    assert_eq!(follow(&mut servo, &mut q, down, 0.5).status, TwistStatus::Following);
+    let held = (0.05 / DT) as usize;
+    let (mut held_for, mut before) = (0, servo.joint_velocities().to_vec());
+    let mut last = TwistStatus::Following;
+    for _ in 0..200 {
+        let now = servo.step_twist(&q, None).unwrap();
+        held_for += usize::from(!now.timed_out);
+        assert_eq!(now.desired, if now.timed_out { Twist::ZERO } else { down });
+        for ((rate, before), c) in
+            servo.joint_velocities().iter().zip(&before).zip(panda.coordinates())
+        {
+            assert!((rate - before).abs() <= c.limits.acceleration * DT * (1.0 + 1e-9));
+        }
+        before.copy_from_slice(servo.joint_velocities());
+        servo.advance(&mut q);
+        last = now.status;
+    }
+    assert!(held_for == held || held_for + 1 == held, "{held_for}");
+    assert_eq!(last, TwistStatus::AtRest);
+    assert!(servo.joint_velocities().iter().all(|rate| *rate == 0.0));
+    // It goes on with the next command, and a reset forgets it.
+    assert_eq!(follow(&mut servo, &mut q, down, 0.1).status, TwistStatus::Following);
+    servo.reset();
+    assert_eq!(servo.step_twist(&q, None).unwrap().desired, Twist::ZERO);
+}
+
+#[test]
+fn pushed_outwards_it_stalls_and_says_why() {
+    // At the edge of the workspace: the arm is stretched.
+    let ur5e = catalogue::load("ur5e").unwrap();
+    for acceleration in [f64::INFINITY, 40.0] {
+        let mut servo = servo(&ur5e, |o| (o.dt, o.acceleration) = (DT, acceleration));
+        let mut q = vec![0.0, -1.0, 1.2, -0.4, 1.3, 0.2];
+        let out =
+            linear(ur5e.state(&q).unwrap().pose(ur5e.tool()).translation.unit(1e-9).unwrap() * 0.2);
+        let now = follow(&mut servo, &mut q, out, 8.0);
+        assert_eq!(now.status, TwistStatus::Stalled, "{acceleration}: {now:?}");
+        assert!(matches!(servo.stall(), Stall::Singular { .. }), "{:?}", servo.stall());
+        // The way back is open.
+        let back = linear(out.linear * -1.0);
+        let now = follow(&mut servo, &mut q, back, 0.1);
+        assert_ne!(now.status, TwistStatus::Stalled, "{acceleration}");
+    }
+    // At a position limit.
+    let lever = planar(1);
+    let mut servo = servo(&lever, |o| (o.dt, o.task) = (DT, Task::POSITION));
+    let mut q = vec![2.9];
+    let spin = |q: &[f64]| linear(Vec3::new(-q[0].sin(), q[0].cos(), 0.0) * 0.3);
+    let mut now = None;
+    for _ in 0..1000 {
+        now = Some(servo.step_twist(&q, Some(spin(&q))).unwrap());
+        servo.advance(&mut q);
+    }
+    assert!(q[0] <= 3.0 && now.unwrap().status == TwistStatus::Stalled, "{q:?} {now:?}");
+    assert_eq!(servo.stall(), Stall::Limits { coordinates: vec![0] });
+    let robot = planar(2);
+    // A direction that no joint can move.
+    let mut q = vec![0.3, 0.9];
+    let mut servo = self::servo(&robot, |o| (o.dt, o.task) = (DT, Task::POSE));
+    let now = follow(&mut servo, &mut q, linear(Vec3::Z), 2.0);
+    assert_eq!((now.status, q), (TwistStatus::Stalled, vec![0.3, 0.9]));
+    assert!(matches!(servo.stall(), Stall::TooFewJoints { .. }), "{:?}", servo.stall());
+}
+
+#[test]
+fn closed_chains_follow_twists_too() {
+    let five_bar = catalogue::load("five-bar").unwrap();
+    let mut servo = servo(&five_bar, |o| {
+        o.dt = DT;
+        o.task = Task::named("x,y", &five_bar).unwrap();
+    });
+    let mut q = five_bar.home().to_vec();
+    let twist = linear(Vec3::new(0.05, 0.1, 0.0));
+    let now = follow(&mut servo, &mut q, twist, 0.4);
+    assert_eq!(now.status, TwistStatus::Following);
+    assert!((now.achieved - twist).linear.norm() < 1e-6, "{:?}", now.achieved);
+}
+
+#[test]
+fn a_broken_twist_is_refused() {
+    let panda = catalogue::load("panda").unwrap();
+    let mut servo = servo(&panda, |_| {});
+    for twist in [linear(Vec3::X * f64::NAN), linear(Vec3::Y * f64::INFINITY)] {
+        let error = servo.step_twist(panda.home(), Some(twist)).unwrap_err().to_string();
+        assert!(error.contains("commanded twist"), "{error}");
+    }
+    assert!(servo.step_twist(&[0.0; 3], None).is_err());
+    let options = ServoOptions { command_timeout: 0.0, ..ServoOptions::new(&panda) };
+    let error = Servo::new(&panda, options).unwrap_err().to_string();
+    assert!(error.contains("command timeout"), "{error}");
+}
