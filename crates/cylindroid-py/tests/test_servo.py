@@ -379,8 +379,11 @@ def test_a_twist_is_followed_until_the_commands_cease():
     with pytest.raises(cy.NotFiniteError, match="twist"):
         c.step_twist(q, twist * np.nan)
     # Pushed outwards, it stalls and says why.
-    c, up = cy.Servo(r, dt=0.002), np.array([0, 0, 0.3, 0, 0, 0])
-    for _ in range(5000):
-        c.step_twist(q, up)
+    ur, out = cy.load("ur5e"), np.zeros(6)
+    q = np.array([0.0, -1.0, 1.2, -0.4, 1.3, 0.2])
+    out[:3] = 0.4 * ur.fk(q)[:3, 3]
+    c = cy.Servo(ur, dt=0.002)
+    for _ in range(4000):
+        c.step_twist(q, out)
         q = c.advance(q)
-    assert c.status == "stalled" and c.stall.name in ("singular", "limits")
+    assert c.status == "stalled" and c.stall.name == "singular"
