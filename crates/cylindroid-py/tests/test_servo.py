@@ -387,3 +387,35 @@ def test_a_twist_is_followed_until_the_commands_cease():
         c.step_twist(q, out)
         q = c.advance(q)
     assert c.status == "stalled" and c.stall.name == "singular"
+
+
+def test_parallel_robots_are_driven_from_their_actuated_joints():
+    stewart = cy.load("stewart")
+    legs = [i for i, name in enumerate(stewart.joint_names) if name.startswith("leg")]
+    servo = cy.Servo(stewart, dt=0.002, acceleration=5.0)
+    servo.start_from(stewart.home)
+    target = stewart.fk(stewart.home, servo.frame)
+    target[:3, 3] += [0.02, -0.01, 0.03]
+    measured = stewart.home[legs].copy()
+    noise = np.random.default_rng(0)
+    for _ in range(2000):
+        velocities = servo.step_actuated(measured + 1e-6 * noise.standard_normal(6), target)
+        measured += 0.002 * velocities[legs]
+    here = stewart.fk(servo.configuration, servo.frame)
+    assert np.linalg.norm(here[:3, 3] - target[:3, 3]) < 1e-4
+    with pytest.raises(cy.DimensionError, match="actuated"):
+        servo.step_actuated(measured[:3], target)
+    with pytest.raises(cy.InvalidOptionError, match="loops open by"):
+        servo.step_actuated(measured + [0.9, -0.9, 0.9, -0.9, 0.9, -0.9], target)
+
+
+def test_encoder_noise_does_not_stop_a_closed_chain():
+    five_bar = cy.load("five-bar")
+    servo = cy.Servo(five_bar, task="position", dt=0.002, acceleration=5.0, tolerance_position=1e-3)
+    goal = five_bar.fk(five_bar.home, servo.frame)
+    goal[0, 3] += 0.2
+    q, noise = five_bar.home.copy(), np.random.default_rng(0)
+    for _ in range(1500):
+        servo.step(q + 1e-4 * noise.standard_normal(five_bar.n), goal)
+        q = servo.advance(q)
+    assert np.linalg.norm(five_bar.fk(q, servo.frame)[:3, 3] - goal[:3, 3]) < 1e-3

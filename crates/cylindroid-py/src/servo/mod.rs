@@ -4,6 +4,7 @@ mod motion_result;
 mod simulate;
 mod stall;
 mod status;
+mod tracking;
 mod trajectory;
 
 use std::sync::{Mutex, MutexGuard, TryLockError};
@@ -353,13 +354,7 @@ impl PyServo {
         secondary: Option<Numbers<'py>>,
         feed_forward: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
-        let target = Target {
-            pose: target.pose("target")?,
-            feed_forward: match &feed_forward {
-                None => Twist::ZERO,
-                Some(twist) => twist.twist("feed_forward")?,
-            },
-        };
+        let target = moving_target(&target, feed_forward.as_ref())?;
         let running = &mut *self.lock()?;
         let desired = match &secondary {
             None => &[],
@@ -443,4 +438,18 @@ impl PyServo {
         (running.last, running.twist) = (None, None);
         Ok(())
     }
+}
+
+/// A target pose with the twist at which it moves.
+pub(super) fn moving_target(
+    pose: &Numbers<'_>,
+    feed_forward: Option<&Numbers<'_>>,
+) -> Result<Target> {
+    Ok(Target {
+        pose: pose.pose("target")?,
+        feed_forward: match feed_forward {
+            None => Twist::ZERO,
+            Some(twist) => twist.twist("feed_forward")?,
+        },
+    })
 }

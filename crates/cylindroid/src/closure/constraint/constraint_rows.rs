@@ -155,9 +155,35 @@ pub(crate) fn joints_with_rate(mechanism: &Mechanism) -> Vec<&LoopJoint> {
 pub(crate) fn constraint_rows(
     state: &State,
 ) -> Result<(Vec<ConstraintRow>, Vec<&LoopJoint>, LoopClosureError)> {
-    let mut rows = Vec::new();
-    let closure_error = ConstraintRows::of(state.mechanism())?.load(state, &mut rows);
-    Ok((rows, joints_with_rate(state.mechanism()), closure_error))
+    let mechanism = state.mechanism();
+    let (mut rows, mut rates) = (Vec::new(), 0);
+    for (place, constraints) in pair_constraints(mechanism).enumerate() {
+        constraints?.load(place, state, &mut rates, &mut rows);
+    }
+    let closure_error = closure_error(&rows);
+    Ok((rows, joints_with_rate(mechanism), closure_error))
+}
+
+fn closure_error(rows: &[ConstraintRow]) -> LoopClosureError {
+    let mut closure_error = LoopClosureError::default();
+    rows.iter().for_each(|row| closure_error.widen(row.unit, row.residual));
+    closure_error
+}
+
+impl PairConstraints {
+    /// Adds the rows of this pair, the one in `place`; `rates` counts the loop joints of one
+    /// coordinate.
+    fn load(&self, place: usize, state: &State, rates: &mut usize, rows: &mut Vec<ConstraintRow>) {
+        let [a, b] = self.ends;
+        let on = [state.link_pose(a) * self.frames[0], state.link_pose(b) * self.frames[1]];
+        let pair = KinematicPair::new(place, self.ends, on);
+        rows.extend(self.crossed.and_then(|[first, second]| pair.crossed(first, second)));
+        rows.extend(pair.rows(&self.wrenches));
+        if let Some(w) = self.measure {
+            rows.push(ConstraintRow { rate_of: Some(*rates), ..pair.row(w) });
+            *rates += 1;
+        }
+    }
 }
 
 /// The constraints of all loop joints and contacts of a mechanism, for rows at many configurations.
@@ -187,23 +213,9 @@ impl ConstraintRows {
         rows.clear();
         let mut rates = 0;
         for (place, constraints) in self.pairs.iter().enumerate() {
-            let [a, b] = constraints.ends;
-            let [on_a, on_b] = constraints.frames;
-            let on = [state.link_pose(a) * on_a, state.link_pose(b) * on_b];
-            let pair = KinematicPair::new(place, constraints.ends, on);
-            let crossed = constraints.crossed;
-            rows.extend(crossed.and_then(|[first, second]| pair.crossed(first, second)));
-            rows.extend(pair.rows(&constraints.wrenches));
-            if let Some(w) = constraints.measure {
-                rows.push(ConstraintRow { rate_of: Some(rates), ..pair.row(w) });
-                rates += 1;
-            }
+            constraints.load(place, state, &mut rates, rows);
         }
-        let mut closure_error = LoopClosureError::default();
-        for row in &*rows {
-            closure_error.widen(row.unit, row.residual);
-        }
-        closure_error
+        closure_error(rows)
     }
 }
 

@@ -12,7 +12,7 @@
 //!          says so elsewhere, where `actuation_map.rs` holds. No allocation
 //! Why so   the actuation map of regular configurations, at a tenth of the time
 //! Source   Wehage & Haug 1982; least norms: Golub & Van Loan, Matrix Computations, 4th ed., 5.5.6
-//! Checked  tests in this file, against `ActuationMap`
+//! Checked  tests in this file
 
 use crate::closure::constraint::constraint_rows::{
     ConstraintRow, ConstraintRows, for_each_rate, joints_with_rate, rate_unit,

@@ -25,7 +25,6 @@ use super::inertia_weights::InertiaWeights;
 use super::limits::BrakingMargin;
 use super::options::ServoOptions;
 use super::projection::{StepProjection, TaskFrame};
-use super::secondary::SecondaryTask;
 use super::stall::{Stall, StallDetector, StallInputs, classify};
 use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
@@ -82,7 +81,7 @@ pub struct Servo {
     saturator: Saturator,
     /// Velocities of the last step, scaled.
     last: Vec<f64>,
-    /// Derivatives of the Jacobian, where a secondary task needs them.
+    /// Derivatives of the Jacobian; trees only.
     hessian: Vec<Matrix>,
     /// Closed chains only.
     coupled: Option<Box<Coupled>>,
@@ -172,10 +171,9 @@ impl Servo {
                 ),
             });
         }
-        let hessian = if options.secondary.iter().any(SecondaryTask::needs_hessian) {
-            vec![Matrix::zeros(6, n); n]
-        } else {
-            Vec::new()
+        let hessian = match coupled {
+            Some(_) => Vec::new(),
+            None => vec![Matrix::zeros(6, n); n],
         };
         let mut servo = Self {
             length: chain.length_after_first_joint(mechanism),
@@ -324,6 +322,7 @@ impl Servo {
             &self.svd,
             TaskFrame { pose, axes, length },
         );
+        self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         self.load_task(&desired);
         for ((kept, gain), s) in self.kept.iter_mut().zip(&self.gains).zip(self.svd.values()) {
             *kept = is_kept(gain * s);
@@ -345,7 +344,6 @@ impl Servo {
         };
 
         self.note_configuration(q);
-        self.distance = (target.pose.translation - self.chain.first_origin()).norm();
         if self.last_target != Some(target.pose) {
             self.last_target = Some(target.pose);
             self.stall_detector = StallDetector::new();
@@ -359,7 +357,7 @@ impl Servo {
             position_error <= tolerance.position && orientation_error <= tolerance.orientation;
         // Out of reach it is enough that the position does not improve: the orientation may creep on
         // for minutes.
-        let out_of_reach = self.distance > self.length + self.offset_of_free_position();
+        let out_of_reach = self.is_out_of_reach();
         let dt = self.options.dt;
         let far = self.position_stall.stalled(position_error, braking, dt) && out_of_reach;
         let stalled = self.stall_detector.stalled(scaled, braking, dt) || far;

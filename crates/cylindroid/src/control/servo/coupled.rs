@@ -415,9 +415,9 @@ mod tests {
             let mut rates = solved(&task, panda.n());
             let last = vec![0.0; panda.n()];
 
-            let problem = Problem { j: &task, bounds: &bounds, last: &last, gain: 1.0, error: 1.0 };
+            let problem = Problem { j: &task, bounds: &bounds, last: &last, gain: 1.0, error: &x };
             let mut saturator = Saturator::new(6, panda.n(), None);
-            let expected = saturator.apply(problem, &last, &mut rates);
+            let expected = saturator.apply(problem, &last, None, &mut rates);
 
             coupled.coupling.primary = solved(&reduced, actuated);
             let mut found = vec![0.0; panda.n()];

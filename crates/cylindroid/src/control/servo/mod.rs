@@ -9,6 +9,7 @@
 mod approach;
 mod controller;
 mod coupled;
+mod edge;
 mod inertia_weights;
 mod inverse_choice;
 mod limits;

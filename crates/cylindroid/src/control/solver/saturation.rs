@@ -18,7 +18,11 @@
 //! Checked  tests/it/servo/limits.rs::saturation_*, tests/it/servo/object.rs,
 //!          src/control/solver/saturation/tests.rs
 
-use super::active_set::{ActiveSet, Level, Precision};
+use curved::Curved;
+pub(in crate::control) use curved::{Curvature, Path};
+pub(in crate::control) use problem::{LEAST_DAMPING, Problem, STRAIGHT};
+
+use super::active_set::{ActiveSet, Level};
 use super::bounds::{LimitKind, VelocityBounds};
 use super::inequalities::Inequalities;
 use crate::inverse::Method;
@@ -27,28 +31,14 @@ use crate::linalg::{Matrix, Svd, norm};
 /// Below this scale the direction counts as infeasible and is changed [-].
 pub(in crate::control) const MIN_SCALE: f64 = 0.05;
 
-/// Singular values of a scaled task, relative to its norm, that may be needed to keep its direction
-/// [-]: the bounds limit the velocities there.
-pub(in crate::control) const STRAIGHT: Precision = Precision { rank: 1e-6, release: 1e-9 };
-
 /// Damping for an error of one that is out of reach [-]: a tenth of the curvature of two equal links
 /// that are nearly straight, for more of it slows the approach along other weak directions. Found by
 /// experiment with arms and two arms at the edge of their reach.
 pub(in crate::control) const CURVATURE: f64 = 0.05;
 
-/// Motions of the joints up to which a Jacobian describes that of the task (scaled) [-].
-const LINEAR: f64 = 1.0;
-
-/// Joint motions that are larger than those of the task by more than this are those of a weak
-/// direction (scaled) [-].
-const AMPLIFIED: f64 = 20.0;
-
 /// Share of the velocities, or of their changes, that a joint may reserve for the correction of loops
 /// [-].
 const CORRECTION: f64 = 0.1;
-
-/// Least damping of a task whose direction is changed [-].
-pub(in crate::control) const LEAST_DAMPING: f64 = 1e-6;
 
 /// Saturation: the share of a task that the velocity bounds of the joints permit.
 ///
@@ -58,8 +48,9 @@ pub(in crate::control) const LEAST_DAMPING: f64 = 1e-6;
 /// ```
 ///
 /// Joints at a bound are clamped one by one while the others can still perform the task. The
-/// direction changes only if no scaled motion is feasible; d, a damping, grows with the error that is
-/// out of reach.
+/// direction changes only if no scaled motion is feasible, or if the target is out of reach of joints
+/// with acceleration limits; d, a damping, grows with the error that is out of reach. In trees the
+/// curvature of that error takes its place.
 ///
 /// Source: Flacco, De Luca & Khatib 2015, algorithm 1 (saturation in the null space).
 #[doc(alias = "bounded least squares")]
@@ -67,7 +58,7 @@ pub(in crate::control) const LEAST_DAMPING: f64 = 1e-6;
 pub struct Saturation {
     /// Scale of the realised task twist; 1 when no limit is active.
     pub scale: f64,
-    /// True if the direction was changed because no scaled motion was feasible.
+    /// True if the direction was changed: no scaled motion was feasible, or none ends at the target.
     pub direction_lost: bool,
 }
 
@@ -141,31 +132,6 @@ impl Coupling {
     }
 }
 
-/// The task and the bounds of a step.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::control) struct Problem<'a> {
-    /// The task in the unknowns.
-    pub(in crate::control) j: &'a Matrix,
-    /// Of the rates.
-    pub(in crate::control) bounds: &'a [VelocityBounds],
-    /// The rates of the last step.
-    pub(in crate::control) last: &'a [f64],
-    /// Velocities of the task for an error of 1 [1/s].
-    pub(in crate::control) gain: f64,
-    /// Size of the error of the task: what of it cannot be reached has a curvature, unlike a twist
-    /// that is fed forward.
-    pub(in crate::control) error: f64,
-}
-
-impl Problem<'_> {
-    /// True if a small share of the unbounded solution is a step on its way: not where it goes far
-    /// beyond the range of the linearisation for little motion of the task.
-    fn is_sensible(&self, primary: &[f64], task: f64) -> bool {
-        let size = norm(primary);
-        size <= self.gain * LINEAR || size <= AMPLIFIED * task
-    }
-}
-
 /// Workspace of the saturation.
 #[derive(Debug, Clone)]
 pub(in crate::control) struct Saturator {
@@ -174,6 +140,8 @@ pub(in crate::control) struct Saturator {
     /// d of the last changed direction.
     #[cfg(test)]
     damping: f64,
+    /// For trees.
+    curved: Option<Box<Curved>>,
     /// Zero rates.
     rest: Vec<f64>,
     /// Those that the secondary motion adds.
@@ -185,10 +153,11 @@ impl Saturator {
     /// of a closed chain depend.
     pub(in crate::control) fn new(m: usize, n: usize, rates: Option<usize>) -> Self {
         let inequalities = Inequalities::new(n, rates.is_none(), rates.unwrap_or(0));
-        let rates = rates.unwrap_or(n);
+        let (is_tree, rates) = (rates.is_none(), rates.unwrap_or(n));
         Self {
             set: ActiveSet::new(n, inequalities),
             task: Level::new(m, n),
+            curved: is_tree.then(|| Box::new(Curved::new(m, n))),
             #[cfg(test)]
             damping: 0.0,
             rest: vec![0.0; rates],
@@ -201,17 +170,19 @@ impl Saturator {
         &mut self,
         p: Problem<'_>,
         secondary: &[f64],
+        curvature: Option<(&mut dyn Curvature, Path)>,
         rates: &mut [f64],
     ) -> Saturation {
         self.more.copy_from_slice(secondary);
-        if let Some((saturation, ..)) = self.scale_down(&p, rates, None) {
+        let is_curved = matches!(curvature, Some((_, Path::Curved)));
+        if !is_curved && let Some((saturation, ..)) = self.scale_down(&p, rates, None) {
             return saturation;
         }
         for (i, bound) in p.bounds.iter().enumerate() {
             self.set.inequalities.lower[i] = bound.lower;
             self.set.inequalities.upper[i] = bound.upper;
         }
-        let Some(saturation) = self.solve(&p, p.last, rates) else {
+        let Some(saturation) = self.solve(&p, p.last, rates, curvature) else {
             brake(&p, rates);
             return Saturation { scale: 0.0, direction_lost: true };
         };
@@ -246,7 +217,7 @@ impl Saturator {
             inequalities.lower[i] = bound.lower;
             inequalities.upper[i] = bound.upper;
         }
-        let found = self.solve(&p, &coupling.last, &coupling.primary);
+        let found = self.solve(&p, &coupling.last, &coupling.primary, None);
         let Some(saturation) = found else {
             brake(&p, rates);
             coupling.actuation.fill(0.0);
@@ -296,7 +267,13 @@ impl Saturator {
     }
 
     /// The bounded unknowns, in the active set; `None` if the bounds contradict one another.
-    fn solve(&mut self, p: &Problem<'_>, last: &[f64], primary: &[f64]) -> Option<Saturation> {
+    fn solve(
+        &mut self,
+        p: &Problem<'_>,
+        last: &[f64],
+        primary: &[f64],
+        curvature: Option<(&mut dyn Curvature, Path)>,
+    ) -> Option<Saturation> {
         let whole = &mut self.task;
         whole.rows.as_mut_slice().copy_from_slice(p.j.as_slice());
         whole.rows.mul_vec_into(primary, &mut whole.target);
@@ -306,7 +283,10 @@ impl Saturator {
             let cause = if sign > 0.0 { bound.upper_cause } else { bound.lower_cause };
             cause == LimitKind::Position
         };
-        let clamped = self.set.clamp_one_by_one(&mut self.task, STRAIGHT);
+        let clamped = match curvature {
+            Some((_, Path::Curved)) => None,
+            _ => self.set.clamp_one_by_one(&mut self.task, STRAIGHT),
+        };
         if let Some((scale, stop)) = clamped
             && (scale >= MIN_SCALE
                 || (is_sensible && !stop.is_some_and(|(row, sign)| at_position(row, sign))))
@@ -316,15 +296,21 @@ impl Saturator {
         if !self.set.start(last) {
             return None;
         }
-        self.change_direction(p, last);
+        match (&mut self.curved, curvature) {
+            (Some(curved), Some((curvature, _))) => {
+                curved.solve(&mut self.set, &mut self.task, p, curvature);
+            }
+            _ => self.change_direction(p, last),
+        }
         Some(Saturation { scale: 0.0, direction_lost: true })
     }
 
-    /// The damped least-squares solution within the bounds; the active set stands at its start.
+    /// The damped least-squares solution within the bounds, with a bound of the curvature; the active
+    /// set stands at its start.
     fn change_direction(&mut self, p: &Problem<'_>, last: &[f64]) {
         let Self { set, task, .. } = self;
         set.solve(task, STRAIGHT);
-        let left = (task.residual(set.point()) / p.gain).min(p.error);
+        let left = (task.residual(set.point()) / p.gain).min(norm(p.error));
         let damping = (CURVATURE * left).max(LEAST_DAMPING);
         #[cfg(test)]
         {
@@ -395,5 +381,7 @@ pub(in crate::control) fn interval(
     (least <= span.most).then_some(span)
 }
 
+mod curved;
+mod problem;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
 mod condition;
+mod edge;
 mod hybrid;
 mod inertia;
 mod internal_force;

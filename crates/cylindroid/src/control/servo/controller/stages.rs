@@ -3,6 +3,7 @@
 //! Checked  tests/it/servo/
 
 use super::super::approach;
+use super::super::edge::Edge;
 use super::super::limits::JointState;
 use super::super::options::SecondaryNullSpace;
 use super::super::secondary::Context;
@@ -11,9 +12,9 @@ use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
-use crate::control::solver::saturation::{Problem, Saturation, brake, solve};
+use crate::control::solver::saturation::{Path, Problem, Saturation, brake, solve};
 use crate::error::Result;
-use crate::linalg::{RowSpace, norm};
+use crate::linalg::RowSpace;
 use crate::spatial::{Pose, Twist};
 use crate::tolerance::AT_LIMIT;
 
@@ -136,11 +137,21 @@ impl Servo {
             self.last[i] = self.space.scaled_rate(i, self.rates[self.place(i)]);
         }
         let gain = self.options.gain.position.min(self.options.gain.orientation);
-        let error = norm(&self.projected_error);
+        let ends_at_the_edge = self.ends_at_the_edge();
+        let error = &self.projected_error;
         let problem =
             Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
         let Some(coupled) = &mut self.coupled else {
-            return Ok(self.saturator.apply(problem, &self.secondary, &mut self.primary));
+            let mut edge = Edge {
+                chain: &self.chain,
+                space: &self.space,
+                limits: &self.limits,
+                dt: self.options.dt,
+                hessian: &mut self.hessian,
+            };
+            let (secondary, rates) = (&self.secondary, &mut self.primary);
+            let path = if ends_at_the_edge { Path::Curved } else { Path::Straight };
+            return Ok(self.saturator.apply(problem, secondary, Some((&mut edge, path)), rates));
         };
         coupled.load_last(&self.rates, &self.space);
         let mut saturation =
@@ -211,7 +222,7 @@ impl Servo {
     /// Stores the joint velocities of a step in which no joint meets a limit; `None`, without any
     /// effect, if one may.
     pub(super) fn store_unlimited_rates(&mut self, q: &[f64]) -> Option<BrakingState> {
-        if self.coupled.is_some() {
+        if self.coupled.is_some() || self.ends_at_the_edge() {
             return None;
         }
         let scaled = self.primary.iter().zip(&self.secondary).zip(&self.space.columns);
@@ -238,6 +249,17 @@ impl Servo {
         self.active.fill(None);
         self.at_limit.clear();
         Some(braking)
+    }
+
+    /// True where no configuration reaches the target.
+    pub(super) fn is_out_of_reach(&self) -> bool {
+        self.distance > self.length + self.offset_of_free_position()
+    }
+
+    /// True for a motion of a tree that no straight line ends: its joints must stop at the nearest
+    /// pose, which they see in time only with the curvature of the task.
+    fn ends_at_the_edge(&self) -> bool {
+        self.accelerates && self.coupled.is_none() && self.is_out_of_reach()
     }
 
     /// The bounds of the next joint velocities, in weighted coordinates.

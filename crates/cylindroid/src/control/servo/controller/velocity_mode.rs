@@ -48,7 +48,7 @@ impl Servo {
         }
         let (dt, timeout) = (self.options.dt, self.options.command_timeout);
         let (desired, timed_out) = self.twist_follower.desired(command, dt, timeout);
-        let target = Target { pose: self.chain.set(q), feed_forward: desired };
+        let target = Target { pose: self.load_configuration(q)?, feed_forward: desired };
         let at_rest = desired == Twist::ZERO;
         let paused = if at_rest { std::mem::take(&mut self.options.secondary) } else { Vec::new() };
         let result = self.step(q, target);

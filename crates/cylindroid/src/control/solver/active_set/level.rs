@@ -47,10 +47,15 @@ impl Level {
         }
     }
 
+    /// b - A y
+    pub(in crate::control) fn left(&mut self, y: &[f64]) -> &[f64] {
+        self.load_residual(y);
+        &self.residual
+    }
+
     /// |A y - b|
     pub(in crate::control) fn residual(&mut self, y: &[f64]) -> f64 {
-        self.load_residual(y);
-        norm(&self.residual)
+        norm(self.left(y))
     }
 
     /// `projected = A (1 - Q Q^T)` with the first columns of Q.

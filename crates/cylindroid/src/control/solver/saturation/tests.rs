@@ -32,8 +32,8 @@ fn bent_rates_are_the_bounded_damped_solution() {
         solve(&Svd::of(&j), &method, &mut vec![0.0; m.min(n)], &x, &mut rates);
         let goal = j.mul_vec(&rates);
         let last = vec![0.0; n];
-        let problem = Problem { j: &j, bounds: &bounds, last: &last, gain: 1e4, error: 1.0 };
-        let saturation = saturator.apply(problem, &last, &mut rates);
+        let problem = Problem { j: &j, bounds: &bounds, last: &last, gain: 1e4, error: &x };
+        let saturation = saturator.apply(problem, &last, None, &mut rates);
         assert!(rates.iter().zip(&bounds).all(|(r, b)| b.contains(*r)), "round {round}");
         let done = j.mul_vec(&rates);
         let rest: Vec<f64> = goal.iter().zip(&done).map(|(x, y)| x - y).collect();

@@ -1,0 +1,92 @@
+//! Steps of a servo from the actuated joints of a closed chain.
+//!
+//! Checked  tests/test_servo.py
+
+use pyo3::prelude::*;
+
+use super::{PyServo, moving_target};
+use crate::arrays::{self, Array, Numbers};
+use crate::error::Result;
+
+#[pymethods]
+impl PyServo {
+    /// One control step from the actuated joints alone, as parallel robots measure them; the passive
+    /// joints of the loops are tracked from step to step.
+    ///
+    /// Parameters
+    /// ----------
+    /// actuated : array_like
+    ///     The measured positions of the actuated coordinates, in the order of `joint_names`
+    ///     [rad or m].
+    /// target : array_like, (4, 4)
+    ///     The desired `world_from_tool` (m).
+    /// feed_forward : array_like, (6,), optional
+    ///     The twist of a moving target, linear first, world axes, at the tool [m/s, rad/s].
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (n,)
+    ///     Joint velocities [rad/s or m/s].
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    ///     The state of the servo is unchanged.
+    /// InvalidOptionError
+    ///     For a target that is not a pose, or loops that no passive joints close near those of the
+    ///     last step.
+    ///
+    /// See Also
+    /// --------
+    /// start_from : the assembly mode in which the passive joints are tracked.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> stewart = cy.load("stewart")
+    /// >>> servo = cy.Servo(stewart)
+    /// >>> legs = [stewart.home[stewart.joint_names.index(f"leg{i}")] for i in range(1, 7)]
+    /// >>> target = stewart.fk(stewart.home, servo.frame)
+    /// >>> bool(abs(servo.step_actuated(legs, target)).max() < 1e-9)
+    /// True
+    #[pyo3(signature = (actuated, target, feed_forward = None))]
+    fn step_actuated<'py>(
+        &self,
+        py: Python<'py>,
+        actuated: Numbers<'py>,
+        target: Numbers<'py>,
+        feed_forward: Option<Numbers<'py>>,
+    ) -> Result<Array<'py>> {
+        let target = moving_target(&target, feed_forward.as_ref())?;
+        let running = &mut *self.lock()?;
+        running.last = Some(running.servo.step_actuated(actuated.vector("actuated")?, target)?);
+        Ok(arrays::vector(py, running.servo.joint_velocities()))
+    }
+
+    /// Sets the configuration from which `step_actuated` tracks the passive joints; it selects the
+    /// assembly mode.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : array_like, (n,)
+    ///     A configuration with closed loops [rad or m].
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError
+    /// InvalidOptionError
+    ///     For open loops.
+    #[pyo3(signature = (q))]
+    fn start_from(&self, q: Numbers<'_>) -> Result<()> {
+        let running = &mut *self.lock()?;
+        running.servo.start_from(q.vector("q")?)?;
+        running.last = None;
+        Ok(())
+    }
+
+    /// The configuration of the last step, its loops closed [rad or m], (n,).
+    #[getter]
+    fn configuration<'py>(&self, py: Python<'py>) -> Result<Array<'py>> {
+        Ok(arrays::vector(py, self.lock()?.servo.configuration()))
+    }
+}
