@@ -280,21 +280,21 @@ impl CoordinatePartitioning {
     }
 
     /// The change of the n coordinates and e loop joints that closes the loops to first order, in two
-    /// parts: that of the passive joints alone, `followers`, and that of the actuated ones with
-    /// the passive ones that follow them, `drives`; zero without more actuated joints than degrees
+    /// parts: that of the passive joints alone, `passive_step`, and that of the actuated ones with
+    /// the passive ones that follow them, `actuated_step`; zero without more actuated joints than degrees
     /// of freedom.
-    pub(crate) fn correction_into(&mut self, followers: &mut [f64], drives: &mut [f64]) {
+    pub(crate) fn correction_into(&mut self, passive_step: &mut [f64], actuated_step: &mut [f64]) {
         let (rank, last) = (self.left.rank(), self.system.cols() - 1);
         let residuals = self.system.column(last);
         self.right_side[..rank].copy_from_slice(&residuals[..rank]);
         self.across.least_solution(&self.restriction, &residuals[rank..], &mut self.actuated_rates);
         self.actuated_rates.iter_mut().zip(&self.roots).for_each(|(x, root)| *x /= -root);
         self.dependence.mul_vec_into(&self.actuated_rates, &mut self.passive_rates);
-        self.store(drives);
+        self.store(actuated_step);
         self.follow();
         self.passive_rates.iter_mut().for_each(|x| *x = -*x);
         self.actuated_rates.fill(0.0);
-        self.store(followers);
+        self.store(passive_step);
     }
 
     /// Rates of all joints from the scaled ones.
@@ -384,9 +384,9 @@ mod tests {
                     |error: LoopClosureError| error.distance / mechanism.reach() + error.angle;
                 let before = gap(partitioning.load(&open).unwrap());
                 assert!(partitioning.solve(&weights), "{name}");
-                let (mut change, mut drives) = (vec![0.0; m], vec![0.0; m]);
-                partitioning.correction_into(&mut change, &mut drives);
-                change.iter_mut().zip(&drives).for_each(|(c, d)| *c += d);
+                let (mut change, mut actuated_step) = (vec![0.0; m], vec![0.0; m]);
+                partitioning.correction_into(&mut change, &mut actuated_step);
+                change.iter_mut().zip(&actuated_step).for_each(|(c, d)| *c += d);
                 let closer = mechanism.integrate(&open, &change[..n], 1.0).unwrap();
                 let after = gap(partitioning.load(&closer).unwrap());
                 assert!(after < 1e-3 * before + 1e-13, "{name}: {before:e} to {after:e}");

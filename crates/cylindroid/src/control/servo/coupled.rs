@@ -41,8 +41,8 @@ pub(super) struct Coupled {
     q: Vec<f64>,
     /// The change of the measured configuration that closes its loops to first order: of the passive
     /// joints, and of the actuated ones with those that follow them.
-    change: Vec<f64>,
-    drive_change: Vec<f64>,
+    passive_change: Vec<f64>,
+    actuated_change: Vec<f64>,
     /// True if the passive joints are tracked: what closes them is no motion.
     pub(super) is_tracked: bool,
     /// Number of independent actuated motions.
@@ -55,8 +55,8 @@ pub(super) struct Coupled {
     /// Steepest descent of the error of the task.
     pub(super) descent: Vec<f64>,
     /// The same in the present step of Newton's method.
-    followers: Vec<f64>,
-    drives: Vec<f64>,
+    passive_step: Vec<f64>,
+    actuated_step: Vec<f64>,
     /// Velocities of all joints, and of the task.
     rates: Vec<f64>,
     twist: Vec<f64>,
@@ -83,8 +83,8 @@ impl Coupled {
         let velocities = partitioning.velocities();
         let tree = mechanism.coordinates().iter().filter(|c| c.actuated).count();
         let actuated = tree + velocities - n;
-        let is_driven = mechanism.coordinates().iter().map(|c| c.actuated);
-        let is_driven = is_driven.chain((n..velocities).map(|_| true)).collect();
+        let is_actuated = mechanism.coordinates().iter().map(|c| c.actuated);
+        let is_actuated = is_actuated.chain((n..velocities).map(|_| true)).collect();
         Ok(Self {
             mechanism: mechanism.clone(),
             weights: weights.to_vec(),
@@ -93,14 +93,14 @@ impl Coupled {
             partitioning,
             is_regular: false,
             q: mechanism.home().to_vec(),
-            change: vec![0.0; velocities],
-            drive_change: vec![0.0; velocities],
+            passive_change: vec![0.0; velocities],
+            actuated_change: vec![0.0; velocities],
             is_tracked: false,
-            followers: vec![0.0; velocities],
-            drives: vec![0.0; velocities],
+            passive_step: vec![0.0; velocities],
+            actuated_step: vec![0.0; velocities],
             independent: actuated,
             task: Matrix::zeros(m, n),
-            coupling: Coupling::new(is_driven, actuated),
+            coupling: Coupling::new(is_actuated, actuated),
             uncontrolled: None,
             descent: vec![0.0; actuated],
             rates: vec![0.0; velocities],
@@ -127,9 +127,9 @@ impl Coupled {
         self.independent
     }
 
-    /// True if joint i (coordinates, then actuated loop joints) has no drive.
+    /// True if joint i (coordinates, then actuated loop joints) is passive.
     pub(super) fn is_passive(&self, i: usize) -> bool {
-        !self.coupling.is_driven[i]
+        !self.coupling.is_actuated[i]
     }
 
     /// The closed configuration nearest to the measured one.
@@ -157,21 +157,21 @@ impl Coupled {
             });
         }
         self.q.copy_from_slice(q);
-        self.change.fill(0.0);
-        self.drive_change.fill(0.0);
+        self.passive_change.fill(0.0);
+        self.actuated_change.fill(0.0);
         self.is_regular = self.partitioning.solve(&self.weights);
         for step in 0..CLOSING_STEPS {
             if !self.is_regular || closure_error.is_closed(length) {
                 break;
             }
-            let (followers, drives) = (&mut self.followers, &mut self.drives);
-            self.partitioning.correction_into(followers, drives);
+            let (passive_step, actuated_step) = (&mut self.passive_step, &mut self.actuated_step);
+            self.partitioning.correction_into(passive_step, actuated_step);
             if step == 0 {
-                self.change.copy_from_slice(followers);
-                self.drive_change.copy_from_slice(drives);
+                self.passive_change.copy_from_slice(passive_step);
+                self.actuated_change.copy_from_slice(actuated_step);
             }
-            followers.iter_mut().zip(&*drives).for_each(|(f, d)| *f += d);
-            self.mechanism.integrate_in_place(&mut self.q, &followers[..q.len()], 1.0);
+            passive_step.iter_mut().zip(&*actuated_step).for_each(|(f, d)| *f += d);
+            self.mechanism.integrate_in_place(&mut self.q, &passive_step[..q.len()], 1.0);
             closure_error = self.partitioning.load(&self.q)?;
             self.is_regular = self.partitioning.solve(&self.weights);
         }
@@ -189,10 +189,14 @@ impl Coupled {
         if !(self.is_regular && self.load_regular(space)) {
             self.load_any(space)?;
         }
-        let Coupling { correction, drive_correction, .. } = &mut self.coupling;
-        for (i, (c, d)) in correction.iter_mut().zip(drive_correction).enumerate() {
-            *c = if self.is_tracked { 0.0 } else { space.scaled_rate(i, self.change[i] / dt) };
-            *d = space.scaled_rate(i, self.drive_change[i] / dt);
+        let Coupling { correction, actuated_correction, .. } = &mut self.coupling;
+        for (i, (c, d)) in correction.iter_mut().zip(actuated_correction).enumerate() {
+            *c = if self.is_tracked {
+                0.0
+            } else {
+                space.scaled_rate(i, self.passive_change[i] / dt)
+            };
+            *d = space.scaled_rate(i, self.actuated_change[i] / dt);
         }
         let n = self.mechanism.n();
         for j in 0..self.actuated {
@@ -228,7 +232,7 @@ impl Coupled {
     fn load_any(&mut self, space: &TaskSpace) -> Result<()> {
         let map = ActuationMap::of(self.partitioning.state(), &self.weights, &self.locked)?;
         if !self.is_regular {
-            self.drive_change.copy_from_slice(&map.correction);
+            self.actuated_change.copy_from_slice(&map.correction);
         }
         self.independent = map.motions.cols();
         self.coupling.motions.as_mut_slice().fill(0.0);
@@ -290,20 +294,20 @@ impl Coupled {
     /// Projects the velocities of the secondary tasks (all joints, unweighted) onto the actuated
     /// motions.
     pub(super) fn load_secondary(&mut self, velocities: &[f64], space: &TaskSpace) {
-        let Coupling { motions, is_driven, secondary, .. } = &mut self.coupling;
-        project(motions, is_driven, velocities, space, secondary);
+        let Coupling { motions, is_actuated, secondary, .. } = &mut self.coupling;
+        project(motions, is_actuated, velocities, space, secondary);
     }
 
     /// Projects the velocities of the last step (all joints, unweighted) likewise.
     pub(super) fn load_last(&mut self, rates: &[f64], space: &TaskSpace) {
-        let Coupling { motions, is_driven, last, .. } = &mut self.coupling;
-        project(motions, is_driven, rates, space, last);
+        let Coupling { motions, is_actuated, last, .. } = &mut self.coupling;
+        project(motions, is_actuated, rates, space, last);
     }
 
     /// The actuation y of velocities of all joints (unweighted).
     pub(super) fn actuation_of(&self, rates: &[f64], space: &TaskSpace) -> Vec<f64> {
         let mut y = vec![0.0; self.actuated];
-        project(&self.coupling.motions, &self.coupling.is_driven, rates, space, &mut y);
+        project(&self.coupling.motions, &self.coupling.is_actuated, rates, space, &mut y);
         y
     }
 
@@ -323,11 +327,17 @@ impl Coupled {
 
 /// The actuation y nearest to these velocities of all joints (unweighted), in the weights of the
 /// actuated ones.
-fn project(motions: &Matrix, is_driven: &[bool], rates: &[f64], space: &TaskSpace, y: &mut [f64]) {
+fn project(
+    motions: &Matrix,
+    is_actuated: &[bool],
+    rates: &[f64],
+    space: &TaskSpace,
+    y: &mut [f64],
+) {
     for (j, y) in y.iter_mut().enumerate() {
-        let column = motions.column(j).iter().zip(is_driven).zip(rates).enumerate();
-        let driven = column.filter(|(_, ((_, is_driven), _))| **is_driven);
-        *y = driven.map(|(i, ((m, _), rate))| m * space.scaled_rate(i, *rate)).sum();
+        let column = motions.column(j).iter().zip(is_actuated).zip(rates).enumerate();
+        let actuated = column.filter(|(_, ((_, is_actuated), _))| **is_actuated);
+        *y = actuated.map(|(i, ((m, _), rate))| m * space.scaled_rate(i, *rate)).sum();
     }
 }
 

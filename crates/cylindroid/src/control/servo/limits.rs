@@ -61,7 +61,7 @@ impl VelocityBounds {
         Self::within_change(limits, now, limits.acceleration * dt, dt)
     }
 
-    /// The bounds of a joint without drive: it brakes before its position limits, but its velocity
+    /// The bounds of a passive joint: it brakes before its position limits, but its velocity
     /// follows those of the others, whatever its changes.
     pub(super) fn passive(limits: &Limits, now: JointState, dt: f64) -> Self {
         Self::within_change(limits, now, f64::INFINITY, dt)

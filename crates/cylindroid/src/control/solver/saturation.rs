@@ -71,14 +71,14 @@ impl Saturation {
 /// of its budget.
 #[derive(Debug, Clone)]
 pub(in crate::control) struct Coupling {
-    /// True for the rates of joints with drives.
-    pub(in crate::control) is_driven: Vec<bool>,
+    /// True for the rates of actuated joints.
+    pub(in crate::control) is_actuated: Vec<bool>,
     /// M in weighted velocities, a columns.
     pub(in crate::control) motions: Matrix,
     /// c in weighted velocities, which closes the loops of the measured configuration within a step:
     /// of the passive joints, and of the actuated ones with those that follow them.
     pub(in crate::control) correction: Vec<f64>,
-    pub(in crate::control) drive_correction: Vec<f64>,
+    pub(in crate::control) actuated_correction: Vec<f64>,
     /// The actuation y of the primary task, of the secondary ones, of the last step and of the
     /// result.
     pub(in crate::control) primary: Vec<f64>,
@@ -89,13 +89,13 @@ pub(in crate::control) struct Coupling {
 
 impl Coupling {
     /// For these rates and this number of unknowns, at rest.
-    pub(in crate::control) fn new(is_driven: Vec<bool>, unknowns: usize) -> Self {
-        let rates = is_driven.len();
+    pub(in crate::control) fn new(is_actuated: Vec<bool>, unknowns: usize) -> Self {
+        let rates = is_actuated.len();
         Self {
-            is_driven,
+            is_actuated,
             motions: Matrix::zeros(rates, unknowns),
             correction: vec![0.0; rates],
-            drive_correction: vec![0.0; rates],
+            actuated_correction: vec![0.0; rates],
             primary: vec![0.0; unknowns],
             secondary: vec![0.0; unknowns],
             last: vec![0.0; unknowns],
@@ -112,15 +112,16 @@ impl Coupling {
     /// noise of the measured positions must not compete with it.
     fn correct(&self, bounds: &[VelocityBounds], rates: &mut [f64]) {
         let mut share = 1.0_f64;
-        let driven = self.is_driven.iter().zip(&self.drive_correction).zip(&*rates).zip(bounds);
-        for (((is_driven, c), rate), bound) in driven {
-            if *is_driven && *c != 0.0 {
+        let actuated =
+            self.is_actuated.iter().zip(&self.actuated_correction).zip(&*rates).zip(bounds);
+        for (((is_actuated, c), rate), bound) in actuated {
+            if *is_actuated && *c != 0.0 {
                 let room = if *c > 0.0 { bound.upper - rate } else { rate - bound.lower };
                 let reserve = CORRECTION * 0.5 * (bound.upper - bound.lower);
                 share = share.min(room.min(reserve).max(0.0) / c.abs());
             }
         }
-        let both = self.correction.iter().zip(&self.drive_correction);
+        let both = self.correction.iter().zip(&self.actuated_correction);
         for ((rate, (c, d)), bound) in rates.iter_mut().zip(both).zip(bounds) {
             *rate = bound.clamp(*rate + c + share * d);
         }

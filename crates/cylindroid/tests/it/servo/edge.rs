@@ -22,7 +22,7 @@ fn to_the_edge(name: &str, direction: Vec3, acceleration: f64, dt: f64) -> ToThe
     let mut servo = Servo::new(&robot, options).unwrap();
     let mut q = robot.home().to_vec();
     let mut target = robot.state(&q).unwrap().pose(robot.tool());
-    target.translation = target.translation + direction * 1.5;
+    target.translation += direction * 1.5;
     let mut last = f64::INFINITY;
     let mut motion = ToTheEdge { time: f64::INFINITY, back: 0.0, left: 0.0, stall: None };
     let mut time = 0.0;

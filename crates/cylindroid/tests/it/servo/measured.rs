@@ -39,7 +39,7 @@ fn time_to_arrive(name: &str, offset: Vec3, acceleration: f64, noise: f64, near:
     let mut servo = Servo::new(&mechanism, options(&mechanism, acceleration)).unwrap();
     let mut q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
     let mut target = pose(&mechanism, &q);
-    target.translation = target.translation + offset;
+    target.translation += offset;
     let mut random = Random(5);
     let mut last_far = 0.0;
     for step in 0..2500 {
@@ -84,7 +84,7 @@ fn the_actuated_joints_suffice() {
         let home = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
         let actuated: Vec<usize> = mechanism.actuated().collect();
         let mut target = pose(&mechanism, &home);
-        target.translation = target.translation + offset;
+        target.translation += offset;
         let mut full = Servo::new(&mechanism, options(&mechanism, 5.0)).unwrap();
         let mut own = full.clone();
         own.start_from(&home).unwrap();
