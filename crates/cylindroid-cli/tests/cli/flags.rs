@@ -62,7 +62,8 @@ fn axes_of_a_task() {
 
 #[test]
 fn iterations_end_a_search() {
-    let search = ["ik", "youbot", "--to", "0.3,0.1,0.3", "--iterations"];
+    // Far enough for one iteration and the refinement after it not to arrive.
+    let search = ["ik", "youbot", "--to", "-0.3,0.1,0.1", "--iterations"];
     for (limit, code) in [("1", 1), ("2", 1), ("100", 0)] {
         let found = json(&[&search[..], &[limit]].concat(), code);
         let used = found["iterations"].as_u64().unwrap();

@@ -411,7 +411,7 @@ impl Servo {
             let (share, direction) = (motion.share, motion.direction.clone());
             return Stall::TypeII { share, direction };
         }
-        self.twist_stall(classify(&StallInputs {
+        let stall = classify(&StallInputs {
             svd: &self.svd,
             gains: &self.gains,
             error: &self.error,
@@ -421,7 +421,8 @@ impl Servo {
             distance: self.distance,
             length: self.length + self.offset_of_free_position(),
             generic_rank: self.generic_rank,
-        }))
+        });
+        self.twist_stall(self.slowed_by_limits(stall))
     }
 
     /// The reason why the requested projection was not used in the last step, but its fallback, or
