@@ -20,6 +20,9 @@ use crate::linalg::{Elimination, Matrix, RankGap, Svd, norm};
 /// [-].
 const FED_FORWARD: f64 = 2.0;
 
+/// Joint velocities below this share of all are roundings of zero [-].
+const ROUNDING: f64 = 1e-9;
+
 /// The second derivatives of a task, and the limits of its joints.
 pub(in crate::control) trait Curvature {
     /// `out = - left . dJ/dq`, symmetric, n x n, in the coordinates of the task and its unknowns.
@@ -111,6 +114,9 @@ impl Curved {
                 solution[j] = *x;
             }
         }
+        // Joints that take no part in the task move by rounding only, and have no way.
+        let rounding = ROUNDING * norm(&self.rates);
+        self.rates.iter_mut().filter(|rate| rate.abs() <= rounding).for_each(|rate| *rate = 0.0);
         let share = if norm(&task.target) > FED_FORWARD * p.gain * error {
             1.0
         } else {
