@@ -111,6 +111,8 @@ pub(crate) use trajectory::PyTrajectory;
 ///     Directions realised by at least half.
 /// joint_velocities : ndarray, (n,)
 ///     Of the last step; actuated and passive ones in a closed chain [rad/s or m/s].
+/// configuration : ndarray, (n,)
+///     Of the last step, its loops closed [rad or m].
 /// loop_closure_velocities : ndarray
 ///     Velocities of actuated loop-closure joints.
 /// active_limits : list of (str, str)
