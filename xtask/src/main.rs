@@ -1,6 +1,7 @@
 //! The project's own tasks: `cargo xtask` lists them.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person
 
+mod bench_control;
 mod bench_peers;
 mod book;
 mod corpus;
@@ -56,6 +57,11 @@ cargo xtask <task>
             installs other libraries in target/bench-peers (Python, PyPI, crates.io, Debian's
             packages, g++), compares with them and writes docs/benchmarks.* (--quick: a
             fiftieth of the work, written to target/bench-peers/quick)
+  bench-control [--quick] [--only ROBOT]
+            installs mink, pink and PlaCo in target/bench-control (Python, PyPI), lets them and
+            this library follow the same targets with several frames at once, and writes
+            docs/control-benchmarks.* (--quick: a fifteenth of it, written to
+            target/bench-control/quick)
   instructions [--write]
             counts instructions of the kernels (valgrind) and compares with the file in
             crates/cylindroid/benches, or writes it
@@ -95,6 +101,9 @@ fn run() -> Result<()> {
         Some("fuzz") => steps::fuzz(std::env::args().nth(2).as_deref()),
         Some("bench-peers") => {
             bench_peers::compare(&std::env::args().skip(2).collect::<Vec<String>>())
+        }
+        Some("bench-control") => {
+            bench_control::compare(&std::env::args().skip(2).collect::<Vec<String>>())
         }
         Some("instructions") => {
             instructions::check(std::env::args().nth(2).as_deref() == Some("--write"))

@@ -48,7 +48,7 @@ fn with_requirements(venv: &Path) -> Result<PathBuf> {
 }
 
 /// Builds the wheel as `pip install .` would, and returns it.
-fn wheel(python: &Path) -> Result<PathBuf> {
+pub(crate) fn wheel(python: &Path) -> Result<PathBuf> {
     let folder = root().join("target/python-wheels");
     if folder.exists() {
         fs::remove_dir_all(&folder)?;
