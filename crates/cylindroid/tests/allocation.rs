@@ -115,6 +115,26 @@ fn hot_paths_allocate_nothing() {
     }
 }
 
+/// Out of singular configurations, where the linearised task is lost.
+#[test]
+fn escapes_allocate_nothing() {
+    let ur5e = catalogue::load("ur5e").unwrap();
+    let mut q = vec![0.0, -1.2, 0.0, -0.4, 1.2, 0.3];
+    let target = ur5e.state(&[0.1, -1.2, 0.8, -0.6, 1.1, 0.3]).unwrap().pose(ur5e.tool());
+    let mut servo = Servo::new(&ur5e, ServoOptions::new(&ur5e)).unwrap();
+    let (mut changed, mut left) = (0, f64::INFINITY);
+    let counted = count(|| {
+        for _ in 0..3000 {
+            let step = servo.step(&q, target).unwrap();
+            servo.advance(&mut q);
+            changed += usize::from(step.saturation.direction_lost);
+            left = step.position_error;
+        }
+    });
+    assert_eq!(counted, 0);
+    assert!(changed > 0 && left < 1e-3, "{changed} {left}");
+}
+
 /// Closed chains, with limits that bite, from all joints and from the actuated ones alone.
 #[test]
 fn closed_chains_allocate_nothing() {

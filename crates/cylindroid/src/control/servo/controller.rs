@@ -16,11 +16,13 @@
 //! Checked  tests/it/servo/, tests/allocation.rs
 
 pub(super) mod condition;
+mod escaping;
 mod stages;
 mod tracking;
 mod velocity_mode;
 
 use super::coupled::Coupled;
+use super::escape::Escape;
 use super::inertia_weights::InertiaWeights;
 use super::limits::BrakingMargin;
 use super::options::ServoOptions;
@@ -86,6 +88,8 @@ pub struct Servo {
     /// Closed chains only.
     coupled: Option<Box<Coupled>>,
     inertia: Option<Box<InertiaWeights>>,
+    /// Trees only.
+    escape: Option<Box<Escape>>,
     /// True if the last step stopped before a type II singularity.
     approaches_type_ii: bool,
 
@@ -205,6 +209,7 @@ impl Servo {
             configuration: mechanism.home().to_vec(),
             predicted: mechanism.home().to_vec(),
             active: vec![None; rates],
+            escape: coupled.is_none().then(|| Box::new(Escape::new(m, unknowns))),
             coupled,
             inertia,
             approaches_type_ii: false,
@@ -330,17 +335,9 @@ impl Servo {
         let rank = self.kept.iter().filter(|kept| **kept).count();
         self.load_secondary(secondary_velocities);
 
-        let (saturation, braking) = match self.store_unlimited_rates(q) {
+        let (saturation, braking) = match self.store_unlimited_rates(q, rank) {
             Some(braking) => (Saturation::NONE, braking),
-            None => {
-                self.load_bounds();
-                let saturation = self.saturate()?;
-                Error::check_finite("joint velocities", &self.primary)?;
-                let braking = self.store_rates();
-                self.load_achieved_twist();
-                self.note_limits();
-                (saturation, braking)
-            }
+            None => self.store_limited_rates()?,
         };
 
         self.note_configuration(q);
@@ -458,6 +455,9 @@ impl Servo {
         self.last_target = None;
         self.twist_follower.reset();
         self.approaches_type_ii = false;
+        if let Some(escape) = &mut self.escape {
+            escape.reset();
+        }
     }
 
     /// Integrates `q` by the joint velocities of the last step, for simulation; the passive joints

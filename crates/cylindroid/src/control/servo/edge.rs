@@ -2,7 +2,8 @@
 //! pose that is the nearest one.
 //!
 //! Formula  C_ij = -sum_k e_k r_k (dJ_kj/dq_i + dJ_ki/dq_j) / 2 c_i c_j, with the scales r of rows and
-//!          c of columns (`task_space.rs`)
+//!          c of columns (`task_space.rs`); in the axes of the tool, with which the error turns, also
+//!          J_i . r^2 (w_j x e), w_j the angular columns of J, symmetrised as well
 //! Shapes   n x n
 //! Valid    trees
 //! Checked  tests/it/servo/edge.rs
@@ -10,9 +11,10 @@
 use super::approach;
 use super::task_space::TaskSpace;
 use crate::control::solver::saturation::Curvature;
-use crate::kinematics::Chain;
+use crate::kinematics::{Chain, ReferenceFrame};
 use crate::linalg::Matrix;
 use crate::model::Limits;
+use crate::spatial::Vec3;
 
 /// The present step.
 #[derive(Debug)]
@@ -37,6 +39,9 @@ impl Curvature for Edge<'_> {
                 *x = -sum * columns[i] * columns[j];
             }
         }
+        if self.space.axes == ReferenceFrame::Local {
+            self.add_turn(left, out);
+        }
         for i in 0..out.rows() {
             for j in 0..i {
                 let mean = 0.5 * (out[(i, j)] + out[(j, i)]);
@@ -47,5 +52,34 @@ impl Curvature for Edge<'_> {
 
     fn share(&self, way: &[f64], rates: &[f64]) -> f64 {
         approach::scale(way, rates, &self.space.columns, self.limits, self.dt)
+    }
+}
+
+impl Edge<'_> {
+    /// Adds the change of an error in axes that turn with the tool.
+    fn add_turn(&mut self, left: &[f64], out: &mut Matrix) {
+        let Some(jacobian) = self.hessian.first_mut() else { return };
+        self.chain.jacobian_into(self.space.axes, jacobian);
+        let mut error = [0.0; 6];
+        for (e, &(row, scale)) in left.iter().zip(&self.space.rows) {
+            error[row] = e / scale;
+        }
+        let [x, y, z, a, b, c] = error;
+        let (linear, angular) = (Vec3::new(x, y, z), Vec3::new(a, b, c));
+        let columns = &self.space.columns;
+        for (j, scale) in columns.iter().enumerate() {
+            let column = jacobian.column(j);
+            let w = Vec3::new(column[3], column[4], column[5]);
+            let (v, r) = (w.cross(linear).to_array(), w.cross(angular).to_array());
+            for (i, own) in columns.iter().enumerate() {
+                let column = jacobian.column(i);
+                let along = |&(row, scale): &(usize, f64)| {
+                    let turned = if row < 3 { v[row] } else { r[row - 3] };
+                    scale * scale * column[row] * turned
+                };
+                let sum: f64 = self.space.rows.iter().map(along).sum();
+                out[(i, j)] += sum * own * scale;
+            }
+        }
     }
 }

@@ -10,6 +10,7 @@ mod approach;
 mod controller;
 mod coupled;
 mod edge;
+mod escape;
 mod inertia_weights;
 mod inverse_choice;
 mod limits;

@@ -2,6 +2,7 @@
 
 mod condition;
 mod edge;
+mod escape;
 mod hybrid;
 mod inertia;
 mod internal_force;

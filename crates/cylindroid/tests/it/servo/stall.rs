@@ -30,12 +30,27 @@ fn stall_at_a_limit_names_the_joint() {
     assert!(outcome.limits_hit.contains(&(0, LimitKind::Position)));
 }
 
+/// Folded, with the target in the hole of the workspace: no joint can start the motion, and none of
+/// second order leads there.
 #[test]
 fn stall_in_a_singular_pose_names_the_direction() {
-    let robot = planar(2);
+    let mut b = Mechanism::builder("2r");
+    for (i, length) in [0.0, 1.0].into_iter().enumerate() {
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::X * length),
+            ..JointSpec::new(
+                &format!("q{i}"),
+                JointKind::Revolute,
+                &format!("l{i}"),
+                &format!("l{}", i + 1),
+            )
+        });
+    }
+    b.frame("tip", "l2", Pose::from_translation(Vec3::X * 0.5)).tool("tip");
+    let robot = b.build().unwrap();
     let mut servo = servo(&robot, |o| o.task = Task::POSITION);
-    // Stretched along x, target on the same line: no joint can start the motion.
-    let outcome = run(&mut servo, &[0.0, 0.0], Pose::from_translation(Vec3::new(1.5, 0.0, 0.0)));
+    let start = [0.0, std::f64::consts::PI];
+    let outcome = run(&mut servo, &start, Pose::from_translation(Vec3::new(0.3, 0.0, 0.0)));
     let Some(Stall::Singular { ratio, direction }) = outcome.stall else {
         panic!("{:?}", outcome.stall)
     };

@@ -220,9 +220,9 @@ impl Servo {
     }
 
     /// Stores the joint velocities of a step in which no joint meets a limit; `None`, without any
-    /// effect, if one may.
-    pub(super) fn store_unlimited_rates(&mut self, q: &[f64]) -> Option<BrakingState> {
-        if self.coupled.is_some() || self.ends_at_the_edge() {
+    /// effect, if one may, or if not all directions are kept.
+    pub(super) fn store_unlimited_rates(&mut self, q: &[f64], rank: usize) -> Option<BrakingState> {
+        if rank < self.kept.len() || self.coupled.is_some() || self.ends_at_the_edge() {
             return None;
         }
         let scaled = self.primary.iter().zip(&self.secondary).zip(&self.space.columns);
@@ -245,6 +245,9 @@ impl Servo {
                 let time = self.rates[c].abs() * margin.slowness;
                 braking.stopping_time = braking.stopping_time.max(time);
             }
+        }
+        if let Some(escape) = &mut self.escape {
+            escape.reset();
         }
         self.active.fill(None);
         self.at_limit.clear();

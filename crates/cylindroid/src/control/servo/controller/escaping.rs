@@ -1,0 +1,88 @@
+//! The velocities of a step in which joints may meet limits: those of the linearised task within its
+//! bounds, or of an escape where it makes no progress.
+//!
+//! Checked  tests/it/servo/limits.rs, tests/it/servo/escape.rs
+
+use super::super::edge::Edge;
+use super::super::escape::Linearised;
+use super::super::projection::TaskProjection;
+use super::super::stall::BrakingState;
+use super::Servo;
+use crate::control::solver::saturation::Saturation;
+use crate::error::{Error, Result};
+use crate::linalg::{dot, norm};
+
+/// A twist beyond this many times gain times error is mainly fed forward [-].
+const FED_FORWARD: f64 = 2.0;
+
+impl Servo {
+    /// Bounds, computes and stores the joint velocities.
+    pub(super) fn store_limited_rates(&mut self) -> Result<(Saturation, BrakingState)> {
+        self.load_bounds();
+        let mut saturation = self.saturate()?;
+        Error::check_finite("joint velocities", &self.primary)?;
+        let share = self.progress();
+        if share.is_some() && self.escape() {
+            saturation = Saturation { scale: 0.0, direction_lost: true };
+        }
+        let braking = self.store_rates();
+        if let Some(escape) = &mut self.escape {
+            match share {
+                Some(share) if !braking.accelerating => escape.record(share, self.options.dt),
+                Some(_) => {}
+                None => escape.reset(),
+            }
+        }
+        self.load_achieved_twist();
+        self.note_limits();
+        Ok((saturation, braking))
+    }
+
+    /// The share of the desired motion that the linearised task achieves; `None` if nothing is left to
+    /// do, or no configuration can do it.
+    fn progress(&mut self) -> Option<f64> {
+        if self.is_out_of_reach() || self.options.projection != TaskProjection::Orthogonal {
+            return None;
+        }
+        self.load_achieved_twist();
+        let gain = self.options.gain.position.min(self.options.gain.orientation);
+        let escape = self.escape.as_mut()?;
+        if norm(&self.x) > FED_FORWARD * gain * norm(&self.projected_error) {
+            escape.error.iter_mut().zip(&self.x).for_each(|(e, x)| *e = x / gain);
+        } else {
+            escape.error.copy_from_slice(&self.projected_error);
+        }
+        let size = dot(&escape.error, &escape.error);
+        let tolerance = self.options.tolerance;
+        let negligible = tolerance.position / self.options.length + tolerance.orientation;
+        (size.sqrt() > negligible).then(|| dot(&self.achieved_twist, &escape.error) / (gain * size))
+    }
+
+    /// Replaces the velocities of a task that makes no progress, if a motion of the joints opens a
+    /// way.
+    fn escape(&mut self) -> bool {
+        let Some(escape) = self.escape.as_mut().filter(|e| e.is_active) else { return false };
+        let task = Linearised {
+            j: &self.task,
+            bounds: &self.bounds,
+            last: &self.last,
+            gain: self.options.gain.position.min(self.options.gain.orientation),
+            method: self.method,
+            size: norm(&self.x),
+        };
+        let mut edge = Edge {
+            chain: &self.chain,
+            space: &self.space,
+            limits: &self.limits,
+            dt: self.options.dt,
+            hessian: &mut self.hessian,
+        };
+        if !escape.solve(task, &mut edge, self.svd.value(0)) {
+            return false;
+        }
+        for ((out, rate), bound) in self.primary.iter_mut().zip(&escape.rates).zip(&self.bounds) {
+            *out = bound.clamp(*rate);
+        }
+        true
+    }
+}
