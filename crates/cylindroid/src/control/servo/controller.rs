@@ -23,6 +23,7 @@ mod velocity_mode;
 
 use super::coupled::Coupled;
 use super::escape::Escape;
+use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
 use super::inertia_weights::InertiaWeights;
 use super::limits::BrakingMargin;
 use super::options::ServoOptions;
@@ -131,15 +132,9 @@ impl Servo {
                 ),
             });
         }
-        let closing = mechanism.loops().iter().filter(|l| l.actuated);
-        // The position of a loop-closure joint is not a coordinate.
-        let closing = closing.map(|l| {
-            let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
-            Limits { lower, upper, ..l.limits }
-        });
         let own = chain.coordinates().iter().map(|&c| mechanism.coordinates()[c].limits);
         let limits: Vec<Limits> = own
-            .chain(closing)
+            .chain(limits_of_loop_joints(mechanism))
             .map(|mut l| {
                 if l.acceleration == f64::INFINITY {
                     l.acceleration = options.acceleration;
@@ -165,15 +160,7 @@ impl Servo {
         // The unknowns: joint velocities, or actuated motions.
         let unknowns = coupled.as_ref().map_or(n, |c| c.actuated_joints());
         if unknowns == 0 {
-            return Err(Error::Model {
-                model: mechanism.name().to_owned(),
-                culprit: String::new(),
-                message: format!(
-                    "no joint of '{}' is actuated, so nothing can drive it: mark joints with \
-                     `actuated = true`, or choose them (--actuated, `with_actuated`)",
-                    mechanism.name()
-                ),
-            });
+            return Err(nothing_actuated(mechanism));
         }
         let hessian = match coupled {
             Some(_) => Vec::new(),

@@ -14,39 +14,22 @@
 //! Stops    before a type II singularity, where the object would gain an uncontrolled motion
 //! Checked  tests/it/servo/object.rs
 
+use super::loop_motions::LoopMotions;
 use super::task_space::TaskSpace;
-use crate::closure::{ActuationMap, CoordinatePartitioning, LoopClosureError, assemble};
+use crate::closure::ActuationMap;
 use crate::control::solver::saturation::Coupling;
 use crate::error::{Error, Result};
 use crate::ik::Task;
 use crate::linalg::{Matrix, norm};
 use crate::model::Mechanism;
-use crate::tolerance::{MIN_ACTUATED_SHARE, NEARLY_CLOSED, UNACTUATED};
-
-/// Steps of Newton's method that close a measured configuration: from loops open by
-/// `NEARLY_CLOSED` four reach rounding.
-const CLOSING_STEPS: usize = 5;
+use crate::tolerance::{MIN_ACTUATED_SHARE, UNACTUATED};
 
 /// The coupled joints of a servo.
 #[derive(Debug, Clone)]
 pub(super) struct Coupled {
-    mechanism: Mechanism,
-    weights: Vec<f64>,
-    locked: Vec<usize>,
-    actuated: usize,
-    partitioning: CoordinatePartitioning,
-    /// True if the partitioning is solved at `q`.
-    is_regular: bool,
-    /// The closed configuration nearest to the measured one.
-    q: Vec<f64>,
-    /// The change of the measured configuration that closes its loops to first order: of the passive
-    /// joints, and of the actuated ones with those that follow them.
-    passive_change: Vec<f64>,
-    actuated_change: Vec<f64>,
+    loops: LoopMotions,
     /// True if the passive joints are tracked: what closes them is no motion.
     pub(super) is_tracked: bool,
-    /// Number of independent actuated motions.
-    independent: usize,
     /// J in weighted velocities, m x n.
     pub(super) task: Matrix,
     pub(super) coupling: Coupling,
@@ -54,11 +37,7 @@ pub(super) struct Coupled {
     uncontrolled: Option<UncontrolledMotion>,
     /// Steepest descent of the error of the task.
     pub(super) descent: Vec<f64>,
-    /// The same in the present step of Newton's method.
-    passive_step: Vec<f64>,
-    actuated_step: Vec<f64>,
-    /// Velocities of all joints, and of the task.
-    rates: Vec<f64>,
+    /// The velocity of the task.
     twist: Vec<f64>,
 }
 
@@ -78,53 +57,32 @@ impl Coupled {
         locked: Vec<usize>,
         m: usize,
     ) -> Result<Self> {
-        let partitioning = CoordinatePartitioning::new(mechanism, &locked)?;
-        let n = mechanism.n();
-        let velocities = partitioning.velocities();
-        let tree = mechanism.coordinates().iter().filter(|c| c.actuated).count();
-        let actuated = tree + velocities - n;
-        let is_actuated = mechanism.coordinates().iter().map(|c| c.actuated);
-        let is_actuated = is_actuated.chain((n..velocities).map(|_| true)).collect();
+        let loops = LoopMotions::new(mechanism, weights, locked)?;
+        let actuated = loops.actuated;
         Ok(Self {
-            mechanism: mechanism.clone(),
-            weights: weights.to_vec(),
-            locked,
-            actuated,
-            partitioning,
-            is_regular: false,
-            q: mechanism.home().to_vec(),
-            passive_change: vec![0.0; velocities],
-            actuated_change: vec![0.0; velocities],
             is_tracked: false,
-            passive_step: vec![0.0; velocities],
-            actuated_step: vec![0.0; velocities],
-            independent: actuated,
-            task: Matrix::zeros(m, n),
-            coupling: Coupling::new(is_actuated, actuated),
+            task: Matrix::zeros(m, mechanism.n()),
+            coupling: Coupling::new(loops.are_actuated(), actuated),
             uncontrolled: None,
             descent: vec![0.0; actuated],
-            rates: vec![0.0; velocities],
             twist: vec![0.0; m],
+            loops,
         })
     }
 
     /// Replaces the weights of all coordinates, before [`Coupled::load`].
     pub(super) fn set_weights(&mut self, weights: impl Iterator<Item = f64>) -> Result<()> {
-        self.weights.clear();
-        self.weights.extend(weights);
-        self.partitioning.load(&self.q)?;
-        self.is_regular = self.partitioning.solve(&self.weights);
-        Ok(())
+        self.loops.set_weights(weights)
     }
 
     /// Number of actuated joints: the size of y.
     pub(super) fn actuated_joints(&self) -> usize {
-        self.actuated
+        self.loops.actuated
     }
 
     /// Number of independent actuated motions: the non-zero columns of M.
     pub(super) fn actuated_motions(&self) -> usize {
-        self.independent
+        self.loops.independent
     }
 
     /// True if joint i (coordinates, then actuated loop joints) is passive.
@@ -134,114 +92,41 @@ impl Coupled {
 
     /// The closed configuration nearest to the measured one.
     pub(super) fn q(&self) -> &[f64] {
-        &self.q
+        self.loops.q()
     }
 
-    /// Closes the loops of a measured configuration: Newton's method, on the passive joints alone
-    /// if there are no more actuated ones than degrees of freedom.
-    ///
-    /// # Errors
-    /// Loops with a closure error above `NEARLY_CLOSED`.
+    /// Closes the loops of a measured configuration, see [`LoopMotions::close_measured`].
     pub(super) fn close_measured(&mut self, q: &[f64]) -> Result<()> {
-        let length = self.mechanism.reach();
-        let mut closure_error = self.partitioning.load(q)?;
-        let LoopClosureError { distance, angle } = closure_error;
-        if !(distance <= NEARLY_CLOSED * length && angle <= NEARLY_CLOSED) {
-            return Err(Error::InvalidOption {
-                option: "q",
-                value: format!("loops open by {distance:.3e} m, {angle:.3e} rad"),
-                reason: format!(
-                    "a servo maintains the loops of '{}' but does not close them; assemble it first",
-                    self.mechanism.name()
-                ),
-            });
-        }
-        self.q.copy_from_slice(q);
-        self.passive_change.fill(0.0);
-        self.actuated_change.fill(0.0);
-        self.is_regular = self.partitioning.solve(&self.weights);
-        for step in 0..CLOSING_STEPS {
-            if !self.is_regular || closure_error.is_closed(length) {
-                break;
-            }
-            let (passive_step, actuated_step) = (&mut self.passive_step, &mut self.actuated_step);
-            self.partitioning.correction_into(passive_step, actuated_step);
-            if step == 0 {
-                self.passive_change.copy_from_slice(passive_step);
-                self.actuated_change.copy_from_slice(actuated_step);
-            }
-            passive_step.iter_mut().zip(&*actuated_step).for_each(|(f, d)| *f += d);
-            self.mechanism.integrate_in_place(&mut self.q, &passive_step[..q.len()], 1.0);
-            closure_error = self.partitioning.load(&self.q)?;
-            self.is_regular = self.partitioning.solve(&self.weights);
-        }
-        if !self.is_regular {
-            self.q.copy_from_slice(q);
-            self.partitioning.load(q)?;
-        }
-        Ok(())
+        self.loops.close_measured(q)
     }
 
     /// Computes M and J M at the closed configuration, with `self.task` the task there. `space`
     /// scales the velocities.
     pub(super) fn load(&mut self, space: &TaskSpace, dt: f64, reduced: &mut Matrix) -> Result<()> {
-        self.uncontrolled = None;
-        if !(self.is_regular && self.load_regular(space)) {
-            self.load_any(space)?;
+        let n = self.loops.q().len();
+        let Self { loops, task, twist, coupling, .. } = self;
+        let map = loops.load(&mut coupling.motions, |rates| {
+            space.scale_rates(rates);
+            task.mul_vec_into(&rates[..n], twist);
+            // A joint that rotates alone does not move the object; NaN does.
+            !(norm(twist) <= UNACTUATED)
+        })?;
+        for j in 0..loops.independent {
+            space.scale_rates(coupling.motions.column_mut(j));
         }
-        let Coupling { correction, actuated_correction, .. } = &mut self.coupling;
+        let Coupling { correction, actuated_correction, .. } = coupling;
         for (i, (c, d)) in correction.iter_mut().zip(actuated_correction).enumerate() {
             *c = if self.is_tracked {
                 0.0
             } else {
-                space.scaled_rate(i, self.passive_change[i] / dt)
+                space.scaled_rate(i, loops.passive_change[i] / dt)
             };
-            *d = space.scaled_rate(i, self.actuated_change[i] / dt);
+            *d = space.scaled_rate(i, loops.actuated_change[i] / dt);
         }
-        let n = self.mechanism.n();
-        for j in 0..self.actuated {
-            let rates = &self.coupling.motions.column(j)[..n];
-            self.task.mul_vec_into(rates, reduced.column_mut(j));
+        for j in 0..loops.actuated {
+            task.mul_vec_into(&coupling.motions.column(j)[..n], reduced.column_mut(j));
         }
-        Ok(())
-    }
-
-    /// M where the actuated joints take a large share of every motion of the task; false elsewhere.
-    fn load_regular(&mut self, space: &TaskSpace) -> bool {
-        let n = self.mechanism.n();
-        for j in 0..self.partitioning.passive_motions() {
-            self.partitioning.passive_motion_into(j, &mut self.rates);
-            space.scale_rates(&mut self.rates);
-            self.task.mul_vec_into(&self.rates[..n], &mut self.twist);
-            // A joint that rotates alone does not move the object.
-            if !(norm(&self.twist) <= UNACTUATED) {
-                return false;
-            }
-        }
-        self.independent = self.partitioning.motions();
-        self.coupling.motions.as_mut_slice().fill(0.0);
-        for j in 0..self.independent {
-            let column = self.coupling.motions.column_mut(j);
-            self.partitioning.motion_into(j, column);
-            space.scale_rates(column);
-        }
-        true
-    }
-
-    /// M at any configuration.
-    fn load_any(&mut self, space: &TaskSpace) -> Result<()> {
-        let map = ActuationMap::of(self.partitioning.state(), &self.weights, &self.locked)?;
-        if !self.is_regular {
-            self.actuated_change.copy_from_slice(&map.correction);
-        }
-        self.independent = map.motions.cols();
-        self.coupling.motions.as_mut_slice().fill(0.0);
-        for j in 0..self.independent {
-            let column = self.coupling.motions.column_mut(j);
-            column.copy_from_slice(map.motions.column(j));
-            space.scale_rates(column);
-        }
-        self.uncontrolled = self.find_uncontrolled(&map, space);
+        self.uncontrolled = map.and_then(|map| self.find_uncontrolled(&map, space));
         Ok(())
     }
 
@@ -251,7 +136,7 @@ impl Coupled {
         actuation_map: &ActuationMap,
         space: &TaskSpace,
     ) -> Option<UncontrolledMotion> {
-        let n = self.mechanism.n();
+        let n = self.loops.q().len();
         let in_task = |motion: &[f64]| self.task.mul_vec(&space.scaled_rates(&motion[..n]));
         let left = (0..actuation_map.uncontrolled.cols())
             .map(|j| (0.0, actuation_map.uncontrolled.column(j)));
@@ -284,10 +169,8 @@ impl Coupled {
         dt: f64,
     ) -> Result<bool> {
         let Some(now) = &self.uncontrolled else { return Ok(false) };
-        let mut next = self.q.clone();
         let rates: Vec<f64> = rates.iter().zip(&space.columns).map(|(r, c)| r * c).collect();
-        self.mechanism.integrate_in_place(&mut next, &rates[..self.q.len()], dt);
-        let ahead = ActuationMap::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)?;
+        let ahead = self.loops.map_after(&rates, dt)?;
         Ok(self.find_uncontrolled(&ahead, space).is_some_and(|then| then.share <= now.share))
     }
 
@@ -306,22 +189,14 @@ impl Coupled {
 
     /// The actuation y of velocities of all joints (unweighted).
     pub(super) fn actuation_of(&self, rates: &[f64], space: &TaskSpace) -> Vec<f64> {
-        let mut y = vec![0.0; self.actuated];
+        let mut y = vec![0.0; self.loops.actuated];
         project(&self.coupling.motions, &self.coupling.is_actuated, rates, space, &mut y);
         y
     }
 
-    /// Assembles the loops of `q` after integration: the actuated joints keep their values if the
-    /// loops permit it.
+    /// Assembles the loops of `q` after integration, see [`LoopMotions::close`].
     pub(super) fn close(&self, q: &mut [f64]) {
-        let coordinates = self.mechanism.coordinates();
-        let actuated: Vec<usize> = (0..q.len()).filter(|&i| coordinates[i].actuated).collect();
-        for prescribed in [actuated, self.locked.clone()] {
-            match assemble(&self.mechanism, q, &prescribed) {
-                Ok(found) if found.closed => return q.copy_from_slice(&found.q),
-                _ => {}
-            }
-        }
+        self.loops.close(q);
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Read `options`, `step` (the input and output of a step) and `controller`, which runs the stages
 //! in `controller/stages.rs`. A stage calls `task_space` (scaling), `projection` and `secondary`
-//! (primary and secondary task), `coupled` (closed chains), `approach` and `limits` (braking), then
+//! (primary and secondary task), `coupled` (closed chains, with `loop_motions`), `approach` and `limits` (braking), then
 //! the solver; `stall` reports why there is no progress. `named_inverse` lists the inverses for the
 //! front ends, `inverse_choice` computes one for a single Jacobian, `reference_point` compares them.
 
@@ -14,6 +14,7 @@ mod escape;
 mod inertia_weights;
 mod inverse_choice;
 mod limits;
+mod loop_motions;
 mod named_inverse;
 mod options;
 mod projection;

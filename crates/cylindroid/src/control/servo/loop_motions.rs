@@ -1,0 +1,222 @@
+//! The motions of a closed chain: all joint velocities that its actuated joints can command, at the
+//! closed configuration nearest to a measured one.
+//!
+//! Formula  joint velocities = M y, W^(1/2) times the actuated ones of unit length for unit y
+//!          (`closure/mobility/coordinate_partitioning.rs`, near singularities `actuation_map.rs`)
+//! Shapes   M: (n + e) x a, e the actuated loop joints, columns beyond the independent motions zero
+//! Valid    any mechanism. Allocates near type II singularities only, where the loops are analysed
+//!          in full
+//! Checked  tests/it/servo/object.rs, tests/it/servo/measured.rs
+
+use crate::closure::{ActuationMap, CoordinatePartitioning, LoopClosureError, assemble};
+use crate::error::{Error, Result};
+use crate::linalg::Matrix;
+use crate::model::{Limits, Mechanism};
+use crate::tolerance::NEARLY_CLOSED;
+
+/// Steps of Newton's method that close a measured configuration: from loops open by
+/// `NEARLY_CLOSED` four reach rounding.
+const CLOSING_STEPS: usize = 5;
+
+/// The loops of a mechanism at a configuration.
+#[derive(Debug, Clone)]
+pub(in crate::control) struct LoopMotions {
+    mechanism: Mechanism,
+    weights: Vec<f64>,
+    locked: Vec<usize>,
+    /// Number of actuated joints.
+    pub(in crate::control) actuated: usize,
+    /// Number of independent actuated motions.
+    pub(in crate::control) independent: usize,
+    partitioning: CoordinatePartitioning,
+    /// True if the partitioning is solved at `q`.
+    is_regular: bool,
+    /// The closed configuration nearest to the measured one.
+    q: Vec<f64>,
+    /// The change of the measured configuration that closes its loops to first order: of the passive
+    /// joints, and of the actuated ones with those that follow them.
+    pub(in crate::control) passive_change: Vec<f64>,
+    pub(in crate::control) actuated_change: Vec<f64>,
+    /// The same in the present step of Newton's method.
+    passive_step: Vec<f64>,
+    actuated_step: Vec<f64>,
+    /// Velocities of a motion of the passive joints alone.
+    rates: Vec<f64>,
+}
+
+impl LoopMotions {
+    /// For a mechanism with loops or contacts; the coordinates `locked` are fixed.
+    pub(in crate::control) fn new(
+        mechanism: &Mechanism,
+        weights: &[f64],
+        locked: Vec<usize>,
+    ) -> Result<Self> {
+        let partitioning = CoordinatePartitioning::new(mechanism, &locked)?;
+        let velocities = partitioning.velocities();
+        let tree = mechanism.coordinates().iter().filter(|c| c.actuated).count();
+        let actuated = tree + velocities - mechanism.n();
+        Ok(Self {
+            mechanism: mechanism.clone(),
+            weights: weights.to_vec(),
+            locked,
+            actuated,
+            independent: actuated,
+            partitioning,
+            is_regular: false,
+            q: mechanism.home().to_vec(),
+            passive_change: vec![0.0; velocities],
+            actuated_change: vec![0.0; velocities],
+            passive_step: vec![0.0; velocities],
+            actuated_step: vec![0.0; velocities],
+            rates: vec![0.0; velocities],
+        })
+    }
+
+    /// Number of coordinates and actuated loop joints.
+    pub(in crate::control) fn velocities(&self) -> usize {
+        self.partitioning.velocities()
+    }
+
+    /// True for the actuated ones of them.
+    pub(in crate::control) fn are_actuated(&self) -> Vec<bool> {
+        let own = self.mechanism.coordinates().iter().map(|c| c.actuated);
+        own.chain((self.q.len()..self.velocities()).map(|_| true)).collect()
+    }
+
+    /// Replaces the weights of all coordinates, before [`LoopMotions::load`].
+    pub(in crate::control) fn set_weights(
+        &mut self,
+        weights: impl Iterator<Item = f64>,
+    ) -> Result<()> {
+        self.weights.clear();
+        self.weights.extend(weights);
+        self.partitioning.load(&self.q)?;
+        self.is_regular = self.partitioning.solve(&self.weights);
+        Ok(())
+    }
+
+    /// The closed configuration nearest to the measured one.
+    pub(in crate::control) fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// Closes the loops of a measured configuration: Newton's method, on the passive joints alone
+    /// if there are no more actuated ones than degrees of freedom.
+    ///
+    /// # Errors
+    /// Loops with a closure error above `NEARLY_CLOSED`.
+    pub(in crate::control) fn close_measured(&mut self, q: &[f64]) -> Result<()> {
+        let length = self.mechanism.reach();
+        let mut closure_error = self.partitioning.load(q)?;
+        let LoopClosureError { distance, angle } = closure_error;
+        if !(distance <= NEARLY_CLOSED * length && angle <= NEARLY_CLOSED) {
+            return Err(Error::InvalidOption {
+                option: "q",
+                value: format!("loops open by {distance:.3e} m, {angle:.3e} rad"),
+                reason: format!(
+                    "a servo maintains the loops of '{}' but does not close them; assemble it first",
+                    self.mechanism.name()
+                ),
+            });
+        }
+        self.q.copy_from_slice(q);
+        self.passive_change.fill(0.0);
+        self.actuated_change.fill(0.0);
+        self.is_regular = self.partitioning.solve(&self.weights);
+        for step in 0..CLOSING_STEPS {
+            if !self.is_regular || closure_error.is_closed(length) {
+                break;
+            }
+            let (passive_step, actuated_step) = (&mut self.passive_step, &mut self.actuated_step);
+            self.partitioning.correction_into(passive_step, actuated_step);
+            if step == 0 {
+                self.passive_change.copy_from_slice(passive_step);
+                self.actuated_change.copy_from_slice(actuated_step);
+            }
+            passive_step.iter_mut().zip(&*actuated_step).for_each(|(f, d)| *f += d);
+            self.mechanism.integrate_in_place(&mut self.q, &passive_step[..q.len()], 1.0);
+            closure_error = self.partitioning.load(&self.q)?;
+            self.is_regular = self.partitioning.solve(&self.weights);
+        }
+        if !self.is_regular {
+            self.q.copy_from_slice(q);
+            self.partitioning.load(q)?;
+        }
+        Ok(())
+    }
+
+    /// Writes M at the closed configuration. `moves` says whether velocities of the n + e (which it
+    /// may change) move what is controlled: where the passive joints alone can do that, or where the
+    /// actuated ones may take a small share of a motion, the map of all motions is returned.
+    pub(in crate::control) fn load(
+        &mut self,
+        motions: &mut Matrix,
+        mut moves: impl FnMut(&mut [f64]) -> bool,
+    ) -> Result<Option<ActuationMap>> {
+        motions.as_mut_slice().fill(0.0);
+        let passive = self.partitioning.passive_motions();
+        let is_controlled = self.is_regular
+            && (0..passive).all(|j| {
+                self.partitioning.passive_motion_into(j, &mut self.rates);
+                !moves(&mut self.rates)
+            });
+        if is_controlled {
+            self.independent = self.partitioning.motions();
+            for j in 0..self.independent {
+                self.partitioning.motion_into(j, motions.column_mut(j));
+            }
+            return Ok(None);
+        }
+        let map = ActuationMap::of(self.partitioning.state(), &self.weights, &self.locked)?;
+        if !self.is_regular {
+            self.actuated_change.copy_from_slice(&map.correction);
+        }
+        self.independent = map.motions.cols();
+        for j in 0..self.independent {
+            motions.column_mut(j).copy_from_slice(map.motions.column(j));
+        }
+        Ok(Some(map))
+    }
+
+    /// The map of all motions after `dt` at these velocities.
+    pub(in crate::control) fn map_after(&self, velocities: &[f64], dt: f64) -> Result<ActuationMap> {
+        let mut next = self.q.clone();
+        self.mechanism.integrate_in_place(&mut next, &velocities[..self.q.len()], dt);
+        ActuationMap::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)
+    }
+
+    /// Assembles the loops of `q` after integration: the actuated joints keep their values if the
+    /// loops permit it.
+    pub(in crate::control) fn close(&self, q: &mut [f64]) {
+        let coordinates = self.mechanism.coordinates();
+        let actuated: Vec<usize> = (0..q.len()).filter(|&i| coordinates[i].actuated).collect();
+        for prescribed in [actuated, self.locked.clone()] {
+            match assemble(&self.mechanism, q, &prescribed) {
+                Ok(found) if found.closed => return q.copy_from_slice(&found.q),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// The limits of loop joints that are actuated: without positions, which are no coordinates.
+pub(in crate::control) fn limits_of_loop_joints(
+    mechanism: &Mechanism,
+) -> impl Iterator<Item = Limits> + '_ {
+    let actuated = mechanism.loops().iter().filter(|l| l.actuated);
+    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+    actuated.map(move |l| Limits { lower, upper, ..l.limits })
+}
+
+/// The error for mechanisms in which no joint is actuated.
+pub(in crate::control) fn nothing_actuated(mechanism: &Mechanism) -> Error {
+    Error::Model {
+        model: mechanism.name().to_owned(),
+        culprit: String::new(),
+        message: format!(
+            "no joint of '{}' is actuated, so nothing can drive it: mark joints with `actuated = \
+             true`, or choose them (--actuated, `with_actuated`)",
+            mechanism.name()
+        ),
+    }
+}
