@@ -97,8 +97,8 @@ mod _core {
     #[pymodule_export]
     use crate::tasks::{
         PyCenterOfMassTask, PyCollisionAvoidance, PyCustomTask, PyFrameTask, PyGazeTask,
-        PyJointVelocitiesTask, PyMotionTask, PyPostureTask, PyRelativeFrameTask, PyTaskReport,
-        PyTaskServo,
+        PyHalfSpace, PyJointVelocitiesTask, PyLimitAvoidanceTask, PyManipulabilityTask,
+        PyMotionTask, PyPostureTask, PyRelativeFrameTask, PyTaskReport, PyTaskServo,
     };
 
     use super::*;

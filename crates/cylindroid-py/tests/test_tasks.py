@@ -144,6 +144,81 @@ def test_velocities_and_limits_are_reported():
     np.testing.assert_array_equal(servo.joint_velocities, qd)
 
 
+def test_gradients_move_on_what_the_hand_leaves_free():
+    panda = cy.load("panda")
+    start = np.array([0.4, -0.4, 0.3, -2.0, 0.9, 1.2, 2.7])
+    goal = panda.fk(start)
+
+    def volume(q):
+        return np.prod(np.linalg.svd(panda.jacobian(q), compute_uv=False))
+
+    def room(q):
+        return np.min(np.minimum(q - panda.lower, panda.upper - q) / (panda.upper - panda.lower))
+
+    for task, measure in [
+        (cy.ManipulabilityTask("hand_tcp", gain=2.0), volume),
+        (cy.LimitAvoidanceTask(margin=0.2), room),
+    ]:
+        servo, q = cy.TaskServo(panda, [cy.FrameTask("hand_tcp", goal), task]), start
+        for _ in range(3000):
+            servo.step(q)
+            q = servo.advance(q)
+        np.testing.assert_allclose(panda.fk(q), goal, atol=1e-5)
+        assert measure(q) > 1.03 * measure(start)
+
+
+def test_a_velocity_of_the_centre_of_mass_and_half_spaces():
+    links = [frame for frame in ROBOT.frames if frame != "base"]
+
+    def center(q):
+        return np.mean([ROBOT.fk(q, frame=f) @ [0.05, 0, 0, 1] for f in links], axis=0)[:3]
+
+    velocity = np.array([0.02, 0.01, 0.0])
+    task = cy.CenterOfMassTask([9.0, 0, 0], velocity=velocity, gain=0.0, name="center")
+    servo, q = cy.TaskServo(ROBOT, [task]), BENT
+    for _ in range(400):
+        servo.step(q)
+        q = servo.advance(q)
+    np.testing.assert_allclose(center(q) - center(BENT), 0.4 * velocity, atol=1e-4)
+    servo.step(q, {"center": (center(q), -velocity)})
+    np.testing.assert_allclose(center(servo.advance(q)) - center(q), -1e-3 * velocity, atol=1e-6)
+
+    panda = cy.load("panda")
+    goal = panda.fk(panda.home)
+    goal[2, 3] -= 0.4
+    table = cy.HalfSpace("hand_tcp", [0, 0, goal[2, 3] + 0.3], [0, 0, 2], name="table")
+    task = cy.FrameTask("hand_tcp", goal, components="position", name="hand")
+    servo, q = cy.TaskServo(panda, [task], half_spaces=[table]), panda.home
+    for _ in range(4000):
+        servo.step(q)
+        q = servo.advance(q)
+    report = servo.reports["hand"]
+    assert report.half_space == "table" and report.stopped_by == "half-space 'table'"
+    assert panda.fk(q)[2, 3] == pytest.approx(goal[2, 3] + 0.3, abs=1e-6)
+    assert panda.fk(q)[2, 3] >= goal[2, 3] + 0.3 - 1e-12
+    walls = cy.HalfSpace.inside_box("hand_tcp", goal[:3, 3], [1, 2, 3], name="cell")
+    assert [wall.name for wall in walls] == [f"cell {s}{a}" for a in "xyz" for s in "-+"]
+    np.testing.assert_allclose(walls[3].point, goal[:3, 3] + [0, 1, 0])
+    with pytest.raises(cy.InvalidOptionError, match="normal"):
+        cy.HalfSpace("hand_tcp", [0, 0, 0], [0, 0, 0])
+
+
+def test_tasks_of_a_closed_chain():
+    stewart = cy.load("stewart")
+    q = stewart.home
+    goal = stewart.fk(q)
+    goal[:3, 3] += [0.02, 0.01, 0.03]
+    frame = stewart.info()["tool"] if hasattr(stewart, "info") else None
+    task = cy.FrameTask(frame or stewart.frames[-1], goal, components="position", name="platform")
+    servo = cy.TaskServo(stewart, [task], dt=0.002)
+    for _ in range(2000):
+        servo.step(q)
+        q = servo.advance(q)
+    assert servo.reports["platform"].status == "reached"
+    found = stewart.fk(q, frame=frame or stewart.frames[-1])
+    np.testing.assert_allclose(found[:3, 3], goal[:3, 3], atol=1e-5)
+
+
 def test_an_obstacle_is_avoided_and_may_move():
     model = cy.CollisionModel(ROBOT)
     start = ROBOT.fk(BENT, frame="left6")

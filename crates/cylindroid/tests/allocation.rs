@@ -8,9 +8,9 @@ use std::cell::Cell;
 use cylindroid::closure::assemble;
 use cylindroid::collision::{CollisionModel, CollisionOptions};
 use cylindroid::control::{
-    Admittance, AdmittanceGain, CollisionAvoidance, HybridController, HybridInput, MotionTask,
-    SecondaryTask, ServoGains, SharedController, SharedInput, Task, TaskObjective, TaskProjection,
-    TaskServo, TaskServoOptions,
+    Admittance, AdmittanceGain, CollisionAvoidance, HalfSpace, HybridController, HybridInput,
+    MotionTask, SecondaryTask, ServoGains, SharedController, SharedInput, Task, TaskObjective,
+    TaskProjection, TaskServo, TaskServoOptions,
 };
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
@@ -233,6 +233,37 @@ fn many_tasks_allocate_nothing() {
         });
         assert_eq!(counted, 0, "{name}");
         assert!(stopped > 0, "{name}: nothing stopped it");
+    }
+}
+
+/// Many tasks of every closed chain, with a half-space: away from type II singularities.
+#[test]
+fn tasks_of_closed_chains_allocate_nothing() {
+    for name in catalogue::names() {
+        let mechanism = catalogue::load(name).unwrap();
+        if !mechanism.is_closed() {
+            continue;
+        }
+        let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
+        let defaults = ServoOptions::new(&mechanism);
+        let end_effector = defaults.end_effector;
+        let pose = mechanism.state(&q).unwrap().pose(end_effector);
+        let target = Pose { translation: pose.translation + Vec3::X * 1e-3, ..pose };
+        let objective =
+            TaskObjective::Frame { end_effector, components: defaults.task, target: target.into() };
+        let posture = TaskObjective::Posture { q: q.clone() };
+        let mut options = TaskServoOptions::new(&mechanism);
+        options.half_spaces = vec![HalfSpace {
+            name: "wall".to_owned(),
+            end_effector,
+            point: target.translation,
+            normal: Vec3::ZERO - Vec3::X,
+        }];
+        let tasks = vec![MotionTask::new("a", objective), MotionTask::new("b", posture)];
+        let mut servo = TaskServo::new(&mechanism, tasks, options).unwrap();
+        servo.step(&q).unwrap();
+        let counted = count(|| (0..100).for_each(|_| _ = servo.step(&q).unwrap()));
+        assert_eq!(counted, 0, "{name}");
     }
 }
 

@@ -65,14 +65,64 @@ fn every_type_of_task() {
          level = 1\nweight = 2.0\ntolerance_orientation = 0.1\n\
          [[task]]\nname = 'up'\nframe = 'link4'\ncomponents = 'z'\naxes = 'world'\nlevel = 2\n\
          [[task]]\ntype = 'joint_velocities'\nvelocities = { panda_joint1 = 0.1 }\n\
-         [[task]]\ntype = 'posture'\nq = [0, -0.7, 0, -2.3, 0, 1.5, 0.7]\n",
+         [[task]]\ntype = 'posture'\nq = [0, -0.7, 0, -2.3, 0, 1.5, 0.7]\n\
+         [[task]]\ntype = 'manipulability'\nframe = 'hand_tcp'\ngain = 0.1\n\
+         [[task]]\ntype = 'limit_avoidance'\nmargin = 0.05\n\
+         [[task]]\nname = 'slide'\nframe = 'hand_tcp'\ncomponents = 'y'\nvelocity = [0, 0.1, 0]\n\
+         gain = 0\nlevel = 3\n",
     );
     let report = json(&["move", "panda", "--tasks", &path, "--time-limit", "0.5"], 1);
     let tasks = report["tasks"].as_array().unwrap();
     let names: Vec<&str> = tasks.iter().map(|t| t["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["hand_tcp from link4", "gaze", "up", "joint_velocities", "posture"]);
+    let all = ["hand_tcp from link4", "gaze", "up", "joint_velocities", "posture"];
+    assert_eq!(names[..5], all);
+    assert_eq!(names[5..], ["manipulability", "limit_avoidance", "slide"]);
     assert_eq!(tasks[0]["status"], "reached");
     assert_eq!((&tasks[1]["level"], &tasks[1]["weight"]), (&1.into(), &2.0.into()));
+}
+
+#[test]
+fn half_spaces_and_boxes() {
+    let (_folder, path) = file(
+        "[[task]]\nframe = 'hand_tcp'\nxyz = [0.4, 0.3, 0.4]\n\
+         [[half_space]]\nframe = 'hand_tcp'\npoint = [0, 0.1, 0]\nnormal = [0, -2, 0]\nname = 'door'\n\
+         [[box]]\nframe = 'hand_tcp'\ncenter = [0.4, 0, 0.4]\nsize = [1, 1, 1]\n",
+    );
+    let report = json(&["move", "panda", "--tasks", &path], 1);
+    assert_eq!(
+        (&report["reason"], &report["tasks"][0]["half_space"]),
+        (&"half-space".into(), &"door".into())
+    );
+    assert!(report["explanation"].as_str().unwrap().contains("half-space 'door'"));
+    let y = position("panda", &report["q"], "hand_tcp")[1];
+    assert!((y - 0.1).abs() < 1e-6 && y <= 0.1 + 1e-12, "{y}");
+    for (table, message) in [
+        ("[[half_space]]\nframe = 'nose'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n", "nose"),
+        ("[[half_space]]\nframe = 'hand'\npoint = [0, 0, 0]\nnormal = [0, 0, 0]\n", "normal"),
+        ("[[box]]\nframe = 'hand'\ncenter = [0, 0, 0]\nsize = [0, 1, 1]\n", "side of a box"),
+        ("[[box]]\nframe = 'hand'\ncenter = [0, 0, 0]\nsizes = [1, 1, 1]\n", "sizes"),
+    ] {
+        let (_folder, path) = file(&format!("[[task]]\nframe = 'hand'\n{table}"));
+        let error = refused(&["move", "panda", "--tasks", &path]);
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+/// The platform of a closed chain, and priorities among its tasks.
+#[test]
+fn tasks_of_closed_chains() {
+    let to = ["move", "stewart", "--task", "platform=0.05,0.02,1.05"];
+    let report = json(&to, 0);
+    let at = position("stewart", &report["q"], "platform");
+    for (x, expected) in at.iter().zip([0.05, 0.02, 1.05]) {
+        assert!((x - expected).abs() < 1e-5, "{at:?}");
+    }
+    let (_folder, path) = file(
+        "[[task]]\nframe = 'platform'\nrpy = [0.1, 0, 0]\n\
+         [[task]]\nname = 'height'\nframe = 'platform'\nxyz = [0, 0, 1.1]\ncomponents = 'z'\nlevel = 1\n",
+    );
+    let report = json(&["move", "stewart", "--tasks", &path], 0);
+    assert_eq!(report["tasks"][1]["status"], "reached");
 }
 
 #[test]
@@ -117,8 +167,8 @@ fn what_has_no_effect_is_refused() {
     assert!(error.contains("--frame: there is no target"), "{error}");
     let inside = ["move", CELL, "--to", "0.4,0,0.4", "--obstacle", "ball=sphere:0.1@0.31,0,0.5"];
     assert!(refused(&inside).contains("--q: flange and ball penetrate each other"));
-    let error = refused(&["move", "stewart", "--to", "0,0,1", "--avoid"]);
-    assert!(error.contains("loops or contacts"), "{error}");
+    let error = refused(&["move", "panda", "--task", "link4=1,2,3", "--actuated", "q1"]);
+    assert!(error.contains("all joints are actuated"), "{error}");
     assert!(refused(&["move", "panda", "--avoid"]).contains("--tasks FILE.toml"));
     assert!(
         refused(&["ik", "panda", "--to", "0,0,1", "--task", "link4=1,2,3"])

@@ -39,6 +39,7 @@ __all__ = [
     "Gradient",
     "GraspMobility",
     "GraspQuality",
+    "HalfSpace",
     "HybridCommand",
     "HybridController",
     "HyperbolicSvd",
@@ -51,10 +52,12 @@ __all__ = [
     "JointMove",
     "JointTorques",
     "JointVelocitiesTask",
+    "LimitAvoidanceTask",
     "Limb",
     "LoadReport",
     "LoopClosureError",
     "Manipulability",
+    "ManipulabilityTask",
     "Margin",
     "Mechanism",
     "Mobility",
@@ -1580,6 +1583,7 @@ class CenterOfMassTask(MotionTask):
         cls,
         target: ArrayLike,
         *,
+        velocity: ArrayLike | None = None,
         axes: str = "xyz",
         name: str | None = None,
         level: int = 0,
@@ -1648,6 +1652,30 @@ class JointVelocitiesTask(MotionTask):
     ) -> JointVelocitiesTask: ...
 
 @final
+class LimitAvoidanceTask(MotionTask):
+    def __new__(
+        cls,
+        *,
+        margin: float = 0.1,
+        name: str | None = None,
+        weight: float | None = None,
+        gain: float = 1.0,
+    ) -> LimitAvoidanceTask: ...
+
+@final
+class ManipulabilityTask(MotionTask):
+    def __new__(
+        cls,
+        frame: str,
+        *,
+        components: str = "pose",
+        tool: ArrayLike | None = None,
+        name: str | None = None,
+        weight: float | None = None,
+        gain: float = 1.0,
+    ) -> ManipulabilityTask: ...
+
+@final
 class PostureTask(MotionTask):
     def __new__(
         cls,
@@ -1680,6 +1708,35 @@ class RelativeFrameTask(MotionTask):
     ) -> RelativeFrameTask: ...
 
 @final
+class HalfSpace:
+    def __new__(
+        cls,
+        frame: str,
+        point: ArrayLike,
+        normal: ArrayLike,
+        *,
+        tool: ArrayLike | None = None,
+        name: str | None = None,
+    ) -> HalfSpace: ...
+    @staticmethod
+    def inside_box(
+        frame: str,
+        center: ArrayLike,
+        size: ArrayLike,
+        *,
+        tool: ArrayLike | None = None,
+        name: str | None = None,
+    ) -> list[HalfSpace]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def frame(self) -> str: ...
+    @property
+    def point(self) -> tuple[float, float, float]: ...
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+
+@final
 class TaskReport:
     @property
     def name(self) -> str: ...
@@ -1698,6 +1755,8 @@ class TaskReport:
     @property
     def pair(self) -> tuple[str, str] | None: ...
     @property
+    def half_space(self) -> str | None: ...
+    @property
     def stopped_by(self) -> str | None: ...
 
 @final
@@ -1708,6 +1767,7 @@ class TaskServo:
         tasks: Sequence[MotionTask],
         collisions: CollisionAvoidance | None = None,
         *,
+        half_spaces: Sequence[HalfSpace] | None = None,
         limits: dict[str, dict[str, float]] | None = None,
         dt: float | None = None,
         length: float | None = None,

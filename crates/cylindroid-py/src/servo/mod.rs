@@ -270,7 +270,7 @@ impl PyServo {
             };
             let numbers = TaskServoNumbers { dt, length, acceleration, eps: None };
             let collisions = collisions.as_ref().map(Py::get);
-            let servo = PyTaskServo::make(py, robot, (&tasks, collisions), weights, numbers)?;
+            let servo = PyTaskServo::make(py, robot, (&tasks, collisions), &[], weights, numbers)?;
             return Ok(Bound::new(py, servo)?.into_any());
         }
         if collisions.is_some() {

@@ -16,10 +16,12 @@ use crate::options;
 pub(super) enum Description {
     Frame { frame: Named, components: String, axes: Option<String>, target: Target },
     RelativeFrame { frame: Named, reference: Named, components: String, target: Pose },
-    CenterOfMass { axes: [bool; 3], target: Vec3 },
+    CenterOfMass { axes: [bool; 3], target: Vec3, velocity: Vec3 },
     Gaze { frame: Named, point: Vec3 },
     Posture { q: Vec<f64> },
     JointVelocities { velocities: Vec<f64> },
+    Manipulability { frame: Named, components: String },
+    LimitAvoidance { margin: f64 },
     Custom { function: Arc<Py<PyAny>>, rows: usize },
 }
 
@@ -36,7 +38,7 @@ impl Named {
         Ok(Self { frame: frame.to_owned(), frame_from_tool })
     }
 
-    fn of(&self, robot: &Mechanism) -> Result<EndEffector> {
+    pub(super) fn of(&self, robot: &Mechanism) -> Result<EndEffector> {
         let frame = robot.frame(&self.frame)?;
         Ok(EndEffector { frame, frame_from_tool: self.frame_from_tool })
     }
@@ -52,6 +54,8 @@ impl Description {
             Self::Gaze { .. } => "GazeTask",
             Self::Posture { .. } => "PostureTask",
             Self::JointVelocities { .. } => "JointVelocitiesTask",
+            Self::Manipulability { .. } => "ManipulabilityTask",
+            Self::LimitAvoidance { .. } => "LimitAvoidanceTask",
             Self::Custom { .. } => "CustomTask",
         }
     }
@@ -79,9 +83,14 @@ impl Description {
                     target: *target,
                 }
             }
-            Self::CenterOfMass { axes, target } => {
-                TaskObjective::CenterOfMass { axes: *axes, target: *target }
+            Self::CenterOfMass { axes, target, velocity } => {
+                TaskObjective::CenterOfMass { axes: *axes, target: *target, velocity: *velocity }
             }
+            Self::Manipulability { frame, components } => TaskObjective::Manipulability {
+                end_effector: frame.of(robot)?,
+                components: task(components, None)?,
+            },
+            Self::LimitAvoidance { margin } => TaskObjective::LimitAvoidance { margin: *margin },
             Self::Gaze { frame, point } => {
                 TaskObjective::Gaze { end_effector: frame.of(robot)?, point: *point }
             }
@@ -109,6 +118,18 @@ pub(super) fn moving_target(name: &'static str, value: &Bound<'_, PyAny>) -> Res
     Ok(entry::<Numbers<'_>>(name, value)?.pose(name)?.into())
 }
 
+/// A point, or a point and the velocity with which it moves.
+fn moving_point(name: &'static str, value: &Bound<'_, PyAny>) -> Result<(Vec3, Vec3)> {
+    let point = |value: &Bound<'_, PyAny>| -> Result<Vec3> {
+        let numbers: Numbers<'_> = entry(name, value)?;
+        Ok(Vec3::from_array(numbers.entries(name)?))
+    };
+    if let Ok((at, velocity)) = value.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>() {
+        return Ok((point(&at)?, point(&velocity)?));
+    }
+    Ok((point(value)?, Vec3::ZERO))
+}
+
 /// Sets the target of an objective.
 pub(super) fn retarget(
     name: &str,
@@ -119,17 +140,20 @@ pub(super) fn retarget(
         *target = moving_target("targets", value)?;
         return Ok(());
     }
+    if let TaskObjective::CenterOfMass { target, velocity, .. } = objective {
+        (*target, *velocity) = moving_point("targets", value)?;
+        return Ok(());
+    }
     let numbers: Numbers<'_> = entry("targets", value)?;
     let point = || Ok::<_, Failure>(Vec3::from_array(numbers.entries("targets")?));
     match objective {
         TaskObjective::RelativeFrame { target, .. } => *target = numbers.pose("targets")?,
-        TaskObjective::CenterOfMass { target, .. } => *target = point()?,
         TaskObjective::Gaze { point: target, .. } => *target = point()?,
         TaskObjective::Posture { q: all } | TaskObjective::JointVelocities { velocities: all } => {
             *all = numbers.vector("targets")?.to_vec();
         }
         _ => {
-            let reason = "its function computes its own error; it has no target";
+            let reason = "its function or its gradient is all there is; it has no target";
             return Err(Failure::option("targets", name, reason));
         }
     }

@@ -12,14 +12,15 @@ use crate::arrays::Numbers;
 use crate::error::{Failure, Result, argument};
 
 /// A task of a `TaskServo`: `FrameTask`, `RelativeFrameTask`, `CenterOfMassTask`, `GazeTask`,
-/// `PostureTask`, `JointVelocitiesTask` or `CustomTask`.
+/// `PostureTask`, `JointVelocitiesTask`, `ManipulabilityTask`, `LimitAvoidanceTask` or `CustomTask`.
 ///
 /// Attributes
 /// ----------
 /// name : str
 ///     The name in reports and targets.
 /// level : int
-///     Priority: 0 first. Postures and joint velocities are of the lowest level in any case.
+///     Priority: 0 first. Postures, joint velocities and gradients are of the lowest level in any
+///     case.
 /// weight : float
 ///     Weight among the tasks of its level.
 /// gain : float
@@ -49,7 +50,10 @@ impl PyMotionTask {
     fn __repr__(&self) -> String {
         let class = self.description.class();
         match self.description {
-            Description::Posture { .. } | Description::JointVelocities { .. } => {
+            Description::Posture { .. }
+            | Description::JointVelocities { .. }
+            | Description::Manipulability { .. }
+            | Description::LimitAvoidance { .. } => {
                 format!("<{class} '{}'>", self.name)
             }
             _ => format!("<{class} '{}', level {}>", self.name, self.level),
@@ -59,16 +63,16 @@ impl PyMotionTask {
 
 /// Options that all tasks have.
 #[derive(Debug, Clone, Default)]
-struct Common {
-    name: Option<String>,
-    level: usize,
-    weight: Option<f64>,
-    gain: Option<f64>,
-    tolerance: (Option<f64>, Option<f64>),
+pub(super) struct Common {
+    pub(super) name: Option<String>,
+    pub(super) level: usize,
+    pub(super) weight: Option<f64>,
+    pub(super) gain: Option<f64>,
+    pub(super) tolerance: (Option<f64>, Option<f64>),
 }
 
 impl PyMotionTask {
-    fn new(description: Description, usual_name: &str, common: Common) -> Self {
+    pub(super) fn new(description: Description, usual_name: &str, common: Common) -> Self {
         // Defaults are those of the library; the objective is not looked at.
         let usual = MotionTask::new(
             usual_name,
@@ -125,7 +129,8 @@ impl PyMotionTask {
 /// weight : float, optional
 ///     Weight among the tasks of its level. Default: 1.
 /// gain : float, optional
-///     Proportional gain [1/s]; gain * dt must be below 2. Default: 5.
+///     Proportional gain [1/s]; gain * dt must be below 2. With 0 the task is the twist of its target
+///     alone. Default: 5.
 /// tolerance_position, tolerance_orientation : float, optional
 ///     Errors at which it counts as reached (m, rad). Default: 1e-6.
 ///
@@ -239,6 +244,9 @@ impl PyRelativeFrameTask {
 /// ----------
 /// target : array_like, (3,)
 ///     The point (m).
+/// velocity : array_like, (3,), optional
+///     The velocity of a moving point [m/s], a feed-forward; with a gain of 0 the task is this velocity
+///     alone.
 /// axes : str
 ///     The world axes that count: 'xyz', 'xy', ...
 /// name : str, optional
@@ -258,10 +266,12 @@ pub(crate) struct PyCenterOfMassTask;
 #[pymethods]
 impl PyCenterOfMassTask {
     #[new]
-    #[pyo3(signature = (target, *, axes = "xyz", name = None, level = 0, weight = None, gain = None,
-        tolerance_position = None))]
+    #[pyo3(signature = (target, *, velocity = None, axes = "xyz", name = None, level = 0,
+        weight = None, gain = None, tolerance_position = None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         target: Numbers<'_>,
+        velocity: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] axes: &str,
         #[pyo3(from_py_with = argument)] name: Option<String>,
         #[pyo3(from_py_with = argument)] level: usize,
@@ -274,8 +284,9 @@ impl PyCenterOfMassTask {
         if axes.is_empty() || axes.chars().any(|axis| !known.contains(&axis)) {
             return Err(Failure::option("axes", axes, "give some of 'xyz'"));
         }
-        let description =
-            Description::CenterOfMass { axes: known.map(|axis| axes.contains(axis)), target };
+        let velocity = velocity.map_or(Ok([0.0; 3]), |velocity| velocity.entries("velocity"))?;
+        let (axes, velocity) = (known.map(|axis| axes.contains(axis)), Vec3::from_array(velocity));
+        let description = Description::CenterOfMass { axes, target, velocity };
         let tolerance = (tolerance_position, None);
         let common = Common { name, level, weight, gain, tolerance };
         let base = PyMotionTask::new(description, "center_of_mass", common);

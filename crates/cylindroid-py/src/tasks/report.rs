@@ -1,6 +1,6 @@
 //! The class `TaskReport`: a task after a step.
 
-use cylindroid::control::{LimitKind, StoppedBy, TaskReport};
+use cylindroid::control::{LimitKind, StoppedBy, TaskReport, TaskServo};
 use pyo3::prelude::*;
 
 use crate::table::number;
@@ -28,8 +28,10 @@ use crate::table::number;
 ///     'acceleration'.
 /// pair : (str, str) or None
 ///     The links or obstacles whose distance stops the level.
+/// half_space : str or None
+///     The half-space that stops the level.
 /// stopped_by : str or None
-///     The limit or the pair, as text.
+///     The limit, the pair, the half-space or the type II singularity, as text.
 #[pyclass(frozen, name = "TaskReport", module = "cylindroid")]
 #[derive(Debug, Clone)]
 pub(crate) struct PyTaskReport {
@@ -40,23 +42,36 @@ pub(crate) struct PyTaskReport {
     limit: Option<(String, &'static str)>,
     #[pyo3(get)]
     pair: Option<(String, String)>,
+    #[pyo3(get)]
+    half_space: Option<String>,
 }
 
 impl PyTaskReport {
-    /// `joint` and `pair` name a coordinate and a pair of bodies.
+    /// The report of a task of this servo; `pair` names a pair of bodies.
     pub(super) fn new(
         name: &str,
         report: &TaskReport,
-        joint: impl Fn(usize) -> String,
+        servo: &TaskServo,
         pair: impl Fn(usize) -> (String, String),
     ) -> Self {
-        let mut new = Self { name: name.to_owned(), inner: *report, limit: None, pair: None };
+        let mut new = Self {
+            name: name.to_owned(),
+            inner: *report,
+            limit: None,
+            pair: None,
+            half_space: None,
+        };
         match report.stopped_by {
             None => {}
             Some(StoppedBy::Limit { coordinate, kind }) => {
-                new.limit = Some((joint(coordinate), LimitKind::name(kind)));
+                let joint = servo.mechanism().velocity_name(coordinate).to_owned();
+                new.limit = Some((joint, LimitKind::name(kind)));
             }
             Some(StoppedBy::Distance { pair: index }) => new.pair = Some(pair(index)),
+            Some(StoppedBy::HalfSpace { index }) => {
+                new.half_space = Some(servo.half_spaces()[index].name.clone());
+            }
+            Some(StoppedBy::TypeII) => {}
         }
         new
     }
@@ -93,6 +108,12 @@ impl PyTaskReport {
     fn stopped_by(&self) -> Option<String> {
         if let Some((joint, kind)) = &self.limit {
             return Some(format!("{kind} limit of '{joint}'"));
+        }
+        if let Some(name) = &self.half_space {
+            return Some(format!("half-space '{name}'"));
+        }
+        if self.inner.stopped_by == Some(StoppedBy::TypeII) {
+            return Some("type II singularity that is near".to_owned());
         }
         self.pair.as_ref().map(|(a, b)| format!("distance of '{a}' and '{b}'"))
     }

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 
 use super::custom::Raised;
 use super::description::retarget;
-use super::{PyCollisionAvoidance, PyMotionTask, PyTaskReport};
+use super::{PyCollisionAvoidance, PyHalfSpace, PyMotionTask, PyTaskReport};
 use crate::arrays::{self, Array, Numbers};
 use crate::collision::{PyCollisionModel, PyDistances};
 use crate::error::{Failure, Result, argument, entry};
@@ -21,8 +21,8 @@ use crate::options;
 /// Tasks of level 0 come first; a level moves on what the levels before it leave free, and tasks of
 /// one level share it by their weights. Position, velocity and acceleration limits and distances to
 /// other bodies stand above all levels. A level that they stop is scaled along its direction first;
-/// its direction changes only if no scale is feasible. For trees: arms, hands, several arms, mobile
-/// and floating bases.
+/// its direction changes only if no scale is feasible. For arms, hands, several arms, mobile and
+/// floating bases, and closed chains, of which the actuated joints are the unknowns.
 ///
 /// Parameters
 /// ----------
@@ -31,6 +31,8 @@ use crate::options;
 ///     With different names.
 /// collisions : CollisionAvoidance, optional
 ///     The distances to keep. Default: none.
+/// half_spaces : sequence of HalfSpace, optional
+///     Half-spaces that tool points do not leave, see also `HalfSpace.inside_box`. Default: none.
 /// limits : dict of str to dict of str to float, optional
 ///     Limits of joints in place of those of the model, see `Mechanism.with_limits`.
 /// dt : float, optional
@@ -67,9 +69,10 @@ use crate::options;
 /// Raises
 /// ------
 /// UnknownNameError, InvalidOptionError, NotFiniteError, DimensionError
-///     For tasks or options that define no controller, and for closed chains.
+///     For tasks or options that define no controller.
 /// ModelError
-///     If a centre of mass is asked for and a link has no mass.
+///     If a centre of mass is asked for and a link has no mass; for a closed chain without actuated
+///     joints.
 ///
 /// Examples
 /// --------
@@ -131,14 +134,12 @@ impl Running {
             let exception = raised.lock().unwrap_or_else(PoisonError::into_inner).take();
             return Err(exception.map_or(Failure::Core(error), Failure::Python));
         }
-        let coordinates = servo.mechanism().coordinates();
-        let joint = |i: usize| coordinates[i].name.clone();
         let pair = |i: usize| {
             let names = model.as_ref().map_or(["", ""], |m| m.inner.names(i));
             (names[0].to_owned(), names[1].to_owned())
         };
         let all = servo.tasks().iter().zip(servo.reports());
-        Ok(all.map(|(task, report)| PyTaskReport::new(&task.name, report, joint, pair)).collect())
+        Ok(all.map(|(task, report)| PyTaskReport::new(&task.name, report, servo, pair)).collect())
     }
 }
 
@@ -156,6 +157,7 @@ impl PyTaskServo {
         py: Python<'_>,
         robot: &Mechanism,
         (tasks, collisions): (&[Py<PyMotionTask>], Option<&PyCollisionAvoidance>),
+        half_spaces: &[Py<PyHalfSpace>],
         joint_weights: Option<Numbers<'_>>,
         numbers: TaskServoNumbers,
     ) -> Result<Self> {
@@ -172,6 +174,8 @@ impl PyTaskServo {
             let model = model.try_borrow(py).map_err(in_use)?.inner.clone();
             chosen.collisions = Some(CollisionAvoidance { model, gap: *gap, margin: *margin });
         }
+        let walls = half_spaces.iter().map(|wall| wall.get().of(robot));
+        chosen.half_spaces = walls.collect::<Result<Vec<_>>>()?;
         let raised = Raised::default();
         let tasks = tasks.iter().map(|task| task.get().of(robot, &raised));
         let tasks = tasks.collect::<Result<Vec<_>>>()?;
@@ -197,14 +201,15 @@ impl PyTaskServo {
 #[pymethods]
 impl PyTaskServo {
     #[new]
-    #[pyo3(signature = (mechanism, tasks, collisions = None, *, limits = None, dt = None,
-        length = None, joint_weights = None, acceleration = None, eps = None))]
+    #[pyo3(signature = (mechanism, tasks, collisions = None, *, half_spaces = None, limits = None,
+        dt = None, length = None, joint_weights = None, acceleration = None, eps = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         py: Python<'_>,
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
         #[pyo3(from_py_with = argument)] tasks: Vec<Py<PyMotionTask>>,
         #[pyo3(from_py_with = argument)] collisions: Option<Py<PyCollisionAvoidance>>,
+        #[pyo3(from_py_with = argument)] half_spaces: Option<Vec<Py<PyHalfSpace>>>,
         limits: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] dt: Option<f64>,
         #[pyo3(from_py_with = argument)] length: Option<f64>,
@@ -218,7 +223,8 @@ impl PyTaskServo {
             Some(limits) => mechanism.inner.with_limits(&options::limits(limits)?)?,
         };
         let collisions = collisions.as_ref().map(Py::get);
-        Self::make(py, &limited, (&tasks, collisions), joint_weights, numbers)
+        let walls = half_spaces.unwrap_or_default();
+        Self::make(py, &limited, (&tasks, collisions), &walls, joint_weights, numbers)
     }
 
     /// One control step: the joint velocities to command until the next step.
@@ -334,9 +340,9 @@ impl PyTaskServo {
     #[getter]
     fn active_limits(&self) -> Result<Vec<(String, &'static str)>> {
         let running = self.lock()?;
-        let coordinates = running.servo.mechanism().coordinates();
+        let mechanism = running.servo.mechanism();
         let limits = running.servo.active_limits().filter(|_| running.last.is_some());
-        Ok(limits.map(|(i, kind)| (coordinates[i].name.clone(), kind.name())).collect())
+        Ok(limits.map(|(i, kind)| (mechanism.velocity_name(i).to_owned(), kind.name())).collect())
     }
 
     #[getter]

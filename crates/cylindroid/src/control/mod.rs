@@ -39,6 +39,6 @@ pub use servo::{
 };
 pub use solver::{LimitKind, Saturation, VelocityBounds};
 pub use tasks::{
-    CollisionAvoidance, CustomTask, MotionTask, StoppedBy, TaskMotionResult, TaskObjective,
-    TaskReport, TaskServo, TaskServoOptions,
+    CollisionAvoidance, CustomTask, HalfSpace, MotionTask, StoppedBy, TaskMotionResult,
+    TaskObjective, TaskReport, TaskServo, TaskServoOptions,
 };

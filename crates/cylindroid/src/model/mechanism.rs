@@ -140,6 +140,15 @@ impl Mechanism {
         &self.data.coordinates
     }
 
+    /// The name of velocity `i` of a servo: of a coordinate, from n on of an actuated loop joint; or
+    /// nothing.
+    #[must_use]
+    pub fn velocity_name(&self, i: usize) -> &str {
+        let closing = self.data.loops.iter().filter(|l| l.actuated).map(|l| &l.name);
+        let mut all = self.data.coordinates.iter().map(|c| &c.name).chain(closing);
+        all.nth(i).map_or("", |name| name)
+    }
+
     /// The links, root first.
     #[must_use]
     pub fn links(&self) -> &[Link] {

@@ -61,6 +61,7 @@ pub(crate) fn run(kind: Kind, seed: u64) -> Tally {
             one_task(&robot, &mut random)
         }
         Kind::Random => one_task(&robot(&mut random, false), &mut random),
+        Kind::Tasks if random.once_in(5) => closed_tasks(&mut random),
         Kind::Tasks => many_tasks(&robot(&mut random, false), &mut random),
         Kind::Distances => distances(&robot(&mut random, true), &mut random),
     };
@@ -179,9 +180,11 @@ fn tasks(robot: &Mechanism, q: &[f64], random: &mut Random) -> Vec<MotionTask> {
         let objective = match random.below(6) {
             0 => TaskObjective::Gaze { end_effector, point: random.vec3(3.0) },
             1 => TaskObjective::Posture { q: random.configuration(robot) },
-            2 => {
-                TaskObjective::CenterOfMass { axes: [true, true, false], target: random.vec3(1.0) }
-            }
+            2 => TaskObjective::CenterOfMass {
+                axes: [true, true, false],
+                target: random.vec3(1.0),
+                velocity: cylindroid::Vec3::ZERO,
+            },
             3 => TaskObjective::RelativeFrame {
                 end_effector,
                 reference: robot.tool().into(),
@@ -215,6 +218,30 @@ fn many_tasks(robot: &Mechanism, random: &mut Random) -> Tally {
     };
     let mut watch = Watch::new(robot, dt, acceleration);
     task_servo(servo, &mut q, &mut watch, random, |_, _| Ok(()))
+}
+
+/// Many tasks of a closed chain: the velocities of its actuated joints have limits.
+fn closed_tasks(random: &mut Random) -> Tally {
+    let robot = of_catalogue(random, true);
+    let mut options = TaskServoOptions::new(&robot);
+    options.dt = random.power(-3.5, -2.3);
+    options.acceleration = random.power(-1.0, 4.0);
+    let mut q = robot.home().to_vec();
+    let mut tally = Tally::default();
+    let Ok(mut servo) = TaskServo::new(&robot, tasks(&robot, &q, random), options) else {
+        return tally;
+    };
+    for step in 0..STEPS {
+        tally.steps += 1;
+        // A loop that opened is an error.
+        if servo.step(&q).is_err() {
+            tally.errors += 1;
+            return tally;
+        }
+        servo.advance(&mut q);
+        closed_step(&robot, servo.joint_velocities(), &q, step, &mut tally);
+    }
+    tally
 }
 
 /// Steps of a servo of many tasks; `look` is called after each with the step and the

@@ -63,7 +63,7 @@ impl VelocityBounds {
 
     /// The bounds of a passive joint: it brakes before its position limits, but its velocity
     /// follows those of the others, whatever its changes.
-    pub(super) fn passive(limits: &Limits, now: JointState, dt: f64) -> Self {
+    pub(in crate::control) fn passive(limits: &Limits, now: JointState, dt: f64) -> Self {
         Self::within_change(limits, now, f64::INFINITY, dt)
     }
 

@@ -179,7 +179,11 @@ impl LoopMotions {
     }
 
     /// The map of all motions after `dt` at these velocities.
-    pub(in crate::control) fn map_after(&self, velocities: &[f64], dt: f64) -> Result<ActuationMap> {
+    pub(in crate::control) fn map_after(
+        &self,
+        velocities: &[f64],
+        dt: f64,
+    ) -> Result<ActuationMap> {
         let mut next = self.q.clone();
         self.mechanism.integrate_in_place(&mut next, &velocities[..self.q.len()], dt);
         ActuationMap::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)

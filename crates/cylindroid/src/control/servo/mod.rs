@@ -26,8 +26,10 @@ mod task_space;
 mod twist_step;
 
 pub(super) use limits::stopping_velocity;
-pub(super) use secondary::add_posture;
+pub(super) use loop_motions::{LoopMotions, limits_of_loop_joints, nothing_actuated};
+pub(super) use secondary::{SecondaryVelocities, add_posture};
 pub(super) use stall::{BrakingState, StallDetector};
+pub(super) use task_space::is_locked;
 
 pub use controller::Servo;
 pub use controller::condition::ConditionReport;

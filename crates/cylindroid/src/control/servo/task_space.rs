@@ -134,6 +134,7 @@ fn scaled(rate: f64, column: f64) -> f64 {
     if column == 0.0 { 0.0 } else { rate / column }
 }
 
-fn is_locked(limits: &Limits) -> bool {
+/// True for a joint that cannot move.
+pub(in crate::control) fn is_locked(limits: &Limits) -> bool {
     limits.lower == limits.upper || limits.velocity == 0.0 || limits.acceleration == 0.0
 }

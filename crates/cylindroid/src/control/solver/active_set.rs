@@ -161,12 +161,8 @@ impl ActiveSet {
     pub(in crate::control) fn start(&mut self, guess: &[f64]) -> bool {
         self.y.copy_from_slice(guess);
         self.forget();
+        self.inequalities.clamp_to_box(&mut self.y);
         for i in 0..self.inequalities.boxed() {
-            let value = self.y[i];
-            let (excess, sign) = self.inequalities.excess(i, value);
-            if excess > 0.0 {
-                self.y[i] = self.inequalities.bound(i, sign);
-            }
             if self.inequalities.is_equality(i) {
                 self.y[i] = self.inequalities.lower[i];
                 self.inequalities.write(i, 1.0, &mut self.normal);

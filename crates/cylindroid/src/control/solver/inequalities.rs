@@ -57,14 +57,24 @@ impl Inequalities {
 
     /// `g_i^T y`
     #[inline]
-    pub(super) fn value(&self, i: usize, y: &[f64]) -> f64 {
+    pub(in crate::control) fn value(&self, i: usize, y: &[f64]) -> f64 {
         if i < self.boxed { y[i] } else { dot(self.normals.column(i - self.boxed), y) }
     }
 
     /// |g_i|
     #[inline]
-    pub(super) fn length(&self, i: usize) -> f64 {
+    pub(in crate::control) fn length(&self, i: usize) -> f64 {
         if i < self.boxed { 1.0 } else { self.lengths[i - self.boxed] }
+    }
+
+    /// Moves y into the bounds of the unit rows.
+    pub(in crate::control) fn clamp_to_box(&self, y: &mut [f64]) {
+        for (i, y) in y.iter_mut().enumerate().take(self.boxed) {
+            let (excess, sign) = self.excess(i, *y);
+            if excess > 0.0 {
+                *y = self.bound(i, sign);
+            }
+        }
     }
 
     /// Writes `sign * g_i`.

@@ -110,7 +110,7 @@ impl Coupling {
 
     /// Adds the correction as far as the bounds of actuated joints leave room beside the motion:
     /// noise of the measured positions must not compete with it.
-    fn correct(&self, bounds: &[VelocityBounds], rates: &mut [f64]) {
+    pub(in crate::control) fn correct(&self, bounds: &[VelocityBounds], rates: &mut [f64]) {
         let mut share = 1.0_f64;
         let actuated =
             self.is_actuated.iter().zip(&self.actuated_correction).zip(&*rates).zip(bounds);

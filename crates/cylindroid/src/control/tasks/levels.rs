@@ -25,4 +25,6 @@ pub(super) struct TaskRows {
     pub(super) error: Vec<f64>,
     pub(super) feed_forward: Vec<f64>,
     pub(super) jacobian: Matrix,
+    /// True for rows that are lengths.
+    pub(super) is_length: Vec<bool>,
 }

@@ -2,15 +2,21 @@
 //! with priorities and weights inside the limits of all joints and outside of collisions.
 //!
 //! Read `objective` (a task as an error and a Jacobian), `options` (gain, weight, level; reports),
-//! `task_servo` (one step), `stack` (the levels, solved with `solver/hierarchy.rs`) and `simulation`.
+//! `task_servo` (one step), `motions` (its unknowns), `rows` (limits, distances, half-spaces), `stack`
+//! (the levels, solved with `solver/hierarchy.rs`) and `simulation`.
 
+mod gradient;
+mod half_space;
 mod levels;
+mod motions;
 mod objective;
 mod options;
+mod rows;
 mod simulation;
 mod stack;
 mod task_servo;
 
+pub use half_space::HalfSpace;
 pub use objective::{CustomTask, TaskObjective};
 pub use options::{CollisionAvoidance, MotionTask, StoppedBy, TaskReport, TaskServoOptions};
 pub use simulation::TaskMotionResult;

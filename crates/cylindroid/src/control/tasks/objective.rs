@@ -14,7 +14,8 @@
 
 use std::fmt;
 
-use crate::control::servo::{Target, add_posture};
+use super::gradient::Gradient;
+use crate::control::servo::{SecondaryTask, SecondaryVelocities, Target, add_posture};
 use crate::error::{Error, Result};
 use crate::ik::Task;
 use crate::kinematics::{EndEffector, MassMatrix, ReferenceFrame, State};
@@ -75,6 +76,8 @@ pub enum TaskObjective {
         axes: [bool; 3],
         /// The point.
         target: Vec3,
+        /// Its velocity (m/s), added as a feed-forward; with a gain of zero the task is this velocity.
+        velocity: Vec3,
     },
     /// The z axis of a frame towards a point of the world.
     Gaze {
@@ -92,6 +95,20 @@ pub enum TaskObjective {
     JointVelocities {
         /// The velocities.
         velocities: Vec<f64>,
+    },
+    /// Towards larger manipulability (Yoshikawa) of a frame, the gain times its gradient. Always of
+    /// the lowest level. Trees only.
+    Manipulability {
+        /// The frame and the tool point.
+        end_effector: EndEffector,
+        /// The components of its task.
+        components: Task,
+    },
+    /// Away from joint limits that are near, with the gain as velocity at the limit [rad/s or m/s].
+    /// Always of the lowest level.
+    LimitAvoidance {
+        /// Distance at which it sets in, as a share of the range [-].
+        margin: f64,
     },
     /// A task of one's own.
     Custom(Box<dyn CustomTask>),
@@ -136,7 +153,10 @@ impl TaskObjective {
             }
             Self::CenterOfMass { axes, .. } => count(axes),
             Self::Gaze { .. } => 3,
-            Self::Posture { .. } | Self::JointVelocities { .. } => 0,
+            Self::Posture { .. }
+            | Self::JointVelocities { .. }
+            | Self::Manipulability { .. }
+            | Self::LimitAvoidance { .. } => 0,
             Self::Custom(task) => task.rows(),
         }
     }
@@ -152,10 +172,39 @@ impl TaskObjective {
         }
     }
 
-    /// True for postures and joint velocities, which are of the lowest level in any case.
+    /// True for postures, joint velocities and gradients, which are of the lowest level in any case.
     #[must_use]
     pub const fn is_of_lowest_level(&self) -> bool {
-        matches!(self, Self::Posture { .. } | Self::JointVelocities { .. })
+        matches!(
+            self,
+            Self::Posture { .. }
+                | Self::JointVelocities { .. }
+                | Self::Manipulability { .. }
+                | Self::LimitAvoidance { .. }
+        )
+    }
+
+    /// The gradient of the task, with a gain of 1.
+    fn secondary(&self) -> Option<SecondaryTask> {
+        match *self {
+            Self::Manipulability { .. } => Some(SecondaryTask::Manipulability { gain: 1.0 }),
+            Self::LimitAvoidance { margin } => {
+                Some(SecondaryTask::LimitAvoidance { gain: 1.0, margin })
+            }
+            _ => None,
+        }
+    }
+
+    /// Memory for the gradient of the task.
+    pub(super) fn gradient(&self, mechanism: &Mechanism, length: f64) -> Option<Gradient> {
+        let velocities = match *self {
+            Self::Manipulability { end_effector, components } => {
+                SecondaryVelocities::new(mechanism, (end_effector, components), length)
+            }
+            Self::LimitAvoidance { .. } => SecondaryVelocities::of_all(mechanism),
+            _ => return None,
+        };
+        Some(Gradient { velocities, now: vec![0.0; mechanism.n()] })
     }
 
     pub(super) fn needs_masses(&self) -> bool {
@@ -183,8 +232,18 @@ impl TaskObjective {
                 pose("target of the relative frame", target)?;
                 components.check()
             }
-            Self::CenterOfMass { target, .. } => {
-                Error::check_finite("target of the centre of mass", &target.to_array())
+            Self::CenterOfMass { target, velocity, .. } => {
+                Error::check_finite("target of the centre of mass", &target.to_array())?;
+                Error::check_finite("velocity of the centre of mass", &velocity.to_array())
+            }
+            Self::Manipulability { end_effector, components } => {
+                mechanism.check_frame(end_effector.frame)?;
+                pose("tool of the frame", &end_effector.frame_from_tool)?;
+                components.check()?;
+                SecondaryTask::Manipulability { gain: 1.0 }.check(mechanism)
+            }
+            Self::LimitAvoidance { margin } => {
+                SecondaryTask::LimitAvoidance { gain: 1.0, margin: *margin }.check(mechanism)
             }
             Self::Gaze { end_effector, point } => {
                 mechanism.check_frame(end_effector.frame)?;
@@ -200,28 +259,46 @@ impl TaskObjective {
     }
 
     /// Adds desired joint velocities of the lowest level.
-    pub(super) fn add_velocities(&self, state: &State, gain: f64, weight: f64, out: &mut [f64]) {
-        match self {
-            Self::Posture { q } => {
-                add_posture(state.mechanism(), state.q(), q, weight * gain, out);
+    pub(super) fn add_velocities(
+        &self,
+        state: &State,
+        gradient: Option<&mut Gradient>,
+        (gain, share): (f64, f64),
+        out: &mut [f64],
+    ) {
+        match (self, gradient) {
+            (Self::Posture { q }, _) => {
+                add_posture(state.mechanism(), state.q(), q, share * gain, out);
             }
-            Self::JointVelocities { velocities } => {
-                out.iter_mut().zip(velocities).for_each(|(o, v)| *o += weight * v);
+            (Self::JointVelocities { velocities }, _) => {
+                out.iter_mut().zip(velocities).for_each(|(o, v)| *o += share * v);
+            }
+            (_, Some(gradient)) => {
+                let Some(secondary) = self.secondary() else { return };
+                gradient.load(&secondary, state);
+                out.iter_mut().zip(&gradient.now).for_each(|(o, v)| *o += share * gain * v);
             }
             _ => {}
         }
     }
 
-    /// Writes the joint velocities that are still desired at `rates`: the way to a posture, or the
-    /// part of desired velocities that is not realised. False for other tasks.
-    pub(super) fn remainder(&self, state: &State, rates: &[f64], out: &mut [f64]) -> bool {
+    /// Writes the joint velocities that are still desired at `rates`: the way to a posture, the part
+    /// of desired velocities that is not realised, or the gradient. False for other tasks.
+    pub(super) fn remainder(
+        &self,
+        state: &State,
+        gradient: Option<&Gradient>,
+        rates: &[f64],
+        out: &mut [f64],
+    ) -> bool {
         out.fill(0.0);
-        match self {
-            Self::Posture { q } => add_posture(state.mechanism(), state.q(), q, 1.0, out),
-            Self::JointVelocities { velocities } => {
+        match (self, gradient) {
+            (Self::Posture { q }, _) => add_posture(state.mechanism(), state.q(), q, 1.0, out),
+            (Self::JointVelocities { velocities }, _) => {
                 let parts = out.iter_mut().zip(velocities.iter().zip(rates));
                 parts.for_each(|(o, (desired, rate))| *o = desired - rate);
             }
+            (_, Some(gradient)) => out.copy_from_slice(&gradient.now),
             _ => return false,
         }
         true
@@ -268,7 +345,7 @@ impl TaskObjective {
                 }
                 write(components.components, error, Twist::ZERO, &scratch.jacobian, rows);
             }
-            Self::CenterOfMass { axes, target } => {
+            Self::CenterOfMass { axes, target, velocity } => {
                 let Some(masses) = &mut scratch.masses else {
                     return Err(Error::InvalidOption {
                         option: "objective",
@@ -278,8 +355,10 @@ impl TaskObjective {
                 };
                 let (_, center) = masses.center_of_mass(state, &mut scratch.center)?;
                 let error = (*target - center).to_array();
+                let forward = velocity.to_array();
                 for (row, axis) in (0..3).filter(|&axis| axes[axis]).enumerate() {
                     rows.error[row] = error[axis];
+                    rows.feed_forward[row] = forward[axis];
                     for j in 0..scratch.center.cols() {
                         rows.jacobian[(row, j)] = scratch.center[(axis, j)];
                     }
@@ -312,7 +391,10 @@ impl TaskObjective {
                         .copy_from_slice(&(turned - d * d.dot(turned)).to_array());
                 }
             }
-            Self::Posture { .. } | Self::JointVelocities { .. } => {}
+            Self::Posture { .. }
+            | Self::JointVelocities { .. }
+            | Self::Manipulability { .. }
+            | Self::LimitAvoidance { .. } => {}
             Self::Custom(task) => {
                 task.evaluate(state, rows.error, rows.jacobian)?;
                 check_rows(name, rows, state.mechanism().n())?;

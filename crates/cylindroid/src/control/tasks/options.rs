@@ -2,6 +2,7 @@
 //!
 //! Checked  tests/it/servo/tasks.rs
 
+use super::half_space::HalfSpace;
 use super::objective::TaskObjective;
 use crate::collision::CollisionModel;
 use crate::control::servo::{PoseTolerance, Status};
@@ -22,7 +23,7 @@ pub struct MotionTask {
     pub level: usize,
     /// Weight beside the other tasks of its level [-]: of postures and velocities the mean counts.
     pub weight: f64,
-    /// Proportional gain [1/s].
+    /// Proportional gain [1/s]; 0 for a task that is its feed-forward velocity alone.
     pub gain: f64,
     /// Errors below which it counts as reached.
     pub tolerance: PoseTolerance,
@@ -82,6 +83,9 @@ impl CollisionAvoidance {
     }
 }
 
+/// Most pairs of bodies that count at once: the nearest.
+pub(super) const MOST_PAIRS: usize = 64;
+
 /// Rows of a task at most: memory for all of them is reserved at the start.
 const MAX_ROWS: usize = 1000;
 
@@ -100,6 +104,8 @@ pub struct TaskServoOptions {
     pub eps: f64,
     /// Distances to keep.
     pub collisions: Option<CollisionAvoidance>,
+    /// Half-spaces of the world that tool points must not leave.
+    pub half_spaces: Vec<HalfSpace>,
 }
 
 impl TaskServoOptions {
@@ -113,6 +119,7 @@ impl TaskServoOptions {
             acceleration: f64::INFINITY,
             eps: tolerance::TRUNCATION,
             collisions: None,
+            half_spaces: Vec::new(),
         }
     }
 }
@@ -120,9 +127,10 @@ impl TaskServoOptions {
 /// The inequality that stops a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StoppedBy {
-    /// A limit of a coordinate.
+    /// A limit of a joint.
     Limit {
-        /// Its index in `q`.
+        /// Its index in `q`; in closed chains actuated loop joints follow
+        /// ([`Mechanism::velocity_name`]).
         coordinate: usize,
         /// The kind of the limit.
         kind: LimitKind,
@@ -132,6 +140,13 @@ pub enum StoppedBy {
         /// The index.
         pair: usize,
     },
+    /// A half-space, by its index in [`TaskServoOptions::half_spaces`].
+    HalfSpace {
+        /// The index.
+        index: usize,
+    },
+    /// A type II singularity of a closed chain is near, and the motion approaches it.
+    TypeII,
 }
 
 /// The state of a task after a step.
@@ -164,13 +179,6 @@ pub(super) fn check(
     let refuse = |option, value: String, reason: &str| {
         Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
     };
-    if mechanism.is_closed() {
-        return refuse(
-            "mechanism",
-            mechanism.name().to_owned(),
-            "it has loops or contacts: use a Servo, which drives its object",
-        );
-    }
     if mechanism.n() == 0 {
         return refuse("mechanism", mechanism.name().to_owned(), "no joint moves");
     }
@@ -201,6 +209,7 @@ pub(super) fn check(
     if let Some(c) = &options.collisions {
         CollisionAvoidance::check_distances(c.gap, c.margin)?;
     }
+    options.half_spaces.iter().try_for_each(|h| h.check(mechanism))?;
     for (i, task) in tasks.iter().enumerate() {
         task.objective.check(mechanism)?;
         if task.objective.needs_masses() {
@@ -214,7 +223,10 @@ pub(super) fn check(
             return refuse("tasks", value, "a task has at most 1000");
         }
         positive("weight of a task", task.weight)?;
-        positive("gain of a task", task.gain)?;
+        if !(task.gain >= 0.0) {
+            let value = task.gain.to_string();
+            return refuse("gain of a task", value, "it must not be negative");
+        }
         if task.gain * options.dt >= 2.0 {
             return refuse(
                 "gain of a task",

@@ -7,20 +7,23 @@
 //!          bodies  g q' >= -v(d - gap),  v the velocity from which the pair stops in that distance
 //! Shapes   n joint velocities, the sum of the tasks' rows
 //! Units    rows of lengths are divided by the characteristic length
-//! Valid    trees: arms, hands, several arms, mobile and floating bases. Closed chains: `Servo`
+//! Valid    trees and closed chains: arms, hands, several arms, mobile and floating bases, objects
 //! Cost     a level of m rows decomposes m x n once for each round of its active set, and again for
-//!          each level whose direction changes. No allocation
-//! Fails    on non-finite input; where limits and distances contradict one another all joints brake,
-//!          each with its own acceleration
+//!          each level whose direction changes. No allocation, in closed chains away from type II
+//!          singularities
+//! Fails    on non-finite input. Where limits and distances contradict one another, distances give way as
+//!          little as possible; where limits do (closed chains), all joints brake
 //! Source   Escande, Mansard & Wieber 2014; Faverjon & Tournassoud 1987 (velocity dampers)
 //! Checked  tests/it/servo/tasks.rs, tests/allocation.rs
 
+use super::gradient::Gradient;
+use super::half_space::HalfSpace;
 use super::levels::{Stack, TaskRows};
+use super::motions::Motions;
 use super::objective::{Rows, Scratch, TaskObjective};
-use super::options::{MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
+use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
 use crate::collision::{CollisionModel, NearPair};
-use crate::control::servo::stopping_velocity;
-use crate::control::servo::{BrakingState, JointState, StallDetector, Status};
+use crate::control::servo::{BrakingState, StallDetector, Status, limits_of_loop_joints};
 use crate::control::solver::active_set::ActiveSet;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
@@ -29,13 +32,6 @@ use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{Matrix, norm};
 use crate::model::{Limits, Mechanism};
-
-/// Most pairs of bodies that count at once: the nearest.
-const MOST_PAIRS: usize = 64;
-
-/// Share of the acceleration limits that brakes a pair of bodies [-]; the rest follows the other
-/// tasks.
-const BRAKING: f64 = 0.5;
 
 /// A controller of any number of tasks with priorities, inside limits and outside of collisions.
 ///
@@ -82,22 +78,33 @@ const BRAKING: f64 = 0.5;
 pub struct TaskServo {
     pub(super) options: TaskServoOptions,
     pub(super) tasks: Vec<MotionTask>,
-    state: State,
+    pub(super) state: State,
     scratch: Scratch,
     pub(super) rows: Vec<TaskRows>,
     pub(super) stacks: Vec<Stack>,
     pub(super) set: ActiveSet,
-    limits: Vec<Limits>,
+    /// Memory for the gradients of tasks.
+    gradients: Vec<Option<Gradient>>,
+    pub(super) motions: Motions,
+    /// Of the coordinates, then of actuated loop joints.
+    pub(super) limits: Vec<Limits>,
     pub(super) bounds: Vec<VelocityBounds>,
-    /// 1 / root of the weight; 0 for locked joints.
-    pub(super) columns: Vec<f64>,
     pub(super) near: Vec<NearPair>,
-    gradient: Vec<f64>,
+    /// Of a distance, over the coordinates and over the unknowns; the Jacobian of a half-space.
+    pub(super) gradient: Vec<f64>,
+    pub(super) entries: Vec<f64>,
+    pub(super) jacobian: Matrix,
     pub(super) last: Vec<f64>,
+    /// Bounds of the distances before they give way; unknowns at rest.
+    pub(super) strict: Vec<f64>,
+    pub(super) rest: Vec<f64>,
     pub(super) desired: Vec<f64>,
     /// The inequality that stops postures and desired velocities.
     pub(super) lowest_stopped_by: Option<StoppedBy>,
-    rates: Vec<f64>,
+    pub(super) rates: Vec<f64>,
+    /// Of the step before, and those that tasks of the lowest level ask for.
+    before: Vec<f64>,
+    lowest_velocities: Vec<f64>,
     reports: Vec<TaskReport>,
     detectors: Vec<StallDetector>,
 }
@@ -106,7 +113,7 @@ impl TaskServo {
     /// A servo at rest.
     ///
     /// # Errors
-    /// A closed chain; tasks or options that define no controller, named.
+    /// Tasks or options that define no controller, named; a closed chain without actuated joints.
     pub fn new(
         mechanism: &Mechanism,
         tasks: Vec<MotionTask>,
@@ -114,25 +121,18 @@ impl TaskServo {
     ) -> Result<Self> {
         check(mechanism, &tasks, &options)?;
         let n = mechanism.n();
-        let limits: Vec<Limits> = mechanism
-            .coordinates()
-            .iter()
-            .map(|c| {
-                let mut limits = c.limits;
+        let own = mechanism.coordinates().iter().map(|c| c.limits);
+        let limits: Vec<Limits> = own
+            .chain(limits_of_loop_joints(mechanism))
+            .map(|mut limits| {
                 if limits.acceleration == f64::INFINITY {
                     limits.acceleration = options.acceleration;
                 }
                 limits
             })
             .collect();
-        let column = |i: usize| {
-            let l = &limits[i];
-            if l.lower == l.upper || l.velocity == 0.0 || l.acceleration == 0.0 {
-                return 0.0;
-            }
-            options.joint_weights.get(i).map_or(1.0, |w| 1.0 / w.sqrt())
-        };
-        let columns: Vec<f64> = (0..n).map(column).collect();
+        let motions = Motions::new(mechanism, &options, &limits)?;
+        let (u, v) = (motions.unknowns(), limits.len());
         let rows = tasks
             .iter()
             .map(|task| {
@@ -141,6 +141,7 @@ impl TaskServo {
                     error: vec![0.0; m],
                     feed_forward: vec![0.0; m],
                     jacobian: Matrix::zeros(m, n),
+                    is_length: (0..m).map(|i| task.objective.is_length(i)).collect(),
                 }
             })
             .collect();
@@ -162,7 +163,7 @@ impl TaskServo {
                 }
                 Stack {
                     members,
-                    level: ScaledLevel::new(first, n),
+                    level: ScaledLevel::new(first, u),
                     direction_changed: false,
                     scale: 1.0,
                     left_out: 0.0,
@@ -171,6 +172,12 @@ impl TaskServo {
             })
             .collect();
         let pairs = if options.collisions.is_some() { MOST_PAIRS } else { 0 };
+        let distances = options.half_spaces.len() + pairs;
+        let inequalities = match mechanism.is_closed() {
+            true => Inequalities::new(u, false, v + distances),
+            false => Inequalities::new(u, true, distances),
+        };
+        let length = options.length;
         let capacity = options.collisions.as_ref().map_or(0, |c| c.model.pairs().len());
         let report = TaskReport {
             status: Status::Moving,
@@ -185,16 +192,23 @@ impl TaskServo {
             scratch: Scratch::new(mechanism, tasks.iter().any(|t| t.objective.needs_masses())),
             rows,
             stacks,
-            set: ActiveSet::new(n, Inequalities::new(n, true, pairs)),
+            set: ActiveSet::new(u, inequalities),
+            gradients: tasks.iter().map(|t| t.objective.gradient(mechanism, length)).collect(),
+            motions,
             limits,
-            bounds: vec![VelocityBounds::NONE; n],
-            columns,
+            bounds: vec![VelocityBounds::NONE; v],
             near: Vec::with_capacity(capacity + MOST_PAIRS),
             gradient: vec![0.0; n],
-            last: vec![0.0; n],
-            desired: vec![0.0; n],
+            entries: vec![0.0; u],
+            jacobian: Matrix::zeros(6, n),
+            last: vec![0.0; u],
+            strict: vec![0.0; distances],
+            rest: vec![0.0; u],
+            desired: vec![0.0; u],
             lowest_stopped_by: None,
-            rates: vec![0.0; n],
+            rates: vec![0.0; v],
+            before: vec![0.0; v],
+            lowest_velocities: vec![0.0; n],
             reports: vec![report; tasks.len()],
             detectors: vec![StallDetector::new(); tasks.len()],
             tasks,
@@ -230,10 +244,17 @@ impl TaskServo {
         self.options.collisions.as_mut().map(|c| &mut c.model)
     }
 
-    /// Joint velocities of the last step, all n [rad/s or m/s].
+    /// The half-spaces that tool points do not leave.
+    #[must_use]
+    pub fn half_spaces(&self) -> &[HalfSpace] {
+        &self.options.half_spaces
+    }
+
+    /// Joint velocities of the last step, of all n coordinates [rad/s or m/s]: actuated and passive
+    /// ones in a closed chain.
     #[must_use]
     pub fn joint_velocities(&self) -> &[f64] {
-        &self.rates
+        &self.rates[..self.mechanism().n()]
     }
 
     /// The tasks after the last step.
@@ -254,12 +275,14 @@ impl TaskServo {
         self.state.mechanism()
     }
 
-    /// Integrates `q` by the joint velocities of the last step, for simulation.
+    /// Integrates `q` by the joint velocities of the last step, for simulation; the loops of a closed
+    /// chain are assembled again.
     ///
     /// # Panics
     /// If `q` is shorter than the mechanism's number of coordinates.
     pub fn advance(&self, q: &mut [f64]) {
-        self.mechanism().integrate_in_place(q, &self.rates, self.options.dt);
+        self.mechanism().integrate_in_place(q, self.joint_velocities(), self.options.dt);
+        self.motions.close(q);
     }
 
     /// Resets the servo to rest.
@@ -273,7 +296,7 @@ impl TaskServo {
     /// count only where there are no other tasks.
     ///
     /// # Errors
-    /// A `q` of the wrong size or non-finite input; targets of another mechanism or with another
+    /// A `q` of the wrong size or non-finite input, or with loops that are open; targets of another mechanism or with another
     /// number of rows than at the start; errors of custom tasks. The joint velocities are unchanged.
     pub fn step(&mut self, q: &[f64]) -> Result<Status> {
         for (task, rows) in self.tasks.iter().zip(&self.rows) {
@@ -283,7 +306,7 @@ impl TaskServo {
                 Error::check_len(&what, rows.error.len(), task.objective.rows())?;
             }
         }
-        self.state.set(q)?;
+        self.state.set(self.motions.close_measured(q)?)?;
         for (task, rows) in self.tasks.iter_mut().zip(&mut self.rows) {
             let mut rows = Rows {
                 error: &mut rows.error,
@@ -292,12 +315,13 @@ impl TaskServo {
             };
             task.objective.evaluate(&task.name, &self.state, &mut self.scratch, &mut rows)?;
         }
+        self.motions.load(&self.rows, self.options.length, self.options.dt)?;
         self.load_bounds();
         self.load_distances()?;
         self.load_desired();
         self.solve();
         Error::check_finite("joint velocities", &self.last)?;
-        let braking = self.store(q);
+        let braking = self.store()?;
         self.report(braking);
         Ok(self.status())
     }
@@ -324,85 +348,48 @@ impl TaskServo {
         &self.near
     }
 
-    /// Limits of the joints, scaled.
-    fn load_bounds(&mut self) {
-        for (i, limits) in self.limits.iter().enumerate() {
-            let now = JointState { position: self.state.q()[i], velocity: self.rates[i] };
-            let bound = VelocityBounds::next(limits, now, self.options.dt);
-            self.bounds[i] = bound;
-            let scaled = |v: f64| if self.columns[i] == 0.0 { 0.0 } else { v / self.columns[i] };
-            self.set.inequalities.lower[i] = scaled(bound.lower);
-            self.set.inequalities.upper[i] = scaled(bound.upper);
-            self.last[i] = scaled(self.rates[i]);
-        }
-    }
-
-    /// One row for each of the nearest pairs.
-    fn load_distances(&mut self) -> Result<()> {
-        let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
-        let n = self.columns.len();
-        collisions.model.near(&self.state, collisions.margin, &mut self.near)?;
-        if self.near.len() > MOST_PAIRS {
-            self.near.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance));
-        }
-        self.near.truncate(MOST_PAIRS);
-        for place in 0..MOST_PAIRS {
-            let inequalities = &mut self.set.inequalities;
-            inequalities.lower[n + place] = f64::NEG_INFINITY;
-            let Some(near) = self.near.get(place) else {
-                inequalities.set_row(place, |_| 0.0);
-                continue;
-            };
-            collisions.model.gradient_into(&self.state, near, &mut self.gradient);
-            let mut acceleration = 0.0;
-            for (g, (column, l)) in
-                self.gradient.iter_mut().zip(self.columns.iter().zip(&self.limits))
-            {
-                if *g != 0.0 && *column != 0.0 {
-                    acceleration += g.abs() * l.acceleration;
-                }
-                *g *= column;
-            }
-            let room = (near.distance - collisions.gap).max(0.0);
-            inequalities.set_row(place, |j| self.gradient[j]);
-            // Half of the way in a step at most: distances bend.
-            let most = stopping_velocity(0.5 * room, BRAKING * acceleration, self.options.dt);
-            inequalities.lower[n + place] = -most;
-        }
-        Ok(())
-    }
-
-    /// Desired velocities of the lowest level, scaled.
+    /// The unknowns of desired velocities of the lowest level.
     fn load_desired(&mut self) {
-        self.desired.fill(0.0);
-        let lowest = |task: &&MotionTask| task.objective.is_of_lowest_level();
-        let sum: f64 = self.tasks.iter().filter(lowest).map(|task| task.weight).sum();
-        for task in self.tasks.iter().filter(lowest) {
-            let (gain, share) = (task.gain, task.weight / sum);
-            task.objective.add_velocities(&self.state, gain, share, &mut self.desired);
+        self.lowest_velocities.fill(0.0);
+        let lowest = |task: &MotionTask| task.objective.is_of_lowest_level();
+        let sum: f64 = self.tasks.iter().filter(|t| lowest(t)).map(|task| task.weight).sum();
+        let all = self.tasks.iter().zip(&mut self.gradients);
+        for (task, gradient) in all.filter(|(task, _)| lowest(task)) {
+            let (share, out) = ((task.gain, task.weight / sum), &mut self.lowest_velocities);
+            task.objective.add_velocities(&self.state, gradient.as_mut(), share, out);
         }
-        for (d, column) in self.desired.iter_mut().zip(&self.columns) {
-            *d = if *column == 0.0 { 0.0 } else { *d / column };
-        }
+        self.motions.unknowns_of(&self.lowest_velocities, &mut self.desired);
     }
 
     /// Stores the joint velocities, within the limits to the last bit.
-    fn store(&mut self, q: &[f64]) -> BrakingState {
-        debug_assert_eq!(q.len(), self.rates.len());
+    fn store(&mut self) -> Result<BrakingState> {
+        let before = &mut self.before;
+        before.copy_from_slice(&self.rates);
+        self.motions.velocities(&self.last, &self.bounds, &mut self.rates);
+        let (length, dt) = (self.options.length, self.options.dt);
+        if self.motions.approaches_type_ii(&self.rates, &self.rows, length, dt)? {
+            // Towards rest.
+            self.last.fill(0.0);
+            if self.set.start(&self.last) {
+                self.last.copy_from_slice(self.set.point());
+            }
+            self.motions.velocities(&self.last, &self.bounds, &mut self.rates);
+            for stack in &mut self.stacks {
+                (stack.scale, stack.stopped_by) = (0.0, Some(StoppedBy::TypeII));
+            }
+            self.lowest_stopped_by = Some(StoppedBy::TypeII);
+        }
         let mut braking = BrakingState::default();
-        for i in 0..self.rates.len() {
-            let rate = self.bounds[i].clamp(self.last[i] * self.columns[i]);
-            let rate = if self.columns[i] == 0.0 { 0.0 } else { rate };
-            let before = std::mem::replace(&mut self.rates[i], rate).abs();
+        for (i, rate) in self.rates.iter().enumerate() {
             let speed = rate.abs();
-            let met = self.bounds[i].met(rate) == Some(LimitKind::Acceleration);
-            braking.accelerating |= met && speed > before;
+            let met = self.bounds[i].met(*rate) == Some(LimitKind::Acceleration);
+            braking.accelerating |= met && speed > self.before[i].abs();
             if speed > 0.0 {
                 braking.stopping_time =
                     braking.stopping_time.max(speed / self.limits[i].acceleration);
             }
         }
-        braking
+        Ok(braking)
     }
 
     fn report(&mut self, braking: BrakingState) {
@@ -414,7 +401,9 @@ impl TaskServo {
             let rows = &self.rows[i];
             let mut parts = [0.0_f64; 2];
             let mut add = |is_length: bool, x: f64| parts[usize::from(!is_length)] += x * x;
-            let is_lowest = task.objective.remainder(&self.state, &self.rates, &mut self.gradient);
+            let (gradient, rates) = (self.gradients[i].as_ref(), &self.rates);
+            let out = &mut self.gradient;
+            let is_lowest = task.objective.remainder(&self.state, gradient, rates, out);
             if is_lowest {
                 let coordinates = self.state.mechanism().coordinates();
                 let all = self.gradient.iter().zip(coordinates);

@@ -1,5 +1,6 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
+mod closed_tasks;
 mod condition;
 mod edge;
 mod escape;
@@ -17,6 +18,7 @@ mod secondary;
 mod shared;
 mod stall;
 mod steps;
+mod task_kinds;
 mod task_reports;
 mod tasks;
 mod twist;

@@ -12,7 +12,7 @@ use cylindroid::spatial::Mat3;
 use super::*;
 
 /// A torso with two arms of seven joints and a head, with masses.
-fn two_armed() -> Mechanism {
+pub(super) fn two_armed() -> Mechanism {
     let mut builder = Mechanism::builder("two-armed");
     let inertial = |mass: f64| Inertial {
         mass,
@@ -113,6 +113,7 @@ fn objectives(robot: &Mechanism, q: &[f64], random: &mut Random) -> Vec<TaskObje
         TaskObjective::CenterOfMass {
             axes: [true, true, false],
             target: center + near(0.02).linear,
+            velocity: Vec3::ZERO,
         },
         TaskObjective::Gaze {
             end_effector: head.into(),
@@ -467,10 +468,12 @@ fn wrong_tasks_are_refused() {
     let angle = || MotionTask::new("a", TaskObjective::Custom(Box::new(Angle(0, 0.1))));
     assert!(refused(vec![angle(), angle()], &robot).contains("two tasks"));
     assert!(refused(vec![MotionTask { gain: 3e3, ..angle() }], &robot).contains("below 2"));
-    let stewart = catalogue::load("stewart").unwrap();
-    assert!(refused(vec![angle()], &stewart).contains("use a Servo"));
+    assert!(refused(vec![MotionTask { gain: -1.0, ..angle() }], &robot).contains("negative"));
+    let passive = catalogue::load("stewart").unwrap().with_actuated::<&str>(&[]).unwrap();
+    assert!(refused(vec![angle()], &passive).contains("no joint of 'stewart' is actuated"));
     let ur5e = catalogue::load("ur5e").unwrap();
-    let center = TaskObjective::CenterOfMass { axes: [true; 3], target: Vec3::ZERO };
+    let center =
+        TaskObjective::CenterOfMass { axes: [true; 3], target: Vec3::ZERO, velocity: Vec3::ZERO };
     assert!(refused(vec![MotionTask::new("c", center)], &ur5e).contains("mass"));
     let model = CollisionModel::new(&ur5e, &CollisionOptions::default()).unwrap();
     let mut other = options(&robot);

@@ -1,12 +1,12 @@
-//! Files of tasks: one `[[task]]` table for each.
+//! Files of tasks: one `[[task]]` table for each, and tables of half-spaces and boxes.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
-use cylindroid::control::{MotionTask, PoseTolerance, Task, TaskObjective};
-use cylindroid::spatial::Rpy;
+use cylindroid::control::{HalfSpace, MotionTask, PoseTolerance, Target, Task, TaskObjective};
+use cylindroid::spatial::{Rpy, Twist};
 use cylindroid::{EndEffector, Error, FileError, Mechanism, Pose, ReferenceFrame, State, Vec3};
 use serde::Deserialize;
 use toml::Spanned;
@@ -19,6 +19,10 @@ use crate::values::Joints;
 struct File {
     #[serde(default)]
     task: Vec<Spanned<Entry>>,
+    #[serde(default)]
+    half_space: Vec<Spanned<super::walls::Plane>>,
+    #[serde(default, rename = "box")]
+    boxes: Vec<Spanned<super::walls::Box>>,
 }
 
 /// All keys that a task can have.
@@ -38,6 +42,9 @@ struct Entry {
     axes: Option<String>,
     q: Option<Values>,
     velocities: Option<Values>,
+    velocity: Option<[f64; 3]>,
+    angular_velocity: Option<[f64; 3]>,
+    margin: Option<f64>,
     level: Option<usize>,
     weight: Option<f64>,
     gain: Option<f64>,
@@ -63,17 +70,33 @@ impl From<Values> for Joints {
 }
 
 /// The types of tasks, each with the keys that it needs and others that it may have.
-const KINDS: [(&str, &[&str], &[&str]); 6] = [
-    ("frame", &["frame"], &["xyz", "rpy", "tool", "components", "axes", "level", "gain"]),
+const KINDS: [(&str, &[&str], &[&str]); 8] = [
+    (
+        "frame",
+        &["frame"],
+        &[
+            "xyz",
+            "rpy",
+            "velocity",
+            "angular_velocity",
+            "tool",
+            "components",
+            "axes",
+            "level",
+            "gain",
+        ],
+    ),
     (
         "relative_frame",
         &["frame", "reference"],
         &["xyz", "rpy", "tool", "components", "level", "gain"],
     ),
-    ("center_of_mass", &["xyz"], &["components", "level", "gain"]),
+    ("center_of_mass", &["xyz"], &["velocity", "components", "level", "gain"]),
     ("gaze", &["frame", "point"], &["tool", "level", "gain"]),
     ("posture", &["q"], &["gain"]),
     ("joint_velocities", &["velocities"], &[]),
+    ("manipulability", &["frame"], &["tool", "components", "gain"]),
+    ("limit_avoidance", &[], &["margin", "gain"]),
 ];
 
 impl Entry {
@@ -90,6 +113,9 @@ impl Entry {
             ("axes", self.axes.is_some()),
             ("q", self.q.is_some()),
             ("velocities", self.velocities.is_some()),
+            ("velocity", self.velocity.is_some()),
+            ("angular_velocity", self.angular_velocity.is_some()),
+            ("margin", self.margin.is_some()),
             ("level", self.level.is_some()),
             ("gain", self.gain.is_some()),
         ];
@@ -153,7 +179,11 @@ impl Entry {
             "frame" => {
                 let end_effector = frame()?;
                 let (pose, components) = self.target(start.pose(end_effector), robot)?;
-                let target = pose.into();
+                let twist = Twist {
+                    linear: Vec3::from_array(self.velocity.unwrap_or_default()),
+                    angular: Vec3::from_array(self.angular_velocity.unwrap_or_default()),
+                };
+                let target = Target { feed_forward: twist, ..Target::from(pose) };
                 (TaskObjective::Frame { end_effector, components, target }, of_frame)
             }
             "relative_frame" => {
@@ -175,7 +205,9 @@ impl Entry {
                     anyhow::bail!("the centre of mass has the components x, y and z");
                 }
                 let target = Vec3::from_array(self.xyz.unwrap_or_default());
-                (TaskObjective::CenterOfMass { axes: [x, y, z], target }, "center_of_mass".into())
+                let (axes, velocity) = ([x, y, z], self.velocity.unwrap_or_default());
+                let velocity = Vec3::from_array(velocity);
+                (TaskObjective::CenterOfMass { axes, target, velocity }, "center_of_mass".into())
             }
             "gaze" => {
                 let point = Vec3::from_array(self.point.unwrap_or_default());
@@ -184,6 +216,16 @@ impl Entry {
             "posture" => {
                 let q = self.q.clone().map(Joints::from).unwrap_or(Joints::Home);
                 (TaskObjective::Posture { q: q.configuration(robot, false)? }, "posture".into())
+            }
+            "manipulability" => {
+                let task = Task::named(self.components.as_deref().unwrap_or("pose"), robot)?;
+                let objective =
+                    TaskObjective::Manipulability { end_effector: frame()?, components: task };
+                (objective, "manipulability".to_owned())
+            }
+            "limit_avoidance" => {
+                let margin = self.margin.unwrap_or(0.1);
+                (TaskObjective::LimitAvoidance { margin }, "limit_avoidance".to_owned())
             }
             _ => {
                 let all = self.velocities.clone().map(Joints::from).unwrap_or(Joints::Zero);
@@ -196,11 +238,16 @@ impl Entry {
     /// The task, with the values of `usual` where none are given.
     fn task(&self, start: &State, usual: &MotionTask) -> anyhow::Result<MotionTask> {
         let (objective, name) = self.objective(start)?;
+        // Gradients have gains of their own.
+        let gain = match objective {
+            TaskObjective::Manipulability { .. } | TaskObjective::LimitAvoidance { .. } => 1.0,
+            _ => usual.gain,
+        };
         let PoseTolerance { position, orientation } = usual.tolerance;
         Ok(MotionTask {
             level: self.level.unwrap_or(usual.level),
             weight: self.weight.unwrap_or(usual.weight),
-            gain: self.gain.unwrap_or(usual.gain),
+            gain: self.gain.unwrap_or(gain),
             tolerance: PoseTolerance {
                 position: self.tolerance_position.unwrap_or(position),
                 orientation: self.tolerance_orientation.unwrap_or(orientation),
@@ -210,12 +257,12 @@ impl Entry {
     }
 }
 
-/// The tasks of a file.
+/// The tasks and the half-spaces of a file.
 pub(super) fn load(
     path: &Path,
     start: &State,
     usual: &MotionTask,
-) -> anyhow::Result<Vec<MotionTask>> {
+) -> anyhow::Result<(Vec<MotionTask>, Vec<HalfSpace>)> {
     let refuse = |error: std::io::Error| cannot_read(path, &error.to_string());
     if !fs::metadata(path).map_err(refuse)?.is_file() {
         return Err(cannot_read(path, "it is not a regular file").into());
@@ -231,7 +278,18 @@ pub(super) fn load(
         let task = entry.get_ref().task(start, usual);
         task.map_err(|error| at(entry.span(), format!("{error:#}")).into())
     };
-    file.task.iter().map(one).collect()
+    let tasks = file.task.iter().map(one).collect::<anyhow::Result<Vec<_>>>()?;
+    let robot = start.mechanism();
+    let mut walls = Vec::new();
+    for plane in &file.half_space {
+        let wall = plane.get_ref().half_space(robot);
+        walls.push(wall.map_err(|error| at(plane.span(), error.to_string()))?);
+    }
+    for entry in &file.boxes {
+        let six = entry.get_ref().half_spaces(robot);
+        walls.extend(six.map_err(|error| at(entry.span(), error.to_string()))?);
+    }
+    Ok((tasks, walls))
 }
 
 fn error(path: &Path, text: &str, span: Range<usize>, message: String) -> Error {

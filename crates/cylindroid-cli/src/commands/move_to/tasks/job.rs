@@ -2,7 +2,8 @@
 
 use cylindroid::collision::CollisionModel;
 use cylindroid::control::{
-    CollisionAvoidance, MotionTask, PoseTolerance, Task, TaskObjective, TaskServo, TaskServoOptions,
+    CollisionAvoidance, HalfSpace, MotionTask, PoseTolerance, Task, TaskObjective, TaskServo,
+    TaskServoOptions,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Error, State};
@@ -10,7 +11,9 @@ use cylindroid::{Error, State};
 use super::file;
 use crate::args::{FrameTaskArg, LawName, MoveArgs, NullSpaceName};
 use crate::commands::distance::collision_model;
-use crate::commands::shared::{configuration, end_effector, limited, within_limits};
+use crate::commands::shared::{
+    all_actuated, configuration, end_effector, limited, load, within_limits,
+};
 use crate::commands::target::{target_pose, task};
 use crate::output;
 use crate::values::Weights;
@@ -33,19 +36,17 @@ pub(super) struct TaskJob {
 impl TaskJob {
     pub(super) fn new(args: &MoveArgs) -> anyhow::Result<Self> {
         refuse_foreign(args)?;
-        let robot = limited(cylindroid::load(&args.configuration.model)?, &args.limits)?;
-        if robot.is_closed() {
-            anyhow::bail!(
-                "'{}' has loops or contacts, and is controlled at its reference: omit --tasks, --task \
-                 FRAME=..., --avoid and --obstacle",
-                robot.name()
-            );
+        let robot = load(&args.configuration.model, &args.actuated)?;
+        let robot = limited(robot, &args.limits)?;
+        if !args.actuated.is_empty() && !robot.is_closed() {
+            return Err(all_actuated(&robot).into());
         }
         let start = configuration(&robot, &args.configuration)?;
         within_limits(&robot, "--q", &start)?;
         Error::check_positive("--time-limit", args.time_limit)?;
-        let tasks = tasks(args, &robot, &start)?;
+        let (tasks, half_spaces) = tasks(args, &robot, &start)?;
         let mut options = options(args, &robot)?;
+        options.half_spaces = half_spaces;
         if let Some(CollisionAvoidance { model, .. }) = &mut options.collisions {
             check_free(model, &robot.state(&start)?)?;
         }
@@ -71,7 +72,6 @@ fn refuse_foreign(args: &MoveArgs) -> anyhow::Result<()> {
     let (path, servo, inverse) = (&args.path, &args.servo, &args.inverse);
     let truncated = inverse.named.inverse.as_deref().is_none_or(|name| name == "truncated");
     let foreign = [
-        ("--actuated", !args.actuated.is_empty()),
         ("--line", path.line),
         ("--via", path.via.is_some()),
         ("--joint-to", path.joint_to.is_some()),
@@ -117,11 +117,15 @@ fn usual(args: &MoveArgs) -> anyhow::Result<MotionTask> {
     Ok(usual)
 }
 
-/// The target of the arguments, the tasks of frames, and those of the file.
-fn tasks(args: &MoveArgs, robot: &Mechanism, start: &[f64]) -> anyhow::Result<Vec<MotionTask>> {
+/// The target of the arguments, the tasks of frames, and those of the file with its half-spaces.
+fn tasks(
+    args: &MoveArgs,
+    robot: &Mechanism,
+    start: &[f64],
+) -> anyhow::Result<(Vec<MotionTask>, Vec<HalfSpace>)> {
     let (usual, state) = (usual(args)?, robot.state(start)?);
     let degrees = args.configuration.degrees;
-    let mut tasks = Vec::new();
+    let (mut tasks, mut half_spaces) = (Vec::new(), Vec::new());
     let of =
         |name: &str, objective| MotionTask { name: name.to_owned(), objective, ..usual.clone() };
     let frames = args.target.frame_tasks()?;
@@ -151,9 +155,11 @@ fn tasks(args: &MoveArgs, robot: &Mechanism, start: &[f64]) -> anyhow::Result<Ve
         tasks.push(of(frame, TaskObjective::Frame { end_effector, components, target }));
     }
     if let Some(path) = &args.tasks.tasks {
-        tasks.extend(file::load(path, &state, &usual)?);
+        let (own, walls) = file::load(path, &state, &usual)?;
+        tasks.extend(own);
+        half_spaces = walls;
     }
-    Ok(tasks)
+    Ok((tasks, half_spaces))
 }
 
 fn options(args: &MoveArgs, robot: &Mechanism) -> anyhow::Result<TaskServoOptions> {

@@ -3,6 +3,7 @@
 mod file;
 mod job;
 mod report;
+mod walls;
 
 use std::io::Write;
 use std::process::ExitCode;

@@ -44,6 +44,8 @@ struct TaskJson<'a> {
     left_out: f64,
     limit: Option<LimitJson<'a>>,
     pair: Option<[&'a str; 2]>,
+    /// The half-space that stops its level.
+    half_space: Option<&'a str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -96,7 +98,11 @@ impl<'a> Report<'a> {
     }
 
     fn joint(&self, index: usize) -> &'a str {
-        &self.job.robot.coordinates()[index].name
+        self.job.robot.velocity_name(index)
+    }
+
+    fn half_space(&self, index: usize) -> &'a str {
+        &self.job.servo.half_spaces()[index].name
     }
 
     fn limit(&self, (index, kind): (usize, LimitKind)) -> LimitJson<'a> {
@@ -114,6 +120,10 @@ impl<'a> Report<'a> {
                 let [a, b] = self.pair(pair);
                 format!("distance of {a} and {b}")
             }
+            Some(StoppedBy::HalfSpace { index }) => {
+                format!("half-space '{}'", self.half_space(index))
+            }
+            Some(StoppedBy::TypeII) => "type II singularity that is near".to_owned(),
         }
     }
 
@@ -136,6 +146,8 @@ impl<'a> Report<'a> {
         match open.stopped_by {
             Some(StoppedBy::Limit { .. }) => "limits",
             Some(StoppedBy::Distance { .. }) => "distance",
+            Some(StoppedBy::HalfSpace { .. }) => "half-space",
+            Some(StoppedBy::TypeII) => "type-ii",
             None if open.left_out > 0.5 => "priorities",
             None => "slow",
         }
@@ -178,6 +190,10 @@ impl<'a> Report<'a> {
             },
             pair: match report.stopped_by {
                 Some(StoppedBy::Distance { pair }) => Some(self.pair(pair)),
+                _ => None,
+            },
+            half_space: match report.stopped_by {
+                Some(StoppedBy::HalfSpace { index }) => Some(self.half_space(index)),
                 _ => None,
             },
         });

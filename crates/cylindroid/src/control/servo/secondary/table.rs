@@ -162,7 +162,7 @@ impl SecondaryTask {
 
     /// Refuses parameters outside their domains, a posture of another mechanism, and tasks that the
     /// loops of a mechanism do not allow.
-    pub(in super::super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
+    pub(in crate::control) fn check(&self, mechanism: &Mechanism) -> Result<()> {
         self.check_parameters()?;
         if let Self::Posture { q, .. } = self {
             mechanism.check_q("posture", q)?;

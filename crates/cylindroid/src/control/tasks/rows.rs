@@ -1,0 +1,116 @@
+//! The inequalities of a step: limits of all joints, pairs of bodies, half-spaces.
+//!
+//! Formula  limits `control/servo/limits.rs`; of pairs and half-spaces g q' >= -v(d - c), v the velocity
+//!          from which the joints stop within half of d - c, c = (dt sum |q'|)^2 L / 2 a bound of the
+//!          second-order change in a step; g q' >= (c - d) / dt where d < c
+//! Checked  tests/it/servo/tasks.rs, tests/it/servo/task_kinds.rs
+
+use super::options::MOST_PAIRS;
+use super::task_servo::TaskServo;
+use crate::control::servo::{JointState, stopping_velocity};
+use crate::error::Result;
+use crate::model::Coordinate;
+
+/// Share of the acceleration limits that brakes a pair of bodies [-]; the rest follows the other
+/// tasks.
+const BRAKING: f64 = 0.5;
+
+impl TaskServo {
+    /// Limits of the joints, and the unknowns of the last velocities.
+    pub(super) fn load_bounds(&mut self) {
+        let is_tree = !self.mechanism().is_closed();
+        for (i, limits) in self.limits.iter().enumerate() {
+            let position = self.state.q().get(i).copied().unwrap_or(0.0);
+            let now = JointState { position, velocity: self.rates[i] };
+            let bound = self.motions.bounds(i, limits, now, self.options.dt);
+            self.bounds[i] = bound;
+            let inequalities = &mut self.set.inequalities;
+            if is_tree {
+                let column = self.motions.motion(i, i);
+                let scaled = |v: f64| if column == 0.0 { 0.0 } else { v / column };
+                inequalities.lower[i] = scaled(bound.lower);
+                inequalities.upper[i] = scaled(bound.upper);
+            } else {
+                let motions = &self.motions;
+                inequalities.set_row(i, |j| motions.motion(i, j));
+                let moves = (0..motions.unknowns()).any(|j| motions.motion(i, j) != 0.0);
+                let (lower, upper) = if moves {
+                    (bound.lower, bound.upper)
+                } else {
+                    (f64::NEG_INFINITY, f64::INFINITY)
+                };
+                (inequalities.lower[i], inequalities.upper[i]) = (lower, upper);
+            }
+        }
+        self.motions.unknowns_of(&self.rates, &mut self.last);
+    }
+
+    /// One row for each half-space and each of the nearest pairs.
+    pub(super) fn load_distances(&mut self) -> Result<()> {
+        for i in 0..self.options.half_spaces.len() {
+            let half_space = &self.options.half_spaces[i];
+            let room = half_space.load(&self.state, &mut self.jacobian, &mut self.gradient);
+            self.load_distance(i, room);
+        }
+        let first = self.options.half_spaces.len();
+        let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
+        let gap = collisions.gap;
+        collisions.model.near(&self.state, collisions.margin, &mut self.near)?;
+        if self.near.len() > MOST_PAIRS {
+            self.near.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance));
+        }
+        self.near.truncate(MOST_PAIRS);
+        for place in 0..MOST_PAIRS {
+            let Some(near) = self.near.get(place) else {
+                self.clear_distance(first + place);
+                continue;
+            };
+            let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
+            collisions.model.gradient_into(&self.state, near, &mut self.gradient);
+            let room = near.distance - gap;
+            self.load_distance(first + place, room);
+        }
+        Ok(())
+    }
+
+    /// The row of a distance whose gradient is loaded.
+    fn load_distance(&mut self, place: usize, room: f64) {
+        let (motions, gradient) = (&self.motions, &self.gradient);
+        for (j, entry) in self.entries.iter_mut().enumerate() {
+            *entry = motions.entry(|i| gradient[i], j);
+        }
+        let entries = &self.entries;
+        let dt = self.options.dt;
+        let acceleration = BRAKING * motions.acceleration(|j| entries[j], &self.limits);
+        let bend = self.bend();
+        let inequalities = &mut self.set.inequalities;
+        let own = if self.state.mechanism().is_closed() { self.limits.len() } else { 0 };
+        inequalities.set_row(own + place, |j| entries[j]);
+        inequalities.lower[self.limits.len() + place] = if room > bend {
+            // Half of the way in a step at most.
+            -stopping_velocity(0.5 * (room - bend), acceleration, dt)
+        } else {
+            ((bend - room.max(0.0)) / dt).min(acceleration * dt)
+        };
+    }
+
+    /// Bound of the second-order change of a distance in a step with the last velocities (m): its
+    /// row is its tangent.
+    fn bend(&self) -> f64 {
+        let reach = self.state.mechanism().reach();
+        let coordinates = self.state.mechanism().coordinates().iter();
+        let moving = coordinates.zip(&self.rates).zip(&self.gradient).filter(|(_, g)| **g != 0.0);
+        let turn = |((c, rate), _): ((&Coordinate, &f64), &f64)| {
+            if c.kind.is_length() { rate.abs() / reach } else { rate.abs() }
+        };
+        let angle = self.options.dt * moving.map(turn).sum::<f64>();
+        0.5 * reach * angle * angle
+    }
+
+    /// A row without a distance.
+    fn clear_distance(&mut self, place: usize) {
+        let own = if self.state.mechanism().is_closed() { self.limits.len() } else { 0 };
+        self.set.inequalities.set_row(own + place, |_| 0.0);
+        self.set.inequalities.lower[self.limits.len() + place] = f64::NEG_INFINITY;
+    }
+}
