@@ -98,11 +98,11 @@ fn half_spaces_and_boxes() {
     assert!((y - 0.1).abs() < 1e-6 && y <= 0.1 + 1e-12, "{y}");
     for (table, message) in [
         ("[[half_space]]\nframe = 'nose'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n", "nose"),
-        ("[[half_space]]\nframe = 'hand'\npoint = [0, 0, 0]\nnormal = [0, 0, 0]\n", "normal"),
-        ("[[box]]\nframe = 'hand'\ncenter = [0, 0, 0]\nsize = [0, 1, 1]\n", "side of a box"),
-        ("[[box]]\nframe = 'hand'\ncenter = [0, 0, 0]\nsizes = [1, 1, 1]\n", "sizes"),
+        ("[[half_space]]\nframe = 'hand_tcp'\npoint = [0, 0, 0]\nnormal = [0, 0, 0]\n", "normal"),
+        ("[[box]]\nframe = 'hand_tcp'\ncenter = [0, 0, 0]\nsize = [0, 1, 1]\n", "side of a box"),
+        ("[[box]]\nframe = 'hand_tcp'\ncenter = [0, 0, 0]\nsizes = [1, 1, 1]\n", "sizes"),
     ] {
-        let (_folder, path) = file(&format!("[[task]]\nframe = 'hand'\n{table}"));
+        let (_folder, path) = file(&format!("[[task]]\nframe = 'hand_tcp'\n{table}"));
         let error = refused(&["move", "panda", "--tasks", &path]);
         assert!(error.contains(message), "{error}");
     }
@@ -167,7 +167,7 @@ fn what_has_no_effect_is_refused() {
     assert!(error.contains("--frame: there is no target"), "{error}");
     let inside = ["move", CELL, "--to", "0.4,0,0.4", "--obstacle", "ball=sphere:0.1@0.31,0,0.5"];
     assert!(refused(&inside).contains("--q: flange and ball penetrate each other"));
-    let error = refused(&["move", "panda", "--task", "link4=1,2,3", "--actuated", "q1"]);
+    let error = refused(&["move", "panda", "--task", "link4=1,2,3", "--actuated", "panda_joint1"]);
     assert!(error.contains("all joints are actuated"), "{error}");
     assert!(refused(&["move", "panda", "--avoid"]).contains("--tasks FILE.toml"));
     assert!(
