@@ -22,11 +22,7 @@ mod tracking;
 mod velocity_mode;
 
 use super::coupled::Coupled;
-<<<<<<< HEAD
 use super::escape::Escape;
-use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
-=======
->>>>>>> 1f6a932 (Many tasks of closed chains, half-spaces, gradients and velocities of the centre of mass in one servo; distances give way as little as limits permit)
 use super::inertia_weights::InertiaWeights;
 use super::limits::BrakingMargin;
 use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
